@@ -1,0 +1,220 @@
+"""Every error of onorbit_rs, one class per concern.
+
+Each class is an :class:`OnOrbitError` and also the built-in that fits, so ``except ValueError`` works too.
+Each is made as ``Cls(message, **fields)``; fields are attributes (``None`` where not given) and all of them pickle.
+
+==========================  =====================  ==================================================================
+class                       built-in               fields
+==========================  =====================  ==================================================================
+``InputError``              ``ValueError``         ``name, got, expected``: NaN, infinite, out of range, not unit norm
+``ShapeError``              ``ValueError``         ``name, expected, got``: wrong array length or shape
+``DtypeError``              ``TypeError``          ``name, expected, got``: not an array of real numbers
+``ModelError``              ``ValueError``         ``link, joint, path``: masses, inertias, loops, malformed URDF
+``FrameError``              ``KeyError``           ``name, kind, known, suggestion``: no frame, link, body or joint so named
+``OrbitError``              ``ValueError``         ``name, got, expected``: elements that are no orbit, gravity refused
+``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
+``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
+``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
+``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or a factorisation failed
+``NotFoundError``           ``FileNotFoundError``  ``path, kind, suggestion``: no such file, bundled robot or scenario
+``ReadError``               ``OSError``            ``path, kind``: a file is there but cannot be read
+``OutputFolderError``       ``OSError``            ``path``: base of the two below
+``OutputNotEmptyError``     ``FileExistsError``    ``path``: the folder holds files; ask with ``force``
+``OutputNotWritableError``  ``PermissionError``    ``path``: the folder cannot be written
+``ScenarioError``           ``ValueError``         ``file, path, line``: a YAML that is broken, misspelt or senseless
+``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is no angle
+==========================  =====================  ==================================================================
+
+:class:`RunInterrupted` stands apart: it is a ``KeyboardInterrupt`` (Ctrl-C), so neither ``except Exception`` nor
+``except OnOrbitError`` swallows it; its fields are ``time`` and ``trace``, the run so far.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+__all__ = [
+    "ControlError",
+    "ConvergenceError",
+    "DtypeError",
+    "EffectError",
+    "FrameError",
+    "InputError",
+    "ModelError",
+    "NotFoundError",
+    "OnOrbitError",
+    "OrbitError",
+    "OutputFolderError",
+    "OutputNotEmptyError",
+    "OutputNotWritableError",
+    "QuantityError",
+    "ReadError",
+    "RunInterrupted",
+    "ScenarioError",
+    "ShapeError",
+    "SimulationError",
+]
+
+
+class _Fields(BaseException):
+    """A message and named fields; survives pickling with both."""
+
+    def __init__(self, message: str = "", **fields: Any) -> None:
+        super().__init__(message)
+        self.message = message
+        for name, value in fields.items():
+            setattr(self, name, value)
+
+    def __str__(self) -> str:  # KeyError and OSError would print a repr or an errno
+        return self.message
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_rebuild, (type(self), self.message, _picklable(self.__dict__)))
+
+
+def _rebuild(cls: type[_Fields], message: str, fields: dict[str, Any]) -> _Fields:
+    return cls(message, **{name: value for name, value in fields.items() if name != "message"})
+
+
+def _picklable(fields: dict[str, Any]) -> dict[str, Any]:
+    """Fields without the trace: a pickled error travels between processes, a trace stays where it is."""
+    return {name: value for name, value in fields.items() if name != "trace"}
+
+
+class OnOrbitError(_Fields, Exception):
+    """Root of every error of onorbit_rs."""
+
+
+class InputError(OnOrbitError, ValueError):
+    """A value without physical sense: NaN, infinite, out of range, a quaternion off unit norm."""
+
+    name: Any = None
+    got: Any = None
+    expected: Any = None
+
+
+class ShapeError(OnOrbitError, ValueError):
+    """An array of the wrong length or shape."""
+
+    name: Any = None
+    expected: Any = None
+    got: Any = None
+
+
+class DtypeError(OnOrbitError, TypeError):
+    """Not an array of real numbers."""
+
+    name: Any = None
+    expected: Any = None
+    got: Any = None
+
+
+class ModelError(OnOrbitError, ValueError):
+    """A robot that cannot be: masses, inertias, loops, a malformed URDF."""
+
+    link: Any = None
+    joint: Any = None
+    path: Any = None
+
+
+class FrameError(OnOrbitError, KeyError):
+    """No frame, link, body or joint has this name."""
+
+    name: Any = None
+    kind: Any = None
+    known: Any = None
+    suggestion: Any = None
+
+
+class OrbitError(OnOrbitError, ValueError):
+    """Elements that describe no orbit, or an orbit that cannot be used so."""
+
+    name: Any = None
+    got: Any = None
+    expected: Any = None
+
+
+class EffectError(OnOrbitError, ValueError):
+    """An effect of the environment that makes no sense."""
+
+    name: Any = None
+    got: Any = None
+    expected: Any = None
+
+
+class ControlError(OnOrbitError, ValueError):
+    """Gains, controllers or references that do not fit."""
+
+    name: Any = None
+    got: Any = None
+    expected: Any = None
+
+
+class SimulationError(OnOrbitError, ArithmeticError):
+    """The run diverged; ``trace`` holds what was recorded until then (it does not pickle)."""
+
+    time: Any = None
+    q: Any = None
+    v: Any = None
+    trace: Any = None
+
+
+class ConvergenceError(OnOrbitError, ArithmeticError):
+    """An iteration did not converge, or a matrix could not be factored."""
+
+    iterations: Any = None
+    residual: Any = None
+
+
+class NotFoundError(OnOrbitError, FileNotFoundError):
+    """No such file, bundled robot or bundled scenario."""
+
+    path: Any = None
+    kind: Any = None
+    suggestion: Any = None
+
+
+class ReadError(OnOrbitError, OSError):
+    """The file is there but cannot be read."""
+
+    path: Any = None
+    kind: Any = None
+
+
+class OutputFolderError(OnOrbitError, OSError):
+    """The output folder cannot be used."""
+
+    path: Any = None
+
+
+class OutputNotEmptyError(OutputFolderError, FileExistsError):
+    """The output folder already holds files."""
+
+
+class OutputNotWritableError(OutputFolderError, PermissionError):
+    """The output folder cannot be written."""
+
+
+class ScenarioError(OnOrbitError, ValueError):
+    """A scenario that is broken, misspelt or makes no sense; says where.
+
+    ``file`` is the YAML, ``path`` the place in it (``orbit.semi_major_axis``), ``line`` its line, from 1.
+    """
+
+    file: Any = None
+    path: Any = None
+    line: Any = None
+
+
+class QuantityError(OnOrbitError, ValueError):
+    """Text that is not a number with a unit of the right dimension."""
+
+    text: Any = None
+    expected: Any = None
+
+
+class RunInterrupted(_Fields, KeyboardInterrupt):  # noqa: N818  an interruption, not an error
+    """Ctrl-C during a run; ``trace`` holds the run so far (it does not pickle)."""
+
+    time: Any = None
+    trace: Any = None
