@@ -3,4 +3,6 @@
 //! Folders depend downwards only, in this order: `spatial`, `model`, `dynamics`, `orbit`,
 //! `environment`, `reference`, `control`, `simulation`, `batch`.
 
+pub mod model;
 pub mod orbit;
+pub mod spatial;

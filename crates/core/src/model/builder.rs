@@ -1,0 +1,177 @@
+//! Building a robot link by link.
+
+use super::compile::compile;
+use super::description::{Inertial, Joint, JointKind, Link};
+use super::error::{ModelError, ModelWarning};
+use super::inertia_check::check_inertial;
+use super::tree::Model;
+use nalgebra::{Isometry3, Matrix3, Vector3};
+
+/// Collects links and joints, then [`build`](ModelBuilder::build)s the tree.
+///
+/// The first link floats; every further link hangs by a joint on one that is there already, so a
+/// loop cannot be described.
+#[derive(Clone, Debug)]
+pub struct ModelBuilder {
+    pub(super) name: String,
+    pub(super) links: Vec<Link>,
+    /// Joint of link `i + 1` and the index of the link it hangs on.
+    pub(super) joints: Vec<(usize, Joint)>,
+    /// Extra frames: name, link, pose in the link's frame.
+    pub(super) frames: Vec<(String, usize, Isometry3<f64>)>,
+    pub(super) warnings: Vec<ModelWarning>,
+}
+
+impl ModelBuilder {
+    /// A robot whose base is `base`.
+    ///
+    /// # Errors
+    /// What is wrong with the base's name or inertia.
+    pub fn new(name: &str, base: Link) -> Result<Self, ModelError> {
+        let mut builder = Self {
+            name: name.to_owned(),
+            links: Vec::new(),
+            joints: Vec::new(),
+            frames: Vec::new(),
+            warnings: Vec::new(),
+        };
+        builder.add_link(base)?;
+        Ok(builder)
+    }
+
+    /// Hangs `child` on the link `parent` by `joint`.
+    ///
+    /// # Errors
+    /// Unknown parent, a name used twice, a zero axis, negative damping, reversed limits, or what
+    /// is wrong with the child's inertia.
+    pub fn add(&mut self, parent: &str, joint: Joint, child: Link) -> Result<&mut Self, ModelError> {
+        let parent = self.link(parent)?;
+        if self.joints.iter().any(|(_, other)| other.name == joint.name) {
+            return Err(ModelError::DuplicateName { what: "joint", name: joint.name });
+        }
+        check_joint(&joint)?;
+        self.add_link(child)?;
+        self.joints.push((parent, joint));
+        Ok(self)
+    }
+
+    /// Names a frame fixed to the link `link`, at `pose` in its frame.
+    ///
+    /// # Errors
+    /// Unknown link, or a name that a link or frame already has.
+    pub fn add_frame(
+        &mut self,
+        name: &str,
+        link: &str,
+        pose: Isometry3<f64>,
+    ) -> Result<&mut Self, ModelError> {
+        let link = self.link(link)?;
+        self.check_new_frame_name(name)?;
+        if !pose.to_homogeneous().iter().all(|x| x.is_finite()) {
+            return Err(ModelError::NotFinite { what: "the pose", name: name.to_owned() });
+        }
+        self.frames.push((name.to_owned(), link, pose));
+        Ok(self)
+    }
+
+    /// Keeps a remark for the reader of the model.
+    pub fn warn(&mut self, warning: ModelWarning) -> &mut Self {
+        self.warnings.push(warning);
+        self
+    }
+
+    /// The finished robot: fixed joints folded, axes aligned, proved to be well posed.
+    ///
+    /// # Errors
+    /// A robot without mass, or one whose motion something does not resist.
+    pub fn build(self) -> Result<Model, ModelError> {
+        compile(self)
+    }
+
+    fn add_link(&mut self, link: Link) -> Result<(), ModelError> {
+        self.check_new_frame_name(&link.name)?;
+        if let Some(inertial) = &link.inertial
+            && let Some(warning) = check_inertial(&link.name, inertial)?
+        {
+            self.warnings.push(warning);
+        }
+        self.links.push(link);
+        Ok(())
+    }
+
+    fn check_new_frame_name(&self, name: &str) -> Result<(), ModelError> {
+        if name.is_empty() {
+            return Err(ModelError::EmptyName { what: "link or frame" });
+        }
+        let is_taken =
+            self.links.iter().any(|link| link.name == name) || self.frames.iter().any(|f| f.0 == name);
+        if is_taken {
+            return Err(ModelError::DuplicateName { what: "link or frame", name: name.to_owned() });
+        }
+        Ok(())
+    }
+
+    fn link(&self, name: &str) -> Result<usize, ModelError> {
+        self.links.iter().position(|link| link.name == name).ok_or_else(|| ModelError::UnknownName {
+            what: "link",
+            name: name.to_owned(),
+            candidates: self.links.iter().map(|link| link.name.clone()).collect(),
+        })
+    }
+}
+
+impl Model {
+    /// A spacecraft without joints; its one body is `base`, its origin the centre of mass.
+    ///
+    /// # Errors
+    /// A mass that is not positive, an inertia that is not symmetric positive definite.
+    pub fn rigid_body(mass: f64, inertia: Matrix3<f64>) -> Result<Self, ModelError> {
+        if mass == 0.0 {
+            return Err(ModelError::MassNotPositive { link: "base".to_owned(), mass });
+        }
+        let inertial = Inertial { mass, com: Vector3::zeros(), inertia };
+        ModelBuilder::new("rigid_body", Link::new("base", Some(inertial)))?.build()
+    }
+}
+
+fn check_joint(joint: &Joint) -> Result<(), ModelError> {
+    let name = || joint.name.clone();
+    if joint.name.is_empty() {
+        return Err(ModelError::EmptyName { what: "joint" });
+    }
+    if !joint.origin.to_homogeneous().iter().all(|x| x.is_finite()) {
+        return Err(ModelError::NotFinite { what: "the origin", name: name() });
+    }
+    if let JointKind::Revolute(axis) | JointKind::Prismatic(axis) = &joint.kind {
+        if !axis.iter().all(|x| x.is_finite()) {
+            return Err(ModelError::NotFinite { what: "the axis", name: name() });
+        }
+        if axis.norm() == 0.0 {
+            return Err(ModelError::ZeroAxis { joint: name() });
+        }
+    }
+    let amounts = [
+        ("damping", joint.damping),
+        ("friction", joint.friction),
+        ("rotor inertia", joint.rotor_inertia),
+        ("velocity limit", joint.limits.velocity.unwrap_or(0.0)),
+        ("effort limit", joint.limits.effort.unwrap_or(0.0)),
+    ];
+    for (what, value) in amounts {
+        if value.is_nan() {
+            return Err(ModelError::NotFinite { what, name: name() });
+        }
+        if value < 0.0 {
+            return Err(ModelError::Negative { joint: name(), what, value });
+        }
+    }
+    match joint.limits.position {
+        Some((lower, upper)) if lower.is_nan() || upper.is_nan() => {
+            Err(ModelError::NotFinite { what: "a position limit", name: name() })
+        }
+        Some((lower, upper)) if lower > upper => {
+            Err(ModelError::LimitsReversed { joint: name(), lower, upper })
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,99 @@
+//! What can be wrong with a robot.
+
+use std::fmt;
+use thiserror::Error;
+
+/// A robot that cannot be simulated.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[allow(missing_docs)] // the fields are what the messages say
+pub enum ModelError {
+    #[error("link '{link}' has a mass of {mass} kg, it must be positive")]
+    MassNotPositive { link: String, mass: f64 },
+    #[error("link '{link}' has no mass but a rotational inertia; give it a mass or remove the inertia")]
+    InertiaWithoutMass { link: String },
+    #[error(
+        "the inertia of link '{link}' is not positive definite: its principal moments are {moments:?} kg m2"
+    )]
+    IndefiniteInertia { link: String, moments: [f64; 3] },
+    #[error("the inertia of link '{link}' is not symmetric: entries differ by {difference} kg m2")]
+    AsymmetricInertia { link: String, difference: f64 },
+    #[error("{what} of '{name}' is not finite")]
+    NotFinite { what: &'static str, name: String },
+    #[error("the robot has no mass: a floating base needs some")]
+    NoMass,
+    #[error(
+        "nothing resists the motion of joint '{joint}': link '{link}' and what hangs on it have no inertia about \
+         its axis; give one of them an inertial, or make the joint fixed"
+    )]
+    MasslessSubtree { joint: String, link: String },
+    #[error(
+        "the base '{link}' can be moved without resistance: the robot's inertia is singular about some axis"
+    )]
+    SingularBase { link: String },
+    #[error("the {what} name '{name}' is used twice")]
+    DuplicateName { what: &'static str, name: String },
+    #[error("a {what} has an empty name")]
+    EmptyName { what: &'static str },
+    #[error("there is no {what} '{name}'{}", nearest(.candidates, .name))]
+    UnknownName { what: &'static str, name: String, candidates: Vec<String> },
+    #[error("joint '{joint}' has an axis of length zero")]
+    ZeroAxis { joint: String },
+    #[error("joint '{joint}': {what} is {value}, it must not be negative")]
+    Negative { joint: String, what: &'static str, value: f64 },
+    #[error("joint '{joint}': lower limit {lower} is above upper limit {upper}")]
+    LimitsReversed { joint: String, lower: f64, upper: f64 },
+}
+
+/// Something odd that the model lives with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ModelWarning {
+    /// Principal moments that no body of positive density has.
+    TriangleInequality {
+        /// The link.
+        link: String,
+        /// Its principal moments, kg m², ascending.
+        moments: [f64; 3],
+    },
+    /// Anything else a reader of a file met.
+    Note(String),
+}
+
+impl fmt::Display for ModelWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TriangleInequality { link, moments: [a, b, c] } => write!(
+                f,
+                "the inertia of link '{link}' breaks the triangle inequality: {a:.6} + {b:.6} < {c:.6} kg m2; \
+                 no real body has such principal moments (used as it is)"
+            ),
+            Self::Note(text) => f.write_str(text),
+        }
+    }
+}
+
+/// `; did you mean 'x'?` for the closest candidate, or the list when there are few.
+fn nearest(candidates: &[String], name: &str) -> String {
+    let best = candidates.iter().min_by_key(|c| distance(c, name));
+    match best {
+        Some(c) if distance(c, name) <= 2 + name.len() / 3 => format!("; did you mean '{c}'?"),
+        Some(_) if candidates.len() <= 12 => format!("; there are: {}", candidates.join(", ")),
+        _ => String::new(),
+    }
+}
+
+/// Levenshtein distance, case ignored.
+fn distance(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) =
+        (a.to_lowercase().chars().collect(), b.to_lowercase().chars().collect());
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.iter().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let substitute = diagonal + usize::from(ca != cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substitute.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}

@@ -1,0 +1,58 @@
+//! Names to indices.
+
+use super::error::ModelError;
+use super::tree::Model;
+
+impl Model {
+    /// Index of a frame.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownName`] with the nearest name.
+    pub fn frame(&self, name: &str) -> Result<usize, ModelError> {
+        find("frame", name, self.frame_names())
+    }
+
+    /// Index of a joint in the order of `v` (0 is the first after the base).
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownName`] with the nearest name.
+    pub fn joint(&self, name: &str) -> Result<usize, ModelError> {
+        find("joint", name, self.joint_names())
+    }
+
+    /// Index of a body.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownName`] with the nearest name.
+    pub fn body(&self, name: &str) -> Result<usize, ModelError> {
+        find("body", name, self.body_names())
+    }
+
+    /// Names of the frames: every link, and what the user added.
+    pub fn frame_names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.frames.iter().map(|frame| frame.name.as_str())
+    }
+
+    /// Names of the moving joints, in the order of `v`.
+    pub fn joint_names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.joints.iter().map(|joint| joint.name.as_str())
+    }
+
+    /// Names of the bodies: links that move on their own, base first.
+    pub fn body_names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.body_frames.iter().map(|&frame| self.frames[frame].name.as_str())
+    }
+}
+
+fn find<'a>(
+    what: &'static str,
+    name: &str,
+    mut names: impl Iterator<Item = &'a str> + Clone,
+) -> Result<usize, ModelError> {
+    let candidates = names.clone();
+    names.position(|candidate| candidate == name).ok_or_else(|| ModelError::UnknownName {
+        what,
+        name: name.to_owned(),
+        candidates: candidates.map(str::to_owned).collect(),
+    })
+}

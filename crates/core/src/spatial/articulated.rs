@@ -1,0 +1,84 @@
+//! Articulated-body inertia: what a body feels like with its subtree hanging on it.
+
+use super::inertia::SpatialInertia;
+use super::mat3::Mat3;
+use super::motion::{Force, Motion};
+use super::scalar::Real;
+use super::sym3::Sym3;
+use super::vec3::Vec3;
+
+/// A symmetric 6 × 6 operator `[[A, H], [Hᵀ, I]]`, linear first: twenty-one numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ArticulatedInertia<S> {
+    /// Linear block, kg.
+    pub linear: Sym3<S>,
+    /// Coupling block, kg m: force from angular acceleration.
+    pub coupling: Mat3<S>,
+    /// Angular block, kg m².
+    pub angular: Sym3<S>,
+}
+
+impl<S: Real> ArticulatedInertia<S> {
+    /// That of a rigid body alone: `A = m 1`, `H = −h×`.
+    #[inline(always)]
+    pub fn rigid(i: &SpatialInertia<S>) -> Self {
+        let (o, h) = (S::of(0.0), i.moment);
+        Self {
+            linear: Sym3::diagonal(i.mass),
+            coupling: Mat3::from_columns(
+                Vec3::new(o, -h.z, h.y),
+                Vec3::new(h.z, o, -h.x),
+                Vec3::new(-h.y, h.x, o),
+            ),
+            angular: i.about_origin,
+        }
+    }
+
+    /// `IA a`.
+    #[inline(always)]
+    pub fn apply(&self, a: Motion<S>) -> Force<S> {
+        Force::new(
+            self.linear * a.linear + self.coupling * a.angular,
+            self.coupling.transpose_mul(a.linear) + self.angular * a.angular,
+        )
+    }
+
+    /// `IA + U Uᵀ s`.
+    #[inline(always)]
+    #[must_use]
+    pub fn add_outer(&self, u: Force<S>, s: S) -> Self {
+        Self {
+            linear: self.linear.add_outer(u.linear, s),
+            coupling: self.coupling.add_outer(u.linear, u.angular, s),
+            angular: self.angular.add_outer(u.angular, s),
+        }
+    }
+
+    /// Adds another.
+    #[inline(always)]
+    pub fn accumulate(&mut self, o: &Self) {
+        self.linear += o.linear;
+        self.coupling += o.coupling;
+        self.angular += o.angular;
+    }
+
+    /// `IA⁻¹ f` by block elimination: `v = A⁻¹ (f − H ω)`,
+    /// `ω = (I − Hᵀ A⁻¹ H)⁻¹ (n − Hᵀ A⁻¹ f)`.
+    #[inline(always)]
+    pub fn solve(&self, f: Force<S>) -> Motion<S> {
+        let a = self.linear.inverse();
+        let (x, y, z) = (a * self.coupling.x, a * self.coupling.y, a * self.coupling.z);
+        let h = &self.coupling;
+        let schur = Sym3::new(
+            self.angular.xx - h.x.dot(x),
+            self.angular.yy - h.y.dot(y),
+            self.angular.zz - h.z.dot(z),
+            self.angular.xy - h.x.dot(y),
+            self.angular.xz - h.x.dot(z),
+            self.angular.yz - h.y.dot(z),
+        );
+        let af = a * f.linear;
+        let angular = schur.inverse() * (f.angular - h.transpose_mul(af));
+        Motion::new(af - (x * angular.x + y * angular.y + z * angular.z), angular)
+    }
+}

@@ -1,0 +1,133 @@
+//! One number whose multiply-adds are fused: the scalar of processors with AVX2 and FMA.
+
+use super::scalar::{FAST_SINE_LIMIT, Real, Scalar};
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// An `f64` whose [`mul_add`](Real::mul_add) is one instruction.
+///
+/// Compute with it only inside [`Real::enter`] on a processor for which
+/// [`Fused::is_available`] holds; elsewhere results are right but slow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[repr(transparent)]
+pub struct Fused(pub f64);
+
+impl Fused {
+    /// Whether this processor has the instructions that [`Real::enter`] uses.
+    #[inline(always)]
+    pub fn is_available() -> bool {
+        #[cfg(target_arch = "x86_64")]
+        {
+            std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        {
+            cfg!(target_arch = "aarch64") // fused multiply-add is part of the baseline there
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn enter_avx2<R>(kernel: impl FnOnce() -> R) -> R {
+    kernel()
+}
+
+macro_rules! operator {
+    ($trait:ident, $method:ident, $op:tt) => {
+        impl $trait for Fused {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0 $op other.0)
+            }
+        }
+    };
+}
+operator!(Add, add, +);
+operator!(Sub, sub, -);
+operator!(Mul, mul, *);
+operator!(Div, div, /);
+
+macro_rules! assign {
+    ($trait:ident, $method:ident, $op:tt) => {
+        impl $trait for Fused {
+            #[inline(always)]
+            fn $method(&mut self, other: Self) {
+                self.0 $op other.0;
+            }
+        }
+    };
+}
+assign!(AddAssign, add_assign, +=);
+assign!(SubAssign, sub_assign, -=);
+assign!(MulAssign, mul_assign, *=);
+
+impl Neg for Fused {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl Real for Fused {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        Self(x)
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Self(f64::mul_add(self.0, a.0, b.0))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        if self.0.abs() < FAST_SINE_LIMIT {
+            super::sine::sin_cos(self)
+        } else {
+            let (s, c) = self.0.sin_cos();
+            (Self(s), Self(c))
+        }
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        Self(self.0.atan2(x.0))
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> bool {
+        self.0 < other.0
+    }
+    #[inline(always)]
+    fn select(mask: bool, a: Self, b: Self) -> Self {
+        if mask { a } else { b }
+    }
+    #[inline(always)]
+    fn enter<R>(kernel: impl FnOnce() -> R) -> R {
+        #[cfg(target_arch = "x86_64")]
+        {
+            assert!(Self::is_available(), "fused kernels entered on a processor without AVX2 and FMA");
+            // SAFETY: the processor has both features, checked on the line above.
+            unsafe { enter_avx2(kernel) }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        {
+            kernel()
+        }
+    }
+}
+
+impl Scalar for Fused {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self.0
+    }
+}

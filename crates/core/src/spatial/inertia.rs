@@ -1,0 +1,116 @@
+//! Inertia of a rigid body: ten numbers.
+
+use super::mat3::Mat3;
+use super::motion::{Force, Motion};
+use super::scalar::Real;
+use super::sym3::Sym3;
+use super::vec3::Vec3;
+use std::ops::{Add, AddAssign};
+
+/// Inertia about the origin: mass `m`, first moment `h = m c`, second moment `I_o`.
+///
+/// As a 6 × 6 matrix, linear first: `[[m 1, −h×], [h×, I_o]]`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpatialInertia<S> {
+    /// Mass, kg.
+    pub mass: S,
+    /// Mass times centre of mass, kg m.
+    pub moment: Vec3<S>,
+    /// Rotational inertia about the origin, kg m².
+    pub about_origin: Sym3<S>,
+}
+
+impl<S: Real> SpatialInertia<S> {
+    /// No mass.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self { mass: S::of(0.0), moment: Vec3::zero(), about_origin: Sym3::diagonal(S::of(0.0)) }
+    }
+
+    /// From the centre of mass `c` and the inertia about it.
+    #[inline(always)]
+    pub fn at_com(mass: S, c: Vec3<S>, about_com: Sym3<S>) -> Self {
+        let moment = c * mass;
+        Self { mass, moment, about_origin: about_com.shift(moment, c) }
+    }
+
+    /// The body placed at `(rot, pos)`, given its centre of mass and inertia in its own frame.
+    #[inline(always)]
+    pub fn placed(mass: S, c: Vec3<S>, about_com: &Sym3<S>, rot: &Mat3<S>, pos: Vec3<S>) -> Self {
+        Self::at_com(mass, *rot * c + pos, about_com.rotate(rot))
+    }
+
+    /// Momentum `I v`: `p = m v + ω × h`, `L = I_o ω + h × v`.
+    #[inline(always)]
+    pub fn momentum(&self, v: Motion<S>) -> Force<S> {
+        Force::new(
+            v.linear.scale_add(self.mass, v.angular.cross(self.moment)),
+            self.about_origin * v.angular + self.moment.cross(v.linear),
+        )
+    }
+
+    /// Centre of mass, m. The mass must not be zero.
+    #[inline(always)]
+    pub fn com(&self) -> Vec3<S> {
+        self.moment * (S::of(1.0) / self.mass)
+    }
+
+    /// Inertia about the centre of mass, kg m².
+    #[inline(always)]
+    pub fn about_com(&self) -> Sym3<S> {
+        self.about_origin.shift(-self.moment, self.com())
+    }
+}
+
+/// `I⁻¹` prepared once for many right-hand sides.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct InverseInertia<S> {
+    inverse_mass: S,
+    com: Vec3<S>,
+    inverse_about_com: Sym3<S>,
+}
+
+impl<S: Real> SpatialInertia<S> {
+    /// Prepares `I⁻¹`.
+    #[inline(always)]
+    pub fn inverse(&self) -> InverseInertia<S> {
+        let inverse_mass = S::of(1.0) / self.mass;
+        let com = self.moment * inverse_mass;
+        let about_com = self.about_origin.shift(-self.moment, com);
+        InverseInertia { inverse_mass, com, inverse_about_com: about_com.inverse() }
+    }
+}
+
+impl<S: Real> InverseInertia<S> {
+    /// `I⁻¹ f`: about the centre of mass the two halves separate,
+    /// `ω = I_c⁻¹ (n − c × f)`, `v = f/m − ω × c`.
+    #[inline(always)]
+    pub fn apply(&self, f: Force<S>) -> Motion<S> {
+        let angular = self.inverse_about_com * (f.angular - self.com.cross(f.linear));
+        Motion::new(f.linear.scale_add(self.inverse_mass, self.com.cross(angular)), angular)
+    }
+
+    /// Centre of mass, m.
+    #[inline(always)]
+    pub fn com(&self) -> Vec3<S> {
+        self.com
+    }
+}
+
+impl<S: Real> Add for SpatialInertia<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self {
+            mass: self.mass + o.mass,
+            moment: self.moment + o.moment,
+            about_origin: self.about_origin + o.about_origin,
+        }
+    }
+}
+impl<S: Real> AddAssign for SpatialInertia<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}

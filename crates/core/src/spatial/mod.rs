@@ -1,0 +1,27 @@
+//! Spatial algebra on a generic scalar: vectors, rotations, motions, forces, inertias.
+//!
+//! Everything here is plain data and `#[inline(always)]`, so that a kernel compiled for one
+//! instruction set takes its arithmetic with it. Linear parts come before angular ones.
+
+mod articulated;
+mod fused;
+mod inertia;
+mod mat3;
+mod motion;
+mod rotation;
+mod scalar;
+mod sine;
+mod solve;
+mod sym3;
+mod vec3;
+
+pub use articulated::ArticulatedInertia;
+pub use fused::Fused;
+pub use inertia::{InverseInertia, SpatialInertia};
+pub use mat3::Mat3;
+pub use motion::{Force, Motion};
+pub use rotation::{Quat, dexp_inv, exp_so3, log_so3};
+pub use scalar::{Real, Scalar};
+pub use solve::{cholesky_factor, cholesky_solve};
+pub use sym3::Sym3;
+pub use vec3::Vec3;

@@ -1,0 +1,137 @@
+//! Spatial motions and forces, linear part first.
+
+use super::scalar::Real;
+use super::vec3::Vec3;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+/// Twist or spatial acceleration: `linear` is that of the point at the origin, `angular` the
+/// rotation rate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion<S> {
+    /// Velocity of the body-fixed point at the origin, m/s.
+    pub linear: Vec3<S>,
+    /// Angular velocity, rad/s.
+    pub angular: Vec3<S>,
+}
+
+/// Wrench or spatial momentum: `angular` is the moment about the origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Force<S> {
+    /// Force, N, or linear momentum, kg m/s.
+    pub linear: Vec3<S>,
+    /// Moment about the origin, N m, or angular momentum, kg m²/s.
+    pub angular: Vec3<S>,
+}
+
+macro_rules! pair {
+    ($name:ident) => {
+        impl<S: Real> $name<S> {
+            /// The pair of these halves.
+            #[inline(always)]
+            pub fn new(linear: Vec3<S>, angular: Vec3<S>) -> Self {
+                Self { linear, angular }
+            }
+
+            /// Nothing.
+            #[inline(always)]
+            pub fn zero() -> Self {
+                Self::new(Vec3::zero(), Vec3::zero())
+            }
+
+            /// The first six numbers of a slice, linear before angular.
+            #[inline(always)]
+            pub fn from_slice(s: &[S]) -> Self {
+                Self::new(Vec3::from_slice(s), Vec3::from_slice(&s[3..]))
+            }
+
+            /// Writes six numbers, linear before angular.
+            #[inline(always)]
+            pub fn write(self, out: &mut [S]) {
+                self.linear.write(out);
+                self.angular.write(&mut out[3..]);
+            }
+
+            /// `self · s + o`.
+            #[inline(always)]
+            pub fn scale_add(self, s: S, o: Self) -> Self {
+                Self::new(self.linear.scale_add(s, o.linear), self.angular.scale_add(s, o.angular))
+            }
+        }
+        impl<S: Real> Add for $name<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, o: Self) -> Self {
+                Self::new(self.linear + o.linear, self.angular + o.angular)
+            }
+        }
+        impl<S: Real> Sub for $name<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, o: Self) -> Self {
+                Self::new(self.linear - o.linear, self.angular - o.angular)
+            }
+        }
+        impl<S: Real> Mul<S> for $name<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, s: S) -> Self {
+                Self::new(self.linear * s, self.angular * s)
+            }
+        }
+        impl<S: Real> Neg for $name<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self::new(-self.linear, -self.angular)
+            }
+        }
+        impl<S: Real> AddAssign for $name<S> {
+            #[inline(always)]
+            fn add_assign(&mut self, o: Self) {
+                *self = *self + o;
+            }
+        }
+        impl<S: Real> SubAssign for $name<S> {
+            #[inline(always)]
+            fn sub_assign(&mut self, o: Self) {
+                *self = *self - o;
+            }
+        }
+    };
+}
+pair!(Motion);
+pair!(Force);
+
+impl<S: Real> Motion<S> {
+    /// Power `vᵀ f`, W.
+    #[inline(always)]
+    pub fn dot(self, f: Force<S>) -> S {
+        self.linear.dot(f.linear) + self.angular.dot(f.angular)
+    }
+
+    /// `v × m = (ω × m_lin + v × m_ang, ω × m_ang)`: the rate of `m` carried by `v`.
+    #[inline(always)]
+    pub fn cross(self, m: Self) -> Self {
+        Self::new(self.angular.cross(m.linear) + self.linear.cross(m.angular), self.angular.cross(m.angular))
+    }
+
+    /// `v ×* f = (ω × f_lin, ω × f_ang + v × f_lin)`: the rate of `f` carried by `v`.
+    #[inline(always)]
+    pub fn cross_force(self, f: Force<S>) -> Force<S> {
+        Force::new(self.angular.cross(f.linear), self.angular.cross(f.angular) + self.linear.cross(f.linear))
+    }
+
+    /// Velocity of the body-fixed point at `p`: `v + ω × p`.
+    #[inline(always)]
+    pub fn at(self, p: Vec3<S>) -> Vec3<S> {
+        self.linear + self.angular.cross(p)
+    }
+}
+
+impl<S: Real> Force<S> {
+    /// The wrench of `force` acting at `p` plus a free `moment`, about the origin.
+    #[inline(always)]
+    pub fn at(force: Vec3<S>, moment: Vec3<S>, p: Vec3<S>) -> Self {
+        Self::new(force, moment + p.cross(force))
+    }
+}

@@ -1,0 +1,112 @@
+//! Rotations: unit quaternions, exponential, logarithm and its differential.
+
+use super::mat3::Mat3;
+use super::scalar::Real;
+use super::vec3::Vec3;
+
+/// Unit quaternion, stored x, y, z, w.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quat<S> {
+    /// Vector part.
+    pub v: Vec3<S>,
+    /// Scalar part.
+    pub w: S,
+}
+
+impl<S: Real> Quat<S> {
+    /// From the slice `[x, y, z, w]`.
+    #[inline(always)]
+    pub fn from_xyzw(s: &[S]) -> Self {
+        Self { v: Vec3::from_slice(s), w: s[3] }
+    }
+
+    /// Writes `[x, y, z, w]`.
+    #[inline(always)]
+    pub fn write_xyzw(self, out: &mut [S]) {
+        self.v.write(out);
+        out[3] = self.w;
+    }
+
+    /// Hamilton product: the rotation `o` first, then `self`.
+    #[inline(always)]
+    #[must_use]
+    pub fn product(self, o: Self) -> Self {
+        Self {
+            v: self.v.scale_add(o.w, o.v.scale_add(self.w, self.v.cross(o.v))),
+            w: self.w.mul_add(o.w, -self.v.dot(o.v)),
+        }
+    }
+
+    /// The opposite rotation.
+    #[inline(always)]
+    #[must_use]
+    pub fn conjugate(self) -> Self {
+        Self { v: -self.v, w: self.w }
+    }
+
+    /// The same rotation at unit length.
+    #[inline(always)]
+    #[must_use]
+    pub fn normalized(self) -> Self {
+        let s = S::of(1.0) / (self.v.dot(self.v) + self.w * self.w).sqrt();
+        Self { v: self.v * s, w: self.w * s }
+    }
+
+    /// Rotation matrix.
+    #[inline(always)]
+    pub fn matrix(self) -> Mat3<S> {
+        let (v, w, one) = (self.v, self.w, S::of(1.0));
+        let d = v + v;
+        let (xx, yy, zz) = (v.x * d.x, v.y * d.y, v.z * d.z);
+        let (xy, xz, yz) = (v.x * d.y, v.x * d.z, v.y * d.z);
+        let (wx, wy, wz) = (w * d.x, w * d.y, w * d.z);
+        Mat3::from_columns(
+            Vec3::new(one - (yy + zz), xy + wz, xz - wy),
+            Vec3::new(xy - wz, one - (xx + zz), yz + wx),
+            Vec3::new(xz + wy, yz - wx, one - (xx + yy)),
+        )
+    }
+}
+
+/// `exp(θ)`: the rotation by the angle `|θ|`, rad, about `θ`.
+#[inline(always)]
+pub fn exp_so3<S: Real>(theta: Vec3<S>) -> Quat<S> {
+    // q = (sin(φ/2)/φ θ, cos(φ/2)); below 1e-4 rad the series, exact to 1e-18
+    let squared = theta.dot(theta);
+    let is_small = S::less(squared, S::of(1e-8));
+    let angle = S::select(is_small, S::of(1.0), squared).sqrt();
+    let (s, c) = (angle * S::of(0.5)).sin_cos();
+    let series_s = squared.mul_add(S::of(-1.0 / 48.0), S::of(0.5));
+    let series_c = squared.mul_add(squared.mul_add(S::of(1.0 / 384.0), S::of(-0.125)), S::of(1.0));
+    Quat { v: theta * S::select(is_small, series_s, s / angle), w: S::select(is_small, series_c, c) }
+}
+
+/// `log(q)`: rotation vector of the shorter turn, rad.
+#[inline(always)]
+pub fn log_so3<S: Real>(q: Quat<S>) -> Vec3<S> {
+    // θ = 2 atan2(|v|, w) v/|v|, on the half with w ≥ 0
+    let sign = S::select(S::less(q.w, S::of(0.0)), S::of(-1.0), S::of(1.0));
+    let (v, w) = (q.v * sign, q.w * sign);
+    let squared = v.dot(v);
+    let is_small = S::less(squared, S::of(1e-10));
+    let length = S::select(is_small, S::of(1.0), squared).sqrt();
+    // atan(x)/x with x = |v|/w, exact to 1e-16 for |v|² < 1e-10
+    let inverse_w = S::of(1.0) / S::select(is_small, w, S::of(1.0));
+    let x2 = squared * inverse_w * inverse_w;
+    let series = x2.mul_add(S::of(-2.0 / 3.0), S::of(2.0)) * inverse_w;
+    v * S::select(is_small, series, S::of(2.0) * length.atan2(w) / length)
+}
+
+/// Rate of the rotation vector: `θ̇ = ω + ½ θ×ω + b θ×(θ×ω)`, for `R = R₀ exp(θ)` and the
+/// angular velocity `ω` in body axes.
+///
+/// `b = 1/12 + |θ|²/720`: the inverse differential of the exponential up to terms of sixth order
+/// in `θ`, which is beyond every integrator here (its `θ` is one step's turn).
+///
+/// Source: Munthe-Kaas, BIT 38, 1998.
+#[inline(always)]
+pub fn dexp_inv<S: Real>(theta: Vec3<S>, omega: Vec3<S>) -> Vec3<S> {
+    let b = theta.dot(theta).mul_add(S::of(1.0 / 720.0), S::of(1.0 / 12.0));
+    let first = theta.cross(omega);
+    theta.cross(first).scale_add(b, first.scale_add(S::of(0.5), omega))
+}

@@ -1,0 +1,121 @@
+//! The scalar that every kernel is generic over.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A real number, or several side by side: what the equations of motion are written in.
+///
+/// One state is computed with [`f64`] (any processor) or [`Fused`](super::Fused) (processors with
+/// fused multiply-add); batches with lanes of numbers. Branch on structure, never on values:
+/// where a value decides, use [`select`](Real::select).
+pub trait Real:
+    Copy
+    + Debug
+    + Default
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+{
+    /// The outcome of a comparison, one truth value per lane.
+    type Mask: Copy;
+
+    /// The constant `x` in every lane.
+    fn of(x: f64) -> Self;
+
+    /// `self · a + b`, fused where the type's instruction set does it in hardware.
+    #[must_use]
+    fn mul_add(self, a: Self, b: Self) -> Self;
+
+    /// Square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+
+    /// Absolute value.
+    #[must_use]
+    fn abs(self) -> Self;
+
+    /// Sine and cosine, rad. Errors below 1e-16 up to 1e5 rad.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// Angle of the point `(x, self)`, rad.
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
+
+    /// Where `self < other`.
+    fn less(self, other: Self) -> Self::Mask;
+
+    /// `a` where the mask holds, `b` elsewhere.
+    #[must_use]
+    fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+
+    /// Runs `kernel` compiled for the instruction set this scalar stands for.
+    ///
+    /// The closure and all it calls must be `#[inline(always)]`: what is left out of line is
+    /// compiled for the baseline and loses the speed.
+    fn enter<R>(kernel: impl FnOnce() -> R) -> R;
+}
+
+/// A [`Real`] that holds a single number, so that it can be read back.
+pub trait Scalar: Real {
+    /// The number.
+    fn value(self) -> f64;
+}
+
+/// Beyond this magnitude, rad, the fast reduction of [`sine`](super::sine) loses digits.
+pub(super) const FAST_SINE_LIMIT: f64 = 1e5;
+
+impl Real for f64 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn of(x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b // not f64::mul_add: without hardware for it that is a library call
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        if f64::abs(self) < FAST_SINE_LIMIT { super::sine::sin_cos(self) } else { f64::sin_cos(self) }
+    }
+    #[inline(always)]
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn select(mask: bool, a: Self, b: Self) -> Self {
+        if mask { a } else { b }
+    }
+    #[inline(always)]
+    fn enter<R>(kernel: impl FnOnce() -> R) -> R {
+        kernel()
+    }
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self
+    }
+}

@@ -1,0 +1,175 @@
+//! Symmetric three by three matrices: six numbers.
+
+use super::mat3::Mat3;
+use super::scalar::{Real, Scalar};
+use super::vec3::Vec3;
+use nalgebra::Matrix3;
+use std::ops::{Add, AddAssign, Mul, Sub};
+
+/// A symmetric 3 × 3 matrix.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sym3<S> {
+    /// Diagonal entries.
+    pub xx: S,
+    /// Second diagonal entry.
+    pub yy: S,
+    /// Third diagonal entry.
+    pub zz: S,
+    /// Entry (0, 1).
+    pub xy: S,
+    /// Entry (0, 2).
+    pub xz: S,
+    /// Entry (1, 2).
+    pub yz: S,
+}
+
+impl<S: Real> Sym3<S> {
+    /// The matrix with these entries.
+    #[inline(always)]
+    pub fn new(xx: S, yy: S, zz: S, xy: S, xz: S, yz: S) -> Self {
+        Self { xx, yy, zz, xy, xz, yz }
+    }
+
+    /// `s 1`.
+    #[inline(always)]
+    pub fn diagonal(s: S) -> Self {
+        let o = S::of(0.0);
+        Self::new(s, s, s, o, o, o)
+    }
+
+    /// A constant of the model, in every lane.
+    #[inline(always)]
+    pub fn of(m: &Sym3<f64>) -> Self {
+        Self::new(S::of(m.xx), S::of(m.yy), S::of(m.zz), S::of(m.xy), S::of(m.xz), S::of(m.yz))
+    }
+
+    /// `A + u uᵀ s`.
+    #[inline(always)]
+    #[must_use]
+    pub fn add_outer(&self, u: Vec3<S>, s: S) -> Self {
+        let us = u * s;
+        Self::new(
+            u.x.mul_add(us.x, self.xx),
+            u.y.mul_add(us.y, self.yy),
+            u.z.mul_add(us.z, self.zz),
+            u.x.mul_add(us.y, self.xy),
+            u.x.mul_add(us.z, self.xz),
+            u.y.mul_add(us.z, self.yz),
+        )
+    }
+
+    /// `R A Rᵀ`: the same tensor in other axes.
+    #[inline(always)]
+    #[must_use]
+    pub fn rotate(&self, r: &Mat3<S>) -> Self {
+        // columns of R A, then the six products with the rows of R that are needed
+        let (p, q, s) = (
+            r.x.scale_add(self.xx, r.y.scale_add(self.xy, r.z * self.xz)),
+            r.x.scale_add(self.xy, r.y.scale_add(self.yy, r.z * self.yz)),
+            r.x.scale_add(self.xz, r.y.scale_add(self.yz, r.z * self.zz)),
+        );
+        let entry = |pi: S, qi: S, si: S, a: S, b: S, c: S| pi.mul_add(a, qi.mul_add(b, si * c));
+        Self::new(
+            entry(p.x, q.x, s.x, r.x.x, r.y.x, r.z.x),
+            entry(p.y, q.y, s.y, r.x.y, r.y.y, r.z.y),
+            entry(p.z, q.z, s.z, r.x.z, r.y.z, r.z.z),
+            entry(p.x, q.x, s.x, r.x.y, r.y.y, r.z.y),
+            entry(p.x, q.x, s.x, r.x.z, r.y.z, r.z.z),
+            entry(p.y, q.y, s.y, r.x.z, r.y.z, r.z.z),
+        )
+    }
+
+    /// `A + m (c² 1 − c cᵀ)`: the parallel-axis shift by `c`, with `h = m c`.
+    #[inline(always)]
+    #[must_use]
+    pub fn shift(&self, h: Vec3<S>, c: Vec3<S>) -> Self {
+        let (sx, sy, sz) = (h.x * c.x, h.y * c.y, h.z * c.z);
+        Self::new(
+            self.xx + (sy + sz),
+            self.yy + (sx + sz),
+            self.zz + (sx + sy),
+            self.xy - h.x * c.y,
+            self.xz - h.x * c.z,
+            self.yz - h.y * c.z,
+        )
+    }
+
+    /// `A⁻¹` by cofactors, for a positive definite matrix.
+    #[inline(always)]
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        let xx = self.yy.mul_add(self.zz, -(self.yz * self.yz));
+        let xy = self.xz.mul_add(self.yz, -(self.xy * self.zz));
+        let xz = self.xy.mul_add(self.yz, -(self.xz * self.yy));
+        let yy = self.xx.mul_add(self.zz, -(self.xz * self.xz));
+        let yz = self.xy.mul_add(self.xz, -(self.xx * self.yz));
+        let zz = self.xx.mul_add(self.yy, -(self.xy * self.xy));
+        let det = self.xx.mul_add(xx, self.xy.mul_add(xy, self.xz * xz));
+        let d = S::of(1.0) / det;
+        Self::new(xx * d, yy * d, zz * d, xy * d, xz * d, yz * d)
+    }
+}
+
+impl<S: Scalar> Sym3<S> {
+    /// As a nalgebra matrix.
+    #[inline(always)]
+    pub fn to_nalgebra(self) -> Matrix3<f64> {
+        let [xx, yy, zz, xy, xz, yz] =
+            [self.xx, self.yy, self.zz, self.xy, self.xz, self.yz].map(Scalar::value);
+        Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+    }
+}
+
+impl From<Matrix3<f64>> for Sym3<f64> {
+    /// The symmetric part.
+    fn from(m: Matrix3<f64>) -> Self {
+        let mean = |i, j| 0.5 * (m[(i, j)] + m[(j, i)]);
+        Self::new(m[(0, 0)], m[(1, 1)], m[(2, 2)], mean(0, 1), mean(0, 2), mean(1, 2))
+    }
+}
+
+impl<S: Real> Mul<Vec3<S>> for Sym3<S> {
+    type Output = Vec3<S>;
+    #[inline(always)]
+    fn mul(self, v: Vec3<S>) -> Vec3<S> {
+        Vec3::new(
+            self.xx.mul_add(v.x, self.xy.mul_add(v.y, self.xz * v.z)),
+            self.xy.mul_add(v.x, self.yy.mul_add(v.y, self.yz * v.z)),
+            self.xz.mul_add(v.x, self.yz.mul_add(v.y, self.zz * v.z)),
+        )
+    }
+}
+impl<S: Real> Add for Sym3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self::new(
+            self.xx + o.xx,
+            self.yy + o.yy,
+            self.zz + o.zz,
+            self.xy + o.xy,
+            self.xz + o.xz,
+            self.yz + o.yz,
+        )
+    }
+}
+impl<S: Real> Sub for Sym3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self::new(
+            self.xx - o.xx,
+            self.yy - o.yy,
+            self.zz - o.zz,
+            self.xy - o.xy,
+            self.xz - o.xz,
+            self.yz - o.yz,
+        )
+    }
+}
+impl<S: Real> AddAssign for Sym3<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}

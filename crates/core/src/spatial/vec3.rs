@@ -1,0 +1,133 @@
+//! Three components.
+
+use super::scalar::{Real, Scalar};
+use nalgebra::Vector3;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+/// A vector in three dimensions.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vec3<S> {
+    /// First component.
+    pub x: S,
+    /// Second component.
+    pub y: S,
+    /// Third component.
+    pub z: S,
+}
+
+impl<S: Real> Vec3<S> {
+    /// The vector `(x, y, z)`.
+    #[inline(always)]
+    pub fn new(x: S, y: S, z: S) -> Self {
+        Self { x, y, z }
+    }
+
+    /// The null vector.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self::new(S::of(0.0), S::of(0.0), S::of(0.0))
+    }
+
+    /// A constant of the model, in every lane.
+    #[inline(always)]
+    pub fn of(v: &Vec3<f64>) -> Self {
+        Self::new(S::of(v.x), S::of(v.y), S::of(v.z))
+    }
+
+    /// The first three numbers of a slice.
+    #[inline(always)]
+    pub fn from_slice(s: &[S]) -> Self {
+        Self::new(s[0], s[1], s[2])
+    }
+
+    /// Writes the components into the first three places of a slice.
+    #[inline(always)]
+    pub fn write(self, out: &mut [S]) {
+        out[0] = self.x;
+        out[1] = self.y;
+        out[2] = self.z;
+    }
+
+    /// Scalar product.
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> S {
+        self.x.mul_add(o.x, self.y.mul_add(o.y, self.z * o.z))
+    }
+
+    /// Vector product.
+    #[inline(always)]
+    pub fn cross(self, o: Self) -> Self {
+        Self::new(
+            self.y.mul_add(o.z, -(self.z * o.y)),
+            self.z.mul_add(o.x, -(self.x * o.z)),
+            self.x.mul_add(o.y, -(self.y * o.x)),
+        )
+    }
+
+    /// `self · s + o`.
+    #[inline(always)]
+    pub fn scale_add(self, s: S, o: Self) -> Self {
+        Self::new(self.x.mul_add(s, o.x), self.y.mul_add(s, o.y), self.z.mul_add(s, o.z))
+    }
+
+    /// Euclidean length.
+    #[inline(always)]
+    pub fn norm(self) -> S {
+        self.dot(self).sqrt()
+    }
+}
+
+impl<S: Scalar> Vec3<S> {
+    /// As a nalgebra vector.
+    #[inline(always)]
+    pub fn to_nalgebra(self) -> Vector3<f64> {
+        Vector3::new(self.x.value(), self.y.value(), self.z.value())
+    }
+}
+
+impl From<Vector3<f64>> for Vec3<f64> {
+    fn from(v: Vector3<f64>) -> Self {
+        Self { x: v.x, y: v.y, z: v.z }
+    }
+}
+
+impl<S: Real> Add for Vec3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self::new(self.x + o.x, self.y + o.y, self.z + o.z)
+    }
+}
+impl<S: Real> Sub for Vec3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self::new(self.x - o.x, self.y - o.y, self.z - o.z)
+    }
+}
+impl<S: Real> Mul<S> for Vec3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, s: S) -> Self {
+        Self::new(self.x * s, self.y * s, self.z * s)
+    }
+}
+impl<S: Real> Neg for Vec3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}
+impl<S: Real> AddAssign for Vec3<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+impl<S: Real> SubAssign for Vec3<S> {
+    #[inline(always)]
+    fn sub_assign(&mut self, o: Self) {
+        *self = *self - o;
+    }
+}
