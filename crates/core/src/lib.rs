@@ -3,6 +3,7 @@
 //! Folders depend downwards only, in this order: `spatial`, `model`, `dynamics`, `orbit`,
 //! `environment`, `reference`, `control`, `simulation`, `batch`.
 
+pub mod dynamics;
 pub mod model;
 pub mod orbit;
 pub mod spatial;
