@@ -10,7 +10,7 @@ class                       built-in               fields
 ``ShapeError``              ``ValueError``         ``name, expected, got``: wrong array length or shape
 ``DtypeError``              ``TypeError``          ``name, expected, got``: not an array of real numbers
 ``ModelError``              ``ValueError``         ``link, joint, path``: masses, inertias, loops, bad URDF
-``FrameError``              ``KeyError``           ``name, kind, known, suggestion``: no frame, link, body or joint
+``FrameError``              ``KeyError``           ``name, kind, known, suggestion``: no such frame or joint
 ``OrbitError``              ``ValueError``         ``name, got, expected``: no orbit, or gravity refused
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references

@@ -42,7 +42,7 @@ class HoldReference(Part):
 
 
 class LineParabolaReference(Part):
-    """Start + s·displacement + s(1 - s)·height, s the quintic from 0 to 1; attitude held; then the end is held."""
+    """Start + s·displacement + s(1 - s)·height, s the quintic from 0 to 1; attitude held, later the end."""
 
     kind: Literal["line_parabola"] = "line_parabola"
     displacement: Length3

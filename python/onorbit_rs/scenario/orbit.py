@@ -28,8 +28,8 @@ class KeplerOrbit(Part):
     """Two-body motion: from elements, or from one state.
 
     Elements: a size (``semi_major_axis``, negative for a hyperbola, or ``semi_latus_rectum``, needed for a
-    parabola), ``eccentricity``, three angles, and one phase. State: ``position`` and ``velocity`` at the start,
-    inertial axes.
+    parabola), ``eccentricity``, three angles, and one phase. State: ``position`` and ``velocity`` at the
+    start, inertial axes.
     """
 
     kind: Literal["kepler"] = "kepler"
