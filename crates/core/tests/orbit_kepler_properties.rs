@@ -112,6 +112,19 @@ proptest! {
 }
 
 #[test]
+fn a_hyperbola_is_known_far_out_on_its_asymptotes() {
+    let elements = Elements { inclination: 0.7, raan: 1.0, ..Elements::new(Size::SemiMajorAxis(-2e7), 1.4) };
+    let orbit = Kepler::new(&elements).expect("a hyperbola");
+    for t in [-1e9, -1e7, 1e7, 1e9] {
+        let s = at(&orbit, t);
+        let back = at(&Kepler::from_state(s.position, s.velocity, MU_EARTH).expect("regular"), 0.0);
+        // 4e9 km away; the roundings of the round trip as near the planet.
+        assert!((back.position - s.position).norm() < 16.0 * f64::EPSILON * s.position.norm());
+        assert!((back.velocity - s.velocity).norm() < 16.0 * f64::EPSILON * s.velocity.norm());
+    }
+}
+
+#[test]
 fn degenerate_orbits_read_as_textbooks_expect() {
     let base = Elements { phase: Phase::TrueAnomaly(0.5), ..Elements::new(Size::SemiMajorAxis(7e6), 0.1) };
     let equatorial = Elements { raan: 1.0, argument_of_periapsis: 2.0, ..base };
