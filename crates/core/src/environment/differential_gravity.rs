@@ -45,7 +45,7 @@ impl DifferentialGravity {
 /// `-(μ/r³) (ρ - f R)`, `f = q (3 + 3q + q²)/(1 + (1 + q)^{3/2})`, `q = ρ·(ρ + 2R)/R²`, `r² = R² (1 + q)`;
 /// `origin` is `R`, `offset` is `ρ`, m. Returns the tide and the distance `r = |R + ρ|`.
 ///
-/// Source: Battin, AIAA 1999, section 8.4 (Encke's method).
+/// Source: Battin, AIAA 1999, chapter 8, the disturbing function (Encke's form).
 fn tide(mu: f64, origin: &Vector3<f64>, offset: &Vector3<f64>) -> (Vector3<f64>, f64) {
     // q = ρ·(ρ + 2R)/R²
     let q = offset.dot(&(offset + origin * 2.0)) / origin.norm_squared();

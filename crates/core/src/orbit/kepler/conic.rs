@@ -38,6 +38,7 @@ pub(super) struct InPlane {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Period {
     pub(super) seconds: f64,
+    per_second: f64,
     pieces: [f64; 3],
 }
 
@@ -54,12 +55,14 @@ impl Period {
         let rest = period - Double::from(first);
         let second = head(rest.hi);
         let third = (rest - Double::from(second)).hi;
-        Self { seconds: period.hi, pieces: [first, second, third] }
+        Self { seconds: period.hi, per_second: 1.0 / period.hi, pieces: [first, second, third] }
     }
 
     /// `dt` less the nearest whole number of periods.
     fn reduce(&self, dt: f64) -> f64 {
-        let k = (dt / self.seconds).round();
+        // Adding 1.5 × 2⁵² rounds to a whole number without a library call.
+        const ROUND: f64 = 6_755_399_441_055_744.0;
+        let k = (dt * self.per_second + ROUND) - ROUND;
         ((dt - k * self.pieces[0]) - k * self.pieces[1]) - k * self.pieces[2]
     }
 }
@@ -74,8 +77,8 @@ pub(super) enum Conic {
         /// Mean motion `n = √(μ/a³)`, rad/s.
         n: f64,
         period: Period,
-        /// `√(μ a)`, m²/s.
-        flow: f64,
+        /// `√(μ a)` and `√(μ p)`, m²/s.
+        flow: [f64; 2],
     },
     /// `e = 1`; phase is the time since periapsis.
     Parabola {
@@ -85,7 +88,7 @@ pub(super) enum Conic {
         speed: f64,
     },
     /// `e > 1`; phase is the time since periapsis. `a` and `b` are positive here.
-    Hyperbola { a: f64, b: f64, n: f64, flow: f64 },
+    Hyperbola { a: f64, b: f64, n: f64, flow: [f64; 2] },
 }
 
 impl Conic {
@@ -104,6 +107,7 @@ impl Conic {
         let a = (Double::from(1.0) / inverse).hi;
         let b = a * (shape.one_minus_e.abs() * (1.0 + e)).sqrt();
         let flow = (mu * a).sqrt();
+        let flow = [flow, flow * (b / a)];
         if closed {
             Ok(Self::Ellipse { a, b, n: n.hi, period: Period::new(double::TAU / n), flow })
         } else {
@@ -138,12 +142,12 @@ impl Conic {
                 let versed = 2.0 * s * s;
                 let sin = 2.0 * s * c;
                 let over_r = 1.0 / (q + a * e * versed);
-                // x = a (cos E - e), y = b sin E, ẋ = -√(μ a) sin E / r, ẏ = √(μ a) (b/a) cos E / r
+                // x = a (cos E - e), y = b sin E, ẋ = -√(μ a) sin E / r, ẏ = √(μ p) cos E / r
                 InPlane {
                     x: q - a * versed,
                     y: b * sin,
-                    vx: -flow * sin * over_r,
-                    vy: flow * (b / a) * (1.0 - versed) * over_r,
+                    vx: -flow[0] * sin * over_r,
+                    vy: flow[1] * (1.0 - versed) * over_r,
                 }
             }
             Self::Hyperbola { a, b, n, flow } => {
@@ -156,8 +160,8 @@ impl Conic {
                 InPlane {
                     x: q - a * versed,
                     y: b * sinh,
-                    vx: -flow * sinh * over_r,
-                    vy: flow * (b / a) * (1.0 + versed) * over_r,
+                    vx: -flow[0] * sinh * over_r,
+                    vy: flow[1] * (1.0 + versed) * over_r,
                 }
             }
             Self::Parabola { n, speed } => {

@@ -101,7 +101,8 @@ impl Kepler {
 
     /// Classical elements, from which [`Kepler::new`] makes this orbit again.
     ///
-    /// Angles in [0, 2π), the mean anomaly of a hyperbola excepted. On a circle the periapsis
+    /// Node and periapsis in [0, 2π), the mean anomaly of an ellipse in [-π, π]: next to the
+    /// periapsis of a long ellipse a turn added to it would cost digits. On a circle the periapsis
     /// and in the equator the node are where rounding puts them (x axis if exact); their sums
     /// with the phase stay accurate. Near a parabola the size is the semi-latus rectum and
     /// the phase the time of periapsis.
@@ -114,7 +115,7 @@ impl Kepler {
         let phase = match self.conic {
             Conic::Parabola { .. } => Phase::PeriapsisTime(self.epoch - self.phase),
             Conic::Ellipse { n, .. } if near_parabolic => Phase::PeriapsisTime(self.epoch - self.phase / n),
-            Conic::Ellipse { .. } => Phase::MeanAnomaly(positive_turn(self.phase)),
+            Conic::Ellipse { .. } => Phase::MeanAnomaly(self.phase),
             Conic::Hyperbola { .. } if near_parabolic => Phase::PeriapsisTime(self.epoch - self.phase),
             Conic::Hyperbola { n, .. } => Phase::MeanAnomaly(n * self.phase),
         };
@@ -193,7 +194,7 @@ fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64)
 /// Angle in [0, 2π), for an angle in [-π, π].
 fn positive_turn(angle: f64) -> f64 {
     if angle >= 0.0 {
-        angle
+        angle + 0.0 // makes -0 a plain 0
     } else if angle + TAU < TAU {
         angle + TAU
     } else {

@@ -8,8 +8,8 @@ use super::{Kepler, anomaly};
 use crate::orbit::OrbitError;
 use crate::orbit::error::{finite, positive};
 
-/// Below this sine the orbit's plane is lost to rounding. No conic with `1 - e` above 1e-16
-/// comes near: its smallest sine is `√(1 - e²)`.
+/// Below this sine the orbit's plane is lost to rounding. No ellipse with `1 - e` above 1e-16
+/// comes near, its smallest sine being `√(1 - e²)`; a hyperbola must be 1e10 times `b` away.
 const SMALLEST_SINE: f64 = 1e-10;
 
 impl Kepler {
@@ -21,7 +21,7 @@ impl Kepler {
     /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `mu` (m³/s²), and
     /// [`OrbitError::Rectilinear`] when `r` and `v` are parallel or one of them vanishes.
     ///
-    /// Source: Battin, AIAA 1999, section 3.3.
+    /// Source: Battin, AIAA 1999, chapter 3.
     pub fn from_state(r: Vector3<f64>, v: Vector3<f64>, mu: f64) -> Result<Self, OrbitError> {
         positive("mu", mu)?;
         for (name, x) in [("position", &r), ("velocity", &v)] {
