@@ -72,7 +72,7 @@ impl fmt::Display for ModelWarning {
 }
 
 /// `; did you mean 'x'?` for the closest candidate, or the list when there are few.
-fn nearest(candidates: &[String], name: &str) -> String {
+pub(super) fn nearest(candidates: &[String], name: &str) -> String {
     let best = candidates.iter().min_by_key(|c| distance(c, name));
     match best {
         Some(c) if distance(c, name) <= 2 + name.len() / 3 => format!("; did you mean '{c}'?"),

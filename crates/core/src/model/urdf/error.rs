@@ -1,0 +1,158 @@
+//! What can be wrong with a URDF file, where.
+
+use crate::model::error::{ModelError, nearest};
+use roxmltree::Node;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// A URDF that cannot be loaded: what is wrong, in which file and line where these are known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UrdfError {
+    /// The file, where there is one.
+    pub file: Option<PathBuf>,
+    /// Line, from 1.
+    pub line: Option<u32>,
+    /// What is wrong.
+    pub problem: Box<UrdfProblem>,
+}
+
+impl fmt::Display for UrdfError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.file, self.line) {
+            (Some(file), Some(line)) => write!(f, "{}:{line}: {}", file.display(), self.problem),
+            (Some(file), None) => write!(f, "{}: {}", file.display(), self.problem),
+            (None, Some(line)) => write!(f, "line {line}: {}", self.problem),
+            (None, None) => self.problem.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for UrdfError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match &*self.problem {
+            UrdfProblem::Model(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl UrdfError {
+    pub(super) fn new(line: Option<u32>, problem: UrdfProblem) -> Self {
+        Self { file: None, line, problem: Box::new(problem) }
+    }
+
+    /// A problem with what stands at `node`.
+    pub(super) fn at(node: Node<'_, '_>, problem: UrdfProblem) -> Self {
+        let line = node.document().text_pos_at(node.range().start).row;
+        Self::new(Some(line), problem)
+    }
+
+    pub(super) fn in_file(self, file: &Path) -> Self {
+        Self { file: Some(file.to_owned()), ..self }
+    }
+}
+
+/// What is wrong with a URDF. `owner` reads like `link 'hand'`.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[allow(missing_docs)] // the fields are what the messages say
+pub enum UrdfProblem {
+    #[error("there is no such file")]
+    NotFound,
+    #[error("this is a folder, not a URDF file")]
+    IsFolder,
+    #[error("cannot be read: {reason}")]
+    Unreadable { reason: String },
+    #[error("the file is empty")]
+    Empty,
+    #[error("larger than {limit} bytes: no robot description is")]
+    TooLarge { limit: usize },
+    #[error("XML elements nested deeper than {limit}: no robot description is")]
+    TooDeep { limit: usize },
+    #[error("an XML tag of more than {limit} bytes: no robot description has one")]
+    TagTooLong { limit: usize },
+    #[error("not UTF-8 text (at byte {at}); save it as UTF-8")]
+    NotUtf8 { at: usize },
+    #[error("not XML: {reason}")]
+    NotXml { reason: String },
+    #[error("a document type (<!DOCTYPE>) is refused: a URDF needs none; remove it")]
+    DocumentType,
+    #[error("the outermost element is <{found}>, a URDF has <robot>{}", other_format(.found))]
+    NotRobot { found: String },
+    #[error("{found} is xacro, not URDF; expand it first: xacro FILE.xacro > FILE.urdf")]
+    Xacro { found: String },
+    #[error("<{element}> is not URDF and would be lost; write it without the prefix")]
+    ForeignElement { element: String },
+    #[error("the robot has no links")]
+    NoLinks,
+    #[error("{owner} has no <{element}>")]
+    MissingElement { owner: String, element: &'static str },
+    #[error("<{element}> of {owner} has no attribute '{attribute}'")]
+    MissingAttribute { owner: String, element: String, attribute: &'static str },
+    #[error(
+        "{owner}: {attribute}=\"{text}\" of <{element}> is not {}",
+        amount_of_numbers(.expected)
+    )]
+    BadNumber { owner: String, element: String, attribute: &'static str, text: String, expected: usize },
+    #[error("{owner}: <origin> has both rpy and quat_xyzw; keep one")]
+    TwoOrientations { owner: String },
+    #[error("{owner}: the quaternion '{text}' has no length")]
+    ZeroQuaternion { owner: String, text: String },
+    #[error(
+        "joint '{joint}' is of type '{kind}'; there are revolute, continuous, prismatic and fixed \
+         (floating only directly under a root without mass){}",
+        way_out(.kind)
+    )]
+    JointType { joint: String, kind: String },
+    #[error("joint '{joint}': there is no link '{link}'{}", nearest(.candidates, .link))]
+    UnknownLink { joint: String, link: String, candidates: Vec<String> },
+    #[error(
+        "link '{link}' hangs on two joints, '{}' and '{}': a kinematic loop; cut it at one of them",
+        .joints[0], .joints[1]
+    )]
+    TwoParents { link: String, joints: [String; 2] },
+    #[error("the links {} hang on one another in a loop; one of them must be the root", list(.links))]
+    Loop { links: Vec<String> },
+    #[error(
+        "{} links hang on no joint: {}; a robot has one root, join the others to it",
+        .roots.len(), list(.roots)
+    )]
+    ManyRoots { roots: Vec<String> },
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+fn other_format(found: &str) -> &'static str {
+    match found {
+        "sdf" => "; this looks like SDFormat",
+        "mujoco" => "; this looks like MuJoCo's MJCF",
+        "COLLADA" => "; this looks like a mesh",
+        "launch" => "; this looks like a ROS launch file",
+        _ => "",
+    }
+}
+
+fn amount_of_numbers(expected: &usize) -> String {
+    match expected {
+        1 => "a finite number".to_owned(),
+        n => format!("{n} finite numbers between spaces"),
+    }
+}
+
+fn way_out(kind: &str) -> &'static str {
+    match kind.to_lowercase().as_str() {
+        "planar" => "; build it of two prismatic joints and a revolute one",
+        "spherical" | "ball" => "; build it of three revolute joints whose axes meet",
+        "universal" => "; build it of two revolute joints whose axes meet",
+        "floating" => "; a robot here is one tree on one floating base: load the other body by itself",
+        _ => "",
+    }
+}
+
+/// The names, the first of them if there are many.
+fn list(names: &[String]) -> String {
+    const SHOWN: usize = 5;
+    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("'{name}'")).collect();
+    let more = if names.len() > SHOWN { ", …" } else { "" };
+    shown.join(", ") + more
+}

@@ -1,0 +1,39 @@
+//! `<material>`: colours, defined once and named elsewhere.
+
+use super::element::Element;
+use super::error::UrdfError;
+use std::collections::HashMap;
+
+/// The file's named colours.
+pub(super) struct Materials<'a> {
+    named: HashMap<&'a str, Element<'a>>,
+}
+
+impl<'a> Materials<'a> {
+    /// Collects the definitions: those of the robot itself first, then those inside visuals,
+    /// which other visuals of real files refer to.
+    pub(super) fn new(robot: Element<'a>) -> Self {
+        let nested = robot
+            .children("link")
+            .flat_map(|link| link.children("visual"))
+            .flat_map(|visual| visual.children("material"));
+        let mut named = HashMap::new();
+        for material in robot.children("material").chain(nested) {
+            if let (Some(name), Some(color)) = (material.text("name"), material.child("color")) {
+                named.entry(name).or_insert(color);
+            }
+        }
+        Self { named }
+    }
+
+    /// Colour of a visual's material: its own, else the one of that name, else none.
+    pub(super) fn rgba(&self, material: Element<'_>) -> Result<Option<[f64; 4]>, UrdfError> {
+        if let Some(color) = material.child("color") {
+            return color.numbers("rgba");
+        }
+        match material.text("name").and_then(|name| self.named.get(name)) {
+            Some(color) => color.numbers("rgba"),
+            None => Ok(None),
+        }
+    }
+}
