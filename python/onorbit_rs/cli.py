@@ -66,11 +66,17 @@ def check(scenario: ScenarioArgument) -> None:
 def show(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that a run has written.")],
     viewer: Annotated[bool, typer.Option(help="Open the recording where there is a screen.")] = True,
+    picture: Annotated[Path | None, typer.Option(metavar="FILE", help="Save a PNG of the viewer.")] = None,
+    at: Annotated[float, typer.Option(metavar="SECONDS", help="Moment of the picture.")] = 0.0,
 ) -> None:
-    """Print the summary of a run and open its recording."""
+    """Print the summary of a run and open its recording, or save a picture of it."""
     from onorbit_rs import report
 
-    report.show_run(folder, open_viewer=viewer)
+    report.print_run(folder)
+    if picture is not None:
+        report.save_picture(folder, picture, at)
+    elif viewer:
+        report.open_viewer(folder)
 
 
 def main(arguments: list[str] | None = None) -> None:

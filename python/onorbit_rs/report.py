@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.table import Table
 
-from onorbit_rs.exceptions import NotFoundError, ReadError
+from onorbit_rs.exceptions import NotFoundError, OnOrbitError, OutputFolderError, ReadError
 
 if TYPE_CHECKING:
     from onorbit_rs.scenario.build import Built
@@ -91,8 +91,8 @@ def print_checked(built: Built) -> None:
     print(f"ok: {scenario.name}: {', '.join(parts)}")
 
 
-def show_run(folder: Path, *, open_viewer: bool) -> None:
-    """Print a finished run's summary; open its recording where there is a screen.
+def print_run(folder: Path) -> None:
+    """Print a finished run's summary.
 
     Raises
     ------
@@ -110,11 +110,28 @@ def show_run(folder: Path, *, open_viewer: bool) -> None:
         print_summary(dict(summary), folder)
     except (ValueError, TypeError, OSError) as error:
         raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error
-    recording = folder / "run.rrd"
-    if open_viewer and recording.is_file():
-        from onorbit_rs.viewer.screen import has_screen, open_recording
 
-        if has_screen():
-            open_recording(recording)
-        else:
-            print(f"no screen here; open the recording with: rerun {recording}")
+
+def open_viewer(folder: Path) -> None:
+    """Open the recording of a run where there is a screen, or say how."""
+    from onorbit_rs.viewer.screen import has_screen, open_recording
+
+    recording = folder / "run.rrd"
+    if recording.is_file() and has_screen():
+        open_recording(recording)
+    elif recording.is_file():
+        print(f"no screen here; open the recording with: rerun {recording}")
+
+
+def save_picture(folder: Path, picture: Path, at_s: float) -> None:
+    """Save what the viewer shows at a moment."""
+    from onorbit_rs import viewer
+
+    try:
+        viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s)
+    except OSError as error:
+        if isinstance(error, OnOrbitError):
+            raise
+        reason = error.strerror or error
+        raise OutputFolderError(f"cannot write {picture}: {reason}", path=str(picture)) from error
+    print(f"picture: {picture}")
