@@ -9,9 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from onorbit_rs.exceptions import RunInterrupted, SimulationError
-from onorbit_rs.output import OutputFolder, summarize, write_run
-from onorbit_rs.output.write import write_scenario
+from onorbit_rs.output import (
+    OutputFolder,
+    summarize,
+    write_pictures,
+    write_scenario,
+    write_summary,
+    write_trace,
+)
 from onorbit_rs.progress import progress_bar
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
@@ -77,7 +85,9 @@ def run(
     wall_s = time.perf_counter() - started
     summary = summarize(trace, checked, wall_s=wall_s)
     if folder is not None:
-        write_run(folder, trace, summary, built.model, checked, built.orbit)
+        write_trace(folder, trace)
+        write_summary(folder, summary)
+        write_pictures(folder, trace, summary, built)
     return Run(trace, summary, built.model, checked, folder.path if folder else None)
 
 
@@ -99,7 +109,12 @@ def _keep(
     """Write what there is of a run that stopped early, and say where."""
     if folder is None or stop.trace is None or len(stop.trace.time) == 0:
         return
-    status = "interrupted" if isinstance(stop, RunInterrupted) else "diverged"
-    summary = summarize(stop.trace, built.scenario, wall_s=wall_s, status=status)
+    diverged = isinstance(stop, SimulationError)
+    with np.errstate(all="ignore"):  # numbers near the end of the range of floats
+        status = "diverged" if diverged else "interrupted"
+        summary = summarize(stop.trace, built.scenario, wall_s=wall_s, status=status)
+    write_trace(folder, stop.trace)
+    write_summary(folder, summary)
     stop.message += f"; the trace so far is in {folder.path}"
-    write_run(folder, stop.trace, summary, built.model, built.scenario, built.orbit)
+    if not diverged:  # such numbers make no picture
+        write_pictures(folder, stop.trace, summary, built)
