@@ -76,14 +76,13 @@ def run(
     folder = None if out is None else OutputFolder.claim(out, force=force)
     if folder is not None:
         write_scenario(folder, checked)
-    started = time.perf_counter()
+    loop = _Stopwatch()
     try:
-        trace = _simulate(built, quiet=quiet)
+        trace = _simulate(built, loop, quiet=quiet)
     except (SimulationError, RunInterrupted) as stop:
-        _keep(stop, built, folder, time.perf_counter() - started)
+        _keep(stop, built, folder, loop.seconds)
         raise
-    wall_s = time.perf_counter() - started
-    summary = summarize(trace, checked, wall_s=wall_s)
+    summary = summarize(trace, checked, wall_s=loop.seconds)
     if folder is not None:
         write_trace(folder, trace)
         write_summary(folder, summary)
@@ -91,9 +90,21 @@ def run(
     return Run(trace, summary, built.model, checked, folder.path if folder else None)
 
 
-def _simulate(built: Built, *, quiet: bool) -> Trace:
+class _Stopwatch:
+    """Wall-clock seconds spent inside, whatever ends it."""
+
+    seconds = 0.0
+
+    def __enter__(self) -> None:
+        self._started = time.perf_counter()
+
+    def __exit__(self, *_: object) -> None:
+        self.seconds = time.perf_counter() - self._started
+
+
+def _simulate(built: Built, loop: _Stopwatch, *, quiet: bool) -> Trace:
     duration = built.scenario.simulation.duration
-    with progress_bar(built.scenario.name, duration, quiet=quiet) as progress:
+    with progress_bar(built.scenario.name, duration, quiet=quiet) as progress, loop:
         trace = built.simulation.run(duration, progress=progress)
     if not trace.is_complete:
         reached = float(trace.time[-1])
