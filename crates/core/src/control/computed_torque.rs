@@ -35,12 +35,19 @@ impl ComputedTorque {
     pub fn new(frame: usize, kp: f64, kd: f64) -> Self {
         Self {
             frame,
-            kp: diagonal([kp; 6]),
-            kd: diagonal([kd; 6]),
+            kp: Self::diagonal([kp; 6]),
+            kd: Self::diagonal([kd; 6]),
             damping: 0.05,
             null_space_damping: 0.0,
             compensate_environment: true,
         }
+    }
+
+    /// A `(6, 6)` gain with this diagonal.
+    pub fn diagonal(entries: [f64; 6]) -> [f64; 36] {
+        let mut out = [0.0; 36];
+        entries.iter().enumerate().for_each(|(i, x)| out[7 * i] = *x);
+        out
     }
 
     /// Checks that the law can work on a robot.
@@ -74,13 +81,6 @@ impl ComputedTorque {
         }
         Ok(())
     }
-}
-
-/// `(6, 6)` with this diagonal.
-fn diagonal(entries: [f64; 6]) -> [f64; 36] {
-    let mut out = [0.0; 36];
-    entries.iter().enumerate().for_each(|(i, x)| out[7 * i] = *x);
-    out
 }
 
 /// Workspace of [`computed_torque`], allocated once.

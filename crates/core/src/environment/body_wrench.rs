@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{Effect, EnvironmentError, Scene, Wrench};
+use crate::model::Model;
 
 /// Constant force and torque in a body's own axes, on from `start` until `end`.
 ///
@@ -31,6 +32,26 @@ impl BodyWrench {
         finite("torque", &torque)?;
         let (start, end) = (f64::NEG_INFINITY, f64::INFINITY);
         Ok(Self { body, force, torque, point: Vector3::zeros(), start, end })
+    }
+
+    /// Force (N) at the origin of a frame (index) and torque (N m), both in the frame's axes, always
+    /// on.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::NotFinite`].
+    pub fn on_frame(
+        model: &Model,
+        frame: usize,
+        force: Vector3<f64>,
+        torque: Vector3<f64>,
+    ) -> Result<Self, EnvironmentError> {
+        let frame = &model.frames()[frame];
+        let link = model.body_frame(frame.body);
+        // from the frame to the link that names the body: R_lf = R_klᵀ R_kf, p_l = R_klᵀ (p_kf − p_kl)
+        let rot_lk = link.rot_kf.to_nalgebra().transpose();
+        let rot_lf = rot_lk * frame.rot_kf.to_nalgebra();
+        let point = rot_lk * (frame.pos_kf - link.pos_kf).to_nalgebra();
+        Self::new(frame.body, rot_lf * force, rot_lf * torque)?.at(point)
     }
 
     /// The same with its force applied at `point`, link axes, m.

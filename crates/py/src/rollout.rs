@@ -1,0 +1,7 @@
+//! Many runs at once.
+
+use pyo3::prelude::*;
+
+/// placeholder
+#[pyfunction]
+pub(crate) fn rollout() {}
