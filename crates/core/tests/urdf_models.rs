@@ -19,12 +19,33 @@ fn load(name: &str) -> Option<Result<Model, UrdfError>> {
 
 #[test]
 fn show() {
-    for name in ["drake_kuka_iiwa14_benchmark.urdf","rbdl_tiago_dual.urdf","rbdjl_atlas.urdf","pinocchio_baxter_simple.urdf","k_sample.urdf","drake_bad.urdf","drake_tag_mismatch_1.urdf","drake_massless_robot.urdf","ets_vii_onorbitros.xacro","spaceros_SSRMS_Canadarm2.urdf.xacro"] {
+    for name in [
+        "drake_kuka_iiwa14_benchmark.urdf",
+        "rbdl_tiago_dual.urdf",
+        "rbdjl_atlas.urdf",
+        "pinocchio_baxter_simple.urdf",
+        "k_sample.urdf",
+        "drake_bad.urdf",
+        "drake_tag_mismatch_1.urdf",
+        "drake_massless_robot.urdf",
+        "ets_vii_onorbitros.xacro",
+        "spaceros_SSRMS_Canadarm2.urdf.xacro",
+    ] {
         match load(name) {
             None => {}
             Some(Ok(m)) => {
-                println!("{name}: {} n={} mass={} frames={} visuals={} base={}", m.name(), m.joint_count(), m.mass(), m.frames().len(), m.visuals().len(), m.body_names().next().unwrap());
-                for w in m.warnings() { println!("    {w}"); }
+                println!(
+                    "{name}: {} n={} mass={} frames={} visuals={} base={}",
+                    m.name(),
+                    m.joint_count(),
+                    m.mass(),
+                    m.frames().len(),
+                    m.visuals().len(),
+                    m.body_names().next().unwrap()
+                );
+                for w in m.warnings() {
+                    println!("    {w}");
+                }
             }
             Some(Err(e)) => println!("{name}: ERR {e}"),
         }

@@ -18,27 +18,27 @@ pub(super) fn assemble(
     around: &mut Surroundings<'_>,
 ) -> Result<Model, UrdfError> {
     let tree = Tree::new(links, hinges)?;
-    let root = tree.root(links, hinges)?;
+    let mut root = tree.root(links, hinges)?;
     let read = |link: usize, around: &mut Surroundings<'_>| {
         let (name, element) = links[link];
         read_link(element, name, around)
     };
     let mut base = read(root, around)?;
-    // a massless root under a floating joint is the frame in which the robot floats: no part of it
+    // a massless root over a floating joint is where the robot floats, no part of it
     let is_massless = base.inertial.as_ref().is_none_or(|inertial| inertial.mass == 0.0);
-    let free = match tree.hinges_below[root][..] {
-        [only] if is_massless && hinges[only].kind == "floating" => Some(only),
-        _ => None,
-    };
-    if free.is_some() {
-        base.visuals.clear();
+    if let [only] = tree.hinges_below[root][..]
+        && is_massless
+        && hinges[only].kind == "floating"
+    {
+        root = tree.child[only];
+        base = read(root, around)?;
     }
     let fail = |element: Element<'_>, error: ModelError| element.fail(UrdfProblem::Model(error));
     let mut builder = ModelBuilder::new(name, base).map_err(|e| fail(links[root].1, e))?;
     let mut stack: Vec<usize> = tree.hinges_below[root].iter().rev().copied().collect();
     while let Some(h) = stack.pop() {
         let hinge = &hinges[h];
-        let joint = read_joint(hinge, free == Some(h), &mut around.warnings)?;
+        let joint = read_joint(hinge, &mut around.warnings)?;
         let child = read(tree.child[h], around)?;
         builder.add(hinge.parent, joint, child).map_err(|e| fail(hinge.element, e))?;
         stack.extend(tree.hinges_below[tree.child[h]].iter().rev());
