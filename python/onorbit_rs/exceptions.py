@@ -1,32 +1,32 @@
 """Every error of onorbit_rs, one class per concern.
 
 Each class is an :class:`OnOrbitError` and also the built-in that fits, so ``except ValueError`` works too.
-Each is made as ``Cls(message, **fields)``; fields are attributes (``None`` where not given) and all of them pickle.
+Each is made as ``Cls(message, **fields)``; fields are attributes, ``None`` where not given, and all pickle.
 
-==========================  =====================  ==================================================================
+==========================  =====================  ==========================================================
 class                       built-in               fields
-==========================  =====================  ==================================================================
-``InputError``              ``ValueError``         ``name, got, expected``: NaN, infinite, out of range, not unit norm
+==========================  =====================  ==========================================================
+``InputError``              ``ValueError``         ``name, got, expected``: NaN, out of range, not unit norm
 ``ShapeError``              ``ValueError``         ``name, expected, got``: wrong array length or shape
 ``DtypeError``              ``TypeError``          ``name, expected, got``: not an array of real numbers
-``ModelError``              ``ValueError``         ``link, joint, path``: masses, inertias, loops, malformed URDF
-``FrameError``              ``KeyError``           ``name, kind, known, suggestion``: no frame, link, body or joint so named
-``OrbitError``              ``ValueError``         ``name, got, expected``: elements that are no orbit, gravity refused
+``ModelError``              ``ValueError``         ``link, joint, path``: masses, inertias, loops, bad URDF
+``FrameError``              ``KeyError``           ``name, kind, known, suggestion``: no such frame or joint
+``OrbitError``              ``ValueError``         ``name, got, expected``: no orbit, or gravity refused
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
-``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or a factorisation failed
-``NotFoundError``           ``FileNotFoundError``  ``path, kind, suggestion``: no such file, bundled robot or scenario
+``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or factorisation
+``NotFoundError``           ``FileNotFoundError``  ``path, kind, suggestion``: no such file, robot or scenario
 ``ReadError``               ``OSError``            ``path, kind``: a file is there but cannot be read
 ``OutputFolderError``       ``OSError``            ``path``: base of the two below
 ``OutputNotEmptyError``     ``FileExistsError``    ``path``: the folder holds files; ask with ``force``
 ``OutputNotWritableError``  ``PermissionError``    ``path``: the folder cannot be written
-``ScenarioError``           ``ValueError``         ``file, path, line``: a YAML that is broken, misspelt or senseless
+``ScenarioError``           ``ValueError``         ``file, path, line``: a YAML broken, misspelt or senseless
 ``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is no angle
-==========================  =====================  ==================================================================
+==========================  =====================  ==========================================================
 
-:class:`RunInterrupted` stands apart: it is a ``KeyboardInterrupt`` (Ctrl-C), so neither ``except Exception`` nor
-``except OnOrbitError`` swallows it; its fields are ``time`` and ``trace``, the run so far.
+:class:`RunInterrupted` stands apart: it is a ``KeyboardInterrupt`` (Ctrl-C), so neither ``except Exception``
+nor ``except OnOrbitError`` swallows it; its fields are ``time`` and ``trace``, the run so far.
 """
 
 from __future__ import annotations
@@ -213,7 +213,7 @@ class QuantityError(OnOrbitError, ValueError):
     expected: Any = None
 
 
-class RunInterrupted(_Fields, KeyboardInterrupt):  # noqa: N818  an interruption, not an error
+class RunInterrupted(_Fields, KeyboardInterrupt):
     """Ctrl-C during a run; ``trace`` holds the run so far (it does not pickle)."""
 
     time: Any = None

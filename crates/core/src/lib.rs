@@ -3,6 +3,11 @@
 //! Folders depend downwards only, in this order: `spatial`, `model`, `dynamics`, `orbit`,
 //! `environment`, `reference`, `control`, `simulation`, `batch`.
 
+pub mod control;
+pub mod dynamics;
+pub mod environment;
 pub mod model;
 pub mod orbit;
+pub mod reference;
+pub mod simulation;
 pub mod spatial;

@@ -1,1 +1,89 @@
-//! Reference orbits.
+//! Reference orbits: where the world of the simulation flies.
+//!
+//! [`Orbit`] is the one trait; each kind is one file. All vectors have inertial axes `I`
+//! and are measured from the centre of the planet; metres, seconds, radians.
+
+mod error;
+mod frames;
+pub mod kepler;
+
+use nalgebra::Vector3;
+
+pub use error::OrbitError;
+pub use frames::{Lvlh, Nadir};
+pub use kepler::{Elements, Kepler, Phase, Size};
+
+/// Gravitational parameter of the Earth, `3.986004418e14 m³/s²`, atmosphere included.
+///
+/// Source: IERS Conventions (2010), Technical Note 36, table 1.1 (TCG-compatible value).
+pub const MU_EARTH: f64 = 3.986_004_418e14;
+
+/// State of the reference at one instant, axes of `I`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrbitState {
+    /// Position from the planet's centre, m.
+    pub position: Vector3<f64>,
+    /// Velocity, m/s.
+    pub velocity: Vector3<f64>,
+    /// Acceleration, m/s²: the true one, whatever field the reference obeys.
+    pub acceleration: Vector3<f64>,
+}
+
+/// A reference orbit as a function of time.
+pub trait Orbit: Send + Sync + std::fmt::Debug {
+    /// Gravitational parameter of the planet, m³/s²; `None` around no planet.
+    fn mu(&self) -> Option<f64>;
+
+    /// State at `t` seconds of simulation, axes of `I`.
+    ///
+    /// # Errors
+    /// [`OrbitError`] where the orbit is not defined, such as at a time that is not finite.
+    fn state(&self, t: f64) -> Result<OrbitState, OrbitError>;
+
+    /// Local orbital frame at `t` seconds of simulation, in the Hill (RSW) sense.
+    ///
+    /// # Errors
+    /// As [`Orbit::state`], and [`OrbitError::UndefinedFrame`] where the reference stands
+    /// still or moves along its own radius.
+    fn lvlh(&self, t: f64) -> Result<Lvlh, OrbitError> {
+        Lvlh::of(&self.state(t)?)
+    }
+}
+
+/// Acceleration of a point mass's field, `g = -μ r / |r|³`, m/s², axes of `r`.
+///
+/// Every user of the field calls this one expression, so that a reference which obeys it
+/// differs from it by exactly zero.
+pub(crate) fn point_mass_gravity(mu: f64, r: &Vector3<f64>) -> Vector3<f64> {
+    let r2 = r.norm_squared();
+    r * (-mu / (r2 * r2.sqrt()))
+}
+
+/// Positions and velocities at many instants, axes of `I`.
+///
+/// `times` (T,) s; `positions` and `velocities` hold T rows of three numbers, row after row,
+/// m and m/s, as a numpy array of shape (T, 3) does.
+///
+/// # Errors
+/// [`OrbitError::WrongLength`] when an output does not hold 3 T numbers; otherwise the
+/// first error of [`Orbit::state`], rows before it being written.
+pub fn states(
+    orbit: &dyn Orbit,
+    times: &[f64],
+    positions: &mut [f64],
+    velocities: &mut [f64],
+) -> Result<(), OrbitError> {
+    let expected = 3 * times.len();
+    for (name, got) in [("positions", positions.len()), ("velocities", velocities.len())] {
+        if got != expected {
+            return Err(OrbitError::WrongLength { name, expected, got });
+        }
+    }
+    let rows = positions.chunks_exact_mut(3).zip(velocities.chunks_exact_mut(3));
+    for (&t, (r, v)) in times.iter().zip(rows) {
+        let state = orbit.state(t)?;
+        r.copy_from_slice(state.position.as_slice());
+        v.copy_from_slice(state.velocity.as_slice());
+    }
+    Ok(())
+}

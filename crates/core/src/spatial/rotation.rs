@@ -52,6 +52,38 @@ impl<S: Real> Quat<S> {
         Self { v: self.v * s, w: self.w * s }
     }
 
+    /// The rotation of a matrix, either of its two quaternions.
+    ///
+    /// Of the four candidates, each free of cancellation where its own square is large, the one
+    /// with the largest square.
+    ///
+    /// Source: Shepperd, J. Guidance and Control 1(3), 1978.
+    #[inline(always)]
+    pub fn from_matrix(r: &Mat3<S>) -> Self {
+        let one = S::of(1.0);
+        let (xx, yy, zz) = (r.x.x, r.y.y, r.z.z);
+        let squares = [one + xx + yy + zz, one + xx - yy - zz, one - xx + yy - zz, one - xx - yy + zz]; // 4 w², …
+        let (wx, wy, wz) = (r.y.z - r.z.y, r.z.x - r.x.z, r.x.y - r.y.x); // 4 w x, …
+        let (xy, xz, yz) = (r.y.x + r.x.y, r.z.x + r.x.z, r.z.y + r.y.z); // 4 x y, …
+        let mut best = squares[0];
+        let mut q = Self { v: Vec3::new(wx, wy, wz), w: best };
+        let others = [
+            (squares[1], Self { v: Vec3::new(squares[1], xy, xz), w: wx }),
+            (squares[2], Self { v: Vec3::new(xy, squares[2], yz), w: wy }),
+            (squares[3], Self { v: Vec3::new(xz, yz, squares[3]), w: wz }),
+        ];
+        for (square, other) in others {
+            let is_larger = S::less(best, square);
+            let pick = |a, b| S::select(is_larger, a, b);
+            q = Self {
+                v: Vec3::new(pick(other.v.x, q.v.x), pick(other.v.y, q.v.y), pick(other.v.z, q.v.z)),
+                w: pick(other.w, q.w),
+            };
+            best = pick(square, best);
+        }
+        q.normalized()
+    }
+
     /// Rotation matrix.
     #[inline(always)]
     pub fn matrix(self) -> Mat3<S> {
@@ -95,6 +127,12 @@ pub fn log_so3<S: Real>(q: Quat<S>) -> Vec3<S> {
     let x2 = squared * inverse_w * inverse_w;
     let series = x2.mul_add(S::of(-2.0 / 3.0), S::of(2.0)) * inverse_w;
     v * S::select(is_small, series, S::of(2.0) * length.atan2(w) / length)
+}
+
+/// `log(R)`: rotation vector of the shorter turn, rad, accurate up to the half turn.
+#[inline(always)]
+pub fn log_rotation<S: Real>(r: &Mat3<S>) -> Vec3<S> {
+    log_so3(Quat::from_matrix(r))
 }
 
 /// Rate of the rotation vector: `θ̇ = ω + ½ θ×ω + b θ×(θ×ω)`, for `R = R₀ exp(θ)` and the

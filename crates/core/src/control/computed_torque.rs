@@ -1,0 +1,180 @@
+//! Task-space computed torque for an arm on a free base: Eq. (6)-(8) of the OnOrbitROS paper.
+
+use super::error::ControlError;
+use super::pseudo_inverse::PseudoInverse;
+use crate::dynamics::{Data, FreeFloating, free_floating_recursion};
+use crate::model::Model;
+use crate::reference::TaskSample;
+use crate::spatial::{Mat3, Motion, Real, Vec3, log_rotation};
+
+/// Gains and options of the law
+///
+/// `τ = M* [Jg⁺ (p̈r − d) − k N q̇] + c* − Q*`,
+/// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`,
+///
+/// with the exact drift `d` of [`FreeFloating`], the attitude error by the logarithm on SO(3),
+/// `N` the null-space projector of `Jg` and `Q*` what the known external wrenches do.
+#[derive(Clone, Debug)]
+pub struct ComputedTorque {
+    /// Index of the frame that tracks.
+    pub frame: usize,
+    /// `Kp`, row major `(6, 6)`, 1/s².
+    pub kp: [f64; 36],
+    /// `Kd`, row major `(6, 6)`, 1/s.
+    pub kd: [f64; 36],
+    /// `λ₀`, largest damping of the pseudo-inverse, m or rad.
+    pub damping: f64,
+    /// `k`, damping of self-motion, 1/s.
+    pub null_space_damping: f64,
+    /// Whether the wrenches of the environment are known to the law and compensated.
+    pub compensate_environment: bool,
+}
+
+impl ComputedTorque {
+    /// A law with scalar gains `kp` (1/s²) and `kd` (1/s), `λ₀ = 0.05`, no null-space damping.
+    pub fn new(frame: usize, kp: f64, kd: f64) -> Self {
+        Self {
+            frame,
+            kp: diagonal([kp; 6]),
+            kd: diagonal([kd; 6]),
+            damping: 0.05,
+            null_space_damping: 0.0,
+            compensate_environment: true,
+        }
+    }
+
+    /// Checks that the law can work on a robot.
+    ///
+    /// # Errors
+    /// Gains that are not finite or have a negative diagonal, negative damping, a frame that
+    /// fewer than six joints move.
+    pub fn check(&self, model: &Model) -> Result<(), ControlError> {
+        for (name, gains) in [("kp", &self.kp), ("kd", &self.kd)] {
+            if let Some(&value) = gains.iter().find(|x| !x.is_finite()) {
+                return Err(ControlError::NotFinite { name, value });
+            }
+            if let Some(value) = (0..6).map(|i| gains[7 * i]).find(|x| *x < 0.0) {
+                return Err(ControlError::Negative { name, value });
+            }
+        }
+        let dampings = [("damping", self.damping), ("null_space_damping", self.null_space_damping)];
+        for (name, value) in dampings {
+            if !value.is_finite() {
+                return Err(ControlError::NotFinite { name, value });
+            }
+            if value < 0.0 {
+                return Err(ControlError::Negative { name, value });
+            }
+        }
+        let frame = &model.frames()[self.frame];
+        let path = std::iter::successors(Some(frame.body), |&k| (k > 0).then(|| model.nodes()[k].parent));
+        let joints = path.filter(|&k| k > 0).count();
+        if joints < 6 {
+            return Err(ControlError::TooFewJoints { frame: frame.name.clone(), joints });
+        }
+        Ok(())
+    }
+}
+
+/// `(6, 6)` with this diagonal.
+fn diagonal(entries: [f64; 6]) -> [f64; 36] {
+    let mut out = [0.0; 36];
+    entries.iter().enumerate().for_each(|(i, x)| out[7 * i] = *x);
+    out
+}
+
+/// Workspace of [`computed_torque`], allocated once.
+#[derive(Clone, Debug)]
+pub struct ComputedTorqueWork<S> {
+    /// The reduced model at the last call.
+    pub reduced: FreeFloating<S>,
+    inverse: PseudoInverse<S>,
+    acceleration: Vec<S>,
+    self_motion: Vec<S>,
+}
+
+impl<S: Real> ComputedTorqueWork<S> {
+    /// Space for `model`.
+    pub fn new(model: &Model) -> Self {
+        let n = model.joint_count();
+        Self {
+            reduced: FreeFloating::new(model),
+            inverse: PseudoInverse::new(),
+            acceleration: vec![S::of(0.0); n],
+            self_motion: vec![S::of(0.0); n],
+        }
+    }
+}
+
+/// Error of a frame against its reference in W axes: `pd − p`, m, and `log(Rd Rᵀ)`, rad.
+#[inline(always)]
+pub fn task_error<S: Real>(rot_wf: &Mat3<S>, pos_w: Vec3<S>, desired: &TaskSample<S>) -> Motion<S> {
+    Motion::new(desired.pos_w - pos_w, log_rotation(&(desired.rot_wd * rot_wf.transpose())))
+}
+
+/// Joint torques, `(n,)`, N m, towards the `desired` pose and motion.
+///
+/// Needs [`kinematics`](crate::dynamics::kinematics) at `q`, `v`, and in `data` the external
+/// wrenches to compensate.
+pub fn computed_torque<S: Real>(
+    law: &ComputedTorque,
+    model: &Model,
+    data: &mut Data<S>,
+    q: &[S],
+    v: &[S],
+    desired: &TaskSample<S>,
+    work: &mut ComputedTorqueWork<S>,
+    tau: &mut [S],
+) {
+    free_floating_recursion(model, data, q, v, law.frame, &mut work.reduced);
+    S::enter(
+        #[inline(always)]
+        || kernel(law, v, desired, work, tau),
+    );
+}
+
+#[inline(always)]
+fn kernel<S: Real>(
+    law: &ComputedTorque,
+    v: &[S],
+    desired: &TaskSample<S>,
+    work: &mut ComputedTorqueWork<S>,
+    tau: &mut [S],
+) {
+    let n = tau.len();
+    let reduced = &work.reduced;
+    // p̈r − d,  p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)
+    let error = task_error(&reduced.pose.rot_wf, reduced.pose.pos_w, desired);
+    let lag = desired.velocity - reduced.velocity;
+    let command = desired.acceleration + gain(&law.kd, lag) + gain(&law.kp, error) - reduced.drift;
+
+    // q̈ = Jg⁺ (p̈r − d) − k N q̇
+    let jacobian = &reduced.jacobian;
+    work.inverse.factor(jacobian, n, S::of(law.damping));
+    let mut task = [S::of(0.0); 6];
+    command.write(&mut task);
+    work.inverse.apply(jacobian, task, &mut work.acceleration);
+    work.inverse.project(jacobian, &v[6..], &mut work.self_motion);
+    let k = S::of(-law.null_space_damping);
+    for (a, s) in work.acceleration.iter_mut().zip(&work.self_motion) {
+        *a = s.mul_add(k, *a);
+    }
+
+    // τ = M* q̈ + c* − Q*
+    for (i, tau) in tau.iter_mut().enumerate() {
+        let row = &reduced.inertia[i * n..(i + 1) * n];
+        let inertial = row.iter().zip(&work.acceleration).fold(S::of(0.0), |sum, (m, a)| m.mul_add(*a, sum));
+        *tau = inertial + reduced.bias[i] - reduced.external[i];
+    }
+}
+
+/// `K x` for a row-major `(6, 6)` gain.
+#[inline(always)]
+fn gain<S: Real>(k: &[f64; 36], x: Motion<S>) -> Motion<S> {
+    let (mut from, mut to) = ([S::of(0.0); 6], [S::of(0.0); 6]);
+    x.write(&mut from);
+    for (i, to) in to.iter_mut().enumerate() {
+        *to = (0..6).fold(S::of(0.0), |sum, j| S::of(k[6 * i + j]).mul_add(from[j], sum));
+    }
+    Motion::from_slice(&to)
+}

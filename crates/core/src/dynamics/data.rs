@@ -1,0 +1,76 @@
+//! What the algorithms compute, allocated once per model.
+
+use crate::model::Model;
+use crate::spatial::{ArticulatedInertia, Force, Mat3, Motion, Real, SpatialInertia, Vec3};
+
+/// Quantities of one body, all in base axes B about the base's origin.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyData<S> {
+    /// Takes the body's components to B. Set by [`positions`](super::positions).
+    pub rot_bk: Mat3<S>,
+    /// Its origin. Set by [`positions`](super::positions), m.
+    pub pos_b: Vec3<S>,
+    /// Its centre of mass. Set by [`positions`](super::positions), m.
+    pub com_b: Vec3<S>,
+    /// Motion of the body per unit joint rate. Set by [`positions`](super::positions).
+    pub subspace: Motion<S>,
+    /// Its inertia. Set by [`positions`](super::positions).
+    pub inertia: SpatialInertia<S>,
+    /// Its twist. Set by [`kinematics`](super::kinematics).
+    pub velocity: Motion<S>,
+    /// Wrench from outside. Set by [`apply_external`](super::apply_external) or the simulation;
+    /// every recursion reads it.
+    pub external: Force<S>,
+    /// External wrenches on its subtree. Set by [`free_floating`](super::free_floating).
+    pub outside: Force<S>,
+    /// Spatial acceleration: velocity products alone, or all of it.
+    pub acceleration: Motion<S>,
+    /// Force through its joint, or `I S`, or the bias of the articulated body.
+    pub force: Force<S>,
+    /// Inertia of the subtree, rigid. Set by CRBA and `free_floating`.
+    pub composite: SpatialInertia<S>,
+    /// Inertia of the subtree, articulated. Set by ABA.
+    pub articulated: ArticulatedInertia<S>,
+    /// `U = IA S`. Set by ABA.
+    pub reach: Force<S>,
+    /// `1 / (Sᵀ U + rotor)`. Set by ABA.
+    pub inverse_pivot: S,
+    /// `τ − Sᵀ pA`. Set by ABA.
+    pub drive: S,
+}
+
+/// Workspace of all algorithms for one state (or one set of lanes).
+#[derive(Clone, Debug)]
+pub struct Data<S> {
+    /// One entry per body, base first.
+    pub bodies: Vec<BodyData<S>>,
+}
+
+impl<S: Real> Data<S> {
+    /// Space for `model`.
+    pub fn new(model: &Model) -> Self {
+        let body = BodyData {
+            rot_bk: Mat3::identity(),
+            pos_b: Vec3::zero(),
+            com_b: Vec3::zero(),
+            subspace: Motion::zero(),
+            inertia: SpatialInertia::zero(),
+            velocity: Motion::zero(),
+            external: Force::zero(),
+            outside: Force::zero(),
+            acceleration: Motion::zero(),
+            force: Force::zero(),
+            composite: SpatialInertia::zero(),
+            articulated: ArticulatedInertia::rigid(&SpatialInertia::zero()),
+            reach: Force::zero(),
+            inverse_pivot: S::of(0.0),
+            drive: S::of(0.0),
+        };
+        Self { bodies: vec![body; model.nodes().len()] }
+    }
+
+    /// Takes all external wrenches away.
+    pub fn clear_external(&mut self) {
+        self.bodies.iter_mut().for_each(|body| body.external = Force::zero());
+    }
+}

@@ -1,0 +1,92 @@
+//! Frame Jacobians and their drift.
+
+use super::data::Data;
+use super::kinematics::{base_rotation, frame_origin_b};
+use crate::model::Model;
+use crate::spatial::{Mat3, Motion, Real, Vec3};
+
+/// Jacobian of a frame (index): its twist at its origin in W axes is `J v`.
+///
+/// `out`: row major `(6, nv)`, linear rows first. Needs [`positions`](super::positions).
+pub fn frame_jacobian<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize, out: &mut [S]) {
+    S::enter(
+        #[inline(always)]
+        || {
+            let (nv, frame) = (model.nv(), &model.frames()[frame]);
+            let (rot_wb, p) = (base_rotation(q), frame_origin_b(data, frame));
+            out.fill(S::of(0.0));
+            for (j, axis) in unit_axes().into_iter().enumerate() {
+                write_column(out, nv, j, rot_wb, p, Motion::new(axis, Vec3::zero()));
+                write_column(out, nv, j + 3, rot_wb, p, Motion::new(Vec3::zero(), axis));
+            }
+            let mut k = frame.body;
+            while k > 0 {
+                write_column(out, nv, k + 5, rot_wb, p, data.bodies[k].subspace);
+                k = model.nodes()[k].parent;
+            }
+        },
+    );
+}
+
+/// Column `j` of a Jacobian `width` wide: the twist `unit` at the point `p`, turned to W.
+#[inline(always)]
+pub(super) fn write_column<S: Real>(
+    out: &mut [S],
+    width: usize,
+    j: usize,
+    rot_wb: Mat3<S>,
+    p: Vec3<S>,
+    unit: Motion<S>,
+) {
+    let (linear, angular) = (rot_wb * unit.at(p), rot_wb * unit.angular);
+    let entries = [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z];
+    for (i, entry) in entries.into_iter().enumerate() {
+        out[i * width + j] = entry;
+    }
+}
+
+#[inline(always)]
+fn unit_axes<S: Real>() -> [Vec3<S>; 3] {
+    let (o, l) = (S::of(0.0), S::of(1.0));
+    [Vec3::new(l, o, o), Vec3::new(o, l, o), Vec3::new(o, o, l)]
+}
+
+/// Drift `J̇ v` of a frame (index): its classical acceleration, m/s² and rad/s², at its origin in W
+/// axes while `v` does not change. Needs [`kinematics`](super::kinematics).
+pub fn frame_drift<S: Real>(model: &Model, data: &Data<S>, q: &[S], v: &[S], frame: usize) -> Motion<S> {
+    S::enter(
+        #[inline(always)]
+        || {
+            let index = &model.frames()[frame];
+            // Σ v_k × S q̇ along the path to the base
+            let mut spatial = Motion::zero();
+            let mut k = index.body;
+            while k > 0 {
+                let body = &data.bodies[k];
+                spatial += body.velocity.cross(body.subspace * v[k + 5]);
+                k = model.nodes()[k].parent;
+            }
+            classical(model, data, q, frame, spatial)
+        },
+    )
+}
+
+/// Acceleration of a frame's origin, m/s², and its angular acceleration, rad/s², in W axes, after
+/// a recursion that left the bodies' accelerations in `data`.
+pub fn frame_acceleration<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize) -> Motion<S> {
+    let spatial = data.bodies[model.frames()[frame].body].acceleration;
+    classical(model, data, q, frame, spatial)
+}
+
+/// A body's spatial acceleration as that of a point: `a + α × p + ω × (v + ω × p)`, in W axes.
+///
+/// A spatial acceleration is the rate of the velocity field at a fixed point; the last term
+/// follows the material point instead.
+#[inline(always)]
+fn classical<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize, spatial: Motion<S>) -> Motion<S> {
+    let frame = &model.frames()[frame];
+    let (rot_wb, p) = (base_rotation(q), frame_origin_b(data, frame));
+    let velocity = data.bodies[frame.body].velocity;
+    let linear = spatial.at(p) + velocity.angular.cross(velocity.at(p));
+    Motion::new(rot_wb * linear, rot_wb * spatial.angular)
+}

@@ -1,0 +1,29 @@
+//! Equations of motion: free functions over a [`Model`](crate::model::Model), its [`Data`] and a
+//! state.
+//!
+//! All recursions run in one set of coordinates, the axes and origin of the base link B. There
+//! inertias of bodies simply add, the columns that couple base and joints *are* the spatial
+//! forces `I S`, and the base pose drops out of everything but what is asked for in W.
+//! A `*_recursion` expects [`kinematics`] to have run; the functions without that ending run it.
+
+mod aba;
+mod crba;
+mod data;
+mod external;
+mod free_floating;
+mod jacobian;
+mod kinematics;
+mod momentum;
+mod rnea;
+
+pub use aba::{forward_dynamics, forward_dynamics_recursion};
+pub use crba::mass_matrix;
+pub use data::{BodyData, Data};
+pub use external::{FrameWrench, apply_external};
+pub use free_floating::{FreeFloating, free_floating, free_floating_recursion};
+pub use jacobian::{frame_acceleration, frame_drift, frame_jacobian};
+pub(crate) use kinematics::base_rotation;
+pub use kinematics::{FramePose, frame_pose, frame_velocity, kinematics, positions};
+pub(crate) use momentum::center_of_mass_b;
+pub use momentum::{Momentum, base_twist, center_of_mass, composite_momentum, kinetic_energy, momentum};
+pub use rnea::{bias_forces, inverse_dynamics, inverse_dynamics_recursion};

@@ -1,0 +1,97 @@
+//! Momentum, centre of mass, energy.
+
+use super::data::Data;
+use super::kinematics::base_rotation;
+use crate::model::Model;
+use crate::spatial::{Force, Motion, Real, SpatialInertia, Vec3};
+
+/// Momentum of the whole robot in W axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Momentum<S> {
+    /// Linear, kg m/s.
+    pub linear: Vec3<S>,
+    /// Angular about the system's centre of mass, kg m²/s.
+    pub angular: Vec3<S>,
+}
+
+/// Inertia of the whole robot and its momentum `Σ I v`, both in B about the base's origin.
+/// Needs [`kinematics`](super::kinematics).
+#[inline(always)]
+pub fn composite_momentum<S: Real>(data: &Data<S>) -> (SpatialInertia<S>, Force<S>) {
+    let mut inertia = SpatialInertia::zero();
+    let mut momentum = Force::zero();
+    for body in &data.bodies {
+        inertia += body.inertia;
+        momentum += body.inertia.momentum(body.velocity);
+    }
+    (inertia, momentum)
+}
+
+/// Momentum in W axes, angular about the system's centre of mass.
+/// Needs [`kinematics`](super::kinematics).
+pub fn momentum<S: Real>(data: &Data<S>, q: &[S]) -> Momentum<S> {
+    S::enter(
+        #[inline(always)]
+        || {
+            let (inertia, h) = composite_momentum(data);
+            // L_com = L − c × p
+            let about_com = h.angular - inertia.com().cross(h.linear);
+            let rot_wb = base_rotation(q);
+            Momentum { linear: rot_wb * h.linear, angular: rot_wb * about_com }
+        },
+    )
+}
+
+/// Centre of mass in W, m. Needs [`positions`](super::positions).
+pub fn center_of_mass<S: Real>(data: &Data<S>, q: &[S]) -> Vec3<S> {
+    S::enter(
+        #[inline(always)]
+        || base_rotation(q) * center_of_mass_b(data) + Vec3::from_slice(q),
+    )
+}
+
+/// Centre of mass in B, m. Needs [`positions`](super::positions).
+#[inline(always)]
+pub(crate) fn center_of_mass_b<S: Real>(data: &Data<S>) -> Vec3<S> {
+    let (mut mass, mut moment) = (S::of(0.0), Vec3::zero());
+    for body in &data.bodies {
+        mass += body.inertia.mass;
+        moment += body.inertia.moment;
+    }
+    moment * (S::of(1.0) / mass)
+}
+
+/// Kinetic energy `½ Σ vᵀ I v + ½ Σ rotor q̇²` in W, J. Needs [`kinematics`](super::kinematics).
+pub fn kinetic_energy<S: Real>(model: &Model, data: &Data<S>, v: &[S]) -> S {
+    S::enter(
+        #[inline(always)]
+        || {
+            let mut twice = S::of(0.0);
+            for (k, (node, body)) in model.nodes().iter().zip(&data.bodies).enumerate() {
+                twice += body.velocity.dot(body.inertia.momentum(body.velocity));
+                if k > 0 {
+                    twice += S::of(node.rotor_inertia) * v[k + 5] * v[k + 5];
+                }
+            }
+            twice * S::of(0.5)
+        },
+    )
+}
+
+/// The base twist that goes with a momentum and joint rates: `v_b = Mbb⁻¹ (h − Mbm q̇)`.
+///
+/// `target` is in W axes, angular about the centre of mass. Needs [`kinematics`](super::kinematics)
+/// at `q`, `v`; returned in base axes, linear first.
+pub fn base_twist<S: Real>(data: &Data<S>, q: &[S], v: &[S], target: Momentum<S>) -> Motion<S> {
+    S::enter(
+        #[inline(always)]
+        || {
+            let (inertia, h) = composite_momentum(data);
+            let rot_wb = base_rotation(q);
+            let linear = rot_wb.transpose_mul(target.linear);
+            let angular = rot_wb.transpose_mul(target.angular) + inertia.com().cross(linear);
+            // what the momentum misses, the base makes up for
+            Motion::from_slice(v) + inertia.inverse().apply(Force::new(linear, angular) - h)
+        },
+    )
+}

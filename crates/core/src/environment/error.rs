@@ -1,0 +1,80 @@
+//! What can be wrong with an effect or with the place it is asked to act in.
+
+/// Refusals of the `environment` module; each carries the offending numbers.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EnvironmentError {
+    /// An effect of the planet is on where there is no planet.
+    #[error(
+        "{effect} needs an orbit around a planet, this run has none: give an orbit or leave the effect out"
+    )]
+    NoPlanet {
+        /// Name of the effect.
+        effect: &'static str,
+    },
+    /// A path runs through the planet.
+    #[error(
+        "{effect}: {what} is {distance} m from the planet's centre, at least {minimum} m is needed \
+         (no planet of this mass is smaller)"
+    )]
+    InsidePlanet {
+        /// Name of the effect.
+        effect: &'static str,
+        /// What is there: the reference, or a body by its index.
+        what: Place,
+        /// Distance from the planet's centre, m.
+        distance: f64,
+        /// Smallest distance accepted, m.
+        minimum: f64,
+    },
+    /// An input is infinite or not a number.
+    #[error("{name} holds {value}, finite numbers are needed")]
+    NotFinite {
+        /// Which input.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A wrench ends before it starts.
+    #[error("wrench is on from {start} s to {end} s: the start must come before the end")]
+    EmptyInterval {
+        /// Start, s.
+        start: f64,
+        /// End, s.
+        end: f64,
+    },
+    /// A wrench acts on a body that the robot does not have.
+    #[error("wrench acts on body {body}, the robot has bodies 0 to {last}", last = count.saturating_sub(1))]
+    UnknownBody {
+        /// Index given.
+        body: usize,
+        /// Number of bodies.
+        count: usize,
+    },
+    /// Bodies and wrenches do not pair up.
+    #[error("{got} wrenches are given for {expected} bodies, one per body is needed")]
+    WrongLength {
+        /// Number of bodies.
+        expected: usize,
+        /// Number of wrenches.
+        got: usize,
+    },
+}
+
+/// Which point of a scene an error speaks of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The reference orbit.
+    Reference,
+    /// The centre of mass of the body with this index.
+    Body(usize),
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Reference => write!(f, "the reference"),
+            Self::Body(k) => write!(f, "body {k}"),
+        }
+    }
+}

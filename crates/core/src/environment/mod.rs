@@ -1,0 +1,59 @@
+//! Forces and torques of the surroundings on every body.
+//!
+//! [`Effect`] is the one trait; a new kind of effect is one file and one line here.
+//! `W` has inertial axes and its origin on the reference orbit.
+
+mod body_wrench;
+mod differential_gravity;
+mod error;
+mod gravity_gradient;
+mod scene;
+
+pub use body_wrench::BodyWrench;
+pub use differential_gravity::{DifferentialGravity, ReferenceMotion};
+pub use error::{EnvironmentError, Place};
+pub use gravity_gradient::GravityGradient;
+pub use scene::{BodyState, Reference, Scene, Wrench};
+
+/// Something that pulls, pushes or turns the bodies of a robot.
+///
+/// ```
+/// use onorbit_core::environment::{Effect, EnvironmentError, Scene, Wrench};
+/// use nalgebra::Vector3;
+///
+/// /// Linear damping towards rest in `W`: every body feels `-c v`.
+/// #[derive(Debug)]
+/// struct Honey(f64);
+///
+/// impl Effect for Honey {
+///     fn name(&self) -> &str {
+///         "honey"
+///     }
+///     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+///         for (body, wrench) in scene.paired(wrenches)? {
+///             wrench.force -= body.velocity * self.0;
+///         }
+///         Ok(())
+///     }
+/// }
+/// ```
+pub trait Effect: Send + Sync + std::fmt::Debug {
+    /// Short name, for messages and recorded columns.
+    fn name(&self) -> &str;
+
+    /// Instants at which the effect jumps, s of simulation; the integrator stops at each.
+    fn event_times(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Whether the effect needs a reference orbit around a planet.
+    fn requires_orbit(&self) -> bool {
+        false
+    }
+
+    /// Add this effect's wrench on each body to what `wrenches` holds, one per body; allocates nothing.
+    ///
+    /// # Errors
+    /// [`EnvironmentError`] where the effect is not defined in this scene.
+    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError>;
+}

@@ -1,0 +1,117 @@
+//! What an effect sees of the robot and of the orbit at one instant.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::EnvironmentError;
+use super::error::Place;
+use crate::orbit::OrbitState;
+
+/// One body of the robot, in `W`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Inertia about the centre of mass, `W` axes, kg m².
+    pub inertia: Matrix3<f64>,
+    /// Centre of mass, m.
+    pub com: Vector3<f64>,
+    /// Takes link components to `W` components.
+    pub rot_wk: Matrix3<f64>,
+    /// Origin of the link's frame, m.
+    pub origin: Vector3<f64>,
+    /// Velocity of the centre of mass, m/s.
+    pub velocity: Vector3<f64>,
+    /// Angular velocity, `W` axes, rad/s.
+    pub angular_velocity: Vector3<f64>,
+}
+
+/// The reference orbit at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    /// Its state, axes of `I`; `W`'s origin is at its position.
+    pub state: OrbitState,
+    /// Gravitational parameter of the planet, m³/s²; `None` around no planet.
+    pub mu: Option<f64>,
+}
+
+/// All that an effect may look at.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    /// The step being integrated, s: its middle decides what is switched on.
+    pub interval: (f64, f64),
+    /// Instant of this evaluation, s of simulation.
+    pub time: f64,
+    /// The reference orbit now, where the run has one.
+    pub reference: Option<Reference>,
+    /// The robot's bodies now.
+    pub bodies: &'a [BodyState],
+}
+
+/// Force through a body's centre of mass and torque about it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// Force, `W` axes, N.
+    pub force: Vector3<f64>,
+    /// Torque about the centre of mass, `W` axes, N m.
+    pub torque: Vector3<f64>,
+}
+
+impl<'a> Scene<'a> {
+    /// Middle of the step being integrated, s.
+    pub fn middle(&self) -> f64 {
+        0.5 * (self.interval.0 + self.interval.1)
+    }
+
+    /// Each body with its wrench.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::WrongLength`] when there is not one wrench per body.
+    pub fn paired<'w>(
+        &self,
+        wrenches: &'w mut [Wrench],
+    ) -> Result<impl Iterator<Item = (&'a BodyState, &'w mut Wrench)>, EnvironmentError> {
+        let (expected, got) = (self.bodies.len(), wrenches.len());
+        if expected != got {
+            return Err(EnvironmentError::WrongLength { expected, got });
+        }
+        Ok(self.bodies.iter().zip(wrenches.iter_mut()))
+    }
+
+    /// State of the reference and parameter of its planet, the reference being outside it.
+    pub(super) fn planet(&self, effect: &'static str) -> Result<Planet, EnvironmentError> {
+        let around = |r: Reference| Some((r.state, r.mu?));
+        let (reference, mu) = self.reference.and_then(around).ok_or(EnvironmentError::NoPlanet { effect })?;
+        let planet = Planet { effect, mu, reference, minimum: smallest_radius(mu) };
+        planet.outside(Place::Reference, reference.position.norm())?;
+        Ok(planet)
+    }
+}
+
+/// The planet of a scene, as one effect sees it.
+pub(super) struct Planet {
+    effect: &'static str,
+    pub(super) mu: f64,
+    pub(super) reference: OrbitState,
+    minimum: f64,
+}
+
+impl Planet {
+    /// `distance` from the planet's centre, m, if it lies outside the planet.
+    pub(super) fn outside(&self, what: Place, distance: f64) -> Result<f64, EnvironmentError> {
+        if distance >= self.minimum {
+            return Ok(distance);
+        }
+        let (effect, minimum) = (self.effect, self.minimum);
+        Err(EnvironmentError::InsidePlanet { effect, what, distance, minimum })
+    }
+}
+
+/// Radius below which no solid body of this `μ = G m` can have its surface, m.
+///
+/// `R = (3 μ/(4π G ρ))^⅓` with osmium's `ρ = 22 600 kg/m³`: 3980 km for the Earth's mass. The
+/// true surface lies higher and is not ours to know; far below it the field of a point mass
+/// means nothing and grows without bound.
+fn smallest_radius(mu: f64) -> f64 {
+    const G_RHO: f64 = 6.674e-11 * 22_600.0;
+    (3.0 * mu / (4.0 * std::f64::consts::PI * G_RHO)).cbrt()
+}

@@ -1,0 +1,135 @@
+//! What can be wrong with a reference orbit.
+
+/// Refusals of the `orbit` module; each carries the offending numbers.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OrbitError {
+    /// An input is infinite or not a number.
+    #[error("{name} is {value}, a finite number is needed")]
+    NotFinite {
+        /// Which input.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A quantity that must be positive is not.
+    #[error("{name} is {value}, it must be greater than zero")]
+    NotPositive {
+        /// Which input.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// The eccentricity is below zero.
+    #[error("eccentricity is {value}, it must be zero or greater")]
+    NegativeEccentricity {
+        /// What was given.
+        value: f64,
+    },
+    /// The sign of the semi-major axis contradicts the eccentricity.
+    #[error(
+        "semi-major axis is {semi_major_axis} m with eccentricity {eccentricity}: \
+         it must be positive below eccentricity 1 and negative above it"
+    )]
+    AxisSign {
+        /// Semi-major axis, m.
+        semi_major_axis: f64,
+        /// Eccentricity.
+        eccentricity: f64,
+    },
+    /// A parabola has no semi-major axis.
+    #[error(
+        "semi-major axis is {semi_major_axis} m with eccentricity 1: a parabola has none, \
+         give its semi-latus rectum"
+    )]
+    ParabolaHasNoAxis {
+        /// Semi-major axis, m.
+        semi_major_axis: f64,
+    },
+    /// A parabola has no mean anomaly.
+    #[error(
+        "mean anomaly {value} rad is given with eccentricity 1: a parabola has none, \
+         give the true anomaly or the time of periapsis"
+    )]
+    ParabolaHasNoMeanAnomaly {
+        /// What was given, rad.
+        value: f64,
+    },
+    /// The inclination lies outside [0, π].
+    #[error("inclination is {value} rad, it must lie between 0 and π (are these degrees?)")]
+    Inclination {
+        /// What was given, rad.
+        value: f64,
+    },
+    /// The true anomaly lies beyond the asymptote of an open orbit.
+    #[error(
+        "true anomaly is {value} rad, at eccentricity {eccentricity} it must lie \
+         strictly within ±{limit} rad"
+    )]
+    BeyondAsymptote {
+        /// What was given, rad.
+        value: f64,
+        /// Eccentricity.
+        eccentricity: f64,
+        /// True anomaly of the asymptote, rad.
+        limit: f64,
+    },
+    /// Position and velocity are parallel, or one of them is zero.
+    #[error(
+        "rectilinear orbit: position ({radius} m) and velocity ({speed} m/s) enclose an \
+         angle of sine {sine}, it must exceed {limit}"
+    )]
+    Rectilinear {
+        /// Length of the position, m.
+        radius: f64,
+        /// Length of the velocity, m/s.
+        speed: f64,
+        /// Sine of the angle between them.
+        sine: f64,
+        /// Smallest sine accepted.
+        limit: f64,
+    },
+    /// No local orbital frame exists here.
+    #[error(
+        "the local orbital frame is undefined at {radius} m and {speed} m/s (sine {sine} \
+         between them): a reference that stands still or moves along its radius has none"
+    )]
+    UndefinedFrame {
+        /// Length of the position, m.
+        radius: f64,
+        /// Length of the velocity, m/s.
+        speed: f64,
+        /// Sine of the angle between them.
+        sine: f64,
+    },
+    /// The time lies too far from the epoch for the phase to mean anything.
+    #[error("time {time} s is too far from the epoch {epoch} s, at most {limit} s from it are accepted")]
+    TimeOutOfRange {
+        /// What was given, s.
+        time: f64,
+        /// Epoch of the orbit, s.
+        epoch: f64,
+        /// Largest distance from the epoch, s.
+        limit: f64,
+    },
+    /// An array has the wrong length.
+    #[error("{name} holds {got} numbers, {expected} are needed")]
+    WrongLength {
+        /// Which array.
+        name: &'static str,
+        /// Length needed.
+        expected: usize,
+        /// Length given.
+        got: usize,
+    },
+}
+
+/// `value` if it is finite.
+pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, OrbitError> {
+    if value.is_finite() { Ok(value) } else { Err(OrbitError::NotFinite { name, value }) }
+}
+
+/// `value` if it is finite and greater than zero.
+pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, OrbitError> {
+    if finite(name, value)? > 0.0 { Ok(value) } else { Err(OrbitError::NotPositive { name, value }) }
+}

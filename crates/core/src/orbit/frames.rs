@@ -1,0 +1,113 @@
+//! Local orbital frames of a reference, and their rates.
+//!
+//! | name | x | y | z |
+//! |-|-|-|-|
+//! | [`Lvlh`], letter `L`: Hill, RSW, OnOrbitROS | radial, outward | completes, along track | angular momentum |
+//! | [`Nadir`], letter `N`: what NASA and CCSDS call LVLH | completes, along track | against angular momentum | down |
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{OrbitError, OrbitState};
+
+/// Below this sine between position and velocity their plane is lost to rounding.
+const SMALLEST_SINE: f64 = 1e-10;
+
+/// Local orbital frame in the Hill (RSW) sense: x outward, y along track, z along `r × v`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lvlh {
+    /// Takes `L` components to `I` components.
+    pub rot_il: Matrix3<f64>,
+    /// Angular velocity of `L` with respect to `I`, in `L` axes, rad/s.
+    pub rate_l: Vector3<f64>,
+}
+
+impl Lvlh {
+    /// Frame of a reference with this state.
+    ///
+    /// `x̂ = r/|r|`, `ẑ = h/|h|`, `ŷ = ẑ × x̂`, with `h = r × v`;
+    /// `ω = (r aₙ/h) x̂ + (h/r²) ẑ`, with `aₙ` the acceleration along `ẑ` (zero on a Kepler orbit).
+    ///
+    /// # Errors
+    /// [`OrbitError::UndefinedFrame`] for a standing or rectilinear reference.
+    ///
+    /// Source: Kechichian, J. Astronautical Sciences 46(1), 1998, for the component along x.
+    pub fn of(state: &OrbitState) -> Result<Self, OrbitError> {
+        let (r, v) = (&state.position, &state.velocity);
+        let (radius, speed, h) = (r.norm(), v.norm(), r.cross(v));
+        let momentum = h.norm();
+        let sine = momentum / (radius * speed);
+        if !(sine > SMALLEST_SINE && momentum.is_finite()) {
+            return Err(OrbitError::UndefinedFrame { radius, speed, sine });
+        }
+        let x = r / radius;
+        let z = h / momentum;
+        let y = z.cross(&x);
+        // ω = (r aₙ/h) x̂ + (h/r²) ẑ
+        let normal = state.acceleration.dot(&z);
+        let rate_l = Vector3::new(radius * normal / momentum, 0.0, momentum / (radius * radius));
+        Ok(Self { rot_il: Matrix3::from_columns(&[x, y, z]), rate_l })
+    }
+}
+
+/// Nadir-pointing orbital frame, which NASA and CCSDS call LVLH: z down, y against `r × v`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nadir {
+    /// Takes `N` components to `I` components.
+    pub rot_in: Matrix3<f64>,
+    /// Angular velocity of `N` with respect to `I`, in `N` axes, rad/s.
+    pub rate_n: Vector3<f64>,
+}
+
+impl Nadir {
+    /// Frame of a reference with this state: the axes `(y, -z, -x)` of [`Lvlh`].
+    ///
+    /// # Errors
+    /// [`OrbitError::UndefinedFrame`] for a standing or rectilinear reference.
+    pub fn of(state: &OrbitState) -> Result<Self, OrbitError> {
+        Lvlh::of(state).map(|l| Self::from(&l))
+    }
+}
+
+impl From<&Lvlh> for Nadir {
+    fn from(l: &Lvlh) -> Self {
+        let (x, y, z) = (l.rot_il.column(0), l.rot_il.column(1), l.rot_il.column(2));
+        let w = &l.rate_l;
+        Self {
+            rot_in: Matrix3::from_columns(&[y.into_owned(), -z, -x]),
+            rate_n: Vector3::new(w.y, -w.z, -w.x),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state(r: [f64; 3], v: [f64; 3]) -> OrbitState {
+        OrbitState { position: r.into(), velocity: v.into(), acceleration: Vector3::zeros() }
+    }
+
+    #[test]
+    fn standing_rectilinear_and_centred_references_have_no_frame() {
+        for s in [
+            state([7e6, 0.0, 0.0], [0.0; 3]),
+            state([7e6, 1e6, 0.0], [-700.0, -100.0, 0.0]),
+            state([0.0; 3], [7e3, 0.0, 0.0]),
+            state([7e6, 0.0, 0.0], [0.0, f64::NAN, 0.0]),
+        ] {
+            assert!(matches!(Lvlh::of(&s), Err(OrbitError::UndefinedFrame { .. })));
+        }
+    }
+
+    #[test]
+    fn axes_point_where_their_names_say() {
+        let s = state([7e6, 0.0, 0.0], [0.0, 7e3, 0.0]);
+        let (l, n) = (Lvlh::of(&s).expect("regular"), Nadir::of(&s).expect("regular"));
+        assert_eq!(l.rot_il, Matrix3::identity());
+        assert_eq!(n.rot_in * Vector3::z(), -Vector3::x());
+        assert_eq!(n.rot_in * Vector3::y(), -Vector3::z());
+        assert_eq!(n.rot_in * Vector3::x(), Vector3::y());
+        // Both describe one rotation of one triad.
+        assert_eq!(n.rot_in * n.rate_n, l.rot_il * l.rate_l);
+    }
+}

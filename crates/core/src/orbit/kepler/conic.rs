@@ -1,0 +1,193 @@
+//! Motion within the orbital plane, as a function of the time since a known phase.
+//!
+//! Perifocal axes: x towards the periapsis, y along the velocity there.
+
+use std::f64::consts::{PI, TAU};
+
+use super::anomaly;
+use super::double::{self, Double};
+use crate::orbit::OrbitError;
+use crate::orbit::error::positive;
+
+/// Size and shape, each to full relative accuracy: `1 - e` is not formed from `e`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Shape {
+    /// Eccentricity `e`.
+    pub(super) e: f64,
+    /// `1 - e`, negative on a hyperbola.
+    pub(super) one_minus_e: f64,
+    /// Distance of the periapsis `q`, m.
+    pub(super) periapsis: f64,
+    /// `1/a`, 1/m; zero on a parabola, negative on a hyperbola.
+    pub(super) inverse_axis: Double,
+}
+
+/// Below this `|1 - e|` no `f64` tells the orbit from a parabola.
+pub(super) const PARABOLIC: f64 = 1e-30;
+
+/// Position and velocity in perifocal axes, m and m/s.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InPlane {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) vx: f64,
+    pub(super) vy: f64,
+}
+
+/// A period in three pieces, the first two of 26 bits: whole multiples up to 2²⁶ are exact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Period {
+    pub(super) seconds: f64,
+    per_second: f64,
+    pieces: [f64; 3],
+}
+
+/// Whole periods that are taken away exactly.
+const MOST_PERIODS: f64 = 67_108_864.0;
+
+/// Longest time on an open orbit, s: twice the age of the universe.
+const LONGEST_TIME: f64 = 1e18;
+
+impl Period {
+    fn new(period: Double) -> Self {
+        let head = |x: f64| f64::from_bits(x.to_bits() & !((1 << 27) - 1));
+        let first = head(period.hi);
+        let rest = period - Double::from(first);
+        let second = head(rest.hi);
+        let third = (rest - Double::from(second)).hi;
+        Self { seconds: period.hi, per_second: 1.0 / period.hi, pieces: [first, second, third] }
+    }
+
+    /// `dt` less the nearest whole number of periods.
+    fn reduce(&self, dt: f64) -> f64 {
+        // Adding 1.5 × 2⁵² rounds to a whole number without a library call.
+        const ROUND: f64 = 6_755_399_441_055_744.0;
+        let k = (dt * self.per_second + ROUND) - ROUND;
+        ((dt - k * self.pieces[0]) - k * self.pieces[1]) - k * self.pieces[2]
+    }
+}
+
+/// One conic, with what its law of motion needs worked out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Conic {
+    /// `e < 1`; phase is the mean anomaly.
+    Ellipse {
+        a: f64,
+        b: f64,
+        /// Mean motion `n = √(μ/a³)`, rad/s.
+        n: f64,
+        period: Period,
+        /// `√(μ a)` and `√(μ p)`, m²/s.
+        flow: [f64; 2],
+    },
+    /// `e = 1`; phase is the time since periapsis.
+    Parabola {
+        /// `√(μ/(2 q³))`, rad/s.
+        n: f64,
+        /// Speed at periapsis halved, `√(μ/(2 q))`, m/s.
+        speed: f64,
+    },
+    /// `e > 1`; phase is the time since periapsis. `a` and `b` are positive here.
+    Hyperbola { a: f64, b: f64, n: f64, flow: [f64; 2] },
+}
+
+impl Conic {
+    pub(super) fn new(shape: &Shape, mu: f64) -> Result<Self, OrbitError> {
+        let (e, q) = (shape.e, positive("periapsis distance", shape.periapsis)?);
+        if shape.one_minus_e.abs() < PARABOLIC {
+            let speed = (0.5 * mu / q).sqrt();
+            let n = positive("mean motion", speed / q)?;
+            return Ok(Self::Parabola { n, speed });
+        }
+        // |a|, b = |a| √|1 - e²|, n = √(μ/|a|³)
+        let closed = shape.inverse_axis.hi > 0.0;
+        let inverse = if closed { shape.inverse_axis } else { -shape.inverse_axis };
+        let n = (Double::from(mu) * inverse * inverse * inverse).sqrt();
+        positive("mean motion", n.hi)?;
+        let a = (Double::from(1.0) / inverse).hi;
+        let b = a * (shape.one_minus_e.abs() * (1.0 + e)).sqrt();
+        let flow = (mu * a).sqrt();
+        let flow = [flow, flow * (b / a)];
+        if closed {
+            Ok(Self::Ellipse { a, b, n: n.hi, period: Period::new(double::TAU / n), flow })
+        } else {
+            Ok(Self::Hyperbola { a, b, n: n.hi, flow })
+        }
+    }
+
+    /// Largest distance from the epoch, s.
+    pub(super) fn longest_time(&self) -> f64 {
+        match self {
+            Self::Ellipse { period, .. } => MOST_PERIODS * period.seconds,
+            _ => LONGEST_TIME,
+        }
+    }
+
+    /// Phase (mean anomaly of an ellipse, seconds since periapsis otherwise) `dt` s after `phase`.
+    pub(super) fn advance(&self, phase: f64, dt: f64) -> f64 {
+        match self {
+            Self::Ellipse { n, period, .. } => wrap(phase + n * period.reduce(dt)),
+            _ => phase + dt,
+        }
+    }
+
+    /// State in the plane at a phase.
+    pub(super) fn in_plane(&self, shape: &Shape, phase: f64) -> InPlane {
+        let (e, q) = (shape.e, shape.periapsis);
+        match *self {
+            Self::Ellipse { a, b, flow, .. } => {
+                let half = anomaly::solve_ellipse(e, shape.one_minus_e, phase);
+                let (s, c) = (half.sin, half.cos);
+                // r = a (1 - e cos E) = q + 2 a e sin²(E/2)
+                let versed = 2.0 * s * s;
+                let sin = 2.0 * s * c;
+                let over_r = 1.0 / (q + a * e * versed);
+                // x = a (cos E - e), y = b sin E, ẋ = -√(μ a) sin E / r, ẏ = √(μ p) cos E / r
+                InPlane {
+                    x: q - a * versed,
+                    y: b * sin,
+                    vx: -flow[0] * sin * over_r,
+                    vy: flow[1] * (1.0 - versed) * over_r,
+                }
+            }
+            Self::Hyperbola { a, b, n, flow } => {
+                let half = anomaly::solve_hyperbola(e, -shape.one_minus_e, n * phase);
+                let (s, c) = (half.sin, half.cos);
+                // r = a (e cosh H - 1) = q + 2 a e sinh²(H/2)
+                let versed = 2.0 * s * s;
+                let sinh = 2.0 * s * c;
+                let over_r = 1.0 / (q + a * e * versed);
+                InPlane {
+                    x: q - a * versed,
+                    y: b * sinh,
+                    vx: -flow[0] * sinh * over_r,
+                    vy: flow[1] * (1.0 + versed) * over_r,
+                }
+            }
+            Self::Parabola { n, speed } => {
+                // D + D³/3 = √(μ/(2 q³)) (t - t_p)
+                let d = anomaly::solve_parabola(n * phase);
+                // x = q (1 - D²), y = 2 q D, ẋ = -√(μ/(2q)) 2 D/(1 + D²), ẏ = √(μ/(2q)) 2/(1 + D²)
+                let along = 2.0 * speed / (1.0 + d * d);
+                InPlane { x: q * (1.0 - d) * (1.0 + d), y: 2.0 * q * d, vx: -along * d, vy: along }
+            }
+        }
+    }
+}
+
+/// Angle in [-π, π], for `|angle| ≤ 3π`.
+fn wrap(angle: f64) -> f64 {
+    if angle > PI {
+        angle - TAU
+    } else if angle < -PI {
+        angle + TAU
+    } else {
+        angle
+    }
+}
+
+/// Any finite angle, less the nearest whole number of turns.
+pub(super) fn whole_turns_off(angle: f64) -> f64 {
+    let k = (angle / TAU).round();
+    (-k).mul_add(double::TAU.lo, (-k).mul_add(TAU, angle))
+}

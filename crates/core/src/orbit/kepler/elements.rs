@@ -1,0 +1,203 @@
+//! Classical elements, to an orbit and back.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::Vector3;
+
+use super::Kepler;
+use super::conic::{self, Conic, Shape};
+use super::double::Double;
+use super::from_state::phase_from_half_anomaly;
+use crate::orbit::error::{finite, positive};
+use crate::orbit::{MU_EARTH, OrbitError};
+
+/// Size of a conic, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Size {
+    /// Semi-major axis `a`: positive on an ellipse, negative on a hyperbola.
+    SemiMajorAxis(f64),
+    /// Semi-latus rectum `p = h²/μ`: any conic, and the only size of a parabola.
+    SemiLatusRectum(f64),
+}
+
+/// Where on the conic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// Mean anomaly at the epoch, rad: `n (t - t_p)`, `n = √(μ/|a|³)`; not on a parabola.
+    MeanAnomaly(f64),
+    /// True anomaly at the epoch, rad; between the asymptotes on an open orbit.
+    TrueAnomaly(f64),
+    /// Time of a passage through the periapsis, s of simulation; the epoch is not used.
+    PeriapsisTime(f64),
+}
+
+/// Classical elements of an orbit, angles in radians with respect to the axes of `I`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elements {
+    /// Size of the conic, m.
+    pub size: Size,
+    /// Eccentricity, zero or greater.
+    pub eccentricity: f64,
+    /// Inclination, rad in [0, π].
+    pub inclination: f64,
+    /// Right ascension of the ascending node, rad; from the x axis when equatorial.
+    pub raan: f64,
+    /// Argument of periapsis from the ascending node, rad.
+    pub argument_of_periapsis: f64,
+    /// Where on the conic.
+    pub phase: Phase,
+    /// Gravitational parameter, m³/s².
+    pub mu: f64,
+    /// Instant at which an anomaly in `phase` holds, s of simulation.
+    pub epoch: f64,
+}
+
+impl Elements {
+    /// Elements with every angle and the epoch zero, around the Earth.
+    pub fn new(size: Size, eccentricity: f64) -> Self {
+        Self {
+            size,
+            eccentricity,
+            inclination: 0.0,
+            raan: 0.0,
+            argument_of_periapsis: 0.0,
+            phase: Phase::TrueAnomaly(0.0),
+            mu: MU_EARTH,
+            epoch: 0.0,
+        }
+    }
+}
+
+/// Within this of `e = 1` sizes are told by `p` and phases by the time of periapsis:
+/// `a` and `M` would lose `1/|1 - e|` of their digits.
+const NEAR_PARABOLIC: f64 = 1e-2;
+
+impl Kepler {
+    /// The orbit with these elements.
+    ///
+    /// # Errors
+    /// [`OrbitError::NotFinite`] and [`OrbitError::NotPositive`] for plain bad numbers and for
+    /// sizes beyond the range of `f64`;
+    /// [`OrbitError::NegativeEccentricity`], [`OrbitError::AxisSign`],
+    /// [`OrbitError::ParabolaHasNoAxis`], [`OrbitError::ParabolaHasNoMeanAnomaly`],
+    /// [`OrbitError::Inclination`], [`OrbitError::BeyondAsymptote`] for what cannot be an orbit.
+    pub fn new(elements: &Elements) -> Result<Self, OrbitError> {
+        let mu = positive("mu", elements.mu)?;
+        let shape = shape(elements)?;
+        let conic = Conic::new(&shape, mu)?;
+        let (epoch, phase) = phase(elements, &shape, &conic)?;
+        let inclination = finite("inclination", elements.inclination)?;
+        if !(0.0..=PI).contains(&inclination) {
+            return Err(OrbitError::Inclination { value: inclination });
+        }
+        // P, Q: periapsis direction and the one along the velocity there
+        let (si, ci) = inclination.sin_cos();
+        let (so, co) = finite("raan", elements.raan)?.sin_cos();
+        let (sw, cw) = finite("argument of periapsis", elements.argument_of_periapsis)?.sin_cos();
+        let p_i = Vector3::new(co * cw - so * sw * ci, so * cw + co * sw * ci, sw * si);
+        let q_i = Vector3::new(-co * sw - so * cw * ci, -so * sw + co * cw * ci, cw * si);
+        Ok(Self { mu, epoch, phase, shape, conic, p_i, q_i })
+    }
+
+    /// Classical elements, from which [`Kepler::new`] makes this orbit again.
+    ///
+    /// Node and periapsis in [0, 2π), the mean anomaly of an ellipse in [-π, π]: next to the
+    /// periapsis of a long ellipse a turn added to it would cost digits. On a circle the periapsis
+    /// and in the equator the node are where rounding puts them (x axis if exact); their sums
+    /// with the phase stay accurate. Near a parabola the size is the semi-latus rectum and
+    /// the phase the time of periapsis.
+    pub fn elements(&self) -> Elements {
+        let w_i = self.p_i.cross(&self.q_i);
+        let tilt = w_i.x.hypot(w_i.y);
+        let node = if tilt > 0.0 { Vector3::new(-w_i.y / tilt, w_i.x / tilt, 0.0) } else { Vector3::x() };
+        let argument = -self.q_i.dot(&node);
+        let near_parabolic = self.shape.one_minus_e.abs() < NEAR_PARABOLIC;
+        let phase = match self.conic {
+            Conic::Parabola { .. } => Phase::PeriapsisTime(self.epoch - self.phase),
+            Conic::Ellipse { n, .. } if near_parabolic => Phase::PeriapsisTime(self.epoch - self.phase / n),
+            Conic::Ellipse { .. } => Phase::MeanAnomaly(self.phase),
+            Conic::Hyperbola { .. } if near_parabolic => Phase::PeriapsisTime(self.epoch - self.phase),
+            Conic::Hyperbola { n, .. } => Phase::MeanAnomaly(n * self.phase),
+        };
+        Elements {
+            size: if near_parabolic {
+                Size::SemiLatusRectum(self.semi_latus_rectum())
+            } else {
+                Size::SemiMajorAxis(self.semi_major_axis())
+            },
+            eccentricity: self.shape.e,
+            inclination: tilt.atan2(w_i.z),
+            raan: positive_turn(node.y.atan2(node.x)),
+            argument_of_periapsis: positive_turn(argument.atan2(self.p_i.dot(&node))),
+            phase,
+            mu: self.mu,
+            epoch: self.epoch,
+        }
+    }
+}
+
+/// Size and shape of a conic, refused where the two contradict each other.
+fn shape(elements: &Elements) -> Result<Shape, OrbitError> {
+    let e = finite("eccentricity", elements.eccentricity)?;
+    if e < 0.0 {
+        return Err(OrbitError::NegativeEccentricity { value: e });
+    }
+    let (one, one_minus_e) = (Double::from(1.0), Double::from(1.0) - Double::from(e));
+    match elements.size {
+        Size::SemiMajorAxis(a) => {
+            finite("semi-major axis", a)?;
+            if one_minus_e.hi == 0.0 {
+                return Err(OrbitError::ParabolaHasNoAxis { semi_major_axis: a });
+            }
+            if a == 0.0 || (a > 0.0) != (one_minus_e.hi > 0.0) {
+                return Err(OrbitError::AxisSign { semi_major_axis: a, eccentricity: e });
+            }
+            // q = a (1 - e)
+            let inverse_axis = one / Double::from(a);
+            Ok(Shape { e, one_minus_e: one_minus_e.hi, periapsis: a * one_minus_e.hi, inverse_axis })
+        }
+        Size::SemiLatusRectum(p) => {
+            positive("semi-latus rectum", p)?;
+            // q = p/(1 + e), 1/a = (1 - e)(1 + e)/p
+            let inverse_axis = one_minus_e * (one + Double::from(e)) / Double::from(p);
+            Ok(Shape { e, one_minus_e: one_minus_e.hi, periapsis: p / (1.0 + e), inverse_axis })
+        }
+    }
+}
+
+/// Epoch and phase at it.
+fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64), OrbitError> {
+    let epoch = finite("epoch", elements.epoch)?;
+    match (elements.phase, conic) {
+        (Phase::PeriapsisTime(t), _) => Ok((finite("time of periapsis", t)?, 0.0)),
+        (Phase::MeanAnomaly(m), _) => match conic {
+            Conic::Ellipse { .. } => Ok((epoch, conic::whole_turns_off(finite("mean anomaly", m)?))),
+            Conic::Hyperbola { n, .. } => Ok((epoch, finite("mean anomaly", m)? / n)),
+            Conic::Parabola { .. } => Err(OrbitError::ParabolaHasNoMeanAnomaly { value: m }),
+        },
+        (Phase::TrueAnomaly(nu), Conic::Ellipse { .. }) => {
+            let nu = conic::whole_turns_off(finite("true anomaly", nu)?);
+            Ok((epoch, phase_from_half_anomaly(shape, conic, (0.5 * nu).sin_cos())))
+        }
+        (Phase::TrueAnomaly(nu), _) => {
+            let value = finite("true anomaly", nu)?;
+            // cos ν > -1/e
+            let limit = (-1.0 / shape.e).acos();
+            if value.abs() >= limit {
+                return Err(OrbitError::BeyondAsymptote { value, eccentricity: shape.e, limit });
+            }
+            Ok((epoch, phase_from_half_anomaly(shape, conic, (0.5 * nu).sin_cos())))
+        }
+    }
+}
+
+/// Angle in [0, 2π), for an angle in [-π, π].
+fn positive_turn(angle: f64) -> f64 {
+    if angle >= 0.0 {
+        angle + 0.0 // makes -0 a plain 0
+    } else if angle + TAU < TAU {
+        angle + TAU
+    } else {
+        0.0
+    }
+}

@@ -1,0 +1,88 @@
+//! Two-body motion on any conic: ellipse, parabola, hyperbola.
+//!
+//! `r̈ = -μ r/|r|³`, solved in closed form; no angle enters [`Kepler::state`], so circular
+//! and equatorial orbits are nothing special. Source: Battin, An Introduction to the
+//! Mathematics and Methods of Astrodynamics, AIAA 1999, chapters 3 and 4.
+
+mod anomaly;
+mod conic;
+mod double;
+mod elements;
+mod from_state;
+
+use nalgebra::Vector3;
+
+use super::error::finite;
+use super::{Orbit, OrbitError, OrbitState, point_mass_gravity};
+use conic::{Conic, Shape};
+pub use elements::{Elements, Phase, Size};
+
+/// An unperturbed orbit around a point mass.
+///
+/// An ellipse keeps its phase over 2²⁶ revolutions and an open orbit over 1e18 s; further
+/// from its epoch [`Orbit::state`] refuses, since `f64` seconds no longer tell metres apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kepler {
+    mu: f64,
+    epoch: f64,
+    /// Mean anomaly (ellipse, rad) or time since periapsis (open orbits, s) at the epoch.
+    phase: f64,
+    shape: Shape,
+    conic: Conic,
+    /// Perifocal axes in `I`: towards the periapsis, and along the velocity there.
+    p_i: Vector3<f64>,
+    q_i: Vector3<f64>,
+}
+
+impl Kepler {
+    /// Semi-major axis, m; negative on a hyperbola, infinite on a parabola.
+    pub fn semi_major_axis(&self) -> f64 {
+        match self.conic {
+            Conic::Ellipse { a, .. } => a,
+            Conic::Parabola { .. } => f64::INFINITY,
+            Conic::Hyperbola { a, .. } => -a,
+        }
+    }
+
+    /// Eccentricity.
+    pub fn eccentricity(&self) -> f64 {
+        self.shape.e
+    }
+
+    /// Distance of the periapsis from the planet's centre, m.
+    pub fn periapsis_distance(&self) -> f64 {
+        self.shape.periapsis
+    }
+
+    /// Semi-latus rectum `p = q (1 + e)`, m.
+    pub fn semi_latus_rectum(&self) -> f64 {
+        self.shape.periapsis * (1.0 + self.shape.e)
+    }
+
+    /// Period of revolution, s; `None` on an open orbit.
+    pub fn period(&self) -> Option<f64> {
+        match self.conic {
+            Conic::Ellipse { period, .. } => Some(period.seconds),
+            _ => None,
+        }
+    }
+}
+
+impl Orbit for Kepler {
+    fn mu(&self) -> Option<f64> {
+        Some(self.mu)
+    }
+
+    fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
+        let dt = t - self.epoch;
+        let limit = self.conic.longest_time();
+        if dt.is_nan() || dt.abs() > limit {
+            finite("time", t)?;
+            return Err(OrbitError::TimeOutOfRange { time: t, epoch: self.epoch, limit });
+        }
+        let s = self.conic.in_plane(&self.shape, self.conic.advance(self.phase, dt));
+        let position = self.p_i * s.x + self.q_i * s.y;
+        let velocity = self.p_i * s.vx + self.q_i * s.vy;
+        Ok(OrbitState { position, velocity, acceleration: point_mass_gravity(self.mu, &position) })
+    }
+}

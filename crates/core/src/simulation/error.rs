@@ -1,0 +1,57 @@
+//! What can stop a run.
+
+use super::trace::Trace;
+use crate::control::ControlError;
+use crate::environment::EnvironmentError;
+use crate::orbit::OrbitError;
+use thiserror::Error;
+
+/// A simulation that cannot start, or that had to stop.
+#[derive(Debug, Error)]
+#[allow(missing_docs)] // the fields are what the messages say
+pub enum SimulationError {
+    #[error("{name} has {got} numbers, expected {expected} for this robot")]
+    WrongLength { name: &'static str, expected: usize, got: usize },
+    #[error("{name}[{index}] is {value}, it must be finite")]
+    NotFinite { name: &'static str, index: usize, value: f64 },
+    #[error("{name} is {value} s, it must be positive and finite")]
+    NotPositive { name: &'static str, value: f64 },
+    #[error(
+        "the quaternion q[3:7] has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w: normalise it first"
+    )]
+    QuaternionNorm { norm: f64 },
+    #[error("record_every is 0, it must be at least 1 step")]
+    RecordEvery,
+    #[error("{effect} needs an orbit: give the simulation one")]
+    NeedsOrbit { effect: String },
+    #[error("the controller tracks a frame but the simulation has no reference to track: give it one")]
+    NeedsReference,
+    #[error("a reference is given but no tool frame it is for: name the tool")]
+    NeedsTool,
+    #[error("{rows} recorded rows do not fit in memory; record fewer with record_every")]
+    TooManyRows { rows: usize },
+    #[error(
+        "the run diverged at t = {time} s: the state is no longer finite; shorten time_step or soften the gains \
+         (last finite q = {q:?}, v = {v:?})"
+    )]
+    Diverged { time: f64, q: Vec<f64>, v: Vec<f64> },
+    #[error("the run was interrupted at t = {time} s")]
+    Interrupted { time: f64 },
+    #[error("at t = {time} s: {source}")]
+    Orbit { time: f64, source: OrbitError },
+    #[error("at t = {time} s: {source}")]
+    Environment { time: f64, source: EnvironmentError },
+    #[error(transparent)]
+    Control(#[from] ControlError),
+}
+
+/// A run that stopped early, with what it had recorded until then.
+#[derive(Debug, Error)]
+#[error("{error}")]
+pub struct RunFailure {
+    /// Why it stopped.
+    #[source]
+    pub error: SimulationError,
+    /// Rows up to the last finite state.
+    pub trace: Box<Trace>,
+}

@@ -1,0 +1,22 @@
+//! Runs: the plant, its integrators, events, the trace and its certificate.
+
+mod attitude_check;
+mod certificate;
+mod driver;
+mod error;
+mod integrator;
+mod plant;
+mod recorder;
+mod run;
+mod schedule;
+mod settings;
+mod state;
+mod surroundings;
+mod trace;
+
+pub use certificate::{Certificate, certify};
+pub use error::{RunFailure, SimulationError};
+pub use integrator::Integrator;
+pub use run::Monitor;
+pub use settings::Simulation;
+pub use trace::Trace;

@@ -1,0 +1,114 @@
+//! The robot as the integrator sees it: from a state and torques to its rate of change.
+
+use super::error::SimulationError;
+use super::state::{Rate, State};
+use super::surroundings::Surroundings;
+use crate::dynamics::{
+    Data, Momentum, base_rotation, base_twist, center_of_mass_b, forward_dynamics_recursion, kinematics,
+};
+use crate::model::Model;
+use crate::spatial::{Force, Motion, Real, Scalar, Vec3};
+
+/// A robot in its surroundings, with the torques held at its joints.
+pub(super) struct Plant<'a, S> {
+    pub(super) model: &'a Model,
+    pub(super) data: Data<S>,
+    pub(super) surroundings: Surroundings,
+    /// Commanded joint torques, `(n,)`, N m.
+    pub(super) command: Vec<S>,
+    /// All generalized forces of a stage, `(nv,)`: command, damping and friction.
+    forces: Vec<S>,
+    /// Joint rate at which Coulomb friction is fully developed, rad/s (m/s).
+    slip: Vec<f64>,
+}
+
+impl<'a, S: Scalar> Plant<'a, S> {
+    pub(super) fn new(model: &'a Model, surroundings: Surroundings) -> Self {
+        let (n, zero) = (model.joint_count(), S::of(0.0));
+        Self {
+            model,
+            data: Data::new(model),
+            surroundings,
+            command: vec![zero; n],
+            forces: vec![zero; model.nv()],
+            slip: vec![1.0; n],
+        }
+    }
+
+    /// Kinematics at the start of a step, the base twist put right by the momentum.
+    ///
+    /// The momentum was integrated from the wrenches alone, so that it is kept to rounding where
+    /// none act; the twist of the integrator differs by its truncation error.
+    pub(super) fn settle(&mut self, state: &mut State<S>) {
+        kinematics(self.model, &mut self.data, &state.q, &state.v);
+        let twist = base_twist(&self.data, &state.q, &state.v, state.momentum());
+        let correction = twist - Motion::from_slice(&state.v);
+        twist.write(&mut state.v);
+        self.data.bodies.iter_mut().for_each(|body| body.velocity += correction);
+    }
+
+    /// External wrenches at the state whose kinematics are in `data`.
+    pub(super) fn surround(&mut self, t: f64, interval: (f64, f64), q: &[S]) -> Result<(), SimulationError> {
+        self.surroundings.apply(self.model, &mut self.data, q, t, interval)
+    }
+
+    /// Rates at a state whose kinematics and wrenches are in `data`.
+    pub(super) fn accelerate(&mut self, q: &[S], v: &[S], rate: &mut Rate<S>) {
+        let Self { model, data, command, forces, slip, .. } = self;
+        for (j, joint) in model.joints().iter().enumerate() {
+            // −b q̇ − f sat(q̇/s): friction develops within the rate that one step of it brakes
+            let speed = v[j + 6].value();
+            let friction = joint.friction * (speed / slip[j]).clamp(-1.0, 1.0);
+            forces[j + 6] = command[j] - S::of(joint.damping * speed + friction);
+        }
+        forward_dynamics_recursion(model, data, v, forces, &mut rate.a);
+        rate.v.copy_from_slice(v);
+        S::enter(
+            #[inline(always)]
+            || balance(data, q, v, forces, rate),
+        );
+    }
+
+    /// Kinematics, wrenches and rates of a later stage.
+    pub(super) fn evaluate(
+        &mut self,
+        t: f64,
+        interval: (f64, f64),
+        state: &State<S>,
+        rate: &mut Rate<S>,
+    ) -> Result<(), SimulationError> {
+        kinematics(self.model, &mut self.data, &state.q, &state.v);
+        self.surround(t, interval, &state.q)?;
+        self.accelerate(&state.q, &state.v, rate);
+        Ok(())
+    }
+
+    /// Chooses the rate at which friction is developed: what full friction changes in one step.
+    pub(super) fn set_slip(&mut self, state: &State<S>, time_step: f64) {
+        let mut rate = Rate::new(self.model);
+        self.accelerate(&state.q, &state.v, &mut rate);
+        for (j, joint) in self.model.joints().iter().enumerate() {
+            let inverse_inertia = self.data.bodies[j + 1].inverse_pivot.value();
+            self.slip[j] = (2.0 * joint.friction * inverse_inertia * time_step).max(f64::MIN_POSITIVE);
+        }
+    }
+}
+
+/// Velocity of the base, sum of the wrenches and the power of all forces.
+#[inline(always)]
+fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], forces: &[S], rate: &mut Rate<S>) {
+    let rot_wb = base_rotation(q);
+    rate.origin = rot_wb * Vec3::from_slice(v);
+    rate.turn = Vec3::from_slice(&v[3..]);
+    let (mut total, mut power) = (Force::zero(), S::of(0.0));
+    for body in &data.bodies {
+        total += body.external;
+        power += body.velocity.dot(body.external);
+    }
+    for (tau, rate) in forces[6..].iter().zip(&v[6..]) {
+        power = tau.mul_add(*rate, power);
+    }
+    let about_com = total.angular - center_of_mass_b(data).cross(total.linear);
+    rate.wrench = Momentum { linear: rot_wb * total.linear, angular: rot_wb * about_com };
+    rate.power = power;
+}

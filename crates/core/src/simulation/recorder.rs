@@ -1,0 +1,126 @@
+//! Writing rows of the trace.
+
+use super::error::SimulationError;
+use super::plant::Plant;
+use super::state::State;
+use super::trace::Trace;
+use crate::control::task_error;
+use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
+use crate::orbit::OrbitState;
+use crate::reference::TaskReference;
+use crate::spatial::{Mat3, Scalar, Vec3};
+
+/// Fills a trace, row by row, without allocating.
+pub(super) struct Recorder<'a> {
+    pub(super) trace: Trace,
+    tool: Option<usize>,
+    reference: Option<&'a TaskReference>,
+}
+
+impl<'a> Recorder<'a> {
+    pub(super) fn new(
+        rows: usize,
+        sizes: (usize, usize),
+        tool: Option<usize>,
+        reference: Option<&'a TaskReference>,
+        has_orbit: bool,
+        has_every_step: bool,
+    ) -> Result<Self, SimulationError> {
+        let (nq, nv) = sizes;
+        let mut trace = Trace { has_every_step, ..Trace::default() };
+        let mut reserve = |column: fn(&mut Trace) -> &mut Vec<f64>, width: usize| {
+            let numbers = rows.checked_mul(width).ok_or(SimulationError::TooManyRows { rows })?;
+            column(&mut trace).try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })
+        };
+        reserve(|t| &mut t.time, 1)?;
+        reserve(|t| &mut t.q, nq)?;
+        reserve(|t| &mut t.v, nv)?;
+        reserve(|t| &mut t.tau, nv - 6)?;
+        reserve(|t| &mut t.acceleration, nv)?;
+        reserve(|t| &mut t.momentum, 6)?;
+        reserve(|t| &mut t.impulse, 6)?;
+        reserve(|t| &mut t.kinetic_energy, 1)?;
+        reserve(|t| &mut t.work, 1)?;
+        reserve(|t| &mut t.center_of_mass, 3)?;
+        if tool.is_some() {
+            reserve(|t| &mut t.tool_pose, 16)?;
+        }
+        if reference.is_some() {
+            reserve(|t| &mut t.reference_pose, 16)?;
+            reserve(|t| &mut t.position_error, 3)?;
+            reserve(|t| &mut t.attitude_error, 3)?;
+        }
+        if has_orbit {
+            reserve(|t| &mut t.position_eci, 3)?;
+            reserve(|t| &mut t.velocity_eci, 3)?;
+        }
+        Ok(Self { trace, tool, reference })
+    }
+
+    /// Adds a row for a state whose kinematics are in the plant; the acceleration follows with
+    /// [`Recorder::accelerated`].
+    pub(super) fn row<S: Scalar>(
+        &mut self,
+        t: f64,
+        state: &State<S>,
+        plant: &Plant<'_, S>,
+        orbit: Option<OrbitState>,
+    ) {
+        let (trace, data, q, v) = (&mut self.trace, &plant.data, &state.q, &state.v);
+        trace.time.push(t);
+        push(&mut trace.q, q);
+        push(&mut trace.v, v);
+        push(&mut trace.tau, &plant.command);
+        let h = momentum(data, q);
+        push_vector(&mut trace.momentum, h.linear);
+        push_vector(&mut trace.momentum, h.angular);
+        push_vector(&mut trace.impulse, state.impulse.linear);
+        push_vector(&mut trace.impulse, state.impulse.angular);
+        trace.kinetic_energy.push(kinetic_energy(plant.model, data, v).value());
+        trace.work.push(state.work.value());
+        push_vector(&mut trace.center_of_mass, center_of_mass(data, q));
+        if let Some(tool) = self.tool {
+            let pose = frame_pose(plant.model, data, q, tool);
+            push_pose(&mut trace.tool_pose, &pose.rot_wf, pose.pos_w);
+            if let Some(reference) = self.reference {
+                push_tracking(trace, reference, t, &pose);
+            }
+        }
+        if let Some(orbit) = orbit {
+            let origin = orbit.position + Vec3::from_slice(q).to_nalgebra();
+            let velocity = orbit.velocity + (base_rotation(q) * Vec3::from_slice(v)).to_nalgebra();
+            trace.position_eci.extend_from_slice(origin.as_slice());
+            trace.velocity_eci.extend_from_slice(velocity.as_slice());
+        }
+    }
+
+    /// Completes the last row.
+    pub(super) fn accelerated<S: Scalar>(&mut self, a: &[S]) {
+        push(&mut self.trace.acceleration, a);
+    }
+}
+
+#[inline(always)]
+fn push_tracking<S: Scalar>(trace: &mut Trace, reference: &TaskReference, t: f64, pose: &FramePose<S>) {
+    let desired = reference.sample(S::of(t));
+    let error = task_error(&pose.rot_wf, pose.pos_w, &desired);
+    push_pose(&mut trace.reference_pose, &desired.rot_wd, desired.pos_w);
+    push_vector(&mut trace.position_error, error.linear);
+    push_vector(&mut trace.attitude_error, error.angular);
+}
+
+fn push<S: Scalar>(column: &mut Vec<f64>, values: &[S]) {
+    column.extend(values.iter().map(|x| x.value()));
+}
+
+fn push_vector<S: Scalar>(column: &mut Vec<f64>, v: Vec3<S>) {
+    column.extend([v.x.value(), v.y.value(), v.z.value()]);
+}
+
+fn push_pose<S: Scalar>(column: &mut Vec<f64>, r: &Mat3<S>, p: Vec3<S>) {
+    let row = |a: S, b: S, c: S, d: S| [a.value(), b.value(), c.value(), d.value()];
+    column.extend(row(r.x.x, r.y.x, r.z.x, p.x));
+    column.extend(row(r.x.y, r.y.y, r.z.y, p.y));
+    column.extend(row(r.x.z, r.y.z, r.z.z, p.z));
+    column.extend([0.0, 0.0, 0.0, 1.0]);
+}

@@ -1,0 +1,168 @@
+//! The loop.
+
+use super::driver::Driver;
+use super::error::{RunFailure, SimulationError};
+use super::integrator::Stages;
+use super::plant::Plant;
+use super::recorder::Recorder;
+use super::schedule::Schedule;
+use super::settings::Simulation;
+use super::state::State;
+use super::surroundings::Surroundings;
+use super::trace::Trace;
+use crate::dynamics::{kinematics, momentum};
+use crate::environment::{DifferentialGravity, Effect};
+use crate::spatial::{Fused, InstructionSet, Scalar};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Called with the simulated time now and then; `Break` stops the run with what it has.
+pub type Monitor<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
+
+/// How many steps pass between two calls of the monitor.
+const MONITOR_EVERY: usize = 64;
+
+impl Simulation {
+    /// Runs from the given state for `duration` seconds; the same bits at every call.
+    ///
+    /// # Errors
+    /// What [`Simulation::check`] finds, a state that is no longer finite, a monitor that breaks,
+    /// or what orbit, environment or controller refuse; the trace so far comes along.
+    pub fn run(&mut self, duration: f64, monitor: Monitor<'_>) -> Result<Trace, RunFailure> {
+        let fail = |error| RunFailure { error, trace: Box::default() };
+        self.check().map_err(fail)?;
+        if !(duration.is_finite() && duration > 0.0) {
+            return Err(fail(SimulationError::NotPositive { name: "duration", value: duration }));
+        }
+        match InstructionSet::current() {
+            InstructionSet::Baseline => self.run_with::<f64>(duration, monitor),
+            InstructionSet::Fused => self.run_with::<Fused>(duration, monitor),
+        }
+    }
+
+    fn run_with<S: Scalar>(&mut self, duration: f64, monitor: Monitor<'_>) -> Result<Trace, RunFailure> {
+        let fail = |error| RunFailure { error, trace: Box::default() };
+        let model = Arc::clone(&self.model);
+        let effects = self.all_effects();
+        let events = effects.iter().flat_map(|effect| effect.event_times()).collect();
+        let schedule = Schedule::new(self.time_step, duration, self.control_period, events);
+        let surroundings = Surroundings::new(&model, effects, self.orbit.clone());
+        let mut run = Run {
+            state: initial_state(self),
+            plant: Plant::<S>::new(&model, surroundings),
+            driver: Driver::new(&mut self.control, self.reference.as_ref(), &model).map_err(fail)?,
+            recorder: Recorder::new(
+                schedule.grid_steps() / self.record_every + 2,
+                (model.nq(), model.nv()),
+                self.tool,
+                self.reference.as_ref(),
+                self.orbit.is_some(),
+                self.record_every == 1,
+            )
+            .map_err(fail)?,
+        };
+        let mut stages = Stages::new(&model, &run.state, self.integrator);
+        let outcome = run.all(schedule, &mut stages, self.time_step, self.record_every, duration, monitor);
+        let trace = run.recorder.trace;
+        match outcome {
+            Ok(()) => Ok(trace),
+            Err(error) => Err(RunFailure { error, trace: Box::new(trace) }),
+        }
+    }
+
+    /// The effects of the scenario, and gravity where there is a planet.
+    fn all_effects(&self) -> Vec<Arc<dyn Effect>> {
+        let mut effects = self.effects.clone();
+        if self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some()) {
+            effects.push(Arc::new(DifferentialGravity::default()));
+        }
+        effects
+    }
+}
+
+/// The given state with the momentum that goes with it.
+fn initial_state<S: Scalar>(simulation: &Simulation) -> State<S> {
+    let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
+    let (mut q, v) = (numbers(&simulation.q), numbers(&simulation.v));
+    let attitude = crate::spatial::Quat::from_xyzw(&q[3..]).normalized();
+    attitude.write_xyzw(&mut q[3..]);
+    let mut data = crate::dynamics::Data::new(&simulation.model);
+    kinematics(&simulation.model, &mut data, &q, &v);
+    let start = momentum(&data, &q);
+    State { q, v, start, impulse: Default::default(), work: S::of(0.0) }
+}
+
+/// A run under way.
+struct Run<'a, S> {
+    state: State<S>,
+    plant: Plant<'a, S>,
+    driver: Driver<'a, S>,
+    recorder: Recorder<'a>,
+}
+
+impl<S: Scalar> Run<'_, S> {
+    fn all(
+        &mut self,
+        schedule: Schedule,
+        stages: &mut Stages<S>,
+        time_step: f64,
+        record_every: usize,
+        duration: f64,
+        monitor: Monitor<'_>,
+    ) -> Result<(), SimulationError> {
+        self.plant.settle(&mut self.state);
+        self.plant.set_slip(&self.state, time_step);
+        for (count, stretch) in schedule.enumerate() {
+            let interval = (stretch.start, stretch.end);
+            self.begin(stretch.start, interval, stretch.is_control_tick)?;
+            let is_row = stretch.grid_step.is_some_and(|step| step % record_every == 0);
+            if is_row {
+                self.record(stretch.start)?;
+            }
+            let result = stages.step(&mut self.plant, &mut self.state, interval);
+            if is_row {
+                self.recorder.accelerated(stages.first_acceleration());
+            }
+            result?;
+            if !self.state.is_finite() {
+                let [q, v] = stages.start();
+                return Err(SimulationError::Diverged { time: stretch.start, q, v });
+            }
+            if count % MONITOR_EVERY == MONITOR_EVERY - 1 && monitor(stretch.end).is_break() {
+                self.end(stages, stretch.end)?;
+                return Err(SimulationError::Interrupted { time: stretch.end });
+            }
+        }
+        self.end(stages, duration)
+    }
+
+    /// Kinematics, wrenches and torques at the start of a step.
+    fn begin(&mut self, t: f64, interval: (f64, f64), is_control_tick: bool) -> Result<(), SimulationError> {
+        let Self { state, plant, driver, .. } = self;
+        plant.settle(state);
+        if is_control_tick && !driver.compensates() {
+            plant.data.clear_external();
+            driver.ask(t, state, plant)?;
+        }
+        plant.surround(t, interval, &state.q)?;
+        if is_control_tick && driver.compensates() {
+            driver.ask(t, state, plant)?;
+        }
+        Ok(())
+    }
+
+    fn record(&mut self, t: f64) -> Result<(), SimulationError> {
+        let orbit = self.plant.surroundings.orbit_state(t)?;
+        self.recorder.row(t, &self.state, &self.plant, orbit);
+        Ok(())
+    }
+
+    /// The last row: the state at the end, with the torque that would be held from there.
+    fn end(&mut self, stages: &mut Stages<S>, t: f64) -> Result<(), SimulationError> {
+        self.begin(t, (t, t), true)?;
+        self.record(t)?;
+        stages.accelerate(&mut self.plant, &self.state);
+        self.recorder.accelerated(stages.first_acceleration());
+        Ok(())
+    }
+}

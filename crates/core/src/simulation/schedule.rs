@@ -1,0 +1,131 @@
+//! Where steps end: the regular grid, control ticks, and instants at which something jumps.
+
+/// Two instants closer than this share of a step are the same instant.
+const SAME_INSTANT: f64 = 1e-9;
+
+/// A stretch that the integrator crosses in one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stretch {
+    /// Its start, s.
+    pub(super) start: f64,
+    /// Its end, s.
+    pub(super) end: f64,
+    /// Whether the controller is asked at its start.
+    pub(super) is_control_tick: bool,
+    /// Number of the grid step that begins at its start, if one does.
+    pub(super) grid_step: Option<usize>,
+}
+
+/// Cuts `0..duration` at every multiple of the step and of the control period, and at every event.
+#[derive(Debug)]
+pub(super) struct Schedule {
+    time_step: f64,
+    duration: f64,
+    control_period: f64,
+    events: Vec<f64>,
+    now: f64,
+    next_grid: usize,
+    next_tick: usize,
+    next_event: usize,
+}
+
+impl Schedule {
+    pub(super) fn new(
+        time_step: f64,
+        duration: f64,
+        control_period: Option<f64>,
+        mut events: Vec<f64>,
+    ) -> Self {
+        events.sort_by(f64::total_cmp);
+        let control_period = control_period.unwrap_or(time_step);
+        Self {
+            time_step,
+            duration,
+            control_period,
+            events,
+            now: 0.0,
+            next_grid: 0,
+            next_tick: 0,
+            next_event: 0,
+        }
+    }
+
+    /// Number of grid steps; the last may be shorter.
+    pub(super) fn grid_steps(&self) -> usize {
+        (self.duration / self.time_step - SAME_INSTANT).ceil().max(1.0) as usize
+    }
+
+    fn tolerance(&self) -> f64 {
+        SAME_INSTANT * self.time_step
+    }
+
+    fn is_now(&self, t: f64) -> bool {
+        (t - self.now).abs() <= self.tolerance()
+    }
+}
+
+impl Iterator for Schedule {
+    type Item = Stretch;
+
+    fn next(&mut self) -> Option<Stretch> {
+        if self.now >= self.duration - self.tolerance() {
+            return None;
+        }
+        let grid = self.next_grid as f64 * self.time_step; // a product, so that errors do not add up
+        let grid_step = self.is_now(grid).then_some(self.next_grid);
+        self.next_grid += usize::from(grid_step.is_some());
+        let is_control_tick = self.is_now(self.next_tick as f64 * self.control_period);
+        self.next_tick += usize::from(is_control_tick);
+        while self.events.get(self.next_event).is_some_and(|&t| t <= self.now + self.tolerance()) {
+            self.next_event += 1;
+        }
+        let mut end = (self.next_grid as f64 * self.time_step).min(self.duration);
+        let cuts =
+            [Some(self.next_tick as f64 * self.control_period), self.events.get(self.next_event).copied()];
+        for cut in cuts.into_iter().flatten() {
+            if cut < end - self.tolerance() {
+                end = cut;
+            }
+        }
+        if (self.duration - end).abs() <= self.tolerance() {
+            end = self.duration;
+        }
+        let stretch = Stretch { start: self.now, end, is_control_tick, grid_step };
+        self.now = end;
+        Some(stretch)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Schedule;
+
+    fn ends(schedule: Schedule) -> Vec<f64> {
+        schedule.map(|s| s.end).collect()
+    }
+
+    #[test]
+    fn events_are_hit_exactly_and_the_grid_does_not_drift() {
+        let schedule = Schedule::new(0.1, 1.0, None, vec![0.25, 0.3, 7.0, -1.0]);
+        assert_eq!(schedule.grid_steps(), 10);
+        let ends = ends(schedule);
+        assert_eq!(ends.len(), 11);
+        assert!(ends.contains(&0.25) && ends.contains(&(3.0 * 0.1)) && ends.last() == Some(&1.0));
+    }
+
+    #[test]
+    fn control_has_its_own_rate() {
+        let slow = Schedule::new(0.1, 1.0, Some(0.25), vec![]);
+        let ticks: Vec<f64> = slow.filter(|s| s.is_control_tick).map(|s| s.start).collect();
+        assert_eq!(ticks, [0.0, 0.25, 0.5, 0.75]);
+        let fast = Schedule::new(0.1, 0.2, Some(0.05), vec![]);
+        assert_eq!(fast.filter(|s| s.is_control_tick).count(), 4);
+    }
+
+    #[test]
+    fn a_duration_that_is_no_multiple_ends_with_a_shorter_step() {
+        let schedule = Schedule::new(0.3, 1.0, None, vec![]);
+        assert_eq!(schedule.grid_steps(), 4);
+        assert_eq!(ends(schedule).last(), Some(&1.0));
+    }
+}

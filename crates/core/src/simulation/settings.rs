@@ -1,0 +1,108 @@
+//! What a run is made of, checked before it starts.
+
+use super::error::SimulationError;
+use super::integrator::Integrator;
+use crate::control::ControlLaw;
+use crate::environment::Effect;
+use crate::model::Model;
+use crate::orbit::Orbit;
+use crate::reference::TaskReference;
+use std::sync::Arc;
+
+/// Largest deviation of a given quaternion from unit norm.
+const UNIT_NORM: f64 = 1e-6;
+
+/// A robot, where it starts, what acts on it and how time is cut.
+///
+/// An orbit brings gravity: the differential pull on every body is always on around a planet.
+pub struct Simulation {
+    /// The robot.
+    pub model: Arc<Model>,
+    /// Configuration at the start, `(nq,)`.
+    pub q: Vec<f64>,
+    /// Velocity at the start, `(nv,)`.
+    pub v: Vec<f64>,
+    /// Reference orbit; W's origin rides on it.
+    pub orbit: Option<Arc<dyn Orbit>>,
+    /// Effects beside gravity.
+    pub effects: Vec<Arc<dyn Effect>>,
+    /// What drives the joints.
+    pub control: ControlLaw,
+    /// Index of the frame to record, and to compare with the reference.
+    pub tool: Option<usize>,
+    /// What the tool should do.
+    pub reference: Option<TaskReference>,
+    /// Step, s.
+    pub time_step: f64,
+    /// Time between two calls of the controller, s; every step if none.
+    pub control_period: Option<f64>,
+    /// How to step.
+    pub integrator: Integrator,
+    /// Every how many steps a row is recorded.
+    pub record_every: usize,
+}
+
+impl Simulation {
+    /// A robot alone in W, no control, RK4 with a step of 1 ms, every step recorded.
+    pub fn new(model: Arc<Model>, q: Vec<f64>, v: Vec<f64>) -> Self {
+        Self {
+            model,
+            q,
+            v,
+            orbit: None,
+            effects: Vec::new(),
+            control: ControlLaw::None,
+            tool: None,
+            reference: None,
+            time_step: 1e-3,
+            control_period: None,
+            integrator: Integrator::Rk4,
+            record_every: 1,
+        }
+    }
+
+    /// Checks everything that can be known before a run.
+    ///
+    /// # Errors
+    /// Wrong lengths, numbers that are not finite, a quaternion off unit norm, steps that are not
+    /// positive, an effect without its orbit, a controller without its reference.
+    pub fn check(&self) -> Result<(), SimulationError> {
+        check_state(&self.model, &self.q, &self.v)?;
+        let periods = [("time_step", Some(self.time_step)), ("control_period", self.control_period)];
+        for (name, value) in periods {
+            if let Some(value) = value.filter(|x| !(x.is_finite() && *x > 0.0)) {
+                return Err(SimulationError::NotPositive { name, value });
+            }
+        }
+        if self.record_every == 0 {
+            return Err(SimulationError::RecordEvery);
+        }
+        let has_planet = self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some());
+        if let Some(effect) = self.effects.iter().find(|effect| effect.requires_orbit() && !has_planet) {
+            return Err(SimulationError::NeedsOrbit { effect: effect.name().to_owned() });
+        }
+        if let ControlLaw::ComputedTorque(law) = &self.control {
+            law.check(&self.model)?;
+            if self.reference.is_none() {
+                return Err(SimulationError::NeedsReference);
+            }
+        }
+        if self.reference.is_some() && self.tool.is_none() {
+            return Err(SimulationError::NeedsTool);
+        }
+        Ok(())
+    }
+}
+
+fn check_state(model: &Model, q: &[f64], v: &[f64]) -> Result<(), SimulationError> {
+    for (name, values, expected) in [("q", q, model.nq()), ("v", v, model.nv())] {
+        if values.len() != expected {
+            return Err(SimulationError::WrongLength { name, expected, got: values.len() });
+        }
+        if let Some(index) = values.iter().position(|x| !x.is_finite()) {
+            return Err(SimulationError::NotFinite { name, index, value: values[index] });
+        }
+    }
+    let norm = q[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
+    if (norm - 1.0).abs() > UNIT_NORM { Err(SimulationError::QuaternionNorm { norm }) } else { Ok(()) }
+}

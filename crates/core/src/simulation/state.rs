@@ -1,0 +1,113 @@
+//! What evolves, and how fast.
+
+use crate::dynamics::Momentum;
+use crate::model::Model;
+use crate::spatial::{Quat, Real, Scalar, Vec3, exp_so3};
+
+/// Everything that is integrated.
+#[derive(Clone, Debug)]
+pub(super) struct State<S> {
+    /// Configuration, `(nq,)`.
+    pub(super) q: Vec<S>,
+    /// Velocity, `(nv,)`.
+    pub(super) v: Vec<S>,
+    /// Momentum at the start of the run.
+    pub(super) start: Momentum<S>,
+    /// Integral of the external wrenches: forces, and moments about the centre of mass.
+    pub(super) impulse: Momentum<S>,
+    /// Work done on the robot so far, J.
+    pub(super) work: S,
+}
+
+/// Time derivatives at one stage.
+#[derive(Clone, Debug)]
+pub(super) struct Rate<S> {
+    /// Velocity of the base's origin in W axes, m/s.
+    pub(super) origin: Vec3<S>,
+    /// Rate of the rotation vector since the start of the step, rad/s.
+    pub(super) turn: Vec3<S>,
+    /// Joint rates in `[6..]`: the stage's velocity.
+    pub(super) v: Vec<S>,
+    /// Acceleration, `(nv,)`.
+    pub(super) a: Vec<S>,
+    /// Rate of momentum: all external forces and their moments about the centre of mass.
+    pub(super) wrench: Momentum<S>,
+    /// Power of joint torques and external wrenches, W.
+    pub(super) power: S,
+}
+
+impl<S: Real> Rate<S> {
+    pub(super) fn new(model: &Model) -> Self {
+        let zeros = vec![S::of(0.0); model.nv()];
+        Self {
+            origin: Vec3::zero(),
+            turn: Vec3::zero(),
+            v: zeros.clone(),
+            a: zeros,
+            wrench: Momentum::default(),
+            power: S::of(0.0),
+        }
+    }
+
+    /// `self += s · other`, for weighted sums of stages.
+    #[inline(always)]
+    pub(super) fn accumulate(&mut self, other: &Self, s: S) {
+        self.origin = other.origin.scale_add(s, self.origin);
+        self.turn = other.turn.scale_add(s, self.turn);
+        self.wrench.linear = other.wrench.linear.scale_add(s, self.wrench.linear);
+        self.wrench.angular = other.wrench.angular.scale_add(s, self.wrench.angular);
+        self.power = other.power.mul_add(s, self.power);
+        for i in 0..self.v.len() {
+            self.v[i] = other.v[i].mul_add(s, self.v[i]);
+            self.a[i] = other.a[i].mul_add(s, self.a[i]);
+        }
+    }
+
+    /// Forgets everything.
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        (self.origin, self.turn, self.wrench, self.power) =
+            (Vec3::zero(), Vec3::zero(), Momentum::default(), S::of(0.0));
+        self.v.fill(S::of(0.0));
+        self.a.fill(S::of(0.0));
+    }
+}
+
+impl<S: Scalar> State<S> {
+    /// Whether every number of the state is one.
+    pub(super) fn is_finite(&self) -> bool {
+        self.q.iter().chain(&self.v).all(|x| x.value().is_finite())
+    }
+
+    /// Momentum the state must have: that of the start and what the wrenches added.
+    pub(super) fn momentum(&self) -> Momentum<S> {
+        let (a, b) = (&self.start, &self.impulse);
+        Momentum { linear: a.linear + b.linear, angular: a.angular + b.angular }
+    }
+
+    /// Copies without allocating.
+    pub(super) fn copy_from(&mut self, from: &Self) {
+        self.q.copy_from_slice(&from.q);
+        self.v.copy_from_slice(&from.v);
+        (self.start, self.impulse, self.work) = (from.start, from.impulse, from.work);
+    }
+}
+
+impl<S: Real> State<S> {
+    /// `self = from` moved by `h` at `rate`: positions add, the attitude turns on the group.
+    #[inline(always)]
+    pub(super) fn move_from(&mut self, from: &Self, rate: &Rate<S>, h: S) {
+        rate.origin.scale_add(h, Vec3::from_slice(&from.q)).write(&mut self.q);
+        let attitude = Quat::from_xyzw(&from.q[3..]).product(exp_so3(rate.turn * h));
+        attitude.normalized().write_xyzw(&mut self.q[3..]);
+        for j in 7..self.q.len() {
+            self.q[j] = rate.v[j - 1].mul_add(h, from.q[j]);
+        }
+        for i in 0..self.v.len() {
+            self.v[i] = rate.a[i].mul_add(h, from.v[i]);
+        }
+        self.impulse.linear = rate.wrench.linear.scale_add(h, from.impulse.linear);
+        self.impulse.angular = rate.wrench.angular.scale_add(h, from.impulse.angular);
+        self.work = rate.power.mul_add(h, from.work);
+    }
+}

@@ -1,0 +1,117 @@
+//! From the effects of the environment to wrenches on the bodies.
+
+use super::error::SimulationError;
+use crate::dynamics::{Data, base_rotation};
+use crate::environment::{BodyState, Effect, Reference, Scene, Wrench};
+use crate::model::Model;
+use crate::orbit::{Orbit, OrbitState};
+use crate::spatial::{Force, Mat3, Scalar, Sym3, Vec3};
+use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
+
+/// The effects of a run, its reference orbit, and room to evaluate them.
+#[derive(Debug)]
+pub(super) struct Surroundings {
+    effects: Vec<Arc<dyn Effect>>,
+    orbit: Option<Arc<dyn Orbit>>,
+    /// The last instants asked for: the stages of a step share them.
+    known: [(f64, Option<OrbitState>); 3],
+    bodies: Vec<BodyState>,
+    wrenches: Vec<Wrench>,
+}
+
+impl Surroundings {
+    pub(super) fn new(model: &Model, effects: Vec<Arc<dyn Effect>>, orbit: Option<Arc<dyn Orbit>>) -> Self {
+        let at_rest = BodyState {
+            mass: 0.0,
+            inertia: Matrix3::zeros(),
+            com: Vector3::zeros(),
+            rot_wk: Matrix3::identity(),
+            origin: Vector3::zeros(),
+            velocity: Vector3::zeros(),
+            angular_velocity: Vector3::zeros(),
+        };
+        let count = model.nodes().len();
+        Self {
+            effects,
+            orbit,
+            known: [(f64::NAN, None); 3],
+            bodies: vec![at_rest; count],
+            wrenches: vec![Wrench::default(); count],
+        }
+    }
+
+    /// State of the reference at `t`, if the run has one.
+    pub(super) fn orbit_state(&mut self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
+        let Some(orbit) = &self.orbit else { return Ok(None) };
+        if let Some((_, state)) = self.known.iter().find(|(known, _)| *known == t) {
+            return Ok(*state);
+        }
+        let state = orbit.state(t).map_err(|source| SimulationError::Orbit { time: t, source })?;
+        self.known.rotate_right(1);
+        self.known[0] = (t, Some(state));
+        Ok(Some(state))
+    }
+
+    /// Puts the wrenches of all effects on the bodies. Needs `kinematics`.
+    pub(super) fn apply<S: Scalar>(
+        &mut self,
+        model: &Model,
+        data: &mut Data<S>,
+        q: &[S],
+        t: f64,
+        interval: (f64, f64),
+    ) -> Result<(), SimulationError> {
+        if self.effects.is_empty() {
+            return Ok(());
+        }
+        let reference = self.orbit_state(t)?;
+        let mu = self.orbit.as_ref().and_then(|orbit| orbit.mu());
+        let rot_wb = S::enter(
+            #[inline(always)]
+            || self.look(model, data, q),
+        );
+        self.wrenches.fill(Wrench::default());
+        let reference = reference.map(|state| Reference { state, mu });
+        let scene = Scene { interval, time: t, reference, bodies: &self.bodies };
+        for effect in &self.effects {
+            effect
+                .add_wrenches(&scene, &mut self.wrenches)
+                .map_err(|source| SimulationError::Environment { time: t, source })?;
+        }
+        S::enter(
+            #[inline(always)]
+            || self.hand_over(data, &rot_wb),
+        );
+        Ok(())
+    }
+
+    /// Fills in what the effects see; returns `R_wb`.
+    #[inline(always)]
+    fn look<S: Scalar>(&mut self, model: &Model, data: &Data<S>, q: &[S]) -> Mat3<S> {
+        let (rot_wb, origin) = (base_rotation(q), Vec3::from_slice(q));
+        for (k, (seen, body)) in self.bodies.iter_mut().zip(&data.bodies).enumerate() {
+            let node = &model.nodes()[k];
+            let rot_wk = rot_wb * body.rot_bk;
+            seen.mass = node.mass;
+            seen.inertia = Sym3::of(&node.about_com).rotate(&rot_wk).to_nalgebra();
+            seen.com = (rot_wb * body.com_b + origin).to_nalgebra();
+            seen.rot_wk = (rot_wk * Mat3::of(&model.body_frame(k).rot_kf)).to_nalgebra();
+            seen.origin = (rot_wb * body.pos_b + origin).to_nalgebra();
+            seen.velocity = (rot_wb * body.velocity.at(body.com_b)).to_nalgebra();
+            seen.angular_velocity = (rot_wb * body.velocity.angular).to_nalgebra();
+        }
+        rot_wb
+    }
+
+    /// Turns the wrenches to base axes and adds them to the bodies.
+    #[inline(always)]
+    fn hand_over<S: Scalar>(&self, data: &mut Data<S>, rot_wb: &Mat3<S>) {
+        let vector = |v: &Vector3<f64>| Vec3::new(S::of(v.x), S::of(v.y), S::of(v.z));
+        for (body, wrench) in data.bodies.iter_mut().zip(&self.wrenches) {
+            let force = rot_wb.transpose_mul(vector(&wrench.force));
+            let torque = rot_wb.transpose_mul(vector(&wrench.torque));
+            body.external = Force::at(force, torque, body.com_b);
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! A timed wrench: its frame, its lever, its switches, its refusals.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use onorbit_core::environment::{BodyState, BodyWrench, Effect, EnvironmentError, Scene, Wrench};
+
+/// A body turned a quarter about z, its centre of mass off the link's origin.
+fn body() -> BodyState {
+    BodyState {
+        mass: 2.0,
+        inertia: Matrix3::identity(),
+        com: Vector3::new(1.0, 2.5, 3.0),
+        rot_wk: Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2).into_inner(),
+        origin: Vector3::new(1.0, 2.0, 3.0),
+        velocity: Vector3::zeros(),
+        angular_velocity: Vector3::zeros(),
+    }
+}
+
+fn act(effect: &BodyWrench, interval: (f64, f64)) -> Result<[Wrench; 2], EnvironmentError> {
+    let mut wrenches = [Wrench::default(); 2];
+    let scene = Scene { interval, time: interval.0, reference: None, bodies: &[body(), body()] };
+    effect.add_wrenches(&scene, &mut wrenches)?;
+    Ok(wrenches)
+}
+
+fn close(a: Vector3<f64>, b: Vector3<f64>) -> bool {
+    (a - b).norm() < 1e-14 // products of numbers below ten, once rounded
+}
+
+#[test]
+fn a_force_turns_with_the_body_and_has_a_lever() {
+    let push = BodyWrench::new(1, Vector3::x() * 4.0, Vector3::x()).expect("finite");
+    let [idle, pushed] = act(&push, (0.0, 1.0)).expect("a body there");
+    assert_eq!(idle, Wrench::default());
+    // Link x is W y. The origin lies 0.5 m below the centre of mass along y: no lever.
+    assert!(close(pushed.force, Vector3::y() * 4.0));
+    assert!(close(pushed.torque, Vector3::y()));
+    // At link (0, -2, 0), which is W (2, 0, 0) from the origin: 2 m times 4 N about z.
+    let [_, pushed] = act(&push.at(Vector3::y() * -2.0).expect("finite"), (0.0, 1.0)).expect("a body there");
+    assert!(close(pushed.torque, Vector3::new(0.0, 1.0, 8.0)), "{}", pushed.torque);
+}
+
+#[test]
+fn the_middle_of_the_step_decides() {
+    let push = BodyWrench::new(0, Vector3::x(), Vector3::zeros()).expect("finite");
+    let push = push.during(1.0, 2.0).expect("start before end");
+    assert_eq!(push.event_times(), [1.0, 2.0]);
+    let is_on = |a, b| act(&push, (a, b)).expect("a body there")[0] != Wrench::default();
+    // The steps on either side of each event, though both touch it.
+    assert_eq!(
+        [is_on(0.5, 1.0), is_on(1.0, 1.5), is_on(1.5, 2.0), is_on(2.0, 2.5)],
+        [false, true, true, false]
+    );
+}
+
+#[test]
+fn a_wrench_without_an_end_has_one_event() {
+    let push = BodyWrench::new(0, Vector3::x(), Vector3::zeros()).expect("finite");
+    assert_eq!(push.event_times(), [0.0; 0]);
+    assert_eq!(push.during(3.0, f64::INFINITY).expect("start before end").event_times(), [3.0]);
+}
+
+#[test]
+fn bad_input_is_refused_with_its_numbers() {
+    let push = BodyWrench::new(2, Vector3::x(), Vector3::zeros()).expect("finite");
+    assert_eq!(act(&push, (0.0, 1.0)), Err(EnvironmentError::UnknownBody { body: 2, count: 2 }));
+    for (start, end) in [(2.0, 1.0), (1.0, 1.0), (f64::NAN, 1.0), (0.0, f64::NAN)] {
+        assert!(matches!(push.during(start, end), Err(EnvironmentError::EmptyInterval { .. })));
+    }
+    let error =
+        BodyWrench::new(0, Vector3::new(0.0, f64::NAN, 0.0), Vector3::zeros()).expect_err("not finite");
+    assert_eq!(error.to_string(), "force holds NaN, finite numbers are needed");
+    assert!(BodyWrench::new(0, Vector3::x(), Vector3::x() * f64::INFINITY).is_err());
+    assert!(push.at(Vector3::x() * f64::NAN).is_err());
+}

@@ -1,0 +1,1 @@
+"""A simulator for free-floating robots in orbit."""

@@ -1,0 +1,86 @@
+"""Rotations as arrays: quaternions (x, y, z, w), matrices, angles. For reporting; the engine has its own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+
+def matrix_from_quaternion(quat_xyzw: ArrayLike) -> Floats:
+    """Rotation matrices (..., 3, 3) of unit quaternions (..., 4)."""
+    quat = np.asarray(quat_xyzw, dtype=np.float64)
+    vector, w = quat[..., :3], quat[..., 3, None, None]
+    cross = np.zeros((*quat.shape[:-1], 3, 3))
+    cross[..., 0, 1], cross[..., 0, 2], cross[..., 1, 2] = -vector[..., 2], vector[..., 1], -vector[..., 0]
+    cross -= np.swapaxes(cross, -1, -2)
+    # R = 1 + 2 w [u] + 2 [u][u]
+    rotation: Floats = np.eye(3) + 2.0 * w * cross + 2.0 * cross @ cross
+    return rotation
+
+
+def quaternion_from_matrix(rotation: ArrayLike) -> Floats:
+    """Unit quaternions (..., 4), xyzw with w ≥ 0, of rotation matrices (..., 3, 3)."""
+    r = np.asarray(rotation, dtype=np.float64)
+    xx, yy, zz = r[..., 0, 0], r[..., 1, 1], r[..., 2, 2]
+    # Each row is 4 c times the quaternion, with c one of its components.
+    yz, zx, xy = r[..., 2, 1], r[..., 0, 2], r[..., 1, 0]
+    zy, xz, yx = r[..., 1, 2], r[..., 2, 0], r[..., 0, 1]
+    rows = np.stack(
+        [
+            np.stack([1 + xx - yy - zz, xy + yx, zx + xz, yz - zy], axis=-1),
+            np.stack([xy + yx, 1 - xx + yy - zz, yz + zy, zx - xz], axis=-1),
+            np.stack([zx + xz, yz + zy, 1 - xx - yy + zz, xy - yx], axis=-1),
+            np.stack([yz - zy, zx - xz, xy - yx, 1 + xx + yy + zz], axis=-1),
+        ],
+        axis=-2,
+    )
+    best = np.argmax(np.stack([xx, yy, zz, xx + yy + zz], axis=-1), axis=-1)
+    quat: Floats = np.take_along_axis(rows, best[..., None, None], axis=-2)[..., 0, :]
+    quat = quat / np.linalg.norm(quat, axis=-1, keepdims=True)
+    return np.where(quat[..., 3:] < 0.0, -quat, quat)
+
+
+def quaternion_from_roll_pitch_yaw(angles: ArrayLike) -> Floats:
+    """Unit quaternion (4,), xyzw, of rotations (rad) about the fixed x, then y, then z."""
+    (sr, sp, sy), (cr, cp, cy) = np.sin(np.asarray(angles) / 2.0), np.cos(np.asarray(angles) / 2.0)
+    return np.array(
+        [
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+            cr * cp * cy + sr * sp * sy,
+        ]
+    )
+
+
+def roll_pitch_yaw(quat_xyzw: ArrayLike) -> Floats:
+    """Angles (..., 3), rad, about the fixed x, then y, then z; ambiguous at pitch ±90 degrees."""
+    r = matrix_from_quaternion(quat_xyzw)
+    pitch = np.arctan2(-r[..., 2, 0], np.hypot(r[..., 0, 0], r[..., 1, 0]))
+    return np.stack(
+        [np.arctan2(r[..., 2, 1], r[..., 2, 2]), pitch, np.arctan2(r[..., 1, 0], r[..., 0, 0])], axis=-1
+    )
+
+
+def angle_between(quat_xyzw: ArrayLike, other_xyzw: ArrayLike) -> Floats:
+    """Angle (...), rad, from 0 to π, of the rotation that takes one attitude to the other."""
+    a, b = np.asarray(quat_xyzw), np.asarray(other_xyzw)
+    b = np.where(np.sum(a * b, axis=-1, keepdims=True) < 0.0, -b, b)
+    # Exact for small angles, where the arc cosine of the dot product is not.
+    half: Floats = np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1))
+    return 4.0 * half
+
+
+def local_orbital_axes(position: ArrayLike, velocity: ArrayLike) -> Floats:
+    """Rotation (..., 3, 3) from L to the inertial frame: x radial outward, z along the angular momentum."""
+    r, v = np.asarray(position, dtype=np.float64), np.asarray(velocity, dtype=np.float64)
+    x = r / np.linalg.norm(r, axis=-1, keepdims=True)
+    momentum = np.cross(r, v)
+    z = momentum / np.linalg.norm(momentum, axis=-1, keepdims=True)
+    return np.stack([x, np.cross(z, x), z], axis=-1)

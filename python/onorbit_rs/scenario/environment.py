@@ -1,0 +1,45 @@
+"""Effects of the environment. A new kind is one class with its ``kind``, added to the union at the end."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from onorbit_rs.scenario.fields import Force3, Time, Torque3
+from onorbit_rs.scenario.part import Part, expand_kind
+
+
+class GravityGradientEffect(Part):
+    """The gravity-gradient torque on every body, about its own centre of mass; needs an orbit."""
+
+    kind: Literal["gravity_gradient"] = "gravity_gradient"
+
+
+class BodyWrenchEffect(Part):
+    """A force and a torque on one body, constant in its own axes, from ``start`` to ``end``."""
+
+    kind: Literal["body_wrench"] = "body_wrench"
+    body: str
+    force: Force3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    torque: Torque3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    start: Time = 0.0
+    end: Time | None = None
+    """Until the end of the run where not given."""
+
+    @model_validator(mode="after")
+    def _ends_after_start(self) -> BodyWrenchEffect:
+        if self.end is not None and self.end <= self.start:
+            raise PydanticCustomError(
+                "wrench_times",
+                "the wrench ends at {end} s, not after its start at {start} s",
+                {"end": self.end, "start": self.start},
+            )
+        return self
+
+
+Effect = Annotated[
+    Annotated[GravityGradientEffect | BodyWrenchEffect, Field(discriminator="kind")],
+    BeforeValidator(expand_kind),
+]

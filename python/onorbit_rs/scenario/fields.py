@@ -1,0 +1,105 @@
+"""Types of scenario fields: each reads a quantity of its own dimension and holds SI."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from onorbit_rs.exceptions import QuantityError
+from onorbit_rs.scenario import units
+from onorbit_rs.scenario.units import Dimension, parse_quantity
+
+
+def _reader(*allowed: Dimension) -> BeforeValidator:
+    return BeforeValidator(lambda value: parse_quantity(value, *allowed))
+
+
+def _positive(value: float) -> float:
+    if value <= 0.0:
+        raise QuantityError(f"{value:g} is not above zero", text=value, expected="above zero")
+    return value
+
+
+def _not_negative(value: float) -> float:
+    if value < 0.0:
+        raise QuantityError(f"{value:g} is negative", text=value, expected="zero or above")
+    return value
+
+
+Positive = AfterValidator(_positive)
+NotNegative = AfterValidator(_not_negative)
+
+Number = Annotated[float, _reader(units.NUMBER)]
+Mass = Annotated[float, _reader(units.MASS)]
+Length = Annotated[float, _reader(units.LENGTH)]
+Time = Annotated[float, _reader(units.TIME)]
+Angle = Annotated[float, _reader(units.ANGLE)]
+Speed = Annotated[float, _reader(units.SPEED)]
+AngularRate = Annotated[float, _reader(units.ANGULAR_RATE)]
+Rate = Annotated[float, _reader(units.RATE)]
+Force = Annotated[float, _reader(units.FORCE)]
+Torque = Annotated[float, _reader(units.TORQUE)]
+Inertia = Annotated[float, _reader(units.INERTIA)]
+Stiffness = Annotated[float, _reader(units.STIFFNESS)]
+GravitationalParameter = Annotated[float, _reader(units.GRAVITY)]
+Length3 = Annotated[list[Length], Field(min_length=3, max_length=3)]
+Angle3 = Annotated[list[Angle], Field(min_length=3, max_length=3)]
+Speed3 = Annotated[list[Speed], Field(min_length=3, max_length=3)]
+AngularRate3 = Annotated[list[AngularRate], Field(min_length=3, max_length=3)]
+Force3 = Annotated[list[Force], Field(min_length=3, max_length=3)]
+Torque3 = Annotated[list[Torque], Field(min_length=3, max_length=3)]
+Number4 = Annotated[list[Number], Field(min_length=4, max_length=4)]
+
+
+def _gain_reader(dimension: Dimension) -> BeforeValidator:
+    def row(value: object) -> list[float]:
+        if not isinstance(value, list) or len(value) != 6:
+            raise QuantityError(_GAIN_SHAPES, text=value, expected="6 numbers")
+        return [parse_quantity(entry, dimension) for entry in value]
+
+    def read(value: object) -> float | list[float] | list[list[float]]:
+        if not isinstance(value, list):
+            return parse_quantity(value, dimension)
+        if any(isinstance(entry, list) for entry in value):
+            if len(value) != 6:
+                raise QuantityError(_GAIN_SHAPES, text=value, expected="6 x 6 numbers")
+            return [row(entry) for entry in value]
+        return row(value)
+
+    return BeforeValidator(read)
+
+
+_GAIN_SHAPES = "a gain is one number, six (linear first, then angular), or a 6 x 6 matrix given as six rows"
+_Gain = float | list[float] | list[list[float]]
+
+StiffnessGain = Annotated[_Gain, _gain_reader(units.STIFFNESS)]
+RateGain = Annotated[_Gain, _gain_reader(units.RATE)]
+
+
+def _joints_reader(*allowed: Dimension) -> BeforeValidator:
+    def read(value: object) -> list[float] | dict[str, float]:
+        if isinstance(value, dict):
+            return {str(name): _named(str(name), entry, allowed) for name, entry in value.items()}
+        if isinstance(value, list):
+            return [parse_quantity(entry, *allowed) for entry in value]
+        raise QuantityError(
+            "joints are a list in the model's order, or a mapping from joint name to value",
+            text=value,
+            expected="joints",
+        )
+
+    return BeforeValidator(read)
+
+
+def _named(name: str, value: object, allowed: tuple[Dimension, ...]) -> float:
+    try:
+        return parse_quantity(value, *allowed)
+    except QuantityError as error:
+        raise QuantityError(f"{name}: {error}", text=error.text, expected=error.expected) from None
+
+
+_Joints = list[float] | dict[str, float]
+
+JointPositions = Annotated[_Joints, _joints_reader(units.ANGLE, units.LENGTH)]
+JointRates = Annotated[_Joints, _joints_reader(units.ANGULAR_RATE, units.SPEED)]

@@ -1,0 +1,99 @@
+"""The reference orbit. A new kind is one class with its own ``kind``, added to the union at the end."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, model_validator
+from pydantic_core import PydanticCustomError
+
+from onorbit_rs.scenario.fields import (
+    Angle,
+    GravitationalParameter,
+    Length,
+    Length3,
+    NotNegative,
+    Number,
+    Positive,
+    Speed3,
+    Time,
+)
+from onorbit_rs.scenario.part import Part, expand_kind
+
+SIZES = ("semi_major_axis", "semi_latus_rectum")
+PHASES = ("mean_anomaly", "true_anomaly", "periapsis_time")
+
+
+class KeplerOrbit(Part):
+    """Two-body motion: from elements, or from one state.
+
+    Elements: a size (``semi_major_axis``, negative for a hyperbola, or ``semi_latus_rectum``, needed for a
+    parabola), ``eccentricity``, three angles, and one phase. State: ``position`` and ``velocity`` at the
+    start, inertial axes.
+    """
+
+    kind: Literal["kepler"] = "kepler"
+    semi_major_axis: Length | None = None
+    semi_latus_rectum: Annotated[Length, Positive] | None = None
+    eccentricity: Annotated[Number, NotNegative] | None = None
+    inclination: Angle | None = None
+    raan: Angle | None = None
+    argument_of_periapsis: Angle | None = None
+    mean_anomaly: Angle | None = None
+    true_anomaly: Angle | None = None
+    periapsis_time: Time | None = None
+    position: Length3 | None = None
+    velocity: Speed3 | None = None
+    mu: Annotated[GravitationalParameter, Positive] | None = None
+    """Gravitational parameter, m³/s²; the Earth's where not given."""
+
+    @property
+    def is_from_state(self) -> bool:
+        """Whether a position and a velocity define it."""
+        return self.position is not None or self.velocity is not None
+
+    def given(self) -> dict[str, Any]:
+        """What the YAML gave, without ``kind``."""
+        return self.model_dump(exclude_none=True, exclude={"kind"})
+
+    @model_validator(mode="after")
+    def _is_one_orbit(self) -> KeplerOrbit:
+        given = [name for name in self.given() if name != "mu"]
+        if self.is_from_state:
+            others = [name for name in given if name not in ("position", "velocity")]
+            if self.position is None or self.velocity is None:
+                raise _wrong("a state needs both 'position' and 'velocity'")
+            if others:
+                raise _wrong(f"give a state or elements, not both: {', '.join(others)}")
+            return self
+        sizes = [name for name in SIZES if name in given]
+        if len(sizes) != 1:
+            raise _wrong(f"give exactly one of {_listed(SIZES)}; given: {', '.join(sizes) or 'none'}")
+        phases = [name for name in PHASES if name in given]
+        if len(phases) > 1:
+            raise _wrong(f"give one of {_listed(PHASES)}; given: {', '.join(phases)}")
+        self._check_signs()
+        return self
+
+    def _check_signs(self) -> None:
+        a, e = self.semi_major_axis, self.eccentricity or 0.0
+        if a is None:
+            return
+        if e == 1.0:
+            raise _wrong("a parabola (eccentricity 1) has no semi-major axis; give 'semi_latus_rectum'")
+        if (a > 0.0) != (e < 1.0):
+            right = (
+                "positive below eccentricity 1" if e < 1.0 else "negative above eccentricity 1 (a hyperbola)"
+            )
+            raise _wrong(f"semi_major_axis {a:g} m contradicts eccentricity {e:g}: it is {right}")
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(repr(name) for name in names)
+
+
+def _wrong(message: str) -> PydanticCustomError:
+    return PydanticCustomError("orbit_elements", "{message}", {"message": message})
+
+
+Orbit = Annotated[KeplerOrbit, BeforeValidator(expand_kind)]

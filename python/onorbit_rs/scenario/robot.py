@@ -1,0 +1,66 @@
+"""The robot: a bundled name, a URDF, or one rigid body written in place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, field_validator, model_validator
+from pydantic_core import PydanticCustomError
+
+from onorbit_rs.scenario.fields import Inertia, Mass, Positive
+from onorbit_rs.scenario.part import Part
+
+
+class RigidBody(Part):
+    """A spacecraft without joints; its body is ``base``, its origin the centre of mass."""
+
+    mass: Annotated[Mass, Positive]
+    inertia: list[list[Inertia]]
+    """(3, 3), kg m², about the centre of mass, body axes; three numbers are a diagonal."""
+
+    @field_validator("inertia", mode="before")
+    @classmethod
+    def _from_diagonal(cls, value: Any) -> Any:
+        if isinstance(value, list) and len(value) == 3:
+            rows = [isinstance(entry, list) for entry in value]
+            if not any(rows):
+                return [
+                    [entry if row == column else 0.0 for column in range(3)]
+                    for row, entry in enumerate(value)
+                ]
+            if all(rows) and all(len(row) == 3 for row in value):
+                return value
+        raise PydanticCustomError(
+            "inertia_shape", "an inertia is three numbers (a diagonal) or a 3 x 3 matrix"
+        )
+
+
+class Robot(Part):
+    """Exactly one of the three."""
+
+    bundled: str | None = None
+    urdf: Path | None = None
+    rigid_body: RigidBody | None = None
+    package_paths: list[Path] = Field(default_factory=list)
+    """Folders in which ``package://`` is looked up."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_text(cls, value: Any) -> Any:
+        """``humanoid_torso`` is a bundled name; ``arms/my_arm.urdf`` is a path, relative to the YAML."""
+        if not isinstance(value, str):
+            return value
+        looks_like_path = "/" in value or "\\" in value or value.lower().endswith((".urdf", ".xml", ".xacro"))
+        return {"urdf": value} if looks_like_path else {"bundled": value}
+
+    @model_validator(mode="after")
+    def _exactly_one(self) -> Robot:
+        given = [name for name in ("bundled", "urdf", "rigid_body") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise PydanticCustomError(
+                "robot_choice",
+                "give exactly one of 'bundled', 'urdf' and 'rigid_body'; given: {given}",
+                {"given": ", ".join(given) or "none"},
+            )
+        return self

@@ -1,0 +1,85 @@
+"""The whole scenario: one YAML mapping, checked before anything runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field, PrivateAttr, model_validator
+from pydantic_core import PydanticCustomError
+
+from onorbit_rs.scenario.control import Controller, Reference
+from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
+from onorbit_rs.scenario.initial import InitialState
+from onorbit_rs.scenario.orbit import Orbit
+from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.robot import Robot
+from onorbit_rs.scenario.settings import SimulationSettings
+from onorbit_rs.scenario.yaml_lines import Lines, Location
+
+
+class Scenario(Part):
+    """A robot, where it flies, what acts on it, what it tracks, and how long.
+
+    Read one with :func:`onorbit_rs.scenario.load`, or make one in Python:
+    ``Scenario(robot="humanoid_torso", simulation={"duration": "5 s"})``.
+    """
+
+    name: str = "scenario"
+    description: str = ""
+    robot: Robot
+    tool: str | None = None
+    """The frame that is tracked and recorded."""
+    orbit: Orbit | None = None
+    """An orbit always brings gravity; without one nothing pulls."""
+    environment: list[Effect] = Field(default_factory=list)
+    controller: Controller | None = None
+    """Joints are limp where not given."""
+    reference: Reference | None = None
+    initial: InitialState = Field(default_factory=InitialState)
+    simulation: SimulationSettings
+
+    _file: Path | None = PrivateAttr(default=None)
+    _lines: Lines = PrivateAttr(default_factory=dict)
+
+    @property
+    def file(self) -> Path | None:
+        """The YAML it was read from."""
+        return self._file
+
+    def line_of(self, *at: str | int) -> int | None:
+        """Line in the YAML of an entry, or of the nearest entry around it."""
+        for end in range(len(at), 0, -1):
+            if at[:end] in self._lines:
+                return self._lines[at[:end]]
+        return None
+
+    def remember_source(self, file: Path | None, lines: Lines) -> None:
+        """Where it was read from, for messages."""
+        self._file, self._lines = file, lines
+
+    def resolved(self) -> dict[str, Any]:
+        """Plain data in SI with every default written out; reading it back gives the same scenario."""
+        return self.model_dump(mode="json", exclude_none=True, exclude=self._empty_parts())
+
+    def _empty_parts(self) -> dict[str, Any]:
+        return {"robot": {"package_paths"}} if not self.robot.package_paths else {}
+
+    @model_validator(mode="after")
+    def _parts_fit(self) -> Scenario:
+        if self.controller is not None and self.tool is None:
+            raise _wrong("tool", "the controller tracks a frame: name it with 'tool'")
+        if self.reference is not None and self.controller is None:
+            raise _wrong("reference", "a reference needs a 'controller' that tracks it")
+        if self.orbit is None:
+            for index, effect in enumerate(self.environment):
+                if isinstance(effect, GravityGradientEffect):
+                    raise _wrong(("environment", index), "the gravity gradient needs an 'orbit'")
+            if self.initial.frame == "lvlh":
+                raise _wrong(("initial", "frame"), "the frame lvlh needs an 'orbit'")
+        return self
+
+
+def _wrong(at: str | Location, message: str) -> PydanticCustomError:
+    where = (at,) if isinstance(at, str) else at
+    return PydanticCustomError("parts", "{message}", {"message": message, "at": where})

@@ -1,0 +1,47 @@
+"""How the run is integrated and recorded."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from onorbit_rs.scenario.fields import Positive, Time
+from onorbit_rs.scenario.part import Part
+
+MAX_STEPS = 10**10
+MAX_ROWS = 10**7
+"""Of the trace; a row is about half a kilobyte."""
+
+
+class SimulationSettings(Part):
+    """Times in seconds of simulation."""
+
+    duration: Annotated[Time, Positive]
+    time_step: Annotated[Time, Positive] = 1e-3
+    control_period: Annotated[Time, Positive] | None = None
+    """How often the controller runs; every time step where not given."""
+    integrator: Literal["rk4", "semi_implicit_euler"] = "rk4"
+    record_every: int = Field(default=1, ge=1, le=MAX_STEPS)
+    """One row of the trace every so many steps."""
+
+    @model_validator(mode="after")
+    def _steps_fit(self) -> SimulationSettings:
+        if self.time_step > self.duration:
+            raise _wrong(f"time_step {self.time_step:g} s is longer than the duration {self.duration:g} s")
+        if self.duration / self.time_step > MAX_STEPS:
+            raise _wrong(f"duration / time_step is above {MAX_STEPS:.0e} steps; take a longer time_step")
+        if self.duration / self.time_step / self.record_every > MAX_ROWS:
+            raise _wrong(
+                f"the trace would have more than {MAX_ROWS} rows; record less often with 'record_every'"
+            )
+        if self.control_period is not None and self.control_period < self.time_step * (1.0 - 1e-9):
+            raise _wrong(
+                f"control_period {self.control_period:g} s is shorter than time_step {self.time_step:g} s"
+            )
+        return self
+
+
+def _wrong(message: str) -> PydanticCustomError:
+    return PydanticCustomError("settings", "{message}", {"message": message})

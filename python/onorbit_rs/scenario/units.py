@@ -1,0 +1,165 @@
+"""Quantities: ``"6778 km"`` is 6778000.0 m; a bare number is SI already.
+
+A unit is a product of names with whole powers: ``km^3/s^2``, ``rev/min``, ``kg m^2``, ``N·m``. Angle counts
+as a dimension here, although physics calls it a pure number: so degrees where metres belong are an error.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from onorbit_rs.exceptions import QuantityError
+from onorbit_rs.names import did_you_mean
+
+Powers = tuple[int, int, int, int]
+"""Powers of mass (kg), length (m), time (s) and angle (rad)."""
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """What a quantity measures, and the SI unit it is kept in."""
+
+    name: str
+    powers: Powers
+    si: str
+
+
+NUMBER = Dimension("a plain number", (0, 0, 0, 0), "")
+MASS = Dimension("a mass", (1, 0, 0, 0), "kg")
+LENGTH = Dimension("a length", (0, 1, 0, 0), "m")
+TIME = Dimension("a time", (0, 0, 1, 0), "s")
+ANGLE = Dimension("an angle", (0, 0, 0, 1), "rad")
+SPEED = Dimension("a speed", (0, 1, -1, 0), "m/s")
+ANGULAR_RATE = Dimension("an angular rate", (0, 0, -1, 1), "rad/s")
+RATE = Dimension("a rate", (0, 0, -1, 0), "1/s")
+STIFFNESS = Dimension("a stiffness per mass", (0, 0, -2, 0), "1/s^2")
+FORCE = Dimension("a force", (1, 1, -2, 0), "N")
+TORQUE = Dimension("a torque", (1, 2, -2, 0), "N m")
+INERTIA = Dimension("a moment of inertia", (1, 2, 0, 0), "kg m^2")
+GRAVITY = Dimension("a gravitational parameter", (0, 3, -2, 0), "m^3/s^2")
+
+_DAY = 86_400.0
+_UNITS: dict[str, tuple[float, Powers]] = {
+    "kg": (1.0, MASS.powers),
+    "g": (1e-3, MASS.powers),
+    "t": (1e3, MASS.powers),
+    "m": (1.0, LENGTH.powers),
+    "km": (1e3, LENGTH.powers),
+    "cm": (1e-2, LENGTH.powers),
+    "mm": (1e-3, LENGTH.powers),
+    "au": (149_597_870_700.0, LENGTH.powers),
+    "s": (1.0, TIME.powers),
+    "ms": (1e-3, TIME.powers),
+    "us": (1e-6, TIME.powers),
+    "min": (60.0, TIME.powers),
+    "h": (3600.0, TIME.powers),
+    "day": (_DAY, TIME.powers),
+    "days": (_DAY, TIME.powers),
+    "rad": (1.0, ANGLE.powers),
+    "mrad": (1e-3, ANGLE.powers),
+    "deg": (math.pi / 180.0, ANGLE.powers),
+    "arcmin": (math.pi / 10_800.0, ANGLE.powers),
+    "arcsec": (math.pi / 648_000.0, ANGLE.powers),
+    "rev": (2.0 * math.pi, ANGLE.powers),
+    "rpm": (2.0 * math.pi / 60.0, ANGULAR_RATE.powers),
+    "N": (1.0, FORCE.powers),
+    "mN": (1e-3, FORCE.powers),
+    "kN": (1e3, FORCE.powers),
+    "Nm": (1.0, TORQUE.powers),
+    "mNm": (1e-3, TORQUE.powers),
+    "Hz": (1.0, RATE.powers),
+    "1": (1.0, NUMBER.powers),
+}
+
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d[\d_]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+_FACTOR = re.compile(r"\s*([*·/]?)\s*([A-Za-z]+|1)\s*(?:(?:\^|\*\*)\s*([+-]?\d+))?")
+
+
+def parse_quantity(value: object, *allowed: Dimension) -> float:
+    """A number, or text with a unit, in SI.
+
+    Parameters
+    ----------
+    value : float or str
+        ``0.5`` (SI already), ``"6778 km"``, ``"2 rev/min"``, ``"1e-3"``.
+    *allowed : Dimension
+        What it may measure; usually one.
+
+    Raises
+    ------
+    QuantityError
+        Not a finite number, an unknown unit, or a unit of another dimension; says which units would do.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise _refused(value, f"is not {_any_of(allowed)}", allowed)
+    if isinstance(value, str):
+        number = _from_text(value, allowed)
+    else:
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+    if not math.isfinite(number):
+        raise _refused(value, "is not a finite number", allowed)
+    return number
+
+
+def _from_text(text: str, allowed: tuple[Dimension, ...]) -> float:
+    match = _QUANTITY.fullmatch(text)
+    if match is None:
+        raise _refused(text, f"is not {_any_of(allowed)}", allowed)
+    number = float(match[1].replace("_", ""))
+    if not match[2]:
+        return number
+    factor, powers = _parse_unit(match[2], text, allowed)
+    if all(powers != dimension.powers for dimension in allowed):
+        raise _refused(text, f"is not {_any_of(allowed)}", allowed)
+    return number * factor
+
+
+def _parse_unit(unit: str, text: str, allowed: tuple[Dimension, ...]) -> tuple[float, Powers]:
+    """Factor to SI and powers of a compound unit such as ``km^3/s^2``."""
+    factor, powers, at = 1.0, NUMBER.powers, 0
+    while at < len(unit):
+        match = _FACTOR.match(unit, at)
+        if match is None:
+            raise _refused(text, f"has a unit that cannot be read, {unit!r}", allowed)
+        operator, name, power = match[1], match[2], int(match[3] or 1)
+        if name not in _UNITS:
+            raise _refused(
+                text, f"has the unknown unit {name!r}{did_you_mean(name, _UNITS).rstrip('?')}", allowed
+            )
+        if abs(power) > 9:
+            raise _refused(text, f"has an absurd power in its unit, {unit!r}", allowed)
+        signed = -power if operator == "/" else power
+        scale, own = _UNITS[name]
+        factor *= scale**signed
+        powers = (
+            powers[0] + signed * own[0],
+            powers[1] + signed * own[1],
+            powers[2] + signed * own[2],
+            powers[3] + signed * own[3],
+        )
+        at = match.end()
+    return factor, powers
+
+
+def _any_of(allowed: tuple[Dimension, ...]) -> str:
+    return " or ".join(dimension.name for dimension in allowed)
+
+
+def _example_units(dimension: Dimension) -> str:
+    """``m, km, ...`` for a message: units of this dimension, the SI unit first."""
+    same = [name for name, (_, powers) in _UNITS.items() if powers == dimension.powers and name != "1"]
+    return ", ".join(dict.fromkeys([dimension.si, *same])) if dimension.si else ""
+
+
+def _refused(value: object, why: str, allowed: tuple[Dimension, ...]) -> QuantityError:
+    units = "; ".join(filter(None, (_example_units(dimension) for dimension in allowed)))
+    way_out = (
+        f"write a bare number (SI) or one with a unit: {units}" if units else "write a number without a unit"
+    )
+    shown = repr(value) if len(repr(value)) <= 60 else repr(value)[:57] + "..."
+    return QuantityError(f"{shown} {why}; {way_out}", text=value, expected=_any_of(allowed))

@@ -1,0 +1,145 @@
+"""A YAML file as plain data, with the line of every entry, so that an error can point at it.
+
+Numbers and booleans follow YAML 1.2: ``1e-3`` is a number, ``on`` is text, ``12:30`` is not 750.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from onorbit_rs.exceptions import NotFoundError, ReadError, ScenarioError
+
+Location = tuple[str | int, ...]
+"""Keys and indices from the top of the file, as in ``("environment", 0, "force")``."""
+
+Lines = dict[Location, int]
+"""Line, from 1, of every entry."""
+
+MAX_BYTES = 4_000_000
+MAX_NODES = 200_000
+
+
+class _Loader(yaml.SafeLoader):
+    """SafeLoader with the scalars of YAML 1.2."""
+
+    yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}
+
+
+for _tag, _pattern, _first in [
+    ("tag:yaml.org,2002:null", r"^(?:~|null|Null|NULL|)$", ["~", "n", "N", ""]),
+    ("tag:yaml.org,2002:bool", r"^(?:true|True|TRUE|false|False|FALSE)$", list("tTfF")),
+    ("tag:yaml.org,2002:int", r"^[-+]?[0-9]+$", list("-+0123456789")),
+    (
+        "tag:yaml.org,2002:float",
+        r"^[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?$",
+        list("-+.0123456789"),
+    ),
+    ("tag:yaml.org,2002:float", r"^(?:[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$", list("-+.")),
+]:
+    _Loader.add_implicit_resolver(_tag, re.compile(_pattern), _first)
+
+
+def read_yaml(path: Path) -> tuple[Any, Lines]:
+    """Data of a YAML file and the line of each entry.
+
+    Raises
+    ------
+    NotFoundError, ReadError
+        No such file; a folder or no permission.
+    ScenarioError
+        Binary, too large, not UTF-8 or not YAML; carries ``file`` and ``line``.
+    """
+    return parse_yaml(_read_text(path), path)
+
+
+def parse_yaml(text: str, file: Path | None) -> tuple[Any, Lines]:
+    """Data of a YAML text and the line of each entry; ``file`` is for messages."""
+    walk = _Walk(file)
+    try:
+        loader = _Loader(text)
+        root = loader.get_single_node()
+        data = walk.value(loader, root, ()) if root is not None else None
+    except yaml.YAMLError as error:
+        raise _syntax_error(error, file) from None
+    except RecursionError:
+        raise _at(file, None, "the YAML is nested too deeply") from None
+    return data, walk.lines
+
+
+class _Walk:
+    """Turns nodes into data and remembers their lines; aliases count every time, so a bomb is caught."""
+
+    def __init__(self, file: Path | None) -> None:
+        self.file = file
+        self.lines: Lines = {}
+        self.nodes = 0
+
+    def value(self, loader: _Loader, node: yaml.Node, at: Location) -> Any:
+        line = node.start_mark.line + 1
+        self.lines.setdefault(at, line)
+        self.nodes += 1
+        if self.nodes > MAX_NODES:
+            raise _at(self.file, line, f"more than {MAX_NODES} entries (aliases counted): not a scenario")
+        if isinstance(node, yaml.MappingNode):
+            return self._mapping(loader, node, at)
+        if isinstance(node, yaml.SequenceNode):
+            return [self.value(loader, entry, (*at, index)) for index, entry in enumerate(node.value)]
+        try:
+            return loader.construct_object(node)
+        except ValueError as error:  # an integer of thousands of digits
+            raise _at(self.file, line, str(error)) from None
+
+    def _mapping(self, loader: _Loader, node: yaml.MappingNode, at: Location) -> dict[Any, Any]:
+        data: dict[Any, Any] = {}
+        own: dict[Any, int] = {}
+        for key_node, value_node in node.value:
+            line = key_node.start_mark.line + 1
+            key = loader.construct_object(key_node) if isinstance(key_node, yaml.ScalarNode) else None
+            if not isinstance(key, str):
+                raise _at(self.file, line, "a key must be text")
+            if key in own:
+                raise _at(self.file, line, f"the key {key!r} is given twice, first on line {own[key]}")
+            own[key] = line
+            self.lines[(*at, key)] = line
+            data[key] = self.value(loader, value_node, (*at, key))
+        return data
+
+
+def _read_text(path: Path) -> str:
+    if not path.exists():
+        raise NotFoundError(f"no such file: {path}", path=str(path), kind="scenario")
+    if path.is_dir():
+        raise ReadError(f"{path} is a folder, not a scenario file", path=str(path), kind="scenario")
+    try:
+        with path.open("rb") as stream:
+            raw = stream.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise ReadError(f"cannot read {path}: {error.strerror}", path=str(path), kind="scenario") from error
+    if len(raw) > MAX_BYTES:
+        raise _at(path, None, f"larger than {MAX_BYTES} bytes: not a scenario")
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise _at(path, line, "not text in UTF-8 (binary?); a scenario is a YAML file") from None
+    if "\0" in text:
+        raise _at(
+            path, text.count("\n", 0, text.index("\0")) + 1, "binary, not text; a scenario is a YAML file"
+        )
+    return text
+
+
+def _syntax_error(error: yaml.YAMLError, file: Path | None) -> ScenarioError:
+    mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+    problem = getattr(error, "problem", None) or getattr(error, "reason", None) or "cannot be read"
+    line = None if mark is None else mark.line + 1
+    return _at(file, line, f"broken YAML, {' '.join(str(problem).split())}")
+
+
+def _at(file: Path | None, line: int | None, message: str) -> ScenarioError:
+    place = f"{file or 'scenario'}" + (f":{line}" if line else "")
+    return ScenarioError(f"{place}: {message}", file=str(file) if file else None, path=None, line=line)
