@@ -125,13 +125,14 @@ impl Tree {
         let above = |link: usize| self.parent[hinge_above(link)];
         // as many steps as there are links lead into the loop, wherever one starts
         let entry = (0..links.len()).fold(lost, |link, _| above(link));
-        let mut names = vec![links[entry].0.to_owned()];
-        let mut link = above(entry);
-        while link != entry {
-            names.push(links[link].0.to_owned());
-            link = above(link);
-        }
-        names.reverse();
+        let mut round: Vec<usize> =
+            std::iter::successors(Some(entry), |&link| Some(above(link)).filter(|&next| next != entry))
+                .collect();
+        // downwards, the link that the file has first in front
+        round.reverse();
+        let first = (0..round.len()).min_by_key(|&k| round[k]).expect("a loop has links");
+        round.rotate_left(first);
+        let names = round.into_iter().map(|link| links[link].0.to_owned()).collect();
         hinges[hinge_above(entry)].element.fail(UrdfProblem::Loop { links: names })
     }
 }
