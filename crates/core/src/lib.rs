@@ -3,6 +3,7 @@
 //! Folders depend downwards only, in this order: `spatial`, `model`, `dynamics`, `orbit`,
 //! `environment`, `reference`, `control`, `simulation`, `batch`.
 
+pub mod batch;
 pub mod control;
 pub mod dynamics;
 pub mod environment;

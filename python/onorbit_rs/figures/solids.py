@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from onorbit_rs.geometry import Shape, shapes
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Model, Visual
+    from onorbit_rs._core import Model
 
     Floats = NDArray[np.float64]
 
@@ -18,7 +20,7 @@ _AROUND = 20
 
 
 def robot_polygons(model: Model, q: Floats) -> tuple[list[Floats], list[tuple[float, float, float]]]:
-    """Faces of every visual at one configuration, and the colour of each.
+    """Faces of every shape at one configuration, and the colour of each.
 
     Parameters
     ----------
@@ -34,26 +36,25 @@ def robot_polygons(model: Model, q: Floats) -> tuple[list[Floats], list[tuple[fl
     """
     faces: list[Floats] = []
     colors: list[tuple[float, float, float]] = []
-    for visual in model.visuals:
-        own = _faces(visual)
-        pose = model.frame_pose(q, visual.link).reshape(4, 4) @ np.asarray(visual.pose)
+    for shape in shapes(model):
+        own = _faces(shape)
+        pose = np.asarray(model.frame_pose(q, shape.link)).reshape(4, 4) @ shape.pose
         faces += [face @ pose[:3, :3].T + pose[:3, 3] for face in own]
-        red, green, blue = (visual.rgba or (0.7, 0.7, 0.72, 1.0))[:3]
-        colors += [(red, green, blue)] * len(own)
+        colors += [shape.rgba[:3]] * len(own)
     return faces, colors
 
 
-def _faces(visual: Visual) -> list[Floats]:
-    """Faces of one visual, in its own axes."""
-    size = visual.size
-    if visual.kind == "box":
+def _faces(shape: Shape) -> list[Floats]:
+    """Faces of one shape, in its own axes."""
+    size = shape.size
+    if shape.kind == "box":
         return _box(np.asarray(size))
-    if visual.kind == "sphere":
+    if shape.kind == "sphere":
         return _revolved(_arc(size[0], 0.0, -90.0, 90.0))
-    if visual.kind == "cylinder":
+    if shape.kind == "cylinder":
         radius, half = size[0], size[1] / 2.0
         return _revolved(np.array([[0.0, -half], [radius, -half], [radius, half], [0.0, half]]))
-    if visual.kind == "capsule":
+    if shape.kind == "capsule":
         radius, half = size[0], size[1] / 2.0
         return _revolved(np.vstack([_arc(radius, -half, -90.0, 0.0), _arc(radius, half, 0.0, 90.0)]))
     return []

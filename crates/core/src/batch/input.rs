@@ -1,0 +1,45 @@
+//! What is checked before a kernel runs.
+
+use thiserror::Error;
+
+/// Numbers that no kernel can take.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[allow(missing_docs)] // the fields are what the messages say
+pub enum InputError {
+    #[error("{name} has {got} numbers per state, expected {expected} for this robot")]
+    WrongLength { name: &'static str, expected: usize, got: usize },
+    #[error("{name} has {got} states, the first argument has {expected}")]
+    WrongBatch { name: &'static str, expected: usize, got: usize },
+    #[error("{name} holds {value} in state {state}, it must be finite")]
+    NotFinite { name: &'static str, state: usize, value: f64 },
+    #[error(
+        "the quaternion of state {state} has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w in \
+         q[3:7]: normalise it first"
+    )]
+    QuaternionNorm { state: usize, norm: f64 },
+}
+
+/// Largest deviation of a quaternion from unit norm.
+const UNIT_NORM: f64 = 1e-6;
+
+/// Refuses rows that are not finite.
+pub(super) fn check_finite(name: &'static str, data: &[f64], width: usize) -> Result<(), InputError> {
+    // a sum is finite only if every term is, and one pass of additions is cheap
+    let sum: f64 = data.iter().map(|x| x * 0.0).sum();
+    if sum == 0.0 {
+        return Ok(());
+    }
+    let index = data.iter().position(|x| !x.is_finite()).unwrap_or(0);
+    Err(InputError::NotFinite { name, state: index / width.max(1), value: data[index] })
+}
+
+/// Refuses quaternions off unit norm.
+pub(super) fn check_quaternions(q: &[f64], nq: usize) -> Result<(), InputError> {
+    for (state, row) in q.chunks_exact(nq).enumerate() {
+        let norm = row[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
+        if (norm - 1.0).abs() > UNIT_NORM {
+            return Err(InputError::QuaternionNorm { state, norm });
+        }
+    }
+    Ok(())
+}

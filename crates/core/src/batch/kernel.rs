@@ -1,0 +1,168 @@
+//! The kernels by name, with the widths of their rows.
+
+use crate::dynamics::{
+    Data, FrameWrench, FreeFloating, bias_forces, center_of_mass, forward_dynamics, frame_jacobian,
+    frame_pose, frame_velocity, free_floating, inverse_dynamics, kinematics, kinetic_energy, mass_matrix,
+    momentum, positions,
+};
+use crate::model::{Model, difference, integrate};
+use crate::spatial::{Force, Real, Vec3};
+
+/// What to compute from a state; frames by index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// `q` → `(4, 4)` pose in W.
+    FramePose(usize),
+    /// `q, v` → `(6,)` twist at the frame's origin, W axes.
+    FrameVelocity(usize),
+    /// `q` → `(6, nv)`, W axes at the frame's origin.
+    FrameJacobian(usize),
+    /// `q` → `(nv, nv)`.
+    MassMatrix,
+    /// `q, v` → `(nv,)`.
+    BiasForces,
+    /// `q, v, a` → `(nv,)`.
+    InverseDynamics,
+    /// `q, v, tau` → `(nv,)`.
+    ForwardDynamics,
+    /// `q, v` → `(6,)`.
+    Momentum,
+    /// `q, v` → `(1,)`.
+    KineticEnergy,
+    /// `q` → `(3,)`.
+    CenterOfMass,
+    /// `q, v` → `M* (n, n)`, `c* (n,)`, `Q* (n,)`, `Jg (6, n)`, `d (6,)`.
+    FreeFloating(usize),
+    /// `q, δ` → `(nq,)`.
+    Integrate,
+    /// `q, q2` → `(nv,)`.
+    Difference,
+}
+
+/// Workspace of all kernels for one scalar.
+#[derive(Clone, Debug)]
+pub(super) struct Work<S> {
+    pub(super) data: Data<S>,
+    pub(super) reduced: FreeFloating<S>,
+    pub(super) external: Vec<FrameWrench<S>>,
+}
+
+impl<S: Real> Work<S> {
+    pub(super) fn new(model: &Model) -> Self {
+        Self { data: Data::new(model), reduced: FreeFloating::new(model), external: Vec::new() }
+    }
+
+    pub(super) fn set_external(&mut self, external: &[FrameWrench<f64>]) {
+        self.external.clear();
+        self.external.extend(external.iter().map(|w| FrameWrench {
+            frame: w.frame,
+            wrench: Force::new(Vec3::of(&w.wrench.linear), Vec3::of(&w.wrench.angular)),
+        }));
+    }
+}
+
+impl Kernel {
+    /// Names of the inputs; those in `q` are configurations, all others have `nv` numbers.
+    pub fn inputs(self) -> &'static [&'static str] {
+        match self {
+            Self::FramePose(_) | Self::FrameJacobian(_) | Self::MassMatrix | Self::CenterOfMass => &["q"],
+            Self::InverseDynamics => &["q", "v", "a"],
+            Self::ForwardDynamics => &["q", "v", "tau"],
+            Self::Integrate => &["q", "delta"],
+            Self::Difference => &["q", "q2"],
+            _ => &["q", "v"],
+        }
+    }
+
+    /// Widths of the outputs' rows.
+    pub fn outputs(self, model: &Model) -> Vec<usize> {
+        let (nq, nv, n) = (model.nq(), model.nv(), model.joint_count());
+        match self {
+            Self::FramePose(_) => vec![16],
+            Self::FrameVelocity(_) | Self::Momentum => vec![6],
+            Self::FrameJacobian(_) => vec![6 * nv],
+            Self::MassMatrix => vec![nv * nv],
+            Self::BiasForces | Self::InverseDynamics | Self::ForwardDynamics | Self::Difference => vec![nv],
+            Self::KineticEnergy => vec![1],
+            Self::CenterOfMass => vec![3],
+            Self::FreeFloating(_) => vec![n * n, n, n, 6 * n, 6],
+            Self::Integrate => vec![nq],
+        }
+    }
+
+    /// One state, or one set of lanes.
+    pub(super) fn run<S: Real>(
+        self,
+        model: &Model,
+        work: &mut Work<S>,
+        inputs: &[Vec<S>],
+        out: &mut [Vec<S>],
+    ) {
+        let Work { data, reduced, external } = work;
+        let q = &inputs[0];
+        match self {
+            Self::FramePose(frame) => {
+                positions(model, data, q);
+                let pose = frame_pose(model, data, q, frame);
+                let (r, p, zero) = (pose.rot_wf, pose.pos_w, S::of(0.0));
+                out[0].copy_from_slice(&[
+                    r.x.x,
+                    r.y.x,
+                    r.z.x,
+                    p.x,
+                    r.x.y,
+                    r.y.y,
+                    r.z.y,
+                    p.y,
+                    r.x.z,
+                    r.y.z,
+                    r.z.z,
+                    p.z,
+                    zero,
+                    zero,
+                    zero,
+                    S::of(1.0),
+                ]);
+            }
+            Self::FrameVelocity(frame) => {
+                kinematics(model, data, q, &inputs[1]);
+                frame_velocity(model, data, q, frame).write(&mut out[0]);
+            }
+            Self::FrameJacobian(frame) => {
+                positions(model, data, q);
+                frame_jacobian(model, data, q, frame, &mut out[0]);
+            }
+            Self::MassMatrix => mass_matrix(model, data, q, &mut out[0]),
+            Self::BiasForces => bias_forces(model, data, q, &inputs[1], &mut out[0]),
+            Self::InverseDynamics => {
+                inverse_dynamics(model, data, q, &inputs[1], &inputs[2], external, &mut out[0])
+            }
+            Self::ForwardDynamics => {
+                forward_dynamics(model, data, q, &inputs[1], &inputs[2], external, &mut out[0])
+            }
+            Self::Momentum => {
+                kinematics(model, data, q, &inputs[1]);
+                let h = momentum(data, q);
+                Force::new(h.linear, h.angular).write(&mut out[0]);
+            }
+            Self::KineticEnergy => {
+                kinematics(model, data, q, &inputs[1]);
+                out[0][0] = kinetic_energy(model, data, &inputs[1]);
+            }
+            Self::CenterOfMass => {
+                positions(model, data, q);
+                center_of_mass(data, q).write(&mut out[0]);
+            }
+            Self::FreeFloating(frame) => {
+                free_floating(model, data, q, &inputs[1], frame, external, reduced);
+                out[0].copy_from_slice(&reduced.inertia);
+                out[1].copy_from_slice(&reduced.bias);
+                out[2].copy_from_slice(&reduced.external);
+                out[3].copy_from_slice(&reduced.jacobian);
+                reduced.drift.write(&mut out[4]);
+            }
+            Self::Integrate => integrate(q, &inputs[1], &mut out[0]),
+            Self::Difference => difference(q, &inputs[1], &mut out[0]),
+        }
+    }
+}

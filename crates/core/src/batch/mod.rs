@@ -1,0 +1,9 @@
+//! Every kernel for one state or many: inputs and outputs are flat rows of `f64`.
+
+mod evaluate;
+mod input;
+mod kernel;
+
+pub use evaluate::{Evaluator, Rows, RowsMut};
+pub use input::InputError;
+pub use kernel::Kernel;

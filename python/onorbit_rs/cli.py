@@ -1,0 +1,106 @@
+"""The command ``onorbit``: run, list, check, show."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from onorbit_rs.exceptions import OnOrbitError, RunInterrupted
+
+app = typer.Typer(
+    name="onorbit",
+    help="Simulate free-floating robots in orbit.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+ScenarioArgument = Annotated[
+    str, typer.Argument(metavar="NAME_OR_FILE", help="A bundled name or a YAML file.")
+]
+
+
+OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write results here.")]
+ForceOption = Annotated[bool, typer.Option("--force", help="Replace the run that is in DIR.")]
+QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar, no summary.")]
+
+
+@app.command()
+def run(
+    scenario: ScenarioArgument,
+    out: OutOption = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
+) -> None:
+    """Run a scenario and certify its momentum and energy."""
+    from onorbit_rs import report
+    from onorbit_rs.running import run as run_scenario
+
+    result = run_scenario(scenario, out=out, force=force, quiet=quiet)
+    if not quiet:
+        report.print_summary(result.summary, result.out)
+
+
+@app.command(name="list")
+def list_() -> None:
+    """List the bundled scenarios and robots."""
+    from onorbit_rs import report
+
+    report.print_bundled()
+
+
+@app.command()
+def check(scenario: ScenarioArgument) -> None:
+    """Check a scenario and everything it names, without running it."""
+    from onorbit_rs import report
+    from onorbit_rs.scenario import load
+    from onorbit_rs.scenario.build import build
+
+    report.print_checked(build(load(scenario)))
+
+
+@app.command()
+def show(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that a run has written.")],
+    viewer: Annotated[bool, typer.Option(help="Open the recording where there is a screen.")] = True,
+    picture: Annotated[Path | None, typer.Option(metavar="FILE", help="Save a PNG of the viewer.")] = None,
+    at: Annotated[float, typer.Option(metavar="SECONDS", help="Moment of the picture.")] = 0.0,
+) -> None:
+    """Print the summary of a run and open its recording, or save a picture of it."""
+    from onorbit_rs import report
+
+    report.print_run(folder)
+    if picture is not None:
+        report.save_picture(folder, picture, at)
+    elif viewer:
+        report.open_viewer(folder)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Entry point: an error is one line on stderr and exit code 2, Ctrl-C is 130."""
+    try:
+        code = app(arguments, standalone_mode=False)
+    except OnOrbitError as error:
+        _fail(str(error), 2)
+    except RunInterrupted as stop:
+        _fail(str(stop), 130)
+    except KeyboardInterrupt:
+        _fail("stopped by Ctrl-C", 130)
+    except typer.TyperException as error:
+        _fail(error.format_message(), 2)
+    except BrokenPipeError:
+        sys.stderr.close()
+        sys.exit(0)
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _fail(message: str, code: int) -> None:
+    print(f"onorbit: {' '.join(message.split())}", file=sys.stderr)
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    main()

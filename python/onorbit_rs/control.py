@@ -1,0 +1,43 @@
+"""Your own controller: a class with ``update``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+class Controller:
+    """Base class of controllers written in Python.
+
+    Give one to :class:`onorbit_rs.Simulation` as ``controller=``. An exception raised in ``update`` stops the
+    run and comes out of ``run`` as itself.
+
+    Examples
+    --------
+    >>> class Brake(Controller):
+    ...     def update(self, t, state):
+    ...         return -0.5 * state.v[6:]
+    """
+
+    def reset(self) -> None:
+        """Called at the start of every run; forget what an earlier run left behind."""
+
+    def update(self, t: float, state: Any) -> ArrayLike:
+        """Joint torques held until the next call.
+
+        Parameters
+        ----------
+        t : float
+            Time of simulation, s.
+        state : object with ``q`` and ``v``
+            ``q`` (nq,): base position (m, W), base quaternion xyzw, joints (rad or m);
+            ``v`` (nv,): base twist (m/s and rad/s, body axes), joint rates.
+
+        Returns
+        -------
+        (n,) array
+            N m (N on a prismatic joint).
+        """
+        raise NotImplementedError(f"{type(self).__name__} has no update(t, state)")

@@ -1,0 +1,100 @@
+"""The summary of a run: flat, one number per key, its unit in the key."""
+
+from __future__ import annotations
+
+import math
+import platform
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs import _core
+from onorbit_rs.output.verdict import failures
+from onorbit_rs.rotations import angle_between
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Trace
+    from onorbit_rs.scenario import Scenario
+
+Summary = dict[str, Any]
+
+
+def summarize(trace: Trace, scenario: Scenario, *, wall_s: float, status: str = "complete") -> Summary:
+    """Everything a reader wants to know of a run without opening its trace.
+
+    Parameters
+    ----------
+    trace : Trace
+    scenario : Scenario
+    wall_s : float
+        Wall-clock time of the simulation loop alone, s.
+    status : str
+        ``complete``, ``interrupted`` or ``diverged``.
+
+    Returns
+    -------
+    dict
+        As in ``summary.json``; a number that is not finite is None.
+    """
+    certificate = dict(trace.certificate())
+    failed = failures(certificate)
+    simulated_s = float(trace.time[-1] - trace.time[0])
+    summary = (
+        {"scenario": scenario.name, "status": status}
+        | _tracking(trace)
+        | _motion(trace)
+        | certificate
+        | {"certificate_passed": not failed, "certificate_failures": ", ".join(failed)}
+        | {"simulated_s": simulated_s, "wall_s": wall_s}
+        | {"real_time_factor": simulated_s / wall_s if wall_s > 0.0 else None, "rows": len(trace.time)}
+        | _settings(scenario)
+        | _versions()
+    )
+    return {key: _plain(value) for key, value in summary.items()}
+
+
+def _tracking(trace: Trace) -> Summary:
+    if "position_error" not in trace.columns():
+        return {}
+    position = np.linalg.norm(trace.position_error, axis=1)
+    attitude = np.linalg.norm(trace.attitude_error, axis=1)
+    return {
+        "tracking_position_error_max_m": position.max(),
+        "tracking_position_error_final_m": position[-1],
+        "tracking_attitude_error_max_rad": attitude.max(),
+        "tracking_attitude_error_final_rad": attitude[-1],
+    }
+
+
+def _motion(trace: Trace) -> Summary:
+    q, v, tau = np.asarray(trace.q), np.asarray(trace.v), np.asarray(trace.tau)
+    motion: Summary = {}
+    if tau.size:
+        motion["joint_torque_max_nm"] = np.abs(tau).max()
+        motion["joint_rate_final_max_rad_s"] = np.abs(v[-1, 6:]).max()
+    motion["base_rotation_max_rad"] = angle_between(q[:, 3:7], q[0, 3:7]).max()
+    motion["base_displacement_max_m"] = np.linalg.norm(q[:, :3] - q[0, :3], axis=1).max()
+    return motion
+
+
+def _settings(scenario: Scenario) -> Summary:
+    settings = scenario.simulation
+    return {"time_step_s": settings.time_step, "integrator": settings.integrator}
+
+
+def _versions() -> Summary:
+    info = _core.build_info()
+    return {
+        "onorbit_rs_version": info["version"],
+        "instruction_set": info["instruction_set"],
+        "python_version": platform.python_version(),
+        "numpy_version": np.__version__,
+    }
+
+
+def _plain(value: Any) -> Any:
+    """A value JSON can hold."""
+    if isinstance(value, (bool, str, int)) or value is None:
+        return value
+    number = float(value)
+    return number if math.isfinite(number) else None

@@ -1,0 +1,88 @@
+"""Writes the files of a run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import yaml
+
+from onorbit_rs.output.folder import FIGURES, OutputFolder
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Trace
+    from onorbit_rs.scenario import Scenario
+    from onorbit_rs.scenario.build import Built
+
+
+def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
+    """``scenario.yaml``: every default written out, SI; it runs again from where it lies."""
+    source = scenario.file or "Python"
+    header = f"# resolved by onorbit_rs from {source}; run it again with: onorbit run scenario.yaml\n"
+    with folder.writing("scenario.yaml") as path:
+        text = yaml.safe_dump(
+            with_absolute_paths(scenario), sort_keys=False, default_flow_style=None, width=110
+        )
+        path.write_text(header + text, encoding="utf-8")
+
+
+def write_trace(folder: OutputFolder, trace: Trace) -> None:
+    """``trace.npz``: the columns of the trace under their own names."""
+    with folder.writing("trace.npz") as path, path.open("wb") as stream:
+        np.savez(stream, **{name: np.asarray(getattr(trace, name)) for name in trace.columns()})
+
+
+def write_summary(folder: OutputFolder, summary: dict[str, Any]) -> None:
+    """``summary.json``."""
+    with folder.writing("summary.json") as path:
+        path.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def write_pictures(folder: OutputFolder, trace: Trace, summary: dict[str, Any], built: Built) -> None:
+    """Figures and recording."""
+    # Imported here: matplotlib and rerun take a second that a run without output should not pay.
+    from onorbit_rs import figures, viewer
+
+    if len(trace.time) > 1:
+        figures.save_all(trace, built.model, folder.path / FIGURES)
+    with folder.writing("run.rrd") as path:
+        viewer.write_recording(
+            path,
+            trace,
+            built.model,
+            title=built.scenario.name,
+            notes=notes(summary, built.scenario),
+            orbit_path=one_revolution(built.orbit),
+        )
+
+
+def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
+    """The resolved scenario with paths that hold from any folder."""
+    data = scenario.resolved()
+    beside = scenario.file.parent if scenario.file else Path()
+    robot = data["robot"]
+    if "urdf" in robot:
+        robot["urdf"] = str((beside / robot["urdf"]).resolve())
+    if "package_paths" in robot:
+        robot["package_paths"] = [str((beside / folder).resolve()) for folder in robot["package_paths"]]
+    return data
+
+
+def notes(summary: dict[str, Any], scenario: Scenario) -> str:
+    """The summary as Markdown."""
+    rows = "\n".join(f"| {key} | {_short(value)} |" for key, value in summary.items())
+    return f"# {scenario.name}\n\n{scenario.description}\n\n| | |\n|-|-|\n{rows}\n"
+
+
+def one_revolution(orbit: Any, points: int = 361) -> Any:
+    """(k, 3) positions along a closed orbit, m; None where there is none."""
+    period = getattr(orbit, "period", None)
+    if period is None or not np.isfinite(period):
+        return None
+    return np.asarray(orbit.state(np.linspace(0.0, period, points))[0])
+
+
+def _short(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,137 @@
+"""What the command line prints."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.table import Table
+
+from onorbit_rs.exceptions import NotFoundError, OnOrbitError, OutputFolderError, ReadError
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.build import Built
+
+_ROWS = (
+    ("tracking_position_error_max_m", "tool position error, largest", "m"),
+    ("tracking_attitude_error_max_rad", "tool attitude error, largest", "rad"),
+    ("joint_torque_max_nm", "joint torque, largest", "N m"),
+    ("base_rotation_max_rad", "base rotation, largest", "rad"),
+    ("simulated_s", "simulated", "s"),
+    ("wall_s", "wall clock of the simulation loop", "s"),
+    ("real_time_factor", "times real time", ""),
+)
+_FILES = (
+    ("summary.json", "these numbers and more"),
+    ("trace.npz", "every column of the trace, for numpy"),
+    ("figures", "the figures, PNG"),
+    ("run.rrd", "the recording, for the rerun viewer"),
+    ("scenario.yaml", "the scenario with every default; it runs again"),
+)
+
+
+def print_summary(summary: dict[str, Any], out: Path | None) -> None:
+    """The main numbers, the verdict, where the files are and what to do next."""
+    console = Console(highlight=False)
+    table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
+    for key, name, unit in _ROWS:
+        if summary.get(key) is not None:
+            table.add_row(name, f"{summary[key]:.4g} {unit}")
+    console.print(f"[bold]{summary.get('scenario', '')}[/bold]: {summary.get('status', '')}")
+    console.print(table)
+    console.print(_verdict(summary), soft_wrap=True)
+    if out is None:
+        console.print("nothing was written; keep the results with --out DIR", soft_wrap=True)
+        return
+    for name, what in _FILES:
+        if (out / name).exists():
+            console.print(f"  {out / name}  [dim]{what}[/dim]", soft_wrap=True)
+    console.print(f"next: onorbit show {out}", soft_wrap=True)
+
+
+def _verdict(summary: dict[str, Any]) -> str:
+    """Green or red, with the balances behind it."""
+    balances = [
+        f"{name.removesuffix('_rel').replace('_', ' ')} {value:.1e}"
+        for name, value in summary.items()
+        if name.endswith("_rel") and isinstance(value, float)
+    ]
+    if summary.get("certificate_passed"):
+        return f"[green]certificate passed[/green]: {', '.join(balances)}"
+    return f"[red]certificate FAILED[/red] ({summary.get('certificate_failures')}): {', '.join(balances)}"
+
+
+def print_bundled() -> None:
+    """Scenarios with their descriptions, and robots."""
+    from onorbit_rs import robots, scenarios
+    from onorbit_rs.scenario import load
+
+    console = Console(highlight=False)
+    table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
+    for name in scenarios.names():
+        table.add_row(f"[bold]{name}[/bold]", load(name).description)
+    console.print("scenarios (onorbit run NAME --out DIR):")
+    console.print(table)
+    console.print(f"robots: {', '.join(robots.names())}")
+
+
+def print_checked(built: Built) -> None:
+    """What would run."""
+    scenario, model = built.scenario, built.model
+    settings = scenario.simulation
+    parts = [
+        f"{model.name} ({len(model.joint_names)} joints, {model.mass:.4g} kg)",
+        f"orbit {scenario.orbit.kind}" if scenario.orbit else "no orbit",
+        *(effect.kind for effect in scenario.environment),
+        scenario.controller.kind if scenario.controller else "no controller",
+        f"{settings.duration:g} s at {settings.time_step:g} s with {settings.integrator}",
+    ]
+    print(f"ok: {scenario.name}: {', '.join(parts)}")
+
+
+def print_run(folder: Path) -> None:
+    """Print a finished run's summary.
+
+    Raises
+    ------
+    NotFoundError
+        No such folder, or no run in it.
+    ReadError
+        Its summary cannot be read.
+    """
+    file = folder / "summary.json"
+    if not file.is_file():
+        what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
+        raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
+    try:
+        summary = json.loads(file.read_text(encoding="utf-8"))
+        print_summary(dict(summary), folder)
+    except (ValueError, TypeError, OSError) as error:
+        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error
+
+
+def open_viewer(folder: Path) -> None:
+    """Open the recording of a run where there is a screen, or say how."""
+    from onorbit_rs.viewer.screen import has_screen, open_recording
+
+    recording = folder / "run.rrd"
+    if recording.is_file() and has_screen():
+        open_recording(recording)
+    elif recording.is_file():
+        print(f"no screen here; open the recording with: rerun {recording}")
+
+
+def save_picture(folder: Path, picture: Path, at_s: float) -> None:
+    """Save what the viewer shows at a moment."""
+    from onorbit_rs import viewer
+
+    try:
+        viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s)
+    except OSError as error:
+        if isinstance(error, OnOrbitError):
+            raise
+        reason = error.strerror or error
+        raise OutputFolderError(f"cannot write {picture}: {reason}", path=str(picture)) from error
+    print(f"picture: {picture}")

@@ -1,0 +1,122 @@
+"""Objects of the engine from a checked scenario; what the engine refuses is told with its place in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs import _core, robots
+from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.scenario.environment import BodyWrenchEffect
+from onorbit_rs.scenario.orbit import KeplerOrbit
+from onorbit_rs.scenario.reference import reference_of
+from onorbit_rs.scenario.schema import Scenario
+from onorbit_rs.scenario.start import initial_state
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Built:
+    """Everything a run needs."""
+
+    scenario: Scenario
+    model: _core.Model
+    orbit: _core.Kepler | None
+    q: Floats
+    v: Floats
+    simulation: _core.Simulation
+
+
+def build(scenario: Scenario) -> Built:
+    """Robot, orbit, start and simulation of a scenario; nothing runs yet.
+
+    Raises
+    ------
+    OnOrbitError
+        The fitting subclass, with file, line and place before the engine's own words.
+    """
+    with located(scenario, "robot"):
+        model = _robot(scenario)
+    with located(scenario, "orbit"):
+        orbit = None if scenario.orbit is None else _orbit(scenario.orbit)
+    with located(scenario, "initial"):
+        q, v = initial_state(scenario.initial, model, orbit)
+    effects = []
+    for index, effect in enumerate(scenario.environment):
+        with located(scenario, "environment", index):
+            effects.append(_effect(effect))
+    controller = reference = None
+    if scenario.controller is not None and scenario.tool is not None:
+        with located(scenario, "controller"):
+            gains = scenario.controller.model_dump(exclude_none=True, exclude={"kind"})
+            controller = _core.ComputedTorque(model, scenario.tool, **_as_arrays(gains))
+        with located(scenario, "reference"):
+            reference = reference_of(scenario.reference, model.frame_pose(q, scenario.tool))
+    with located(scenario, "simulation"):
+        settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
+        simulation = _core.Simulation(
+            model, q, v, orbit=orbit, environment=effects, controller=controller, reference=reference,
+            tool=scenario.tool, **settings,
+        )  # fmt: skip
+    return Built(scenario, model, orbit, q, v, simulation)
+
+
+@contextmanager
+def located(scenario: Scenario, *at: str | int) -> Iterator[None]:
+    """Put file, line and place before the message of an error of ours; its class stays."""
+    try:
+        yield
+    except OnOrbitError as error:
+        if getattr(error, "located", False):
+            raise
+        line, place = scenario.line_of(*at), _dotted(at)
+        where = f"{scenario.file or 'scenario'}" + (f":{line}" if line else "")
+        error.message = f"{where}: {place}: {error.message}"
+        error.located = True  # type: ignore[attr-defined]  # set once, read above
+        raise
+
+
+def _dotted(at: tuple[str | int, ...]) -> str:
+    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in at).removeprefix(".")
+
+
+def _robot(scenario: Scenario) -> _core.Model:
+    robot = scenario.robot
+    if robot.rigid_body is not None:
+        return _core.Model.rigid_body(robot.rigid_body.mass, np.array(robot.rigid_body.inertia))
+    if robot.bundled is not None:
+        return robots.load(robot.bundled)
+    assert robot.urdf is not None  # the schema lets exactly one through
+    beside = scenario.file.parent if scenario.file else Path()
+    packages = [beside / folder for folder in robot.package_paths]
+    return _core.Model.from_urdf(beside / robot.urdf, package_paths=packages or None)
+
+
+def _orbit(orbit: KeplerOrbit) -> _core.Kepler:
+    given = orbit.given()
+    if orbit.is_from_state:
+        position, velocity = given.pop("position"), given.pop("velocity")
+        return _core.Kepler.from_state(np.array(position), np.array(velocity), **given)
+    return _core.Kepler(**given)
+
+
+def _effect(effect: Any) -> Any:
+    if isinstance(effect, BodyWrenchEffect):
+        times = {"start": effect.start} | ({} if effect.end is None else {"end": effect.end})
+        return _core.BodyWrench(
+            effect.body, force=np.array(effect.force), torque=np.array(effect.torque), **times
+        )
+    return _core.GravityGradient()
+
+
+def _as_arrays(gains: dict[str, Any]) -> dict[str, Any]:
+    return {name: np.array(value) if isinstance(value, list) else value for name, value in gains.items()}

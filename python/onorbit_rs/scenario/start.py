@@ -1,0 +1,92 @@
+"""The first state of a run, `q` and `v`, from the scenario's ``initial``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onorbit_rs.exceptions import FrameError, ShapeError
+from onorbit_rs.names import did_you_mean, nearest
+from onorbit_rs.rotations import (
+    matrix_from_quaternion,
+    quaternion_from_matrix,
+    quaternion_from_roll_pitch_yaw,
+)
+from onorbit_rs.scenario.initial import Attitude, InitialState
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Kepler, Model
+
+    Floats = NDArray[np.float64]
+
+
+def initial_state(initial: InitialState, model: Model, orbit: Kepler | None) -> tuple[Floats, Floats]:
+    """Configuration and velocity at time zero.
+
+    Given relative to L, position and attitude turn with `R_il`, and the motion of L is added in body axes:
+    `ω_b = ω + R_bl ω_l` and `v_b = v + R_bl (ω_l × p_l)`, with the rate `ω_l` of L in its own axes.
+
+    Returns
+    -------
+    q : (nq,) array
+        m, quaternion xyzw, rad or m.
+    v : (nv,) array
+        m/s, rad/s in body axes, joint rates.
+
+    Raises
+    ------
+    FrameError
+        A joint that does not exist; suggests the nearest.
+    ShapeError
+        A list of joints of the wrong length.
+    """
+    q, v = np.array(model.neutral(), dtype=np.float64), np.zeros(model.nv)
+    rot_fb = matrix_from_quaternion(_quaternion(initial.attitude))
+    position, linear, angular = (
+        np.array(values) for values in (initial.position, initial.linear_velocity, initial.angular_velocity)
+    )
+    if initial.frame == "lvlh" and orbit is not None:
+        rot_il, rate = (np.asarray(value, dtype=np.float64) for value in orbit.lvlh(0.0))
+        linear = linear + rot_fb.T @ np.cross(rate, position)
+        angular = angular + rot_fb.T @ rate
+        position, rot_fb = rot_il @ position, rot_il @ rot_fb
+    q[:3], q[3:7] = position, quaternion_from_matrix(rot_fb)
+    v[:3], v[3:6] = linear, angular
+    q[7:] = _joint_values("joints", initial.joints, q[7:], model.joint_names)
+    v[6:] = _joint_values("joint_rates", initial.joint_rates, v[6:], model.joint_names)
+    return q, v
+
+
+def _quaternion(attitude: Attitude | None) -> Floats:
+    if attitude is None:
+        return np.array([0.0, 0.0, 0.0, 1.0])
+    if attitude.quaternion_xyzw is not None:
+        quat = np.array(attitude.quaternion_xyzw)
+        return quat / np.linalg.norm(quat)
+    return quaternion_from_roll_pitch_yaw(np.array(attitude.roll_pitch_yaw))
+
+
+def _joint_values(
+    name: str, given: list[float] | dict[str, float], default: Floats, joints: Sequence[str]
+) -> Floats:
+    """Values in the order of the model's joints."""
+    values = default.copy()
+    if isinstance(given, dict):
+        for joint, value in given.items():
+            if joint not in joints:
+                hint = did_you_mean(joint, joints)
+                raise FrameError(
+                    f"{name}: no joint is named {joint!r}{hint}",
+                    name=joint, kind="joint", known=list(joints), suggestion=nearest(joint, joints),
+                )  # fmt: skip
+            values[joints.index(joint)] = value
+    elif given:
+        if len(given) != len(joints):
+            message = f"{name} has {len(given)} entries, the robot has {len(joints)} moving joints"
+            raise ShapeError(message, name=name, expected=(len(joints),), got=(len(given),))
+        values[:] = given
+    return values

@@ -1,0 +1,144 @@
+"""The command line: an error is one line and exit code 2, and the happy path says where things are."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from onorbit_rs import scenarios
+
+SHORT_REACH = (
+    scenarios.path("humanoid_reach")
+    .read_text()
+    .replace("duration: 6 s", "duration: 0.1 s")
+    .replace("time_step: 1 ms", "time_step: 5 ms")
+)
+
+
+def onorbit(*arguments: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "onorbit_rs", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False)
+
+
+def refusal(*arguments: str | Path, cwd: Path | None = None) -> str:
+    done = onorbit(*arguments, cwd=cwd)
+    assert done.returncode == 2, done
+    lines = done.stderr.splitlines()
+    assert len(lines) == 1, lines
+    assert lines[0].startswith("onorbit: ")
+    assert "Traceback" not in done.stderr + done.stdout
+    return lines[0]
+
+
+def test_list_names_every_bundled_scenario() -> None:
+    done = onorbit("list")
+    assert done.returncode == 0
+    for name in ("humanoid_reach", "kepler_orbit", "free_tumble", "humanoid_torso", "humanoid_dual_arm"):
+        assert name in done.stdout
+
+
+@pytest.mark.parametrize("name", scenarios.names())
+def test_check_accepts_every_bundled_scenario(name: str) -> None:
+    done = onorbit("check", name)
+    assert done.returncode == 0, done
+    assert done.stdout.startswith(f"ok: {name}: ")
+
+
+def test_run_writes_the_folder_and_show_reads_it(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(SHORT_REACH)
+    done = onorbit("run", "mine.yaml", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 0, done
+    assert "certificate passed" in done.stdout
+    assert "onorbit show out" in done.stdout
+    assert (tmp_path / "out" / "run.rrd").is_file()
+    shown = onorbit("show", "out", "--no-viewer", cwd=tmp_path)
+    assert shown.returncode == 0, shown
+    assert "tool position error" in shown.stdout
+    assert "--force" in refusal("run", "mine.yaml", "--out", "out", cwd=tmp_path)
+    again = onorbit("run", "mine.yaml", "--out", "out", "--force", "--quiet", cwd=tmp_path)
+    assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "says"),
+    [
+        ("semi_major_axis", "semi_major_axix", ":11: orbit.semi_major_axix: unknown key, did you mean"),
+        ("tool: tool ", "tool: toll ", "tool"),
+        ("robot: humanoid_torso", "robot: humanoid_torsoo", ":6: robot: no bundled robot"),
+        ("robot: humanoid_torso", "robot: missing.urdf", ":6: robot: "),
+        ("[0.5342, -2.341", "[-2.341", "joints has 6 entries, the robot has 7"),
+        (
+            "joints: [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]",
+            "joints: {elbow: 0}",
+            "elbow",
+        ),
+        ("robot: humanoid_torso", "robot: [", "broken YAML"),
+    ],
+)
+def test_a_wrong_scenario_is_one_line(tmp_path: Path, right: str, wrong: str, says: str) -> None:
+    assert right in SHORT_REACH
+    file = tmp_path / "mine.yaml"
+    file.write_text(SHORT_REACH.replace(right, wrong))
+    for command in ("check", "run"):
+        line = refusal(command, file)
+        assert says in line
+        assert str(file) in line
+
+
+@pytest.mark.parametrize(
+    ("urdf", "says"),
+    [
+        ("", "mine.urdf"),
+        ("not xml", "mine.urdf"),
+        ("<robot name='x'>", "mine.urdf"),
+        ("<robot name='x'/>", "mine.urdf"),
+    ],
+)
+def test_a_wrong_urdf_is_one_line(tmp_path: Path, urdf: str, says: str) -> None:
+    (tmp_path / "mine.urdf").write_text(urdf)
+    file = tmp_path / "mine.yaml"
+    file.write_text(SHORT_REACH.replace("robot: humanoid_torso", "robot: mine.urdf"))
+    assert says in refusal("check", file)
+
+
+def test_wrong_arguments_are_one_line(tmp_path: Path) -> None:
+    assert "NAME_OR_FILE" in refusal("run")
+    assert "No such option" in refusal("run", "humanoid_reach", "--bar")
+    assert "No such command" in refusal("rum")
+    assert "did you mean 'humanoid_reach'" in refusal("run", "humanoid_rech")
+    assert "no such folder" in refusal("show", tmp_path / "nowhere")
+    assert "no run in this folder" in refusal("show", tmp_path)
+    (tmp_path / "summary.json").write_text("[")
+    assert "cannot read" in refusal("show", tmp_path)
+    assert "is a folder" in refusal("check", tmp_path)
+
+
+def test_binary_scenario_is_one_line(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_bytes(bytes(range(256)))
+    assert "binary" in refusal("check", file)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")
+def test_ctrl_c_keeps_the_trace_so_far_and_says_so(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(SHORT_REACH.replace("duration: 0.1 s", "duration: 10 h\n  record_every: 1000"))
+    command = [sys.executable, "-m", "onorbit_rs", "run", str(file), "--out", str(tmp_path / "out")]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as run:
+        deadline = time.monotonic() + 60.0
+        while not (tmp_path / "out" / "scenario.yaml").exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(0.5)  # inside the simulation loop
+        run.send_signal(signal.SIGINT)
+        _, stderr = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert stderr.startswith("onorbit: stopped by Ctrl-C at t = ")
+    assert "the trace so far is in" in stderr
+    assert len(stderr.splitlines()) == 1
+    assert (tmp_path / "out" / "trace.npz").is_file()

@@ -1,0 +1,73 @@
+"""The output folder: refused before the run where it is foreign or closed, never half-written."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from onorbit_rs.exceptions import (
+    OnOrbitError,
+    OutputFolderError,
+    OutputNotEmptyError,
+    OutputNotWritableError,
+)
+from onorbit_rs.output.folder import OutputFolder
+
+
+def test_a_missing_folder_is_made(tmp_path: Path) -> None:
+    folder = OutputFolder.claim(tmp_path / "a" / "b")
+    assert folder.path.is_dir() and not list(folder.path.iterdir())
+
+
+def test_a_folder_with_files_asks_for_force(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("precious")
+    with pytest.raises(OutputNotEmptyError, match="--force") as caught:
+        OutputFolder.claim(tmp_path)
+    assert isinstance(caught.value, OnOrbitError) and isinstance(caught.value, FileExistsError)
+    assert caught.value.path == str(tmp_path)
+
+
+def test_force_replaces_a_run_and_nothing_else(tmp_path: Path) -> None:
+    (tmp_path / "figures").mkdir()
+    for name in ("summary.json", "run.rrd", "figures/old.png", "mine.txt", "figures/mine.txt"):
+        (tmp_path / name).write_text("old")
+    OutputFolder.claim(tmp_path, force=True)
+    left = {str(file.relative_to(tmp_path)) for file in tmp_path.rglob("*") if file.is_file()}
+    assert left == {"mine.txt", "figures/mine.txt"}
+
+
+def test_a_file_in_place_of_the_folder(tmp_path: Path) -> None:
+    file = tmp_path / "file"
+    file.write_text("")
+    with pytest.raises(OutputNotWritableError, match="is a file") as caught:
+        OutputFolder.claim(file)
+    assert isinstance(caught.value, PermissionError)
+    with pytest.raises(OutputNotWritableError, match="cannot be written"):
+        OutputFolder.claim(file / "below")
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root writes everywhere")
+def test_a_closed_folder_is_refused(tmp_path: Path) -> None:
+    tmp_path.chmod(0o500)
+    try:
+        with pytest.raises(OutputNotWritableError, match="cannot be written"):
+            OutputFolder.claim(tmp_path)
+    finally:
+        tmp_path.chmod(0o700)
+
+
+def test_a_read_only_file_system_is_refused() -> None:
+    with pytest.raises(OutputNotWritableError, match="cannot be written"):
+        OutputFolder.claim("/proc/onorbit")
+
+
+def test_a_failed_write_leaves_the_old_file_and_no_partial_one(tmp_path: Path) -> None:
+    folder = OutputFolder.claim(tmp_path)
+    (tmp_path / "summary.json").write_text("old")
+    with pytest.raises(OutputFolderError, match="No space left"), folder.writing("summary.json") as path:
+        path.write_text("half")
+        raise OSError(28, "No space left on device")
+    assert [file.name for file in tmp_path.iterdir()] == ["summary.json"]
+    assert (tmp_path / "summary.json").read_text() == "old"
