@@ -44,8 +44,8 @@ pub(crate) struct PyGravityGradient;
 #[pymethods]
 impl PyGravityGradient {
     #[new]
-    fn new() -> (Self, PyEffect) {
-        (Self, PyEffect { kind: Kind::GravityGradient })
+    fn new() -> PyClassInitializer<Self> {
+        PyClassInitializer::from(PyEffect { kind: Kind::GravityGradient }).add_subclass(Self)
     }
 
     fn __repr__(&self) -> &'static str {
@@ -70,7 +70,7 @@ impl PyBodyWrench {
         torque: Option<Any<'_, '_>>,
         start: f64,
         end: f64,
-    ) -> PyResult<(Self, PyEffect)> {
+    ) -> PyResult<PyClassInitializer<Self>> {
         let vector = |value: Option<Any<'_, '_>>, name| {
             Ok::<_, PyErr>(Vector3::from(value.map_or(Ok([0.0; 3]), |value| fixed::<3>(value, name, &[3]))?))
         };
@@ -79,6 +79,7 @@ impl PyBodyWrench {
         BodyWrench::new(0, force, torque)
             .and_then(|wrench| wrench.during(start, end))
             .map_err(|error| error.into_python(py))?;
-        Ok((Self, PyEffect { kind: Kind::BodyWrench { frame: body, force, torque, start, end } }))
+        let kind = Kind::BodyWrench { frame: body, force, torque, start, end };
+        Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
     }
 }

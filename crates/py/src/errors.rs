@@ -38,7 +38,7 @@ pub(crate) fn plain(py: Python<'_>, class: &str, message: &str) -> PyErr {
 /// Collects the fields of an error; what cannot be converted is left out of them.
 macro_rules! fields {
     ($py:expr, $($name:literal: $value:expr),* $(,)?) => {{
-        let fields = PyDict::new($py);
+        let fields = pyo3::types::PyDict::new($py);
         $( let _ = fields.set_item($name, $value); )*
         fields
     }};

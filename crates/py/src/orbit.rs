@@ -131,7 +131,7 @@ impl PyKepler {
         mu: f64,
     ) -> PyResult<Bound<'py, Self>> {
         let vector = |value, name| Ok::<_, PyErr>(Vector3::from(fixed::<3>(value, name, &[3])?));
-        let kepler = Kepler::from_state(&vector(r, "r")?, &vector(v, "v")?, mu);
+        let kepler = Kepler::from_state(vector(r, "r")?, vector(v, "v")?, mu);
         Bound::new(py, wrap(kepler.map_err(|error| error.into_python(py))?))
     }
 

@@ -5,7 +5,6 @@ use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods};
 use onorbit_core::model::Model;
 use onorbit_core::simulation::{Trace, certify};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// What a run leaves behind: one row per recorded step, first the initial state, last the end.
@@ -57,6 +56,16 @@ macro_rules! columns {
                 $( if !this.get().trace.$name.is_empty() { names.push(stringify!($name)); } )*
                 names
             }
+
+            /// The run's conservation certificate: rows (name, value, gate, passed); value None where it does not apply.
+            fn certificate(&self) -> Vec<(&'static str, Option<f64>, f64, bool)> {
+                certify(&self.model, &self.trace).rows()
+            }
+
+            /// Number of rows.
+            fn __len__(&self) -> usize {
+                self.trace.rows()
+            }
         }
     };
 }
@@ -94,17 +103,4 @@ columns! {
     position_eci: |_t| &[3];
     /// Velocity of the base's origin, inertial axes, (T, 3), m/s.
     velocity_eci: |_t| &[3];
-}
-
-#[pymethods]
-impl PyTrace {
-    /// The run's conservation certificate: a list of rows (name, value, gate, passed).
-    fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let _ = certify(&self.trace);
-        Ok(PyDict::new(py))
-    }
-
-    fn __len__(&self) -> usize {
-        self.trace.rows()
-    }
 }
