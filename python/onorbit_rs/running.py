@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -76,13 +75,12 @@ def run(
     folder = None if out is None else OutputFolder.claim(out, force=force)
     if folder is not None:
         write_scenario(folder, checked)
-    loop = _Stopwatch()
     try:
-        trace = _simulate(built, loop, quiet=quiet)
+        trace = _simulate(built, quiet=quiet)
     except (SimulationError, RunInterrupted) as stop:
-        _keep(stop, built, folder, loop.seconds)
+        _keep(stop, built, folder)
         raise
-    summary = summarize(trace, checked, wall_s=loop.seconds)
+    summary = summarize(trace, checked)
     if folder is not None:
         write_trace(folder, trace)
         write_summary(folder, summary)
@@ -90,21 +88,9 @@ def run(
     return Run(trace, summary, built.model, checked, folder.path if folder else None)
 
 
-class _Stopwatch:
-    """Wall-clock seconds spent inside, whatever ends it."""
-
-    seconds = 0.0
-
-    def __enter__(self) -> None:
-        self._started = time.perf_counter()
-
-    def __exit__(self, *_: object) -> None:
-        self.seconds = time.perf_counter() - self._started
-
-
-def _simulate(built: Built, loop: _Stopwatch, *, quiet: bool) -> Trace:
+def _simulate(built: Built, *, quiet: bool) -> Trace:
     duration = built.scenario.simulation.duration
-    with progress_bar(built.scenario.name, duration, quiet=quiet) as progress, loop:
+    with progress_bar(built.scenario.name, duration, quiet=quiet) as progress:
         trace = built.simulation.run(duration, progress=progress)
     if not trace.is_complete:
         reached = float(trace.time[-1])
@@ -114,16 +100,14 @@ def _simulate(built: Built, loop: _Stopwatch, *, quiet: bool) -> Trace:
     return trace
 
 
-def _keep(
-    stop: SimulationError | RunInterrupted, built: Built, folder: OutputFolder | None, wall_s: float
-) -> None:
+def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFolder | None) -> None:
     """Write what there is of a run that stopped early, and say where."""
     if folder is None or stop.trace is None or len(stop.trace.time) == 0:
         return
     diverged = isinstance(stop, SimulationError)
     with np.errstate(all="ignore"):  # numbers near the end of the range of floats
         status = "diverged" if diverged else "interrupted"
-        summary = summarize(stop.trace, built.scenario, wall_s=wall_s, status=status)
+        summary = summarize(stop.trace, built.scenario, status=status)
     write_trace(folder, stop.trace)
     write_summary(folder, summary)
     stop.message += f"; the trace so far is in {folder.path}"

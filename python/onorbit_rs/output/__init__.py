@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.summary import summarize
-from onorbit_rs.output.verdict import failures
 from onorbit_rs.output.write import write_pictures, write_scenario, write_summary, write_trace
 
 __all__ = [
     "OutputFolder",
-    "failures",
     "summarize",
     "write_pictures",
     "write_scenario",
