@@ -22,7 +22,7 @@ use pyo3::types::PyDict;
 /// Returns
 /// -------
 /// dict
-///     ``version`` and ``instruction_set`` (``baseline`` or ``avx2+fma``).
+///     ``version`` and ``instruction_set`` (``baseline``, ``avx2+fma`` or ``avx512``).
 #[pyfunction]
 fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let info = PyDict::new(py);
@@ -31,10 +31,11 @@ fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(info)
 }
 
-/// ``ONORBIT_INSTRUCTION_SET=baseline`` keeps the engine off newer instructions.
+/// ``ONORBIT_INSTRUCTION_SET=baseline`` (or ``avx2+fma``) keeps the engine off newer instructions.
 fn limit_instructions() {
-    if std::env::var("ONORBIT_INSTRUCTION_SET").is_ok_and(|level| level == "baseline") {
-        InstructionSet::limit(InstructionSet::Baseline);
+    let level = std::env::var("ONORBIT_INSTRUCTION_SET").ok();
+    if let Some(level) = level.as_deref().and_then(InstructionSet::named) {
+        InstructionSet::limit(level);
     }
 }
 

@@ -36,7 +36,7 @@ impl Simulation {
         }
         match InstructionSet::current() {
             InstructionSet::Baseline => self.run_with::<f64>(duration, monitor),
-            InstructionSet::Fused => self.run_with::<Fused>(duration, monitor),
+            InstructionSet::Fused | InstructionSet::Wide => self.run_with::<Fused>(duration, monitor),
         }
     }
 
