@@ -81,8 +81,8 @@ def test_an_orbit_flown_is_drawn(tmp_path: Path) -> None:
 
 def test_nothing_global_is_touched() -> None:
     program = (
-        "import matplotlib, sys; before = dict(matplotlib.rcParams); import onorbit_rs.figures; "
-        "assert dict(matplotlib.rcParams) == before; assert 'matplotlib.pyplot' not in sys.modules"
+        "import matplotlib, sys; before = matplotlib.rcParams.copy(); import onorbit_rs.figures; "
+        "assert matplotlib.rcParams.copy() == before; assert 'matplotlib.pyplot' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -39,7 +39,10 @@ def run(
     from onorbit_rs import report
     from onorbit_rs.running import run as run_scenario
 
-    result = run_scenario(scenario, out=out, force=force, quiet=quiet)
+    try:
+        result = run_scenario(scenario, out=out, force=force, quiet=quiet)
+    except RunInterrupted as stop:  # caught here: typer would swallow a KeyboardInterrupt and its message
+        _fail(str(stop), 130)
     if not quiet:
         report.print_summary(result.summary, result.out)
 
@@ -85,9 +88,7 @@ def main(arguments: list[str] | None = None) -> None:
         code = app(arguments, standalone_mode=False)
     except OnOrbitError as error:
         _fail(str(error), 2)
-    except RunInterrupted as stop:
-        _fail(str(stop), 130)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, typer.Abort):
         _fail("stopped by Ctrl-C", 130)
     except typer.TyperException as error:
         _fail(error.format_message(), 2)
@@ -97,8 +98,9 @@ def main(arguments: list[str] | None = None) -> None:
     sys.exit(code if isinstance(code, int) else 0)
 
 
-def _fail(message: str, code: int) -> None:
-    print(f"onorbit: {' '.join(message.split())}", file=sys.stderr)
+def _fail(message: str, code: int) -> NoReturn:
+    if message:
+        print(f"onorbit: {' '.join(message.split())}", file=sys.stderr)
     sys.exit(code)
 
 

@@ -91,20 +91,17 @@ def run(
 def _simulate(built: Built, *, quiet: bool) -> Trace:
     duration = built.scenario.simulation.duration
     with progress_bar(built.scenario.name, duration, quiet=quiet) as progress:
-        trace = built.simulation.run(duration, progress=progress)
-    if not trace.is_complete:
-        reached = float(trace.time[-1])
-        raise RunInterrupted(
-            f"stopped by Ctrl-C at t = {reached:g} s of {duration:g} s", time=reached, trace=trace
-        )
-    return trace
+        return built.simulation.run(duration, progress=progress)
 
 
 def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFolder | None) -> None:
     """Write what there is of a run that stopped early, and say where."""
+    diverged = isinstance(stop, SimulationError)
+    if not diverged:
+        duration = built.scenario.simulation.duration
+        stop.message = f"stopped by Ctrl-C at t = {stop.time:g} s of {duration:g} s"
     if folder is None or stop.trace is None or len(stop.trace.time) == 0:
         return
-    diverged = isinstance(stop, SimulationError)
     with np.errstate(all="ignore"):  # numbers near the end of the range of floats
         status = "diverged" if diverged else "interrupted"
         summary = summarize(stop.trace, built.scenario, status=status)
