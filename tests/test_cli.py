@@ -10,7 +10,6 @@ import time
 from pathlib import Path
 
 import pytest
-
 from onorbit_rs import scenarios
 
 SHORT_REACH = (

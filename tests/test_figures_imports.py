@@ -5,9 +5,8 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-import pytest
-
 import onorbit_rs
+import pytest
 
 PACKAGE = Path(onorbit_rs.__file__).parent
 

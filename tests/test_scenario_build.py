@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
-
 import onorbit_rs as oo
+import pytest
 from onorbit_rs.exceptions import (
     FrameError,
     ModelError,

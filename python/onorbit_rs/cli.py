@@ -100,7 +100,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 def _fail(message: str, code: int) -> NoReturn:
     if message:
-        print(f"onorbit: {' '.join(message.split())}", file=sys.stderr)
+        typer.echo(f"onorbit: {' '.join(message.split())}", err=True)
     sys.exit(code)
 
 

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import typer
 from rich.console import Console
 from rich.table import Table
 
@@ -88,7 +89,7 @@ def print_checked(built: Built) -> None:
         scenario.controller.kind if scenario.controller else "no controller",
         f"{settings.duration:g} s at {settings.time_step:g} s with {settings.integrator}",
     ]
-    print(f"ok: {scenario.name}: {', '.join(parts)}")
+    typer.echo(f"ok: {scenario.name}: {', '.join(parts)}")
 
 
 def print_run(folder: Path) -> None:
@@ -120,7 +121,7 @@ def open_viewer(folder: Path) -> None:
     if recording.is_file() and has_screen():
         open_recording(recording)
     elif recording.is_file():
-        print(f"no screen here; open the recording with: rerun {recording}")
+        typer.echo(f"no screen here; open the recording with: rerun {recording}")
 
 
 def save_picture(folder: Path, picture: Path, at_s: float) -> None:
@@ -134,4 +135,4 @@ def save_picture(folder: Path, picture: Path, at_s: float) -> None:
             raise
         reason = error.strerror or error
         raise OutputFolderError(f"cannot write {picture}: {reason}", path=str(picture)) from error
-    print(f"picture: {picture}")
+    typer.echo(f"picture: {picture}")

@@ -30,10 +30,11 @@ def tracking_errors(trace: Trace) -> Figure:
         (trace.position_error, "m", "a) position error"),
         (trace.attitude_error, "rad", "b) attitude error"),
     ]
-    for axes, (error, unit, name) in zip(panels, rows, strict=True):
+    for axes, (column, unit, name) in zip(panels, rows, strict=True):
+        error = np.asarray(column)
         norm = np.linalg.norm(error, axis=1)
         factor, scaled_unit = with_prefix(float(norm.max()), unit)
-        plot_lines(axes, trace.time, factor * np.asarray(error), ("x", "y", "z"), XYZ_COLORS)
+        plot_lines(axes, trace.time, factor * error, ("x", "y", "z"), XYZ_COLORS)
         plot_lines(axes, trace.time, factor * norm[:, None], ("norm",), (INK,))
         axes.lines[-1].set(linestyle="--", linewidth=1.0)
         tidy(axes, "", f"{name} [{scaled_unit}]")

@@ -79,7 +79,7 @@ class OutputFolder:
             )
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            os.listdir(self.path)
+            next(self.path.iterdir(), None)
         except OSError as error:
             raise self._not_writable(error) from error
 

@@ -58,8 +58,8 @@ def _certificate(trace: Trace) -> Summary:
 def _tracking(trace: Trace) -> Summary:
     if "position_error" not in trace.columns():
         return {}
-    position = np.linalg.norm(trace.position_error, axis=1)
-    attitude = np.linalg.norm(trace.attitude_error, axis=1)
+    position = np.linalg.norm(np.asarray(trace.position_error), axis=1)
+    attitude = np.linalg.norm(np.asarray(trace.attitude_error), axis=1)
     return {
         "tracking_position_error_max_m": position.max(),
         "tracking_position_error_final_m": position[-1],

@@ -31,7 +31,10 @@ def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
 def write_trace(folder: OutputFolder, trace: Trace) -> None:
     """``trace.npz``: the columns of the trace under their own names."""
     with folder.writing("trace.npz") as path, path.open("wb") as stream:
-        np.savez(stream, **{name: np.asarray(getattr(trace, name)) for name in trace.columns()})
+        columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
+        np.savez(stream, allow_pickle=False, **columns)
+            stream, allow_pickle=False, **{name: np.asarray(getattr(trace, name)) for name in trace.columns()}
+        )
 
 
 def write_summary(folder: OutputFolder, summary: dict[str, Any]) -> None:

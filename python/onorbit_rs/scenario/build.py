@@ -58,7 +58,7 @@ def build(scenario: Scenario) -> Built:
         with located(scenario, "environment", index):
             effects.append(_effect(effect, model))
     controller = reference = None
-    if scenario.controller is not None and tool_pose is not None:
+    if scenario.controller is not None and scenario.tool is not None and tool_pose is not None:
         with located(scenario, "controller"):
             gains = scenario.controller.model_dump(exclude_none=True, exclude={"kind"})
             controller = _core.ComputedTorque(model, scenario.tool, **_as_arrays(gains))
