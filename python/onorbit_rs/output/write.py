@@ -33,8 +33,6 @@ def write_trace(folder: OutputFolder, trace: Trace) -> None:
     with folder.writing("trace.npz") as path, path.open("wb") as stream:
         columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
         np.savez(stream, allow_pickle=False, **columns)
-            stream, allow_pickle=False, **{name: np.asarray(getattr(trace, name)) for name in trace.columns()}
-        )
 
 
 def write_summary(folder: OutputFolder, summary: dict[str, Any]) -> None:
