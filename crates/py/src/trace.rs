@@ -57,9 +57,12 @@ macro_rules! columns {
                 names
             }
 
-            /// The run's conservation certificate: rows (name, value, gate, passed); value None where it does not apply.
-            fn certificate(&self) -> Vec<(&'static str, Option<f64>, f64, bool)> {
-                certify(&self.model, &self.trace).rows()
+            /// The run's conservation certificate: lines (name, value, gate, passed), those that apply to the run.
+            ///
+            /// Values are relative to scales that do not vanish: see the concepts in the documentation.
+            fn certificate(&self, py: Python<'_>) -> Vec<(&'static str, f64, f64, bool)> {
+                let checks = py.detach(|| certify(&self.model, &self.trace).checks());
+                checks.iter().map(|check| (check.name, check.value, check.gate, check.passed())).collect()
             }
 
             /// Number of rows.

@@ -7,8 +7,8 @@ use crate::model::Model;
 
 /// Constant force and torque in a body's own axes, on from `start` until `end`.
 ///
-/// In `W` about the centre of mass: `F = R f`, `T = R τ + (o + R p - c) × F`, with `R` the link's
-/// rotation, `o` its origin, `p` the point of application in link axes, `c` the centre of mass.
+/// In `W` about the centre of mass: `F = R f`, `T = R τ + (o + R p - c) × F`, with `R` the body's
+/// rotation, `o` its origin, `p` the point of application in body axes, `c` the centre of mass.
 /// On for a step iff the step's middle lies in `[start, end)`: since both are events, a step
 /// never straddles a switch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub struct BodyWrench {
 }
 
 impl BodyWrench {
-    /// Force (N) at the link's origin and torque (N m) on the body with index `body`, link axes,
+    /// Force (N) at the body's origin and torque (N m) on the body with index `body`, body axes,
     /// always on.
     ///
     /// # Errors
@@ -46,15 +46,11 @@ impl BodyWrench {
         torque: Vector3<f64>,
     ) -> Result<Self, EnvironmentError> {
         let frame = &model.frames()[frame];
-        let link = model.body_frame(frame.body);
-        // from the frame to the link that names the body: R_lf = R_klᵀ R_kf, p_l = R_klᵀ (p_kf − p_kl)
-        let rot_lk = link.rot_kf.to_nalgebra().transpose();
-        let rot_lf = rot_lk * frame.rot_kf.to_nalgebra();
-        let point = rot_lk * (frame.pos_kf - link.pos_kf).to_nalgebra();
-        Self::new(frame.body, rot_lf * force, rot_lf * torque)?.at(point)
+        let rot_kf = frame.rot_kf.to_nalgebra();
+        Self::new(frame.body, rot_kf * force, rot_kf * torque)?.at(frame.pos_kf.to_nalgebra())
     }
 
-    /// The same with its force applied at `point`, link axes, m.
+    /// The same with its force applied at `point`, body axes, m.
     ///
     /// # Errors
     /// [`EnvironmentError::NotFinite`].

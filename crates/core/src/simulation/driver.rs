@@ -43,6 +43,11 @@ impl<'a, S: Scalar> Driver<'a, S> {
         matches!(self, Self::ComputedTorque { law, .. } if law.compensate_environment)
     }
 
+    /// Whether the law is one of ours.
+    pub(super) fn is_built_in(&self) -> bool {
+        matches!(self, Self::ComputedTorque { .. })
+    }
+
     /// Puts new torques into the plant, whose kinematics are those of `state`.
     pub(super) fn ask(
         &mut self,

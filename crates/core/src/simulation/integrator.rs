@@ -37,9 +37,14 @@ impl<S: Scalar> Stages<S> {
         &self.first
     }
 
-    /// `q` and `v` at the start of the last step.
-    pub(super) fn start(&self) -> [Vec<f64>; 2] {
-        [&self.start.q, &self.start.v].map(|x| x.iter().map(|x| x.value()).collect())
+    /// State at the start of the last step.
+    pub(super) fn start(&self) -> &State<S> {
+        &self.start
+    }
+
+    /// Whether the last stage began at a state of numbers.
+    pub(super) fn is_finite(&self) -> bool {
+        self.trial.is_finite()
     }
 
     /// The first stage alone. Expects kinematics and wrenches of `state` in the plant.

@@ -1,6 +1,5 @@
 //! Runs: the plant, its integrators, events, the trace and its certificate.
 
-mod attitude_check;
 mod certificate;
 mod driver;
 mod error;
@@ -14,7 +13,7 @@ mod state;
 mod surroundings;
 mod trace;
 
-pub use certificate::{Certificate, certify};
+pub use certificate::{Certificate, Check, certify};
 pub use error::{RunFailure, SimulationError};
 pub use integrator::Integrator;
 pub use run::Monitor;

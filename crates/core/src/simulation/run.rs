@@ -10,6 +10,7 @@ use super::settings::Simulation;
 use super::state::State;
 use super::surroundings::Surroundings;
 use super::trace::Trace;
+use crate::control::ControlError;
 use crate::dynamics::{kinematics, momentum};
 use crate::environment::{DifferentialGravity, Effect};
 use crate::spatial::{Fused, InstructionSet, Scalar};
@@ -52,7 +53,7 @@ impl Simulation {
             plant: Plant::<S>::new(&model, surroundings),
             driver: Driver::new(&mut self.control, self.reference.as_ref(), &model).map_err(fail)?,
             recorder: Recorder::new(
-                schedule.grid_steps() / self.record_every + 2,
+                rows(&schedule, self.record_every),
                 (model.nq(), model.nv()),
                 self.tool,
                 self.reference.as_ref(),
@@ -92,6 +93,12 @@ fn initial_state<S: Scalar>(simulation: &Simulation) -> State<S> {
     State { q, v, start, impulse: Default::default(), work: S::of(0.0) }
 }
 
+/// How many rows to make room for.
+fn rows(schedule: &Schedule, record_every: usize) -> usize {
+    let steps = if record_every == 1 { schedule.stretches() } else { schedule.grid_steps() / record_every };
+    steps.saturating_add(2)
+}
+
 /// A run under way.
 struct Run<'a, S> {
     state: State<S>,
@@ -103,7 +110,7 @@ struct Run<'a, S> {
 impl<S: Scalar> Run<'_, S> {
     fn all(
         &mut self,
-        schedule: Schedule,
+        mut schedule: Schedule,
         stages: &mut Stages<S>,
         time_step: f64,
         record_every: usize,
@@ -112,10 +119,13 @@ impl<S: Scalar> Run<'_, S> {
     ) -> Result<(), SimulationError> {
         self.plant.settle(&mut self.state);
         self.plant.set_slip(&self.state, time_step);
-        for (count, stretch) in schedule.enumerate() {
+        let mut count = 0;
+        while let Some(stretch) = schedule.next() {
             let interval = (stretch.start, stretch.end);
-            self.begin(stretch.start, interval, stretch.is_control_tick)?;
-            let is_row = stretch.grid_step.is_some_and(|step| step % record_every == 0);
+            let begun = self.begin(stages, stretch.start, interval, stretch.is_control_tick);
+            begun.map_err(|error| self.name_divergence(error, stages, stretch.start))?;
+            // a step cut short by an event is a step: with all of them recorded, jumps lie at rows
+            let is_row = record_every == 1 || stretch.grid_step.is_some_and(|step| step % record_every == 0);
             if is_row {
                 self.record(stretch.start)?;
             }
@@ -123,23 +133,32 @@ impl<S: Scalar> Run<'_, S> {
             if is_row {
                 self.recorder.accelerated(stages.first_acceleration());
             }
-            result?;
+            result.map_err(|error| self.name_divergence(error, stages, stretch.start))?;
             if !self.state.is_finite() {
-                let [q, v] = stages.start();
-                return Err(SimulationError::Diverged { time: stretch.start, q, v });
+                return Err(self.diverged(stages, stretch.start));
             }
-            if count % MONITOR_EVERY == MONITOR_EVERY - 1 && monitor(stretch.end).is_break() {
-                self.end(stages, stretch.end)?;
+            count += 1;
+            if count % MONITOR_EVERY == 0 && monitor(stretch.end).is_break() {
+                self.end(stages, stretch.end, schedule.is_control_tick())?;
                 return Err(SimulationError::Interrupted { time: stretch.end });
             }
         }
-        self.end(stages, duration)
+        self.end(stages, duration, schedule.is_control_tick())
     }
 
     /// Kinematics, wrenches and torques at the start of a step.
-    fn begin(&mut self, t: f64, interval: (f64, f64), is_control_tick: bool) -> Result<(), SimulationError> {
+    fn begin(
+        &mut self,
+        stages: &Stages<S>,
+        t: f64,
+        interval: (f64, f64),
+        is_control_tick: bool,
+    ) -> Result<(), SimulationError> {
+        self.plant.settle(&mut self.state);
+        if !self.state.is_finite() {
+            return Err(self.diverged(stages, t));
+        }
         let Self { state, plant, driver, .. } = self;
-        plant.settle(state);
         if is_control_tick && !driver.compensates() {
             plant.data.clear_external();
             driver.ask(t, state, plant)?;
@@ -151,6 +170,25 @@ impl<S: Scalar> Run<'_, S> {
         Ok(())
     }
 
+    /// What a state that ran away brings about elsewhere is called by its name: a built-in law that
+    /// overflows, an orbit or an effect asked about places that are none.
+    fn name_divergence(&self, error: SimulationError, stages: &Stages<S>, t: f64) -> SimulationError {
+        let is_overflow = matches!(&error, SimulationError::Control(ControlError::TorqueNotFinite { .. }))
+            && self.driver.is_built_in();
+        if is_overflow || !self.state.is_finite() || !stages.is_finite() {
+            self.diverged(stages, t)
+        } else {
+            error
+        }
+    }
+
+    /// The error that carries the last finite state.
+    fn diverged(&self, stages: &Stages<S>, time: f64) -> SimulationError {
+        let last = if self.state.is_finite() { &self.state } else { stages.start() };
+        let [q, v] = [&last.q, &last.v].map(|x| x.iter().map(|x| x.value()).collect());
+        SimulationError::Diverged { time, q, v }
+    }
+
     fn record(&mut self, t: f64) -> Result<(), SimulationError> {
         let orbit = self.plant.surroundings.orbit_state(t)?;
         self.recorder.row(t, &self.state, &self.plant, orbit);
@@ -158,8 +196,9 @@ impl<S: Scalar> Run<'_, S> {
     }
 
     /// The last row: the state at the end, with the torque that would be held from there.
-    fn end(&mut self, stages: &mut Stages<S>, t: f64) -> Result<(), SimulationError> {
-        self.begin(t, (t, t), true)?;
+    fn end(&mut self, stages: &mut Stages<S>, t: f64, is_control_tick: bool) -> Result<(), SimulationError> {
+        let begun = self.begin(stages, t, (t, t), is_control_tick);
+        begun.map_err(|error| self.name_divergence(error, stages, t))?;
         self.record(t)?;
         stages.accelerate(&mut self.plant, &self.state);
         self.recorder.accelerated(stages.first_acceleration());

@@ -96,7 +96,7 @@ impl Surroundings {
             seen.mass = node.mass;
             seen.inertia = Sym3::of(&node.about_com).rotate(&rot_wk).to_nalgebra();
             seen.com = (rot_wb * body.com_b + origin).to_nalgebra();
-            seen.rot_wk = (rot_wk * Mat3::of(&model.body_frame(k).rot_kf)).to_nalgebra();
+            seen.rot_wk = rot_wk.to_nalgebra();
             seen.origin = (rot_wb * body.pos_b + origin).to_nalgebra();
             seen.velocity = (rot_wb * body.velocity.at(body.com_b)).to_nalgebra();
             seen.angular_velocity = (rot_wb * body.velocity.angular).to_nalgebra();

@@ -1,6 +1,9 @@
 //! Random robots and states; the seed of each is in the name of the test that fails.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)] // each test binary uses its own part
 
+pub mod humanoid;
+pub mod stepper;
+
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};
 

@@ -1,0 +1,83 @@
+//! Momentum against impulse, energy against work.
+
+use super::instant::Instant;
+use super::{relative, worst};
+use crate::dynamics::Momentum;
+use crate::spatial::Vec3;
+
+/// Running balances since the first row.
+#[derive(Default)]
+pub(super) struct Balance {
+    first: Option<First>,
+    linear: f64,
+    angular: f64,
+    energy: f64,
+    relative_momentum: f64,
+    momentum: f64,
+    spin: f64,
+    angular_scale: f64,
+    size: f64,
+    last_work: f64,
+    worked: f64,
+    energy_about_com: f64,
+    energy_w: f64,
+}
+
+/// What the balances start from.
+#[derive(Clone, Copy)]
+struct First {
+    momentum: Momentum<f64>,
+    impulse: Momentum<f64>,
+    /// Energy less work, J.
+    energy: f64,
+}
+
+impl Balance {
+    pub(super) fn add(&mut self, now: &Instant<'_>) {
+        let open = now.kinetic_energy - now.work;
+        let first =
+            *self.first.get_or_insert(First { momentum: now.momentum, impulse: now.impulse, energy: open });
+        let drift = |h: Vec3<f64>, h0: Vec3<f64>, j: Vec3<f64>, j0: Vec3<f64>| ((h - h0) - (j - j0)).norm();
+        let (h, h0, j, j0) = (&now.momentum, &first.momentum, &now.impulse, &first.impulse);
+        self.linear = worst(self.linear, drift(h.linear, h0.linear, j.linear, j0.linear));
+        self.angular = worst(self.angular, drift(h.angular, h0.angular, j.angular, j0.angular));
+        self.energy = worst(self.energy, (open - first.energy).abs());
+
+        self.relative_momentum = self.relative_momentum.max(now.relative_momentum);
+        self.momentum = self.momentum.max(h.linear.norm());
+        self.spin = self.spin.max(now.spin);
+        self.angular_scale = self.angular_scale.max(now.angular);
+        self.size = self.size.max(now.size);
+        self.worked += (now.work - self.last_work).abs();
+        self.last_work = now.work;
+        // E_com = E − P²/2m
+        let carried = h.linear.dot(h.linear) / (2.0 * now.mass);
+        self.energy_about_com = self.energy_about_com.max(now.kinetic_energy - carried);
+        self.energy_w = self.energy_w.max(now.kinetic_energy);
+    }
+
+    /// Largest radius of gyration of the robot, m.
+    pub(super) fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Scale: motion of the bodies against each other. One body has none, then its spin; and what
+    /// is carried along in W is rounded at its own size.
+    pub(super) fn linear(&self) -> f64 {
+        let among = if self.relative_momentum > 0.0 { self.relative_momentum } else { self.spin };
+        relative(self.linear, among.max(self.momentum))
+    }
+
+    /// Scale: `Σ |Lₖ|`; where nothing turns, the rounding of moments of what moves on.
+    pub(super) fn angular(&self) -> f64 {
+        const ROUNDING: f64 = 1e-4;
+        relative(self.angular, self.angular_scale.max(ROUNDING * self.size * self.momentum))
+    }
+
+    /// Scale: all work done, whatever its sign, and the energy that does not depend on how fast W
+    /// sees the robot pass; of that which does only a share, for its rounding.
+    pub(super) fn energy(&self) -> f64 {
+        const ROUNDING: f64 = 1e-3;
+        relative(self.energy, self.worked + self.energy_about_com + ROUNDING * self.energy_w)
+    }
+}

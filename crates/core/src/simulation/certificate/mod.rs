@@ -1,0 +1,134 @@
+//! What a trace proves about the run that left it.
+
+mod attitude;
+mod balance;
+mod base_rows;
+mod center_of_mass;
+mod instant;
+
+use super::trace::Trace;
+use crate::model::Model;
+use attitude::Attitude;
+use balance::Balance;
+use base_rows::BaseRows;
+use center_of_mass::CenterOfMass;
+use instant::Reader;
+
+/// Largest momentum that may go missing: rounding, summed over millions of steps.
+const MOMENTUM: f64 = 1e-11;
+/// Largest energy that may go missing: what a fourth-order step leaves where it resolves the motion.
+const ENERGY: f64 = 1e-6;
+/// Largest excursion of the centre of mass from the path its momentum gives.
+const CENTER: f64 = 1e-7;
+/// Largest share of the commutator that the attitude may miss; without group integration it is 1.
+const ATTITUDE: f64 = 0.1;
+
+/// How well a trace keeps the laws of mechanics; every number is relative to a scale that does not
+/// vanish.
+///
+/// The two momenta are kept by construction by an integrator that carries them; the other numbers
+/// are not. Those that compare neighbouring rows are `None` unless every step is a row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// `max |P − P₀ − ∫F dt|` over the peak of `Σ mₖ |vₖ − v_com|` (or of `|P|`, or of the spin
+    /// where a single body moves).
+    pub linear_momentum_drift_rel: f64,
+    /// `max |L − L₀ − ∫T dt|` over the peak of `Σ |Lₖ|`, all about the system's centre of mass.
+    pub angular_momentum_drift_rel: f64,
+    /// `max |E − E₀ − W|` over `Σ |ΔW|` and the peak of the energy in the centre-of-mass frame.
+    pub energy_balance_error_rel: f64,
+    /// Distance of the centre of mass from the integral of `P/m`, over its path and the robot's size.
+    pub center_of_mass_error_rel: Option<f64>,
+    /// Base rows of inverse dynamics on differenced velocities less the mean wrench, over the
+    /// inertial forces of the bodies.
+    pub base_rows_residual_rel: Option<f64>,
+    /// What `base_rows_residual_rel` may be: the truncation of a central difference, `O(dt²)`.
+    pub base_rows_gate: f64,
+    /// Recorded turns less those that the recorded rates imply, over the accumulated commutator:
+    /// 1 where attitudes were composed without it, far below where they were integrated on the group.
+    pub attitude_consistency: Option<f64>,
+}
+
+/// One line of a certificate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Check {
+    /// Name of the field it comes from.
+    pub name: &'static str,
+    /// What was found.
+    pub value: f64,
+    /// Largest value that passes.
+    pub gate: f64,
+}
+
+impl Check {
+    /// Whether the value is within its gate; what is not a number is not.
+    pub fn passed(&self) -> bool {
+        self.value <= self.gate
+    }
+}
+
+impl Certificate {
+    /// The lines that apply to the run.
+    pub fn checks(&self) -> Vec<Check> {
+        let lines = [
+            ("linear_momentum_drift_rel", Some(self.linear_momentum_drift_rel), MOMENTUM),
+            ("angular_momentum_drift_rel", Some(self.angular_momentum_drift_rel), MOMENTUM),
+            ("energy_balance_error_rel", Some(self.energy_balance_error_rel), ENERGY),
+            ("center_of_mass_error_rel", self.center_of_mass_error_rel, CENTER),
+            ("base_rows_residual_rel", self.base_rows_residual_rel, self.base_rows_gate),
+            ("attitude_consistency", self.attitude_consistency, ATTITUDE),
+        ];
+        lines
+            .into_iter()
+            .filter_map(|(name, value, gate)| value.map(|value| Check { name, value, gate }))
+            .collect()
+    }
+
+    /// Whether every line passes.
+    pub fn passed(&self) -> bool {
+        self.checks().iter().all(Check::passed)
+    }
+}
+
+/// Certifies a run of `model` from its trace alone; a trace without rows proves nothing and has zeros.
+pub fn certify(model: &Model, trace: &Trace) -> Certificate {
+    let mut reader = Reader::new(model, trace);
+    let mut balance = Balance::default();
+    let mut center = CenterOfMass::default();
+    let mut base_rows = BaseRows::new(model);
+    let mut attitude = Attitude::default();
+    let mut last = None;
+    for k in 0..reader.rows() {
+        let now = reader.instant(k);
+        balance.add(&now);
+        if let Some(before) = &last {
+            center.add(before, &now);
+            if trace.has_every_step {
+                base_rows.add(model, before, &now);
+                attitude.add(before, &now);
+            }
+        }
+        last = Some(now);
+    }
+    let is_dense = trace.has_every_step;
+    let is_free = trace.impulse.iter().all(|x| *x == 0.0); // then any spacing of rows will do
+    Certificate {
+        linear_momentum_drift_rel: balance.linear(),
+        angular_momentum_drift_rel: balance.angular(),
+        energy_balance_error_rel: balance.energy(),
+        center_of_mass_error_rel: (is_dense || is_free).then(|| center.error(balance.size())),
+        base_rows_residual_rel: is_dense.then(|| base_rows.residual()),
+        base_rows_gate: base_rows.gate(),
+        attitude_consistency: is_dense.then(|| attitude.consistency()),
+    }
+}
+
+/// The larger of two, and not a number if either is: what is broken must not look small.
+fn worst(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
+
+/// `error / scale`, zero where there is no error at all.
+fn relative(error: f64, scale: f64) -> f64 {
+    if error == 0.0 { 0.0 } else { error / scale.max(f64::MIN_POSITIVE) }
+}

@@ -1,0 +1,79 @@
+//! The humanoid torso of the OnOrbitROS paper with one arm of seven joints.
+
+use nalgebra::{Isometry3, Matrix3, Vector3};
+use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};
+
+/// Mass, kg, and inertia Ixx, Iyy, Izz, Ixy, Ixz, Iyz, kg m². Source: the paper, Table 1.
+const BODY: (f64, [f64; 6]) = (93.0, [18.6, 15.4, 4.1, -0.008, -0.027, 0.058]);
+const LINKS: [(f64, [f64; 6]); 7] = [
+    (2.741, [0.0124, 0.0042, 0.0136, 3.6e-05, 7.1e-05, -0.0002]),
+    (2.425, [0.013, 0.0138, 0.0049, 1.2e-05, -0.0032, -0.0001]),
+    (2.209, [0.007, 0.0069, 0.0039, -0.0001, 0.0007, 0.0004]),
+    (0.877, [0.0025, 0.0027, 0.0012, 0.0001, -0.0003, 0.0004]),
+    (1.878, [0.0035, 0.0044, 0.0023, 1.3e-05, 1.03e-05, -9.7e-05]),
+    (0.409, [0.0001, 0.00014, 0.00015, -8.9e-08, -4.4e-08, 4.2e-07]),
+    (0.308, [0.0003, 0.0002, 0.00017, -1.6e-06, 1.7e-06, -1.2e-05]),
+];
+
+/// Joint origins, axes and centres of mass, m. Source: issue 2, part 10.
+const ORIGINS: [[f64; 3]; 7] = [
+    [0.0, -0.1575, 0.232],
+    [0.0049, -0.1365, 0.0467],
+    [0.0, 0.0, 0.0],
+    [0.02, 0.0, -0.273],
+    [-0.02, 0.0, -0.2643],
+    [0.0, 0.0, 0.0],
+    [0.0, 0.0, 0.0],
+];
+const AXES: [char; 7] = ['z', 'x', 'z', 'y', 'z', 'x', 'y'];
+const CENTERS: [[f64; 3]; 7] = [
+    [-0.0003, -0.1006, 0.0444],
+    [0.0144, -0.0009, -0.0868],
+    [0.0136, -0.0124, -0.2499],
+    [-0.0074, 0.0214, -0.0331],
+    [-0.0001, -0.0033, 0.0796],
+    [0.0, 0.002, -0.0006],
+    [0.0075, -0.0014, -0.0246],
+];
+
+/// Joints at the start of the reach, rad. Source: issue 2, part 11.
+pub const START: [f64; 7] = [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974];
+
+fn inertial((mass, i): (f64, [f64; 6]), com: [f64; 3]) -> Option<Inertial> {
+    let inertia = Matrix3::new(i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2]);
+    Some(Inertial { mass, com: Vector3::from(com), inertia })
+}
+
+/// Base `torso`, joints `arm_1` to `arm_7`, frame `tool`; `change` may alter each joint.
+pub fn humanoid_with(change: impl Fn(&mut Joint)) -> Model {
+    let mut builder = ModelBuilder::new("humanoid", Link::new("torso", inertial(BODY, [0.0; 3]))).unwrap();
+    let mut parent = "torso".to_owned();
+    for i in 0..7 {
+        let axis = match AXES[i] {
+            'x' => Vector3::x(),
+            'y' => Vector3::y(),
+            _ => Vector3::z(),
+        };
+        let [x, y, z] = ORIGINS[i];
+        let mut joint =
+            Joint::new(&format!("arm_{}", i + 1), JointKind::Revolute(axis), Isometry3::translation(x, y, z));
+        change(&mut joint);
+        let name = format!("arm_link_{}", i + 1);
+        builder.add(&parent, joint, Link::new(&name, inertial(LINKS[i], CENTERS[i]))).unwrap();
+        parent = name;
+    }
+    builder.add_frame("tool", &parent, Isometry3::translation(0.0, 0.0, -0.1)).unwrap();
+    builder.build().unwrap()
+}
+
+/// The robot of the paper.
+pub fn humanoid() -> Model {
+    humanoid_with(|_| {})
+}
+
+/// At the origin, unrotated, the arm at [`START`].
+pub fn start(model: &Model) -> Vec<f64> {
+    let mut q = onorbit_core::model::neutral(model);
+    q[7..].copy_from_slice(&START);
+    q
+}
