@@ -33,7 +33,7 @@ _FILES = (
 )
 
 
-def print_summary(summary: dict[str, Any], out: Path | None) -> None:
+def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = True) -> None:
     """The main numbers, the verdict, where the files are and what to do next."""
     console = Console(highlight=False)
     table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
@@ -49,7 +49,8 @@ def print_summary(summary: dict[str, Any], out: Path | None) -> None:
     for name, what in _FILES:
         if (out / name).exists():
             console.print(f"  {out / name}  [dim]{what}[/dim]", soft_wrap=True)
-    console.print(f"next: onorbit show {out}", soft_wrap=True)
+    if is_new:
+        console.print(f"next: onorbit show {out}", soft_wrap=True)
 
 
 def _verdict(summary: dict[str, Any]) -> str:
@@ -57,7 +58,7 @@ def _verdict(summary: dict[str, Any]) -> str:
     balances = [
         f"{name.removesuffix('_rel').replace('_', ' ')} {value:.1e}"
         for name, value in summary.items()
-        if name.endswith("_rel") and isinstance(value, float)
+        if name.endswith(("_rel", "_consistency")) and isinstance(value, float)
     ]
     if summary.get("certificate_passed"):
         return f"[green]certificate passed[/green]: {', '.join(balances)}"
@@ -108,7 +109,7 @@ def print_run(folder: Path) -> None:
         raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
     try:
         summary = json.loads(file.read_text(encoding="utf-8"))
-        print_summary(dict(summary), folder)
+        print_summary(dict(summary), folder, is_new=False)
     except (ValueError, TypeError, OSError) as error:
         raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error
 
