@@ -98,6 +98,7 @@ impl IntoPython for InputError {
             Self::NotFinite { name, value, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
             }
+            Self::Diverged { .. } => plain(py, "SimulationError", &message),
             Self::QuaternionNorm { norm, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
             }

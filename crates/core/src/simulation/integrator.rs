@@ -1,10 +1,10 @@
 //! One step: Runge-Kutta on the group, or semi-implicit Euler.
 
 use super::error::SimulationError;
-use super::plant::Plant;
+use super::plant::{Plant, World};
 use super::state::{Rate, State};
 use crate::model::{Model, integrate};
-use crate::spatial::{Scalar, Vec3, dexp_inv};
+use crate::spatial::{Real, Vec3, dexp_inv};
 
 /// How a run steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub enum Integrator {
 }
 
 /// Stages of a step, allocated once.
-pub(super) struct Stages<S> {
+pub(crate) struct Stages<S> {
     start: State<S>,
     trial: State<S>,
     rate: Rate<S>,
@@ -26,38 +26,38 @@ pub(super) struct Stages<S> {
     integrator: Integrator,
 }
 
-impl<S: Scalar> Stages<S> {
-    pub(super) fn new(model: &Model, state: &State<S>, integrator: Integrator) -> Self {
+impl<S: Real> Stages<S> {
+    pub(crate) fn new(model: &Model, state: &State<S>, integrator: Integrator) -> Self {
         let (rate, first) = (Rate::new(model), vec![S::of(0.0); model.nv()]);
         Self { start: state.clone(), trial: state.clone(), sum: rate.clone(), rate, first, integrator }
     }
 
     /// Acceleration at the start of the last step, `(nv,)`.
-    pub(super) fn first_acceleration(&self) -> &[S] {
+    pub(crate) fn first_acceleration(&self) -> &[S] {
         &self.first
     }
 
     /// State at the start of the last step.
-    pub(super) fn start(&self) -> &State<S> {
+    pub(crate) fn start(&self) -> &State<S> {
         &self.start
     }
 
     /// Whether the last stage began at a state of numbers.
-    pub(super) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         self.trial.is_finite()
     }
 
     /// The first stage alone. Expects kinematics and wrenches of `state` in the plant.
-    pub(super) fn accelerate(&mut self, plant: &mut Plant<'_, S>, state: &State<S>) {
+    pub(crate) fn accelerate(&mut self, plant: &mut Plant<'_, S, impl World<S>>, state: &State<S>) {
         self.start.copy_from(state);
         plant.accelerate(&state.q, &state.v, &mut self.rate);
         self.first.copy_from_slice(&self.rate.a);
     }
 
     /// Moves `state` over `interval`. Expects kinematics and wrenches at its start in the plant.
-    pub(super) fn step(
+    pub(crate) fn step(
         &mut self,
-        plant: &mut Plant<'_, S>,
+        plant: &mut Plant<'_, S, impl World<S>>,
         state: &mut State<S>,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
@@ -75,7 +75,7 @@ impl<S: Scalar> Stages<S> {
     /// differential of the exponential.
     fn rk4(
         &mut self,
-        plant: &mut Plant<'_, S>,
+        plant: &mut Plant<'_, S, impl World<S>>,
         state: &mut State<S>,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {

@@ -50,7 +50,7 @@ impl Simulation {
         let surroundings = Surroundings::new(&model, effects, self.orbit.clone());
         let mut run = Run {
             state: initial_state(self),
-            plant: Plant::<S>::new(&model, surroundings),
+            plant: Plant::<S, _>::new(&model, surroundings),
             driver: Driver::new(&mut self.control, self.reference.as_ref(), &model).map_err(fail)?,
             recorder: Recorder::new(
                 rows(&schedule, self.record_every),
@@ -102,7 +102,7 @@ fn rows(schedule: &Schedule, record_every: usize) -> usize {
 /// A run under way.
 struct Run<'a, S> {
     state: State<S>,
-    plant: Plant<'a, S>,
+    plant: Plant<'a, S, Surroundings>,
     driver: Driver<'a, S>,
     recorder: Recorder<'a>,
 }
