@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import onorbit_rs as oo
-import pinocchio as pin
+import pinocchio as pin  # type: ignore[import-untyped]
 from trees import BASE, TOOL, Array, Part, State, Tree
 
 W_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
