@@ -334,7 +334,7 @@ def rollout(
     v0: ArrayLike,
     *,
     steps: int,
-    time_step: float,
+    time_step: float = 0.001,
     tau: ArrayLike | None = None,
     controller: ComputedTorque | None = None,
     reference: Hold | LineParabola | None = None,

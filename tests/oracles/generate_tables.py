@@ -48,7 +48,7 @@ def main() -> None:
         "date": datetime.now(UTC).date().isoformat(),
         "tolerance": 1e-12,
         "tolerance_of": "the largest entry of each array; both engines are off by 1e-14 or so",
-        "layout": "q = [p, quat xyzw, joints], v = [linear, angular (base axes), rates]; wrenches in their frame",
+        "layout": "q = [p, quat xyzw, joints], v = [linear, angular, rates], wrenches in their frame",
         "cases": [case(seed) for seed in SEEDS],
     }
     FILE.parent.mkdir(exist_ok=True)

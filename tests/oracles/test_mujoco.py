@@ -34,39 +34,29 @@ def text(numbers: Any) -> str:
     return " ".join(repr(float(x)) for x in np.ravel(numbers))
 
 
+def add(parent: ElementTree.Element, tag: str, **attributes: Any) -> ElementTree.Element:
+    """A new element; numbers are written in full."""
+    texts = {name: x if isinstance(x, str) else text(x) for name, x in attributes.items()}
+    return ElementTree.SubElement(parent, tag, texts)
+
+
 def mjcf(tree: Tree) -> str:
     """The tree as MJCF: no gravity, no contacts, nothing but bodies, joints and rotors."""
     root = ElementTree.Element("mujoco")
-    ElementTree.SubElement(root, "compiler", angle="radian", inertiafromgeom="false", boundmass="0")
-    ElementTree.SubElement(root, "option", gravity="0 0 0")
-    world = ElementTree.SubElement(root, "worldbody")
-    elements = {}
+    add(root, "compiler", angle="radian", inertiafromgeom="false", boundmass=0)
+    add(root, "option", gravity=np.zeros(3))
+    bodies: dict[str | None, ElementTree.Element] = {None: add(root, "worldbody")}
     for part in tree.parts:
-        parent = world if part.parent is None else elements[part.parent]
-        frame = turn(part.rpy)
-        axes = {"xyaxes": text(frame[:, :2].T)}
-        body = ElementTree.SubElement(parent, "body", name=part.name, pos=text(part.xyz), **axes)
+        axes = turn(part.rpy)[:, :2].T
+        body = add(bodies[part.parent], "body", name=part.name, pos=part.xyz, xyaxes=axes)
+        bodies[part.name] = body
         (xx, xy, xz), (_, yy, yz), (*_, zz) = part.inertia
-        ElementTree.SubElement(
-            body,
-            "inertial",
-            pos=text(part.com),
-            mass=repr(part.mass),
-            fullinertia=text([xx, yy, zz, xy, xz, yz]),
-        )
+        add(body, "inertial", pos=part.com, mass=part.mass, fullinertia=[xx, yy, zz, xy, xz, yz])
         if part.parent is None:
-            ElementTree.SubElement(body, "freejoint")
+            add(body, "freejoint")
         elif part.kind != "fixed":
             kind = "slide" if part.kind == "prismatic" else "hinge"
-            ElementTree.SubElement(
-                body,
-                "joint",
-                name=part.joint,
-                type=kind,
-                axis=text(part.axis),
-                armature=repr(part.rotor_inertia),
-            )
-        elements[part.name] = body
+            add(body, "joint", name=part.joint, type=kind, axis=part.axis, armature=part.rotor_inertia)
     return ElementTree.tostring(root, encoding="unicode")
 
 
@@ -92,12 +82,14 @@ def tree_of(file: Path) -> Tree:
         entries = [[float(inertia.attrib["i" + "".join(sorted(a + b))]) for b in "xyz"] for a in "xyz"]
         com = list(numbers(inertial.find("origin"), "xyz"))
         known: dict[str, Any] = {}
-        if (joint := joints.get(link.get("name"))) is not None:
+        if link.get("name") in joints:
+            joint = joints[link.get("name")]
             parent, origin = joint.find("parent"), joint.find("origin")
             assert parent is not None
             known = {
                 "parent": parent.get("link"), "joint": joint.get("name"), "kind": joint.get("type"),
-                "axis": numbers(joint.find("axis"), "xyz"), "xyz": numbers(origin, "xyz"), "rpy": numbers(origin, "rpy"),
+                "axis": numbers(joint.find("axis"), "xyz"),
+                "xyz": numbers(origin, "xyz"), "rpy": numbers(origin, "rpy"),
             }  # fmt: skip
         parts.append(Part(str(link.get("name")), float(mass.attrib["value"]), com, entries, **known))
     return Tree(parts, parts[-1].name, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -117,9 +109,9 @@ class MujocoRobot:
         data.qpos[:3] = q[:3]
         data.qpos[3:7] = q[[6, 3, 4, 5]]  # wxyz
         data.qpos[self.at_q] = q[7:]
-        rot_wb = np.empty(9)
-        mujoco.mju_quat2Mat(rot_wb, data.qpos[3:7])
-        rot_wb = rot_wb.reshape(3, 3)
+        flat = np.empty(9)
+        mujoco.mju_quat2Mat(flat, data.qpos[3:7])
+        rot_wb = flat.reshape(3, 3)
         data.qvel[:3], data.qvel[3:6] = rot_wb @ v[:3], v[3:6]
         data.qvel[self.at_v] = v[6:]
         data.qfrc_applied[:3], data.qfrc_applied[3:6] = rot_wb @ tau[:3], tau[3:6]

@@ -62,8 +62,8 @@ def test_the_table_says_where_it_is_from() -> None:
 
 
 def test_rbdl_one_link_on_a_floating_base() -> None:
-    # rbdl tests/FloatingBaseTests.cc: base with com (1, 0, 0), a link on a z axis at (2, 0, 0) with com (1, 0, 0);
-    # masses and radii of gyration 1; q = 0, joint torque 1, gravity -9.81 y: qdd = (0, -8.81, 0, -1, 0, 0, 2),
+    # rbdl tests/FloatingBaseTests.cc: base com (1, 0, 0); a link on a z axis at (2, 0, 0), com (1, 0, 0);
+    # masses and radii of gyration 1; q = 0, joint torque 1, gravity -9.81 y: qdd = (0, -8.81, 0, -1, 0, 0, 2)
     # in rbdl's order Tx, Ty, Tz, Rz, Ry, Rx. Without gravity the free fall goes: 1 along y is left.
     builder = oo.ModelBuilder("rbdl", base="base", mass=1.0, com=[1, 0, 0], inertia=np.eye(3))
     builder.add_link(
@@ -116,7 +116,7 @@ def quaternion(rot: Any) -> Any:
     return np.linalg.eigh(m)[1][:, -1]
 
 
-# drake multibody/benchmarks/kuka_iiwa_robot, computed by MotionGenesis; q = (60, 30, 60, 30, 60, 30, 60) degrees.
+# drake multibody/benchmarks/kuka_iiwa_robot, by MotionGenesis; q = (60, 30, 60, 30, 60, 30, 60) degrees.
 KUKA_POSITION = [0.2970356451892219, 0.1727696964662288, 1.154681973689345]
 KUKA_ROTATION = [
     [-0.5939002959880204, 0.8043869080239565, -0.015625],
@@ -138,7 +138,7 @@ def test_drake_kuka_iiwa14(shared: Path) -> None:
     # the table is Drake's to 15 digits
     np.testing.assert_allclose(pose[:3, 3], KUKA_POSITION, atol=1e-14)
     np.testing.assert_allclose(pose[:3, :3], KUKA_ROTATION, atol=1e-14)
-    # held at rest, 1000 rad/s² on joint 7 take 1 N m on joints 1, 3, 5 and 7, whose axes are parallel at q = 0
+    # at rest, 1000 rad/s² on joint 7 take 1 N m on joints 1, 3, 5 and 7, whose axes are parallel at q = 0
     a = np.concatenate([np.zeros(model.nv - 1), [1000.0]])
     torques = model.inverse_dynamics(model.neutral(), np.zeros(model.nv), a)[6:]
     np.testing.assert_allclose(torques, [1, 0, 1, 0, 1, 0, 1], atol=1e-13)
