@@ -49,12 +49,14 @@ impl IntoPython for ModelError {
     fn into_python(self, py: Python<'_>) -> PyErr {
         let message = self.to_string();
         match &self {
-            Self::UnknownName { what, name, candidates } => raise(
-                py,
-                "FrameError",
-                &message,
-                &fields!(py, "name": name, "kind": what, "known": candidates),
-            ),
+            Self::UnknownName { what, name, candidates } => {
+                let suggestion =
+                    candidates.iter().find(|c| message.contains(&format!("did you mean '{c}'?")));
+                let fields = fields!(
+                    py, "name": name, "kind": what, "known": candidates, "suggestion": suggestion,
+                );
+                raise(py, "FrameError", &message, &fields)
+            }
             Self::MasslessSubtree { joint, link } => {
                 raise(py, "ModelError", &message, &fields!(py, "joint": joint, "link": link))
             }
@@ -113,6 +115,22 @@ impl IntoPython for OrbitError {
             Self::NotFinite { name, value } | Self::NotPositive { name, value } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": name, "got": value))
             }
+            Self::AxisSign { semi_major_axis, .. } | Self::ParabolaHasNoAxis { semi_major_axis } => {
+                let fields = fields!(py, "name": "semi_major_axis", "got": semi_major_axis);
+                raise(py, "OrbitError", &message, &fields)
+            }
+            Self::NegativeEccentricity { value } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "eccentricity", "got": value))
+            }
+            Self::Inclination { value } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "inclination", "got": value))
+            }
+            Self::ParabolaHasNoMeanAnomaly { value } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "mean_anomaly", "got": value))
+            }
+            Self::BeyondAsymptote { value, .. } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "true_anomaly", "got": value))
+            }
             _ => plain(py, "OrbitError", &message),
         }
     }
@@ -120,13 +138,28 @@ impl IntoPython for OrbitError {
 
 impl IntoPython for EnvironmentError {
     fn into_python(self, py: Python<'_>) -> PyErr {
-        plain(py, "EffectError", &self.to_string())
+        let message = self.to_string();
+        match &self {
+            Self::NotFinite { name, value } => {
+                raise(py, "EffectError", &message, &fields!(py, "name": name, "got": value))
+            }
+            Self::EmptyInterval { start, end } => {
+                raise(py, "EffectError", &message, &fields!(py, "name": "start, end", "got": (*start, *end)))
+            }
+            _ => plain(py, "EffectError", &message),
+        }
     }
 }
 
 impl IntoPython for ReferenceError {
     fn into_python(self, py: Python<'_>) -> PyErr {
-        plain(py, "ControlError", &self.to_string())
+        let message = self.to_string();
+        match &self {
+            Self::DurationNotPositive { value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "duration", "got": value))
+            }
+            _ => plain(py, "ControlError", &message),
+        }
     }
 }
 

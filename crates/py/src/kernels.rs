@@ -68,8 +68,11 @@ fn batch_of(py: Python<'_>, inputs: &[Input<'_>], names: &[&str]) -> PyResult<Op
     for (input, name) in inputs.iter().zip(names) {
         let shape = input.shape();
         if shape.len() != first.len() || !(1..=2).contains(&shape.len()) {
-            let expected =
-                if first.len() == 2 { "a batch (B, n) like the first argument" } else { "(n,) or (B, n)" };
+            let expected = match (first.len(), std::ptr::eq(input, &raw const inputs[0])) {
+                (1, false) => "one state (n,) like the first argument",
+                (2, false) => "a batch (B, n) like the first argument",
+                _ => "(n,) or (B, n)",
+            };
             return Err(wrong_shape(py, name, expected, shape));
         }
     }

@@ -1,7 +1,7 @@
 //! The robot.
 
 use crate::arrays::{array_of, fixed};
-use crate::errors::IntoPython;
+use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
 use nalgebra::Matrix3;
 use numpy::PyArrayDyn;
@@ -40,15 +40,15 @@ impl PyModel {
 
     /// Index of a frame by name.
     pub(crate) fn frame(&self, name: &Bound<'_, PyAny>) -> PyResult<usize> {
-        let name = name.cast::<PyString>()?.to_cow()?;
-        self.model.frame(&name).map_err(|error| error.into_python(name_py()))
+        let py = name.py();
+        let Ok(text) = name.cast::<PyString>() else {
+            let got = name.get_type().name()?.to_string();
+            let message = format!("frame is of type {got}, a name is needed");
+            let fields = fields!(py, "name": "frame", "expected": "str", "got": got);
+            return Err(raise(py, "DtypeError", &message, &fields));
+        };
+        self.model.frame(&text.to_cow()?).map_err(|error| error.into_python(py))
     }
-}
-
-/// The attached interpreter: errors are made only while it is held.
-fn name_py() -> Python<'static> {
-    // SAFETY: called from methods that Python itself called, so this thread is attached.
-    unsafe { Python::assume_attached() }
 }
 
 #[pymethods]

@@ -1,8 +1,8 @@
 //! References for a tool.
 
 use crate::arrays::fixed;
-use crate::errors::IntoPython;
-use nalgebra::{Matrix3, Matrix4, Vector3};
+use crate::errors::{IntoPython, fields, raise};
+use nalgebra::{Matrix3, Matrix4, RowVector4, Vector3};
 use onorbit_core::reference::{Hold, LineParabola, TaskReference};
 use pyo3::prelude::*;
 
@@ -56,11 +56,25 @@ pub(crate) fn extract(value: Any<'_, '_>) -> PyResult<TaskReference> {
     if let Ok(hold) = value.cast::<PyHold>() {
         return Ok(hold.get().reference.clone());
     }
-    Ok(value.cast::<PyLineParabola>()?.get().reference.clone())
+    if let Ok(line) = value.cast::<PyLineParabola>() {
+        return Ok(line.get().reference.clone());
+    }
+    let py = value.py();
+    let got = value.get_type().name()?.to_string();
+    let message = format!("reference is of type {got}, a Hold or a LineParabola is needed");
+    let fields = fields!(py, "name": "reference", "expected": "Hold or LineParabola", "got": got);
+    Err(raise(py, "DtypeError", &message, &fields))
 }
 
 /// Rotation and position of a (4, 4) pose.
 fn split(pose: Any<'_, '_>) -> PyResult<(Matrix3<f64>, Vector3<f64>)> {
+    let py = pose.py();
     let pose = Matrix4::from_row_slice(&fixed::<16>(pose, "pose", &[4, 4])?);
+    let last = pose.fixed_view::<1, 4>(3, 0).into_owned();
+    if last != RowVector4::new(0.0, 0.0, 0.0, 1.0) {
+        let row = [last[0], last[1], last[2], last[3]];
+        let message = format!("the last row of the pose is {row:?}, it must be [0, 0, 0, 1]");
+        return Err(raise(py, "ControlError", &message, &fields!(py, "name": "pose", "got": row.to_vec())));
+    }
     Ok((pose.fixed_view::<3, 3>(0, 0).into_owned(), pose.fixed_view::<3, 1>(0, 3).into_owned()))
 }

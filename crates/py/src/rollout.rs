@@ -83,8 +83,7 @@ pub(crate) fn rollout<'py>(
     };
     let (q, v) = (zeros(py, &shape(core.nq())), zeros(py, &shape(core.nv())));
     let (to_q, to_v, from_q, from_v) = (fresh(&q), fresh(&v), q0.data(), v0.data());
-    py.detach(|| rollout.run(core, from_q, from_v, to_q, to_v))
-        .map_err(|error| error.into_python(py))?;
+    py.detach(|| rollout.run(core, from_q, from_v, to_q, to_v)).map_err(|error| error.into_python(py))?;
     Ok((q.into_any(), v.into_any()))
 }
 

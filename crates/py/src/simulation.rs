@@ -1,6 +1,6 @@
 //! Runs.
 
-use crate::arrays::Input;
+use crate::arrays::{Input, wrong_shape};
 use crate::control::{PyComputedTorque, PythonController};
 use crate::environment::PyEffect;
 use crate::errors::{SimulationErrorExt, fields, plain, raise};
@@ -57,6 +57,16 @@ impl PySimulation {
     ) -> PyResult<Self> {
         let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
         let core = Arc::clone(&model.model);
+        for (input, name, n) in [(&q, "q", core.nq()), (&v, "v", core.nv())] {
+            if input.shape().len() != 1 {
+                return Err(wrong_shape(py, name, &format!("({n},)"), input.shape()));
+            }
+        }
+        let Some(record_every) = usize::try_from(record_every).ok().filter(|every| *every > 0) else {
+            let message = format!("record_every is {record_every}, it must be at least 1 step");
+            let fields = fields!(py, "name": "record_every", "got": record_every);
+            return Err(raise(py, "InputError", &message, &fields));
+        };
         let mut simulation = Simulation::new(Arc::clone(&core), q.data().to_vec(), v.data().to_vec());
         simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
         simulation.effects = environment
@@ -85,7 +95,7 @@ impl PySimulation {
         simulation.time_step = time_step;
         simulation.control_period = control_period;
         simulation.integrator = integrator_named(py, integrator)?;
-        simulation.record_every = usize::try_from(record_every).unwrap_or(0);
+        simulation.record_every = record_every;
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         Ok(Self { simulation: Mutex::new(simulation), model: core })
     }

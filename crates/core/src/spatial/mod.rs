@@ -26,6 +26,6 @@ pub use mat3::Mat3;
 pub use motion::{Force, Motion};
 pub use rotation::{Quat, dexp_inv, exp_so3, log_rotation, log_so3};
 pub use scalar::{Real, Scalar};
-pub use solve::{cholesky_factor, cholesky_solve};
+pub use solve::{cholesky_factor, cholesky_solve, dot};
 pub use sym3::Sym3;
 pub use vec3::Vec3;
