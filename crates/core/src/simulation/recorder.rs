@@ -67,6 +67,20 @@ impl<'a> Recorder<'a> {
         plant: &Plant<'_, S, Surroundings>,
         orbit: Option<OrbitState>,
     ) {
+        S::enter(
+            #[inline(always)]
+            || self.row_kernel(t, state, plant, orbit),
+        );
+    }
+
+    #[inline(always)]
+    fn row_kernel<S: Scalar>(
+        &mut self,
+        t: f64,
+        state: &State<S>,
+        plant: &Plant<'_, S, Surroundings>,
+        orbit: Option<OrbitState>,
+    ) {
         let (trace, data, q, v) = (&mut self.trace, &plant.data, &state.q, &state.v);
         trace.time.push(t);
         push(&mut trace.q, q);
