@@ -46,7 +46,7 @@ pub enum SimulationError {
 }
 
 /// A run that stopped early, with what it had recorded until then.
-#[derive(Debug, Error)]
+#[derive(Error)]
 #[error("{error}")]
 pub struct RunFailure {
     /// Why it stopped.
@@ -54,4 +54,11 @@ pub struct RunFailure {
     pub error: SimulationError,
     /// Rows up to the last finite state.
     pub trace: Box<Trace>,
+}
+
+impl std::fmt::Debug for RunFailure {
+    /// The error and how many rows there are: the rows themselves can be millions.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("RunFailure").field("error", &self.error).field("rows", &self.trace.rows()).finish()
+    }
 }

@@ -18,6 +18,10 @@ pub(super) struct Plant<'a, S> {
     pub(super) command: Vec<S>,
     /// All generalized forces of a stage, `(nv,)`: command, damping and friction.
     forces: Vec<S>,
+    /// Velocity, W axes, of the frame in which `data` has its velocities: W's own outside a step, that
+    /// of the base's origin at the start of the step within it.
+    carried: Vec3<S>,
+    mass: S,
     /// Joint rate at which Coulomb friction is fully developed, rad/s (m/s).
     slip: Vec<f64>,
 }
@@ -31,6 +35,8 @@ impl<'a, S: Scalar> Plant<'a, S> {
             surroundings,
             command: vec![zero; n],
             forces: vec![zero; model.nv()],
+            carried: Vec3::zero(),
+            mass: S::of(model.mass()),
             slip: vec![1.0; n],
         }
     }
@@ -40,21 +46,44 @@ impl<'a, S: Scalar> Plant<'a, S> {
     /// The momentum was integrated from the wrenches alone, so that it is kept to rounding where
     /// none act; the twist of the integrator differs by its truncation error.
     pub(super) fn settle(&mut self, state: &mut State<S>) {
+        // in the frame of the base's origin: a robot that W sees pass at km/s keeps all its digits
+        let passing = Motion::new(Vec3::from_slice(&state.v), Vec3::zero());
+        Vec3::zero().write(&mut state.v);
+        self.carried = Vec3::zero();
         kinematics(self.model, &mut self.data, &state.q, &state.v);
-        let twist = base_twist(&self.data, &state.q, &state.v, state.momentum());
-        let correction = twist - Motion::from_slice(&state.v);
-        twist.write(&mut state.v);
+        let mut target = state.momentum();
+        target.linear -= base_rotation(&state.q) * passing.linear * self.mass;
+        let twist = base_twist(&self.data, &state.q, &state.v, target);
+        let correction = twist - Motion::from_slice(&state.v) + passing;
+        (twist + passing).write(&mut state.v);
         self.data.bodies.iter_mut().for_each(|body| body.velocity += correction);
+    }
+
+    /// Goes over to the frame that moves with the base's origin as it does now; `v` and the
+    /// velocities in `data` follow.
+    ///
+    /// The equations of motion are the same there, and what is integrated stays robot-sized: in base
+    /// axes even a straight flight is a velocity that turns, at the cost of digits and of order.
+    pub(super) fn ride(&mut self, q: &[S], v: &mut [S]) {
+        let passing = Vec3::from_slice(v);
+        self.carried = base_rotation(q) * passing;
+        Vec3::zero().write(v);
+        self.data.bodies.iter_mut().for_each(|body| body.velocity.linear -= passing);
+    }
+
+    /// Velocity of the frame of the step, W axes, m/s.
+    pub(super) fn carried(&self) -> Vec3<S> {
+        self.carried
     }
 
     /// External wrenches at the state whose kinematics are in `data`.
     pub(super) fn surround(&mut self, t: f64, interval: (f64, f64), q: &[S]) -> Result<(), SimulationError> {
-        self.surroundings.apply(self.model, &mut self.data, q, t, interval)
+        self.surroundings.apply(self.model, &mut self.data, q, self.carried, t, interval)
     }
 
     /// Rates at a state whose kinematics and wrenches are in `data`.
     pub(super) fn accelerate(&mut self, q: &[S], v: &[S], rate: &mut Rate<S>) {
-        let Self { model, data, command, forces, slip, .. } = self;
+        let Self { model, data, command, forces, slip, carried, .. } = self;
         for (j, joint) in model.joints().iter().enumerate() {
             // −b q̇ − f sat(q̇/s): friction develops within the rate that one step of it brakes
             let speed = v[j + 6].value();
@@ -65,7 +94,7 @@ impl<'a, S: Scalar> Plant<'a, S> {
         rate.v.copy_from_slice(v);
         S::enter(
             #[inline(always)]
-            || balance(data, q, v, forces, rate),
+            || balance(data, q, v, *carried, forces, rate),
         );
     }
 
@@ -94,12 +123,14 @@ impl<'a, S: Scalar> Plant<'a, S> {
     }
 }
 
-/// Velocity of the base, sum of the wrenches and the power of all forces.
+/// Velocity and acceleration of the base, sum of the wrenches and the power of all forces, in W; `v` and the
+/// velocities in `data` are relative to a frame that moves at `carried`.
 #[inline(always)]
-fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], forces: &[S], rate: &mut Rate<S>) {
+fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], carried: Vec3<S>, forces: &[S], rate: &mut Rate<S>) {
     let rot_wb = base_rotation(q);
-    rate.origin = rot_wb * Vec3::from_slice(v);
+    rate.origin = rot_wb * Vec3::from_slice(v) + carried;
     rate.turn = Vec3::from_slice(&v[3..]);
+    rate.bend = rot_wb * (Vec3::from_slice(&rate.a) + rate.turn.cross(Vec3::from_slice(v)));
     let (mut total, mut power) = (Force::zero(), S::of(0.0));
     for body in &data.bodies {
         total += body.external;
@@ -110,5 +141,5 @@ fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], forces: &[S], rate: &mut R
     }
     let about_com = total.angular - center_of_mass_b(data).cross(total.linear);
     rate.wrench = Momentum { linear: rot_wb * total.linear, angular: rot_wb * about_com };
-    rate.power = power;
+    rate.power = power + rate.wrench.linear.dot(carried);
 }
