@@ -1,5 +1,5 @@
 //! Observed orders of the integrators, and of one that composes attitudes the naive way.
-#![allow(clippy::unwrap_used)] // a test that cannot set up should stop
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
 

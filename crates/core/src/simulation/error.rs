@@ -28,6 +28,8 @@ pub enum SimulationError {
     NeedsReference,
     #[error("a reference is given but no tool frame it is for: name the tool")]
     NeedsTool,
+    #[error("frame {frame} is asked for, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    UnknownFrame { frame: usize, count: usize },
     #[error("{rows} recorded rows do not fit in memory; record fewer with record_every")]
     TooManyRows { rows: usize },
     #[error(
