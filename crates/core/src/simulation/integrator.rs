@@ -71,8 +71,13 @@ impl<S: Scalar> Stages<S> {
         plant.accelerate(&state.q, &self.start.v, &mut self.rate);
         // seen from W the velocity of that frame turns in base axes: a = a' − (ω × u, 0)
         self.first.copy_from_slice(&self.rate.a);
-        let turning = Vec3::from_slice(&state.v[3..]).cross(self.passing);
-        (Vec3::from_slice(&self.first) - turning).write(&mut self.first);
+        S::enter(
+            #[inline(always)]
+            || {
+                let turning = Vec3::from_slice(&state.v[3..]).cross(self.passing);
+                (Vec3::from_slice(&self.first) - turning).write(&mut self.first);
+            },
+        );
     }
 
     /// Moves `state` over `interval`. Expects kinematics and wrenches at its start in the plant.
@@ -88,8 +93,13 @@ impl<S: Scalar> Stages<S> {
             Integrator::SemiImplicitEuler => self.euler(plant.carried(), state, interval),
         }
         // back to W: v = v' + Rᵀ u
-        let passing = base_rotation(&state.q).transpose_mul(plant.carried());
-        (Vec3::from_slice(&state.v) + passing).write(&mut state.v);
+        S::enter(
+            #[inline(always)]
+            || {
+                let passing = base_rotation(&state.q).transpose_mul(plant.carried());
+                (Vec3::from_slice(&state.v) + passing).write(&mut state.v);
+            },
+        );
         Ok(())
     }
 

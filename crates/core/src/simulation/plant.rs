@@ -51,12 +51,18 @@ impl<'a, S: Scalar> Plant<'a, S> {
         Vec3::zero().write(&mut state.v);
         self.carried = Vec3::zero();
         kinematics(self.model, &mut self.data, &state.q, &state.v);
-        let mut target = state.momentum();
-        target.linear -= base_rotation(&state.q) * passing.linear * self.mass;
-        let twist = base_twist(&self.data, &state.q, &state.v, target);
-        let correction = twist - Motion::from_slice(&state.v) + passing;
-        (twist + passing).write(&mut state.v);
-        self.data.bodies.iter_mut().for_each(|body| body.velocity += correction);
+        let (mass, data) = (self.mass, &mut self.data);
+        S::enter(
+            #[inline(always)]
+            || {
+                let mut target = state.momentum();
+                target.linear -= base_rotation(&state.q) * passing.linear * mass;
+                let twist = base_twist(data, &state.q, &state.v, target);
+                let correction = twist - Motion::from_slice(&state.v) + passing;
+                (twist + passing).write(&mut state.v);
+                data.bodies.iter_mut().for_each(|body| body.velocity += correction);
+            },
+        );
     }
 
     /// Goes over to the frame that moves with the base's origin as it does now; `v` and the
@@ -66,7 +72,10 @@ impl<'a, S: Scalar> Plant<'a, S> {
     /// axes even a straight flight is a velocity that turns, at the cost of digits and of order.
     pub(super) fn ride(&mut self, q: &[S], v: &mut [S]) {
         let passing = Vec3::from_slice(v);
-        self.carried = base_rotation(q) * passing;
+        self.carried = S::enter(
+            #[inline(always)]
+            || base_rotation(q) * passing,
+        );
         Vec3::zero().write(v);
         self.data.bodies.iter_mut().for_each(|body| body.velocity.linear -= passing);
     }
