@@ -1,5 +1,5 @@
 //! The reach of the humanoid torso against the numbers of an independent engine.
-#![allow(clippy::unwrap_used)] // a test that cannot set up should stop
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
 
@@ -44,8 +44,8 @@ fn peak_torques(trace: &Trace) -> Vec<f64> {
     (0..7).map(|j| trace.tau.iter().skip(j).step_by(7).fold(0.0_f64, |peak, x| peak.max(x.abs()))).collect()
 }
 
-fn largest_error(column: &[f64]) -> f64 {
-    column.chunks_exact(3).map(|x| Vector3::from_column_slice(x).norm()).fold(0.0, f64::max)
+fn largest(column: &[f64]) -> f64 {
+    column.iter().fold(0.0, |m, x| x.abs().max(m))
 }
 
 fn assert_digits(name: &str, found: &[f64], printed: &[f64], half_digit: f64) {
@@ -79,6 +79,7 @@ fn ten_seconds_end_where_an_independent_engine_ends() {
 fn two_seconds_pull_twenty_five_times_as_hard() {
     let trace = reach(2.0);
     assert_digits("peak torques, N m", &peak_torques(&trace)[..4], &[0.8014, 0.9838, 0.3073, 0.3446], 0.6e-4);
-    assert_digits("position error, m", &[largest_error(&trace.position_error)], &[1.2e-5], 0.6e-6);
-    println!("attitude error {} rad", largest_error(&trace.attitude_error));
+    // the printed number is that of the worst component; the norm is 1.34e-5
+    assert_digits("position error, m", &[largest(&trace.position_error)], &[1.2e-5], 0.6e-6);
+    assert!(largest(&trace.attitude_error) < 1e-4); // 100 times the error in position over the arm's metre
 }

@@ -28,6 +28,8 @@ pub enum SimulationError {
     NeedsReference,
     #[error("a reference is given but no tool frame it is for: name the tool")]
     NeedsTool,
+    #[error("frame {frame} is asked for, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    UnknownFrame { frame: usize, count: usize },
     #[error("{rows} recorded rows do not fit in memory; record fewer with record_every")]
     TooManyRows { rows: usize },
     #[error(
@@ -46,7 +48,7 @@ pub enum SimulationError {
 }
 
 /// A run that stopped early, with what it had recorded until then.
-#[derive(Debug, Error)]
+#[derive(Error)]
 #[error("{error}")]
 pub struct RunFailure {
     /// Why it stopped.
@@ -54,4 +56,11 @@ pub struct RunFailure {
     pub error: SimulationError,
     /// Rows up to the last finite state.
     pub trace: Box<Trace>,
+}
+
+impl std::fmt::Debug for RunFailure {
+    /// The error and how many rows there are: the rows themselves can be millions.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("RunFailure").field("error", &self.error).field("rows", &self.trace.rows()).finish()
+    }
 }

@@ -10,12 +10,14 @@ use crate::spatial::{Force, Motion, Real, Vec3};
 
 /// What acts on the bodies from outside.
 pub(crate) trait World<S> {
-    /// Puts the wrenches of all effects on the bodies. Needs `kinematics`.
+    /// Puts the wrenches of all effects on the bodies. Needs `kinematics`, relative to a frame that
+    /// moves at `carried` (W axes).
     fn apply(
         &mut self,
         model: &Model,
         data: &mut Data<S>,
         q: &[S],
+        carried: Vec3<S>,
         t: f64,
         interval: (f64, f64),
     ) -> Result<(), SimulationError>;
@@ -30,6 +32,7 @@ impl<S> World<S> for Nothing {
         _: &Model,
         _: &mut Data<S>,
         _: &[S],
+        _: Vec3<S>,
         _: f64,
         _: (f64, f64),
     ) -> Result<(), SimulationError> {
@@ -46,6 +49,10 @@ pub(crate) struct Plant<'a, S, W> {
     pub(crate) command: Vec<S>,
     /// All generalized forces of a stage, `(nv,)`: command, damping and friction.
     forces: Vec<S>,
+    /// Velocity, W axes, of the frame in which `data` has its velocities: W's own outside a step, that
+    /// of the base's origin at the start of the step within it.
+    carried: Vec3<S>,
+    mass: S,
     /// Joint rate at which Coulomb friction is fully developed, rad/s (m/s).
     slip: Vec<S>,
 }
@@ -59,6 +66,8 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
             surroundings,
             command: vec![zero; n],
             forces: vec![zero; model.nv()],
+            carried: Vec3::zero(),
+            mass: S::of(model.mass()),
             slip: vec![S::of(1.0); n],
         }
     }
@@ -68,21 +77,53 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
     /// The momentum was integrated from the wrenches alone, so that it is kept to rounding where
     /// none act; the twist of the integrator differs by its truncation error.
     pub(crate) fn settle(&mut self, state: &mut State<S>) {
+        // in the frame of the base's origin: a robot that W sees pass at km/s keeps all its digits
+        let passing = Motion::new(Vec3::from_slice(&state.v), Vec3::zero());
+        Vec3::zero().write(&mut state.v);
+        self.carried = Vec3::zero();
         kinematics(self.model, &mut self.data, &state.q, &state.v);
-        let twist = base_twist(&self.data, &state.q, &state.v, state.momentum());
-        let correction = twist - Motion::from_slice(&state.v);
-        twist.write(&mut state.v);
-        self.data.bodies.iter_mut().for_each(|body| body.velocity += correction);
+        let (mass, data) = (self.mass, &mut self.data);
+        S::enter(
+            #[inline(always)]
+            || {
+                let mut target = state.momentum();
+                target.linear -= base_rotation(&state.q) * passing.linear * mass;
+                let twist = base_twist(data, &state.q, &state.v, target);
+                let correction = twist - Motion::from_slice(&state.v) + passing;
+                (twist + passing).write(&mut state.v);
+                data.bodies.iter_mut().for_each(|body| body.velocity += correction);
+            },
+        );
+    }
+
+    /// Goes over to the frame that moves with the base's origin as it does now; `v` and the
+    /// velocities in `data` follow.
+    ///
+    /// The equations of motion are the same there, and what is integrated stays robot-sized: in base
+    /// axes even a straight flight is a velocity that turns, at the cost of digits and of order.
+    pub(crate) fn ride(&mut self, q: &[S], v: &mut [S]) {
+        let passing = Vec3::from_slice(v);
+        self.carried = S::enter(
+            #[inline(always)]
+            || base_rotation(q) * passing,
+        );
+        Vec3::zero().write(v);
+        self.data.bodies.iter_mut().for_each(|body| body.velocity.linear -= passing);
+    }
+
+    /// Velocity of the frame of the step, W axes, m/s.
+    pub(crate) fn carried(&self) -> Vec3<S> {
+        self.carried
     }
 
     /// External wrenches at the state whose kinematics are in `data`.
     pub(crate) fn surround(&mut self, t: f64, interval: (f64, f64), q: &[S]) -> Result<(), SimulationError> {
-        self.surroundings.apply(self.model, &mut self.data, q, t, interval)
+        self.surroundings.apply(self.model, &mut self.data, q, self.carried, t, interval)
     }
 
     /// Rates at a state whose kinematics and wrenches are in `data`.
     pub(crate) fn accelerate(&mut self, q: &[S], v: &[S], rate: &mut Rate<S>) {
-        let Self { model, data, command, forces, slip, .. } = self;
+        let Self { model, data, command, forces, slip, carried, .. } = self;
         for (j, joint) in model.joints().iter().enumerate() {
             // −b q̇ − f sat(q̇/s): friction develops within the rate that one step of it brakes
             let share = clamp_to_one(v[j + 6] / slip[j]);
@@ -92,7 +133,7 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
         rate.v.copy_from_slice(v);
         S::enter(
             #[inline(always)]
-            || balance(data, q, v, forces, rate),
+            || balance(data, q, v, *carried, forces, rate),
         );
     }
 
@@ -122,12 +163,14 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
     }
 }
 
-/// Velocity of the base, sum of the wrenches and the power of all forces.
+/// Velocity and acceleration of the base, sum of the wrenches and the power of all forces, in W; `v` and the
+/// velocities in `data` are relative to a frame that moves at `carried`.
 #[inline(always)]
-fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], forces: &[S], rate: &mut Rate<S>) {
+fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], carried: Vec3<S>, forces: &[S], rate: &mut Rate<S>) {
     let rot_wb = base_rotation(q);
-    rate.origin = rot_wb * Vec3::from_slice(v);
+    rate.origin = rot_wb * Vec3::from_slice(v) + carried;
     rate.turn = Vec3::from_slice(&v[3..]);
+    rate.bend = rot_wb * (Vec3::from_slice(&rate.a) + rate.turn.cross(Vec3::from_slice(v)));
     let (mut total, mut power) = (Force::zero(), S::of(0.0));
     for body in &data.bodies {
         total += body.external;
@@ -138,7 +181,7 @@ fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], forces: &[S], rate: &mut R
     }
     let about_com = total.angular - center_of_mass_b(data).cross(total.linear);
     rate.wrench = Momentum { linear: rot_wb * total.linear, angular: rot_wb * about_com };
-    rate.power = power;
+    rate.power = power + rate.wrench.linear.dot(carried);
 }
 
 /// The nearest number in -1..1.

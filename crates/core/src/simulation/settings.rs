@@ -65,7 +65,8 @@ impl Simulation {
     ///
     /// # Errors
     /// Wrong lengths, numbers that are not finite, a quaternion off unit norm, steps that are not
-    /// positive, an effect without its orbit, a controller without its reference.
+    /// positive, an effect without its orbit, a controller without its reference, a frame that the
+    /// robot does not have.
     pub fn check(&self) -> Result<(), SimulationError> {
         check_state(&self.model, &self.q, &self.v)?;
         let periods = [("time_step", Some(self.time_step)), ("control_period", self.control_period)];
@@ -80,6 +81,14 @@ impl Simulation {
         let has_planet = self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some());
         if let Some(effect) = self.effects.iter().find(|effect| effect.requires_orbit() && !has_planet) {
             return Err(SimulationError::NeedsOrbit { effect: effect.name().to_owned() });
+        }
+        let tracked = match &self.control {
+            ControlLaw::ComputedTorque(law) => Some(law.frame),
+            _ => None,
+        };
+        let count = self.model.frames().len();
+        if let Some(frame) = [self.tool, tracked].into_iter().flatten().find(|&frame| frame >= count) {
+            return Err(SimulationError::UnknownFrame { frame, count });
         }
         if let ControlLaw::ComputedTorque(law) = &self.control {
             law.check(&self.model)?;

@@ -24,6 +24,8 @@ pub(crate) struct State<S> {
 pub(crate) struct Rate<S> {
     /// Velocity of the base's origin in W axes, m/s.
     pub(crate) origin: Vec3<S>,
+    /// Acceleration of the base's origin in W axes, m/s².
+    pub(crate) bend: Vec3<S>,
     /// Rate of the rotation vector since the start of the step, rad/s.
     pub(crate) turn: Vec3<S>,
     /// Joint rates in `[6..]`: the stage's velocity.
@@ -41,6 +43,7 @@ impl<S: Real> Rate<S> {
         let zeros = vec![S::of(0.0); model.nv()];
         Self {
             origin: Vec3::zero(),
+            bend: Vec3::zero(),
             turn: Vec3::zero(),
             v: zeros.clone(),
             a: zeros,

@@ -56,7 +56,7 @@ impl Surroundings {
 
     /// Fills in what the effects see; returns `R_wb`.
     #[inline(always)]
-    fn look<S: Scalar>(&mut self, model: &Model, data: &Data<S>, q: &[S]) -> Mat3<S> {
+    fn look<S: Scalar>(&mut self, model: &Model, data: &Data<S>, q: &[S], carried: Vec3<S>) -> Mat3<S> {
         let (rot_wb, origin) = (base_rotation(q), Vec3::from_slice(q));
         for (k, (seen, body)) in self.bodies.iter_mut().zip(&data.bodies).enumerate() {
             let node = &model.nodes()[k];
@@ -66,7 +66,7 @@ impl Surroundings {
             seen.com = (rot_wb * body.com_b + origin).to_nalgebra();
             seen.rot_wk = rot_wk.to_nalgebra();
             seen.origin = (rot_wb * body.pos_b + origin).to_nalgebra();
-            seen.velocity = (rot_wb * body.velocity.at(body.com_b)).to_nalgebra();
+            seen.velocity = (rot_wb * body.velocity.at(body.com_b) + carried).to_nalgebra();
             seen.angular_velocity = (rot_wb * body.velocity.angular).to_nalgebra();
         }
         rot_wb
@@ -90,6 +90,7 @@ impl<S: Scalar> World<S> for Surroundings {
         model: &Model,
         data: &mut Data<S>,
         q: &[S],
+        carried: Vec3<S>,
         t: f64,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
@@ -100,7 +101,7 @@ impl<S: Scalar> World<S> for Surroundings {
         let mu = self.orbit.as_ref().and_then(|orbit| orbit.mu());
         let rot_wb = S::enter(
             #[inline(always)]
-            || self.look(model, data, q),
+            || self.look(model, data, q, carried),
         );
         self.wrenches.fill(Wrench::default());
         let reference = reference.map(|state| Reference { state, mu });

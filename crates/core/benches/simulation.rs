@@ -1,0 +1,115 @@
+//! One simulated step of 1 ms of a torso with a seven-joint arm: 1000 steps per run, the time is
+//! that of one step, start and recording (every 100th step) included. Held: robot and state.
+#![allow(missing_docs, clippy::unwrap_used)] // criterion's macros write undocumented items
+
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use nalgebra::{Isometry3, Matrix3, Vector3};
+use onorbit_core::control::{ComputedTorque, ControlLaw};
+use onorbit_core::dynamics::{Data, frame_pose, positions};
+use onorbit_core::environment::GravityGradient;
+use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder, neutral};
+use onorbit_core::orbit::{Kepler, MU_EARTH};
+use onorbit_core::reference::{LineParabola, TaskReference};
+use onorbit_core::simulation::{Integrator, Simulation};
+use onorbit_core::spatial::InstructionSet;
+use std::hint::black_box;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+const STEPS: usize = 1000;
+const STEP: f64 = 1e-3;
+const MASS: [f64; 7] = [2.741, 2.425, 2.209, 0.877, 1.878, 0.409, 0.308];
+const LENGTH: [f64; 7] = [0.28, 0.144, 0.0, 0.274, 0.265, 0.0, 0.1];
+const START: [f64; 7] = [0.3, 0.6, -0.4, 1.3, 0.2, 1.0, -0.3];
+
+fn torso() -> Model {
+    let body = |mass: f64, z: f64, moments: [f64; 3]| {
+        let inertia = Matrix3::from_diagonal(&Vector3::from(moments));
+        Some(Inertial { mass, com: Vector3::new(0.0, 0.0, z), inertia })
+    };
+    let base = Link::new("torso", body(93.0, 0.0, [18.6, 15.4, 4.1]));
+    let mut builder = ModelBuilder::new("torso", base).unwrap();
+    let (mut parent, mut origin) = ("torso".to_owned(), Vector3::new(0.0, 0.25, 0.5));
+    for i in 0..7 {
+        let axis = if i % 2 == 0 { Vector3::z() } else { Vector3::y() };
+        let place = Isometry3::translation(origin.x, origin.y, origin.z);
+        let joint = Joint::new(&format!("joint{i}"), JointKind::Revolute(axis), place);
+        let name = format!("link{i}");
+        let link = Link::new(&name, body(MASS[i], LENGTH[i] / 2.0, [0.012, 0.011, 0.01]));
+        builder.add(&parent, joint, link).unwrap();
+        (parent, origin) = (name, Vector3::new(0.0, 0.0, LENGTH[i]));
+    }
+    builder.build().unwrap()
+}
+
+/// The arm swinging freely.
+fn passive() -> Simulation {
+    let model = torso();
+    let mut q = neutral(&model);
+    q[7..].copy_from_slice(&START);
+    let v = (0..model.nv()).map(|i| 0.3 * (1.3 * i as f64).sin()).collect();
+    Simulation { record_every: 100, time_step: STEP, ..Simulation::new(Arc::new(model), q, v) }
+}
+
+/// In orbit under the gravity gradient.
+fn in_orbit(mut simulation: Simulation) -> Simulation {
+    let (r, v) = (Vector3::new(6_778e3, 0.0, 0.0), Vector3::new(0.0, 4_700.0, 6_100.0));
+    simulation.orbit = Some(Arc::new(Kepler::from_state(r, v, MU_EARTH).unwrap()));
+    simulation.effects.push(Arc::new(GravityGradient));
+    simulation
+}
+
+/// Tracking a line with computed torque.
+fn controlled(mut simulation: Simulation) -> Simulation {
+    simulation.v.fill(0.0);
+    let tool = simulation.model.frame("link6").unwrap();
+    let mut data = Data::new(&simulation.model);
+    positions(&simulation.model, &mut data, &simulation.q);
+    let pose = frame_pose(&simulation.model, &data, &simulation.q, tool);
+    let (rot, pos) = (pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra());
+    let line = LineParabola::new(rot, pos, Vector3::x() * 0.1, Vector3::zeros(), 10.0).unwrap();
+    simulation.reference = Some(TaskReference::LineParabola(line));
+    simulation.tool = Some(tool);
+    let law = ComputedTorque { null_space_damping: 5.0, ..ComputedTorque::new(tool, 100.0, 20.0) };
+    simulation.control = ControlLaw::ComputedTorque(Box::new(law));
+    simulation
+}
+
+type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
+
+/// Times one step: criterion's iterations are steps, done a thousand at a time.
+fn step(group: &mut Group<'_>, name: &str, mut simulation: Simulation) {
+    group.bench_function(name, |b| {
+        b.iter_custom(|iterations| {
+            let runs = iterations.div_ceil(STEPS as u64);
+            let started = Instant::now();
+            for _ in 0..runs {
+                let duration = black_box(STEPS as f64 * STEP);
+                black_box(simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap());
+            }
+            started.elapsed().mul_f64(iterations as f64 / (runs * STEPS as u64) as f64)
+        });
+    });
+}
+
+fn benches(c: &mut Criterion) {
+    let mut group = c.benchmark_group(format!("step/{}", InstructionSet::current().name()));
+    group.throughput(Throughput::Elements(1));
+    step(&mut group, "passive rk4", passive());
+    step(&mut group, "passive semi-implicit euler", {
+        Simulation { integrator: Integrator::SemiImplicitEuler, ..passive() }
+    });
+    step(&mut group, "in orbit rk4", in_orbit(passive()));
+    step(&mut group, "controlled rk4", controlled(passive()));
+    step(&mut group, "controlled in orbit rk4", in_orbit(controlled(passive())));
+    group.finish();
+}
+
+criterion_group! {
+    name = simulation;
+    config = Criterion::default().sample_size(20).warm_up_time(std::time::Duration::from_millis(300))
+        .measurement_time(std::time::Duration::from_secs(1)).without_plots();
+    targets = benches
+}
+criterion_main!(simulation);
