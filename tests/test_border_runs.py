@@ -232,7 +232,8 @@ def test_ctrl_c_from_outside_ends_a_process_cleanly() -> None:
     program = textwrap.dedent("""
         import onorbit_rs as oo, numpy as np
         model = oo.robots.load("humanoid_torso")
-        simulation = oo.Simulation(model, model.neutral(), np.zeros(model.nv), time_step=1e-2, record_every=1000)
+        rest = np.zeros(model.nv)
+        simulation = oo.Simulation(model, model.neutral(), rest, time_step=1e-2, record_every=1000)
         print("ready", flush=True)
         try:
             simulation.run(1e6)
