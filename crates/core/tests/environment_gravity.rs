@@ -151,7 +151,7 @@ fn cylinder_error(case: &Case, sign: f64, turned: bool) -> f64 {
     let (position, rot_bw, rate_b, expected) = case;
     let (rot_bw, w) = (Matrix3::from_row_slice(rot_bw), Vector3::from(*rate_b));
     let inertia_b = Matrix3::from_diagonal(&Vector3::new(500.0, 12250.0, 12250.0));
-    let inertia = if turned { rot_bw.transpose() * inertia_b * rot_bw } else { inertia_b };
+    let inertia = if turned { inertia_b } else { rot_bw * inertia_b * rot_bw.transpose() };
     let b = BodyState { inertia, rot_wk: rot_bw.transpose(), ..body(Vector3::zeros()) };
     let reference = reference(*position, 3.986004415e14);
     let torque_b = rot_bw * wrench(&GravityGradient, Some(reference), b).expect("outside").torque * sign;
@@ -167,7 +167,7 @@ fn gravity_gradient_torque_agrees_with_nasa() {
         println!("{error:.1e} rad/s²");
         // Accelerations of 1e-7, printed to 16 digits: 1e-23; differences of terms 1e-6 in size, rounded.
         assert!(error < 3e-20, "{error}");
-        // Negative controls: the torque with the wrong sign, and the inertia left in body axes.
+        // Negative controls: the torque with the wrong sign, and the inertia taken for one in W axes.
         assert!(cylinder_error(case, -1.0, true) > 1e-8);
         assert!(cylinder_error(case, 1.0, false) > 1e-8);
     }
@@ -178,7 +178,7 @@ fn a_long_body_is_turned_back_towards_the_vertical() {
     // Pitched by θ about z from the radial x axis: T = -(3μ/2r³) (C - A) sin 2θ along z, with A the small moment.
     let (small, large, r, pitch) = (2.0, 30.0, 7e6_f64, 0.3_f64);
     let rot = Rotation3::from_axis_angle(&Vector3::z_axis(), pitch).into_inner();
-    let inertia = rot * Matrix3::from_diagonal(&Vector3::new(small, large, large)) * rot.transpose();
+    let inertia = Matrix3::from_diagonal(&Vector3::new(small, large, large));
     let b = BodyState { inertia, rot_wk: rot, ..body(Vector3::zeros()) };
     let got = wrench(&GravityGradient, Some(reference([r, 0.0, 0.0], MU_EARTH)), b).expect("outside").torque;
     let expected = -1.5 * MU_EARTH / r.powi(3) * (large - small) * (2.0 * pitch).sin();

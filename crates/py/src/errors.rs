@@ -205,6 +205,7 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::QuaternionNorm { norm } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
             }
+            SimulationError::UnknownFrame { .. } => plain(py, "FrameError", &message),
             SimulationError::RecordEvery => plain(py, "InputError", &message),
             SimulationError::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
             SimulationError::NeedsReference | SimulationError::NeedsTool => {

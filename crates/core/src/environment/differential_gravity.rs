@@ -53,9 +53,11 @@ fn tide(mu: f64, origin: &Vector3<f64>, offset: &Vector3<f64>) -> (Vector3<f64>,
     let square = (1.0 + q).max(0.0);
     let root = square.sqrt();
     let distance = r2.sqrt() * root;
-    // f = q (3 + 3q + q²)/(1 + s³)
-    let f = q * (3.0 + q * (3.0 + q)) / (1.0 + square * root);
-    ((offset - origin * f) * (-mu / (r2 * square * distance)), distance)
+    // f = n/a,  n = q (3 + 3q + q²),  a = 1 + s³;  both divisions in one
+    let (n, a, cube) = (q * (3.0 + q * (3.0 + q)), 1.0 + square * root, r2 * square * distance);
+    let inverse = 1.0 / (a * cube);
+    let f = n * cube * inverse;
+    ((offset - origin * f) * (-mu * a * inverse), distance)
 }
 
 impl Effect for DifferentialGravity {

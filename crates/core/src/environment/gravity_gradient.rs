@@ -31,10 +31,11 @@ impl Effect for GravityGradient {
         for (k, (body, wrench)) in scene.paired(wrenches)?.enumerate() {
             let r = planet.reference.position + body.com;
             let distance = planet.outside(Place::Body(k), r.norm())?;
-            // T = (3μ/r³) r̂ × I r̂
-            let up = r / distance;
-            let rate2 = 3.0 * planet.mu / (distance * distance * distance);
-            wrench.torque += up.cross(&(body.inertia * up)) * rate2;
+            let inverse = 1.0 / distance;
+            // T = (3μ/r³) R (r̂_k × I r̂_k), with r̂_k = Rᵀ r̂ in body axes, where I is constant
+            let up_k = body.rot_wk.tr_mul(&r) * inverse;
+            let torque_k = up_k.cross(&(body.inertia * up_k));
+            wrench.torque += body.rot_wk * torque_k * (3.0 * planet.mu * inverse * inverse * inverse);
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ use crate::orbit::OrbitState;
 pub struct BodyState {
     /// Mass, kg.
     pub mass: f64,
-    /// Inertia about the centre of mass, `W` axes, kg m².
+    /// Inertia about the centre of mass in the body's own axes, kg m².
     pub inertia: Matrix3<f64>,
     /// Centre of mass, m.
     pub com: Vector3<f64>,

@@ -14,7 +14,6 @@ pub(crate) trait World<S> {
     /// moves at `carried` (W axes).
     fn apply(
         &mut self,
-        model: &Model,
         data: &mut Data<S>,
         q: &[S],
         carried: Vec3<S>,
@@ -29,7 +28,6 @@ pub(crate) struct Nothing;
 impl<S> World<S> for Nothing {
     fn apply(
         &mut self,
-        _: &Model,
         _: &mut Data<S>,
         _: &[S],
         _: Vec3<S>,
@@ -118,7 +116,7 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
 
     /// External wrenches at the state whose kinematics are in `data`.
     pub(crate) fn surround(&mut self, t: f64, interval: (f64, f64), q: &[S]) -> Result<(), SimulationError> {
-        self.surroundings.apply(self.model, &mut self.data, q, self.carried, t, interval)
+        self.surroundings.apply(&mut self.data, q, self.carried, t, interval)
     }
 
     /// Rates at a state whose kinematics and wrenches are in `data`.

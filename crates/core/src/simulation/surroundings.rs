@@ -4,9 +4,9 @@ use super::error::SimulationError;
 use super::plant::World;
 use crate::dynamics::{Data, base_rotation};
 use crate::environment::{BodyState, Effect, Reference, Scene, Wrench};
-use crate::model::Model;
+use crate::model::{Model, Node};
 use crate::orbit::{Orbit, OrbitState};
-use crate::spatial::{Force, Mat3, Scalar, Sym3, Vec3};
+use crate::spatial::{Force, Mat3, Scalar, Vec3};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -23,22 +23,21 @@ pub(super) struct Surroundings {
 
 impl Surroundings {
     pub(super) fn new(model: &Model, effects: Vec<Arc<dyn Effect>>, orbit: Option<Arc<dyn Orbit>>) -> Self {
-        let at_rest = BodyState {
-            mass: 0.0,
-            inertia: Matrix3::zeros(),
+        let at_rest = |node: &Node| BodyState {
+            mass: node.mass,
+            inertia: node.about_com.to_nalgebra(),
             com: Vector3::zeros(),
             rot_wk: Matrix3::identity(),
             origin: Vector3::zeros(),
             velocity: Vector3::zeros(),
             angular_velocity: Vector3::zeros(),
         };
-        let count = model.nodes().len();
         Self {
             effects,
             orbit,
             known: [(f64::NAN, None); 3],
-            bodies: vec![at_rest; count],
-            wrenches: vec![Wrench::default(); count],
+            bodies: model.nodes().iter().map(at_rest).collect(),
+            wrenches: vec![Wrench::default(); model.nodes().len()],
         }
     }
 
@@ -56,15 +55,11 @@ impl Surroundings {
 
     /// Fills in what the effects see; returns `R_wb`.
     #[inline(always)]
-    fn look<S: Scalar>(&mut self, model: &Model, data: &Data<S>, q: &[S], carried: Vec3<S>) -> Mat3<S> {
+    fn look<S: Scalar>(&mut self, data: &Data<S>, q: &[S], carried: Vec3<S>) -> Mat3<S> {
         let (rot_wb, origin) = (base_rotation(q), Vec3::from_slice(q));
-        for (k, (seen, body)) in self.bodies.iter_mut().zip(&data.bodies).enumerate() {
-            let node = &model.nodes()[k];
-            let rot_wk = rot_wb * body.rot_bk;
-            seen.mass = node.mass;
-            seen.inertia = Sym3::of(&node.about_com).rotate(&rot_wk).to_nalgebra();
+        for (seen, body) in self.bodies.iter_mut().zip(&data.bodies) {
             seen.com = (rot_wb * body.com_b + origin).to_nalgebra();
-            seen.rot_wk = rot_wk.to_nalgebra();
+            seen.rot_wk = (rot_wb * body.rot_bk).to_nalgebra();
             seen.origin = (rot_wb * body.pos_b + origin).to_nalgebra();
             seen.velocity = (rot_wb * body.velocity.at(body.com_b) + carried).to_nalgebra();
             seen.angular_velocity = (rot_wb * body.velocity.angular).to_nalgebra();
@@ -87,7 +82,6 @@ impl Surroundings {
 impl<S: Scalar> World<S> for Surroundings {
     fn apply(
         &mut self,
-        model: &Model,
         data: &mut Data<S>,
         q: &[S],
         carried: Vec3<S>,
@@ -101,7 +95,7 @@ impl<S: Scalar> World<S> for Surroundings {
         let mu = self.orbit.as_ref().and_then(|orbit| orbit.mu());
         let rot_wb = S::enter(
             #[inline(always)]
-            || self.look(model, data, q, carried),
+            || self.look(data, q, carried),
         );
         self.wrenches.fill(Wrench::default());
         let reference = reference.map(|state| Reference { state, mu });
