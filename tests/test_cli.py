@@ -10,7 +10,6 @@ import time
 from pathlib import Path
 
 import pytest
-
 from onorbit_rs import scenarios
 
 SHORT_REACH = (
@@ -63,6 +62,14 @@ def test_run_writes_the_folder_and_show_reads_it(tmp_path: Path) -> None:
     assert "--force" in refusal("run", "mine.yaml", "--out", "out", cwd=tmp_path)
     again = onorbit("run", "mine.yaml", "--out", "out", "--force", "--quiet", cwd=tmp_path)
     assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
+
+
+def test_a_certificate_that_fails_is_said_to(tmp_path: Path) -> None:
+    text = scenarios.path("free_tumble").read_text()
+    (tmp_path / "mine.yaml").write_text(text.replace("time_step: 2 ms", "time_step: 100 ms"))
+    done = onorbit("run", "mine.yaml", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "certificate FAILED (energy_balance_error_rel" in done.stdout
 
 
 @pytest.mark.parametrize(

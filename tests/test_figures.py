@@ -7,10 +7,9 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import onorbit_rs as oo
 import pytest
 from matplotlib.figure import Figure
-
-import onorbit_rs as oo
 from onorbit_rs import figures
 from onorbit_rs.figures.style import MOST_POINTS, thin, with_prefix
 from onorbit_rs.scenario import load
@@ -81,8 +80,8 @@ def test_an_orbit_flown_is_drawn(tmp_path: Path) -> None:
 
 def test_nothing_global_is_touched() -> None:
     program = (
-        "import matplotlib, sys; before = dict(matplotlib.rcParams); import onorbit_rs.figures; "
-        "assert dict(matplotlib.rcParams) == before; assert 'matplotlib.pyplot' not in sys.modules"
+        "import matplotlib, sys; before = matplotlib.rcParams.copy(); import onorbit_rs.figures; "
+        "assert matplotlib.rcParams.copy() == before; assert 'matplotlib.pyplot' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
 

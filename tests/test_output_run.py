@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
-
 import onorbit_rs as oo
+import pytest
 from onorbit_rs.exceptions import OutputNotEmptyError, RunInterrupted, SimulationError
 from onorbit_rs.scenario import load
 

@@ -6,13 +6,12 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-import pytest
-from rerun.chunk import RrdReader
-
 import onorbit_rs as oo
+import pytest
 from onorbit_rs import viewer
 from onorbit_rs.geometry import shapes
 from onorbit_rs.scenario import load
+from rerun.chunk import RrdReader
 
 STEPS = 51
 
@@ -42,7 +41,8 @@ def test_every_entity_has_every_step(reach: oo.Run, tmp_path: Path) -> None:
         "/world/tool/desired/now", "/world/tool/obtained/now", "/world/frames/lvlh", "/orbit/spacecraft",
         "/plots/joint_torque", "/plots/joint_position", "/plots/joint_rate", "/plots/tool_position_error",
         "/plots/tool_attitude_error", "/plots/linear_momentum", "/plots/angular_momentum", "/plots/energy",
-        "/plots/base_position", "/plots/base_attitude", "/exact/position_eci", "/exact/velocity_eci",
+        "/plots/base_position", "/plots/base_attitude",
+        "/plots/base_attitude_lvlh", "/exact/position_eci", "/exact/velocity_eci",
     }  # fmt: skip
     assert {entity: moving[entity] for entity in expected} == dict.fromkeys(expected, STEPS)
     assert moving["/world/tool/obtained/trail"] == STEPS - 1

@@ -1,1 +1,63 @@
-"""A simulator for free-floating robots in orbit."""
+"""A simulator for free-floating robots in orbit.
+
+>>> import onorbit_rs as oo
+>>> model = oo.Model.rigid_body(120.0, [[4.0, 0, 0], [0, 22.0, 0], [0, 0, 24.0]])
+>>> model.nv
+6
+
+SI and radians everywhere; frames and layouts are those of ``docs/``: ``q = [p(3), quat_xyzw(4), joints]``,
+``v = [v_body(3), w_body(3), joint rates]``, linear before angular.
+"""
+
+from __future__ import annotations
+
+from onorbit_rs import exceptions, robots, scenarios
+from onorbit_rs._core import (
+    MU_EARTH,
+    BodyWrench,
+    ComputedTorque,
+    FreeFloating,
+    GravityGradient,
+    Hold,
+    Kepler,
+    LineParabola,
+    Model,
+    ModelBuilder,
+    Simulation,
+    State,
+    Trace,
+    build_info,
+    rollout,
+)
+from onorbit_rs.control import Controller
+from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.running import Run, run
+from onorbit_rs.scenario import Scenario
+
+__all__ = [
+    "MU_EARTH",
+    "BodyWrench",
+    "ComputedTorque",
+    "Controller",
+    "FreeFloating",
+    "GravityGradient",
+    "Hold",
+    "Kepler",
+    "LineParabola",
+    "Model",
+    "ModelBuilder",
+    "OnOrbitError",
+    "Run",
+    "Scenario",
+    "Simulation",
+    "State",
+    "Trace",
+    "build_info",
+    "exceptions",
+    "robots",
+    "rollout",
+    "run",
+    "scenarios",
+]
+
+__version__: str = build_info()["version"]

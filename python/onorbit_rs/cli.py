@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -39,7 +39,10 @@ def run(
     from onorbit_rs import report
     from onorbit_rs.running import run as run_scenario
 
-    result = run_scenario(scenario, out=out, force=force, quiet=quiet)
+    try:
+        result = run_scenario(scenario, out=out, force=force, quiet=quiet)
+    except RunInterrupted as stop:  # caught here: typer would swallow a KeyboardInterrupt and its message
+        _fail(str(stop), 130)
     if not quiet:
         report.print_summary(result.summary, result.out)
 
@@ -66,11 +69,17 @@ def check(scenario: ScenarioArgument) -> None:
 def show(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that a run has written.")],
     viewer: Annotated[bool, typer.Option(help="Open the recording where there is a screen.")] = True,
+    picture: Annotated[Path | None, typer.Option(metavar="FILE", help="Save a PNG of the viewer.")] = None,
+    at: Annotated[float, typer.Option(metavar="SECONDS", help="Moment of the picture.")] = 0.0,
 ) -> None:
-    """Print the summary of a run and open its recording."""
+    """Print the summary of a run and open its recording, or save a picture of it."""
     from onorbit_rs import report
 
-    report.show_run(folder, open_viewer=viewer)
+    report.print_run(folder)
+    if picture is not None:
+        report.save_picture(folder, picture, at)
+    elif viewer:
+        report.open_viewer(folder)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -79,9 +88,7 @@ def main(arguments: list[str] | None = None) -> None:
         code = app(arguments, standalone_mode=False)
     except OnOrbitError as error:
         _fail(str(error), 2)
-    except RunInterrupted as stop:
-        _fail(str(stop), 130)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, typer.Abort):
         _fail("stopped by Ctrl-C", 130)
     except typer.TyperException as error:
         _fail(error.format_message(), 2)
@@ -91,8 +98,9 @@ def main(arguments: list[str] | None = None) -> None:
     sys.exit(code if isinstance(code, int) else 0)
 
 
-def _fail(message: str, code: int) -> None:
-    print(f"onorbit: {' '.join(message.split())}", file=sys.stderr)
+def _fail(message: str, code: int) -> NoReturn:
+    if message:
+        typer.echo(f"onorbit: {' '.join(message.split())}", err=True)
     sys.exit(code)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -44,12 +45,22 @@ def shapes(model: Model) -> list[Shape]:
             kind=visual.kind,
             size=tuple(visual.size or ()),
             filename=Path(visual.filename) if visual.filename else None,
-            scale=tuple(visual.scale) if visual.scale else (1.0, 1.0, 1.0),
-            rgba=tuple(visual.rgba) if visual.rgba else GREY,
+            scale=_three(visual.scale),
+            rgba=_color(visual.rgba),
         )
         for visual in model.visuals
     ]
     return found or [_inertia_box(model)]
+
+
+def _three(scale: Sequence[float] | None) -> tuple[float, float, float]:
+    x, y, z = scale or (1.0, 1.0, 1.0)
+    return x, y, z
+
+
+def _color(rgba: Sequence[float] | None) -> tuple[float, float, float, float]:
+    red, green, blue, alpha = rgba or GREY
+    return red, green, blue, alpha
 
 
 def _inertia_box(model: Model) -> Shape:

@@ -6,10 +6,11 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import typer
 from rich.console import Console
 from rich.table import Table
 
-from onorbit_rs.exceptions import NotFoundError, ReadError
+from onorbit_rs.exceptions import NotFoundError, OnOrbitError, OutputFolderError, ReadError
 
 if TYPE_CHECKING:
     from onorbit_rs.scenario.build import Built
@@ -32,7 +33,7 @@ _FILES = (
 )
 
 
-def print_summary(summary: dict[str, Any], out: Path | None) -> None:
+def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = True) -> None:
     """The main numbers, the verdict, where the files are and what to do next."""
     console = Console(highlight=False)
     table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
@@ -48,7 +49,8 @@ def print_summary(summary: dict[str, Any], out: Path | None) -> None:
     for name, what in _FILES:
         if (out / name).exists():
             console.print(f"  {out / name}  [dim]{what}[/dim]", soft_wrap=True)
-    console.print(f"next: onorbit show {out}", soft_wrap=True)
+    if is_new:
+        console.print(f"next: onorbit show {out}", soft_wrap=True)
 
 
 def _verdict(summary: dict[str, Any]) -> str:
@@ -56,7 +58,7 @@ def _verdict(summary: dict[str, Any]) -> str:
     balances = [
         f"{name.removesuffix('_rel').replace('_', ' ')} {value:.1e}"
         for name, value in summary.items()
-        if name.endswith("_rel") and isinstance(value, float)
+        if name.endswith(("_rel", "_consistency")) and isinstance(value, float)
     ]
     if summary.get("certificate_passed"):
         return f"[green]certificate passed[/green]: {', '.join(balances)}"
@@ -88,11 +90,11 @@ def print_checked(built: Built) -> None:
         scenario.controller.kind if scenario.controller else "no controller",
         f"{settings.duration:g} s at {settings.time_step:g} s with {settings.integrator}",
     ]
-    print(f"ok: {scenario.name}: {', '.join(parts)}")
+    typer.echo(f"ok: {scenario.name}: {', '.join(parts)}")
 
 
-def show_run(folder: Path, *, open_viewer: bool) -> None:
-    """Print a finished run's summary; open its recording where there is a screen.
+def print_run(folder: Path) -> None:
+    """Print a finished run's summary.
 
     Raises
     ------
@@ -107,14 +109,31 @@ def show_run(folder: Path, *, open_viewer: bool) -> None:
         raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
     try:
         summary = json.loads(file.read_text(encoding="utf-8"))
-        print_summary(dict(summary), folder)
+        print_summary(dict(summary), folder, is_new=False)
     except (ValueError, TypeError, OSError) as error:
         raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error
-    recording = folder / "run.rrd"
-    if open_viewer and recording.is_file():
-        from onorbit_rs.viewer.screen import has_screen, open_recording
 
-        if has_screen():
-            open_recording(recording)
-        else:
-            print(f"no screen here; open the recording with: rerun {recording}")
+
+def open_viewer(folder: Path) -> None:
+    """Open the recording of a run where there is a screen, or say how."""
+    from onorbit_rs.viewer.screen import has_screen, open_recording
+
+    recording = folder / "run.rrd"
+    if recording.is_file() and has_screen():
+        open_recording(recording)
+    elif recording.is_file():
+        typer.echo(f"no screen here; open the recording with: rerun {recording}")
+
+
+def save_picture(folder: Path, picture: Path, at_s: float) -> None:
+    """Save what the viewer shows at a moment."""
+    from onorbit_rs import viewer
+
+    try:
+        viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s)
+    except OSError as error:
+        if isinstance(error, OnOrbitError):
+            raise
+        reason = error.strerror or error
+        raise OutputFolderError(f"cannot write {picture}: {reason}", path=str(picture)) from error
+    typer.echo(f"picture: {picture}")

@@ -84,3 +84,10 @@ def local_orbital_axes(position: ArrayLike, velocity: ArrayLike) -> Floats:
     momentum = np.cross(r, v)
     z = momentum / np.linalg.norm(momentum, axis=-1, keepdims=True)
     return np.stack([x, np.cross(z, x), z], axis=-1)
+
+
+def attitude_in_orbit(quat_xyzw: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Floats:
+    """Roll, pitch and yaw (T, 3), rad, unwrapped, of attitudes (T, 4) relative to L of an orbit (T, 3)."""
+    rot_li = np.swapaxes(local_orbital_axes(position, velocity), -1, -2)
+    rot_lb = rot_li @ matrix_from_quaternion(quat_xyzw)
+    return np.unwrap(roll_pitch_yaw(quaternion_from_matrix(rot_lb)), axis=0)

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from onorbit_rs.exceptions import RunInterrupted, SimulationError
-from onorbit_rs.output import OutputFolder, summarize, write_run
-from onorbit_rs.output.write import write_scenario
+from onorbit_rs.output import (
+    OutputFolder,
+    summarize,
+    write_pictures,
+    write_scenario,
+    write_summary,
+    write_trace,
+)
 from onorbit_rs.progress import progress_bar
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
@@ -68,38 +75,38 @@ def run(
     folder = None if out is None else OutputFolder.claim(out, force=force)
     if folder is not None:
         write_scenario(folder, checked)
-    started = time.perf_counter()
     try:
         trace = _simulate(built, quiet=quiet)
     except (SimulationError, RunInterrupted) as stop:
-        _keep(stop, built, folder, time.perf_counter() - started)
+        _keep(stop, built, folder)
         raise
-    wall_s = time.perf_counter() - started
-    summary = summarize(trace, checked, wall_s=wall_s)
+    summary = summarize(trace, checked)
     if folder is not None:
-        write_run(folder, trace, summary, built.model, checked, built.orbit)
+        write_trace(folder, trace)
+        write_summary(folder, summary)
+        write_pictures(folder, trace, summary, built)
     return Run(trace, summary, built.model, checked, folder.path if folder else None)
 
 
 def _simulate(built: Built, *, quiet: bool) -> Trace:
     duration = built.scenario.simulation.duration
     with progress_bar(built.scenario.name, duration, quiet=quiet) as progress:
-        trace = built.simulation.run(duration, progress=progress)
-    if not trace.is_complete:
-        reached = float(trace.time[-1])
-        raise RunInterrupted(
-            f"stopped by Ctrl-C at t = {reached:g} s of {duration:g} s", time=reached, trace=trace
-        )
-    return trace
+        return built.simulation.run(duration, progress=progress)
 
 
-def _keep(
-    stop: SimulationError | RunInterrupted, built: Built, folder: OutputFolder | None, wall_s: float
-) -> None:
+def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFolder | None) -> None:
     """Write what there is of a run that stopped early, and say where."""
+    diverged = isinstance(stop, SimulationError)
+    if not diverged:
+        duration = built.scenario.simulation.duration
+        stop.message = f"stopped by Ctrl-C at t = {stop.time:g} s of {duration:g} s"
     if folder is None or stop.trace is None or len(stop.trace.time) == 0:
         return
-    status = "interrupted" if isinstance(stop, RunInterrupted) else "diverged"
-    summary = summarize(stop.trace, built.scenario, wall_s=wall_s, status=status)
+    with np.errstate(all="ignore"):  # numbers near the end of the range of floats
+        status = "diverged" if diverged else "interrupted"
+        summary = summarize(stop.trace, built.scenario, status=status)
+    write_trace(folder, stop.trace)
+    write_summary(folder, summary)
     stop.message += f"; the trace so far is in {folder.path}"
-    write_run(folder, stop.trace, summary, built.model, built.scenario, built.orbit)
+    if not diverged:  # such numbers make no picture
+        write_pictures(folder, stop.trace, summary, built)

@@ -1,8 +1,65 @@
 //! Python bindings of `onorbit-core`: this crate translates, it never computes.
 
+mod arrays;
+mod builder;
+mod control;
+mod environment;
+mod errors;
+mod kernels;
+mod model;
+mod orbit;
+mod reference;
+mod rollout;
+mod simulation;
+mod trace;
+
+use onorbit_core::spatial::InstructionSet;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Version and instruction set of the engine.
+///
+/// Returns
+/// -------
+/// dict
+///     ``version`` and ``instruction_set`` (``baseline``, ``avx2+fma`` or ``avx512``).
+#[pyfunction]
+fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let info = PyDict::new(py);
+    info.set_item("version", env!("CARGO_PKG_VERSION"))?;
+    info.set_item("instruction_set", InstructionSet::current().name())?;
+    Ok(info)
+}
+
+/// ``ONORBIT_INSTRUCTION_SET=baseline`` (or ``avx2+fma``) keeps the engine off newer instructions.
+fn limit_instructions() {
+    let level = std::env::var("ONORBIT_INSTRUCTION_SET").ok();
+    if let Some(level) = level.as_deref().and_then(InstructionSet::named) {
+        InstructionSet::limit(level);
+    }
+}
 
 #[pymodule]
-fn _core(_m: &Bound<'_, PyModule>) -> PyResult<()> {
+fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    limit_instructions();
+    m.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    m.add("MU_EARTH", onorbit_core::orbit::MU_EARTH)?;
+    m.add_class::<model::PyModel>()?;
+    m.add_class::<model::PyVisual>()?;
+    m.add_class::<kernels::PyFreeFloating>()?;
+    m.add_class::<builder::PyModelBuilder>()?;
+    m.add_class::<orbit::PyOrbit>()?;
+    m.add_class::<orbit::PyKepler>()?;
+    m.add_class::<environment::PyEffect>()?;
+    m.add_class::<environment::PyGravityGradient>()?;
+    m.add_class::<environment::PyBodyWrench>()?;
+    m.add_class::<control::PyComputedTorque>()?;
+    m.add_class::<control::PyState>()?;
+    m.add_class::<reference::PyHold>()?;
+    m.add_class::<reference::PyLineParabola>()?;
+    m.add_class::<simulation::PySimulation>()?;
+    m.add_class::<trace::PyTrace>()?;
+    m.add_function(wrap_pyfunction!(build_info, m)?)?;
+    m.add_function(wrap_pyfunction!(rollout::rollout, m)?)?;
     Ok(())
 }

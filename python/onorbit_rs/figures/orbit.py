@@ -10,12 +10,7 @@ from matplotlib.gridspec import GridSpec
 
 from onorbit_rs.figures.space import add_space, fit, label
 from onorbit_rs.figures.style import COLORS, XYZ_COLORS, legend_beside, new_figure, plot_lines, thin, tidy
-from onorbit_rs.rotations import (
-    local_orbital_axes,
-    matrix_from_quaternion,
-    quaternion_from_matrix,
-    roll_pitch_yaw,
-)
+from onorbit_rs.rotations import attitude_in_orbit
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,9 +25,7 @@ EARTH_RADIUS_KM = 6378.137
 def orbit_overview(trace: Trace) -> Figure:
     """The path around the Earth (inertial axes, to scale), distance, attitude of the base relative to L."""
     position, velocity = np.asarray(trace.position_eci), np.asarray(trace.velocity_eci)
-    rot_il = local_orbital_axes(position, velocity)
-    rot_lb = np.swapaxes(rot_il, -1, -2) @ matrix_from_quaternion(np.asarray(trace.q)[:, 3:7])
-    angles = np.degrees(np.unwrap(roll_pitch_yaw(quaternion_from_matrix(rot_lb)), axis=0))
+    angles = np.degrees(attitude_in_orbit(np.asarray(trace.q)[:, 3:7], position, velocity))
     distance_km = np.linalg.norm(position, axis=1)[:, None] / 1e3
     figure = new_figure(10.5, 4.6, "Orbit, and attitude of the base in the local orbital frame")
     grid = GridSpec(2, 2, figure=figure, width_ratios=(1.0, 1.15))

@@ -30,10 +30,11 @@ def tracking_errors(trace: Trace) -> Figure:
         (trace.position_error, "m", "a) position error"),
         (trace.attitude_error, "rad", "b) attitude error"),
     ]
-    for axes, (error, unit, name) in zip(panels, rows, strict=True):
+    for axes, (column, unit, name) in zip(panels, rows, strict=True):
+        error = np.asarray(column)
         norm = np.linalg.norm(error, axis=1)
         factor, scaled_unit = with_prefix(float(norm.max()), unit)
-        plot_lines(axes, trace.time, factor * np.asarray(error), ("x", "y", "z"), XYZ_COLORS)
+        plot_lines(axes, trace.time, factor * error, ("x", "y", "z"), XYZ_COLORS)
         plot_lines(axes, trace.time, factor * norm[:, None], ("norm",), (INK,))
         axes.lines[-1].set(linestyle="--", linewidth=1.0)
         tidy(axes, "", f"{name} [{scaled_unit}]")
@@ -47,10 +48,10 @@ def joint_torques(trace: Trace, model: Model) -> Figure:
     tau = np.asarray(trace.tau)
     figure = new_figure(8.0, 3.8, "Control action: joint torques (Fig. 7)")
     axes = figure.subplots()
-    factor, unit = (
-        with_prefix(float(np.abs(tau).max()), "N m") if tau.size and np.abs(tau).max() < 0.1 else (1.0, "N m")
-    )
+    peak = max(float(np.abs(tau).max()), 1e-12)
+    factor, unit = with_prefix(peak, "N m") if peak < 0.1 else (1.0, "N m")
     plot_lines(axes, trace.time, factor * tau, list(model.joint_names), COLORS)
+    axes.set_ylim(-1.08 * factor * peak, 1.08 * factor * peak)
     axes.axhline(0.0, color=INK, linewidth=0.6, zorder=0)
     tidy(axes, "time [s]", f"torque [{unit}]")
     legend_beside(axes, ncols=1 + len(model.joint_names) // 15)

@@ -65,12 +65,13 @@ class OutputFolder:
             yield partial
             partial.replace(final)
         except OSError as error:
-            partial.unlink(missing_ok=True)
             if isinstance(error, OutputFolderError):
                 raise
             raise OutputFolderError(
                 f"cannot write {final}: {error.strerror or error}", path=str(final)
             ) from error
+        finally:  # whatever ended it, Ctrl-C included
+            partial.unlink(missing_ok=True)
 
     def _make(self) -> None:
         if self.path.exists() and not self.path.is_dir():
@@ -79,7 +80,7 @@ class OutputFolder:
             )
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            os.listdir(self.path)
+            next(self.path.iterdir(), None)
         except OSError as error:
             raise self._not_writable(error) from error
 

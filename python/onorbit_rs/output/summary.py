@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core
-from onorbit_rs.output.verdict import failures
 from onorbit_rs.rotations import angle_between
 
 if TYPE_CHECKING:
@@ -19,45 +18,48 @@ if TYPE_CHECKING:
 Summary = dict[str, Any]
 
 
-def summarize(trace: Trace, scenario: Scenario, *, wall_s: float, status: str = "complete") -> Summary:
+def summarize(trace: Trace, scenario: Scenario, *, status: str = "complete") -> Summary:
     """Everything a reader wants to know of a run without opening its trace.
 
     Parameters
     ----------
     trace : Trace
     scenario : Scenario
-    wall_s : float
-        Wall-clock time of the simulation loop alone, s.
     status : str
         ``complete``, ``interrupted`` or ``diverged``.
 
     Returns
     -------
     dict
-        As in ``summary.json``; a number that is not finite is None.
+        As in ``summary.json``; a number that is not finite is None. ``wall_s`` is the simulation loop alone.
     """
-    certificate = dict(trace.certificate())
-    failed = failures(certificate)
     simulated_s = float(trace.time[-1] - trace.time[0])
     summary = (
         {"scenario": scenario.name, "status": status}
         | _tracking(trace)
         | _motion(trace)
-        | certificate
-        | {"certificate_passed": not failed, "certificate_failures": ", ".join(failed)}
-        | {"simulated_s": simulated_s, "wall_s": wall_s}
-        | {"real_time_factor": simulated_s / wall_s if wall_s > 0.0 else None, "rows": len(trace.time)}
+        | _certificate(trace)
+        | {"simulated_s": simulated_s, "wall_s": trace.wall_s}
+        | {"real_time_factor": simulated_s / max(trace.wall_s, 1e-9), "rows": len(trace.time)}
         | _settings(scenario)
         | _versions()
     )
     return {key: _plain(value) for key, value in summary.items()}
 
 
+def _certificate(trace: Trace) -> Summary:
+    """Every balance that applies to this run, and whether all are within their gates."""
+    rows = trace.certificate()
+    balances: Summary = {name: value for name, value, _, _ in rows if value is not None}
+    failed = [name for name, _, _, passed in rows if not passed]
+    return balances | {"certificate_passed": not failed, "certificate_failures": ", ".join(failed)}
+
+
 def _tracking(trace: Trace) -> Summary:
     if "position_error" not in trace.columns():
         return {}
-    position = np.linalg.norm(trace.position_error, axis=1)
-    attitude = np.linalg.norm(trace.attitude_error, axis=1)
+    position = np.linalg.norm(np.asarray(trace.position_error), axis=1)
+    attitude = np.linalg.norm(np.asarray(trace.attitude_error), axis=1)
     return {
         "tracking_position_error_max_m": position.max(),
         "tracking_position_error_final_m": position[-1],

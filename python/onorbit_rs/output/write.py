@@ -1,4 +1,4 @@
-"""Writes the files of a run, the irreplaceable ones first."""
+"""Writes the files of a run."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ import yaml
 from onorbit_rs.output.folder import FIGURES, OutputFolder
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Model, Trace
+    from onorbit_rs._core import Trace
     from onorbit_rs.scenario import Scenario
+    from onorbit_rs.scenario.build import Built
 
 
 def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
@@ -30,7 +31,8 @@ def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
 def write_trace(folder: OutputFolder, trace: Trace) -> None:
     """``trace.npz``: the columns of the trace under their own names."""
     with folder.writing("trace.npz") as path, path.open("wb") as stream:
-        np.savez(stream, **{name: np.asarray(getattr(trace, name)) for name in trace.columns()})
+        columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
+        np.savez(stream, allow_pickle=False, **columns)
 
 
 def write_summary(folder: OutputFolder, summary: dict[str, Any]) -> None:
@@ -39,30 +41,21 @@ def write_summary(folder: OutputFolder, summary: dict[str, Any]) -> None:
         path.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def write_run(
-    folder: OutputFolder,
-    trace: Trace,
-    summary: dict[str, Any],
-    model: Model,
-    scenario: Scenario,
-    orbit: Any = None,
-) -> None:
-    """Trace and summary, then pictures: figures and recording."""
+def write_pictures(folder: OutputFolder, trace: Trace, summary: dict[str, Any], built: Built) -> None:
+    """Figures and recording."""
     # Imported here: matplotlib and rerun take a second that a run without output should not pay.
     from onorbit_rs import figures, viewer
 
-    write_trace(folder, trace)
-    write_summary(folder, summary)
     if len(trace.time) > 1:
-        figures.save_all(trace, model, folder.path / FIGURES)
+        figures.save_all(trace, built.model, folder.path / FIGURES)
     with folder.writing("run.rrd") as path:
         viewer.write_recording(
             path,
             trace,
-            model,
-            title=scenario.name,
-            notes=notes(summary, scenario),
-            orbit_path=one_revolution(orbit),
+            built.model,
+            title=built.scenario.name,
+            notes=notes(summary, built.scenario),
+            orbit_path=one_revolution(built.orbit),
         )
 
 

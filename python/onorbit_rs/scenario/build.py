@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core, robots
-from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.exceptions import FrameError, OnOrbitError
+from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.environment import BodyWrenchEffect
 from onorbit_rs.scenario.orbit import KeplerOrbit
 from onorbit_rs.scenario.reference import reference_of
@@ -50,17 +51,19 @@ def build(scenario: Scenario) -> Built:
         orbit = None if scenario.orbit is None else _orbit(scenario.orbit)
     with located(scenario, "initial"):
         q, v = initial_state(scenario.initial, model, orbit)
+    with located(scenario, "tool"):
+        tool_pose = None if scenario.tool is None else model.frame_pose(q, scenario.tool)
     effects = []
     for index, effect in enumerate(scenario.environment):
         with located(scenario, "environment", index):
-            effects.append(_effect(effect))
+            effects.append(_effect(effect, model))
     controller = reference = None
-    if scenario.controller is not None and scenario.tool is not None:
+    if scenario.controller is not None and scenario.tool is not None and tool_pose is not None:
         with located(scenario, "controller"):
             gains = scenario.controller.model_dump(exclude_none=True, exclude={"kind"})
             controller = _core.ComputedTorque(model, scenario.tool, **_as_arrays(gains))
         with located(scenario, "reference"):
-            reference = reference_of(scenario.reference, model.frame_pose(q, scenario.tool))
+            reference = reference_of(scenario.reference, tool_pose)
     with located(scenario, "simulation"):
         settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
         simulation = _core.Simulation(
@@ -109,8 +112,14 @@ def _orbit(orbit: KeplerOrbit) -> _core.Kepler:
     return _core.Kepler(**given)
 
 
-def _effect(effect: Any) -> Any:
+def _effect(effect: Any, model: _core.Model) -> Any:
     if isinstance(effect, BodyWrenchEffect):
+        bodies = list(model.body_names)
+        if effect.body not in bodies:
+            raise FrameError(
+                f"no body is named {effect.body!r}{did_you_mean(effect.body, bodies)}",
+                name=effect.body, kind="body", known=bodies, suggestion=nearest(effect.body, bodies),
+            )  # fmt: skip
         times = {"start": effect.start} | ({} if effect.end is None else {"end": effect.end})
         return _core.BodyWrench(
             effect.body, force=np.array(effect.force), torque=np.array(effect.torque), **times

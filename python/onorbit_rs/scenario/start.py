@@ -65,8 +65,9 @@ def _quaternion(attitude: Attitude | None) -> Floats:
     if attitude is None:
         return np.array([0.0, 0.0, 0.0, 1.0])
     if attitude.quaternion_xyzw is not None:
-        quat = np.array(attitude.quaternion_xyzw)
-        return quat / np.linalg.norm(quat)
+        quat: Floats = np.array(attitude.quaternion_xyzw)
+        quat /= np.linalg.norm(quat)
+        return quat
     return quaternion_from_roll_pitch_yaw(np.array(attitude.roll_pitch_yaw))
 
 

@@ -26,7 +26,8 @@ MAX_NODES = 200_000
 class _Loader(yaml.SafeLoader):
     """SafeLoader with the scalars of YAML 1.2."""
 
-    yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}
+
+_Loader.yaml_implicit_resolvers = {}  # none of YAML 1.1's
 
 
 for _tag, _pattern, _first in [

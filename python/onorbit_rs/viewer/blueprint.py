@@ -19,12 +19,21 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 TIMELINE = "simulation_time"
+PLAYS_IN_S = 40.0
+"""Longest wall-clock time a recording takes to play; shorter runs play in real time."""
 
 _FIRST = (
     "plots/joint_torque",
     "plots/tool_position_error",
     "plots/tool_attitude_error",
     "plots/base_attitude",
+)
+_FIRST_ADRIFT = (
+    "plots/base_attitude_lvlh",
+    "plots/base_attitude",
+    "plots/joint_position",
+    "plots/angular_momentum",
+    "plots/energy",
 )
 _BACKGROUND = (28, 31, 38)
 _UNTIL_NOW = rrb.VisibleTimeRange(
@@ -55,21 +64,45 @@ def layout(trace: Trace, model: Model, plots: Sequence[Series], *, has_notes: bo
     if has_notes:
         below.append(rrb.TextDocumentView(origin="notes", name="Notes"))
     left = rrb.Vertical(robot, rrb.Horizontal(*below), row_shares=[3, 1]) if below else robot
-    chosen = [plot for plot in plots if plot.path in _FIRST] or list(plots[:3])
+    wanted = _FIRST if "position_error" in trace.columns() else _FIRST_ADRIFT
+    by_path = {plot.path: plot for plot in plots}
+    chosen = [by_path[path] for path in wanted if path in by_path][:4]
     others = [plot for plot in plots if plot not in chosen]
-    right = rrb.Vertical(*(_plot(plot) for plot in chosen), rrb.Tabs(*(_plot(plot) for plot in others)))
+    whole = _duration(trace)
+    right = rrb.Vertical(
+        *(_plot(plot, whole) for plot in chosen), rrb.Tabs(*(_plot(plot, whole) for plot in others))
+    )
     return rrb.Blueprint(
         rrb.Horizontal(left, right, column_shares=[3, 2]),
-        rrb.TimePanel(state="collapsed", timeline=TIMELINE, play_state="playing", loop_mode="all"),
+        rrb.TimePanel(
+            state="collapsed",
+            timeline=TIMELINE,
+            play_state="playing",
+            loop_mode="all",
+            playback_speed=max(1.0, whole / PLAYS_IN_S),
+        ),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
         auto_views=False,
     )
 
 
-def _plot(series: Series) -> rrb.TimeSeriesView:
-    legend = rrb.PlotLegend(rrb.Corner2D.RightTop)
-    return rrb.TimeSeriesView(origin=series.path, name=f"{series.title} [{series.unit}]", plot_legend=legend)
+def _plot(series: Series, duration_s: float) -> rrb.TimeSeriesView:
+    """A plot that shows the whole run from the start."""
+    whole = rrb.TimeRange(
+        start=rrb.TimeRangeBoundary.absolute(seconds=0.0),
+        end=rrb.TimeRangeBoundary.absolute(seconds=duration_s),
+    )
+    return rrb.TimeSeriesView(
+        origin=series.path,
+        name=f"{series.title} [{series.unit}]",
+        axis_x=rrb.TimeAxis(view_range=whole),
+        plot_legend=rrb.PlotLegend(rrb.Corner2D.RightTop),
+    )
+
+
+def _duration(trace: Trace) -> float:
+    return float(trace.time[-1])
 
 
 def _extent(trace: Trace, model: Model) -> tuple[Floats, float]:

@@ -1,5 +1,7 @@
 """A picture of a recording without a screen, from a viewer that listens to this machine alone.
 
+``onorbit show out --picture picture.png --at 1``
+
 Needs a Vulkan driver; Debian's ``mesa-vulkan-drivers`` and ``libegl1`` draw in software.
 """
 

@@ -4,8 +4,9 @@ use super::input::{InputError, check_finite, check_quaternions};
 use super::kernel::{Kernel, Work};
 use crate::dynamics::FrameWrench;
 use crate::model::Model;
-use crate::spatial::{Fused, InstructionSet, Scalar};
+use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Quat, Real};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Rows of an input: all numbers, and how many a row has.
 #[derive(Clone, Copy, Debug)]
@@ -57,8 +58,10 @@ impl Evaluator {
     ) -> Result<(), InputError> {
         check(kernel, model, inputs)?;
         match InstructionSet::current() {
-            InstructionSet::Baseline => self.plain.state(kernel, model, inputs, 0, external, outputs),
-            InstructionSet::Fused => self.fused.state(kernel, model, inputs, 0, external, outputs),
+            InstructionSet::Baseline => self.plain.states(kernel, model, inputs, 0..1, external, outputs),
+            InstructionSet::Fused | InstructionSet::Wide => {
+                self.fused.states(kernel, model, inputs, 0..1, external, outputs);
+            }
         }
         Ok(())
     }
@@ -79,7 +82,8 @@ impl Evaluator {
         check(kernel, model, inputs)?;
         match InstructionSet::current() {
             InstructionSet::Baseline => all::<f64>(kernel, model, inputs, external, outputs, threads),
-            InstructionSet::Fused => all::<Fused>(kernel, model, inputs, external, outputs, threads),
+            InstructionSet::Fused => all::<Lanes4>(kernel, model, inputs, external, outputs, threads),
+            InstructionSet::Wide => all::<Lanes8>(kernel, model, inputs, external, outputs, threads),
         }
         Ok(())
     }
@@ -104,42 +108,49 @@ fn check(kernel: Kernel, model: &Model, inputs: &[Rows<'_>]) -> Result<(), Input
     Ok(())
 }
 
-impl<S: Scalar> Space<S> {
+impl<S: Real> Space<S> {
     fn new(model: &Model) -> Self {
         Self { work: Work::new(model), inputs: vec![Vec::new(); 3], outputs: vec![Vec::new(); 5] }
     }
 
-    /// Computes row `k` of the inputs into the first rows of the outputs.
-    fn state(
+    /// Computes the states `range` (at most one per lane) into the first rows of the outputs.
+    ///
+    /// Lanes beyond the range repeat its last state and are thrown away.
+    fn states(
         &mut self,
         kernel: Kernel,
         model: &Model,
         inputs: &[Rows<'_>],
-        k: usize,
+        range: Range<usize>,
         external: &[FrameWrench<f64>],
         outputs: &mut [RowsMut<'_>],
     ) {
         self.work.set_external(external);
+        let last = range.end - 1;
         for ((to, from), name) in self.inputs.iter_mut().zip(inputs).zip(kernel.inputs()) {
-            let row = &from.data[k * from.width..(k + 1) * from.width];
             to.clear();
-            to.extend(row.iter().map(|x| S::of(*x)));
+            let at = |lane: usize, i: usize| from.data[(range.start + lane).min(last) * from.width + i];
+            to.extend((0..from.width).map(|i| S::from_lanes(|lane| at(lane, i))));
             if name.starts_with('q') {
-                let attitude = crate::spatial::Quat::from_xyzw(&to[3..7]).normalized();
-                attitude.write_xyzw(&mut to[3..7]);
+                S::enter(
+                    #[inline(always)]
+                    || Quat::from_xyzw(&to[3..7]).normalized().write_xyzw(&mut to[3..7]),
+                );
             }
         }
         for (space, out) in self.outputs.iter_mut().zip(outputs.iter()) {
-            space.resize(out.len(), S::of(0.0));
+            space.resize(out.len() / range.len(), S::of(0.0));
         }
         kernel.run(model, &mut self.work, &self.inputs, &mut self.outputs);
         for (out, space) in outputs.iter_mut().zip(&self.outputs) {
-            out.iter_mut().zip(space).for_each(|(to, from)| *to = from.value());
+            for (lane, row) in out.chunks_mut(space.len().max(1)).enumerate() {
+                row.iter_mut().zip(space).for_each(|(to, from)| *to = from.lane(lane));
+            }
         }
     }
 }
 
-fn all<S: Scalar>(
+fn all<S: Real>(
     kernel: Kernel,
     model: &Model,
     inputs: &[Rows<'_>],
@@ -152,15 +163,20 @@ fn all<S: Scalar>(
     // hand every task its own rows of every output
     let mut tasks: Vec<Vec<&mut [f64]>> = (0..count.div_ceil(CHUNK)).map(|_| Vec::new()).collect();
     for (out, width) in outputs.iter_mut().zip(&widths) {
-        tasks.iter_mut().zip(out.chunks_mut(CHUNK * width)).for_each(|(task, rows)| task.push(rows));
+        let mut chunks = out.chunks_mut((CHUNK * width).max(1)); // none where a row holds nothing
+        tasks.iter_mut().for_each(|task| task.push(chunks.next().unwrap_or_default()));
     }
-    let run = |space: &mut Space<S>, (index, task): (usize, Vec<&mut [f64]>)| {
-        let states = CHUNK.min(count - index * CHUNK);
-        let mut rows: Vec<_> =
-            task.into_iter().zip(&widths).map(|(rows, width)| rows.chunks_mut(*width)).collect();
-        for k in 0..states {
-            let mut row: Vec<&mut [f64]> = rows.iter_mut().filter_map(Iterator::next).collect();
-            space.state(kernel, model, inputs, index * CHUNK + k, external, &mut row);
+    let run = |space: &mut Space<S>, (index, mut task): (usize, Vec<&mut [f64]>)| {
+        let states = index * CHUNK..count.min((index + 1) * CHUNK);
+        for start in states.clone().step_by(S::LANES) {
+            let end = states.end.min(start + S::LANES);
+            let mut rows: Vec<&mut [f64]> = Vec::with_capacity(task.len());
+            for (rest, width) in task.iter_mut().zip(&widths) {
+                let (now, later) = std::mem::take(rest).split_at_mut((end - start) * width);
+                rows.push(now);
+                *rest = later;
+            }
+            space.states(kernel, model, inputs, start..end, external, &mut rows);
         }
     };
     let parallel = || tasks.into_par_iter().enumerate().for_each_init(|| Space::new(model), run);

@@ -3,7 +3,9 @@
 mod evaluate;
 mod input;
 mod kernel;
+mod rollout;
 
 pub use evaluate::{Evaluator, Rows, RowsMut};
 pub use input::InputError;
 pub use kernel::Kernel;
+pub use rollout::{Rollout, RolloutControl};

@@ -5,7 +5,7 @@ use super::pseudo_inverse::PseudoInverse;
 use crate::dynamics::{Data, FreeFloating, free_floating_recursion};
 use crate::model::Model;
 use crate::reference::TaskSample;
-use crate::spatial::{Mat3, Motion, Real, Vec3, log_rotation};
+use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 
 /// Gains and options of the law
 ///
@@ -35,12 +35,19 @@ impl ComputedTorque {
     pub fn new(frame: usize, kp: f64, kd: f64) -> Self {
         Self {
             frame,
-            kp: diagonal([kp; 6]),
-            kd: diagonal([kd; 6]),
+            kp: Self::diagonal([kp; 6]),
+            kd: Self::diagonal([kd; 6]),
             damping: 0.05,
             null_space_damping: 0.0,
             compensate_environment: true,
         }
+    }
+
+    /// A `(6, 6)` gain with this diagonal.
+    pub fn diagonal(entries: [f64; 6]) -> [f64; 36] {
+        let mut out = [0.0; 36];
+        entries.iter().enumerate().for_each(|(i, x)| out[7 * i] = *x);
+        out
     }
 
     /// Checks that the law can work on a robot.
@@ -74,13 +81,6 @@ impl ComputedTorque {
         }
         Ok(())
     }
-}
-
-/// `(6, 6)` with this diagonal.
-fn diagonal(entries: [f64; 6]) -> [f64; 36] {
-    let mut out = [0.0; 36];
-    entries.iter().enumerate().for_each(|(i, x)| out[7 * i] = *x);
-    out
 }
 
 /// Workspace of [`computed_torque`], allocated once.
@@ -162,8 +162,7 @@ fn kernel<S: Real>(
 
     // τ = M* q̈ + c* − Q*
     for (i, tau) in tau.iter_mut().enumerate() {
-        let row = &reduced.inertia[i * n..(i + 1) * n];
-        let inertial = row.iter().zip(&work.acceleration).fold(S::of(0.0), |sum, (m, a)| m.mul_add(*a, sum));
+        let inertial = dot(&reduced.inertia[i * n..(i + 1) * n], &work.acceleration);
         *tau = inertial + reduced.bias[i] - reduced.external[i];
     }
 }
@@ -174,7 +173,9 @@ fn gain<S: Real>(k: &[f64; 36], x: Motion<S>) -> Motion<S> {
     let (mut from, mut to) = ([S::of(0.0); 6], [S::of(0.0); 6]);
     x.write(&mut from);
     for (i, to) in to.iter_mut().enumerate() {
-        *to = (0..6).fold(S::of(0.0), |sum, j| S::of(k[6 * i + j]).mul_add(from[j], sum));
+        for j in 0..6 {
+            *to = S::of(k[6 * i + j]).mul_add(from[j], *to);
+        }
     }
     Motion::from_slice(&to)
 }

@@ -1,6 +1,6 @@
 //! Damped pseudo-inverse of a task Jacobian, and the projector on its null space.
 
-use crate::spatial::{Real, cholesky_factor, cholesky_solve};
+use crate::spatial::{Real, cholesky_factor, cholesky_solve, dot};
 
 /// Task rows: three of position, three of attitude.
 const ROWS: usize = 6;
@@ -35,7 +35,7 @@ impl<S: Real> PseudoInverse<S> {
         for i in 0..ROWS {
             for j in 0..=i {
                 let (a, b) = (&jacobian[i * n..(i + 1) * n], &jacobian[j * n..(j + 1) * n]);
-                self.gram[i * ROWS + j] = a.iter().zip(b).fold(S::of(0.0), |sum, (a, b)| a.mul_add(*b, sum));
+                self.gram[i * ROWS + j] = dot(a, b);
             }
             trace += self.gram[i * ROWS + i];
         }
@@ -69,8 +69,7 @@ impl<S: Real> PseudoInverse<S> {
         let n = y.len();
         let mut felt = [S::of(0.0); ROWS];
         for (i, felt) in felt.iter_mut().enumerate() {
-            *felt =
-                jacobian[i * n..(i + 1) * n].iter().zip(y).fold(S::of(0.0), |sum, (a, b)| a.mul_add(*b, sum));
+            *felt = dot(&jacobian[i * n..(i + 1) * n], y);
         }
         transpose_apply(&self.undamped, jacobian, felt, out);
         out.iter_mut().zip(y).for_each(|(out, y)| *out = *y - *out);
@@ -96,6 +95,9 @@ fn transpose_apply<S: Real>(factor: &[S], jacobian: &[S], mut x: [S; ROWS], out:
     let n = out.len();
     cholesky_solve(factor, ROWS, &mut x);
     for (j, out) in out.iter_mut().enumerate() {
-        *out = (0..ROWS).fold(S::of(0.0), |sum, i| jacobian[i * n + j].mul_add(x[i], sum));
+        *out = S::of(0.0);
+        for i in 0..ROWS {
+            *out = jacobian[i * n + j].mul_add(x[i], *out);
+        }
     }
 }

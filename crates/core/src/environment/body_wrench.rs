@@ -3,11 +3,12 @@
 use nalgebra::Vector3;
 
 use super::{Effect, EnvironmentError, Scene, Wrench};
+use crate::model::Model;
 
 /// Constant force and torque in a body's own axes, on from `start` until `end`.
 ///
-/// In `W` about the centre of mass: `F = R f`, `T = R τ + (o + R p - c) × F`, with `R` the link's
-/// rotation, `o` its origin, `p` the point of application in link axes, `c` the centre of mass.
+/// In `W` about the centre of mass: `F = R f`, `T = R τ + (o + R p - c) × F`, with `R` the body's
+/// rotation, `o` its origin, `p` the point of application in body axes, `c` the centre of mass.
 /// On for a step iff the step's middle lies in `[start, end)`: since both are events, a step
 /// never straddles a switch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +22,7 @@ pub struct BodyWrench {
 }
 
 impl BodyWrench {
-    /// Force (N) at the link's origin and torque (N m) on the body with index `body`, link axes,
+    /// Force (N) at the body's origin and torque (N m) on the body with index `body`, body axes,
     /// always on.
     ///
     /// # Errors
@@ -33,7 +34,23 @@ impl BodyWrench {
         Ok(Self { body, force, torque, point: Vector3::zeros(), start, end })
     }
 
-    /// The same with its force applied at `point`, link axes, m.
+    /// Force (N) at the origin of a frame (index) and torque (N m), both in the frame's axes, always
+    /// on.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::NotFinite`].
+    pub fn on_frame(
+        model: &Model,
+        frame: usize,
+        force: Vector3<f64>,
+        torque: Vector3<f64>,
+    ) -> Result<Self, EnvironmentError> {
+        let frame = &model.frames()[frame];
+        let rot_kf = frame.rot_kf.to_nalgebra();
+        Self::new(frame.body, rot_kf * force, rot_kf * torque)?.at(frame.pos_kf.to_nalgebra())
+    }
+
+    /// The same with its force applied at `point`, body axes, m.
     ///
     /// # Errors
     /// [`EnvironmentError::NotFinite`].

@@ -47,14 +47,15 @@ impl DifferentialGravity {
 ///
 /// Source: Battin, AIAA 1999, chapter 8, the disturbing function (Encke's form).
 fn tide(mu: f64, origin: &Vector3<f64>, offset: &Vector3<f64>) -> (Vector3<f64>, f64) {
-    // q = ρ·(ρ + 2R)/R²
-    let q = offset.dot(&(offset + origin * 2.0)) / origin.norm_squared();
-    let r2 = (origin + offset).norm_squared();
-    let r = r2.sqrt();
-    // f = (1 + q)^{3/2} - 1
-    let root = (1.0 + q).max(0.0).sqrt();
-    let f = q * (3.0 + q * (3.0 + q)) / (1.0 + (1.0 + q) * root);
-    ((offset - origin * f) * (-mu / (r2 * r)), r)
+    // q = ρ·(ρ + 2R)/R²,  s = √(1 + q),  r = R s
+    let r2 = origin.norm_squared();
+    let q = offset.dot(&(offset + origin * 2.0)) / r2;
+    let square = (1.0 + q).max(0.0);
+    let root = square.sqrt();
+    let distance = r2.sqrt() * root;
+    // f = q (3 + 3q + q²)/(1 + s³)
+    let f = q * (3.0 + q * (3.0 + q)) / (1.0 + square * root);
+    ((offset - origin * f) * (-mu / (r2 * square * distance)), distance)
 }
 
 impl Effect for DifferentialGravity {

@@ -15,9 +15,9 @@ pub struct BodyState {
     pub inertia: Matrix3<f64>,
     /// Centre of mass, m.
     pub com: Vector3<f64>,
-    /// Takes link components to `W` components.
+    /// Takes components in the body's own axes (those of its [`Node`](crate::model::Node)) to `W`.
     pub rot_wk: Matrix3<f64>,
-    /// Origin of the link's frame, m.
+    /// Origin of the body's axes, m.
     pub origin: Vector3<f64>,
     /// Velocity of the centre of mass, m/s.
     pub velocity: Vector3<f64>,
@@ -81,7 +81,7 @@ impl<'a> Scene<'a> {
     pub(super) fn planet(&self, effect: &'static str) -> Result<Planet, EnvironmentError> {
         let around = |r: Reference| Some((r.state, r.mu?));
         let (reference, mu) = self.reference.and_then(around).ok_or(EnvironmentError::NoPlanet { effect })?;
-        let planet = Planet { effect, mu, reference, minimum: smallest_radius(mu) };
+        let planet = Planet { effect, mu, reference, minimum_cubed: smallest_radius_cubed(mu) };
         planet.outside(Place::Reference, reference.position.norm())?;
         Ok(planet)
     }
@@ -92,26 +92,26 @@ pub(super) struct Planet {
     effect: &'static str,
     pub(super) mu: f64,
     pub(super) reference: OrbitState,
-    minimum: f64,
+    minimum_cubed: f64,
 }
 
 impl Planet {
     /// `distance` from the planet's centre, m, if it lies outside the planet.
     pub(super) fn outside(&self, what: Place, distance: f64) -> Result<f64, EnvironmentError> {
-        if distance >= self.minimum {
+        if distance * distance * distance >= self.minimum_cubed {
             return Ok(distance);
         }
-        let (effect, minimum) = (self.effect, self.minimum);
+        let (effect, minimum) = (self.effect, self.minimum_cubed.cbrt());
         Err(EnvironmentError::InsidePlanet { effect, what, distance, minimum })
     }
 }
 
-/// Radius below which no solid body of this `μ = G m` can have its surface, m.
+/// Cube of the radius below which no solid body of this `μ = G m` can have its surface, m³.
 ///
-/// `R = (3 μ/(4π G ρ))^⅓` with osmium's `ρ = 22 600 kg/m³`: 3980 km for the Earth's mass. The
+/// `R³ = 3 μ/(4π G ρ)` with osmium's `ρ = 22 600 kg/m³`: `R` = 3980 km for the Earth's mass. The
 /// true surface lies higher and is not ours to know; far below it the field of a point mass
 /// means nothing and grows without bound.
-fn smallest_radius(mu: f64) -> f64 {
+fn smallest_radius_cubed(mu: f64) -> f64 {
     const G_RHO: f64 = 6.674e-11 * 22_600.0;
-    (3.0 * mu / (4.0 * std::f64::consts::PI * G_RHO)).cbrt()
+    3.0 * mu / (4.0 * std::f64::consts::PI * G_RHO)
 }

@@ -3,9 +3,10 @@
 use super::compile::compile;
 use super::description::{Inertial, Joint, JointKind, Link};
 use super::error::{ModelError, ModelWarning};
-use super::inertia_check::check_inertial;
+use super::inertia_check::{Sense, check_inertial};
 use super::tree::Model;
 use nalgebra::{Isometry3, Matrix3, Vector3};
+use std::collections::{HashMap, HashSet};
 
 /// Collects links and joints, then [`build`](ModelBuilder::build)s the tree.
 ///
@@ -20,6 +21,10 @@ pub struct ModelBuilder {
     /// Extra frames: name, link, pose in the link's frame.
     pub(super) frames: Vec<(String, usize, Isometry3<f64>)>,
     pub(super) warnings: Vec<ModelWarning>,
+    /// Links by name.
+    link_index: HashMap<String, usize>,
+    joint_names: HashSet<String>,
+    frame_names: HashSet<String>,
 }
 
 impl ModelBuilder {
@@ -34,8 +39,11 @@ impl ModelBuilder {
             joints: Vec::new(),
             frames: Vec::new(),
             warnings: Vec::new(),
+            link_index: HashMap::new(),
+            joint_names: HashSet::new(),
+            frame_names: HashSet::new(),
         };
-        builder.add_link(base)?;
+        builder.add_link(base, false)?;
         Ok(builder)
     }
 
@@ -46,11 +54,12 @@ impl ModelBuilder {
     /// is wrong with the child's inertia.
     pub fn add(&mut self, parent: &str, joint: Joint, child: Link) -> Result<&mut Self, ModelError> {
         let parent = self.link(parent)?;
-        if self.joints.iter().any(|(_, other)| other.name == joint.name) {
+        if self.joint_names.contains(&joint.name) {
             return Err(ModelError::DuplicateName { what: "joint", name: joint.name });
         }
         check_joint(&joint)?;
-        self.add_link(child)?;
+        self.add_link(child, joint.kind == JointKind::Fixed)?;
+        self.joint_names.insert(joint.name.clone());
         self.joints.push((parent, joint));
         Ok(self)
     }
@@ -70,6 +79,7 @@ impl ModelBuilder {
         if !pose.to_homogeneous().iter().all(|x| x.is_finite()) {
             return Err(ModelError::NotFinite { what: "the pose", name: name.to_owned() });
         }
+        self.frame_names.insert(name.to_owned());
         self.frames.push((name.to_owned(), link, pose));
         Ok(self)
     }
@@ -88,13 +98,24 @@ impl ModelBuilder {
         compile(self)
     }
 
-    fn add_link(&mut self, link: Link) -> Result<(), ModelError> {
+    /// `is_part` where the link is folded into another: then the sum must make sense, not the link.
+    fn add_link(&mut self, link: Link, is_part: bool) -> Result<(), ModelError> {
         self.check_new_frame_name(&link.name)?;
-        if let Some(inertial) = &link.inertial
-            && let Some(warning) = check_inertial(&link.name, inertial)?
-        {
-            self.warnings.push(warning);
+        if let Some(inertial) = &link.inertial {
+            match check_inertial(&link.name, inertial)? {
+                Sense::Physical => {}
+                Sense::BreaksTriangle(moments) => {
+                    self.warnings.push(ModelWarning::TriangleInequality { link: link.name.clone(), moments });
+                }
+                Sense::Indefinite(moments) if is_part => {
+                    self.warnings.push(ModelWarning::IndefinitePart { link: link.name.clone(), moments });
+                }
+                Sense::Indefinite(moments) => {
+                    return Err(ModelError::IndefiniteInertia { link: link.name, moments });
+                }
+            }
         }
+        self.link_index.insert(link.name.clone(), self.links.len());
         self.links.push(link);
         Ok(())
     }
@@ -103,16 +124,14 @@ impl ModelBuilder {
         if name.is_empty() {
             return Err(ModelError::EmptyName { what: "link or frame" });
         }
-        let is_taken =
-            self.links.iter().any(|link| link.name == name) || self.frames.iter().any(|f| f.0 == name);
-        if is_taken {
+        if self.link_index.contains_key(name) || self.frame_names.contains(name) {
             return Err(ModelError::DuplicateName { what: "link or frame", name: name.to_owned() });
         }
         Ok(())
     }
 
     fn link(&self, name: &str) -> Result<usize, ModelError> {
-        self.links.iter().position(|link| link.name == name).ok_or_else(|| ModelError::UnknownName {
+        self.link_index.get(name).copied().ok_or_else(|| ModelError::UnknownName {
             what: "link",
             name: name.to_owned(),
             candidates: self.links.iter().map(|link| link.name.clone()).collect(),

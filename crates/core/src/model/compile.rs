@@ -3,7 +3,8 @@
 use super::align::rotation_to_axis;
 use super::builder::ModelBuilder;
 use super::description::{Inertial, Joint, JointKind};
-use super::error::ModelError;
+use super::error::{ModelError, ModelWarning};
+use super::inertia_check::is_definite;
 use super::tree::{Axis, Frame, JointProperties, Model, Node};
 use super::well_posed::check_well_posed;
 use crate::spatial::{Mat3, Sym3, Vec3};
@@ -17,8 +18,10 @@ struct Placed {
     pos: Vector3<f64>,
 }
 
-pub(super) fn compile(mut builder: ModelBuilder) -> Result<Model, ModelError> {
-    drop_massless_roots(&mut builder);
+pub(super) fn compile(builder: ModelBuilder) -> Result<Model, ModelError> {
+    let children = children(&builder);
+    let roots = roots(&builder, &children);
+    let base = *roots.last().expect("a robot has at least one link");
     let mut model = Model {
         name: builder.name.clone(),
         nodes: vec![empty_node()],
@@ -29,13 +32,13 @@ pub(super) fn compile(mut builder: ModelBuilder) -> Result<Model, ModelError> {
         warnings: builder.warnings.clone(),
     };
     let mut placed: Vec<Option<Placed>> = vec![None; builder.links.len()];
-    for link in depth_first(&builder) {
-        let place = match link.checked_sub(1).map(|j| &builder.joints[j]) {
-            None => Placed { body: 0, rot: Matrix3::identity(), pos: Vector3::zeros() },
-            Some((parent, joint)) => {
-                let parent = placed[*parent].clone().expect("parents come first in depth-first order");
-                attach(&mut model, &parent, joint)
-            }
+    for link in depth_first(base, &children) {
+        let place = if link == base {
+            on_base(&Isometry3::identity())
+        } else {
+            let (parent, joint) = &builder.joints[link - 1];
+            let parent = placed[*parent].clone().expect("parents come first in depth-first order");
+            attach(&mut model, &parent, joint)
         };
         let description = &builder.links[link];
         if let Some(inertial) = &description.inertial {
@@ -49,50 +52,73 @@ pub(super) fn compile(mut builder: ModelBuilder) -> Result<Model, ModelError> {
         model.visuals.extend(description.visuals.iter().map(|visual| (frame, visual.clone())));
         placed[link] = Some(place);
     }
+    let mut pose = Isometry3::identity();
+    for hop in roots.windows(2).rev() {
+        pose *= builder.joints[hop[1] - 1].1.origin.inverse();
+        let place = on_base(&pose);
+        model.frames.push(named_frame(&builder.links[hop[0]].name, &place, &Isometry3::identity()));
+        placed[hop[0]] = Some(place);
+    }
     for (name, link, pose) in &builder.frames {
         let place = placed[*link].as_ref().expect("every link was placed above");
         model.frames.push(named_frame(name, place, pose));
     }
+    check_parts(&model)?;
     check_well_posed(&model)?;
     Ok(model)
 }
 
-/// A root without mass that only carries another link by a fixed joint (`world`) is not a body.
-fn drop_massless_roots(builder: &mut ModelBuilder) {
-    let is_massless = |i: &Option<Inertial>| i.as_ref().is_none_or(|i| i.mass == 0.0);
-    while is_massless(&builder.links[0].inertial) && builder.links[0].visuals.is_empty() {
-        let mut children = builder.joints.iter().enumerate().filter(|(_, (parent, _))| *parent == 0);
-        let (Some((child, (_, joint))), None) = (children.next(), children.next()) else { return };
-        if joint.kind != JointKind::Fixed || builder.frames.iter().any(|(_, link, _)| *link == 0) {
-            return;
+/// A link with an indefinite inertia is lived with only where its body as a whole makes sense.
+fn check_parts(model: &Model) -> Result<(), ModelError> {
+    for warning in &model.warnings {
+        if let ModelWarning::IndefinitePart { link, moments } = warning {
+            let body = model.frames[model.frame(link)?].body;
+            if !is_definite(&model.nodes[body].about_com) {
+                return Err(ModelError::IndefiniteInertia { link: link.clone(), moments: *moments });
+            }
         }
-        // the child becomes link 0; link numbers between the two move up by one
-        let new_root = child + 1;
-        builder.joints.remove(child);
-        builder.links.swap(0, new_root);
-        builder.links.remove(new_root);
-        let renumber = |link: usize| match link {
-            l if l == new_root => 0,
-            l if l > new_root => l - 1,
-            l => l,
-        };
-        builder.joints.iter_mut().for_each(|(parent, _)| *parent = renumber(*parent));
-        builder.frames.iter_mut().for_each(|(_, link, _)| *link = renumber(*link));
     }
+    Ok(())
 }
 
-/// Links, parents before children, branches in the order they were added.
-fn depth_first(builder: &ModelBuilder) -> Vec<usize> {
+/// Links that hang on each link, in the order they were added.
+fn children(builder: &ModelBuilder) -> Vec<Vec<usize>> {
     let mut children = vec![Vec::new(); builder.links.len()];
     for (j, (parent, _)) in builder.joints.iter().enumerate() {
         children[*parent].push(j + 1);
     }
-    let (mut order, mut stack) = (Vec::new(), vec![0]);
+    children
+}
+
+/// The first link, and where it is no body the one below it, and so on to the base.
+///
+/// A root without mass or looks that only carries another link by a fixed joint (`world`) is no
+/// body: what it carries is the base, and the root stays as a frame on it.
+fn roots(builder: &ModelBuilder, children: &[Vec<usize>]) -> Vec<usize> {
+    let mut roots = vec![0];
+    loop {
+        let root = roots[roots.len() - 1];
+        let link = &builder.links[root];
+        let is_body = link.inertial.as_ref().is_some_and(|i| i.mass > 0.0) || !link.visuals.is_empty();
+        match children[root][..] {
+            [only] if !is_body && builder.joints[only - 1].1.kind == JointKind::Fixed => roots.push(only),
+            _ => return roots,
+        }
+    }
+}
+
+/// Links from the base on, parents before children, branches in the order they were added.
+fn depth_first(base: usize, children: &[Vec<usize>]) -> Vec<usize> {
+    let (mut order, mut stack) = (Vec::new(), vec![base]);
     while let Some(link) = stack.pop() {
         order.push(link);
         stack.extend(children[link].iter().rev());
     }
     order
+}
+
+fn on_base(pose: &Isometry3<f64>) -> Placed {
+    Placed { body: 0, rot: *pose.rotation.to_rotation_matrix().matrix(), pos: pose.translation.vector }
 }
 
 /// Hangs a link on `parent`: on the same body by a fixed joint, else as a new body.

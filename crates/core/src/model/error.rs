@@ -27,7 +27,8 @@ pub enum ModelError {
     )]
     MasslessSubtree { joint: String, link: String },
     #[error(
-        "the base '{link}' can be moved without resistance: the robot's inertia is singular about some axis"
+        "the base '{link}' can be moved without resistance: the robot's inertia is singular about some axis; \
+         give the base an inertial, or fix what hangs on it"
     )]
     SingularBase { link: String },
     #[error("the {what} name '{name}' is used twice")]
@@ -54,6 +55,13 @@ pub enum ModelWarning {
         /// Its principal moments, kg m², ascending.
         moments: [f64; 3],
     },
+    /// A link that no body can be, fixed to others with which it makes one that can.
+    IndefinitePart {
+        /// The link.
+        link: String,
+        /// Its principal moments, kg m², ascending.
+        moments: [f64; 3],
+    },
     /// Anything else a reader of a file met.
     Note(String),
 }
@@ -63,8 +71,13 @@ impl fmt::Display for ModelWarning {
         match self {
             Self::TriangleInequality { link, moments: [a, b, c] } => write!(
                 f,
-                "the inertia of link '{link}' breaks the triangle inequality: {a:.6} + {b:.6} < {c:.6} kg m2; \
+                "the inertia of link '{link}' breaks the triangle inequality: {a:.4e} + {b:.4e} < {c:.4e} kg m2; \
                  no real body has such principal moments (used as it is)"
+            ),
+            Self::IndefinitePart { link, moments: [a, b, c] } => write!(
+                f,
+                "the inertia of link '{link}' is not positive definite: principal moments {a:.4e}, {b:.4e}, \
+                 {c:.4e} kg m2 (used as it is: with the links it is fixed to, the sum is)"
             ),
             Self::Note(text) => f.write_str(text),
         }
@@ -73,9 +86,13 @@ impl fmt::Display for ModelWarning {
 
 /// `; did you mean 'x'?` for the closest candidate, or the list when there are few.
 pub(super) fn nearest(candidates: &[String], name: &str) -> String {
-    let best = candidates.iter().min_by_key(|c| distance(c, name));
+    const LONGEST: usize = 100; // comparing takes the product of the lengths
+    let is_name = |c: &&String| c.len() <= LONGEST && name.len() <= LONGEST;
+    let best = candidates.iter().filter(is_name).min_by_key(|c| distance(c, name));
+    let part = candidates.iter().find(|c| name.len() > 2 && c.contains(name));
     match best {
         Some(c) if distance(c, name) <= 2 + name.len() / 3 => format!("; did you mean '{c}'?"),
+        _ if part.is_some() => part.map_or_else(String::new, |c| format!("; did you mean '{c}'?")),
         Some(_) if candidates.len() <= 12 => format!("; there are: {}", candidates.join(", ")),
         _ => String::new(),
     }

@@ -1,14 +1,26 @@
 //! Physical sense of a link's mass and inertia.
 
 use super::description::Inertial;
-use super::error::{ModelError, ModelWarning};
+use super::error::ModelError;
+use crate::spatial::Sym3;
+use nalgebra::Matrix3;
 
 /// Principal moments may miss the triangle inequality, and matrices their symmetry, by this share
 /// of the largest entry: what six printed digits leave.
 const PRINTED_DIGITS: f64 = 1e-6;
 
-/// Refuses what no body has, warns of what only a careless file has.
-pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Option<ModelWarning>, ModelError> {
+/// What kind of body has such an inertia; principal moments in kg m², ascending.
+pub(super) enum Sense {
+    /// A real one.
+    Physical,
+    /// None with a density that is positive everywhere.
+    BreaksTriangle([f64; 3]),
+    /// None: it could turn with negative energy.
+    Indefinite([f64; 3]),
+}
+
+/// Refuses an inertial that means nothing, and says what sense the others make.
+pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, ModelError> {
     let link = || link.to_owned();
     let Inertial { mass, com, inertia } = inertial;
     if !mass.is_finite() || !com.iter().chain(inertia.iter()).all(|x| x.is_finite()) {
@@ -19,18 +31,35 @@ pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Option<M
         return Err(ModelError::MassNotPositive { link: link(), mass: *mass });
     }
     if *mass == 0.0 {
-        return if scale == 0.0 { Ok(None) } else { Err(ModelError::InertiaWithoutMass { link: link() }) };
+        let is_nothing = scale == 0.0;
+        return if is_nothing {
+            Ok(Sense::Physical)
+        } else {
+            Err(ModelError::InertiaWithoutMass { link: link() })
+        };
     }
     let difference = (inertia - inertia.transpose()).amax();
     if difference > PRINTED_DIGITS * scale {
         return Err(ModelError::AsymmetricInertia { link: link(), difference });
     }
+    Ok(sense(inertia))
+}
+
+/// Whether a body made of several links turns with positive energy, whatever its parts do.
+pub(super) fn is_definite(about_com: &Sym3<f64>) -> bool {
+    !matches!(sense(&about_com.to_nalgebra()), Sense::Indefinite(_))
+}
+
+fn sense(inertia: &Matrix3<f64>) -> Sense {
+    let scale = inertia.amax();
     let mut moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
     moments.sort_by(f64::total_cmp);
     let [a, b, c] = moments;
     if a < -PRINTED_DIGITS * scale {
-        return Err(ModelError::IndefiniteInertia { link: link(), moments });
+        Sense::Indefinite(moments)
+    } else if a + b < c * (1.0 - PRINTED_DIGITS) {
+        Sense::BreaksTriangle(moments)
+    } else {
+        Sense::Physical
     }
-    let breaks_triangle = a + b < c * (1.0 - PRINTED_DIGITS);
-    Ok(breaks_triangle.then(|| ModelWarning::TriangleInequality { link: link(), moments }))
 }

@@ -1,11 +1,14 @@
 //! Proof that every motion of a robot is resisted by some inertia.
 
 use super::error::ModelError;
-use super::tree::{Axis, Model};
-use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, Vector3};
+use super::tree::{Axis, Model, Node};
+use nalgebra::{Matrix3, Matrix6, Rotation3, Vector3};
 
 /// A pivot of the mass matrix below this share of its diagonal entry is rounding.
 const PIVOT_SHARE: f64 = 1e-12;
+/// So is one below this share of the largest inertia that moves with it: a point mass on the axis
+/// leaves a diagonal entry that is itself rounding.
+const ROUNDING_SHARE: f64 = 1e-14;
 
 /// Refuses a robot whose mass matrix is singular wherever its joints stand.
 ///
@@ -18,25 +21,8 @@ pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     let n = model.joint_count();
     let mut is_resisted = vec![false; n + 6];
     for round in 0..3 {
-        let angles: Vec<f64> =
-            (0..n).map(|j| f64::sin(1.7 * j as f64 + 2.3 * f64::from(round) + 0.4)).collect();
-        let mut m = mass_matrix(model, &angles);
-        for i in (0..n + 6).rev() {
-            let diagonal = m[(i, i)];
-            let mut pivot = diagonal;
-            for k in i + 1..n + 6 {
-                pivot -= m[(k, i)] * m[(k, i)] * m[(k, k)];
-            }
-            is_resisted[i] |= pivot > PIVOT_SHARE * diagonal;
-            m[(i, i)] = if pivot > PIVOT_SHARE * diagonal { 1.0 / pivot } else { 0.0 };
-            for j in 0..i {
-                let mut sum = m[(i, j)];
-                for k in i + 1..n + 6 {
-                    sum -= m[(k, i)] * m[(k, j)] * m[(k, k)];
-                }
-                m[(i, j)] = sum;
-            }
-        }
+        let angle = |j: usize| f64::sin(1.7 * j as f64 + 2.3 * f64::from(round) + 0.4);
+        eliminate(model, angle, &mut is_resisted);
     }
     match is_resisted.iter().rposition(|resisted| !resisted) {
         None => Ok(()),
@@ -48,57 +34,71 @@ pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     }
 }
 
-/// Lower triangle of `M = Σ Jᵀ I J` plus rotors, from dense 6 × 6 inertias: slow, plain, and
-/// independent of the kernels.
-fn mass_matrix(model: &Model, angles: &[f64]) -> DMatrix<f64> {
-    let n = angles.len();
-    let mut rot = vec![Matrix3::identity(); n + 1];
-    let mut pos = vec![Vector3::zeros(); n + 1];
-    let mut columns = vec![nalgebra::Vector6::zeros(); n + 1];
-    let mut composite = vec![Matrix6::zeros(); n + 1];
-    for (i, node) in model.nodes.iter().enumerate() {
-        if i > 0 {
-            let (p, tree) = (node.parent, node.rot_pk.to_nalgebra());
-            pos[i] = pos[p] + rot[p] * node.pos_pk.to_nalgebra();
-            rot[i] = rot[p] * tree;
-            let z: Vector3<f64> = rot[i].column(2).into();
-            let (linear, angular) = match node.axis {
-                Axis::Revolute => {
-                    rot[i] *= Rotation3::from_axis_angle(&Vector3::z_axis(), angles[i - 1]).into_inner();
-                    (pos[i].cross(&z), z)
-                }
-                Axis::Prismatic => {
-                    pos[i] += z * angles[i - 1];
-                    (z, Vector3::zeros())
-                }
-            };
-            columns[i] = nalgebra::Vector6::from_iterator(linear.iter().chain(angular.iter()).copied());
+/// Marks the motions whose pivot is more than rounding: dense 6 × 6 inertias in body axes, slow,
+/// plain, and independent of the kernels.
+fn eliminate(model: &Model, angle: impl Fn(usize) -> f64, is_resisted: &mut [bool]) {
+    let mut composite: Vec<_> = model.nodes.iter().map(inertia_about_origin).collect();
+    let mut articulated = composite.clone();
+    for (i, node) in model.nodes.iter().enumerate().skip(1).rev() {
+        let k = if node.axis == Axis::Revolute { 5 } else { 2 };
+        let rotor = node.rotor_inertia;
+        let (diagonal, pivot) = (composite[i][(k, k)] + rotor, articulated[i][(k, k)] + rotor);
+        if is_more_than_rounding(pivot, diagonal, scale(&composite[i], k) + rotor) {
+            is_resisted[i + 5] = true;
+            // Iᵃ = I − I s (sᵀ I s)⁻¹ sᵀ I
+            let u = articulated[i].column(k).into_owned();
+            articulated[i] -= u * u.transpose() / pivot;
         }
-        let c = (pos[i] + rot[i] * node.com.to_nalgebra()).cross_matrix();
-        let about_com = rot[i] * node.about_com.to_nalgebra() * rot[i].transpose();
-        let mut inertia = Matrix6::zeros();
-        inertia.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Matrix3::identity() * node.mass));
-        inertia.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-c * node.mass));
-        inertia.fixed_view_mut::<3, 3>(3, 0).copy_from(&(c * node.mass));
-        inertia.fixed_view_mut::<3, 3>(3, 3).copy_from(&(about_com - c * c * node.mass));
-        composite[i] = inertia;
+        // the parent feels Xᵀ I X, X taking its motions to the body's
+        let x = motion_transform(node, angle(i - 1));
+        let (whole, rest) = (x.transpose() * composite[i] * x, x.transpose() * articulated[i] * x);
+        composite[node.parent] += whole;
+        articulated[node.parent] += rest;
     }
-    let mut m = DMatrix::zeros(n + 6, n + 6);
-    for i in (1..=n).rev() {
-        let parent = model.nodes[i].parent;
-        let add = composite[i];
-        composite[parent] += add;
-        let f = composite[i] * columns[i];
-        m[(i + 5, i + 5)] = columns[i].dot(&f) + model.nodes[i].rotor_inertia;
-        let mut j = parent;
-        while j > 0 {
-            m[(i + 5, j + 5)] = columns[j].dot(&f);
-            j = model.nodes[j].parent;
-        }
-        for k in 0..6 {
-            m[(i + 5, k)] = f[k];
+    let mut m = articulated[0];
+    for k in (0..6).rev() {
+        let pivot = m[(k, k)];
+        if is_more_than_rounding(pivot, composite[0][(k, k)], scale(&composite[0], k)) {
+            is_resisted[k] = true;
+            let u = m.column(k).into_owned();
+            m -= u * u.transpose() / pivot;
         }
     }
-    m.view_mut((0, 0), (6, 6)).copy_from(&composite[0]);
+}
+
+fn is_more_than_rounding(pivot: f64, diagonal: f64, scale: f64) -> bool {
+    pivot > PIVOT_SHARE * diagonal && pivot > ROUNDING_SHARE * scale
+}
+
+/// Largest entry among those of the unit of entry `k`: masses, or moments of inertia.
+fn scale(inertia: &Matrix6<f64>, k: usize) -> f64 {
+    let start = if k < 3 { 0 } else { 3 };
+    inertia.fixed_view::<3, 3>(start, start).amax()
+}
+
+/// `[[m 1, −m c×], [m c×, I − m c× c×]]`, linear before angular.
+fn inertia_about_origin(node: &Node) -> Matrix6<f64> {
+    let c = node.com.to_nalgebra().cross_matrix();
+    let about_origin = node.about_com.to_nalgebra() - c * c * node.mass;
+    blocks(Matrix3::identity() * node.mass, c * -node.mass, c * node.mass, about_origin)
+}
+
+/// Takes motions in the parent's axes, about its origin, to the body's: `[[Rᵀ, −Rᵀ p×], [0, Rᵀ]]`.
+fn motion_transform(node: &Node, angle: f64) -> Matrix6<f64> {
+    let (mut rot, mut pos) = (node.rot_pk.to_nalgebra(), node.pos_pk.to_nalgebra());
+    match node.axis {
+        Axis::Revolute => rot *= Rotation3::from_axis_angle(&Vector3::z_axis(), angle).into_inner(),
+        Axis::Prismatic => pos += rot.column(2) * angle,
+    }
+    let r = rot.transpose();
+    blocks(r, -r * pos.cross_matrix(), Matrix3::zeros(), r)
+}
+
+fn blocks(a: Matrix3<f64>, b: Matrix3<f64>, c: Matrix3<f64>, d: Matrix3<f64>) -> Matrix6<f64> {
+    let mut m = Matrix6::zeros();
+    m.fixed_view_mut::<3, 3>(0, 0).copy_from(&a);
+    m.fixed_view_mut::<3, 3>(0, 3).copy_from(&b);
+    m.fixed_view_mut::<3, 3>(3, 0).copy_from(&c);
+    m.fixed_view_mut::<3, 3>(3, 3).copy_from(&d);
     m
 }

@@ -87,3 +87,32 @@ pub fn states(
     }
     Ok(())
 }
+
+/// Local orbital frames (Hill) at many instants.
+///
+/// `times` (T,) s; `rotations` holds T row-major `rot_il` (T, 3, 3), `rates` T rates of the frame
+/// in its own axes (T, 3), rad/s.
+///
+/// # Errors
+/// [`OrbitError::WrongLength`]; otherwise the first error of [`Orbit::lvlh`].
+pub fn lvlh_frames(
+    orbit: &dyn Orbit,
+    times: &[f64],
+    rotations: &mut [f64],
+    rates: &mut [f64],
+) -> Result<(), OrbitError> {
+    for (name, expected, got) in
+        [("rotations", 9 * times.len(), rotations.len()), ("rates", 3 * times.len(), rates.len())]
+    {
+        if got != expected {
+            return Err(OrbitError::WrongLength { name, expected, got });
+        }
+    }
+    let rows = rotations.chunks_exact_mut(9).zip(rates.chunks_exact_mut(3));
+    for (&t, (rotation, rate)) in times.iter().zip(rows) {
+        let lvlh = orbit.lvlh(t)?;
+        rotation.copy_from_slice(lvlh.rot_il.transpose().as_slice()); // column major, transposed
+        rate.copy_from_slice(lvlh.rate_l.as_slice());
+    }
+    Ok(())
+}

@@ -22,3 +22,11 @@ impl<S: Real> TaskSample<S> {
         Self { rot_wd, pos_w, velocity: Motion::zero(), acceleration: Motion::zero() }
     }
 }
+
+impl TaskSample<f64> {
+    /// The pose as a row-major `(4, 4)` matrix.
+    pub fn pose_rows(&self) -> [f64; 16] {
+        let (r, p) = (&self.rot_wd, &self.pos_w);
+        [r.x.x, r.y.x, r.z.x, p.x, r.x.y, r.y.y, r.z.y, p.y, r.x.z, r.y.z, r.z.z, p.z, 0.0, 0.0, 0.0, 1.0]
+    }
+}

@@ -3,6 +3,7 @@
 use super::error::SimulationError;
 use super::plant::Plant;
 use super::state::State;
+use super::surroundings::Surroundings;
 use crate::control::{
     ComputedTorque, ComputedTorqueWork, ControlError, ControlLaw, Controller, Observation, computed_torque,
 };
@@ -53,7 +54,7 @@ impl<'a, S: Scalar> Driver<'a, S> {
         &mut self,
         t: f64,
         state: &State<S>,
-        plant: &mut Plant<'_, S>,
+        plant: &mut Plant<'_, S, Surroundings>,
     ) -> Result<(), SimulationError> {
         let Plant { model, data, command, .. } = plant;
         match self {

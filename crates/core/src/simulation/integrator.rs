@@ -1,11 +1,11 @@
 //! One step: Runge-Kutta on the group, or semi-implicit Euler.
 
 use super::error::SimulationError;
-use super::plant::Plant;
+use super::plant::{Plant, World};
 use super::state::{Rate, State};
 use crate::dynamics::base_rotation;
 use crate::model::{Model, integrate};
-use crate::spatial::{Scalar, Vec3, dexp_inv};
+use crate::spatial::{Real, Vec3, dexp_inv};
 
 /// How a run steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,7 +27,7 @@ const STAGES: [(f64, f64); 3] = [(0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 /
 const BEND: [[f64; 3]; 3] = [[0.125, 0.0, 0.0], [1.0 / 24.0, 1.0 / 12.0, 0.0], [1.0 / 6.0, 0.0, 1.0 / 3.0]];
 
 /// Stages of a step, allocated once.
-pub(super) struct Stages<S> {
+pub(crate) struct Stages<S> {
     start: State<S>,
     trial: State<S>,
     rate: Rate<S>,
@@ -38,33 +38,33 @@ pub(super) struct Stages<S> {
     integrator: Integrator,
 }
 
-impl<S: Scalar> Stages<S> {
-    pub(super) fn new(model: &Model, state: &State<S>, integrator: Integrator) -> Self {
+impl<S: Real> Stages<S> {
+    pub(crate) fn new(model: &Model, state: &State<S>, integrator: Integrator) -> Self {
         let (rate, first) = (Rate::new(model), vec![S::of(0.0); model.nv()]);
         let (start, trial, sum) = (state.clone(), state.clone(), rate.clone());
         Self { start, trial, sum, rate, first, passing: Vec3::zero(), integrator }
     }
 
     /// Acceleration at the start of the last step, `(nv,)`.
-    pub(super) fn first_acceleration(&self) -> &[S] {
+    pub(crate) fn first_acceleration(&self) -> &[S] {
         &self.first
     }
 
     /// `q` and `v` at the start of the last step.
-    pub(super) fn start(&self) -> [Vec<f64>; 2] {
+    pub(crate) fn start(&self) -> [Vec<S>; 2] {
         let mut v = self.start.v.clone();
         (Vec3::from_slice(&v) + self.passing).write(&mut v);
-        [&self.start.q, &v].map(|x| x.iter().map(|x| x.value()).collect())
+        [self.start.q.clone(), v]
     }
 
     /// Whether the last stage began at a state of numbers.
-    pub(super) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         self.trial.is_finite()
     }
 
     /// The first stage alone. Expects kinematics and wrenches of `state` in the plant, which it takes
     /// to the frame of the step.
-    pub(super) fn accelerate(&mut self, plant: &mut Plant<'_, S>, state: &State<S>) {
+    pub(crate) fn accelerate(&mut self, plant: &mut Plant<'_, S, impl World<S>>, state: &State<S>) {
         self.start.copy_from(state);
         self.passing = Vec3::from_slice(&state.v);
         plant.ride(&state.q, &mut self.start.v);
@@ -81,9 +81,9 @@ impl<S: Scalar> Stages<S> {
     }
 
     /// Moves `state` over `interval`. Expects kinematics and wrenches at its start in the plant.
-    pub(super) fn step(
+    pub(crate) fn step(
         &mut self,
-        plant: &mut Plant<'_, S>,
+        plant: &mut Plant<'_, S, impl World<S>>,
         state: &mut State<S>,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
@@ -111,7 +111,7 @@ impl<S: Scalar> Stages<S> {
     /// reference the tide is as strong as gravity, and this leaves a seventh of the error.
     fn rk4(
         &mut self,
-        plant: &mut Plant<'_, S>,
+        plant: &mut Plant<'_, S, impl World<S>>,
         state: &mut State<S>,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
@@ -168,7 +168,7 @@ impl<S: Scalar> Stages<S> {
 
 /// Puts the origin of `to` where its acceleration takes it: `p₀ + h ṗ₀ + h² Σ w b`.
 #[inline(always)]
-fn bend<S: Scalar>(
+fn bend<S: Real>(
     straight: Vec3<S>,
     bends: &[Vec3<S>; 3],
     weights: [f64; 3],

@@ -2,20 +2,51 @@
 
 use super::error::SimulationError;
 use super::state::{Rate, State};
-use super::surroundings::Surroundings;
 use crate::dynamics::{
     Data, Momentum, base_rotation, base_twist, center_of_mass_b, forward_dynamics_recursion, kinematics,
 };
 use crate::model::Model;
-use crate::spatial::{Force, Motion, Real, Scalar, Vec3};
+use crate::spatial::{Force, Motion, Real, Vec3};
+
+/// What acts on the bodies from outside.
+pub(crate) trait World<S> {
+    /// Puts the wrenches of all effects on the bodies. Needs `kinematics`, relative to a frame that
+    /// moves at `carried` (W axes).
+    fn apply(
+        &mut self,
+        model: &Model,
+        data: &mut Data<S>,
+        q: &[S],
+        carried: Vec3<S>,
+        t: f64,
+        interval: (f64, f64),
+    ) -> Result<(), SimulationError>;
+}
+
+/// Empty space: nothing acts.
+pub(crate) struct Nothing;
+
+impl<S> World<S> for Nothing {
+    fn apply(
+        &mut self,
+        _: &Model,
+        _: &mut Data<S>,
+        _: &[S],
+        _: Vec3<S>,
+        _: f64,
+        _: (f64, f64),
+    ) -> Result<(), SimulationError> {
+        Ok(())
+    }
+}
 
 /// A robot in its surroundings, with the torques held at its joints.
-pub(super) struct Plant<'a, S> {
-    pub(super) model: &'a Model,
-    pub(super) data: Data<S>,
-    pub(super) surroundings: Surroundings,
+pub(crate) struct Plant<'a, S, W> {
+    pub(crate) model: &'a Model,
+    pub(crate) data: Data<S>,
+    pub(crate) surroundings: W,
     /// Commanded joint torques, `(n,)`, N m.
-    pub(super) command: Vec<S>,
+    pub(crate) command: Vec<S>,
     /// All generalized forces of a stage, `(nv,)`: command, damping and friction.
     forces: Vec<S>,
     /// Velocity, W axes, of the frame in which `data` has its velocities: W's own outside a step, that
@@ -23,11 +54,11 @@ pub(super) struct Plant<'a, S> {
     carried: Vec3<S>,
     mass: S,
     /// Joint rate at which Coulomb friction is fully developed, rad/s (m/s).
-    slip: Vec<f64>,
+    slip: Vec<S>,
 }
 
-impl<'a, S: Scalar> Plant<'a, S> {
-    pub(super) fn new(model: &'a Model, surroundings: Surroundings) -> Self {
+impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
+    pub(crate) fn new(model: &'a Model, surroundings: W) -> Self {
         let (n, zero) = (model.joint_count(), S::of(0.0));
         Self {
             model,
@@ -37,7 +68,7 @@ impl<'a, S: Scalar> Plant<'a, S> {
             forces: vec![zero; model.nv()],
             carried: Vec3::zero(),
             mass: S::of(model.mass()),
-            slip: vec![1.0; n],
+            slip: vec![S::of(1.0); n],
         }
     }
 
@@ -45,7 +76,7 @@ impl<'a, S: Scalar> Plant<'a, S> {
     ///
     /// The momentum was integrated from the wrenches alone, so that it is kept to rounding where
     /// none act; the twist of the integrator differs by its truncation error.
-    pub(super) fn settle(&mut self, state: &mut State<S>) {
+    pub(crate) fn settle(&mut self, state: &mut State<S>) {
         // in the frame of the base's origin: a robot that W sees pass at km/s keeps all its digits
         let passing = Motion::new(Vec3::from_slice(&state.v), Vec3::zero());
         Vec3::zero().write(&mut state.v);
@@ -70,7 +101,7 @@ impl<'a, S: Scalar> Plant<'a, S> {
     ///
     /// The equations of motion are the same there, and what is integrated stays robot-sized: in base
     /// axes even a straight flight is a velocity that turns, at the cost of digits and of order.
-    pub(super) fn ride(&mut self, q: &[S], v: &mut [S]) {
+    pub(crate) fn ride(&mut self, q: &[S], v: &mut [S]) {
         let passing = Vec3::from_slice(v);
         self.carried = S::enter(
             #[inline(always)]
@@ -81,23 +112,22 @@ impl<'a, S: Scalar> Plant<'a, S> {
     }
 
     /// Velocity of the frame of the step, W axes, m/s.
-    pub(super) fn carried(&self) -> Vec3<S> {
+    pub(crate) fn carried(&self) -> Vec3<S> {
         self.carried
     }
 
     /// External wrenches at the state whose kinematics are in `data`.
-    pub(super) fn surround(&mut self, t: f64, interval: (f64, f64), q: &[S]) -> Result<(), SimulationError> {
+    pub(crate) fn surround(&mut self, t: f64, interval: (f64, f64), q: &[S]) -> Result<(), SimulationError> {
         self.surroundings.apply(self.model, &mut self.data, q, self.carried, t, interval)
     }
 
     /// Rates at a state whose kinematics and wrenches are in `data`.
-    pub(super) fn accelerate(&mut self, q: &[S], v: &[S], rate: &mut Rate<S>) {
+    pub(crate) fn accelerate(&mut self, q: &[S], v: &[S], rate: &mut Rate<S>) {
         let Self { model, data, command, forces, slip, carried, .. } = self;
         for (j, joint) in model.joints().iter().enumerate() {
             // −b q̇ − f sat(q̇/s): friction develops within the rate that one step of it brakes
-            let speed = v[j + 6].value();
-            let friction = joint.friction * (speed / slip[j]).clamp(-1.0, 1.0);
-            forces[j + 6] = command[j] - S::of(joint.damping * speed + friction);
+            let share = clamp_to_one(v[j + 6] / slip[j]);
+            forces[j + 6] = command[j] - (v[j + 6] * S::of(joint.damping) + share * S::of(joint.friction));
         }
         forward_dynamics_recursion(model, data, v, forces, &mut rate.a);
         rate.v.copy_from_slice(v);
@@ -108,7 +138,7 @@ impl<'a, S: Scalar> Plant<'a, S> {
     }
 
     /// Kinematics, wrenches and rates of a later stage.
-    pub(super) fn evaluate(
+    pub(crate) fn evaluate(
         &mut self,
         t: f64,
         interval: (f64, f64),
@@ -122,12 +152,13 @@ impl<'a, S: Scalar> Plant<'a, S> {
     }
 
     /// Chooses the rate at which friction is developed: what full friction changes in one step.
-    pub(super) fn set_slip(&mut self, state: &State<S>, time_step: f64) {
+    pub(crate) fn set_slip(&mut self, state: &State<S>, time_step: f64) {
         let mut rate = Rate::new(self.model);
         self.accelerate(&state.q, &state.v, &mut rate);
         for (j, joint) in self.model.joints().iter().enumerate() {
-            let inverse_inertia = self.data.bodies[j + 1].inverse_pivot.value();
-            self.slip[j] = (2.0 * joint.friction * inverse_inertia * time_step).max(f64::MIN_POSITIVE);
+            let slip = self.data.bodies[j + 1].inverse_pivot * S::of(2.0 * joint.friction * time_step);
+            let least = S::of(f64::MIN_POSITIVE);
+            self.slip[j] = S::select(S::less(slip, least), least, slip);
         }
     }
 }
@@ -151,4 +182,11 @@ fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], carried: Vec3<S>, forces: 
     let about_com = total.angular - center_of_mass_b(data).cross(total.linear);
     rate.wrench = Momentum { linear: rot_wb * total.linear, angular: rot_wb * about_com };
     rate.power = power + rate.wrench.linear.dot(carried);
+}
+
+/// The nearest number in -1..1.
+fn clamp_to_one<S: Real>(x: S) -> S {
+    let one = S::of(1.0);
+    let low = S::select(S::less(x, -one), -one, x);
+    S::select(S::less(one, low), one, low)
 }

@@ -3,6 +3,7 @@
 use super::error::SimulationError;
 use super::plant::Plant;
 use super::state::State;
+use super::surroundings::Surroundings;
 use super::trace::Trace;
 use crate::control::task_error;
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
@@ -63,7 +64,21 @@ impl<'a> Recorder<'a> {
         &mut self,
         t: f64,
         state: &State<S>,
-        plant: &Plant<'_, S>,
+        plant: &Plant<'_, S, Surroundings>,
+        orbit: Option<OrbitState>,
+    ) {
+        S::enter(
+            #[inline(always)]
+            || self.row_kernel(t, state, plant, orbit),
+        );
+    }
+
+    #[inline(always)]
+    fn row_kernel<S: Scalar>(
+        &mut self,
+        t: f64,
+        state: &State<S>,
+        plant: &Plant<'_, S, Surroundings>,
         orbit: Option<OrbitState>,
     ) {
         let (trace, data, q, v) = (&mut self.trace, &plant.data, &state.q, &state.v);

@@ -37,7 +37,7 @@ impl Simulation {
         }
         match InstructionSet::current() {
             InstructionSet::Baseline => self.run_with::<f64>(duration, monitor),
-            InstructionSet::Fused => self.run_with::<Fused>(duration, monitor),
+            InstructionSet::Fused | InstructionSet::Wide => self.run_with::<Fused>(duration, monitor),
         }
     }
 
@@ -50,7 +50,7 @@ impl Simulation {
         let surroundings = Surroundings::new(&model, effects, self.orbit.clone());
         let mut run = Run {
             state: initial_state(self),
-            plant: Plant::<S>::new(&model, surroundings),
+            plant: Plant::<S, _>::new(&model, surroundings),
             driver: Driver::new(&mut self.control, self.reference.as_ref(), &model).map_err(fail)?,
             recorder: Recorder::new(
                 rows(&schedule, self.record_every),
@@ -102,7 +102,7 @@ fn rows(schedule: &Schedule, record_every: usize) -> usize {
 /// A run under way.
 struct Run<'a, S> {
     state: State<S>,
-    plant: Plant<'a, S>,
+    plant: Plant<'a, S, Surroundings>,
     driver: Driver<'a, S>,
     recorder: Recorder<'a>,
 }
@@ -184,8 +184,9 @@ impl<S: Scalar> Run<'_, S> {
 
     /// The error that carries the last finite state.
     fn diverged(&self, stages: &Stages<S>, time: f64) -> SimulationError {
-        let now = [&self.state.q, &self.state.v].map(|x| x.iter().map(|x| x.value()).collect());
-        let [q, v] = if self.state.is_finite() { now } else { stages.start() };
+        let now = || [self.state.q.clone(), self.state.v.clone()];
+        let last = if self.state.is_finite() { now() } else { stages.start() };
+        let [q, v] = last.map(|x| x.iter().map(|x| x.value()).collect());
         SimulationError::Diverged { time, q, v }
     }
 

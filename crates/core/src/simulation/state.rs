@@ -2,44 +2,44 @@
 
 use crate::dynamics::Momentum;
 use crate::model::Model;
-use crate::spatial::{Quat, Real, Scalar, Vec3, exp_so3};
+use crate::spatial::{Quat, Real, Vec3, exp_so3};
 
 /// Everything that is integrated.
 #[derive(Clone, Debug)]
-pub(super) struct State<S> {
+pub(crate) struct State<S> {
     /// Configuration, `(nq,)`.
-    pub(super) q: Vec<S>,
+    pub(crate) q: Vec<S>,
     /// Velocity, `(nv,)`.
-    pub(super) v: Vec<S>,
+    pub(crate) v: Vec<S>,
     /// Momentum at the start of the run.
-    pub(super) start: Momentum<S>,
+    pub(crate) start: Momentum<S>,
     /// Integral of the external wrenches: forces, and moments about the centre of mass.
-    pub(super) impulse: Momentum<S>,
+    pub(crate) impulse: Momentum<S>,
     /// Work done on the robot so far, J.
-    pub(super) work: S,
+    pub(crate) work: S,
 }
 
 /// Time derivatives at one stage.
 #[derive(Clone, Debug)]
-pub(super) struct Rate<S> {
+pub(crate) struct Rate<S> {
     /// Velocity of the base's origin in W axes, m/s.
-    pub(super) origin: Vec3<S>,
+    pub(crate) origin: Vec3<S>,
     /// Acceleration of the base's origin in W axes, m/s².
-    pub(super) bend: Vec3<S>,
+    pub(crate) bend: Vec3<S>,
     /// Rate of the rotation vector since the start of the step, rad/s.
-    pub(super) turn: Vec3<S>,
+    pub(crate) turn: Vec3<S>,
     /// Joint rates in `[6..]`: the stage's velocity.
-    pub(super) v: Vec<S>,
+    pub(crate) v: Vec<S>,
     /// Acceleration, `(nv,)`.
-    pub(super) a: Vec<S>,
+    pub(crate) a: Vec<S>,
     /// Rate of momentum: all external forces and their moments about the centre of mass.
-    pub(super) wrench: Momentum<S>,
+    pub(crate) wrench: Momentum<S>,
     /// Power of joint torques and external wrenches, W.
-    pub(super) power: S,
+    pub(crate) power: S,
 }
 
 impl<S: Real> Rate<S> {
-    pub(super) fn new(model: &Model) -> Self {
+    pub(crate) fn new(model: &Model) -> Self {
         let zeros = vec![S::of(0.0); model.nv()];
         Self {
             origin: Vec3::zero(),
@@ -54,7 +54,7 @@ impl<S: Real> Rate<S> {
 
     /// `self += s · other`, for weighted sums of stages.
     #[inline(always)]
-    pub(super) fn accumulate(&mut self, other: &Self, s: S) {
+    pub(crate) fn accumulate(&mut self, other: &Self, s: S) {
         self.origin = other.origin.scale_add(s, self.origin);
         self.turn = other.turn.scale_add(s, self.turn);
         self.wrench.linear = other.wrench.linear.scale_add(s, self.wrench.linear);
@@ -68,7 +68,7 @@ impl<S: Real> Rate<S> {
 
     /// Forgets everything.
     #[inline(always)]
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         (self.origin, self.turn, self.wrench, self.power) =
             (Vec3::zero(), Vec3::zero(), Momentum::default(), S::of(0.0));
         self.v.fill(S::of(0.0));
@@ -76,30 +76,28 @@ impl<S: Real> Rate<S> {
     }
 }
 
-impl<S: Scalar> State<S> {
+impl<S: Real> State<S> {
     /// Whether every number of the state is one.
-    pub(super) fn is_finite(&self) -> bool {
-        self.q.iter().chain(&self.v).all(|x| x.value().is_finite())
+    pub(crate) fn is_finite(&self) -> bool {
+        self.q.iter().chain(&self.v).all(|x| (0..S::LANES).all(|lane| x.lane(lane).is_finite()))
     }
 
     /// Momentum the state must have: that of the start and what the wrenches added.
-    pub(super) fn momentum(&self) -> Momentum<S> {
+    pub(crate) fn momentum(&self) -> Momentum<S> {
         let (a, b) = (&self.start, &self.impulse);
         Momentum { linear: a.linear + b.linear, angular: a.angular + b.angular }
     }
 
     /// Copies without allocating.
-    pub(super) fn copy_from(&mut self, from: &Self) {
+    pub(crate) fn copy_from(&mut self, from: &Self) {
         self.q.copy_from_slice(&from.q);
         self.v.copy_from_slice(&from.v);
         (self.start, self.impulse, self.work) = (from.start, from.impulse, from.work);
     }
-}
 
-impl<S: Real> State<S> {
     /// `self = from` moved by `h` at `rate`: positions add, the attitude turns on the group.
     #[inline(always)]
-    pub(super) fn move_from(&mut self, from: &Self, rate: &Rate<S>, h: S) {
+    pub(crate) fn move_from(&mut self, from: &Self, rate: &Rate<S>, h: S) {
         rate.origin.scale_add(h, Vec3::from_slice(&from.q)).write(&mut self.q);
         let attitude = Quat::from_xyzw(&from.q[3..]).product(exp_so3(rate.turn * h));
         attitude.normalized().write_xyzw(&mut self.q[3..]);

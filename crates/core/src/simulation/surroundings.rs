@@ -1,6 +1,7 @@
 //! From the effects of the environment to wrenches on the bodies.
 
 use super::error::SimulationError;
+use super::plant::World;
 use crate::dynamics::{Data, base_rotation};
 use crate::environment::{BodyState, Effect, Reference, Scene, Wrench};
 use crate::model::Model;
@@ -53,9 +54,38 @@ impl Surroundings {
         Ok(Some(state))
     }
 
-    /// Puts the wrenches of all effects on the bodies. Needs `kinematics`, relative to a frame that
-    /// moves at `carried` (W axes).
-    pub(super) fn apply<S: Scalar>(
+    /// Fills in what the effects see; returns `R_wb`.
+    #[inline(always)]
+    fn look<S: Scalar>(&mut self, model: &Model, data: &Data<S>, q: &[S], carried: Vec3<S>) -> Mat3<S> {
+        let (rot_wb, origin) = (base_rotation(q), Vec3::from_slice(q));
+        for (k, (seen, body)) in self.bodies.iter_mut().zip(&data.bodies).enumerate() {
+            let node = &model.nodes()[k];
+            let rot_wk = rot_wb * body.rot_bk;
+            seen.mass = node.mass;
+            seen.inertia = Sym3::of(&node.about_com).rotate(&rot_wk).to_nalgebra();
+            seen.com = (rot_wb * body.com_b + origin).to_nalgebra();
+            seen.rot_wk = rot_wk.to_nalgebra();
+            seen.origin = (rot_wb * body.pos_b + origin).to_nalgebra();
+            seen.velocity = (rot_wb * body.velocity.at(body.com_b) + carried).to_nalgebra();
+            seen.angular_velocity = (rot_wb * body.velocity.angular).to_nalgebra();
+        }
+        rot_wb
+    }
+
+    /// Turns the wrenches to base axes and adds them to the bodies.
+    #[inline(always)]
+    fn hand_over<S: Scalar>(&self, data: &mut Data<S>, rot_wb: &Mat3<S>) {
+        let vector = |v: &Vector3<f64>| Vec3::new(S::of(v.x), S::of(v.y), S::of(v.z));
+        for (body, wrench) in data.bodies.iter_mut().zip(&self.wrenches) {
+            let force = rot_wb.transpose_mul(vector(&wrench.force));
+            let torque = rot_wb.transpose_mul(vector(&wrench.torque));
+            body.external = Force::at(force, torque, body.com_b);
+        }
+    }
+}
+
+impl<S: Scalar> World<S> for Surroundings {
+    fn apply(
         &mut self,
         model: &Model,
         data: &mut Data<S>,
@@ -86,34 +116,5 @@ impl Surroundings {
             || self.hand_over(data, &rot_wb),
         );
         Ok(())
-    }
-
-    /// Fills in what the effects see; returns `R_wb`.
-    #[inline(always)]
-    fn look<S: Scalar>(&mut self, model: &Model, data: &Data<S>, q: &[S], carried: Vec3<S>) -> Mat3<S> {
-        let (rot_wb, origin) = (base_rotation(q), Vec3::from_slice(q));
-        for (k, (seen, body)) in self.bodies.iter_mut().zip(&data.bodies).enumerate() {
-            let node = &model.nodes()[k];
-            let rot_wk = rot_wb * body.rot_bk;
-            seen.mass = node.mass;
-            seen.inertia = Sym3::of(&node.about_com).rotate(&rot_wk).to_nalgebra();
-            seen.com = (rot_wb * body.com_b + origin).to_nalgebra();
-            seen.rot_wk = (rot_wk * Mat3::of(&model.body_frame(k).rot_kf)).to_nalgebra();
-            seen.origin = (rot_wb * body.pos_b + origin).to_nalgebra();
-            seen.velocity = (rot_wb * body.velocity.at(body.com_b) + carried).to_nalgebra();
-            seen.angular_velocity = (rot_wb * body.velocity.angular).to_nalgebra();
-        }
-        rot_wb
-    }
-
-    /// Turns the wrenches to base axes and adds them to the bodies.
-    #[inline(always)]
-    fn hand_over<S: Scalar>(&self, data: &mut Data<S>, rot_wb: &Mat3<S>) {
-        let vector = |v: &Vector3<f64>| Vec3::new(S::of(v.x), S::of(v.y), S::of(v.z));
-        for (body, wrench) in data.bodies.iter_mut().zip(&self.wrenches) {
-            let force = rot_wb.transpose_mul(vector(&wrench.force));
-            let torque = rot_wb.transpose_mul(vector(&wrench.torque));
-            body.external = Force::at(force, torque, body.com_b);
-        }
     }
 }

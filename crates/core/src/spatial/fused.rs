@@ -72,10 +72,19 @@ impl Neg for Fused {
 
 impl Real for Fused {
     type Mask = bool;
+    const LANES: usize = 1;
 
     #[inline(always)]
     fn of(x: f64) -> Self {
         Self(x)
+    }
+    #[inline(always)]
+    fn from_lanes(f: impl Fn(usize) -> f64) -> Self {
+        Self(f(0))
+    }
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self.0
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {

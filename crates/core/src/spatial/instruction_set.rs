@@ -1,6 +1,7 @@
 //! Which of the processor's instructions the kernels use.
 
 use super::fused::Fused;
+use super::lanes::Lanes8;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 /// Levels of arithmetic that the kernels are compiled for.
@@ -11,6 +12,8 @@ pub enum InstructionSet {
     Baseline = 0,
     /// Fused multiply-add (x86-64: AVX2 and FMA).
     Fused = 1,
+    /// 512-bit vectors in batches (x86-64: AVX-512 F, DQ and VL).
+    Wide = 2,
 }
 
 /// Highest level allowed; all by default.
@@ -19,8 +22,14 @@ static ALLOWED: AtomicU8 = AtomicU8::new(u8::MAX);
 impl InstructionSet {
     /// The highest level that the processor has and [`InstructionSet::limit`] allows.
     pub fn current() -> Self {
-        let is_allowed = ALLOWED.load(Ordering::Relaxed) >= Self::Fused as u8;
-        if is_allowed && Fused::is_available() { Self::Fused } else { Self::Baseline }
+        let allowed = ALLOWED.load(Ordering::Relaxed);
+        if allowed >= Self::Wide as u8 && Lanes8::is_available() {
+            Self::Wide
+        } else if allowed >= Self::Fused as u8 && Fused::is_available() {
+            Self::Fused
+        } else {
+            Self::Baseline
+        }
     }
 
     /// Uses nothing above `level` from now on, in all threads.
@@ -28,10 +37,16 @@ impl InstructionSet {
         ALLOWED.store(level as u8, Ordering::Relaxed);
     }
 
+    /// The level with this [`name`](Self::name).
+    pub fn named(name: &str) -> Option<Self> {
+        [Self::Baseline, Self::Fused, Self::Wide].into_iter().find(|level| level.name() == name)
+    }
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Baseline => "baseline",
+            Self::Wide => "avx512",
             Self::Fused if cfg!(target_arch = "x86_64") => "avx2+fma",
             Self::Fused => "fma",
         }

@@ -27,8 +27,17 @@ pub trait Real:
     /// The outcome of a comparison, one truth value per lane.
     type Mask: Copy;
 
+    /// How many numbers stand side by side.
+    const LANES: usize;
+
     /// The constant `x` in every lane.
     fn of(x: f64) -> Self;
+
+    /// The number `f(i)` in lane `i`.
+    fn from_lanes(f: impl Fn(usize) -> f64) -> Self;
+
+    /// The number in lane `i`.
+    fn lane(self, i: usize) -> f64;
 
     /// `self · a + b`, fused where the type's instruction set does it in hardware.
     #[must_use]
@@ -74,10 +83,19 @@ pub(super) const FAST_SINE_LIMIT: f64 = 1e5;
 
 impl Real for f64 {
     type Mask = bool;
+    const LANES: usize = 1;
 
     #[inline(always)]
     fn of(x: f64) -> Self {
         x
+    }
+    #[inline(always)]
+    fn from_lanes(f: impl Fn(usize) -> f64) -> Self {
+        f(0)
+    }
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {

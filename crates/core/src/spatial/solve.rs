@@ -2,6 +2,17 @@
 
 use super::scalar::Real;
 
+/// Scalar product of two rows.
+#[inline(always)]
+pub fn dot<S: Real>(a: &[S], b: &[S]) -> S {
+    // a loop, not a fold: what the library leaves out of line loses the instruction set
+    let mut sum = S::of(0.0);
+    for i in 0..a.len().min(b.len()) {
+        sum = a[i].mul_add(b[i], sum);
+    }
+    sum
+}
+
 /// Cholesky factor `A = L Lᵀ` of a positive definite `n × n` matrix, in place.
 ///
 /// Reads the lower triangle and replaces it by `L`, whose diagonal holds the *inverse* pivots

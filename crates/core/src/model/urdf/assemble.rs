@@ -18,27 +18,27 @@ pub(super) fn assemble(
     around: &mut Surroundings<'_>,
 ) -> Result<Model, UrdfError> {
     let tree = Tree::new(links, hinges)?;
-    let root = tree.root(links, hinges)?;
+    let mut root = tree.root(links, hinges)?;
     let read = |link: usize, around: &mut Surroundings<'_>| {
         let (name, element) = links[link];
         read_link(element, name, around)
     };
     let mut base = read(root, around)?;
-    // a massless root under a floating joint is the frame in which the robot floats: no part of it
+    // a massless root over a floating joint is where the robot floats, no part of it
     let is_massless = base.inertial.as_ref().is_none_or(|inertial| inertial.mass == 0.0);
-    let free = match tree.hinges_below[root][..] {
-        [only] if is_massless && hinges[only].kind == "floating" => Some(only),
-        _ => None,
-    };
-    if free.is_some() {
-        base.visuals.clear();
+    if let [only] = tree.hinges_below[root][..]
+        && is_massless
+        && hinges[only].kind == "floating"
+    {
+        root = tree.child[only];
+        base = read(root, around)?;
     }
     let fail = |element: Element<'_>, error: ModelError| element.fail(UrdfProblem::Model(error));
     let mut builder = ModelBuilder::new(name, base).map_err(|e| fail(links[root].1, e))?;
     let mut stack: Vec<usize> = tree.hinges_below[root].iter().rev().copied().collect();
     while let Some(h) = stack.pop() {
         let hinge = &hinges[h];
-        let joint = read_joint(hinge, free == Some(h), &mut around.warnings)?;
+        let joint = read_joint(hinge, &mut around.warnings)?;
         let child = read(tree.child[h], around)?;
         builder.add(hinge.parent, joint, child).map_err(|e| fail(hinge.element, e))?;
         stack.extend(tree.hinges_below[tree.child[h]].iter().rev());
@@ -125,13 +125,14 @@ impl Tree {
         let above = |link: usize| self.parent[hinge_above(link)];
         // as many steps as there are links lead into the loop, wherever one starts
         let entry = (0..links.len()).fold(lost, |link, _| above(link));
-        let mut names = vec![links[entry].0.to_owned()];
-        let mut link = above(entry);
-        while link != entry {
-            names.push(links[link].0.to_owned());
-            link = above(link);
-        }
-        names.reverse();
+        let mut round: Vec<usize> =
+            std::iter::successors(Some(entry), |&link| Some(above(link)).filter(|&next| next != entry))
+                .collect();
+        // downwards, the link that the file has first in front
+        round.reverse();
+        let first = (0..round.len()).min_by_key(|&k| round[k]).expect("a loop has links");
+        round.rotate_left(first);
+        let names = round.into_iter().map(|link| links[link].0.to_owned()).collect();
         hinges[hinge_above(entry)].element.fail(UrdfProblem::Loop { links: names })
     }
 }

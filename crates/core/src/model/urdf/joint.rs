@@ -21,12 +21,8 @@ pub(super) fn read_hinge<'a>(element: Element<'a>, name: &'a str) -> Result<Hing
     Ok(Hinge { element, name, kind: element.required_text("type")?, parent, child })
 }
 
-/// The rest of the joint. `is_free` where it is the free base that the engine brings by itself.
-pub(super) fn read_joint(
-    hinge: &Hinge<'_>,
-    is_free: bool,
-    warnings: &mut Vec<ModelWarning>,
-) -> Result<Joint, UrdfError> {
+/// The rest of the joint.
+pub(super) fn read_joint(hinge: &Hinge<'_>, warnings: &mut Vec<ModelWarning>) -> Result<Joint, UrdfError> {
     let element = hinge.element;
     // URDF: the axis is x where none is given
     let axis = || {
@@ -37,7 +33,6 @@ pub(super) fn read_joint(
         "revolute" | "continuous" => JointKind::Revolute(axis()?),
         "prismatic" => JointKind::Prismatic(axis()?),
         "fixed" => JointKind::Fixed,
-        "floating" if is_free => JointKind::Fixed,
         other => {
             let (joint, kind) = (hinge.name.to_owned(), other.to_owned());
             return Err(element.fail(UrdfProblem::JointType { joint, kind }));

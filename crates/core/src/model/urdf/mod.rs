@@ -116,7 +116,11 @@ fn not_xml(error: XmlError) -> UrdfError {
             UrdfProblem::Xacro { found: "<xacro:…>".to_owned() }
         }
         XmlError::DtdDetected => UrdfProblem::DocumentType,
-        other => UrdfProblem::NotXml { reason: other.to_string() },
+        other => {
+            // the parser ends its message with the place, which we put in front
+            let (reason, place) = (other.to_string(), format!(" at {}", other.pos()));
+            UrdfProblem::NotXml { reason: reason.strip_suffix(&place).unwrap_or(&reason).to_owned() }
+        }
     };
     UrdfError::new(Some(error.pos().row), problem)
 }

@@ -1,0 +1,59 @@
+# One command per task; each sets up what it needs in .venv and target/.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+# an environment of the caller's must not leak in
+export VIRTUAL_ENV :=
+export PYTHONPATH :=
+unexport CONDA_PREFIX
+MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet
+
+RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
+
+.PHONY: help demo test test-rust test-python lint bench bench-peers clean
+
+help: ## this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
+
+$(BIN)/maturin:
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet 'maturin>=1.16,<2'
+
+$(VENV)/.built: $(RUST) pyproject.toml README.md | $(BIN)/maturin
+	$(MATURIN)
+	@touch $@
+
+$(VENV)/.tested: pyproject.toml | $(VENV)/.built
+	$(MATURIN) --extras test,lint
+	@touch $@
+
+demo: $(VENV)/.built ## the paper's experiment: builds, runs, leaves out/humanoid_reach
+	$(BIN)/onorbit run humanoid_reach --out out/humanoid_reach --force
+
+test: test-rust test-python ## everything that proves it
+
+test-rust: ## the engine alone; needs no Python
+	cargo test --workspace --exclude onorbit-py
+
+test-python: $(VENV)/.built $(VENV)/.tested ## the package, against independent engines
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/.built $(VENV)/.tested ## formatting, lints as errors, types
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps -p onorbit-core
+	$(BIN)/ruff format --check python tests benches
+	$(BIN)/ruff check python tests benches
+	$(BIN)/mypy
+
+bench: $(VENV)/.built $(VENV)/.tested ## criterion for the kernels, pytest-benchmark for the border
+	cargo bench -p onorbit-core
+	$(BIN)/python -m pytest benches -o testpaths=benches --benchmark-only --benchmark-columns=min,median,iqr
+
+bench-peers: $(VENV)/.built $(VENV)/.tested ## against Pinocchio and MuJoCo, alternated in one run
+	$(BIN)/python -m benches.compare
+
+clean: ## forgets builds and the environment
+	rm -rf target $(VENV) out

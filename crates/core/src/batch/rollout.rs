@@ -1,0 +1,182 @@
+//! Many runs at once, in empty space: passive, with given torques, or under computed torque.
+
+use super::input::{InputError, check_finite, check_quaternions};
+use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
+use crate::dynamics::{kinematics, momentum};
+use crate::model::Model;
+use crate::reference::TaskReference;
+use crate::simulation::{Integrator, Nothing, Plant, Stages, State};
+use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Quat, Real};
+use rayon::prelude::*;
+
+/// What drives the joints in a rollout.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum RolloutControl<'a> {
+    /// Nothing.
+    #[default]
+    Passive,
+    /// Given torques, `(B, steps, n)`, N m.
+    Torques(&'a [f64]),
+    /// Computed torque towards one reference for all.
+    ComputedTorque(&'a ComputedTorque, &'a TaskReference),
+}
+
+/// How to roll out.
+#[derive(Clone, Copy, Debug)]
+pub struct Rollout<'a> {
+    /// Number of steps.
+    pub steps: usize,
+    /// Step, s.
+    pub time_step: f64,
+    /// How to step.
+    pub integrator: Integrator,
+    /// What drives the joints.
+    pub control: RolloutControl<'a>,
+    /// Every how many steps a row is written, the start being the first; only the end if `None`.
+    pub record_every: Option<usize>,
+    /// Number of threads; all cores if `None`.
+    pub threads: Option<usize>,
+}
+
+impl Rollout<'_> {
+    /// Rows written per state.
+    pub fn rows(&self) -> usize {
+        self.record_every.map_or(1, |every| self.steps / every.max(1) + 1)
+    }
+
+    /// Rolls out states `q0`, `(B, nq)`, and `v0`, `(B, nv)`, into `q`, `(B, rows, nq)`, and `v`,
+    /// `(B, rows, nv)`. The bits do not depend on the number of threads.
+    ///
+    /// # Errors
+    /// [`InputError`] for a start that no kernel takes, and [`InputError::Diverged`] for the first
+    /// state that did not stay finite; all others are written then.
+    pub fn run(
+        &self,
+        model: &Model,
+        q0: &[f64],
+        v0: &[f64],
+        q: &mut [f64],
+        v: &mut [f64],
+    ) -> Result<(), InputError> {
+        check_finite("q0", q0, model.nq())?;
+        check_finite("v0", v0, model.nv())?;
+        check_quaternions(q0, model.nq())?;
+        if let RolloutControl::Torques(tau) = self.control {
+            check_finite("tau", tau, self.steps * model.joint_count())?;
+        }
+        match InstructionSet::current() {
+            InstructionSet::Baseline => self.all::<f64>(model, q0, v0, q, v),
+            InstructionSet::Fused if q0.len() == model.nq() => self.all::<Fused>(model, q0, v0, q, v),
+            InstructionSet::Fused => self.all::<Lanes4>(model, q0, v0, q, v),
+            InstructionSet::Wide => self.all::<Lanes8>(model, q0, v0, q, v),
+        }
+        match v.chunks(self.rows() * model.nv()).position(|state| !state.iter().all(|x| x.is_finite())) {
+            Some(state) => Err(InputError::Diverged { state }),
+            None => Ok(()),
+        }
+    }
+
+    fn all<S: Real>(&self, model: &Model, q0: &[f64], v0: &[f64], q: &mut [f64], v: &mut [f64]) {
+        let (nq, nv) = (model.nq(), model.nv());
+        let (q_rows, v_rows) = (S::LANES * self.rows() * nq, S::LANES * self.rows() * nv);
+        let mut tasks = || {
+            q.par_chunks_mut(q_rows)
+                .zip(v.par_chunks_mut(v_rows))
+                .zip(q0.par_chunks(S::LANES * nq))
+                .zip(v0.par_chunks(S::LANES * nv))
+                .enumerate()
+                .for_each(|(group, (((q, v), q0), v0))| {
+                    Lanes::<S>::new(self, model, q0, v0, group * S::LANES).run(q, v);
+                });
+        };
+        match self.threads.map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build()) {
+            Some(Ok(pool)) => pool.install(&mut tasks),
+            _ => tasks(),
+        }
+    }
+}
+
+/// As many runs as the scalar has lanes.
+struct Lanes<'a, S> {
+    settings: &'a Rollout<'a>,
+    plant: Plant<'a, S, Nothing>,
+    state: State<S>,
+    stages: Stages<S>,
+    work: Option<ComputedTorqueWork<S>>,
+    /// Number of the first run.
+    first: usize,
+    /// Runs wanted; further lanes repeat the last.
+    count: usize,
+}
+
+impl<'a, S: Real> Lanes<'a, S> {
+    fn new(settings: &'a Rollout<'a>, model: &'a Model, q0: &[f64], v0: &[f64], first: usize) -> Self {
+        let count = v0.len() / model.nv();
+        let gather = |rows: &[f64], width: usize| -> Vec<S> {
+            (0..width).map(|i| S::from_lanes(|lane| rows[lane.min(count - 1) * width + i])).collect()
+        };
+        let (mut q, v) = (gather(q0, model.nq()), gather(v0, model.nv()));
+        Quat::from_xyzw(&q[3..]).normalized().write_xyzw(&mut q[3..]);
+        let mut plant = Plant::new(model, Nothing);
+        kinematics(model, &mut plant.data, &q, &v);
+        let start = momentum(&plant.data, &q);
+        let state = State { q, v, start, impulse: Default::default(), work: S::of(0.0) };
+        let stages = Stages::new(model, &state, settings.integrator);
+        let is_controlled = matches!(settings.control, RolloutControl::ComputedTorque(..));
+        let work = is_controlled.then(|| ComputedTorqueWork::new(model));
+        plant.set_slip(&state, settings.time_step);
+        Self { settings, plant, state, stages, work, first, count }
+    }
+
+    fn run(mut self, q: &mut [f64], v: &mut [f64]) {
+        let Rollout { steps, time_step, record_every, .. } = *self.settings;
+        let mut row = 0;
+        for step in 0..steps {
+            self.plant.settle(&mut self.state);
+            if record_every.is_some_and(|every| step % every == 0) {
+                self.write(row, q, v);
+                row += 1;
+            }
+            self.drive(step);
+            let interval = (step as f64 * time_step, (step + 1) as f64 * time_step);
+            // in empty space nothing refuses a step
+            let _: Result<(), _> = self.stages.step(&mut self.plant, &mut self.state, interval);
+        }
+        self.plant.settle(&mut self.state);
+        if record_every.is_none_or(|every| steps % every == 0) {
+            self.write(row, q, v);
+        }
+    }
+
+    /// Torques for a step.
+    fn drive(&mut self, step: usize) {
+        let Self { plant, state, settings, work, first, count, .. } = self;
+        let n = plant.command.len();
+        match settings.control {
+            RolloutControl::Passive => {}
+            RolloutControl::Torques(tau) => {
+                for (j, command) in plant.command.iter_mut().enumerate() {
+                    let at = |lane: usize| ((*first + lane.min(*count - 1)) * settings.steps + step) * n + j;
+                    *command = S::from_lanes(|lane| tau[at(lane)]);
+                }
+            }
+            RolloutControl::ComputedTorque(law, reference) => {
+                let Some(work) = work else { return };
+                let desired = reference.sample(S::of(step as f64 * settings.time_step));
+                let (data, command) = (&mut plant.data, &mut plant.command);
+                computed_torque(law, plant.model, data, &state.q, &state.v, &desired, work, command);
+            }
+        }
+    }
+
+    fn write(&self, row: usize, q: &mut [f64], v: &mut [f64]) {
+        let rows = self.settings.rows();
+        for (out, values) in [(q, &self.state.q), (v, &self.state.v)] {
+            let width = values.len();
+            for lane in 0..self.count {
+                let to = &mut out[(lane * rows + row) * width..][..width];
+                to.iter_mut().zip(values).for_each(|(to, from)| *to = from.lane(lane));
+            }
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Every URDF that cannot be loaded has its own error, with the line and the name.
+
+#![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
+
+use onorbit_core::model::ModelError;
+use onorbit_core::model::urdf::{UrdfError, UrdfProblem, from_file, from_str};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const INERTIAL: &str =
+    r#"<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"#;
+
+fn error(xml: &str) -> UrdfError {
+    from_str(xml, None, &[]).expect_err("must be refused")
+}
+
+fn problem(xml: &str) -> UrdfProblem {
+    *error(xml).problem
+}
+
+/// Links `a`, `b`, `c` with mass and whatever joints are given.
+fn robot(joints: &str) -> String {
+    let link = |name| format!("<link name='{name}'>{INERTIAL}</link>\n");
+    format!("<robot name='r'>\n{}{}{}{joints}\n</robot>", link("a"), link("b"), link("c"))
+}
+
+fn joint(name: &str, kind: &str, parent: &str, child: &str, inside: &str) -> String {
+    format!(
+        "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>{inside}</joint>\n"
+    )
+}
+
+/// Two links of which the second has this inertial.
+fn with_inertial(inertial: &str) -> String {
+    let j = joint("j", "revolute", "a", "b", "");
+    format!("<robot name='r'><link name='a'>{INERTIAL}</link><link name='b'>{inertial}</link>{j}</robot>")
+}
+
+#[test]
+fn what_is_not_xml() {
+    assert_eq!(problem(""), UrdfProblem::Empty);
+    assert_eq!(problem(" \n\t"), UrdfProblem::Empty);
+    for text in [
+        "monkeys, not XML",
+        "<robot",
+        "<robot><link></robot>",
+        "<robot/><robot/>",
+        "<a b='1' b='2'/>",
+        "\0\u{1}",
+    ] {
+        assert!(matches!(problem(text), UrdfProblem::NotXml { .. }), "{text}: {}", error(text));
+    }
+    assert_eq!(problem("<!DOCTYPE robot [<!ENTITY a 'b'>]><robot/>"), UrdfProblem::DocumentType);
+    let text = error("<sdf version='1.7'/>").to_string();
+    assert!(text.contains("<sdf>") && text.contains("SDFormat"), "{text}");
+    assert_eq!(problem("<robot name='r'/>"), UrdfProblem::NoLinks);
+}
+
+#[test]
+fn deep_and_huge_xml_is_refused_before_any_recursion() {
+    let deep = format!("<robot>{}{}</robot>", "<gazebo>".repeat(100_000), "</gazebo>".repeat(100_000));
+    assert!(matches!(problem(&deep), UrdfProblem::TooDeep { .. }));
+    assert!(matches!(problem(&"<a>".repeat(1_000_000)), UrdfProblem::TooDeep { .. }));
+    let huge = format!("<robot><!--{}--></robot>", " ".repeat(64 << 20));
+    assert!(matches!(problem(&huge), UrdfProblem::TooLarge { .. }));
+    let crowded = format!("<robot name='r'>{}</robot>", "<a/>".repeat(2_000_000));
+    assert!(matches!(problem(&crowded), UrdfProblem::NotXml { .. }), "{}", error(&crowded));
+    let attributes: String = (0..20_000).map(|i| format!(" a{i}=''")).collect();
+    assert!(matches!(problem(&format!("<robot{attributes}/>")), UrdfProblem::TagTooLong { .. }));
+}
+
+#[test]
+fn many_links_take_no_quadratic_time() {
+    let mut xml = format!("<robot name='rope'><link name='l0'>{INERTIAL}</link>");
+    for i in 1..5000 {
+        let j = joint(&format!("j{i}"), "revolute", &format!("l{}", i - 1), &format!("l{i}"), "");
+        xml += &format!("<link name='l{i}'>{INERTIAL}</link>{j}");
+    }
+    let start = std::time::Instant::now();
+    assert_eq!(from_str(&(xml + "</robot>"), None, &[]).unwrap().joint_count(), 4999);
+    assert!(start.elapsed().as_secs() < 20, "a dense elimination would take minutes");
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    let folder = std::env::temp_dir().join(format!("onorbit_urdf_{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let load = |path: &Path| from_file(path, &[]).expect_err("must be refused");
+    let write = |name: &str, bytes: &[u8]| -> PathBuf {
+        fs::write(folder.join(name), bytes).unwrap();
+        folder.join(name)
+    };
+    assert_eq!(*load(&folder.join("none.urdf")).problem, UrdfProblem::NotFound);
+    assert_eq!(*load(&folder).problem, UrdfProblem::IsFolder);
+    assert_eq!(*load(&write("empty.urdf", b"")).problem, UrdfProblem::Empty);
+    assert_eq!(*load(&write("latin.urdf", b"<robot name='\xe9'/>")).problem, UrdfProblem::NotUtf8 { at: 13 });
+    assert!(matches!(*load(&write("zeros.urdf", &[0; 64])).problem, UrdfProblem::NotXml { .. }));
+    let path = write("broken.urdf", b"<robot>\n<link></robot>");
+    let broken = load(&path);
+    assert_eq!((broken.file.as_deref(), broken.line), (Some(path.as_path()), Some(2)));
+    assert!(broken.to_string().starts_with(&format!("{}:2: not XML", path.display())), "{broken}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn what_is_not_a_tree() {
+    let (ab, bc) = (joint("ab", "fixed", "a", "b", ""), joint("bc", "fixed", "b", "c", ""));
+    let is_loop = |joints: &str, links: &[&str]| {
+        let links = links.iter().map(|l| (*l).to_owned()).collect();
+        assert_eq!(problem(&robot(joints)), UrdfProblem::Loop { links }, "{joints}");
+    };
+    is_loop(&format!("{ab}{bc}{}", joint("ca", "fixed", "c", "a", "")), &["a", "b", "c"]);
+    is_loop(&format!("{bc}{}", joint("cb", "fixed", "c", "b", "")), &["b", "c"]);
+    is_loop(&format!("{ab}{}", joint("cc", "fixed", "c", "c", "")), &["c"]);
+    let two = problem(&robot(&format!("{ab}{bc}{}", joint("ac", "fixed", "a", "c", ""))));
+    assert_eq!(two, UrdfProblem::TwoParents { link: "c".into(), joints: ["bc".into(), "ac".into()] });
+    assert_eq!(problem(&robot(&ab)), UrdfProblem::ManyRoots { roots: vec!["a".into(), "c".into()] });
+    let unknown = error(&robot(&format!("{ab}{}", joint("bx", "fixed", "bb", "c", ""))));
+    assert!(
+        unknown.to_string().starts_with("line 6: joint 'bx': there is no link 'bb'; did you mean"),
+        "{unknown}"
+    );
+}
+
+#[test]
+fn names_that_are_missing_or_used_twice() {
+    let twice = format!("<robot><link name='a'>{INERTIAL}</link><link name='a'/></robot>");
+    assert_eq!(
+        problem(&twice),
+        UrdfProblem::Model(ModelError::DuplicateName { what: "link", name: "a".into() })
+    );
+    let joints = joint("j", "fixed", "a", "b", "") + &joint("j", "fixed", "a", "c", "");
+    assert_eq!(
+        problem(&robot(&joints)),
+        UrdfProblem::Model(ModelError::DuplicateName { what: "joint", name: "j".into() })
+    );
+    assert!(matches!(
+        problem("<robot><link/></robot>"),
+        UrdfProblem::MissingAttribute { attribute: "name", .. }
+    ));
+    let no_child = robot("<joint name='j' type='fixed'><parent link='a'/></joint>");
+    assert_eq!(
+        problem(&no_child),
+        UrdfProblem::MissingElement { owner: "joint 'j'".into(), element: "child" }
+    );
+    let no_type = robot("<joint name='j'><parent link='a'/><child link='b'/></joint>");
+    assert!(matches!(problem(&no_type), UrdfProblem::MissingAttribute { attribute: "type", .. }));
+}
+
+#[test]
+fn joints_that_are_not_ours() {
+    for kind in ["planar", "spherical", "floating", "ball", "Revolute", "hinge"] {
+        let joints = joint("j", kind, "a", "b", "") + &joint("bc", "fixed", "b", "c", "");
+        assert_eq!(
+            problem(&robot(&joints)),
+            UrdfProblem::JointType { joint: "j".into(), kind: kind.into() },
+            "{kind}"
+        );
+    }
+    let zero = joint("j", "revolute", "a", "b", "<axis xyz='0 0 0'/>") + &joint("bc", "fixed", "b", "c", "");
+    assert_eq!(problem(&robot(&zero)), UrdfProblem::Model(ModelError::ZeroAxis { joint: "j".into() }));
+    let reversed = joint("j", "revolute", "a", "b", "<limit lower='1' upper='-1'/>")
+        + &joint("bc", "fixed", "b", "c", "");
+    assert!(matches!(problem(&robot(&reversed)), UrdfProblem::Model(ModelError::LimitsReversed { .. })));
+    let damping =
+        joint("j", "revolute", "a", "b", "<dynamics damping='-1'/>") + &joint("bc", "fixed", "b", "c", "");
+    assert!(matches!(
+        problem(&robot(&damping)),
+        UrdfProblem::Model(ModelError::Negative { what: "damping", .. })
+    ));
+}
+
+#[test]
+fn numbers_that_are_none_name_the_link() {
+    for text in ["nan", "inf", "1,0", "", "one", "1 2", "0x10", "--1", "1e999"] {
+        let xml = with_inertial(&INERTIAL.replace("mass value=\"1\"", &format!("mass value=\"{text}\"")));
+        let UrdfProblem::BadNumber { owner, attribute, .. } = problem(&xml) else {
+            panic!("{text}: {}", error(&xml))
+        };
+        assert_eq!((owner.as_str(), attribute), ("link 'b'", "value"), "{text}");
+    }
+    for text in ["1,0 0 0", "1,0 0 0 0", "0 0", "0 0 0 0", "nan 0 0", "a b c"] {
+        let origin = format!("<origin xyz='{text}'/>");
+        let joints = joint("j", "revolute", "a", "b", &origin) + &joint("bc", "fixed", "b", "c", "");
+        let UrdfProblem::BadNumber { owner, expected, .. } = problem(&robot(&joints)) else {
+            panic!("{text}")
+        };
+        assert_eq!((owner.as_str(), expected), ("joint 'j'", 3), "{text}");
+    }
+}
+
+#[test]
+fn inertials_that_no_body_has() {
+    let model = |inertial: &str| match problem(&with_inertial(inertial)) {
+        UrdfProblem::Model(error) => error,
+        other => panic!("{other}"),
+    };
+    let negative = INERTIAL.replace("value=\"1\"", "value=\"-2\"");
+    assert_eq!(model(&negative), ModelError::MassNotPositive { link: "b".into(), mass: -2.0 });
+    let flywheel = INERTIAL.replace("value=\"1\"", "value=\"0\"");
+    assert_eq!(model(&flywheel), ModelError::InertiaWithoutMass { link: "b".into() });
+    let indefinite = INERTIAL.replace("ixx=\"1\"", "ixx=\"-1\"");
+    assert!(matches!(model(&indefinite), ModelError::IndefiniteInertia { link, .. } if link == "b"));
+    assert!(matches!(model(""), ModelError::MasslessSubtree { joint, link } if joint == "j" && link == "b"));
+    let no_mass = INERTIAL.replace("<mass value=\"1\"/>", "");
+    assert_eq!(
+        problem(&with_inertial(&no_mass)),
+        UrdfProblem::MissingElement { owner: "link 'b'".into(), element: "mass" }
+    );
+}
+
+#[test]
+fn xacro_is_named_with_the_way_out() {
+    let xmlns = "xmlns:xacro='http://www.ros.org/wiki/xacro'";
+    let files = [
+        format!("<robot {xmlns}><xacro:property name='p' value='1'/></robot>"),
+        "<robot><xacro:property name='p' value='1'/></robot>".to_owned(),
+        with_inertial(&INERTIAL.replace("value=\"1\"", "value=\"${mass}\"")),
+        with_inertial("<inertial><origin xyz='$(arg xyz)'/><mass value='1'/></inertial>"),
+        format!("<robot><link name='${{prefix}}a'>{INERTIAL}</link></robot>"),
+    ];
+    for xml in files {
+        let text = error(&xml).to_string();
+        assert!(text.contains("expand it first: xacro"), "{xml}: {text}");
+        assert!(matches!(problem(&xml), UrdfProblem::Xacro { .. }), "{xml}");
+    }
+    // declaring the prefix is what every expanded file still does
+    assert!(from_str(&format!("<robot {xmlns}><link name='a'>{INERTIAL}</link></robot>"), None, &[]).is_ok());
+}

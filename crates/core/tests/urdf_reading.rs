@@ -1,0 +1,167 @@
+//! What is read of a URDF, and what stands where the file says nothing.
+
+#![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
+
+use onorbit_core::dynamics::{Data, frame_pose, positions};
+use onorbit_core::model::urdf::from_str;
+use onorbit_core::model::{Geometry, Limits, Model, neutral};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
+
+const INERTIAL: &str =
+    r#"<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"#;
+
+fn load(inside: &str) -> Model {
+    from_str(&format!("<robot name='r' version='1.1'>{inside}</robot>"), None, &[]).unwrap()
+}
+
+fn pair(kind: &str, inside: &str) -> Model {
+    load(&format!(
+        "<link name='a'>{INERTIAL}</link><link name='b'>{INERTIAL}</link>\
+         <joint name='j' type='{kind}'><child link='b'/><parent link='a'/>{inside}</joint>"
+    ))
+}
+
+fn position(model: &Model, frame: &str) -> [f64; 3] {
+    let (mut data, q) = (Data::new(model), neutral(model));
+    positions(model, &mut data, &q);
+    let p = frame_pose(model, &data, &q, model.frame(frame).unwrap()).pos_w;
+    [p.x, p.y, p.z]
+}
+
+#[test]
+fn a_joint_without_details_has_urdf_s_defaults() {
+    let model = pair("revolute", "");
+    let joint = &model.joints()[0];
+    assert_eq!([joint.axis.x, joint.axis.y, joint.axis.z], [1.0, 0.0, 0.0]);
+    assert_eq!((joint.damping, joint.friction, joint.limits), (0.0, 0.0, Limits::default()));
+    assert_eq!(position(&model, "b"), [0.0; 3]);
+}
+
+#[test]
+fn friction_rotor_and_limits_are_kept() {
+    let dynamics = "<dynamics damping='0.5' friction='0.2' armature='0.03'/>";
+    let model =
+        pair("prismatic", &format!("{dynamics}<limit lower='-1' upper='2' velocity='3' effort='4'/>"));
+    let joint = &model.joints()[0];
+    assert_eq!((joint.damping, joint.friction, model.nodes()[1].rotor_inertia), (0.5, 0.2, 0.03));
+    let limits = Limits { position: Some((-1.0, 2.0)), velocity: Some(3.0), effort: Some(4.0) };
+    assert_eq!(joint.limits, limits);
+    let same = pair("revolute", "<dynamics rotor_inertia='0.03'/>");
+    assert_eq!(same.nodes()[1].rotor_inertia, 0.03);
+}
+
+#[test]
+fn limits_not_given_are_none() {
+    let position = |kind, limit: &str| pair(kind, limit).joints()[0].limits.position;
+    assert_eq!(position("continuous", "<limit lower='-1' upper='1' effort='1'/>"), None);
+    assert_eq!(position("revolute", "<limit effort='1' velocity='1'/>"), None);
+    assert_eq!(position("revolute", "<limit upper='1'/>"), Some((0.0, 1.0)));
+    assert_eq!(position("revolute", "<limit lower='-inf' upper='inf'/>"), None);
+    assert_eq!(pair("revolute", "<limit effort='inf'/>").joints()[0].limits.effort, None);
+}
+
+#[test]
+fn poses_by_angles_and_by_quaternion_agree() {
+    let angles = pair("revolute", "<origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/><axis xyz='1 0 0'/>");
+    let quaternion = format!("<origin xyz='1 2 3' quat_xyzw='0 0 {FRAC_1_SQRT_2} {FRAC_1_SQRT_2}'/>");
+    let quaternion = pair("revolute", &format!("{quaternion}<axis xyz='1 0 0'/>"));
+    let (a, b) = (angles.nodes()[1].rot_pk.to_nalgebra(), quaternion.nodes()[1].rot_pk.to_nalgebra());
+    assert!((a - b).norm() < 1e-15);
+    assert!((a.column(2) - nalgebra::Vector3::y()).norm() < 1e-15); // x turned by 90 degrees about z
+    assert_eq!(position(&angles, "b"), [1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn a_turned_inertial_is_given_in_link_axes() {
+    let model = load(&format!(
+        "<link name='a'><inertial><origin xyz='1 0 0' rpy='0 0 {FRAC_PI_2}'/><mass value='2'/>\
+         <inertia ixx='2' iyy='3' izz='4' ixy='0.5' ixz='0' iyz='0'/></inertial></link>"
+    ));
+    let base = &model.nodes()[0];
+    let i = base.about_com;
+    assert_eq!((base.mass, base.com.x), (2.0, 1.0));
+    for (got, want) in [(i.xx, 3.0), (i.yy, 2.0), (i.zz, 4.0), (i.xy, -0.5)] {
+        assert!((got - want).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn a_mass_without_inertia_is_a_point_and_said_so() {
+    let point = "<inertial><origin xyz='0 0 1'/><mass value='1'/></inertial>";
+    let model = load(&format!(
+        "<link name='a'>{INERTIAL}</link><link name='p'>{point}</link>\
+         <joint name='j' type='revolute'><parent link='a'/><child link='p'/></joint>"
+    ));
+    assert!(model.warnings()[0].to_string().contains("link 'p' has a mass but no <inertia>"));
+}
+
+#[test]
+fn the_world_is_a_frame_not_a_body() {
+    for (kind, frames) in [("fixed", vec!["base", "tool", "world"]), ("floating", vec!["base", "tool"])] {
+        let model = load(&format!(
+            "<link name='world'/><link name='base'>{INERTIAL}</link><link name='tool'/>\
+             <joint name='w' type='{kind}'><parent link='world'/><child link='base'/><origin xyz='0 0 1'/></joint>\
+             <joint name='t' type='fixed'><parent link='base'/><child link='tool'/><origin xyz='1 0 0'/></joint>"
+        ));
+        assert_eq!(model.body_names().collect::<Vec<_>>(), ["base"]);
+        assert_eq!(model.frame_names().collect::<Vec<_>>(), frames, "{kind}");
+        assert_eq!(position(&model, "tool"), [1.0, 0.0, 0.0]);
+        if kind == "fixed" {
+            assert_eq!(position(&model, "world"), [0.0, 0.0, -1.0]);
+        }
+    }
+}
+
+#[test]
+fn colours_are_found_by_name_and_shapes_that_cannot_be_read_are_told() {
+    let visual = |geometry: &str, material: &str| {
+        format!("<visual><geometry>{geometry}</geometry><material {material}</visual>")
+    };
+    let model = load(&format!(
+        "<material name='red'><color rgba='1 0 0 1'/></material><link name='a'>{INERTIAL}{}{}{}{}{}\
+         <collision><geometry><cylinder radius='${{r}}'/></geometry></collision></link>",
+        visual("<box size='1 2 3'/>", "name='red'/>"),
+        visual("<capsule radius='1' length='2'/>", "name='red'><color rgba='0 1 0 0.5'/></material>"),
+        visual("<mesh filename='package://x/a.stl' scale='1 1 2'/>", "name='unknown'/>"),
+        visual("<sphere radius='${r}'/>", "name='red'/>"),
+        visual("<cylinder radius='1'/>", "name='red'/>"),
+    ));
+    let shapes: Vec<_> = model.visuals().iter().map(|(_, visual)| visual.clone()).collect();
+    assert_eq!(shapes.len(), 3);
+    assert_eq!(
+        (&shapes[0].geometry, shapes[0].rgba),
+        (&Geometry::Box([1.0, 2.0, 3.0]), Some([1.0, 0.0, 0.0, 1.0]))
+    );
+    assert_eq!(shapes[1].geometry, Geometry::Capsule { radius: 1.0, length: 2.0 });
+    assert_eq!(shapes[1].rgba, Some([0.0, 1.0, 0.0, 0.5]));
+    let mesh = Geometry::Mesh { filename: "package://x/a.stl".to_owned(), scale: [1.0, 1.0, 2.0] };
+    assert_eq!((&shapes[2].geometry, shapes[2].rgba), (&mesh, None));
+    let texts: Vec<String> = model.warnings().iter().map(ToString::to_string).collect();
+    assert_eq!(
+        texts.iter().filter(|t| t.contains("visual shape of link 'a' is left out")).count(),
+        2,
+        "{texts:?}"
+    );
+}
+
+#[test]
+fn joints_may_come_before_links_and_keep_their_order() {
+    let link = |name| format!("<link name='{name}'>{INERTIAL}</link>");
+    let joint = |name, parent, child| {
+        format!(
+            "<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/></joint>"
+        )
+    };
+    let model = load(&format!(
+        "{}{}{}{}{}{}{}",
+        joint("wrist", "arm", "hand"),
+        joint("left", "body", "arm"),
+        joint("right", "body", "leg"),
+        link("hand"),
+        link("leg"),
+        link("arm"),
+        link("body"),
+    ));
+    assert_eq!(model.joint_names().collect::<Vec<_>>(), ["left", "wrist", "right"]);
+    assert_eq!(model.body_names().collect::<Vec<_>>(), ["body", "arm", "hand", "leg"]);
+}

@@ -1,0 +1,108 @@
+//! Arrays in and out.
+
+use crate::errors::{fields, raise};
+use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+/// A contiguous array of `f64`, borrowed for reading.
+pub(crate) struct Input<'py> {
+    array: PyReadonlyArrayDyn<'py, f64>,
+}
+
+impl<'py> Input<'py> {
+    /// Borrows `value`, converting lists and other real numbers; refuses anything else by name.
+    pub(crate) fn new(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
+            && array.is_c_contiguous()
+        {
+            return Ok(Self { array: array.readonly() });
+        }
+        Self::converted(value, name)
+    }
+
+    #[cold]
+    fn converted(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let py = value.py();
+        let refuse = |got: String| {
+            let message = format!("{name} is {got}, an array of real numbers (float64) is needed");
+            raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": "float64"))
+        };
+        if value.is_instance_of::<PyString>() {
+            return Err(refuse("text".to_owned()));
+        }
+        let numpy = py.import("numpy")?;
+        let array =
+            numpy.call_method1("asarray", (value,)).map_err(|_| refuse("no rectangular array".to_owned()))?;
+        let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+        if !matches!(kind.as_str(), "f" | "i" | "u") {
+            return Err(refuse(format!("of dtype {}", array.getattr("dtype")?)));
+        }
+        let kwargs = PyDict::new(py);
+        kwargs.set_item("dtype", "float64")?;
+        let array = numpy.call_method("ascontiguousarray", (array,), Some(&kwargs))?;
+        // ascontiguousarray makes a scalar one-dimensional; that is refused by its length later
+        Ok(Self { array: array.cast_into::<PyArrayDyn<f64>>()?.readonly() })
+    }
+
+    /// All numbers, row after row.
+    pub(crate) fn data(&self) -> &[f64] {
+        self.array.as_slice().unwrap_or(&[]) // contiguity was checked when it was borrowed
+    }
+
+    pub(crate) fn shape(&self) -> &[usize] {
+        self.array.shape()
+    }
+}
+
+/// Exactly these numbers: a vector or matrix of fixed shape.
+pub(crate) fn fixed<const N: usize>(
+    value: &Bound<'_, PyAny>,
+    name: &str,
+    shape: &[usize],
+) -> PyResult<[f64; N]> {
+    let py = value.py();
+    let input = Input::new(value, name)?;
+    match <[f64; N]>::try_from(input.data()) {
+        Ok(numbers) if input.shape() == shape => {
+            if let Some(x) = numbers.iter().find(|x| !x.is_finite()) {
+                let message = format!("{name} holds {x}, it must be finite");
+                return Err(raise(py, "InputError", &message, &fields!(py, "name": name, "got": *x)));
+            }
+            Ok(numbers)
+        }
+        _ => Err(wrong_shape(py, name, &shape_text(shape), input.shape())),
+    }
+}
+
+/// The error for an array of the wrong shape.
+pub(crate) fn wrong_shape(py: Python<'_>, name: &str, expected: &str, got: &[usize]) -> PyErr {
+    let message = format!("{name} has shape {}, expected {expected}", shape_text(got));
+    raise(py, "ShapeError", &message, &fields!(py, "name": name, "expected": expected, "got": got.to_vec()))
+}
+
+/// `(2, 3)` as Python writes it.
+pub(crate) fn shape_text(shape: &[usize]) -> String {
+    match shape {
+        [n] => format!("({n},)"),
+        _ => format!("({})", shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// A fresh array of zeros, to be written by the core.
+pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> Bound<'py, PyArrayDyn<f64>> {
+    PyArray::zeros(py, IxDyn(shape), false)
+}
+
+/// The numbers of an array that was made just now and that nobody else has seen.
+pub(crate) fn fresh<'a>(array: &'a Bound<'_, PyArrayDyn<f64>>) -> &'a mut [f64] {
+    // SAFETY: made by `zeros` in this call, contiguous, and not yet handed to Python.
+    unsafe { array.as_slice_mut() }.unwrap_or(&mut [])
+}
+
+/// A fresh array that holds these numbers.
+pub(crate) fn array_of<'py>(py: Python<'py>, shape: &[usize], data: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
+    let array = zeros(py, shape);
+    fresh(&array).copy_from_slice(data);
+    array
+}

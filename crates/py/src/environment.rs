@@ -1,0 +1,85 @@
+//! Effects of the environment; a body's name is looked up when the simulation is made.
+
+use crate::arrays::fixed;
+use crate::errors::IntoPython;
+use nalgebra::Vector3;
+use onorbit_core::environment::{BodyWrench, Effect, GravityGradient};
+use onorbit_core::model::Model;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// What acts on the bodies beside gravity.
+#[pyclass(name = "Effect", subclass, frozen, module = "onorbit_rs")]
+pub(crate) struct PyEffect {
+    kind: Kind,
+}
+
+enum Kind {
+    GravityGradient,
+    BodyWrench { frame: String, force: Vector3<f64>, torque: Vector3<f64>, start: f64, end: f64 },
+}
+
+impl PyEffect {
+    /// The effect on a given robot.
+    pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Arc<dyn Effect>> {
+        Ok(match &self.kind {
+            Kind::GravityGradient => Arc::new(GravityGradient),
+            Kind::BodyWrench { frame, force, torque, start, end } => {
+                let frame = model.frame(frame).map_err(|error| error.into_python(py))?;
+                let wrench = BodyWrench::on_frame(model, frame, *force, *torque)
+                    .and_then(|wrench| wrench.during(*start, *end))
+                    .map_err(|error| error.into_python(py))?;
+                Arc::new(wrench)
+            }
+        })
+    }
+}
+
+/// Gravity-gradient torque ``3μ/r³ r̂ × I r̂`` of each body about its own centre of mass; needs an orbit.
+#[pyclass(name = "GravityGradient", extends = PyEffect, frozen, module = "onorbit_rs")]
+pub(crate) struct PyGravityGradient;
+
+#[pymethods]
+impl PyGravityGradient {
+    #[new]
+    fn new() -> PyClassInitializer<Self> {
+        PyClassInitializer::from(PyEffect { kind: Kind::GravityGradient }).add_subclass(Self)
+    }
+
+    fn __repr__(&self) -> &'static str {
+        "GravityGradient()"
+    }
+}
+
+/// A constant wrench on a body, in the axes of the named link or frame and at its origin.
+///
+/// ``force`` (3,) N, ``torque`` (3,) N m, on from ``start`` until ``end``, s of simulation, both hit exactly.
+#[pyclass(name = "BodyWrench", extends = PyEffect, frozen, module = "onorbit_rs")]
+pub(crate) struct PyBodyWrench;
+
+#[pymethods]
+impl PyBodyWrench {
+    #[new]
+    #[pyo3(signature = (body, *, force=None, torque=None, start=f64::NEG_INFINITY, end=f64::INFINITY))]
+    fn new(
+        py: Python<'_>,
+        body: String,
+        force: Option<Any<'_, '_>>,
+        torque: Option<Any<'_, '_>>,
+        start: f64,
+        end: f64,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let vector = |value: Option<Any<'_, '_>>, name| {
+            Ok::<_, PyErr>(Vector3::from(value.map_or(Ok([0.0; 3]), |value| fixed::<3>(value, name, &[3]))?))
+        };
+        let (force, torque) = (vector(force, "force")?, vector(torque, "torque")?);
+        // times are wrong or right for any body
+        BodyWrench::new(0, force, torque)
+            .and_then(|wrench| wrench.during(start, end))
+            .map_err(|error| error.into_python(py))?;
+        let kind = Kind::BodyWrench { frame: body, force, torque, start, end };
+        Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
+    }
+}

@@ -1,0 +1,240 @@
+//! The one bridge from errors of the core to the classes of `onorbit_rs.exceptions`.
+
+use crate::trace::PyTrace;
+use onorbit_core::batch::InputError;
+use onorbit_core::control::ControlError;
+use onorbit_core::environment::EnvironmentError;
+use onorbit_core::model::ModelError;
+use onorbit_core::model::urdf::{UrdfError, UrdfProblem};
+use onorbit_core::orbit::OrbitError;
+use onorbit_core::reference::ReferenceError;
+use onorbit_core::simulation::SimulationError;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// An error of the core that knows its Python class.
+pub(crate) trait IntoPython {
+    fn into_python(self, py: Python<'_>) -> PyErr;
+}
+
+/// `onorbit_rs.exceptions.<class>(message, **fields)`.
+pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'_, PyDict>) -> PyErr {
+    let make = || -> PyResult<Bound<'_, PyAny>> {
+        let module = py.import("onorbit_rs.exceptions")?;
+        module.getattr(class)?.call((message,), Some(fields))
+    };
+    match make() {
+        Ok(error) => PyErr::from_value(error),
+        Err(_) => PyRuntimeError::new_err(message.to_owned()),
+    }
+}
+
+/// An error without fields.
+pub(crate) fn plain(py: Python<'_>, class: &str, message: &str) -> PyErr {
+    raise(py, class, message, &PyDict::new(py))
+}
+
+/// Collects the fields of an error; what cannot be converted is left out of them.
+macro_rules! fields {
+    ($py:expr, $($name:literal: $value:expr),* $(,)?) => {{
+        let fields = pyo3::types::PyDict::new($py);
+        $( let _ = fields.set_item($name, $value); )*
+        fields
+    }};
+}
+pub(crate) use fields;
+
+impl IntoPython for ModelError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        match &self {
+            Self::UnknownName { what, name, candidates } => {
+                let suggestion =
+                    candidates.iter().find(|c| message.contains(&format!("did you mean '{c}'?")));
+                let fields = fields!(
+                    py, "name": name, "kind": what, "known": candidates, "suggestion": suggestion,
+                );
+                raise(py, "FrameError", &message, &fields)
+            }
+            Self::MasslessSubtree { joint, link } => {
+                raise(py, "ModelError", &message, &fields!(py, "joint": joint, "link": link))
+            }
+            Self::MassNotPositive { link, .. }
+            | Self::InertiaWithoutMass { link }
+            | Self::IndefiniteInertia { link, .. }
+            | Self::AsymmetricInertia { link, .. }
+            | Self::SingularBase { link } => raise(py, "ModelError", &message, &fields!(py, "link": link)),
+            Self::ZeroAxis { joint } | Self::Negative { joint, .. } | Self::LimitsReversed { joint, .. } => {
+                raise(py, "ModelError", &message, &fields!(py, "joint": joint))
+            }
+            _ => plain(py, "ModelError", &message),
+        }
+    }
+}
+
+impl IntoPython for UrdfError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        let path = self.file.as_ref().map(|file| file.display().to_string());
+        let fields = fields!(py, "path": path);
+        let class = match &*self.problem {
+            UrdfProblem::NotFound => "NotFoundError",
+            UrdfProblem::IsFolder | UrdfProblem::Unreadable { .. } => "ReadError",
+            _ => "ModelError",
+        };
+        raise(py, class, &message, &fields)
+    }
+}
+
+impl IntoPython for InputError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        match &self {
+            Self::WrongLength { name, expected, got } | Self::WrongBatch { name, expected, got } => raise(
+                py,
+                "ShapeError",
+                &message,
+                &fields!(py, "name": name, "expected": expected, "got": got),
+            ),
+            Self::NotFinite { name, value, .. } => {
+                raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
+            }
+            Self::Diverged { .. } => plain(py, "SimulationError", &message),
+            Self::QuaternionNorm { norm, .. } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
+            }
+        }
+    }
+}
+
+impl IntoPython for OrbitError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        match &self {
+            Self::NotFinite { name, value } | Self::NotPositive { name, value } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": name, "got": value))
+            }
+            Self::AxisSign { semi_major_axis, .. } | Self::ParabolaHasNoAxis { semi_major_axis } => {
+                let fields = fields!(py, "name": "semi_major_axis", "got": semi_major_axis);
+                raise(py, "OrbitError", &message, &fields)
+            }
+            Self::NegativeEccentricity { value } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "eccentricity", "got": value))
+            }
+            Self::Inclination { value } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "inclination", "got": value))
+            }
+            Self::ParabolaHasNoMeanAnomaly { value } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "mean_anomaly", "got": value))
+            }
+            Self::BeyondAsymptote { value, .. } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "true_anomaly", "got": value))
+            }
+            _ => plain(py, "OrbitError", &message),
+        }
+    }
+}
+
+impl IntoPython for EnvironmentError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        match &self {
+            Self::NotFinite { name, value } => {
+                raise(py, "EffectError", &message, &fields!(py, "name": name, "got": value))
+            }
+            Self::EmptyInterval { start, end } => {
+                raise(py, "EffectError", &message, &fields!(py, "name": "start, end", "got": (*start, *end)))
+            }
+            _ => plain(py, "EffectError", &message),
+        }
+    }
+}
+
+impl IntoPython for ReferenceError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        match &self {
+            Self::DurationNotPositive { value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "duration", "got": value))
+            }
+            _ => plain(py, "ControlError", &message),
+        }
+    }
+}
+
+impl IntoPython for ControlError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::User(error) => match error.downcast::<PyErr>() {
+                Ok(raised) => *raised, // that very object, traceback included
+                Err(other) => plain(py, "ControlError", &other.to_string()),
+            },
+            Self::WrongLength { name, expected, got } => raise(
+                py,
+                "ShapeError",
+                &message,
+                &fields!(py, "name": name, "expected": expected, "got": got),
+            ),
+            Self::NotFinite { name, value } | Self::Negative { name, value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": name, "got": value))
+            }
+            _ => plain(py, "ControlError", &message),
+        }
+    }
+}
+
+impl SimulationErrorExt for SimulationError {}
+
+/// Turns the error of a run into its class, the trace so far attached where there is one.
+pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
+    fn into_python_with(self, py: Python<'_>, trace: Option<Py<PyTrace>>) -> PyErr {
+        let error: SimulationError = self.into();
+        let message = error.to_string();
+        match error {
+            SimulationError::WrongLength { name, expected, got } => raise(
+                py,
+                "ShapeError",
+                &message,
+                &fields!(py, "name": name, "expected": expected, "got": got),
+            ),
+            SimulationError::NotFinite { name, value, .. } | SimulationError::NotPositive { name, value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
+            }
+            SimulationError::QuaternionNorm { norm } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
+            }
+            SimulationError::RecordEvery => plain(py, "InputError", &message),
+            SimulationError::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
+            SimulationError::NeedsReference | SimulationError::NeedsTool => {
+                plain(py, "ControlError", &message)
+            }
+            SimulationError::UnknownFrame { .. } | SimulationError::TooManyRows { .. } => {
+                plain(py, "InputError", &message)
+            }
+            SimulationError::Diverged { time, q, v } => raise(
+                py,
+                "SimulationError",
+                &message,
+                &fields!(py, "time": time, "q": q, "v": v, "trace": trace),
+            ),
+            SimulationError::Interrupted { time } => {
+                raise(py, "RunInterrupted", &message, &fields!(py, "time": time, "trace": trace))
+            }
+            SimulationError::Orbit { time, source } => with_trace(py, source.into_python(py), time, trace),
+            SimulationError::Environment { time, source } => {
+                with_trace(py, source.into_python(py), time, trace)
+            }
+            SimulationError::Control(source) => source.into_python(py),
+        }
+    }
+}
+
+/// Adds the instant and the trace so far to an error.
+fn with_trace(py: Python<'_>, error: PyErr, time: f64, trace: Option<Py<PyTrace>>) -> PyErr {
+    let value = error.value(py);
+    let _ = value.setattr("time", time);
+    let _ = value.setattr("trace", trace);
+    error
+}

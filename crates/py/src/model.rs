@@ -1,0 +1,381 @@
+//! The robot.
+
+use crate::arrays::{array_of, fixed};
+use crate::errors::{IntoPython, fields, raise};
+use crate::kernels::{PyFreeFloating, evaluate, free_floating};
+use nalgebra::Matrix3;
+use numpy::PyArrayDyn;
+use onorbit_core::batch::{Evaluator, Kernel};
+use onorbit_core::model::{Geometry, Model, Visual, neutral, urdf};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+type External<'a, 'py> = Option<&'a Bound<'py, PyDict>>;
+
+/// A robot with a free base: an immutable tree of bodies.
+///
+/// ``q = [p(3), quat_xyzw(4), joints(n)]`` in m and rad, ``v = [v_body(3), w_body(3), rates(n)]``: the
+/// base's velocity in its own axes, linear first. W is the world of the simulation. Every method takes
+/// one state ``(n,)`` or a batch ``(B, n)`` and returns the matching shape; batches run on all cores
+/// unless ``threads`` says otherwise.
+#[pyclass(name = "Model", frozen, module = "onorbit_rs")]
+pub(crate) struct PyModel {
+    pub(crate) model: Arc<Model>,
+    pub(crate) evaluator: Mutex<Evaluator>,
+}
+
+impl PyModel {
+    pub(crate) fn wrap(py: Python<'_>, model: Model) -> PyResult<Self> {
+        let warnings = py.import("warnings")?;
+        for warning in model.warnings() {
+            warnings.call_method1("warn", (warning.to_string(),))?;
+        }
+        let evaluator = Mutex::new(Evaluator::new(&model));
+        Ok(Self { model: Arc::new(model), evaluator })
+    }
+
+    /// Index of a frame by name.
+    pub(crate) fn frame(&self, name: &Bound<'_, PyAny>) -> PyResult<usize> {
+        let py = name.py();
+        let Ok(text) = name.cast::<PyString>() else {
+            let got = name.get_type().name()?.to_string();
+            let message = format!("frame is of type {got}, a name is needed");
+            let fields = fields!(py, "name": "frame", "expected": "str", "got": got);
+            return Err(raise(py, "DtypeError", &message, &fields));
+        };
+        self.model.frame(&text.to_cow()?).map_err(|error| error.into_python(py))
+    }
+}
+
+#[pymethods]
+impl PyModel {
+    /// Load a robot from a URDF file; its root link floats.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, package_paths=None))]
+    fn from_urdf(py: Python<'_>, path: PathBuf, package_paths: Option<Vec<PathBuf>>) -> PyResult<Self> {
+        let packages = package_paths.unwrap_or_default();
+        let model = urdf::from_file(&path, &packages).map_err(|error| error.into_python(py))?;
+        Self::wrap(py, model)
+    }
+
+    /// Load a robot from the text of a URDF; ``folder`` is where its relative paths start.
+    #[staticmethod]
+    #[pyo3(signature = (text, *, folder=None, package_paths=None))]
+    fn from_urdf_string(
+        py: Python<'_>,
+        text: &str,
+        folder: Option<PathBuf>,
+        package_paths: Option<Vec<PathBuf>>,
+    ) -> PyResult<Self> {
+        let packages = package_paths.unwrap_or_default();
+        let model =
+            urdf::from_str(text, folder.as_deref(), &packages).map_err(|error| error.into_python(py))?;
+        Self::wrap(py, model)
+    }
+
+    /// A spacecraft without joints: mass, kg, and inertia (3, 3) about its centre of mass, kg m².
+    ///
+    /// Its one body is called ``base``, its origin is the centre of mass.
+    #[staticmethod]
+    fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyResult<Self> {
+        let inertia = Matrix3::from_row_slice(&fixed::<9>(inertia, "inertia", &[3, 3])?);
+        let model = Model::rigid_body(mass, inertia).map_err(|error| error.into_python(py))?;
+        Self::wrap(py, model)
+    }
+
+    /// Name of the robot.
+    #[getter]
+    fn name(&self) -> &str {
+        self.model.name()
+    }
+
+    /// Length of a configuration, ``7 + n``.
+    #[getter]
+    fn nq(&self) -> usize {
+        self.model.nq()
+    }
+
+    /// Length of a velocity, ``6 + n``.
+    #[getter]
+    fn nv(&self) -> usize {
+        self.model.nv()
+    }
+
+    /// Total mass, kg.
+    #[getter]
+    fn mass(&self) -> f64 {
+        self.model.mass()
+    }
+
+    /// Names of the moving joints, in the order of ``v``.
+    #[getter]
+    fn joint_names(&self) -> Vec<&str> {
+        self.model.joint_names().collect()
+    }
+
+    /// Names of the bodies: links that move on their own, base first.
+    #[getter]
+    fn body_names(&self) -> Vec<&str> {
+        self.model.body_names().collect()
+    }
+
+    /// Names of the frames: every link, and frames added.
+    #[getter]
+    fn frame_names(&self) -> Vec<&str> {
+        self.model.frame_names().collect()
+    }
+
+    /// What was odd in the description, one line each.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.model.warnings().iter().map(ToString::to_string).collect()
+    }
+
+    /// Shapes to draw.
+    #[getter]
+    fn visuals(&self) -> Vec<PyVisual> {
+        let frames = self.model.frames();
+        self.model
+            .visuals()
+            .iter()
+            .map(|(frame, visual)| PyVisual::new(&frames[*frame].name, visual))
+            .collect()
+    }
+
+    /// The configuration at W's origin, unrotated, joints at zero: (nq,).
+    fn neutral<'py>(&self, py: Python<'py>) -> Array<'py> {
+        array_of(py, &[self.model.nq()], &neutral(&self.model))
+    }
+
+    /// ``q ⊕ dv``: the base follows the constant body twist ``dv[:6]`` (m, rad) for unit time: (nq,).
+    #[pyo3(signature = (q, dv, *, threads=None))]
+    fn integrate<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        dv: Any<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        self.one(py, Kernel::Integrate, &[q, dv], None, &[self.model.nq()], threads)
+    }
+
+    /// ``q2 ⊖ q``: the ``dv`` (nv,) with ``integrate(q, dv) = q2``, the base turning the shorter way.
+    #[pyo3(signature = (q, q2, *, threads=None))]
+    fn difference<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        q2: Any<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        self.one(py, Kernel::Difference, &[q, q2], None, &[self.model.nv()], threads)
+    }
+
+    /// Pose of a frame in W: (4, 4), m.
+    #[pyo3(signature = (q, frame, *, threads=None))]
+    fn frame_pose<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        frame: Any<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        self.one(py, Kernel::FramePose(self.frame(frame)?), &[q], None, &[4, 4], threads)
+    }
+
+    /// Twist of a frame at its origin in W axes: (6,), m/s and rad/s, linear first.
+    #[pyo3(signature = (q, v, frame, *, threads=None))]
+    fn frame_velocity<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        frame: Any<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        self.one(py, Kernel::FrameVelocity(self.frame(frame)?), &[q, v], None, &[6], threads)
+    }
+
+    /// Jacobian of a frame: (6, nv), its twist at its origin in W axes is ``J v``.
+    #[pyo3(signature = (q, frame, *, threads=None))]
+    fn frame_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        frame: Any<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        self.one(py, Kernel::FrameJacobian(self.frame(frame)?), &[q], None, &[6, self.model.nv()], threads)
+    }
+
+    /// Mass matrix: (nv, nv), rotor inertia included.
+    #[pyo3(signature = (q, *, threads=None))]
+    fn mass_matrix<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        let nv = self.model.nv();
+        self.one(py, Kernel::MassMatrix, &[q], None, &[nv, nv], threads)
+    }
+
+    /// Coriolis and centrifugal forces ``c(q, v)``: (nv,), N and N m.
+    #[pyo3(signature = (q, v, *, threads=None))]
+    fn bias_forces<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        self.one(py, Kernel::BiasForces, &[q, v], None, &[self.model.nv()], threads)
+    }
+
+    /// Forces ``M a + c - Σ Jᵀ F`` behind an acceleration: (nv,); ``tau[:6]`` is the wrench on the base, its axes.
+    ///
+    /// ``external``: ``{frame: (6,)}``, wrenches in the frame's axes about its origin, N and N m.
+    #[pyo3(signature = (q, v, a, *, external=None, threads=None))]
+    fn inverse_dynamics<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        a: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        self.one(py, Kernel::InverseDynamics, &[q, v, a], external, &[self.model.nv()], threads)
+    }
+
+    /// Acceleration ``M⁻¹ (tau - c + Σ Jᵀ F)`` in O(n): (nv,), m/s² and rad/s².
+    ///
+    /// ``tau[:6]`` is a wrench on the base in its axes; ``external`` as in :meth:`inverse_dynamics`.
+    #[pyo3(signature = (q, v, tau, *, external=None, threads=None))]
+    fn forward_dynamics<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        tau: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        self.one(py, Kernel::ForwardDynamics, &[q, v, tau], external, &[self.model.nv()], threads)
+    }
+
+    /// Linear momentum and angular momentum about the system's centre of mass: (6,), W axes, kg m/s and kg m²/s.
+    #[pyo3(signature = (q, v, *, threads=None))]
+    fn momentum<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        self.one(py, Kernel::Momentum, &[q, v], None, &[6], threads)
+    }
+
+    /// Kinetic energy in W, J: a float, or (B,).
+    #[pyo3(signature = (q, v, *, threads=None))]
+    fn kinetic_energy<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let energy = self.one(py, Kernel::KineticEnergy, &[q, v], None, &[], threads)?;
+        energy.call_method1("__getitem__", (pyo3::types::PyTuple::empty(py),))
+    }
+
+    /// Centre of mass in W: (3,), m.
+    #[pyo3(signature = (q, *, threads=None))]
+    fn center_of_mass<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        self.one(py, Kernel::CenterOfMass, &[q], None, &[3], threads)
+    }
+
+    /// The reduced model for one frame: ``M*, c*, Q*, Jg, d``, exact for any momentum and wrench.
+    #[pyo3(signature = (q, v, frame, *, external=None, threads=None))]
+    fn free_floating<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        frame: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<usize>,
+    ) -> PyResult<PyFreeFloating> {
+        free_floating(py, self, self.frame(frame)?, &[q, v], external, threads)
+    }
+
+    fn __repr__(&self) -> String {
+        let m = &self.model;
+        format!(
+            "<Model '{}': {} bodies, {} joints, {:.6} kg>",
+            m.name(),
+            m.nodes().len(),
+            m.joint_count(),
+            m.mass()
+        )
+    }
+}
+
+impl PyModel {
+    /// A kernel with one output.
+    fn one<'py>(
+        &self,
+        py: Python<'py>,
+        kernel: Kernel,
+        values: &[Any<'_, 'py>],
+        external: External<'_, 'py>,
+        shape: &[usize],
+        threads: Option<usize>,
+    ) -> PyResult<Array<'py>> {
+        let mut outputs = evaluate(py, self, kernel, values, external, &[shape], threads)?;
+        Ok(outputs.swap_remove(0))
+    }
+}
+
+/// A shape fixed to a frame.
+#[pyclass(name = "Visual", frozen, get_all, module = "onorbit_rs")]
+pub(crate) struct PyVisual {
+    /// Name of the frame it is fixed to.
+    link: String,
+    /// Pose in that frame as rows of a (4, 4) matrix, m.
+    pose: [[f64; 4]; 4],
+    /// ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``.
+    kind: &'static str,
+    /// Box: edge lengths; cylinder, capsule: radius and length; sphere: radius; m.
+    size: Vec<f64>,
+    /// Path of a mesh.
+    filename: Option<String>,
+    /// Scale of a mesh.
+    scale: [f64; 3],
+    /// Red, green, blue, opacity, 0 to 1.
+    rgba: Option<[f64; 4]>,
+}
+
+impl PyVisual {
+    fn new(link: &str, visual: &Visual) -> Self {
+        let m = visual.pose.to_homogeneous();
+        let pose = std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]));
+        let (kind, size, filename, scale) = match &visual.geometry {
+            Geometry::Box(edges) => ("box", edges.to_vec(), None, [1.0; 3]),
+            Geometry::Cylinder { radius, length } => ("cylinder", vec![*radius, *length], None, [1.0; 3]),
+            Geometry::Capsule { radius, length } => ("capsule", vec![*radius, *length], None, [1.0; 3]),
+            Geometry::Sphere { radius } => ("sphere", vec![*radius], None, [1.0; 3]),
+            Geometry::Mesh { filename, scale } => ("mesh", Vec::new(), Some(filename.clone()), *scale),
+        };
+        Self { link: link.to_owned(), pose, kind, size, filename, scale, rgba: visual.rgba }
+    }
+}

@@ -1,0 +1,96 @@
+//! Many runs at once.
+
+use crate::arrays::{Input, fresh, wrong_shape, zeros};
+use crate::control::PyComputedTorque;
+use crate::errors::{IntoPython, fields, plain, raise};
+use crate::model::PyModel;
+use crate::reference;
+use crate::simulation::integrator_named;
+use onorbit_core::batch::{Rollout, RolloutControl};
+use pyo3::prelude::*;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Roll out many states in empty space: passive, with given torques, or under a native controller.
+///
+/// ``q0`` (B, nq), ``v0`` (B, nv); ``tau`` (B, steps, n) N m, each held for one step; ``controller`` a
+/// ``ComputedTorque`` that tracks ``reference``. Returns the final ``q`` (B, nq) and ``v`` (B, nv), or with
+/// ``record_every`` (B, K, nq) and (B, K, nv), the start being the first of ``K = steps // record_every + 1`` rows.
+/// The bits do not depend on ``threads``. Raises ``SimulationError`` if a state diverges.
+#[pyfunction]
+#[pyo3(signature = (
+    model, q0, v0, *, steps, time_step=1e-3, tau=None, controller=None, reference=None, integrator="rk4",
+    record_every=None, threads=None,
+))]
+pub(crate) fn rollout<'py>(
+    py: Python<'py>,
+    model: &PyModel,
+    q0: Any<'_, 'py>,
+    v0: Any<'_, 'py>,
+    steps: usize,
+    time_step: f64,
+    tau: Option<Any<'_, 'py>>,
+    controller: Option<&Bound<'py, PyComputedTorque>>,
+    reference: Option<Any<'_, 'py>>,
+    integrator: &str,
+    record_every: Option<usize>,
+    threads: Option<usize>,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    let core = &*model.model;
+    let (q0, v0) = (Input::new(q0, "q0")?, Input::new(v0, "v0")?);
+    let batch = batch_of(py, &q0, "q0", core.nq())?;
+    if batch_of(py, &v0, "v0", core.nv())? != batch {
+        return Err(wrong_shape(
+            py,
+            "v0",
+            &format!("({batch}, {}), one row per row of q0", core.nv()),
+            v0.shape(),
+        ));
+    }
+    if !(time_step.is_finite() && time_step > 0.0) {
+        let message = format!("time_step is {time_step} s, it must be positive and finite");
+        return Err(raise(py, "InputError", &message, &fields!(py, "name": "time_step", "got": time_step)));
+    }
+    if record_every == Some(0) {
+        return Err(plain(py, "InputError", "record_every is 0, it must be at least 1 step"));
+    }
+    let tau = tau.map(|tau| Input::new(tau, "tau")).transpose()?;
+    let reference = reference.map(reference::extract).transpose()?;
+    let control = match (&tau, controller, &reference) {
+        (None, None, _) => RolloutControl::Passive,
+        (Some(tau), None, _) => {
+            let shape = [batch, steps, core.joint_count()];
+            if tau.shape() != shape {
+                return Err(wrong_shape(py, "tau", &crate::arrays::shape_text(&shape), tau.shape()));
+            }
+            RolloutControl::Torques(tau.data())
+        }
+        (None, Some(controller), Some(reference)) => {
+            RolloutControl::ComputedTorque(&controller.get().law, reference)
+        }
+        (None, Some(_), None) => {
+            return Err(plain(py, "ControlError", "a controller is given but no reference to track"));
+        }
+        (Some(_), Some(_), _) => {
+            return Err(plain(py, "ControlError", "give either tau or a controller, not both"));
+        }
+    };
+    let integrator = integrator_named(py, integrator)?;
+    let rollout = Rollout { steps, time_step, integrator, control, record_every, threads };
+    let shape = |width: usize| match record_every {
+        None => vec![batch, width],
+        Some(_) => vec![batch, rollout.rows(), width],
+    };
+    let (q, v) = (zeros(py, &shape(core.nq())), zeros(py, &shape(core.nv())));
+    let (to_q, to_v, from_q, from_v) = (fresh(&q), fresh(&v), q0.data(), v0.data());
+    py.detach(|| rollout.run(core, from_q, from_v, to_q, to_v)).map_err(|error| error.into_python(py))?;
+    Ok((q.into_any(), v.into_any()))
+}
+
+/// The batch size of `(B, width)`.
+fn batch_of(py: Python<'_>, input: &Input<'_>, name: &str, width: usize) -> PyResult<usize> {
+    match input.shape() {
+        [batch, got] if *got == width => Ok(*batch),
+        other => Err(wrong_shape(py, name, &format!("(B, {width})"), other)),
+    }
+}

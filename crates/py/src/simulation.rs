@@ -1,0 +1,175 @@
+//! Runs.
+
+use crate::arrays::{Input, wrong_shape};
+use crate::control::{PyComputedTorque, PythonController};
+use crate::environment::PyEffect;
+use crate::errors::{SimulationErrorExt, fields, plain, raise};
+use crate::model::PyModel;
+use crate::orbit::PyOrbit;
+use crate::reference;
+use crate::trace::PyTrace;
+use onorbit_core::control::ControlLaw;
+use onorbit_core::model::Model;
+use onorbit_core::simulation::{Integrator, RunFailure, Simulation, SimulationError};
+use pyo3::prelude::*;
+use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Wall-clock time between two looks at signals and progress.
+const PACE: Duration = Duration::from_millis(50);
+
+/// A robot, where it starts, what acts on it and how time is cut; :meth:`run` starts afresh at every call.
+///
+/// ``q`` (nq,), ``v`` (nv,); ``orbit`` brings gravity on every body; ``environment`` lists effects; ``controller`` is
+/// a ``ComputedTorque`` or an object with ``update(t, state) -> tau (n,)``; ``reference`` is for the frame ``tool`` (by
+/// default the controller's); ``control_period`` s between calls of the controller (every step by default);
+/// ``integrator`` is ``rk4`` or ``semi_implicit_euler``.
+#[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
+pub(crate) struct PySimulation {
+    simulation: Mutex<Simulation>,
+    model: Arc<Model>,
+}
+
+#[pymethods]
+impl PySimulation {
+    #[new]
+    #[pyo3(signature = (
+        model, q, v, *, orbit=None, environment=None, controller=None, reference=None, tool=None, time_step=1e-3,
+        control_period=None, integrator="rk4", record_every=1,
+    ))]
+    fn new(
+        py: Python<'_>,
+        model: &PyModel,
+        q: Any<'_, '_>,
+        v: Any<'_, '_>,
+        orbit: Option<&Bound<'_, PyOrbit>>,
+        environment: Option<Vec<Bound<'_, PyEffect>>>,
+        controller: Option<Any<'_, '_>>,
+        reference: Option<Any<'_, '_>>,
+        tool: Option<Any<'_, '_>>,
+        time_step: f64,
+        control_period: Option<f64>,
+        integrator: &str,
+        record_every: i64,
+    ) -> PyResult<Self> {
+        let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
+        let core = Arc::clone(&model.model);
+        for (input, name, n) in [(&q, "q", core.nq()), (&v, "v", core.nv())] {
+            if input.shape().len() != 1 {
+                return Err(wrong_shape(py, name, &format!("({n},)"), input.shape()));
+            }
+        }
+        let Some(record_every) = usize::try_from(record_every).ok().filter(|every| *every > 0) else {
+            let message = format!("record_every is {record_every}, it must be at least 1 step");
+            let fields = fields!(py, "name": "record_every", "got": record_every);
+            return Err(raise(py, "InputError", &message, &fields));
+        };
+        let mut simulation = Simulation::new(Arc::clone(&core), q.data().to_vec(), v.data().to_vec());
+        simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
+        simulation.effects = environment
+            .unwrap_or_default()
+            .iter()
+            .map(|effect| effect.get().on(py, &core))
+            .collect::<PyResult<_>>()?;
+        simulation.reference = reference.map(reference::extract).transpose()?;
+        simulation.tool = tool.map(|tool| model.frame(tool)).transpose()?;
+        if let Some(controller) = controller {
+            if let Ok(law) = controller.cast::<PyComputedTorque>() {
+                let law = law.get().law.clone();
+                simulation.tool.get_or_insert(law.frame);
+                simulation.control = ControlLaw::ComputedTorque(Box::new(law));
+            } else if controller.hasattr("update")? {
+                let object = controller.clone().unbind();
+                simulation.control = ControlLaw::User(Box::new(PythonController { object }));
+            } else {
+                return Err(plain(
+                    py,
+                    "ControlError",
+                    "controller has no method update(t, state); give a ComputedTorque or derive from Controller",
+                ));
+            }
+        }
+        simulation.time_step = time_step;
+        simulation.control_period = control_period;
+        simulation.integrator = integrator_named(py, integrator)?;
+        simulation.record_every = record_every;
+        simulation.check().map_err(|error| error.into_python_with(py, None))?;
+        Ok(Self { simulation: Mutex::new(simulation), model: core })
+    }
+
+    /// Run from the given state for ``duration`` s and return the :class:`Trace`.
+    ///
+    /// ``progress(t, duration)`` is called at a steady wall-clock pace. Ctrl-C raises ``RunInterrupted``, a diverging
+    /// run ``SimulationError``; both carry the trace so far.
+    #[pyo3(signature = (duration, *, progress=None))]
+    fn run(&self, py: Python<'_>, duration: f64, progress: Option<Py<PyAny>>) -> PyResult<PyTrace> {
+        let mut raised: Option<PyErr> = None;
+        let (result, wall) = py.detach(|| {
+            let mut simulation = self.simulation.lock().unwrap_or_else(PoisonError::into_inner);
+            let start = Instant::now();
+            let mut last = start;
+            let mut monitor = |t: f64| {
+                if last.elapsed() < PACE {
+                    return ControlFlow::Continue(());
+                }
+                last = Instant::now();
+                match Python::attach(|py| look(py, progress.as_ref(), t, duration)) {
+                    Ok(()) => ControlFlow::Continue(()),
+                    Err(error) => {
+                        raised = Some(error);
+                        ControlFlow::Break(())
+                    }
+                }
+            };
+            let result = simulation.run(duration, &mut monitor);
+            (result, start.elapsed().as_secs_f64())
+        });
+        let wrap =
+            |trace, is_complete| PyTrace { trace, model: Arc::clone(&self.model), is_complete, wall_s: wall };
+        match result {
+            Ok(trace) => Ok(wrap(trace, true)),
+            Err(RunFailure { error, trace }) => Err(self.failure(py, error, wrap(*trace, false), raised)),
+        }
+    }
+}
+
+impl PySimulation {
+    /// The exception for a run that stopped early.
+    fn failure(
+        &self,
+        py: Python<'_>,
+        error: SimulationError,
+        trace: PyTrace,
+        raised: Option<PyErr>,
+    ) -> PyErr {
+        if let Some(other) = raised
+            && !other.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py)
+        {
+            return other; // the progress callback raised
+        }
+        error.into_python_with(py, Py::new(py, trace).ok())
+    }
+}
+
+/// Ctrl-C and progress.
+fn look(py: Python<'_>, progress: Option<&Py<PyAny>>, t: f64, duration: f64) -> PyResult<()> {
+    py.check_signals()?;
+    match progress {
+        Some(progress) => progress.call1(py, (t, duration)).map(|_| ()),
+        None => Ok(()),
+    }
+}
+
+pub(crate) fn integrator_named(py: Python<'_>, name: &str) -> PyResult<Integrator> {
+    match name {
+        "rk4" => Ok(Integrator::Rk4),
+        "semi_implicit_euler" => Ok(Integrator::SemiImplicitEuler),
+        other => {
+            let message = format!("integrator is '{other}'; there are 'rk4' and 'semi_implicit_euler'");
+            Err(raise(py, "InputError", &message, &fields!(py, "name": "integrator", "got": other)))
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! The columns of a run, as read-only views.
+
+use numpy::ndarray::ArrayView;
+use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods};
+use onorbit_core::model::Model;
+use onorbit_core::simulation::{Trace, certify};
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// What a run leaves behind: one row per recorded step, first the initial state, last the end.
+///
+/// Columns are read-only views, W axes, SI; those a run did not have are None.
+#[pyclass(name = "Trace", frozen, module = "onorbit_rs")]
+pub(crate) struct PyTrace {
+    pub(crate) trace: Trace,
+    pub(crate) model: Arc<Model>,
+    /// Whether the run came to its end.
+    #[pyo3(get)]
+    pub(crate) is_complete: bool,
+    /// Wall-clock time of the simulation loop, s.
+    #[pyo3(get)]
+    pub(crate) wall_s: f64,
+}
+
+type Column<'py> = Option<Bound<'py, PyArrayDyn<f64>>>;
+
+/// A view of `data` with the trace as its owner.
+fn view<'py>(this: &Bound<'py, PyTrace>, data: &[f64], tail: &[usize]) -> PyResult<Column<'py>> {
+    if data.is_empty() && !tail.contains(&0) {
+        return Ok(None);
+    }
+    let rows = this.get().trace.rows();
+    let shape: Vec<usize> = std::iter::once(rows).chain(tail.iter().copied()).collect();
+    let Ok(array) = ArrayView::from_shape(IxDyn(&shape), data) else { return Ok(None) };
+    // SAFETY: the columns of a frozen trace are never written nor reallocated, and the view keeps it alive.
+    let view = unsafe { PyArray::borrow_from_array(&array, this.clone().into_any()) };
+    Ok(Some(view.readwrite().make_nonwriteable().as_any().cast::<PyArrayDyn<f64>>()?.clone()))
+}
+
+macro_rules! columns {
+    ($($(#[$doc:meta])* $name:ident: |$this:ident| $tail:expr;)*) => {
+        #[pymethods]
+        impl PyTrace {
+            $(
+                $(#[$doc])*
+                #[getter]
+                fn $name<'py>(this: &Bound<'py, Self>) -> PyResult<Column<'py>> {
+                    let $this = this.get();
+                    view(this, &$this.trace.$name, $tail)
+                }
+            )*
+
+            /// Names of the columns this run has.
+            fn columns(this: &Bound<'_, Self>) -> Vec<&'static str> {
+                let mut names = Vec::new();
+                $( if !this.get().trace.$name.is_empty() { names.push(stringify!($name)); } )*
+                names
+            }
+
+            /// The run's conservation certificate: lines (name, value, gate, passed), those that apply to the run.
+            ///
+            /// Values are relative to scales that do not vanish: see the concepts in the documentation.
+            fn certificate(&self, py: Python<'_>) -> Vec<(&'static str, f64, f64, bool)> {
+                let checks = py.detach(|| certify(&self.model, &self.trace).checks());
+                checks.iter().map(|check| (check.name, check.value, check.gate, check.passed())).collect()
+            }
+
+            /// Number of rows.
+            fn __len__(&self) -> usize {
+                self.trace.rows()
+            }
+        }
+    };
+}
+
+columns! {
+    /// Time, (T,), s.
+    time: |_t| &[];
+    /// Configuration, (T, nq).
+    q: |t| &[t.model.nq()];
+    /// Velocity, (T, nv).
+    v: |t| &[t.model.nv()];
+    /// Joint torque held from this row's time to the next step, (T, n), N m.
+    tau: |t| &[t.model.joint_count()];
+    /// Acceleration just after this row's time, (T, nv).
+    acceleration: |t| &[t.model.nv()];
+    /// Linear momentum, and angular about the system's centre of mass, (T, 6), kg m/s and kg m²/s, W axes.
+    momentum: |_t| &[6];
+    /// Integral of external forces and of their moments about the centre of mass, (T, 6), N s and N m s.
+    impulse: |_t| &[6];
+    /// Kinetic energy in W, (T,), J.
+    kinetic_energy: |_t| &[];
+    /// Work of joint torques and external wrenches in W, (T,), J.
+    work: |_t| &[];
+    /// Centre of mass in W, (T, 3), m.
+    center_of_mass: |_t| &[3];
+    /// Pose of the tool in W, (T, 4, 4), m.
+    tool_pose: |_t| &[4, 4];
+    /// Desired pose of the tool in W, (T, 4, 4), m.
+    reference_pose: |_t| &[4, 4];
+    /// Desired less actual position of the tool in W, (T, 3), m.
+    position_error: |_t| &[3];
+    /// Rotation vector from actual to desired attitude in W axes, (T, 3), rad.
+    attitude_error: |_t| &[3];
+    /// Position of the base's origin from the planet's centre, inertial axes, (T, 3), m.
+    position_eci: |_t| &[3];
+    /// Velocity of the base's origin, inertial axes, (T, 3), m/s.
+    velocity_eci: |_t| &[3];
+}

@@ -1,0 +1,344 @@
+"""Types of the engine's module; what things mean stands in their docstrings."""
+
+from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from typing import Literal, Protocol, TypedDict, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+_Array = NDArray[np.float64]
+_Path = str | PathLike[str]
+_External = Mapping[str, ArrayLike]
+_JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
+_Integrator = Literal["rk4", "semi_implicit_euler"]
+_CertificateRow = tuple[str, float | None, float, bool]
+
+class _Controller(Protocol):
+    def update(self, t: float, state: State, /) -> ArrayLike: ...
+
+class _BuildInfo(TypedDict):
+    version: str
+    instruction_set: str
+
+__version__: str
+MU_EARTH: float
+
+def build_info() -> _BuildInfo: ...
+
+@final
+class Model:
+    @staticmethod
+    def from_urdf(path: _Path, *, package_paths: Sequence[_Path] | None = None) -> Model: ...
+    @staticmethod
+    def from_urdf_string(
+        text: str, *, folder: _Path | None = None, package_paths: Sequence[_Path] | None = None
+    ) -> Model: ...
+    @staticmethod
+    def rigid_body(mass: float, inertia: ArrayLike) -> Model: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def nq(self) -> int: ...
+    @property
+    def nv(self) -> int: ...
+    @property
+    def mass(self) -> float: ...
+    @property
+    def joint_names(self) -> list[str]: ...
+    @property
+    def body_names(self) -> list[str]: ...
+    @property
+    def frame_names(self) -> list[str]: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def visuals(self) -> list[Visual]: ...
+    def neutral(self) -> _Array: ...
+    def integrate(self, q: ArrayLike, dv: ArrayLike, *, threads: int | None = None) -> _Array: ...
+    def difference(self, q: ArrayLike, q2: ArrayLike, *, threads: int | None = None) -> _Array: ...
+    def frame_pose(self, q: ArrayLike, frame: str, *, threads: int | None = None) -> _Array: ...
+    def frame_velocity(
+        self, q: ArrayLike, v: ArrayLike, frame: str, *, threads: int | None = None
+    ) -> _Array: ...
+    def frame_jacobian(self, q: ArrayLike, frame: str, *, threads: int | None = None) -> _Array: ...
+    def mass_matrix(self, q: ArrayLike, *, threads: int | None = None) -> _Array: ...
+    def bias_forces(self, q: ArrayLike, v: ArrayLike, *, threads: int | None = None) -> _Array: ...
+    def inverse_dynamics(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        *,
+        external: _External | None = None,
+        threads: int | None = None,
+    ) -> _Array: ...
+    def forward_dynamics(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        tau: ArrayLike,
+        *,
+        external: _External | None = None,
+        threads: int | None = None,
+    ) -> _Array: ...
+    def momentum(self, q: ArrayLike, v: ArrayLike, *, threads: int | None = None) -> _Array: ...
+    def kinetic_energy(
+        self, q: ArrayLike, v: ArrayLike, *, threads: int | None = None
+    ) -> np.float64 | _Array: ...
+    def center_of_mass(self, q: ArrayLike, *, threads: int | None = None) -> _Array: ...
+    def free_floating(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        frame: str,
+        *,
+        external: _External | None = None,
+        threads: int | None = None,
+    ) -> FreeFloating: ...
+
+@final
+class Visual:
+    @property
+    def link(self) -> str: ...
+    @property
+    def pose(self) -> list[list[float]]: ...
+    @property
+    def kind(self) -> Literal["box", "cylinder", "capsule", "sphere", "mesh"]: ...
+    @property
+    def size(self) -> list[float]: ...
+    @property
+    def filename(self) -> str | None: ...
+    @property
+    def scale(self) -> list[float]: ...
+    @property
+    def rgba(self) -> list[float] | None: ...
+
+@final
+class FreeFloating:
+    @property
+    def inertia(self) -> _Array: ...
+    @property
+    def bias(self) -> _Array: ...
+    @property
+    def external(self) -> _Array: ...
+    @property
+    def jacobian(self) -> _Array: ...
+    @property
+    def drift(self) -> _Array: ...
+
+@final
+class ModelBuilder:
+    def __new__(
+        cls,
+        name: str,
+        *,
+        base: str,
+        mass: float | None = None,
+        com: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
+    ) -> ModelBuilder: ...
+    def add_link(
+        self,
+        name: str,
+        *,
+        parent: str,
+        joint: str,
+        kind: _JointKind = "revolute",
+        axis: ArrayLike | None = None,
+        xyz: ArrayLike | None = None,
+        rpy: ArrayLike | None = None,
+        mass: float | None = None,
+        com: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
+        damping: float = 0.0,
+        friction: float = 0.0,
+        rotor_inertia: float = 0.0,
+        lower: float | None = None,
+        upper: float | None = None,
+        velocity: float | None = None,
+        effort: float | None = None,
+    ) -> None: ...
+    def add_frame(
+        self, name: str, link: str, *, xyz: ArrayLike | None = None, rpy: ArrayLike | None = None
+    ) -> None: ...
+    def build(self) -> Model: ...
+
+class Orbit:
+    @property
+    def mu(self) -> float | None: ...
+    def state(self, t: ArrayLike) -> tuple[_Array, _Array]: ...
+    def lvlh(self, t: ArrayLike) -> tuple[_Array, _Array]: ...
+
+@final
+class Kepler(Orbit):
+    def __new__(
+        cls,
+        *,
+        semi_major_axis: float | None = None,
+        semi_latus_rectum: float | None = None,
+        eccentricity: float = 0.0,
+        inclination: float = 0.0,
+        raan: float = 0.0,
+        argument_of_periapsis: float = 0.0,
+        mean_anomaly: float | None = None,
+        true_anomaly: float | None = None,
+        periapsis_time: float | None = None,
+        epoch: float = 0.0,
+        mu: float = ...,
+    ) -> Kepler: ...
+    @staticmethod
+    def from_state(r: ArrayLike, v: ArrayLike, *, mu: float = ...) -> Kepler: ...
+    @property
+    def semi_major_axis(self) -> float: ...
+    @property
+    def semi_latus_rectum(self) -> float: ...
+    @property
+    def eccentricity(self) -> float: ...
+    @property
+    def inclination(self) -> float: ...
+    @property
+    def raan(self) -> float: ...
+    @property
+    def argument_of_periapsis(self) -> float: ...
+    @property
+    def mean_anomaly(self) -> float | None: ...
+    @property
+    def period(self) -> float | None: ...
+
+class Effect: ...
+
+@final
+class GravityGradient(Effect):
+    def __new__(cls) -> GravityGradient: ...
+
+@final
+class BodyWrench(Effect):
+    def __new__(
+        cls,
+        body: str,
+        *,
+        force: ArrayLike | None = None,
+        torque: ArrayLike | None = None,
+        start: float = ...,
+        end: float = ...,
+    ) -> BodyWrench: ...
+
+@final
+class ComputedTorque:
+    def __new__(
+        cls,
+        model: Model,
+        tool: str,
+        *,
+        kp: ArrayLike | None = None,
+        kd: ArrayLike | None = None,
+        damping: float = 0.05,
+        null_space_damping: float = 0.0,
+        compensate_environment: bool = True,
+    ) -> ComputedTorque: ...
+
+@final
+class State:
+    @property
+    def q(self) -> _Array: ...
+    @property
+    def v(self) -> _Array: ...
+    @property
+    def reference_pose(self) -> _Array | None: ...
+    @property
+    def reference_velocity(self) -> _Array | None: ...
+    @property
+    def reference_acceleration(self) -> _Array | None: ...
+
+@final
+class Hold:
+    def __new__(cls, pose: ArrayLike) -> Hold: ...
+
+@final
+class LineParabola:
+    def __new__(
+        cls,
+        start_pose: ArrayLike,
+        *,
+        displacement: ArrayLike,
+        duration: float,
+        height: ArrayLike | None = None,
+    ) -> LineParabola: ...
+
+@final
+class Simulation:
+    def __new__(
+        cls,
+        model: Model,
+        q: ArrayLike,
+        v: ArrayLike,
+        *,
+        orbit: Orbit | None = None,
+        environment: Sequence[Effect] | None = None,
+        controller: ComputedTorque | _Controller | None = None,
+        reference: Hold | LineParabola | None = None,
+        tool: str | None = None,
+        time_step: float = 0.001,
+        control_period: float | None = None,
+        integrator: _Integrator = "rk4",
+        record_every: int = 1,
+    ) -> Simulation: ...
+    def run(self, duration: float, *, progress: Callable[[float, float], object] | None = None) -> Trace: ...
+
+@final
+class Trace:
+    @property
+    def is_complete(self) -> bool: ...
+    @property
+    def wall_s(self) -> float: ...
+    @property
+    def time(self) -> _Array: ...
+    @property
+    def q(self) -> _Array: ...
+    @property
+    def v(self) -> _Array: ...
+    @property
+    def tau(self) -> _Array: ...
+    @property
+    def acceleration(self) -> _Array: ...
+    @property
+    def momentum(self) -> _Array: ...
+    @property
+    def impulse(self) -> _Array: ...
+    @property
+    def kinetic_energy(self) -> _Array: ...
+    @property
+    def work(self) -> _Array: ...
+    @property
+    def center_of_mass(self) -> _Array: ...
+    @property
+    def tool_pose(self) -> _Array | None: ...
+    @property
+    def reference_pose(self) -> _Array | None: ...
+    @property
+    def position_error(self) -> _Array | None: ...
+    @property
+    def attitude_error(self) -> _Array | None: ...
+    @property
+    def position_eci(self) -> _Array | None: ...
+    @property
+    def velocity_eci(self) -> _Array | None: ...
+    def columns(self) -> list[str]: ...
+    def certificate(self) -> list[_CertificateRow]: ...
+    def __len__(self) -> int: ...
+
+def rollout(
+    model: Model,
+    q0: ArrayLike,
+    v0: ArrayLike,
+    *,
+    steps: int,
+    time_step: float = 0.001,
+    tau: ArrayLike | None = None,
+    controller: ComputedTorque | None = None,
+    reference: Hold | LineParabola | None = None,
+    integrator: _Integrator = "rk4",
+    record_every: int | None = None,
+    threads: int | None = None,
+) -> tuple[_Array, _Array]: ...

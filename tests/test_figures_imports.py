@@ -1,0 +1,32 @@
+"""The house: rerun is imported in ``viewer/`` alone, matplotlib in ``figures/`` alone."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import onorbit_rs
+import pytest
+
+PACKAGE = Path(onorbit_rs.__file__).parent
+
+
+@pytest.mark.parametrize(
+    ("owner", "roots"), [("viewer", {"rerun", "rerun_cli"}), ("figures", {"matplotlib", "mpl_toolkits"})]
+)
+def test_a_drawing_library_stays_in_its_folder(owner: str, roots: set[str]) -> None:
+    importers = {
+        file.relative_to(PACKAGE).parts[0]
+        for file in PACKAGE.rglob("*.py")
+        for node in ast.walk(ast.parse(file.read_text()))
+        if roots & _imported(node)
+    }
+    assert importers == {owner}
+
+
+def _imported(node: ast.AST) -> set[str]:
+    if isinstance(node, ast.Import):
+        return {alias.name.split(".")[0] for alias in node.names}
+    if isinstance(node, ast.ImportFrom):
+        return {(node.module or "").split(".")[0]}
+    return set()

@@ -1,0 +1,142 @@
+"""From a checked scenario to the engine: numbers arrive where they should, refusals keep their class."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import onorbit_rs as oo
+import pytest
+from onorbit_rs.exceptions import (
+    FrameError,
+    ModelError,
+    NotFoundError,
+    OnOrbitError,
+    OrbitError,
+    ReadError,
+    ShapeError,
+)
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import Built, build
+
+ANGLES = {"inclination": "51.6 deg", "raan": "30 deg", "argument_of_periapsis": "40 deg"}
+
+
+def scenario(**parts: Any) -> dict[str, Any]:
+    body = {"rigid_body": {"mass": 10.0, "inertia": [1.0, 2.0, 2.5]}}
+    return {"robot": body, "simulation": {"duration": 1.0, "time_step": 0.01}} | parts
+
+
+def built(**parts: Any) -> Built:
+    return build(load(scenario(**parts)))
+
+
+def orbit(**elements: Any) -> oo.Kepler:
+    made = built(orbit={"kind": "kepler"} | elements).orbit
+    assert made is not None
+    return made
+
+
+def test_elements_reach_the_orbit_in_si() -> None:
+    made = orbit(semi_major_axis="7000 km", eccentricity=0.1, mean_anomaly="60 deg", **ANGLES)
+    expected = oo.Kepler(
+        semi_major_axis=7e6, eccentricity=0.1, inclination=np.radians(51.6), raan=np.radians(30.0),
+        argument_of_periapsis=np.radians(40.0), mean_anomaly=np.radians(60.0),
+    )  # fmt: skip
+    for got, want in zip(made.state(123.0), expected.state(123.0), strict=True):
+        np.testing.assert_allclose(got, want, rtol=1e-14)
+
+
+@pytest.mark.parametrize("phase", ["mean_anomaly", "true_anomaly", "periapsis_time"])
+@pytest.mark.parametrize(
+    "size",
+    [
+        {"semi_major_axis": "7000 km", "eccentricity": 0.1},
+        {"semi_latus_rectum": "7000 km", "eccentricity": 0.1},
+        {"semi_major_axis": "-7000 km", "eccentricity": 2.1},
+    ],
+)
+def test_every_form_of_elements_builds(size: dict[str, Any], phase: str) -> None:
+    position, velocity = orbit(**size, **ANGLES, **{phase: 0.2}).state(0.0)
+    assert np.all(np.isfinite(position)) and np.all(np.isfinite(velocity))
+    again = orbit(position=list(position), velocity=list(velocity))
+    for got, want in zip(again.state(60.0), orbit(**size, **ANGLES, **{phase: 0.2}).state(60.0), strict=True):
+        np.testing.assert_allclose(got, want, rtol=1e-10)  # through the elements and back
+
+
+def test_a_parabola_builds_from_its_semi_latus_rectum() -> None:
+    position, velocity = orbit(semi_latus_rectum="14000 km", eccentricity=1, periapsis_time=0).state(0.0)
+    escape = np.sqrt(2.0 * oo.MU_EARTH / np.linalg.norm(position))
+    assert np.linalg.norm(velocity) == pytest.approx(escape, rel=1e-12)
+
+
+def test_at_rest_in_the_local_orbital_frame_means_turning_with_it() -> None:
+    made = built(
+        orbit={"kind": "kepler", "semi_major_axis": "7000 km", **ANGLES},
+        initial={"frame": "lvlh", "position": [0, 2, 0], "attitude": {"roll_pitch_yaw": [0, 0, "90 deg"]}},
+    )
+    assert made.orbit is not None
+    rot_il, rate = made.orbit.lvlh(0.0)
+    np.testing.assert_allclose(made.q[:3], rot_il @ [0, 2, 0], atol=1e-14)
+    np.testing.assert_allclose(made.v[3:6], rate, atol=1e-18)  # the yaw turns about the axis of the rate
+    # A point 2 m along track of a frame that turns at n about z moves at -2 n along x: y in the yawed body.
+    np.testing.assert_allclose(made.v[:3], [0.0, 2.0 * rate[2], 0.0], atol=1e-17)
+
+
+def test_joints_by_name_are_joints_in_order() -> None:
+    by_list = load("humanoid_reach")
+    names = oo.robots.load("humanoid_torso").joint_names
+    data = by_list.resolved()
+    data["initial"]["joints"] = dict(reversed(list(zip(names, data["initial"]["joints"], strict=True))))
+    data["initial"]["joint_rates"] = {names[2]: "10 deg/s"}
+    made = build(load(data))
+    np.testing.assert_array_equal(made.q, build(by_list).q)
+    assert made.v[8] == pytest.approx(np.radians(10.0)) and np.count_nonzero(made.v) == 1
+
+
+def test_a_timed_wrench_gives_its_impulse() -> None:
+    wrench = {"kind": "body_wrench", "body": "base", "force": ["2 N", 0, 0], "start": "0.2 s", "end": "0.7 s"}
+    trace = oo.run(scenario(environment=[wrench]), quiet=True).trace
+    np.testing.assert_allclose(trace.momentum[-1, :3], [1.0, 0.0, 0.0], atol=1e-12)
+
+
+def test_gains_as_number_six_or_matrix_are_the_same_law() -> None:
+    data = load("humanoid_reach").resolved()
+    data["simulation"] |= {"duration": 0.05}
+    traces = []
+    for shape in (1.0, [1.0] * 6, np.eye(6).tolist()):
+        gains = {"kp": (90.0 * np.array(shape)).tolist(), "kd": (15.0 * np.array(shape)).tolist()}
+        data["controller"] |= gains
+        traces.append(oo.run(data, quiet=True).trace)
+    for other in traces[1:]:
+        np.testing.assert_array_equal(other.tau, traces[0].tau)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "error", "place"),
+    [
+        ("tool: tool ", "tool: toll ", FrameError, "tool"),
+        ("robot: humanoid_torso", "robot: nobody.urdf", NotFoundError, "robot"),
+        ("robot: humanoid_torso", "robot: ./folder.urdf", ReadError, "robot"),
+        ("robot: humanoid_torso", "robot: ./junk.urdf", ModelError, "robot"),
+        ("robot: humanoid_torso", "robot: nobody", NotFoundError, "robot"),
+        ("joints: [0.5342, ", "joints: [", ShapeError, "initial"),
+        ("joints: [", "joints: {arm_joint_9: 1} # [", FrameError, "initial"),
+        ("51.6 deg", "200 deg", OrbitError, "orbit"),
+        ("- kind: gravity_gradient", "- {kind: body_wrench, body: nose}", FrameError, "environment[0]"),
+    ],
+)
+def test_what_the_engine_refuses_keeps_its_class_and_gains_its_place(
+    tmp_path: Path, right: str, wrong: str, error: type[OnOrbitError], place: str
+) -> None:
+    (tmp_path / "folder.urdf").mkdir()
+    (tmp_path / "junk.urdf").write_text("not xml")
+    text = oo.scenarios.path("humanoid_reach").read_text()
+    assert right in text
+    file = tmp_path / "mine.yaml"
+    file.write_text(text.replace(right, wrong))
+    with pytest.raises(error) as caught:
+        build(load(file))
+    line = load(file).line_of(*(("environment", 0) if "[" in place else (place,)))
+    assert str(caught.value).startswith(f"{file}:{line}: {place}: ")
