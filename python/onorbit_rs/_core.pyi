@@ -6,6 +6,7 @@ from typing import Literal, Protocol, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import disjoint_base
 
 _Array = NDArray[np.float64]
 _Path = str | PathLike[str]
@@ -20,6 +21,28 @@ class _Controller(Protocol):
 class _BuildInfo(TypedDict):
     version: str
     instruction_set: str
+
+__all__ = [
+    "MU_EARTH",
+    "BodyWrench",
+    "ComputedTorque",
+    "Effect",
+    "FreeFloating",
+    "GravityGradient",
+    "Hold",
+    "Kepler",
+    "LineParabola",
+    "Model",
+    "ModelBuilder",
+    "Orbit",
+    "Simulation",
+    "State",
+    "Trace",
+    "Visual",
+    "__version__",
+    "build_info",
+    "rollout",
+]
 
 __version__: str
 MU_EARTH: float
@@ -164,6 +187,7 @@ class ModelBuilder:
     ) -> None: ...
     def build(self) -> Model: ...
 
+@disjoint_base
 class Orbit:
     @property
     def mu(self) -> float | None: ...
@@ -206,6 +230,7 @@ class Kepler(Orbit):
     @property
     def period(self) -> float | None: ...
 
+@disjoint_base
 class Effect: ...
 
 @final

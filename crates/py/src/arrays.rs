@@ -95,6 +95,7 @@ pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> Bound<'py, PyArray
 }
 
 /// The numbers of an array that was made just now and that nobody else has seen.
+#[allow(clippy::mut_from_ref)] // the slice is that of numpy's buffer, which only this call knows
 pub(crate) fn fresh<'a>(array: &'a Bound<'_, PyArrayDyn<f64>>) -> &'a mut [f64] {
     // SAFETY: made by `zeros` in this call, contiguous, and not yet handed to Python.
     unsafe { array.as_slice_mut() }.unwrap_or(&mut [])

@@ -8,7 +8,7 @@ use crate::model::PyModel;
 use crate::orbit::PyOrbit;
 use crate::reference;
 use crate::trace::PyTrace;
-use onorbit_core::control::ControlLaw;
+use onorbit_core::control::{ControlError, ControlLaw};
 use onorbit_core::model::Model;
 use onorbit_core::simulation::{Integrator, RunFailure, Simulation, SimulationError};
 use pyo3::prelude::*;
@@ -150,6 +150,17 @@ impl PySimulation {
         {
             return other; // the progress callback raised
         }
+        // Ctrl-C arrives where Python runs: in a controller of the user's, or at the monitor
+        let is_ctrl_c = match &error {
+            SimulationError::Control(ControlError::User(source)) => source
+                .downcast_ref::<PyErr>()
+                .is_some_and(|error| error.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py)),
+            _ => false,
+        };
+        let error = match trace.trace.time.last() {
+            Some(&time) if is_ctrl_c => SimulationError::Interrupted { time },
+            _ => error,
+        };
         error.into_python_with(py, Py::new(py, trace).ok())
     }
 }

@@ -50,11 +50,11 @@ impl<S: Real> Stages<S> {
         &self.first
     }
 
-    /// `q` and `v` at the start of the last step.
-    pub(crate) fn start(&self) -> [Vec<S>; 2] {
+    /// `q` and `v` at the start of the last step (of the first lane).
+    pub(crate) fn start(&self) -> [Vec<f64>; 2] {
         let mut v = self.start.v.clone();
         (Vec3::from_slice(&v) + self.passing).write(&mut v);
-        [self.start.q.clone(), v]
+        [&self.start.q, &v].map(|x| x.iter().map(|x| x.lane(0)).collect())
     }
 
     /// Whether the last stage began at a state of numbers.

@@ -184,9 +184,8 @@ impl<S: Scalar> Run<'_, S> {
 
     /// The error that carries the last finite state.
     fn diverged(&self, stages: &Stages<S>, time: f64) -> SimulationError {
-        let now = || [self.state.q.clone(), self.state.v.clone()];
-        let last = if self.state.is_finite() { now() } else { stages.start() };
-        let [q, v] = last.map(|x| x.iter().map(|x| x.value()).collect());
+        let now = [&self.state.q, &self.state.v].map(|x| x.iter().map(|x| x.value()).collect());
+        let [q, v] = if self.state.is_finite() { now } else { stages.start() };
         SimulationError::Diverged { time, q, v }
     }
 

@@ -1,0 +1,103 @@
+"""What the tests of bad input share: a robot, calls to spoil, and what every refusal owes its reader."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+import onorbit_rs as oo
+import pytest
+from onorbit_rs import exceptions
+
+NAN, INF = float("nan"), float("inf")
+MODEL = oo.robots.load("humanoid_torso")
+Q, V = MODEL.neutral(), np.zeros(MODEL.nv)
+CUBE = np.eye(3)
+
+
+def with_value(index: int, value: float) -> Any:
+    q = Q.copy()
+    q[index] = value
+    return q
+
+
+def simulation(q: Any = Q, v: Any = V, **known: Any) -> oo.Simulation:
+    return oo.Simulation(MODEL, q, v, **known)
+
+
+def law(tool: str = "tool", **known: Any) -> oo.ComputedTorque:
+    return oo.ComputedTorque(MODEL, tool, **known)
+
+
+def link(**known: Any) -> None:
+    builder = oo.ModelBuilder("robot", base="base", mass=1.0, inertia=CUBE)
+    builder.add_link("arm", **({"parent": "base", "joint": "hinge", "mass": 1.0, "inertia": CUBE} | known))
+
+
+def urdf(body: str) -> oo.Model:
+    return oo.Model.from_urdf_string(f'<robot name="r">{body}</robot>')
+
+
+def massive(name: str) -> str:
+    inertia = '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    return f'<link name="{name}"><inertial><mass value="1"/>{inertia}</inertial></link>'
+
+
+def joint(name: str, parent: str, child: str, kind: str = "continuous") -> str:
+    return f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/></joint>'
+
+
+def massless_leaf() -> oo.Model:
+    builder = oo.ModelBuilder("robot", base="base", mass=1.0, inertia=CUBE)
+    builder.add_link("arm", parent="base", joint="hinge")
+    return builder.build()
+
+
+class Bad(NamedTuple):
+    """A call, and what it must raise: class, words of the message, fields."""
+
+    call: Callable[[], Any]
+    error: str
+    words: tuple[str, ...]
+    fields: dict[str, Any] = {}  # noqa: RUF012 # never written
+
+
+def shape(name: str, got: Any, *words: str) -> Any:
+    return ("ShapeError", (name, *words), {"name": name, "got": got})
+
+
+BUILT_IN = {
+    "InputError": ValueError,
+    "ShapeError": ValueError,
+    "DtypeError": TypeError,
+    "ModelError": ValueError,
+    "FrameError": KeyError,
+    "OrbitError": ValueError,
+    "EffectError": ValueError,
+    "ControlError": ValueError,
+    "NotFoundError": FileNotFoundError,
+    "ReadError": OSError,
+}
+
+
+def check(bad: Bad) -> None:
+    """Its class, its built-in, its fields; the value and the way out in one line; and that it pickles."""
+    with pytest.raises(oo.OnOrbitError) as caught:
+        bad.call()
+    error = caught.value
+    assert type(error) is getattr(exceptions, bad.error), (type(error), str(error))
+    assert isinstance(error, BUILT_IN[bad.error])
+    message = str(error)
+    for word in bad.words:
+        assert word in message, (word, message)
+    assert "\n" not in message and not message.endswith(".") and "panicked" not in message
+    for field, value in bad.fields.items():
+        assert getattr(error, field) == value, (field, getattr(error, field))
+    # it crosses processes whole
+    copy = pickle.loads(pickle.dumps(error))
+    assert type(copy) is type(error) and str(copy) == message
+    for field, value in error.__dict__.items():
+        same = getattr(copy, field)
+        assert same == value or (same != same and value != value), field
