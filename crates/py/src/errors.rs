@@ -211,7 +211,9 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::NeedsReference | SimulationError::NeedsTool => {
                 plain(py, "ControlError", &message)
             }
-            SimulationError::TooManyRows { .. } => plain(py, "InputError", &message),
+            SimulationError::UnknownFrame { .. } | SimulationError::TooManyRows { .. } => {
+                plain(py, "InputError", &message)
+            }
             SimulationError::Diverged { time, q, v } => raise(
                 py,
                 "SimulationError",
