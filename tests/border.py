@@ -31,9 +31,10 @@ def law(tool: str = "tool", **known: Any) -> oo.ComputedTorque:
     return oo.ComputedTorque(MODEL, tool, **known)
 
 
-def link(**known: Any) -> None:
+def link(**changed: Any) -> None:
     builder = oo.ModelBuilder("robot", base="base", mass=1.0, inertia=CUBE)
-    builder.add_link("arm", **({"parent": "base", "joint": "hinge", "mass": 1.0, "inertia": CUBE} | known))
+    known: dict[str, Any] = {"parent": "base", "joint": "hinge", "mass": 1.0, "inertia": CUBE}
+    builder.add_link("arm", **(known | changed))
 
 
 def urdf(body: str) -> oo.Model:

@@ -69,7 +69,7 @@ BAD: dict[str, Bad] = {
         lambda: MODEL.mass_matrix(np.zeros(14, "M8[s]")), "DtypeError", ("datetime64",), {"name": "q"}
     ),
     "None": Bad(lambda: MODEL.mass_matrix(None), "DtypeError", ("q",), {"name": "q"}),  # type: ignore[arg-type]
-    "ragged": Bad(lambda: MODEL.mass_matrix([[1, 2], [3]]), "DtypeError", ("rectangular",), {"name": "q"}),  # type: ignore[list-item]
+    "ragged": Bad(lambda: MODEL.mass_matrix([[1, 2], [3]]), "DtypeError", ("rectangular",), {"name": "q"}),
     "integers beyond floats": Bad(
         lambda: MODEL.mass_matrix([10**400] * 14), "DtypeError", ("q",), {"name": "q"}
     ),

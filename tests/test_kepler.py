@@ -1,6 +1,6 @@
 """Two-body motion from Python: textbooks, GMAT, scalars and arrays, and the local orbital frame.
 
-Numbers typed from ``../shared/validation``, folders ``kepler_textbook`` and ``gmat_reference``; sources there.
+Numbers typed from ``../shared/validation``, folders ``kepler_textbook`` and ``gmat_reference``.
 """
 
 from __future__ import annotations

@@ -1,0 +1,183 @@
+"""The house stands as ``docs/`` says: who may use whom, who alone touches what, how long a file may be."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import onorbit_rs as oo
+import pytest
+
+REPOSITORY = Path(__file__).parents[1]
+CORE = REPOSITORY / "crates" / "core" / "src"
+GLUE = REPOSITORY / "crates" / "py" / "src"
+PACKAGE = REPOSITORY / "python" / "onorbit_rs"
+
+# a folder may use those before it
+ORDER = (
+    "spatial",
+    "model",
+    "dynamics",
+    "orbit",
+    "environment",
+    "reference",
+    "control",
+    "simulation",
+    "batch",
+)
+
+LONGEST = 400
+LONGER_WITH_REASON = {
+    "crates/core/tests/simulation_nasa.rs": "NASA's tables stand beside the cases they belong to",
+}
+
+
+def rust_files(folder: Path) -> list[Path]:
+    files = sorted(folder.rglob("*.rs"))
+    assert files, f"no Rust in {folder}"
+    return files
+
+
+def code(file: Path) -> str:
+    """Without comments; neighbouring spaces made one, so that a grouped ``use`` is one line."""
+    text = re.sub(r"//[^\n]*", "", file.read_text())
+    return re.sub(r"\s+", " ", text)
+
+
+def used_folders(text: str) -> set[str]:
+    """Top folders named after ``crate::``, alone or in a group."""
+    used = set(re.findall(r"\bcrate::([a-z_]+)", text))
+    for start in (match.end() for match in re.finditer(r"\bcrate::\{", text)):
+        depth, name = 1, ""
+        for char in text[start:]:
+            depth += (char == "{") - (char == "}")
+            if char in ",}" and depth <= 1:
+                used.add(name.strip().split("::")[0])
+                name = ""
+            elif depth >= 1:
+                name += char
+            if depth == 0:
+                break
+    return {name for name in used if name}
+
+
+def test_the_scan_reads_every_way_to_write_a_use() -> None:
+    text = "use crate::spatial::{A, B}; use crate::{model::{C, D}, orbit, batch::E}; crate::control::f()"
+    assert used_folders(text) == {"spatial", "model", "orbit", "batch", "control"}
+
+
+def test_every_folder_of_the_core_has_its_place() -> None:
+    folders = {path.name for path in CORE.iterdir() if path.is_dir()}
+    assert folders == set(ORDER), "say in ORDER, in DESIGN's house and in lib.rs where it stands"
+
+
+@pytest.mark.parametrize("folder", ORDER)
+def test_folders_use_only_those_above(folder: str) -> None:
+    allowed = set(ORDER[: ORDER.index(folder) + 1])
+    for file in rust_files(CORE / folder):
+        below = used_folders(code(file)) & set(ORDER) - allowed
+        assert not below, f"{file.relative_to(REPOSITORY)} uses {', '.join(below)}, which stands on {folder}"
+
+
+@pytest.mark.parametrize(
+    ("pattern", "where", "home"),
+    [
+        (r"\b(roxmltree|urdf_rs)\b", CORE, "model/urdf/"),
+        (r"\b(pyo3|numpy)\b", CORE, "nowhere"),
+        (r"\b(SystemTime|Instant::now|thread::sleep)\b", CORE, "nowhere"),  # nothing reads the clock
+        (r"\b(println|eprintln|dbg)!", CORE, "nowhere"),
+        (r"\bstatic mut\b", CORE, "nowhere"),
+        (r"\brayon\b", CORE, "batch/"),
+    ],
+)
+def test_one_room_alone_touches_it(pattern: str, where: Path, home: str) -> None:
+    for file in rust_files(where):
+        name = str(file.relative_to(where))
+        if re.search(pattern, code(file)):
+            assert name.startswith(home), f"{name} touches {pattern}, which belongs to {home}"
+
+
+def test_no_bare_unwrap_outside_tests() -> None:
+    for folder in (CORE, GLUE):
+        for file in rust_files(folder):
+            shipped = code(file).split("#[cfg(test)]")[0]
+            assert ".unwrap()" not in shipped, (
+                f"{file.relative_to(REPOSITORY)}: state the invariant in expect"
+            )
+
+
+def imports(file: Path) -> Iterator[tuple[str, bool]]:
+    """Modules a Python file imports, and whether only for the type checker."""
+    tree = ast.parse(file.read_text())
+    for_types = {
+        id(inner)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+        for inner in ast.walk(node)
+    }
+    for node in ast.walk(tree):
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+            names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        yield from ((name, id(node) in for_types) for name in names)
+
+
+@pytest.mark.parametrize(("module", "home"), [("rerun", "viewer"), ("matplotlib", "figures")])
+def test_one_folder_alone_imports_it(module: str, home: str) -> None:
+    users = {
+        file.relative_to(PACKAGE).parts[0]
+        for file in PACKAGE.rglob("*.py")
+        if any(name.split(".")[0] == module for name, _ in imports(file))
+    }
+    assert users == {home}
+
+
+def test_a_scenario_knows_no_pictures() -> None:
+    for file in (PACKAGE / "scenario").glob("*.py"):
+        for name, _ in imports(file):
+            assert not name.startswith(("onorbit_rs.viewer", "onorbit_rs.figures", "onorbit_rs.cli")), file
+
+
+def test_importing_the_package_loads_neither_viewer_nor_plots() -> None:
+    program = "import sys, onorbit_rs; print(*{'rerun', 'matplotlib', 'typer', 'mujoco'} & set(sys.modules))"
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert result.stdout.split() == []
+
+
+def test_every_public_name_is_there() -> None:
+    assert len(set(oo.__all__)) == len(oo.__all__)
+    for name in oo.__all__:
+        assert getattr(oo, name) is not None, name
+    for name in oo.exceptions.__all__:
+        assert issubclass(getattr(oo.exceptions, name), BaseException), name
+    assert oo.__version__ == oo.build_info()["version"]
+
+
+def source_files() -> list[Path]:
+    found = [
+        file
+        for folder in ("crates", "python", "tests", "benches")
+        for pattern in ("*.rs", "*.py", "*.pyi")
+        for file in (REPOSITORY / folder).rglob(pattern)
+        if "build" not in file.parts
+    ]
+    assert len(found) > 100
+    return found
+
+
+def test_no_file_is_too_long() -> None:
+    for file in source_files():
+        name = str(file.relative_to(REPOSITORY))
+        lines = len(file.read_text().splitlines())
+        assert lines <= LONGEST or name in LONGER_WITH_REASON, f"{name} has {lines} lines: split it"
+
+
+def test_files_are_short_as_a_rule() -> None:
+    lengths = sorted(
+        len(file.read_text().splitlines()) for file in source_files() if "tests" not in file.parts
+    )
+    assert lengths[len(lengths) // 2] <= 135, "the median of pleasant houses is 95 to 135"
