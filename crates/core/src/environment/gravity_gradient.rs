@@ -2,6 +2,7 @@
 
 use super::error::Place;
 use super::{Effect, EnvironmentError, Scene, Wrench};
+use crate::spatial::{Mat3, Sym3, Vec3};
 
 /// Gravity-gradient torque of each body about its own centre of mass, at its own position.
 ///
@@ -33,9 +34,10 @@ impl Effect for GravityGradient {
             let distance = planet.outside(Place::Body(k), r.norm())?;
             let inverse = 1.0 / distance;
             // T = (3μ/r³) R (r̂_k × I r̂_k), with r̂_k = Rᵀ r̂ in body axes, where I is constant
-            let up_k = body.rot_wk.tr_mul(&r) * inverse;
-            let torque_k = up_k.cross(&(body.inertia * up_k));
-            wrench.torque += body.rot_wk * torque_k * (3.0 * planet.mu * inverse * inverse * inverse);
+            let (rot_wk, inertia) = (Mat3::from(body.rot_wk), Sym3::from(body.inertia));
+            let up_k = rot_wk.transpose_mul(Vec3::from(r)) * inverse;
+            let torque_k = up_k.cross(inertia * up_k) * (3.0 * planet.mu * inverse * inverse * inverse);
+            wrench.torque += (rot_wk * torque_k).to_nalgebra();
         }
         Ok(())
     }
