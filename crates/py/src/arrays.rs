@@ -3,7 +3,7 @@
 use crate::errors::{fields, raise};
 use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{PyDict, PyString, PyTuple};
 
 /// A contiguous array of `f64`, borrowed for reading.
 pub(crate) struct Input<'py> {
@@ -89,9 +89,27 @@ pub(crate) fn shape_text(shape: &[usize]) -> String {
     }
 }
 
+/// Numbers up to which memory is taken for granted: 8 MiB.
+const SMALL: usize = 1 << 20;
+
 /// A fresh array of zeros, to be written by the core.
-pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> Bound<'py, PyArrayDyn<f64>> {
-    PyArray::zeros(py, IxDyn(shape), false)
+pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let count = shape.iter().try_fold(1_usize, |count, n| count.checked_mul(*n));
+    if count.is_some_and(|count| count <= SMALL) {
+        return Ok(PyArray::zeros(py, IxDyn(shape), false));
+    }
+    // numpy says where memory ends; the constructor above would panic
+    let made = PyTuple::new(py, shape).and_then(|shape| py.import("numpy")?.call_method1("zeros", (shape,)));
+    match made {
+        Ok(array) => Ok(array.cast_into::<PyArrayDyn<f64>>()?),
+        Err(_) => {
+            let message = format!(
+                "a result of shape {} does not fit in memory; ask for less at once",
+                shape_text(shape)
+            );
+            Err(raise(py, "InputError", &message, &fields!(py, "name": "shape", "got": shape.to_vec())))
+        }
+    }
 }
 
 /// The numbers of an array that was made just now and that nobody else has seen.
@@ -103,7 +121,7 @@ pub(crate) fn fresh<'a>(array: &'a Bound<'_, PyArrayDyn<f64>>) -> &'a mut [f64] 
 
 /// A fresh array that holds these numbers.
 pub(crate) fn array_of<'py>(py: Python<'py>, shape: &[usize], data: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
-    let array = zeros(py, shape);
+    let array = PyArray::zeros(py, IxDyn(shape), false); // of the size of a state
     fresh(&array).copy_from_slice(data);
     array
 }

@@ -100,6 +100,7 @@ impl IntoPython for InputError {
             Self::NotFinite { name, value, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
             }
+            Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
             Self::Diverged { .. } => plain(py, "SimulationError", &message),
             Self::QuaternionNorm { norm, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
@@ -205,7 +206,6 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::QuaternionNorm { norm } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
             }
-            SimulationError::UnknownFrame { .. } => plain(py, "FrameError", &message),
             SimulationError::RecordEvery => plain(py, "InputError", &message),
             SimulationError::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
             SimulationError::NeedsReference | SimulationError::NeedsTool => {

@@ -45,7 +45,7 @@ pub(crate) fn evaluate<'py>(
     let outputs: Vec<Array<'py>> = shapes
         .iter()
         .map(|shape| zeros(py, &batch.iter().chain(shape.iter()).copied().collect::<Vec<_>>()))
-        .collect();
+        .collect::<PyResult<_>>()?;
     let rows: Vec<Rows<'_>> = inputs
         .iter()
         .map(|input| Rows { data: input.data(), width: input.shape().last().copied().unwrap_or(0) })

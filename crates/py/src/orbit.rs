@@ -31,7 +31,7 @@ impl PyOrbit {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let (times, shape) = times(t)?;
         let dims: Vec<usize> = shape.iter().copied().chain([3]).collect();
-        let (r, v) = (zeros(py, &dims), zeros(py, &dims));
+        let (r, v) = (zeros(py, &dims)?, zeros(py, &dims)?);
         let (to_r, to_v) = (fresh(&r), fresh(&v));
         py.detach(|| states(&*self.orbit, &times, to_r, to_v)).map_err(|error| error.into_python(py))?;
         Ok((r.into_any(), v.into_any()))
@@ -47,7 +47,7 @@ impl PyOrbit {
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let (times, shape) = times(t)?;
         let with = |tail: &[usize]| shape.iter().chain(tail).copied().collect::<Vec<usize>>();
-        let (rotations, rates) = (zeros(py, &with(&[3, 3])), zeros(py, &with(&[3])));
+        let (rotations, rates) = (zeros(py, &with(&[3, 3]))?, zeros(py, &with(&[3]))?);
         let (to_r, to_w) = (fresh(&rotations), fresh(&rates));
         py.detach(|| lvlh_frames(&*self.orbit, &times, to_r, to_w)).map_err(|error| error.into_python(py))?;
         Ok((rotations.into_any(), rates.into_any()))

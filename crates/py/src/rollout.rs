@@ -81,7 +81,7 @@ pub(crate) fn rollout<'py>(
         None => vec![batch, width],
         Some(_) => vec![batch, rollout.rows(), width],
     };
-    let (q, v) = (zeros(py, &shape(core.nq())), zeros(py, &shape(core.nv())));
+    let (q, v) = (zeros(py, &shape(core.nq()))?, zeros(py, &shape(core.nv()))?);
     let (to_q, to_v, from_q, from_v) = (fresh(&q), fresh(&v), q0.data(), v0.data());
     py.detach(|| rollout.run(core, from_q, from_v, to_q, to_v)).map_err(|error| error.into_python(py))?;
     Ok((q.into_any(), v.into_any()))

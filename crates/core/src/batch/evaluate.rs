@@ -2,6 +2,7 @@
 
 use super::input::{InputError, check_finite, check_quaternions};
 use super::kernel::{Kernel, Work};
+use super::threads::on_threads;
 use crate::dynamics::FrameWrench;
 use crate::model::Model;
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Quat, Real};
@@ -85,7 +86,6 @@ impl Evaluator {
             InstructionSet::Fused => all::<Lanes4>(kernel, model, inputs, external, outputs, threads),
             InstructionSet::Wide => all::<Lanes8>(kernel, model, inputs, external, outputs, threads),
         }
-        Ok(())
     }
 }
 
@@ -157,7 +157,7 @@ fn all<S: Real>(
     external: &[FrameWrench<f64>],
     outputs: &mut [RowsMut<'_>],
     threads: Option<usize>,
-) {
+) -> Result<(), InputError> {
     let count = inputs[0].data.len() / inputs[0].width;
     let widths = kernel.outputs(model);
     // hand every task its own rows of every output
@@ -179,12 +179,7 @@ fn all<S: Real>(
             space.states(kernel, model, inputs, start..end, external, &mut rows);
         }
     };
-    let parallel = || tasks.into_par_iter().enumerate().for_each_init(|| Space::new(model), run);
-    match threads {
-        Some(threads) => match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-            Ok(pool) => pool.install(parallel),
-            Err(_) => parallel(), // no threads to be had: the global pool still computes the same
-        },
-        None => parallel(),
-    }
+    on_threads(threads, tasks.len(), || {
+        tasks.into_par_iter().enumerate().for_each_init(|| Space::new(model), run);
+    })
 }

@@ -17,6 +17,8 @@ pub enum InputError {
          q[3:7]: normalise it first"
     )]
     QuaternionNorm { state: usize, norm: f64 },
+    #[error("threads is 0, it must be at least 1; leave it out for all cores")]
+    NoThreads,
     #[error("state {state} diverged: it is no longer finite; shorten time_step or soften the gains")]
     Diverged { state: usize },
 }

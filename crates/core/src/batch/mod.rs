@@ -4,6 +4,7 @@ mod evaluate;
 mod input;
 mod kernel;
 mod rollout;
+mod threads;
 
 pub use evaluate::{Evaluator, Rows, RowsMut};
 pub use input::InputError;

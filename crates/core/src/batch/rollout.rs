@@ -1,6 +1,7 @@
 //! Many runs at once, in empty space: passive, with given torques, or under computed torque.
 
 use super::input::{InputError, check_finite, check_quaternions};
+use super::threads::on_threads;
 use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
 use crate::dynamics::{kinematics, momentum};
 use crate::model::Model;
@@ -69,17 +70,25 @@ impl Rollout<'_> {
             InstructionSet::Fused if q0.len() == model.nq() => self.all::<Fused>(model, q0, v0, q, v),
             InstructionSet::Fused => self.all::<Lanes4>(model, q0, v0, q, v),
             InstructionSet::Wide => self.all::<Lanes8>(model, q0, v0, q, v),
-        }
+        }?;
         match v.chunks(self.rows() * model.nv()).position(|state| !state.iter().all(|x| x.is_finite())) {
             Some(state) => Err(InputError::Diverged { state }),
             None => Ok(()),
         }
     }
 
-    fn all<S: Real>(&self, model: &Model, q0: &[f64], v0: &[f64], q: &mut [f64], v: &mut [f64]) {
+    fn all<S: Real>(
+        &self,
+        model: &Model,
+        q0: &[f64],
+        v0: &[f64],
+        q: &mut [f64],
+        v: &mut [f64],
+    ) -> Result<(), InputError> {
         let (nq, nv) = (model.nq(), model.nv());
         let (q_rows, v_rows) = (S::LANES * self.rows() * nq, S::LANES * self.rows() * nv);
-        let mut tasks = || {
+        let groups = q0.len().div_ceil(S::LANES * nq);
+        on_threads(self.threads, groups, || {
             q.par_chunks_mut(q_rows)
                 .zip(v.par_chunks_mut(v_rows))
                 .zip(q0.par_chunks(S::LANES * nq))
@@ -88,11 +97,7 @@ impl Rollout<'_> {
                 .for_each(|(group, (((q, v), q0), v0))| {
                     Lanes::<S>::new(self, model, q0, v0, group * S::LANES).run(q, v);
                 });
-        };
-        match self.threads.map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build()) {
-            Some(Ok(pool)) => pool.install(&mut tasks),
-            _ => tasks(),
-        }
+        })
     }
 }
 
