@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
 from border import INF, MODEL, NAN, Bad, Q, V, check, law, shape, simulation
+
+import onorbit_rs as oo
 
 BAD: dict[str, Bad] = {
     # orbits
@@ -173,6 +174,11 @@ BAD: dict[str, Bad] = {
         ),
         "ControlError",
         ("not both",),
+    ),
+    "rollout with more rows than memory": Bad(
+        lambda: oo.rollout(MODEL, Q[None], V[None], steps=10**15, record_every=1),
+        "InputError",
+        ("(1, 1000000000000001, 14)", "memory"),
     ),
     "rollout of a controller without a reference": Bad(
         lambda: oo.rollout(MODEL, Q[None], V[None], steps=2, controller=law()), "ControlError", ("reference",)
