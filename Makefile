@@ -52,8 +52,11 @@ bench: $(VENV)/.built $(VENV)/.tested ## criterion for the kernels, pytest-bench
 	cargo bench -p onorbit-core
 	$(BIN)/python -m pytest benches -o testpaths=benches --benchmark-only --benchmark-columns=min,median,iqr
 
-bench-peers: $(VENV)/.built $(VENV)/.tested ## against Pinocchio and MuJoCo, alternated in one run
-	$(BIN)/python -m benches.compare
+PEERS ?= ../shared/peers
+
+bench-peers: $(VENV)/.built $(VENV)/.tested ## humanoid_reach against a C++ loop on Pinocchio (PEERS=folder), alternated
+	$(BIN)/python -m pip install --quiet cmeel-eigen
+	$(BIN)/python benches/compare_reach.py $(PEERS)
 
 clean: ## forgets builds and the environment
 	rm -rf target $(VENV) out

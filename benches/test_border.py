@@ -11,8 +11,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
+
+import onorbit_rs as oo
 
 MODEL = oo.robots.load("humanoid_torso")
 RNG = np.random.default_rng(1)

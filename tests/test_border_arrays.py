@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
 from border import CUBE, INF, MODEL, NAN, Bad, Q, V, check, law, link, shape, simulation, with_value
+
+import onorbit_rs as oo
 
 BAD: dict[str, Bad] = {
     # lengths and shapes

@@ -12,8 +12,9 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
+
+import onorbit_rs as oo
 
 MODEL = oo.robots.load("humanoid_dual_arm")
 NQ, NV = MODEL.nq, MODEL.nv

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
 from border import (
     CUBE,
@@ -23,6 +22,8 @@ from border import (
     simulation,
     urdf,
 )
+
+import onorbit_rs as oo
 
 BAD: dict[str, Bad] = {
     # masses and inertias

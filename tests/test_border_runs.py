@@ -14,8 +14,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
+
+import onorbit_rs as oo
 from onorbit_rs.exceptions import ControlError, DtypeError, RunInterrupted, ShapeError, SimulationError
 
 MODEL = oo.robots.load("humanoid_torso")

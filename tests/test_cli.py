@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+
 from onorbit_rs import scenarios
 
 SHORT_REACH = (

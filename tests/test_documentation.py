@@ -12,8 +12,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import onorbit_rs as oo
 import pytest
+
+import onorbit_rs as oo
 from onorbit_rs import _core
 
 REPOSITORY = Path(__file__).parents[1]

@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
 from matplotlib.figure import Figure
+
+import onorbit_rs as oo
 from onorbit_rs import figures
 from onorbit_rs.figures.style import MOST_POINTS, thin, with_prefix
 from onorbit_rs.scenario import load

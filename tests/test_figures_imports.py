@@ -5,8 +5,9 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-import onorbit_rs
 import pytest
+
+import onorbit_rs
 
 PACKAGE = Path(onorbit_rs.__file__).parent
 

@@ -9,8 +9,9 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import onorbit_rs as oo
 import pytest
+
+import onorbit_rs as oo
 
 REPOSITORY = Path(__file__).parents[1]
 CORE = REPOSITORY / "crates" / "core" / "src"

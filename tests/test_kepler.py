@@ -8,8 +8,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
+
+import onorbit_rs as oo
 
 
 class Flight(NamedTuple):

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
+
+import onorbit_rs as oo
 
 MU = 3.986004415e14  # GGM02C; with 3.986004418e14 run 2 is off by 0.32 m
 TYPICAL = ((-4292653.41, 955168.47, 5139356.57), (109.649663, -7527.726490, 1484.521489))

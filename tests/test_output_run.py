@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
+
+import onorbit_rs as oo
 from onorbit_rs.exceptions import OutputNotEmptyError, RunInterrupted, SimulationError
 from onorbit_rs.scenario import load
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
+
+import onorbit_rs as oo
 from onorbit_rs.rotations import attitude_in_orbit
 from onorbit_rs.scenario import load
 

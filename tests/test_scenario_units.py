@@ -7,6 +7,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from onorbit_rs.exceptions import OnOrbitError, QuantityError
 from onorbit_rs.scenario import units
 from onorbit_rs.scenario.units import Dimension, parse_quantity

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+
 from onorbit_rs import scenarios
 from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError, ScenarioError
 from onorbit_rs.scenario import Scenario, load

@@ -6,12 +6,13 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
+from rerun.chunk import RrdReader
+
+import onorbit_rs as oo
 from onorbit_rs import viewer
 from onorbit_rs.geometry import shapes
 from onorbit_rs.scenario import load
-from rerun.chunk import RrdReader
 
 STEPS = 51
 

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-import onorbit_rs as oo
 import pinocchio as pin  # type: ignore[import-untyped]
 from trees import BASE, TOOL, Array, Part, State, Tree
+
+import onorbit_rs as oo
 
 W_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 

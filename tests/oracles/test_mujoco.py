@@ -12,9 +12,10 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
 from trees import Array, Part, Tree, build, deviation, random_state, random_tree
+
+import onorbit_rs as oo
 
 mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco")
 

@@ -11,9 +11,10 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
 from trees import TOOL, State, Tree, build, deviation, random_state, random_tree
+
+import onorbit_rs as oo
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
 import pin_robot  # noqa: E402

@@ -6,9 +6,10 @@ import warnings
 from pathlib import Path
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
 from trees import TOOL, build, deviation, random_state, random_tree, urdf
+
+import onorbit_rs as oo
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
 import pin_robot  # noqa: E402

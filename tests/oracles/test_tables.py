@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import onorbit_rs as oo
 import pytest
 from trees import TOOL, State, Tree, build, deviation
+
+import onorbit_rs as oo
 
 TABLE = json.loads((Path(__file__).parents[1] / "fixtures" / "pinocchio_tables.json").read_text())
 CASES = [(case, state) for case in TABLE["cases"] for state in case["states"]]

@@ -7,8 +7,9 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-import onorbit_rs as oo
 from numpy.typing import NDArray
+
+import onorbit_rs as oo
 
 Array = NDArray[np.float64]
 
