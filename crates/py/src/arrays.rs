@@ -5,6 +5,25 @@ use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUn
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 
+/// A whole number that is not negative.
+#[derive(Clone, Copy)]
+pub(crate) struct Count(pub(crate) usize);
+
+impl<'py> FromPyObject<'_, 'py> for Count {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        match value.extract::<i64>() {
+            Ok(count) => usize::try_from(count).map(Self).map_err(|_| {
+                let py = value.py();
+                let message = format!("{count} is negative, a whole number of at least 0 is needed");
+                raise(py, "InputError", &message, &fields!(py, "got": count, "expected": "at least 0"))
+            }),
+            Err(error) => Err(error),
+        }
+    }
+}
+
 /// A contiguous array of `f64`, borrowed for reading.
 pub(crate) struct Input<'py> {
     array: PyReadonlyArrayDyn<'py, f64>,

@@ -50,13 +50,12 @@ impl IntoPython for ModelError {
         let message = self.to_string();
         match &self {
             Self::UnknownName { what, name, candidates } => {
-                let suggestion =
-                    candidates.iter().find(|c| message.contains(&format!("did you mean '{c}'?")));
                 let fields = fields!(
-                    py, "name": name, "kind": what, "known": candidates, "suggestion": suggestion,
+                    py, "name": name, "kind": what, "known": candidates, "suggestion": self.suggestion(),
                 );
                 raise(py, "FrameError", &message, &fields)
             }
+            Self::NotFinite { name, .. } => raise(py, "ModelError", &message, &fields!(py, "link": name)),
             Self::MasslessSubtree { joint, link } => {
                 raise(py, "ModelError", &message, &fields!(py, "joint": joint, "link": link))
             }

@@ -1,6 +1,6 @@
 //! The dynamics of a model: one state `(n,)` or a batch `(B, n)`.
 
-use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
+use crate::arrays::{Count, Input, fixed, fresh, wrong_shape, zeros};
 use crate::errors::IntoPython;
 use crate::model::PyModel;
 use numpy::PyArrayDyn;
@@ -35,7 +35,7 @@ pub(crate) fn evaluate<'py>(
     values: &[&Bound<'py, PyAny>],
     external: Option<&Bound<'py, PyDict>>,
     shapes: &[&[usize]],
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<Vec<Array<'py>>> {
     let names = kernel.inputs();
     let inputs: Vec<Input<'py>> =
@@ -53,6 +53,7 @@ pub(crate) fn evaluate<'py>(
     let mut slices: Vec<RowsMut<'_>> = outputs.iter().map(fresh).collect();
     let core = &*model.model;
     let result = if batch.is_some() {
+        let threads = threads.map(|count| count.0);
         py.detach(|| Evaluator::many(kernel, core, &rows, &external, &mut slices, threads))
     } else {
         let mut evaluator = model.evaluator.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -100,7 +101,7 @@ pub(crate) fn free_floating<'py>(
     frame: usize,
     state: &[&Bound<'py, PyAny>],
     external: Option<&Bound<'py, PyDict>>,
-    threads: Option<usize>,
+    threads: Option<Count>,
 ) -> PyResult<PyFreeFloating> {
     let n = model.model.joint_count();
     let shapes: [&[usize]; 5] = [&[n, n], &[n], &[n], &[6, n], &[6]];

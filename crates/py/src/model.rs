@@ -1,6 +1,6 @@
 //! The robot.
 
-use crate::arrays::{array_of, fixed};
+use crate::arrays::{Count, array_of, fixed};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
 use nalgebra::Matrix3;
@@ -158,7 +158,7 @@ impl PyModel {
         py: Python<'py>,
         q: Any<'_, 'py>,
         dv: Any<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         self.one(py, Kernel::Integrate, &[q, dv], None, &[self.model.nq()], threads)
     }
@@ -170,7 +170,7 @@ impl PyModel {
         py: Python<'py>,
         q: Any<'_, 'py>,
         q2: Any<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         self.one(py, Kernel::Difference, &[q, q2], None, &[self.model.nv()], threads)
     }
@@ -182,7 +182,7 @@ impl PyModel {
         py: Python<'py>,
         q: Any<'_, 'py>,
         frame: Any<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         self.one(py, Kernel::FramePose(self.frame(frame)?), &[q], None, &[4, 4], threads)
     }
@@ -195,7 +195,7 @@ impl PyModel {
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         frame: Any<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         self.one(py, Kernel::FrameVelocity(self.frame(frame)?), &[q, v], None, &[6], threads)
     }
@@ -207,7 +207,7 @@ impl PyModel {
         py: Python<'py>,
         q: Any<'_, 'py>,
         frame: Any<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         self.one(py, Kernel::FrameJacobian(self.frame(frame)?), &[q], None, &[6, self.model.nv()], threads)
     }
@@ -218,7 +218,7 @@ impl PyModel {
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         let nv = self.model.nv();
         self.one(py, Kernel::MassMatrix, &[q], None, &[nv, nv], threads)
@@ -231,7 +231,7 @@ impl PyModel {
         py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         self.one(py, Kernel::BiasForces, &[q, v], None, &[self.model.nv()], threads)
     }
@@ -247,7 +247,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         a: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         self.one(py, Kernel::InverseDynamics, &[q, v, a], external, &[self.model.nv()], threads)
     }
@@ -263,7 +263,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         tau: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         self.one(py, Kernel::ForwardDynamics, &[q, v, tau], external, &[self.model.nv()], threads)
     }
@@ -275,7 +275,7 @@ impl PyModel {
         py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         self.one(py, Kernel::Momentum, &[q, v], None, &[6], threads)
     }
@@ -287,7 +287,7 @@ impl PyModel {
         py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let energy = self.one(py, Kernel::KineticEnergy, &[q, v], None, &[], threads)?;
         energy.call_method1("__getitem__", (pyo3::types::PyTuple::empty(py),))
@@ -299,7 +299,7 @@ impl PyModel {
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         self.one(py, Kernel::CenterOfMass, &[q], None, &[3], threads)
     }
@@ -313,7 +313,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<PyFreeFloating> {
         free_floating(py, self, self.frame(frame)?, &[q, v], external, threads)
     }
@@ -339,7 +339,7 @@ impl PyModel {
         values: &[Any<'_, 'py>],
         external: External<'_, 'py>,
         shape: &[usize],
-        threads: Option<usize>,
+        threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
         let mut outputs = evaluate(py, self, kernel, values, external, &[shape], threads)?;
         Ok(outputs.swap_remove(0))

@@ -1,13 +1,15 @@
 //! Many runs at once.
 
-use crate::arrays::{Input, fresh, wrong_shape, zeros};
+use crate::arrays::{Count, Input, fresh, wrong_shape, zeros};
 use crate::control::PyComputedTorque;
 use crate::errors::{IntoPython, fields, plain, raise};
 use crate::model::PyModel;
 use crate::reference;
-use crate::simulation::integrator_named;
+use crate::simulation::{PACE, integrator_named};
 use onorbit_core::batch::{Rollout, RolloutControl};
 use pyo3::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError, mpsc};
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
@@ -27,16 +29,17 @@ pub(crate) fn rollout<'py>(
     model: &PyModel,
     q0: Any<'_, 'py>,
     v0: Any<'_, 'py>,
-    steps: usize,
+    steps: Count,
     time_step: f64,
     tau: Option<Any<'_, 'py>>,
     controller: Option<&Bound<'py, PyComputedTorque>>,
     reference: Option<Any<'_, 'py>>,
     integrator: &str,
-    record_every: Option<usize>,
-    threads: Option<usize>,
+    record_every: Option<Count>,
+    threads: Option<Count>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let core = &*model.model;
+    let (steps, record_every) = (steps.0, record_every.map(|count| count.0));
     let (q0, v0) = (Input::new(q0, "q0")?, Input::new(v0, "v0")?);
     let batch = batch_of(py, &q0, "q0", core.nq())?;
     if batch_of(py, &v0, "v0", core.nv())? != batch {
@@ -76,15 +79,47 @@ pub(crate) fn rollout<'py>(
         }
     };
     let integrator = integrator_named(py, integrator)?;
-    let rollout = Rollout { steps, time_step, integrator, control, record_every, threads };
+    let (stop, threads) = (AtomicBool::new(false), threads.map(|count| count.0));
+    let rollout = Rollout { steps, time_step, integrator, control, record_every, threads, stop: &stop };
     let shape = |width: usize| match record_every {
         None => vec![batch, width],
         Some(_) => vec![batch, rollout.rows(), width],
     };
     let (q, v) = (zeros(py, &shape(core.nq()))?, zeros(py, &shape(core.nv()))?);
     let (to_q, to_v, from_q, from_v) = (fresh(&q), fresh(&v), q0.data(), v0.data());
-    py.detach(|| rollout.run(core, from_q, from_v, to_q, to_v)).map_err(|error| error.into_python(py))?;
+    let result = interruptible(py, &stop, || rollout.run(core, from_q, from_v, to_q, to_v))?;
+    result.map_err(|error| error.into_python(py))?;
     Ok((q.into_any(), v.into_any()))
+}
+
+/// Runs `work` on a thread of its own and looks for Ctrl-C meanwhile, which sets `stop`.
+fn interruptible<R: Send>(py: Python<'_>, stop: &AtomicBool, work: impl FnOnce() -> R + Send) -> PyResult<R> {
+    std::thread::scope(|scope| {
+        let (done, finished) = mpsc::channel();
+        let finished = Mutex::new(finished);
+        let worker = scope.spawn(move || {
+            let result = work();
+            let _ = done.send(()); // the receiver outlives the worker
+            result
+        });
+        let mut raised = None;
+        while py.detach(|| wait(&finished)) == Err(mpsc::RecvTimeoutError::Timeout) {
+            if let Err(error) = py.check_signals() {
+                stop.store(true, Ordering::Relaxed);
+                raised = Some(error);
+            }
+        }
+        match (raised, py.detach(|| worker.join())) {
+            (Some(error), _) => Err(error),
+            (None, Ok(result)) => Ok(result),
+            (None, Err(panic)) => std::panic::resume_unwind(panic),
+        }
+    })
+}
+
+/// Waits for the worker, but not longer than the pace of looking for signals.
+fn wait(finished: &Mutex<mpsc::Receiver<()>>) -> Result<(), mpsc::RecvTimeoutError> {
+    finished.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(PACE)
 }
 
 /// The batch size of `(B, width)`.

@@ -13,13 +13,13 @@ use onorbit_core::model::Model;
 use onorbit_core::simulation::{Integrator, RunFailure, Simulation, SimulationError};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, TryLockError};
 use std::time::{Duration, Instant};
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// Wall-clock time between two looks at signals and progress.
-const PACE: Duration = Duration::from_millis(50);
+pub(crate) const PACE: Duration = Duration::from_millis(50);
 
 /// A robot, where it starts, what acts on it and how time is cut; :meth:`run` starts afresh at every call.
 ///
@@ -107,8 +107,12 @@ impl PySimulation {
     #[pyo3(signature = (duration, *, progress=None))]
     fn run(&self, py: Python<'_>, duration: f64, progress: Option<Py<PyAny>>) -> PyResult<PyTrace> {
         let mut raised: Option<PyErr> = None;
-        let (result, wall) = py.detach(|| {
-            let mut simulation = self.simulation.lock().unwrap_or_else(PoisonError::into_inner);
+        let ran = py.detach(|| {
+            let mut simulation = match self.simulation.try_lock() {
+                Ok(simulation) => simulation,
+                Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+                Err(TryLockError::WouldBlock) => return None,
+            };
             let start = Instant::now();
             let mut last = start;
             let mut monitor = |t: f64| {
@@ -125,8 +129,12 @@ impl PySimulation {
                 }
             };
             let result = simulation.run(duration, &mut monitor);
-            (result, start.elapsed().as_secs_f64())
+            Some((result, start.elapsed().as_secs_f64()))
         });
+        let Some((result, wall)) = ran else {
+            let message = "this simulation is running already; make another one to run beside it";
+            return Err(plain(py, "SimulationError", message));
+        };
         let wrap =
             |trace, is_complete| PyTrace { trace, model: Arc::clone(&self.model), is_complete, wall_s: wall };
         match result {

@@ -2,11 +2,10 @@
 
 use super::input::{InputError, check_finite, check_quaternions};
 use super::kernel::{Kernel, Work};
-use super::threads::on_threads;
+use super::threads::for_each;
 use crate::dynamics::FrameWrench;
 use crate::model::Model;
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Quat, Real};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Rows of an input: all numbers, and how many a row has.
@@ -161,17 +160,18 @@ fn all<S: Real>(
     let count = inputs[0].data.len() / inputs[0].width;
     let widths = kernel.outputs(model);
     // hand every task its own rows of every output
-    let mut tasks: Vec<Vec<&mut [f64]>> = (0..count.div_ceil(CHUNK)).map(|_| Vec::new()).collect();
+    let mut tasks: Vec<Task<'_>> =
+        (0..count.div_ceil(CHUNK)).map(|index| Task { first: index * CHUNK, outputs: Vec::new() }).collect();
     for (out, width) in outputs.iter_mut().zip(&widths) {
         let mut chunks = out.chunks_mut((CHUNK * width).max(1)); // none where a row holds nothing
-        tasks.iter_mut().for_each(|task| task.push(chunks.next().unwrap_or_default()));
+        tasks.iter_mut().for_each(|task| task.outputs.push(chunks.next().unwrap_or_default()));
     }
-    let run = |space: &mut Space<S>, (index, mut task): (usize, Vec<&mut [f64]>)| {
-        let states = index * CHUNK..count.min((index + 1) * CHUNK);
+    let run = |space: &mut Space<S>, mut task: Task<'_>| {
+        let states = task.first..count.min(task.first + CHUNK);
         for start in states.clone().step_by(S::LANES) {
             let end = states.end.min(start + S::LANES);
-            let mut rows: Vec<&mut [f64]> = Vec::with_capacity(task.len());
-            for (rest, width) in task.iter_mut().zip(&widths) {
+            let mut rows: Vec<&mut [f64]> = Vec::with_capacity(task.outputs.len());
+            for (rest, width) in task.outputs.iter_mut().zip(&widths) {
                 let (now, later) = std::mem::take(rest).split_at_mut((end - start) * width);
                 rows.push(now);
                 *rest = later;
@@ -179,7 +179,11 @@ fn all<S: Real>(
             space.states(kernel, model, inputs, start..end, external, &mut rows);
         }
     };
-    on_threads(threads, tasks.len(), || {
-        tasks.into_par_iter().enumerate().for_each_init(|| Space::new(model), run);
-    })
+    for_each(threads, tasks, || Space::new(model), run)
+}
+
+/// Some states of a batch and their rows of every output.
+struct Task<'a> {
+    first: usize,
+    outputs: Vec<&'a mut [f64]>,
 }

@@ -33,7 +33,7 @@ pub enum Kernel {
     CenterOfMass,
     /// `q, v` → `M* (n, n)`, `c* (n,)`, `Q* (n,)`, `Jg (6, n)`, `d (6,)`.
     FreeFloating(usize),
-    /// `q, δ` → `(nq,)`.
+    /// `q, dv` → `(nq,)`.
     Integrate,
     /// `q, q2` → `(nv,)`.
     Difference,
@@ -68,7 +68,7 @@ impl Kernel {
             Self::FramePose(_) | Self::FrameJacobian(_) | Self::MassMatrix | Self::CenterOfMass => &["q"],
             Self::InverseDynamics => &["q", "v", "a"],
             Self::ForwardDynamics => &["q", "v", "tau"],
-            Self::Integrate => &["q", "delta"],
+            Self::Integrate => &["q", "dv"],
             Self::Difference => &["q", "q2"],
             _ => &["q", "v"],
         }

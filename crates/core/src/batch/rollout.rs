@@ -1,14 +1,14 @@
 //! Many runs at once, in empty space: passive, with given torques, or under computed torque.
 
 use super::input::{InputError, check_finite, check_quaternions};
-use super::threads::on_threads;
+use super::threads::for_each;
 use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
 use crate::dynamics::{kinematics, momentum};
 use crate::model::Model;
 use crate::reference::TaskReference;
 use crate::simulation::{Integrator, Nothing, Plant, Stages, State};
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Quat, Real};
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What drives the joints in a rollout.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,6 +37,8 @@ pub struct Rollout<'a> {
     pub record_every: Option<usize>,
     /// Number of threads; all cores if `None`.
     pub threads: Option<usize>,
+    /// Set from elsewhere to stop early; what is written then is of no use.
+    pub stop: &'a AtomicBool,
 }
 
 impl Rollout<'_> {
@@ -87,17 +89,20 @@ impl Rollout<'_> {
     ) -> Result<(), InputError> {
         let (nq, nv) = (model.nq(), model.nv());
         let (q_rows, v_rows) = (S::LANES * self.rows() * nq, S::LANES * self.rows() * nv);
-        let groups = q0.len().div_ceil(S::LANES * nq);
-        on_threads(self.threads, groups, || {
-            q.par_chunks_mut(q_rows)
-                .zip(v.par_chunks_mut(v_rows))
-                .zip(q0.par_chunks(S::LANES * nq))
-                .zip(v0.par_chunks(S::LANES * nv))
-                .enumerate()
-                .for_each(|(group, (((q, v), q0), v0))| {
-                    Lanes::<S>::new(self, model, q0, v0, group * S::LANES).run(q, v);
-                });
-        })
+        let tasks = q
+            .chunks_mut(q_rows)
+            .zip(v.chunks_mut(v_rows))
+            .zip(q0.chunks(S::LANES * nq).zip(v0.chunks(S::LANES * nv)))
+            .enumerate()
+            .collect();
+        for_each(
+            self.threads,
+            tasks,
+            || (),
+            |(), (group, ((q, v), (q0, v0)))| {
+                Lanes::<S>::new(self, model, q0, v0, group * S::LANES).run(q, v);
+            },
+        )
     }
 }
 
@@ -137,6 +142,9 @@ impl<'a, S: Real> Lanes<'a, S> {
         let Rollout { steps, time_step, record_every, .. } = *self.settings;
         let mut row = 0;
         for step in 0..steps {
+            if self.settings.stop.load(Ordering::Relaxed) {
+                return;
+            }
             self.plant.settle(&mut self.state);
             if record_every.is_some_and(|every| step % every == 0) {
                 self.write(row, q, v);

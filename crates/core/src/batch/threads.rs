@@ -1,29 +1,33 @@
 //! On how many threads a batch runs.
 
 use super::input::InputError;
+use rayon::prelude::*;
 
-/// Runs `work`, which is cut into `tasks`, on `threads` threads: all cores if `None`, never more
-/// than there are tasks or processors.
+/// Runs `task` on every element, with a workspace per thread: on all cores if `threads` is `None`,
+/// never on more than there are elements or processors, and on the calling thread if that is one.
 ///
 /// # Errors
 /// [`InputError::NoThreads`].
-pub(super) fn on_threads(
+pub(super) fn for_each<T: Send, W>(
     threads: Option<usize>,
-    tasks: usize,
-    work: impl FnOnce() + Send,
+    tasks: Vec<T>,
+    workspace: impl Fn() -> W + Sync,
+    task: impl Fn(&mut W, T) + Sync,
 ) -> Result<(), InputError> {
-    let Some(threads) = threads else {
-        work();
-        return Ok(());
-    };
-    if threads == 0 {
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    let wanted = threads.unwrap_or(processors).min(tasks.len()).min(processors);
+    if threads == Some(0) {
         return Err(InputError::NoThreads);
     }
-    let processors = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = threads.min(tasks.max(1)).min(processors);
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(work),
-        Err(_) => work(), // no threads to be had: the shared pool computes the same
+    if wanted <= 1 {
+        let mut space = workspace();
+        tasks.into_iter().for_each(|one| task(&mut space, one));
+        return Ok(());
+    }
+    let all = || tasks.into_par_iter().for_each_init(&workspace, &task);
+    match threads.map(|_| rayon::ThreadPoolBuilder::new().num_threads(wanted).build()) {
+        Some(Ok(pool)) => pool.install(all),
+        _ => all(), // the shared pool; it computes the same bits
     }
     Ok(())
 }

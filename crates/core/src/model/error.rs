@@ -84,18 +84,33 @@ impl fmt::Display for ModelWarning {
     }
 }
 
+impl ModelError {
+    /// The name that was probably meant, for a name that does not exist.
+    pub fn suggestion(&self) -> Option<&str> {
+        match self {
+            Self::UnknownName { name, candidates, .. } => closest(candidates, name),
+            _ => None,
+        }
+    }
+}
+
 /// `; did you mean 'x'?` for the closest candidate, or the list when there are few.
 pub(super) fn nearest(candidates: &[String], name: &str) -> String {
+    match closest(candidates, name) {
+        Some(meant) => format!("; did you mean '{meant}'?"),
+        None if (1..=12).contains(&candidates.len()) => format!("; there are: {}", candidates.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// The candidate a few letters away, or else one that contains the name.
+fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a str> {
     const LONGEST: usize = 100; // comparing takes the product of the lengths
     let is_name = |c: &&String| c.len() <= LONGEST && name.len() <= LONGEST;
     let best = candidates.iter().filter(is_name).min_by_key(|c| distance(c, name));
-    let part = candidates.iter().find(|c| name.len() > 2 && c.contains(name));
-    match best {
-        Some(c) if distance(c, name) <= 2 + name.len() / 3 => format!("; did you mean '{c}'?"),
-        _ if part.is_some() => part.map_or_else(String::new, |c| format!("; did you mean '{c}'?")),
-        Some(_) if candidates.len() <= 12 => format!("; there are: {}", candidates.join(", ")),
-        _ => String::new(),
-    }
+    let near = best.filter(|c| distance(c, name) <= 2 + name.len() / 3);
+    let part = || candidates.iter().find(|c| name.len() > 2 && c.contains(name));
+    near.or_else(part).map(String::as_str)
 }
 
 /// Levenshtein distance, case ignored.
