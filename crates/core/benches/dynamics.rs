@@ -1,44 +1,19 @@
 //! Kernels on a torso with one (nv = 13) or two (nv = 20) seven-joint arms; states vary per call.
 #![allow(missing_docs, clippy::unwrap_used)] // criterion's macros write undocumented items
 
+mod common;
+
+use common::torso;
 use criterion::{Criterion, criterion_group, criterion_main};
-use nalgebra::{Isometry3, Matrix3, Vector3};
 use onorbit_core::dynamics::{
-    Data, FreeFloating, bias_forces, forward_dynamics, frame_drift, frame_jacobian, free_floating,
-    inverse_dynamics, kinematics, mass_matrix, momentum,
+    Data, FreeFloating, bias_forces, center_of_mass, forward_dynamics, frame_drift, frame_jacobian,
+    free_floating, inverse_dynamics, kinematics, kinetic_energy, mass_matrix, momentum, positions,
 };
-use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};
+use onorbit_core::model::{difference, integrate};
 use onorbit_core::spatial::{Fused, Real};
 use std::hint::black_box;
 
-const MASS: [f64; 7] = [2.741, 2.425, 2.209, 0.877, 1.878, 0.409, 0.308];
-const LENGTH: [f64; 7] = [0.28, 0.144, 0.0, 0.274, 0.265, 0.0, 0.0];
 const STATES: usize = 256;
-
-fn torso(arms: usize) -> Model {
-    let body = |mass: f64, z: f64, moments: [f64; 3]| {
-        let inertia = Matrix3::from_diagonal(&Vector3::from(moments));
-        Some(Inertial { mass, com: Vector3::new(0.0, 0.0, z), inertia })
-    };
-    let base = Link::new("torso", body(93.0, 0.0, [18.6, 15.4, 4.1]));
-    let mut builder = ModelBuilder::new("torso", base).unwrap();
-    for arm in 0..arms {
-        let (mut parent, mut origin) = ("torso".to_owned(), Vector3::new(0.0, 0.25 - 0.5 * arm as f64, 0.5));
-        for i in 0..7 {
-            let axis = if i % 2 == 0 { Vector3::z() } else { Vector3::y() };
-            let name = format!("arm{arm}_link{i}");
-            let joint = Joint::new(
-                &format!("arm{arm}_joint{i}"),
-                JointKind::Revolute(axis),
-                Isometry3::translation(origin.x, origin.y, origin.z),
-            );
-            let link = Link::new(&name, body(MASS[i], LENGTH[i] / 2.0, [0.012, 0.011, 0.01]));
-            builder.add(&parent, joint, link).unwrap();
-            (parent, origin) = (name, Vector3::new(0.0, 0.0, LENGTH[i]));
-        }
-    }
-    builder.build().unwrap()
-}
 
 fn numbers<S: Real>(n: usize, seed: usize) -> Vec<S> {
     (0..n).map(|i| S::of((1.3 * i as f64 + 0.7 * seed as f64 + 0.1).sin())).collect()
@@ -105,6 +80,34 @@ fn kernels<S: Real>(c: &mut Criterion, scalar: &str, arms: usize) {
             let (q, v, _) = next();
             kinematics(&model, &mut data, q, v);
             momentum(&data, q)
+        });
+    });
+    group.bench_function("kinetic_energy", |b| {
+        b.iter(|| {
+            let (q, v, _) = next();
+            kinematics(&model, &mut data, q, v);
+            kinetic_energy(&model, &data, v)
+        });
+    });
+    group.bench_function("center_of_mass", |b| {
+        b.iter(|| {
+            let (q, _, _) = next();
+            positions(&model, &mut data, q);
+            center_of_mass(&data, q)
+        });
+    });
+    let mut moved = vec![S::of(0.0); model.nq()];
+    group.bench_function("integrate", |b| {
+        b.iter(|| {
+            let (q, v, _) = next();
+            integrate(q, v, &mut moved);
+        });
+    });
+    group.bench_function("difference", |b| {
+        b.iter(|| {
+            let (q, v, _) = next();
+            integrate(q, v, &mut moved);
+            difference(q, &moved, &mut out);
         });
     });
     group.bench_function("free_floating", |b| {

@@ -2,12 +2,15 @@
 //! that of one step, start and recording (every 100th step) included. Held: robot and state.
 #![allow(missing_docs, clippy::unwrap_used)] // criterion's macros write undocumented items
 
+mod common;
+
+use common::torso;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
-use nalgebra::{Isometry3, Matrix3, Vector3};
+use nalgebra::Vector3;
 use onorbit_core::control::{ComputedTorque, ControlLaw};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::environment::GravityGradient;
-use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder, neutral};
+use onorbit_core::model::neutral;
 use onorbit_core::orbit::{Kepler, MU_EARTH};
 use onorbit_core::reference::{LineParabola, TaskReference};
 use onorbit_core::simulation::{Integrator, Simulation};
@@ -19,33 +22,11 @@ use std::time::Instant;
 
 const STEPS: usize = 1000;
 const STEP: f64 = 1e-3;
-const MASS: [f64; 7] = [2.741, 2.425, 2.209, 0.877, 1.878, 0.409, 0.308];
-const LENGTH: [f64; 7] = [0.28, 0.144, 0.0, 0.274, 0.265, 0.0, 0.1];
 const START: [f64; 7] = [0.3, 0.6, -0.4, 1.3, 0.2, 1.0, -0.3];
-
-fn torso() -> Model {
-    let body = |mass: f64, z: f64, moments: [f64; 3]| {
-        let inertia = Matrix3::from_diagonal(&Vector3::from(moments));
-        Some(Inertial { mass, com: Vector3::new(0.0, 0.0, z), inertia })
-    };
-    let base = Link::new("torso", body(93.0, 0.0, [18.6, 15.4, 4.1]));
-    let mut builder = ModelBuilder::new("torso", base).unwrap();
-    let (mut parent, mut origin) = ("torso".to_owned(), Vector3::new(0.0, 0.25, 0.5));
-    for i in 0..7 {
-        let axis = if i % 2 == 0 { Vector3::z() } else { Vector3::y() };
-        let place = Isometry3::translation(origin.x, origin.y, origin.z);
-        let joint = Joint::new(&format!("joint{i}"), JointKind::Revolute(axis), place);
-        let name = format!("link{i}");
-        let link = Link::new(&name, body(MASS[i], LENGTH[i] / 2.0, [0.012, 0.011, 0.01]));
-        builder.add(&parent, joint, link).unwrap();
-        (parent, origin) = (name, Vector3::new(0.0, 0.0, LENGTH[i]));
-    }
-    builder.build().unwrap()
-}
 
 /// The arm swinging freely.
 fn passive() -> Simulation {
-    let model = torso();
+    let model = torso(1);
     let mut q = neutral(&model);
     q[7..].copy_from_slice(&START);
     let v = (0..model.nv()).map(|i| 0.3 * (1.3 * i as f64).sin()).collect();
@@ -63,7 +44,7 @@ fn in_orbit(mut simulation: Simulation) -> Simulation {
 /// Tracking a line with computed torque.
 fn controlled(mut simulation: Simulation) -> Simulation {
     simulation.v.fill(0.0);
-    let tool = simulation.model.frame("link6").unwrap();
+    let tool = simulation.model.frame("arm0_link6").unwrap();
     let mut data = Data::new(&simulation.model);
     positions(&simulation.model, &mut data, &simulation.q);
     let pose = frame_pose(&simulation.model, &data, &simulation.q, tool);
