@@ -103,7 +103,10 @@ impl Kernel {
         match self {
             Self::FramePose(frame) => {
                 positions(model, data, q);
-                let pose = frame_pose(model, data, q, frame);
+                let pose = S::enter(
+                    #[inline(always)]
+                    || frame_pose(model, data, q, frame),
+                );
                 let (r, p, zero) = (pose.rot_wf, pose.pos_w, S::of(0.0));
                 out[0].copy_from_slice(&[
                     r.x.x,
@@ -126,7 +129,11 @@ impl Kernel {
             }
             Self::FrameVelocity(frame) => {
                 kinematics(model, data, q, &inputs[1]);
-                frame_velocity(model, data, q, frame).write(&mut out[0]);
+                let velocity = S::enter(
+                    #[inline(always)]
+                    || frame_velocity(model, data, q, frame),
+                );
+                velocity.write(&mut out[0]);
             }
             Self::FrameJacobian(frame) => {
                 positions(model, data, q);
@@ -161,8 +168,14 @@ impl Kernel {
                 out[3].copy_from_slice(&reduced.jacobian);
                 reduced.drift.write(&mut out[4]);
             }
-            Self::Integrate => integrate(q, &inputs[1], &mut out[0]),
-            Self::Difference => difference(q, &inputs[1], &mut out[0]),
+            Self::Integrate => S::enter(
+                #[inline(always)]
+                || integrate(q, &inputs[1], &mut out[0]),
+            ),
+            Self::Difference => S::enter(
+                #[inline(always)]
+                || difference(q, &inputs[1], &mut out[0]),
+            ),
         }
     }
 }
