@@ -51,7 +51,7 @@ fn honest_free_motion_of_random_robots_is_green() {
             let certificate = certify(&simulation.model, &trace);
             println!("seed {seed}, step {time_step}: {:?}", certificate.checks());
             assert!(certificate.passed(), "seed {seed}: {certificate:#?}");
-            assert_eq!(certificate.checks().len(), 6);
+            assert_eq!(certificate.checks().len(), 7);
         }
     }
 }

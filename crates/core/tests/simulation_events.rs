@@ -152,7 +152,7 @@ fn a_diverging_run_names_time_and_state_and_keeps_its_trace() {
         let failure = simulation.run(100.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
         let SimulationError::Diverged { time, q, v } = &failure.error else { panic!("{failure}") };
         assert!(q.iter().chain(v).all(|x| x.is_finite()) && q.len() == 14 && v.len() == 13);
-        assert!(*time > 0.0 && *time < 100.0);
+        assert!(*time > 0.0 && *time < 100.0, "{failure}");
         let trace = &failure.trace;
         assert!(trace.rows() > 1 && trace.time.last().unwrap() <= time);
         assert_eq!(trace.acceleration.len(), 13 * trace.rows());

@@ -1,21 +1,39 @@
 //! Controllers: the native law, and Python's own.
 
 use crate::arrays::{Input, array_of, fixed, wrong_shape};
-use crate::errors::IntoPython;
+use crate::errors::{IntoPython, plain};
 use crate::model::PyModel;
 use onorbit_core::control::{ComputedTorque, ControlError, Controller, Observation};
+use onorbit_core::model::Model;
 use pyo3::prelude::*;
+use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// Computed torque on the generalized Jacobian, Eq. (6)-(8) of the OnOrbitROS paper with the exact drift.
 ///
 /// ``tool`` is a frame of ``model``; ``kp`` (1/s²) and ``kd`` (1/s) are numbers, (6,) or (6, 6), position rows first;
-/// ``damping`` the largest damping of the pseudo-inverse near singularities, ``null_space_damping`` (1/s) brakes
-/// self-motion, ``compensate_environment`` makes external wrenches known to the law.
+/// ``damping`` the singular value of the generalized Jacobian below which its inverse is damped, ``null_space_damping``
+/// (1/s) brakes self-motion, ``compensate_environment`` and ``compensate_friction`` make external wrenches and the joints'
+/// damping and friction known to the law. Raises ``ControlError``, ``FrameError`` or ``ShapeError``.
 #[pyclass(name = "ComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyComputedTorque {
     pub(crate) law: ComputedTorque,
+    model: Arc<Model>,
+}
+
+impl PyComputedTorque {
+    /// Refuses a robot that the law was not made for.
+    pub(crate) fn check_model(&self, py: Python<'_>, model: &Arc<Model>) -> PyResult<()> {
+        if Arc::ptr_eq(&self.model, model) || self.model.is_like(model) {
+            return Ok(());
+        }
+        let (own, other) = (self.model.name(), model.name());
+        let message = format!(
+            "the controller was made for robot '{own}', not for '{other}': make it from the same model"
+        );
+        Err(plain(py, "ControlError", &message))
+    }
 }
 
 #[pymethods]
@@ -23,6 +41,7 @@ impl PyComputedTorque {
     #[new]
     #[pyo3(signature = (
         model, tool, *, kp=None, kd=None, damping=0.05, null_space_damping=0.0, compensate_environment=true,
+        compensate_friction=true,
     ))]
     fn new(
         py: Python<'_>,
@@ -33,6 +52,7 @@ impl PyComputedTorque {
         damping: f64,
         null_space_damping: f64,
         compensate_environment: bool,
+        compensate_friction: bool,
     ) -> PyResult<Self> {
         let mut law = ComputedTorque::new(model.frame(tool)?, 100.0, 20.0);
         if let Some(kp) = kp {
@@ -44,8 +64,9 @@ impl PyComputedTorque {
         law.damping = damping;
         law.null_space_damping = null_space_damping;
         law.compensate_environment = compensate_environment;
+        law.compensate_friction = compensate_friction;
         law.check(&model.model).map_err(|error| error.into_python(py))?;
-        Ok(Self { law })
+        Ok(Self { law, model: Arc::clone(&model.model) })
     }
 }
 

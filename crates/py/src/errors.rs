@@ -99,6 +99,7 @@ impl IntoPython for InputError {
             Self::NotFinite { name, value, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
             }
+            Self::Singular { .. } => plain(py, "ConvergenceError", &message),
             Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
             Self::Diverged { .. } => plain(py, "SimulationError", &message),
             Self::QuaternionNorm { norm, .. } => {

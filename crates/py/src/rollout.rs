@@ -69,6 +69,7 @@ pub(crate) fn rollout<'py>(
             RolloutControl::Torques(tau.data())
         }
         (None, Some(controller), Some(reference)) => {
+            controller.get().check_model(py, &model.model)?;
             RolloutControl::ComputedTorque(&controller.get().law, reference)
         }
         (None, Some(_), None) => {

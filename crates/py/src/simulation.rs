@@ -78,6 +78,7 @@ impl PySimulation {
         simulation.tool = tool.map(|tool| model.frame(tool)).transpose()?;
         if let Some(controller) = controller {
             if let Ok(law) = controller.cast::<PyComputedTorque>() {
+                law.get().check_model(py, &core)?;
                 let law = law.get().law.clone();
                 simulation.tool.get_or_insert(law.frame);
                 simulation.control = ControlLaw::ComputedTorque(Box::new(law));

@@ -47,7 +47,7 @@ impl Evaluator {
     /// Checks the inputs and computes one state on the calling thread.
     ///
     /// # Errors
-    /// [`InputError`]; the outputs are untouched then.
+    /// [`InputError`]; the outputs are untouched then, but for [`InputError::Singular`].
     pub fn single(
         &mut self,
         kernel: Kernel,
@@ -63,14 +63,14 @@ impl Evaluator {
                 self.fused.states(kernel, model, inputs, 0..1, external, outputs);
             }
         }
-        Ok(())
+        check_regular(kernel, model, outputs)
     }
 
     /// Checks the inputs and computes many states, on `threads` threads (all cores if `None`).
     /// The bits do not depend on the number of threads.
     ///
     /// # Errors
-    /// [`InputError`]; the outputs are untouched then.
+    /// [`InputError`]; the outputs are untouched then, but for [`InputError::Singular`].
     pub fn many(
         kernel: Kernel,
         model: &Model,
@@ -84,7 +84,8 @@ impl Evaluator {
             InstructionSet::Baseline => all::<f64>(kernel, model, inputs, external, outputs, threads),
             InstructionSet::Fused => all::<Lanes4>(kernel, model, inputs, external, outputs, threads),
             InstructionSet::Wide => all::<Lanes8>(kernel, model, inputs, external, outputs, threads),
-        }
+        }?;
+        check_regular(kernel, model, outputs)
     }
 }
 
@@ -105,6 +106,17 @@ fn check(kernel: Kernel, model: &Model, inputs: &[Rows<'_>]) -> Result<(), Input
         }
     }
     Ok(())
+}
+
+/// Refuses what forward dynamics makes of a mass matrix that is singular in this configuration.
+fn check_regular(kernel: Kernel, model: &Model, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
+    if kernel != Kernel::ForwardDynamics {
+        return Ok(()); // no other kernel divides by what a joint feels
+    }
+    match outputs[0].iter().position(|x| !x.is_finite()) {
+        Some(index) => Err(InputError::Singular { state: index / model.nv() }),
+        None => Ok(()),
+    }
 }
 
 impl<S: Real> Space<S> {

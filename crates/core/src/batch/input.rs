@@ -17,9 +17,16 @@ pub enum InputError {
          q[3:7]: normalise it first"
     )]
     QuaternionNorm { state: usize, norm: f64 },
+    #[error(
+        "state {state} is singular: in this configuration nothing resists the motion of some joint; give the links \
+         around it an inertia or the joint a rotor"
+    )]
+    Singular { state: usize },
     #[error("threads is 0, it must be at least 1; leave it out for all cores")]
     NoThreads,
-    #[error("state {state} diverged: it is no longer finite; shorten time_step or soften the gains")]
+    #[error(
+        "state {state} diverged: it is no longer finite; shorten time_step, or soften gains and joint damping"
+    )]
     Diverged { state: usize },
 }
 

@@ -134,7 +134,7 @@ impl<'a, S: Real> Lanes<'a, S> {
         let stages = Stages::new(model, &state, settings.integrator);
         let is_controlled = matches!(settings.control, RolloutControl::ComputedTorque(..));
         let work = is_controlled.then(|| ComputedTorqueWork::new(model));
-        plant.set_slip(&state, settings.time_step);
+        plant.prime(&state);
         Self { settings, plant, state, stages, work, first, count }
     }
 

@@ -3,17 +3,19 @@
 use super::error::ControlError;
 use super::pseudo_inverse::PseudoInverse;
 use crate::dynamics::{Data, FreeFloating, free_floating_recursion};
-use crate::model::Model;
+use crate::model::{JointProperties, Model};
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 
 /// Gains and options of the law
 ///
-/// `τ = M* [Jg⁺ (p̈r − d) − k N q̇] + c* − Q*`,
+/// `τ = M* [Jg⁺ (p̈r − d) − k N q̇ − κ D q̇] + c* − Q* + f`,
 /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`,
 ///
 /// with the exact drift `d` of [`FreeFloating`], the attitude error by the logarithm on SO(3),
-/// `N` the null-space projector of `Jg` and `Q*` what the known external wrenches do.
+/// `N` the null-space projector of `Jg`, `Q*` what the known external wrenches do and `f` what the
+/// joints' damping and friction take. Near a singularity `Jg⁺` gives up directions for its damping;
+/// `D` holds those, and `κ`, the mean of `Kd`'s diagonal, brakes them.
 #[derive(Clone, Debug)]
 pub struct ComputedTorque {
     /// Index of the frame that tracks.
@@ -22,12 +24,14 @@ pub struct ComputedTorque {
     pub kp: [f64; 36],
     /// `Kd`, row major `(6, 6)`, 1/s.
     pub kd: [f64; 36],
-    /// `λ₀`, largest damping of the pseudo-inverse, m or rad.
+    /// `λ₀`, the singular value of `Jg` below which the pseudo-inverse is damped.
     pub damping: f64,
     /// `k`, damping of self-motion, 1/s.
     pub null_space_damping: f64,
     /// Whether the wrenches of the environment are known to the law and compensated.
     pub compensate_environment: bool,
+    /// Whether the joints' damping and Coulomb friction are known to the law and compensated.
+    pub compensate_friction: bool,
 }
 
 impl ComputedTorque {
@@ -40,6 +44,7 @@ impl ComputedTorque {
             damping: 0.05,
             null_space_damping: 0.0,
             compensate_environment: true,
+            compensate_friction: true,
         }
     }
 
@@ -90,7 +95,8 @@ pub struct ComputedTorqueWork<S> {
     pub reduced: FreeFloating<S>,
     inverse: PseudoInverse<S>,
     acceleration: Vec<S>,
-    self_motion: Vec<S>,
+    free: Vec<S>,
+    lost: Vec<S>,
 }
 
 impl<S: Real> ComputedTorqueWork<S> {
@@ -101,7 +107,8 @@ impl<S: Real> ComputedTorqueWork<S> {
             reduced: FreeFloating::new(model),
             inverse: PseudoInverse::new(),
             acceleration: vec![S::of(0.0); n],
-            self_motion: vec![S::of(0.0); n],
+            free: vec![S::of(0.0); n],
+            lost: vec![S::of(0.0); n],
         }
     }
 }
@@ -129,13 +136,14 @@ pub fn computed_torque<S: Real>(
     free_floating_recursion(model, data, q, v, law.frame, &mut work.reduced);
     S::enter(
         #[inline(always)]
-        || kernel(law, v, desired, work, tau),
+        || kernel(law, model, v, desired, work, tau),
     );
 }
 
 #[inline(always)]
 fn kernel<S: Real>(
     law: &ComputedTorque,
+    model: &Model,
     v: &[S],
     desired: &TaskSample<S>,
     work: &mut ComputedTorqueWork<S>,
@@ -148,23 +156,39 @@ fn kernel<S: Real>(
     let lag = desired.velocity - reduced.velocity;
     let command = desired.acceleration + gain(&law.kd, lag) + gain(&law.kp, error) - reduced.drift;
 
-    // q̈ = Jg⁺ (p̈r − d) − k N q̇
+    // q̈ = Jg⁺ (p̈r − d) − k N q̇ − κ D q̇
     let jacobian = &reduced.jacobian;
     work.inverse.factor(jacobian, n, S::of(law.damping));
     let mut task = [S::of(0.0); 6];
     command.write(&mut task);
     work.inverse.apply(jacobian, task, &mut work.acceleration);
-    work.inverse.project(jacobian, &v[6..], &mut work.self_motion);
-    let k = S::of(-law.null_space_damping);
-    for (a, s) in work.acceleration.iter_mut().zip(&work.self_motion) {
-        *a = s.mul_add(k, *a);
+    work.inverse.split(jacobian, &v[6..], &mut work.free, &mut work.lost);
+    let brake = S::of((0..6).map(|i| law.kd[7 * i]).sum::<f64>() / 6.0);
+    for (j, a) in work.acceleration.iter_mut().enumerate() {
+        *a = *a - work.free[j] * S::of(law.null_space_damping) - work.lost[j] * brake;
     }
 
-    // τ = M* q̈ + c* − Q*
+    // τ = M* q̈ + c* − Q* + f
     for (i, tau) in tau.iter_mut().enumerate() {
         let inertial = dot(&reduced.inertia[i * n..(i + 1) * n], &work.acceleration);
         *tau = inertial + reduced.bias[i] - reduced.external[i];
+        if law.compensate_friction {
+            *tau += friction(&model.joints()[i], v[i + 6]);
+        }
     }
+}
+
+/// Rate at which the law counts on all of the Coulomb friction, rad/s (m/s): slower, the sign of a
+/// measured rate is chance.
+const SLIP: f64 = 1e-2;
+
+/// `b q̇ + f sat(q̇/s)`: what the joint takes of its torque.
+#[inline(always)]
+fn friction<S: Real>(joint: &JointProperties, rate: S) -> S {
+    let one = S::of(1.0);
+    let share = rate * S::of(1.0 / SLIP);
+    let share = S::select(S::less(share, -one), -one, S::select(S::less(one, share), one, share));
+    rate * S::of(joint.damping) + share * S::of(joint.friction)
 }
 
 /// `K x` for a row-major `(6, 6)` gain.

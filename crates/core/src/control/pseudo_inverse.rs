@@ -5,21 +5,21 @@ use crate::spatial::{Real, cholesky_factor, cholesky_solve, dot};
 /// Task rows: three of position, three of attitude.
 const ROWS: usize = 6;
 
-/// `Jᵀ (J Jᵀ + λ²)⁻¹`, undamped where the Jacobian is well conditioned.
+/// `J⁺ = Jᵀ (J Jᵀ + λ²)⁻¹`, undamped where the Jacobian is well conditioned.
 ///
-/// The smallest Cholesky pivot of `J Jᵀ` over its trace, `ρ`, bounds the distance from
-/// singularity; below `ρ₀ = 1e-6` the damping grows, `λ² = λ₀² (1 − ρ/ρ₀)²`. The null-space
-/// projector is always built from the undamped inverse: a damped one leaks into the task.
+/// `σ² = 1/tr (J Jᵀ)⁻¹` is at most the square of the smallest singular value, and at least a sixth of
+/// it. Where it falls below `λ₀²` the damping makes up for what is missing, `λ² = λ₀² − σ²`. The
+/// null-space projector is always built from the undamped inverse: a damped one leaks into the
+/// task.
 ///
-/// Source: Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control 108(3), 1986.
+/// Source: Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control 108(3), 1986, with another measure of
+/// the distance from singularity.
 #[derive(Clone, Debug)]
 pub struct PseudoInverse<S> {
     gram: [S; ROWS * ROWS],
     damped: [S; ROWS * ROWS],
     undamped: [S; ROWS * ROWS],
 }
-
-const CONDITION_LIMIT: f64 = 1e-6;
 
 impl<S: Real> PseudoInverse<S> {
     /// Space for a factor.
@@ -41,19 +41,15 @@ impl<S: Real> PseudoInverse<S> {
         }
         // the floor keeps the factor of a singular Jacobian finite; it is rounding otherwise
         self.undamped = self.gram;
-        add_diagonal(&mut self.undamped, trace * S::of(1e-14) + S::of(f64::MIN_POSITIVE));
+        let floor = trace * S::of(1e-14) + S::of(f64::MIN_POSITIVE);
+        add_diagonal(&mut self.undamped, floor);
         cholesky_factor(&mut self.undamped, ROWS);
 
-        let mut largest = S::of(0.0); // of the inverse pivots
-        for i in 0..ROWS {
-            let pivot = self.undamped[i * ROWS + i];
-            largest = S::select(S::less(largest, pivot), pivot, largest);
-        }
-        let condition = S::of(1.0) / (largest * largest * trace);
-        let short = S::of(1.0) - condition * S::of(1.0 / CONDITION_LIMIT);
-        let short = S::select(S::less(short, S::of(0.0)), S::of(0.0), short);
+        // λ² = max(λ₀² − σ², 0)
+        let missing = damping * damping - S::of(1.0) / inverse_trace(&self.undamped);
+        let missing = S::select(S::less(missing, S::of(0.0)), S::of(0.0), missing);
         self.damped = self.gram;
-        add_diagonal(&mut self.damped, damping * damping * short * short + trace * S::of(1e-14));
+        add_diagonal(&mut self.damped, missing + floor);
         cholesky_factor(&mut self.damped, ROWS);
     }
 
@@ -63,16 +59,21 @@ impl<S: Real> PseudoInverse<S> {
         transpose_apply(&self.damped, jacobian, x, out);
     }
 
-    /// `out = (1 − J⁺ J) y`: the part of `y`, `(n,)`, that the task does not feel.
+    /// Splits joint rates `y`, `(n,)`: what the task does not feel, `(1 − J⁺ J) y` undamped, into
+    /// `free`, and what it feels but gives up for the damping, into `lost` (zero where undamped).
     #[inline(always)]
-    pub fn project(&self, jacobian: &[S], y: &[S], out: &mut [S]) {
+    pub fn split(&self, jacobian: &[S], y: &[S], free: &mut [S], lost: &mut [S]) {
         let n = y.len();
         let mut felt = [S::of(0.0); ROWS];
         for (i, felt) in felt.iter_mut().enumerate() {
             *felt = dot(&jacobian[i * n..(i + 1) * n], y);
         }
-        transpose_apply(&self.undamped, jacobian, felt, out);
-        out.iter_mut().zip(y).for_each(|(out, y)| *out = *y - *out);
+        transpose_apply(&self.undamped, jacobian, felt, free);
+        transpose_apply(&self.damped, jacobian, felt, lost);
+        for j in 0..n {
+            lost[j] = free[j] - lost[j];
+            free[j] = y[j] - free[j];
+        }
     }
 }
 
@@ -100,4 +101,22 @@ fn transpose_apply<S: Real>(factor: &[S], jacobian: &[S], mut x: [S; ROWS], out:
             *out = jacobian[i * n + j].mul_add(x[i], *out);
         }
     }
+}
+
+/// `tr A⁻¹ = Σ (L⁻¹)²` with the factor of `A`.
+#[inline(always)]
+fn inverse_trace<S: Real>(factor: &[S; ROWS * ROWS]) -> S {
+    let mut trace = S::of(0.0);
+    for j in 0..ROWS {
+        // column j of L⁻¹ by forward substitution; the factor's diagonal holds 1/L_ii
+        let mut column = [S::of(0.0); ROWS];
+        column[j] = factor[j * ROWS + j];
+        trace = column[j].mul_add(column[j], trace);
+        for i in j + 1..ROWS {
+            let sum = dot(&factor[i * ROWS + j..i * ROWS + i], &column[j..i]);
+            column[i] = -sum * factor[i * ROWS + i];
+            trace = column[i].mul_add(column[i], trace);
+        }
+    }
+    trace
 }

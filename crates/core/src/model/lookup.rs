@@ -28,6 +28,12 @@ impl Model {
         find("body", name, self.body_names())
     }
 
+    /// Whether another robot has the same frames and joints, by name and order: what was made for one
+    /// fits the other.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.frame_names().eq(other.frame_names()) && self.joint_names().eq(other.joint_names())
+    }
+
     /// Names of the frames: every link, and what the user added.
     pub fn frame_names(&self) -> impl Iterator<Item = &str> + Clone {
         self.frames.iter().map(|frame| frame.name.as_str())

@@ -33,7 +33,7 @@ pub enum SimulationError {
     #[error("{rows} recorded rows do not fit in memory; record fewer with record_every")]
     TooManyRows { rows: usize },
     #[error(
-        "the run diverged at t = {time} s: the state is no longer finite; shorten time_step or soften the gains \
+        "the run diverged at t = {time} s: the state is no longer finite; shorten time_step, or soften gains and joint damping \
          (last finite q = {q:?}, v = {v:?})"
     )]
     Diverged { time: f64, q: Vec<f64>, v: Vec<f64> },

@@ -87,6 +87,7 @@ impl<S: Real> Stages<S> {
         state: &mut State<S>,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
+        plant.set_slip(interval.1 - interval.0);
         self.accelerate(plant, state);
         match self.integrator {
             Integrator::Rk4 => self.rk4(plant, state, interval)?,

@@ -5,6 +5,7 @@ mod driver;
 mod error;
 mod integrator;
 mod plant;
+mod probe;
 mod recorder;
 mod run;
 mod schedule;

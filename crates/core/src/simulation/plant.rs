@@ -149,14 +149,21 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
         Ok(())
     }
 
-    /// Chooses the rate at which friction is developed: what full friction changes in one step.
-    pub(crate) fn set_slip(&mut self, state: &State<S>, time_step: f64) {
+    /// Articulated inertias for the first [`Plant::set_slip`]. Needs kinematics at `state`.
+    pub(crate) fn prime(&mut self, state: &State<S>) {
         let mut rate = Rate::new(self.model);
         self.accelerate(&state.q, &state.v, &mut rate);
+    }
+
+    /// Chooses the rate at which friction is developed in the next step: what full friction changes in
+    /// one. Needs the articulated inertias of an earlier evaluation.
+    pub(crate) fn set_slip(&mut self, time_step: f64) {
+        let least = S::of(f64::MIN_POSITIVE);
         for (j, joint) in self.model.joints().iter().enumerate() {
-            let slip = self.data.bodies[j + 1].inverse_pivot * S::of(2.0 * joint.friction * time_step);
-            let least = S::of(f64::MIN_POSITIVE);
-            self.slip[j] = S::select(S::less(slip, least), least, slip);
+            if joint.friction > 0.0 {
+                let slip = self.data.bodies[j + 1].inverse_pivot * S::of(2.0 * joint.friction * time_step);
+                self.slip[j] = S::select(S::less(slip, least), least, slip);
+            }
         }
     }
 }

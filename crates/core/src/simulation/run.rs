@@ -4,6 +4,7 @@ use super::driver::Driver;
 use super::error::{RunFailure, SimulationError};
 use super::integrator::Stages;
 use super::plant::Plant;
+use super::probe::Probe;
 use super::recorder::Recorder;
 use super::schedule::Schedule;
 use super::settings::Simulation;
@@ -63,7 +64,7 @@ impl Simulation {
             .map_err(fail)?,
         };
         let mut stages = Stages::new(&model, &run.state, self.integrator);
-        let outcome = run.all(schedule, &mut stages, self.time_step, self.record_every, duration, monitor);
+        let outcome = run.all(schedule, &mut stages, self.record_every, duration, monitor);
         let trace = run.recorder.trace;
         match outcome {
             Ok(()) => Ok(trace),
@@ -112,14 +113,13 @@ impl<S: Scalar> Run<'_, S> {
         &mut self,
         mut schedule: Schedule,
         stages: &mut Stages<S>,
-        time_step: f64,
         record_every: usize,
         duration: f64,
         monitor: Monitor<'_>,
     ) -> Result<(), SimulationError> {
         self.plant.settle(&mut self.state);
-        self.plant.set_slip(&self.state, time_step);
-        let mut count = 0;
+        self.plant.prime(&self.state);
+        let (mut count, mut probe) = (0, Probe::new(&self.state));
         while let Some(stretch) = schedule.next() {
             let interval = (stretch.start, stretch.end);
             let begun = self.begin(stages, stretch.start, interval, stretch.is_control_tick);
@@ -129,6 +129,8 @@ impl<S: Scalar> Run<'_, S> {
             if is_row {
                 self.record(stretch.start)?;
             }
+            // a probe that fails is a step that will: the step tells
+            let _ = probe.look(count, interval, &self.state, &mut self.plant, stages);
             let result = stages.step(&mut self.plant, &mut self.state, interval);
             if is_row {
                 self.recorder.accelerated(stages.first_acceleration());
@@ -138,6 +140,7 @@ impl<S: Scalar> Run<'_, S> {
                 return Err(self.diverged(stages, stretch.start));
             }
             count += 1;
+            self.recorder.trace.attitude_step_doubling = Some(probe.estimate(count));
             if count % MONITOR_EVERY == 0 && monitor(stretch.end).is_break() {
                 self.end(stages, stretch.end, schedule.is_control_tick())?;
                 return Err(SimulationError::Interrupted { time: stretch.end });

@@ -80,8 +80,11 @@ impl BaseRows {
         sum
     }
 
-    pub(super) fn residual(&self) -> f64 {
-        worst(relative(self.residual[0], self.scale[0]), relative(self.residual[1], self.scale[1]))
+    /// `size`, m, is the robot's: moments below a billionth of its forces at that arm are rounding.
+    pub(super) fn residual(&self, size: f64) -> f64 {
+        let [linear, angular] = self.scale;
+        let angular = angular.max(1e-9 * size * linear);
+        worst(relative(self.residual[0], linear), relative(self.residual[1], angular))
     }
 
     /// Truncation of the differences at the fastest rates of the run; never so wide that a wrench
