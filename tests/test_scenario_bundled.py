@@ -16,6 +16,7 @@ CHECKS = {
     "center_of_mass_error_rel",
     "base_rows_residual_rel",
     "attitude_consistency",
+    "attitude_step_doubling_rad",
 }
 
 

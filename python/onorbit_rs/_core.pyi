@@ -86,7 +86,14 @@ class Model:
     ) -> _Array: ...
     def frame_jacobian(self, q: ArrayLike, frame: str, *, threads: int | None = None) -> _Array: ...
     def mass_matrix(self, q: ArrayLike, *, threads: int | None = None) -> _Array: ...
-    def bias_forces(self, q: ArrayLike, v: ArrayLike, *, threads: int | None = None) -> _Array: ...
+    def bias_forces(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        *,
+        external: _External | None = None,
+        threads: int | None = None,
+    ) -> _Array: ...
     def inverse_dynamics(
         self,
         q: ArrayLike,
@@ -261,6 +268,7 @@ class ComputedTorque:
         damping: float = 0.05,
         null_space_damping: float = 0.0,
         compensate_environment: bool = True,
+        compensate_friction: bool = True,
     ) -> ComputedTorque: ...
 
 @final

@@ -27,12 +27,14 @@ class ComputedTorqueController(Part):
     """On the pose error, 1/s²: a number, six, or 6 x 6; linear first."""
     kd: RateGain = 20.0
     """On the velocity error, 1/s."""
-    damping: Annotated[Number, NotNegative] | None = None
+    damping: Annotated[Number, NotNegative] = 0.05
     """Of the pseudo-inverse near singularities."""
-    null_space_damping: Annotated[Rate, NotNegative] | None = None
+    null_space_damping: Annotated[Rate, NotNegative] = 0.0
     """On the motion that does not move the tool, 1/s; brings a redundant arm to rest."""
-    compensate_environment: bool | None = None
+    compensate_environment: bool = True
     """Whether the controller knows the wrenches of the environment."""
+    compensate_friction: bool = True
+    """Whether the controller knows the damping and friction of the joints."""
 
 
 class HoldReference(Part):
