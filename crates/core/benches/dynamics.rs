@@ -52,7 +52,7 @@ fn kernels<S: Real>(c: &mut Criterion, scalar: &str, arms: usize) {
     group.bench_function("bias_forces", |b| {
         b.iter(|| {
             let (q, v, _) = next();
-            bias_forces(&model, &mut data, q, v, &mut out);
+            bias_forces(&model, &mut data, q, v, &[], &mut out);
         });
     });
     group.bench_function("crba", |b| {

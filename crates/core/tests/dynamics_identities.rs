@@ -58,7 +58,7 @@ fn inverse_dynamics_is_mass_matrix_times_acceleration_plus_bias_less_external() 
         let (mut m, mut c, mut tau) = (vec![0.0; nv * nv], vec![0.0; nv], vec![0.0; nv]);
         let mut data = Data::new(&model);
         mass_matrix(&model, &mut data, &q, &mut m);
-        bias_forces(&model, &mut data, &q, &v, &mut c);
+        bias_forces(&model, &mut data, &q, &v, &[], &mut c);
         inverse_dynamics(&model, &mut data, &q, &v, &a, &external, &mut tau);
         let mut expected: Vec<f64> = times(&m, &a).iter().zip(&c).map(|(x, y)| x + y).collect();
         let mut jacobian = vec![0.0; 6 * nv];

@@ -55,22 +55,24 @@ impl PyGravityGradient {
 
 /// A constant wrench on a body, in the axes of the named link or frame and at its origin.
 ///
-/// ``force`` (3,) N, ``torque`` (3,) N m, on from ``start`` until ``end``, s of simulation, both hit exactly.
+/// ``force`` (3,) N, ``torque`` (3,) N m, on from ``start`` until ``end``, s of simulation, both hit exactly
+/// (from the beginning, to the end of the run where None).
 #[pyclass(name = "BodyWrench", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(crate) struct PyBodyWrench;
 
 #[pymethods]
 impl PyBodyWrench {
     #[new]
-    #[pyo3(signature = (body, *, force=None, torque=None, start=f64::NEG_INFINITY, end=f64::INFINITY))]
+    #[pyo3(signature = (body, *, force=None, torque=None, start=None, end=None))]
     fn new(
         py: Python<'_>,
         body: String,
         force: Option<Any<'_, '_>>,
         torque: Option<Any<'_, '_>>,
-        start: f64,
-        end: f64,
+        start: Option<f64>,
+        end: Option<f64>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let (start, end) = (start.unwrap_or(f64::NEG_INFINITY), end.unwrap_or(f64::INFINITY));
         let vector = |value: Option<Any<'_, '_>>, name| {
             Ok::<_, PyErr>(Vector3::from(value.map_or(Ok([0.0; 3]), |value| fixed::<3>(value, name, &[3]))?))
         };

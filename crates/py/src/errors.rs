@@ -208,9 +208,9 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             }
             SimulationError::RecordEvery => plain(py, "InputError", &message),
             SimulationError::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
-            SimulationError::NeedsReference | SimulationError::NeedsTool => {
-                plain(py, "ControlError", &message)
-            }
+            SimulationError::NeedsReference
+            | SimulationError::NeedsTool
+            | SimulationError::OtherTool { .. } => plain(py, "ControlError", &message),
             SimulationError::UnknownFrame { .. } | SimulationError::TooManyRows { .. } => {
                 plain(py, "InputError", &message)
             }

@@ -224,16 +224,19 @@ impl PyModel {
         self.one(py, Kernel::MassMatrix, &[q], None, &[nv, nv], threads)
     }
 
-    /// Coriolis and centrifugal forces ``c(q, v)``: (nv,), N and N m.
-    #[pyo3(signature = (q, v, *, threads=None))]
+    /// Coriolis and centrifugal forces ``c(q, v)``, less ``Σ Jᵀ F`` of ``external`` wrenches: (nv,), N and N m.
+    ///
+    /// ``external`` as in :meth:`inverse_dynamics`.
+    #[pyo3(signature = (q, v, *, external=None, threads=None))]
     fn bias_forces<'py>(
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
+        external: External<'_, 'py>,
         threads: Option<Count>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::BiasForces, &[q, v], None, &[self.model.nv()], threads)
+        self.one(py, Kernel::BiasForces, &[q, v], external, &[self.model.nv()], threads)
     }
 
     /// Forces ``M a + c - Σ Jᵀ F`` behind an acceleration: (nv,); ``tau[:6]`` is the wrench on the base, its axes.

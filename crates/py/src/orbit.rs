@@ -3,7 +3,7 @@
 use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use nalgebra::Vector3;
-use onorbit_core::orbit::{Elements, Kepler, MU_EARTH, Orbit, Phase, Size, lvlh_frames, states};
+use onorbit_core::orbit::{Elements, Kepler, Orbit, Phase, Size, lvlh_frames, states};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -87,7 +87,7 @@ impl PyKepler {
     #[new]
     #[pyo3(signature = (
         *, semi_major_axis=None, semi_latus_rectum=None, eccentricity=0.0, inclination=0.0, raan=0.0,
-        argument_of_periapsis=0.0, mean_anomaly=None, true_anomaly=None, periapsis_time=None, epoch=0.0, mu=MU_EARTH,
+        argument_of_periapsis=0.0, mean_anomaly=None, true_anomaly=None, periapsis_time=None, epoch=0.0, mu=3.986004418e14,
     ))]
     fn new(
         py: Python<'_>,
@@ -123,7 +123,7 @@ impl PyKepler {
 
     /// The orbit through position ``r`` (3,) m with velocity ``v`` (3,) m/s at time zero, inertial axes.
     #[staticmethod]
-    #[pyo3(signature = (r, v, *, mu=MU_EARTH))]
+    #[pyo3(signature = (r, v, *, mu=3.986004418e14))]
     fn from_state<'py>(
         py: Python<'py>,
         r: Any<'_, 'py>,

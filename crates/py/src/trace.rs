@@ -51,10 +51,16 @@ macro_rules! columns {
             )*
 
             /// Names of the columns this run has.
-            fn columns(this: &Bound<'_, Self>) -> Vec<&'static str> {
+            fn columns(this: &Bound<'_, Self>) -> PyResult<Vec<&'static str>> {
                 let mut names = Vec::new();
-                $( if !this.get().trace.$name.is_empty() { names.push(stringify!($name)); } )*
-                names
+                $( if Self::$name(this)?.is_some() { names.push(stringify!($name)); } )*
+                Ok(names)
+            }
+
+            fn __repr__(&self) -> String {
+                let end = self.trace.time.last().copied().unwrap_or(0.0);
+                let state = if self.is_complete { "complete" } else { "stopped early" };
+                format!("<Trace: {} rows to t = {end} s, {state}>", self.trace.rows())
             }
 
             /// The run's conservation certificate: lines (name, value, gate, passed), those that apply to the run.

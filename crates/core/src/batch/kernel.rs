@@ -140,7 +140,7 @@ impl Kernel {
                 frame_jacobian(model, data, q, frame, &mut out[0]);
             }
             Self::MassMatrix => mass_matrix(model, data, q, &mut out[0]),
-            Self::BiasForces => bias_forces(model, data, q, &inputs[1], &mut out[0]),
+            Self::BiasForces => bias_forces(model, data, q, &inputs[1], external, &mut out[0]),
             Self::InverseDynamics => {
                 inverse_dynamics(model, data, q, &inputs[1], &inputs[2], external, &mut out[0])
             }

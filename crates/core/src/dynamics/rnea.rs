@@ -25,10 +25,18 @@ pub fn inverse_dynamics<S: Real>(
     inverse_dynamics_recursion(model, data, v, Some(a), tau);
 }
 
-/// Bias forces `c(q, v) = M a + c` at `a = 0`: Coriolis and centrifugal. `c` (out): `(nv,)`.
-pub fn bias_forces<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S], c: &mut [S]) {
+/// Bias forces less external wrenches, `c − Σ Jᵀ F`, with `c(q, v)` Coriolis and centrifugal:
+/// inverse dynamics at `a = 0`. `c` (out): `(nv,)`.
+pub fn bias_forces<S: Real>(
+    model: &Model,
+    data: &mut Data<S>,
+    q: &[S],
+    v: &[S],
+    external: &[FrameWrench<S>],
+    c: &mut [S],
+) {
     kinematics(model, data, q, v);
-    data.clear_external();
+    apply_external(model, data, external);
     inverse_dynamics_recursion(model, data, v, None, c);
 }
 

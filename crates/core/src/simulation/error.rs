@@ -26,6 +26,10 @@ pub enum SimulationError {
     NeedsOrbit { effect: String },
     #[error("the controller tracks a frame but the simulation has no reference to track: give it one")]
     NeedsReference,
+    #[error(
+        "the controller tracks frame '{controller}' but the tool of the run is '{tool}': name the same frame"
+    )]
+    OtherTool { controller: String, tool: String },
     #[error("a reference is given but no tool frame it is for: name the tool")]
     NeedsTool,
     #[error("frame {frame} is asked for, the robot has frames 0 to {last}", last = count.saturating_sub(1))]

@@ -57,6 +57,11 @@ impl<S: Real> Stages<S> {
         [&self.start.q, &v].map(|x| x.iter().map(|x| x.lane(0)).collect())
     }
 
+    /// Work done before the last step, J.
+    pub(crate) fn start_work(&self) -> S {
+        self.start.work
+    }
+
     /// Whether the last stage began at a state of numbers.
     pub(crate) fn is_finite(&self) -> bool {
         self.trial.is_finite()

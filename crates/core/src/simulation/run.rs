@@ -136,6 +136,7 @@ impl<S: Scalar> Run<'_, S> {
                 self.recorder.accelerated(stages.first_acceleration());
             }
             result.map_err(|error| self.name_divergence(error, stages, stretch.start))?;
+            self.recorder.trace.work_done += (self.state.work - stages.start_work()).value().abs();
             if !self.state.is_finite() {
                 return Err(self.diverged(stages, stretch.start));
             }

@@ -92,6 +92,10 @@ impl Simulation {
         }
         if let ControlLaw::ComputedTorque(law) = &self.control {
             law.check(&self.model)?;
+            if let Some(tool) = self.tool.filter(|tool| *tool != law.frame) {
+                let name = |frame: usize| self.model.frames()[frame].name.clone();
+                return Err(SimulationError::OtherTool { controller: name(law.frame), tool: name(tool) });
+            }
             if self.reference.is_none() {
                 return Err(SimulationError::NeedsReference);
             }

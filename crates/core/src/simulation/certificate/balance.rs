@@ -76,8 +76,8 @@ impl Balance {
 
     /// Scale: all work done, whatever its sign, and the energy that does not depend on how fast W
     /// sees the robot pass; of that which does only a share, for its rounding.
-    pub(super) fn energy(&self) -> f64 {
+    pub(super) fn energy(&self, work_done: f64) -> f64 {
         const ROUNDING: f64 = 1e-3;
-        relative(self.energy, self.worked + self.energy_about_com + ROUNDING * self.energy_w)
+        relative(self.energy, self.worked.max(work_done) + self.energy_about_com + ROUNDING * self.energy_w)
     }
 }

@@ -124,7 +124,7 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
     Certificate {
         linear_momentum_drift_rel: balance.linear(),
         angular_momentum_drift_rel: balance.angular(),
-        energy_balance_error_rel: balance.energy(),
+        energy_balance_error_rel: balance.energy(trace.work_done),
         center_of_mass_error_rel: (is_dense || is_free).then(|| center.error(balance.size())),
         base_rows_residual_rel: is_smooth.then(|| base_rows.residual(balance.size())),
         base_rows_gate: base_rows.gate(),
