@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -71,3 +73,22 @@ def test_a_failed_write_leaves_the_old_file_and_no_partial_one(tmp_path: Path) -
         raise OSError(28, "No space left on device")
     assert [file.name for file in tmp_path.iterdir()] == ["summary.json"]
     assert (tmp_path / "summary.json").read_text() == "old"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits the size of a file")
+def test_a_full_disk_ends_the_run_with_one_line(tmp_path: Path) -> None:
+    # 400 blocks of 1 KiB: the trace and the figures fit, the recording does not; rerun's file sink hung here
+    command = f"ulimit -f 400; exec {sys.executable} -m onorbit_rs run kepler_orbit -q -o {tmp_path / 'out'}"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=100, check=False)
+    assert done.returncode == 2, done
+    assert done.stderr.startswith("onorbit: cannot write ") and len(done.stderr.splitlines()) == 1
+
+
+def test_a_name_too_long_and_figures_that_are_a_file_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(OutputNotWritableError, match="too long"):
+        OutputFolder.claim(tmp_path / ("x" * 300))
+    (tmp_path / "figures").write_text("precious")
+    (tmp_path / "summary.json").write_text("{}")
+    with pytest.raises(OutputNotWritableError, match="figures"):
+        OutputFolder.claim(tmp_path, force=True)
+    assert (tmp_path / "summary.json").exists()

@@ -9,7 +9,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError, OutputNotWritableError
+from onorbit_rs.exceptions import (
+    OnOrbitError,
+    OutputFolderError,
+    OutputNotEmptyError,
+    OutputNotWritableError,
+)
 
 OURS = ("scenario.yaml", "trace.npz", "summary.json", "run.rrd")
 FIGURES = "figures"
@@ -61,27 +66,42 @@ class OutputFolder:
         """
         final = self.path / name
         partial = final.with_name(f".partial-{final.name}")
+        with self.refusals(name):
+            try:
+                yield partial
+                partial.replace(final)
+            finally:  # whatever ended it, Ctrl-C included
+                partial.unlink(missing_ok=True)
+
+    @contextmanager
+    def refusals(self, name: str) -> Iterator[None]:
+        """What the disk refuses becomes an :class:`OutputFolderError` about ``name``."""
         try:
-            yield partial
-            partial.replace(final)
+            yield
+        except OSError as error:
+            if isinstance(error, OnOrbitError):
+                raise
+            file = self.path / name
+            raise OutputFolderError(
+                f"cannot write {file}: {error.strerror or error}", path=str(file)
+            ) from error
+
+    def discard(self) -> None:
+        """Remove what a run that never began has written."""
+        (self.path / "scenario.yaml").unlink(missing_ok=True)
+
+    def _make(self) -> None:
+        try:
+            if self.path.exists() and not self.path.is_dir():
+                raise _is_a_file(self.path)
+            self.path.mkdir(parents=True, exist_ok=True)
+            next(self.path.iterdir(), None)
+            figures = self.path / FIGURES
+            if figures.exists() and not figures.is_dir():
+                raise _is_a_file(figures)
         except OSError as error:
             if isinstance(error, OutputFolderError):
                 raise
-            raise OutputFolderError(
-                f"cannot write {final}: {error.strerror or error}", path=str(final)
-            ) from error
-        finally:  # whatever ended it, Ctrl-C included
-            partial.unlink(missing_ok=True)
-
-    def _make(self) -> None:
-        if self.path.exists() and not self.path.is_dir():
-            raise OutputNotWritableError(
-                f"output path is a file, not a folder: {self.path}", path=str(self.path)
-            )
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-            next(self.path.iterdir(), None)
-        except OSError as error:
             raise self._not_writable(error) from error
 
     def _probe(self) -> None:
@@ -104,3 +124,7 @@ class OutputFolder:
         return OutputNotWritableError(
             f"output folder cannot be written: {self.path}: {error.strerror or error}", path=str(self.path)
         )
+
+
+def _is_a_file(path: Path) -> OutputNotWritableError:
+    return OutputNotWritableError(f"output path is a file, not a folder: {path}", path=str(path))

@@ -47,7 +47,8 @@ def write_pictures(folder: OutputFolder, trace: Trace, summary: dict[str, Any], 
     from onorbit_rs import figures, viewer
 
     if len(trace.time) > 1:
-        figures.save_all(trace, built.model, folder.path / FIGURES)
+        with folder.refusals(FIGURES):
+            figures.save_all(trace, built.model, folder.path / FIGURES)
     with folder.writing("run.rrd") as path:
         viewer.write_recording(
             path,

@@ -6,12 +6,14 @@ robot size. The orbit is drawn apart, in km; its exact state is there as 64-bit 
 
 from __future__ import annotations
 
+import uuid
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import rerun as rr
 
+from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.geometry import shapes
 from onorbit_rs.viewer.blueprint import TIMELINE, layout
 from onorbit_rs.viewer.scene import send_frames, send_orbit, send_robot, send_tool
@@ -27,6 +29,9 @@ if TYPE_CHECKING:
 
 MOST_STEPS = 50_000
 """Steps in a recording; a longer trace is thinned evenly, its last row kept."""
+
+FLUSH_TIMEOUT_S = 300.0
+"""Wall-clock time given to rerun's encoder, which needs seconds."""
 
 
 def write_recording(
@@ -52,13 +57,19 @@ def write_recording(
         Markdown shown beside the picture.
     orbit_path : (k, 3) array, optional
         One revolution of the reference orbit, inertial axes, m.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
     """
     robot = shapes(model)
     plots = list(series_of(trace, model))
-    recording = rr.RecordingStream("onorbit", recording_id=title or None, send_properties=False)
+    recording = rr.RecordingStream("onorbit", recording_id=uuid.uuid4(), send_properties=False)
+    stream = recording.binary_stream()  # rerun's own file sink waits for ever where the disk is full
     recording.set_log_time_enabled(False)  # simulation time alone: nothing here reads the wall clock
     recording.set_log_tick_enabled(False)
-    recording.save(path, default_blueprint=layout(trace, model, plots, has_notes=bool(notes)))
+    recording.send_blueprint(layout(trace, model, plots, has_notes=bool(notes)))
     if title:
         recording.send_recording_name(title)
     rows = recorded_rows(len(trace.time))
@@ -73,9 +84,17 @@ def write_recording(
         recording.log(
             "notes", rr.TextDocument(notes, media_type=rr.MediaType.MARKDOWN), static=True, strict=True
         )
-    recording.flush()
+    path.write_bytes(_encoded(stream))
     recording.disconnect()
     return path
+
+
+def _encoded(stream: rr.BinaryStream) -> bytes:
+    """Everything sent so far, as the content of a ``.rrd``."""
+    try:
+        return stream.read(flush_timeout_sec=FLUSH_TIMEOUT_S) or b""
+    except RuntimeError as error:
+        raise OnOrbitError(f"rerun did not encode the recording: {error}") from error
 
 
 def recorded_rows(count: int) -> Rows:
