@@ -6,9 +6,9 @@ mod common;
 use common::humanoid::{humanoid, start};
 use common::stepper::{Turning, free_motion};
 use common::{Random, random_model, random_state};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use onorbit_core::environment::{BodyWrench, GravityGradient};
-use onorbit_core::model::Model;
+use onorbit_core::model::{Model, neutral};
 use onorbit_core::orbit::{Kepler, MU_EARTH};
 use onorbit_core::simulation::{Certificate, Integrator, Simulation, Trace, certify};
 use onorbit_core::spatial::{Quat, Vec3, exp_so3, log_so3};
@@ -223,4 +223,36 @@ fn sparse_rows_leave_out_what_they_cannot_tell_and_nan_is_red() {
     let red = failed(&certify(&simulation.model, &broken));
     assert_eq!(red, ["linear_momentum_drift_rel", "energy_balance_error_rel"]);
     assert!(certify(&simulation.model, &Trace::default()).passed()); // nothing claimed, nothing denied
+}
+
+#[test]
+fn a_push_through_the_centre_of_mass_is_green() {
+    // nothing turns: the angular scales are made of rounding
+    let body = Model::rigid_body(10.0, Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.5))).unwrap();
+    let q = neutral(&body);
+    let mut simulation = Simulation::new(Arc::new(body), q, vec![0.0; 6]);
+    let push = BodyWrench::new(0, Vector3::new(0.1, 0.7, 0.3), Vector3::zeros()).unwrap();
+    simulation.effects.push(Arc::new(push));
+    simulation.time_step = 0.01;
+    let trace = run(&mut simulation, 1.0);
+    let certificate = certify(&simulation.model, &trace);
+    assert!(certificate.passed(), "{certificate:#?}");
+}
+
+#[test]
+fn a_step_too_long_for_the_spin_is_red() {
+    // about the intermediate axis at 3 rad/s, which amplifies: 200 s of 20 ms steps end mrad off
+    let spin = |time_step: f64| {
+        let body = Model::rigid_body(10.0, Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.5))).unwrap();
+        let q = neutral(&body);
+        let mut simulation = Simulation::new(Arc::new(body), q, vec![0.0, 0.0, 0.0, 0.03, 3.0, 0.03]);
+        simulation.time_step = time_step;
+        let trace = run(&mut simulation, 200.0);
+        certify(&simulation.model, &trace)
+    };
+    let (coarse, fine) = (spin(0.02), spin(1e-3));
+    let estimate = |certificate: &Certificate| certificate.attitude_step_doubling_rad.unwrap();
+    println!("estimates {:e} and {:e} rad", estimate(&coarse), estimate(&fine));
+    assert!(!coarse.passed() && coarse.linear_momentum_drift_rel < 1e-11);
+    assert!(fine.passed(), "{fine:#?}");
 }

@@ -21,7 +21,7 @@ const ENERGY: f64 = 1e-6;
 /// Largest excursion of the centre of mass from the path its momentum gives.
 const CENTER: f64 = 1e-7;
 /// Largest error of the attitude, rad, that steps compared with halved ones may add up to.
-const STEP_DOUBLING: f64 = 1e-5;
+const STEP_DOUBLING: f64 = 1e-6;
 /// Largest share of the commutator that the attitude may miss; without group integration it is 1.
 const ATTITUDE: f64 = 0.1;
 

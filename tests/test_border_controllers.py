@@ -1,0 +1,71 @@
+"""Controllers that do not fit the run, and states in which nothing resists a joint."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.exceptions import ControlError, ConvergenceError, SimulationError
+
+
+def test_a_law_made_for_another_robot_is_refused() -> None:
+    torso, dual = oo.robots.load("humanoid_torso"), oo.robots.load("humanoid_dual_arm")
+    law = oo.ComputedTorque(torso, "tool")
+    q, v = dual.neutral(), np.zeros(dual.nv)
+    hold = oo.Hold(dual.frame_pose(q, "right_tool"))
+    with pytest.raises(ControlError, match="made for robot 'humanoid_torso', not for 'humanoid_dual_arm'"):
+        oo.Simulation(dual, q, v, controller=law, reference=hold, tool="right_tool")
+    with pytest.raises(ControlError, match="made for robot"):
+        oo.rollout(dual, q[None], v[None], steps=2, controller=law, reference=hold)
+
+
+def test_a_law_of_the_same_robot_loaded_again_is_taken() -> None:
+    one, other = oo.robots.load("humanoid_torso"), oo.robots.load("humanoid_torso")
+    q, v = one.neutral(), np.zeros(one.nv)
+    hold = oo.Hold(one.frame_pose(q, "tool"))
+    trace = oo.Simulation(one, q, v, controller=oo.ComputedTorque(other, "tool"), reference=hold).run(0.01)
+    assert trace.is_complete
+
+
+def test_the_tool_of_the_run_is_the_frame_of_the_law() -> None:
+    dual = oo.robots.load("humanoid_dual_arm")
+    q, v = dual.neutral(), np.zeros(dual.nv)
+    hold = oo.Hold(dual.frame_pose(q, "left_tool"))
+    law = oo.ComputedTorque(dual, "right_tool")
+    with pytest.raises(
+        ControlError, match="tracks frame 'right_tool' but the tool of the run is 'left_tool'"
+    ):
+        oo.Simulation(dual, q, v, controller=law, reference=hold, tool="left_tool")
+
+
+def test_a_singular_state_is_named_and_leaves_no_nan() -> None:
+    # z-y-z with massless links between: at zero the first and the last axis are one
+    builder = oo.ModelBuilder("wrist", base="base", mass=10.0, inertia=np.eye(3))
+    builder.add_link("a", parent="base", joint="j1", axis=[0, 0, 1])
+    builder.add_link("b", parent="a", joint="j2", axis=[0, 1, 0])
+    builder.add_link(
+        "c", parent="b", joint="j3", axis=[0, 0, 1], mass=1.0, com=[0, 0, 0.1], inertia=np.eye(3)
+    )
+    model = builder.build()
+    v, q = np.zeros(model.nv), model.neutral()
+    with pytest.raises(ConvergenceError, match="state 0 is singular"):
+        model.forward_dynamics(q, v, np.ones(model.nv))
+    bent = q.copy()
+    bent[8] = 0.5
+    assert np.isfinite(model.forward_dynamics(bent, v, np.ones(model.nv))).all()
+    with pytest.raises(ConvergenceError, match="state 1 is singular"):
+        model.forward_dynamics(np.stack([bent, q]), np.stack([v, v]), np.ones((2, model.nv)))
+
+
+def test_a_simulation_is_not_run_within_its_own_run() -> None:
+    model = oo.robots.load("humanoid_torso")
+
+    class Again(oo.Controller):
+        def update(self, t: float, state: object) -> np.ndarray:
+            simulation.run(0.01)
+            return np.zeros(7)
+
+    simulation = oo.Simulation(model, model.neutral(), np.zeros(model.nv), controller=Again())
+    with pytest.raises(SimulationError, match="running already"):
+        simulation.run(0.01)
