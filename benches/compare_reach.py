@@ -1,9 +1,9 @@
 """The controlled run against a hand-written C++ loop on Pinocchio, alternated in one run.
 
 ``python benches/compare_reach.py PEERS [ROUNDS]``: ``PEERS`` is a folder with ``ctc_pin.cpp`` and
-``gen_models.py``, the yardstick: computed torque of a seven-joint arm on a free base, Runge-Kutta at 1 ms, Eigen
-and Pinocchio compiled with ``-O3 -march=native``. Ours is the bundled ``humanoid_reach`` with its orbit, its
-gravity gradient and every step recorded; the yardstick has none of the three.
+``gen_models.py``, the yardstick: computed torque of a seven-joint arm on a free base, Runge-Kutta at
+1 ms, Eigen and Pinocchio compiled with ``-O3 -march=native``. Ours is the bundled ``humanoid_reach`` with
+its orbit, its gravity gradient and every step recorded; the yardstick has none of the three.
 """
 
 from __future__ import annotations
