@@ -115,10 +115,52 @@ def test_a_wrong_urdf_is_one_line(tmp_path: Path, urdf: str, says: str) -> None:
     assert says in refusal("check", file)
 
 
+def test_text_in_brackets_is_no_markup(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text('name: "[/oops]"\n' + SHORT_REACH.replace("name: ", "#"))
+    done = onorbit("run", "mine.yaml", "--out", "o [x]", cwd=tmp_path)
+    assert done.returncode == 0, done
+    assert done.stdout.startswith("[/oops]: complete")
+    assert "next: onorbit show 'o [x]'" in done.stdout
+    for moment in ("nan", "7"):
+        assert "outside the run" in refusal_of_show(tmp_path, "o [x]", "--picture", "p.png", "--at", moment)
+
+
+def refusal_of_show(cwd: Path, *arguments: str) -> str:
+    done = onorbit("show", *arguments, cwd=cwd)
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done
+    return done.stderr
+
+
+def test_kilometres_forgotten_are_refused_by_check_and_leave_no_folder(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("robot: humanoid_torso\norbit: {semi_major_axis: 6778}\nsimulation: {duration: 1 s}\n")
+    assert f"{file}:2: orbit: " in refusal("check", file)
+    assert f"{file}:2: orbit: " in refusal("run", file, "--out", tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_rows_left_out_leave_checks_out_and_the_summary_says_which(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(
+        SHORT_REACH.replace("time_step: 5 ms", "time_step: 5 ms\n  record_every: 2")
+    )
+    done = onorbit("run", "mine.yaml", cwd=tmp_path)
+    assert "base_rows_residual_rel, attitude_consistency" in done.stdout, done
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_a_full_stdout_is_one_line() -> None:
+    command = [sys.executable, "-m", "onorbit_rs", "list"]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, check=False
+        )
+    assert (done.returncode, done.stderr) == (2, "onorbit: cannot write: No space left on device\n")
+
+
 def test_wrong_arguments_are_one_line(tmp_path: Path) -> None:
     assert "NAME_OR_FILE" in refusal("run")
     assert "No such option" in refusal("run", "humanoid_reach", "--bar")
-    assert "No such command" in refusal("rum")
+    assert "Commands are: run, list, check, show" in refusal("rum")
     assert "did you mean 'humanoid_reach'" in refusal("run", "humanoid_rech")
     assert "no such folder" in refusal("show", tmp_path / "nowhere")
     assert "no run in this folder" in refusal("show", tmp_path)

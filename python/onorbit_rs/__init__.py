@@ -61,3 +61,8 @@ __all__ = [
 ]
 
 __version__: str = build_info()["version"]
+
+
+def __dir__() -> list[str]:
+    """Public names alone, for completion."""
+    return [*__all__, "__version__"]

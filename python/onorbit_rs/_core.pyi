@@ -252,8 +252,8 @@ class BodyWrench(Effect):
         *,
         force: ArrayLike | None = None,
         torque: ArrayLike | None = None,
-        start: float = ...,
-        end: float = ...,
+        start: float | None = None,
+        end: float | None = None,
     ) -> BodyWrench: ...
 
 @final

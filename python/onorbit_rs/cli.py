@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import sys
+import warnings
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -18,14 +20,29 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
+
+def _print_version(is_asked: bool) -> None:
+    if is_asked:
+        from onorbit_rs import __version__
+
+        typer.echo(f"onorbit {__version__}")
+        raise typer.Exit
+
+
 ScenarioArgument = Annotated[
     str, typer.Argument(metavar="NAME_OR_FILE", help="A bundled name or a YAML file.")
 ]
-
-
+VersionOption = Annotated[
+    bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+]
 OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write results here.")]
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace the run that is in DIR.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar, no summary.")]
+
+
+@app.callback()
+def onorbit(version: VersionOption = False) -> None:
+    """Simulate free-floating robots in orbit."""
 
 
 @app.command()
@@ -75,9 +92,9 @@ def show(
     """Print the summary of a run and open its recording, or save a picture of it."""
     from onorbit_rs import report
 
-    report.print_run(folder)
+    summary = report.print_run(folder)
     if picture is not None:
-        report.save_picture(folder, picture, at)
+        report.save_picture(folder, picture, at, float(summary.get("simulated_s") or 0.0))
     elif viewer:
         report.open_viewer(folder)
 
@@ -85,17 +102,39 @@ def show(
 def main(arguments: list[str] | None = None) -> None:
     """Entry point: an error is one line on stderr and exit code 2, Ctrl-C is 130."""
     try:
-        code = app(arguments, standalone_mode=False)
+        with warnings.catch_warnings():
+            warnings.showwarning = _show_warning
+            code = app(arguments, standalone_mode=False)
+            sys.stdout.flush()
     except OnOrbitError as error:
         _fail(str(error), 2)
     except (KeyboardInterrupt, typer.Abort):
         _fail("stopped by Ctrl-C", 130)
     except typer.TyperException as error:
-        _fail(error.format_message(), 2)
+        _fail(_with_commands(error.format_message()), 2)
     except BrokenPipeError:
-        sys.stderr.close()
+        _leave_stdout()
         sys.exit(0)
+    except OSError as error:  # printing: the disk behind stdout is full
+        _leave_stdout()
+        _fail(f"cannot write: {error.strerror or error}", 2)
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _with_commands(message: str) -> str:
+    """An unknown command is answered with those there are."""
+    names = [command.name or getattr(command.callback, "__name__", "") for command in app.registered_commands]
+    return f"{message} Commands are: {', '.join(names)}" if message.startswith("No such command") else message
+
+
+def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    """One line, without the place in our code."""
+    typer.echo(f"onorbit: warning: {' '.join(str(message).split())}", err=True)
+
+
+def _leave_stdout() -> None:
+    """Nothing more goes to a stdout that is closed or full, not even when Python exits."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _fail(message: str, code: int) -> NoReturn:

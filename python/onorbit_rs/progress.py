@@ -21,9 +21,9 @@ def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progr
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
-        TextColumn("{task.fields[reached]}"),
+        TextColumn("{task.fields[reached]}", markup=False),
         TimeRemainingColumn(),
     )
     started = time.perf_counter()

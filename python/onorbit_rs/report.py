@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import math
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
-from onorbit_rs.exceptions import NotFoundError, OnOrbitError, OutputFolderError, ReadError
+from onorbit_rs.exceptions import InputError, NotFoundError, OnOrbitError, OutputFolderError, ReadError
+from onorbit_rs.output.summary import CHECKS
 
 if TYPE_CHECKING:
     from onorbit_rs.scenario.build import Built
@@ -38,31 +42,42 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
     console = Console(highlight=False)
     table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
     for key, name, unit in _ROWS:
-        if summary.get(key) is not None:
+        if isinstance(summary.get(key), (int, float)):
             table.add_row(name, f"{summary[key]:.4g} {unit}")
-    console.print(f"[bold]{summary.get('scenario', '')}[/bold]: {summary.get('status', '')}")
+    console.print(f"[bold]{_text(summary.get('scenario', ''))}[/bold]: {_text(summary.get('status', ''))}")
     console.print(table)
     console.print(_verdict(summary), soft_wrap=True)
+    if summary.get("certificate_not_evaluated"):
+        console.print(
+            f"[yellow]certificate not evaluated[/yellow]: {_text(summary['certificate_not_evaluated'])}",
+            soft_wrap=True,
+        )
     if out is None:
         console.print("nothing was written; keep the results with --out DIR", soft_wrap=True)
         return
     for name, what in _FILES:
         if (out / name).exists():
-            console.print(f"  {out / name}  [dim]{what}[/dim]", soft_wrap=True)
+            console.print(f"  {_text(out / name)}  [dim]{what}[/dim]", soft_wrap=True)
     if is_new:
-        console.print(f"next: onorbit show {out}", soft_wrap=True)
+        console.print(f"next: onorbit show {_text(shlex.quote(str(out)))}", soft_wrap=True)
 
 
 def _verdict(summary: dict[str, Any]) -> str:
     """Green or red, with the balances behind it."""
     balances = [
-        f"{name.removesuffix('_rel').replace('_', ' ')} {value:.1e}"
+        f"{name.removesuffix('_rel').removesuffix('_rad').replace('_', ' ')} {value:.1e}"
         for name, value in summary.items()
-        if name.endswith(("_rel", "_consistency")) and isinstance(value, float)
+        if name in CHECKS and isinstance(value, float)
     ]
     if summary.get("certificate_passed"):
         return f"[green]certificate passed[/green]: {', '.join(balances)}"
-    return f"[red]certificate FAILED[/red] ({summary.get('certificate_failures')}): {', '.join(balances)}"
+    failures = _text(summary.get("certificate_failures"))
+    return f"[red]certificate FAILED[/red] ({failures}): {', '.join(balances)}"
+
+
+def _text(value: object) -> str:
+    """Text of the user's, in which rich must see no markup."""
+    return escape(str(value))
 
 
 def print_bundled() -> None:
@@ -73,7 +88,7 @@ def print_bundled() -> None:
     console = Console(highlight=False)
     table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
     for name in scenarios.names():
-        table.add_row(f"[bold]{name}[/bold]", load(name).description)
+        table.add_row(f"[bold]{_text(name)}[/bold]", _text(load(name).description))
     console.print("scenarios (onorbit run NAME --out DIR):")
     console.print(table)
     console.print(f"robots: {', '.join(robots.names())}")
@@ -93,8 +108,8 @@ def print_checked(built: Built) -> None:
     typer.echo(f"ok: {scenario.name}: {', '.join(parts)}")
 
 
-def print_run(folder: Path) -> None:
-    """Print a finished run's summary.
+def print_run(folder: Path) -> dict[str, Any]:
+    """Print a finished run's summary, and return it.
 
     Raises
     ------
@@ -104,14 +119,19 @@ def print_run(folder: Path) -> None:
         Its summary cannot be read.
     """
     file = folder / "summary.json"
-    if not file.is_file():
+    try:
+        is_there = file.is_file()
+    except OSError as error:  # a name too long
+        raise ReadError(f"cannot read {file}: {error.strerror}", path=str(file), kind="summary") from error
+    if not is_there:
         what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
         raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
     try:
-        summary = json.loads(file.read_text(encoding="utf-8"))
-        print_summary(dict(summary), folder, is_new=False)
+        summary = dict(json.loads(file.read_text(encoding="utf-8")))
     except (ValueError, TypeError, OSError) as error:
         raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error
+    print_summary(summary, folder, is_new=False)
+    return summary
 
 
 def open_viewer(folder: Path) -> None:
@@ -122,13 +142,26 @@ def open_viewer(folder: Path) -> None:
     if recording.is_file() and has_screen():
         open_recording(recording)
     elif recording.is_file():
-        typer.echo(f"no screen here; open the recording with: rerun {recording}")
+        typer.echo(f"no screen here; open the recording with: rerun {shlex.quote(str(recording))}")
 
 
-def save_picture(folder: Path, picture: Path, at_s: float) -> None:
-    """Save what the viewer shows at a moment."""
+def save_picture(folder: Path, picture: Path, at_s: float, end_s: float) -> None:
+    """Save what the viewer shows at a moment of a run that lasted ``end_s``.
+
+    Raises
+    ------
+    InputError
+        The moment is outside the run.
+    OutputFolderError
+        The picture cannot be written.
+    """
     from onorbit_rs import viewer
 
+    if not (math.isfinite(at_s) and 0.0 <= at_s <= end_s):
+        raise InputError(
+            f"--at {at_s:g} s is outside the run, which goes from 0 to {end_s:g} s",
+            name="at", got=at_s, expected=f"0 to {end_s:g} s",
+        )  # fmt: skip
     try:
         viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s)
     except OSError as error:

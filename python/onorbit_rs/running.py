@@ -44,6 +44,7 @@ class Run:
 def run(
     scenario: str | os.PathLike[str] | Mapping[str, Any] | Scenario,
     out: str | os.PathLike[str] | None = None,
+    *,
     force: bool = False,
     quiet: bool = False,
 ) -> Run:
@@ -80,7 +81,7 @@ def run(
     except (SimulationError, RunInterrupted) as stop:
         _keep(stop, built, folder)
         raise
-    summary = summarize(trace, checked)
+    summary = summarize(trace, checked, warnings=built.model.warnings)
     if folder is not None:
         write_trace(folder, trace)
         write_summary(folder, summary)
@@ -100,11 +101,14 @@ def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFo
     if not diverged:
         duration = built.scenario.simulation.duration
         stop.message = f"stopped by Ctrl-C at t = {stop.time:g} s of {duration:g} s"
-    if folder is None or stop.trace is None or len(stop.trace.time) == 0:
+    if folder is None:
+        return
+    if stop.trace is None or len(stop.trace.time) == 0:
+        folder.discard()
         return
     with np.errstate(all="ignore"):  # numbers near the end of the range of floats
         status = "diverged" if diverged else "interrupted"
-        summary = summarize(stop.trace, built.scenario, status=status)
+        summary = summarize(stop.trace, built.scenario, status=status, warnings=built.model.warnings)
     write_trace(folder, stop.trace)
     write_summary(folder, summary)
     stop.message += f"; the trace so far is in {folder.path}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import platform
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,8 +18,21 @@ if TYPE_CHECKING:
 
 Summary = dict[str, Any]
 
+CHECKS = (
+    "linear_momentum_drift_rel",
+    "angular_momentum_drift_rel",
+    "energy_balance_error_rel",
+    "center_of_mass_error_rel",
+    "base_rows_residual_rel",
+    "attitude_consistency",
+    "attitude_step_doubling_rad",
+)
+"""Every line a certificate can have; a run leaves out those that do not apply to it."""
 
-def summarize(trace: Trace, scenario: Scenario, *, status: str = "complete") -> Summary:
+
+def summarize(
+    trace: Trace, scenario: Scenario, *, status: str = "complete", warnings: Sequence[str] = ()
+) -> Summary:
     """Everything a reader wants to know of a run without opening its trace.
 
     Parameters
@@ -27,6 +41,8 @@ def summarize(trace: Trace, scenario: Scenario, *, status: str = "complete") -> 
     scenario : Scenario
     status : str
         ``complete``, ``interrupted`` or ``diverged``.
+    warnings : sequence of str
+        What was said about the robot when it was read.
 
     Returns
     -------
@@ -42,17 +58,22 @@ def summarize(trace: Trace, scenario: Scenario, *, status: str = "complete") -> 
         | {"simulated_s": simulated_s, "wall_s": trace.wall_s}
         | {"real_time_factor": simulated_s / max(trace.wall_s, 1e-9), "rows": len(trace.time)}
         | _settings(scenario)
+        | {"warnings": "; ".join(warnings)}
         | _versions()
     )
     return {key: _plain(value) for key, value in summary.items()}
 
 
 def _certificate(trace: Trace) -> Summary:
-    """Every balance that applies to this run, and whether all are within their gates."""
+    """Every balance that applies to this run, whether all are within their gates, and what does not apply."""
     rows = trace.certificate()
     balances: Summary = {name: value for name, value, _, _ in rows if value is not None}
     failed = [name for name, _, _, passed in rows if not passed]
-    return balances | {"certificate_passed": not failed, "certificate_failures": ", ".join(failed)}
+    return balances | {
+        "certificate_passed": not failed,
+        "certificate_failures": ", ".join(failed),
+        "certificate_not_evaluated": ", ".join(name for name in CHECKS if name not in balances),
+    }
 
 
 def _tracking(trace: Trace) -> Summary:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core, robots
-from onorbit_rs.exceptions import FrameError, OnOrbitError
+from onorbit_rs.exceptions import EffectError, FrameError, OnOrbitError, OrbitError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.environment import BodyWrenchEffect
 from onorbit_rs.scenario.orbit import KeplerOrbit
@@ -38,7 +38,7 @@ class Built:
 
 
 def build(scenario: Scenario) -> Built:
-    """Robot, orbit, start and simulation of a scenario; nothing runs yet.
+    """Robot, orbit, start and simulation of a scenario, and one step as a trial; a run starts afresh.
 
     Raises
     ------
@@ -70,7 +70,18 @@ def build(scenario: Scenario) -> Built:
             model, q, v, orbit=orbit, environment=effects, controller=controller, reference=reference,
             tool=scenario.tool, **settings,
         )  # fmt: skip
+    _try_one_step(scenario, simulation)
     return Built(scenario, model, orbit, q, v, simulation)
+
+
+def _try_one_step(scenario: Scenario, simulation: _core.Simulation) -> None:
+    """One step, thrown away: what would stop the run at once is told before anything is written."""
+    try:
+        simulation.run(scenario.simulation.time_step)
+    except OnOrbitError as error:
+        is_about_orbit = isinstance(error, (OrbitError, EffectError)) and scenario.orbit is not None
+        with located(scenario, "orbit" if is_about_orbit else "simulation"):
+            raise
 
 
 @contextmanager

@@ -66,7 +66,7 @@ def write_recording(
     robot = shapes(model)
     plots = list(series_of(trace, model))
     recording = rr.RecordingStream("onorbit", recording_id=uuid.uuid4(), send_properties=False)
-    stream = recording.binary_stream()  # rerun's own file sink waits for ever where the disk is full
+    stream = rr.binary_stream(recording)  # rerun's own file sink waits for ever where the disk is full
     recording.set_log_time_enabled(False)  # simulation time alone: nothing here reads the wall clock
     recording.set_log_tick_enabled(False)
     recording.send_blueprint(layout(trace, model, plots, has_notes=bool(notes)))
