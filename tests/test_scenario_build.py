@@ -16,6 +16,7 @@ from onorbit_rs.exceptions import (
     OnOrbitError,
     OrbitError,
     ReadError,
+    ScenarioError,
     ShapeError,
 )
 from onorbit_rs.scenario import load
@@ -141,3 +142,31 @@ def test_what_the_engine_refuses_keeps_its_class_and_gains_its_place(
         build(load(file))
     line = load(file).line_of(*(("environment", 0) if "[" in place else (place,)))
     assert str(caught.value).startswith(f"{file}:{line}: {place}: ")
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"controller": "computed_torqe"}, "did you mean 'computed_torque'"),
+        ({"orbit": "keppler"}, "did you mean 'kepler'"),
+        ({"robot": 3}, "must be a bundled name"),
+    ],
+)
+def test_a_scenario_made_in_python_complains_like_one_read(change: dict[str, Any], says: str) -> None:
+    data: dict[str, Any] = {"robot": "humanoid_torso", "simulation": {"duration": "1 s"}} | change
+    with pytest.raises(ScenarioError, match=says):
+        oo.Scenario(**data)
+    with pytest.raises(ScenarioError, match=says):
+        load(data)
+
+
+def test_the_resolved_scenario_holds_every_default() -> None:
+    data = oo.Scenario(
+        robot="humanoid_torso", tool="tool", orbit={"semi_major_axis": "6778 km"},
+        controller="computed_torque", simulation={"duration": "1 s"},
+    ).resolved()  # fmt: skip
+    assert data["orbit"]["mu"] == oo.MU_EARTH and data["orbit"]["true_anomaly"] == 0.0
+    assert {"damping", "null_space_damping", "compensate_environment", "compensate_friction"} <= set(
+        data["controller"]
+    )
+    assert data["reference"] == {"kind": "hold"}

@@ -23,7 +23,11 @@ def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
     header = f"# resolved by onorbit_rs from {source}; run it again with: onorbit run scenario.yaml\n"
     with folder.writing("scenario.yaml") as path:
         text = yaml.safe_dump(
-            with_absolute_paths(scenario), sort_keys=False, default_flow_style=None, width=110
+            with_absolute_paths(scenario),
+            sort_keys=False,
+            default_flow_style=None,
+            width=110,
+            allow_unicode=True,
         )
         path.write_text(header + text, encoding="utf-8")
 
@@ -61,7 +65,7 @@ def write_pictures(folder: OutputFolder, trace: Trace, summary: dict[str, Any], 
 
 
 def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
-    """The resolved scenario with paths that hold from any folder."""
+    """The resolved scenario with paths that hold from any folder, and the period of control."""
     data = scenario.resolved()
     beside = scenario.file.parent if scenario.file else Path()
     robot = data["robot"]
@@ -69,6 +73,8 @@ def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
         robot["urdf"] = str((beside / robot["urdf"]).resolve())
     if "package_paths" in robot:
         robot["package_paths"] = [str((beside / folder).resolve()) for folder in robot["package_paths"]]
+    settings = data["simulation"]
+    settings.setdefault("control_period", settings["time_step"])
     return data
 
 

@@ -15,6 +15,7 @@ from onorbit_rs.exceptions import EffectError, FrameError, OnOrbitError, OrbitEr
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.environment import BodyWrenchEffect
 from onorbit_rs.scenario.orbit import KeplerOrbit
+from onorbit_rs.scenario.place import dotted, file_and_line
 from onorbit_rs.scenario.reference import reference_of
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.start import initial_state
@@ -92,15 +93,10 @@ def located(scenario: Scenario, *at: str | int) -> Iterator[None]:
     except OnOrbitError as error:
         if getattr(error, "located", False):
             raise
-        line, place = scenario.line_of(*at), _dotted(at)
-        where = f"{scenario.file or 'scenario'}" + (f":{line}" if line else "")
-        error.message = f"{where}: {place}: {error.message}"
+        where = file_and_line(scenario.file, scenario.line_of(*at))
+        error.message = f"{where}: {dotted(at)}: {error.message}"
         error.located = True  # type: ignore[attr-defined]  # set once, read above
         raise
-
-
-def _dotted(at: tuple[str | int, ...]) -> str:
-    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in at).removeprefix(".")
 
 
 def _robot(scenario: Scenario) -> _core.Model:

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, model_validator
 from pydantic_core import PydanticCustomError
 
+from onorbit_rs._core import MU_EARTH
 from onorbit_rs.scenario.fields import (
     Angle,
     GravitationalParameter,
@@ -44,7 +45,7 @@ class KeplerOrbit(Part):
     periapsis_time: Time | None = None
     position: Length3 | None = None
     velocity: Speed3 | None = None
-    mu: Annotated[GravitationalParameter, Positive] | None = None
+    mu: Annotated[GravitationalParameter, Positive] = MU_EARTH
     """Gravitational parameter, m³/s²; the Earth's where not given."""
 
     @property
@@ -53,7 +54,7 @@ class KeplerOrbit(Part):
         return self.position is not None or self.velocity is not None
 
     def given(self) -> dict[str, Any]:
-        """What the YAML gave, without ``kind``."""
+        """What defines it, without ``kind``."""
         return self.model_dump(exclude_none=True, exclude={"kind"})
 
     @model_validator(mode="after")
@@ -73,7 +74,16 @@ class KeplerOrbit(Part):
         if len(phases) > 1:
             raise _wrong(f"give one of {_listed(PHASES)}; given: {', '.join(phases)}")
         self._check_signs()
+        self._write_out_defaults(has_phase=bool(phases))
         return self
+
+    def _write_out_defaults(self, *, has_phase: bool) -> None:
+        """Elements that were not given: a circle in the equator's plane, at its periapsis."""
+        for name in ("eccentricity", "inclination", "raan", "argument_of_periapsis"):
+            if getattr(self, name) is None:
+                setattr(self, name, 0.0)
+        if not has_phase:
+            self.true_anomaly = 0.0
 
     def _check_signs(self) -> None:
         a, e = self.semi_major_axis, self.eccentricity or 0.0

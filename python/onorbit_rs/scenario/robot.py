@@ -49,6 +49,12 @@ class Robot(Part):
     @classmethod
     def _from_text(cls, value: Any) -> Any:
         """``humanoid_torso`` is a bundled name; ``arms/my_arm.urdf`` is a path, relative to the YAML."""
+        if not isinstance(value, (str, dict)):
+            raise PydanticCustomError(
+                "robot_choice",
+                "must be a bundled name, a path of a URDF, or a mapping with 'rigid_body', not {value}",
+                {"value": repr(value)},
+            )
         if not isinstance(value, str):
             return value
         looks_like_path = "/" in value or "\\" in value or value.lower().endswith((".urdf", ".xml", ".xacro"))

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from onorbit_rs.scenario.control import Controller, Reference
+from onorbit_rs.scenario.complaints import first_complaint
+from onorbit_rs.scenario.control import Controller, HoldReference, Reference
 from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.orbit import Orbit
@@ -42,6 +43,20 @@ class Scenario(Part):
     _file: Path | None = PrivateAttr(default=None)
     _lines: Lines = PrivateAttr(default_factory=dict)
 
+    def __init__(self, **data: Any) -> None:
+        """Check what is given; raises :class:`onorbit_rs.exceptions.ScenarioError`."""
+        try:
+            self.__pydantic_validator__.validate_python(data, self_instance=self)
+        except ValidationError as error:
+            raise first_complaint(error, data, None, {}) from None
+
+    @classmethod
+    def checked(cls, data: dict[str, Any]) -> Scenario:
+        """From plain data; raises pydantic's own error, which a reader of files tells with file and line."""
+        scenario = cls.__new__(cls)
+        cls.__pydantic_validator__.validate_python(data, self_instance=scenario)
+        return scenario
+
     @property
     def file(self) -> Path | None:
         """The YAML it was read from."""
@@ -71,6 +86,8 @@ class Scenario(Part):
             raise _wrong("tool", "the controller tracks a frame: name it with 'tool'")
         if self.reference is not None and self.controller is None:
             raise _wrong("reference", "a reference needs a 'controller' that tracks it")
+        if self.controller is not None and self.reference is None:
+            self.reference = HoldReference()
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
                 if isinstance(effect, GravityGradientEffect):

@@ -12,6 +12,7 @@ from typing import Any
 import yaml
 
 from onorbit_rs.exceptions import NotFoundError, ReadError, ScenarioError
+from onorbit_rs.scenario.place import scenario_error
 
 Location = tuple[str | int, ...]
 """Keys and indices from the top of the file, as in ``("environment", 0, "force")``."""
@@ -142,5 +143,4 @@ def _syntax_error(error: yaml.YAMLError, file: Path | None) -> ScenarioError:
 
 
 def _at(file: Path | None, line: int | None, message: str) -> ScenarioError:
-    place = f"{file or 'scenario'}" + (f":{line}" if line else "")
-    return ScenarioError(f"{place}: {message}", file=str(file) if file else None, path=None, line=line)
+    return scenario_error(message, file, line)
