@@ -19,13 +19,14 @@ pub struct PseudoInverse<S> {
     gram: [S; ROWS * ROWS],
     damped: [S; ROWS * ROWS],
     undamped: [S; ROWS * ROWS],
+    is_damped: bool,
 }
 
 impl<S: Real> PseudoInverse<S> {
     /// Space for a factor.
     pub fn new() -> Self {
         let empty = [S::of(0.0); ROWS * ROWS];
-        Self { gram: empty, damped: empty, undamped: empty }
+        Self { gram: empty, damped: empty, undamped: empty, is_damped: false }
     }
 
     /// Factors `J Jᵀ` of a row-major `(6, n)` Jacobian; `damping` is `λ₀`.
@@ -47,16 +48,20 @@ impl<S: Real> PseudoInverse<S> {
 
         // λ² = max(λ₀² − σ², 0)
         let missing = damping * damping - S::of(1.0) / inverse_trace(&self.undamped);
-        let missing = S::select(S::less(missing, S::of(0.0)), S::of(0.0), missing);
-        self.damped = self.gram;
-        add_diagonal(&mut self.damped, missing + floor);
-        cholesky_factor(&mut self.damped, ROWS);
+        let is_short = S::less(S::of(0.0), missing);
+        self.is_damped = S::any(is_short);
+        if self.is_damped {
+            self.damped = self.gram;
+            add_diagonal(&mut self.damped, S::select(is_short, missing, S::of(0.0)) + floor);
+            cholesky_factor(&mut self.damped, ROWS);
+        }
     }
 
     /// `out = J⁺ x`, damped; `x` is `(6,)`, `out` `(n,)`.
     #[inline(always)]
     pub fn apply(&self, jacobian: &[S], x: [S; ROWS], out: &mut [S]) {
-        transpose_apply(&self.damped, jacobian, x, out);
+        let factor = if self.is_damped { &self.damped } else { &self.undamped };
+        transpose_apply(factor, jacobian, x, out);
     }
 
     /// Splits joint rates `y`, `(n,)`: what the task does not feel, `(1 − J⁺ J) y` undamped, into
@@ -69,7 +74,10 @@ impl<S: Real> PseudoInverse<S> {
             *felt = dot(&jacobian[i * n..(i + 1) * n], y);
         }
         transpose_apply(&self.undamped, jacobian, felt, free);
-        transpose_apply(&self.damped, jacobian, felt, lost);
+        lost.copy_from_slice(free);
+        if self.is_damped {
+            transpose_apply(&self.damped, jacobian, felt, lost);
+        }
         for j in 0..n {
             lost[j] = free[j] - lost[j];
             free[j] = y[j] - free[j];

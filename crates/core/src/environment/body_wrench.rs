@@ -94,6 +94,10 @@ impl Effect for BodyWrench {
         [self.start, self.end].into_iter().filter(|t| t.is_finite()).collect()
     }
 
+    fn reads_velocities(&self) -> bool {
+        false
+    }
+
     /// # Errors
     /// [`EnvironmentError::UnknownBody`] and [`EnvironmentError::WrongLength`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {

@@ -69,6 +69,10 @@ impl Effect for DifferentialGravity {
         true
     }
 
+    fn reads_velocities(&self) -> bool {
+        false
+    }
+
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], and [`EnvironmentError::InsidePlanet`] where the
     /// reference or a body comes nearer to the centre than any planet of that mass allows.

@@ -25,6 +25,10 @@ impl Effect for GravityGradient {
         true
     }
 
+    fn reads_velocities(&self) -> bool {
+        false
+    }
+
     /// # Errors
     /// [`EnvironmentError::NoPlanet`] and [`EnvironmentError::InsidePlanet`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {

@@ -51,6 +51,11 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
         false
     }
 
+    /// Whether the effect reads how the bodies move; where none does, the scene leaves that out.
+    fn reads_velocities(&self) -> bool {
+        true
+    }
+
     /// Add this effect's wrench on each body to what `wrenches` holds, one per body; allocates nothing.
     ///
     /// # Errors

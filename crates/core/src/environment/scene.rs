@@ -19,9 +19,9 @@ pub struct BodyState {
     pub rot_wk: Matrix3<f64>,
     /// Origin of the body's axes, m.
     pub origin: Vector3<f64>,
-    /// Velocity of the centre of mass, m/s.
+    /// Velocity of the centre of mass, m/s; zero unless an effect [reads it](super::Effect::reads_velocities).
     pub velocity: Vector3<f64>,
-    /// Angular velocity, `W` axes, rad/s.
+    /// Angular velocity, `W` axes, rad/s; likewise.
     pub angular_velocity: Vector3<f64>,
 }
 

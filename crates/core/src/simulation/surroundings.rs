@@ -14,6 +14,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(super) struct Surroundings {
     effects: Vec<Arc<dyn Effect>>,
+    reads_velocities: bool,
     orbit: Option<Arc<dyn Orbit>>,
     /// The last instants asked for: the stages of a step share them.
     known: [(f64, Option<OrbitState>); 3],
@@ -33,6 +34,7 @@ impl Surroundings {
             angular_velocity: Vector3::zeros(),
         };
         Self {
+            reads_velocities: effects.iter().any(|effect| effect.reads_velocities()),
             effects,
             orbit,
             known: [(f64::NAN, None); 3],
@@ -61,8 +63,10 @@ impl Surroundings {
             seen.com = (rot_wb * body.com_b + origin).to_nalgebra();
             seen.rot_wk = (rot_wb * body.rot_bk).to_nalgebra();
             seen.origin = (rot_wb * body.pos_b + origin).to_nalgebra();
-            seen.velocity = (rot_wb * body.velocity.at(body.com_b) + carried).to_nalgebra();
-            seen.angular_velocity = (rot_wb * body.velocity.angular).to_nalgebra();
+            if self.reads_velocities {
+                seen.velocity = (rot_wb * body.velocity.at(body.com_b) + carried).to_nalgebra();
+                seen.angular_velocity = (rot_wb * body.velocity.angular).to_nalgebra();
+            }
         }
         rot_wb
     }

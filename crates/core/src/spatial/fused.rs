@@ -120,6 +120,10 @@ impl Real for Fused {
         if mask { a } else { b }
     }
     #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    #[inline(always)]
     fn enter<R>(kernel: impl FnOnce() -> R) -> R {
         #[cfg(target_arch = "x86_64")]
         {

@@ -131,6 +131,10 @@ macro_rules! lanes {
                 Self(out)
             }
             #[inline(always)]
+            fn any(mask: Self::Mask) -> bool {
+                mask.0.iter().any(|lane| *lane != 0)
+            }
+            #[inline(always)]
             fn enter<R>(kernel: impl FnOnce() -> R) -> R {
                 #[cfg(target_arch = "x86_64")]
                 {

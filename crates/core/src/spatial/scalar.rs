@@ -65,6 +65,9 @@ pub trait Real:
     #[must_use]
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
 
+    /// Whether the mask holds in any lane: to leave out work that no lane needs, with the same bits.
+    fn any(mask: Self::Mask) -> bool;
+
     /// Runs `kernel` compiled for the instruction set this scalar stands for.
     ///
     /// The closure and all it calls must be `#[inline(always)]`: what is left out of line is
@@ -124,6 +127,10 @@ impl Real for f64 {
     #[inline(always)]
     fn select(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
+    }
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
     }
     #[inline(always)]
     fn enter<R>(kernel: impl FnOnce() -> R) -> R {
