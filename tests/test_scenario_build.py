@@ -170,3 +170,17 @@ def test_the_resolved_scenario_holds_every_default() -> None:
         data["controller"]
     )
     assert data["reference"] == {"kind": "hold"}
+
+
+def test_metres_on_a_joint_that_turns_are_refused() -> None:
+    data: dict[str, Any] = {"robot": "humanoid_torso", "simulation": {"duration": "1 s"}}
+    joint = oo.robots.load("humanoid_torso").joint_names[0]
+    for wrong in (
+        {"joints": {joint: "30 m"}},
+        {"joint_rates": {joint: "1 m/s"}},
+        {"joints": ["30 m", *[0] * 6]},
+    ):
+        with pytest.raises(OnOrbitError, match=f"{joint} turns, so"):
+            build(load(data | {"initial": wrong}))
+    built = build(load(data | {"initial": {"joints": {joint: "30 deg"}}}))
+    assert built.q[7] == pytest.approx(np.pi / 6)

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.exceptions import FrameError, ShapeError
+from onorbit_rs.exceptions import FrameError, QuantityError, ShapeError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.rotations import (
     matrix_from_quaternion,
     quaternion_from_matrix,
     quaternion_from_roll_pitch_yaw,
 )
+from onorbit_rs.scenario.fields import JointValue
 from onorbit_rs.scenario.initial import Attitude, InitialState
+from onorbit_rs.scenario.units import LENGTH, SPEED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,6 +44,8 @@ def initial_state(initial: InitialState, model: Model, orbit: Kepler | None) -> 
         A joint that does not exist; suggests the nearest.
     ShapeError
         A list of joints of the wrong length.
+    QuantityError
+        Metres on a joint that turns, radians on one that slides.
     """
     q, v = np.array(model.neutral(), dtype=np.float64), np.zeros(model.nv)
     rot_fb = matrix_from_quaternion(_quaternion(initial.attitude))
@@ -56,8 +59,8 @@ def initial_state(initial: InitialState, model: Model, orbit: Kepler | None) -> 
         position, rot_fb = rot_il @ position, rot_il @ rot_fb
     q[:3], q[3:7] = position, quaternion_from_matrix(rot_fb)
     v[:3], v[3:6] = linear, angular
-    q[7:] = _joint_values("joints", initial.joints, q[7:], model.joint_names)
-    v[6:] = _joint_values("joint_rates", initial.joint_rates, v[6:], model.joint_names)
+    q[7:] = _joint_values("joints", initial.joints, q[7:], model)
+    v[6:] = _joint_values("joint_rates", initial.joint_rates, v[6:], model)
     return q, v
 
 
@@ -72,10 +75,10 @@ def _quaternion(attitude: Attitude | None) -> Floats:
 
 
 def _joint_values(
-    name: str, given: list[float] | dict[str, float], default: Floats, joints: Sequence[str]
+    name: str, given: list[JointValue] | dict[str, JointValue], default: Floats, model: Model
 ) -> Floats:
     """Values in the order of the model's joints."""
-    values = default.copy()
+    values, joints = default.copy(), list(model.joint_names)
     if isinstance(given, dict):
         for joint, value in given.items():
             if joint not in joints:
@@ -90,4 +93,31 @@ def _joint_values(
             message = f"{name} has {len(given)} entries, the robot has {len(joints)} moving joints"
             raise ShapeError(message, name=name, expected=(len(joints),), got=(len(given),))
         values[:] = given
+    by_name = given if isinstance(given, dict) else dict(zip(joints, given, strict=False))
+    if any(value.dimension is not None for value in by_name.values()):
+        _check_units(name, by_name, model)
     return values
+
+
+def _check_units(name: str, given: dict[str, JointValue], model: Model) -> None:
+    """A unit of length on a joint that turns, or of angle on one that slides, is refused."""
+    slides = dict(zip(model.joint_names, _slides(model), strict=True))
+    for joint, value in given.items():
+        if value.dimension is None:
+            continue
+        is_length = value.dimension in (LENGTH, SPEED)
+        if is_length != slides[joint]:
+            does = "slides" if slides[joint] else "turns"
+            message = f"{name}: {joint} {does}, so {value.dimension.name} does not fit"
+            raise QuantityError(
+                message, text=float(value), expected="a length" if slides[joint] else "an angle"
+            )
+
+
+def _slides(model: Model) -> list[bool]:
+    """Whether each joint is prismatic: it turns no body."""
+    q = model.neutral()
+    turning = np.zeros(model.nv)
+    for body in model.body_names:
+        turning += np.abs(np.asarray(model.frame_jacobian(q, body))[3:]).sum(axis=0)
+    return [bool(amount < 1e-9) for amount in turning[6:]]  # a unit axis gives 1 or more
