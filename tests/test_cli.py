@@ -192,3 +192,15 @@ def test_ctrl_c_keeps_the_trace_so_far_and_says_so(tmp_path: Path) -> None:
     assert "the trace so far is in" in stderr
     assert len(stderr.splitlines()) == 1
     assert (tmp_path / "out" / "trace.npz").is_file()
+
+
+def test_a_warning_is_one_line_and_in_the_summary(tmp_path: Path) -> None:
+    (tmp_path / "w.urdf").write_text(
+        '<robot name="x"><link name="a"><inertial><mass value="1"/>'
+        '<inertia ixx="1" iyy="1" izz="5" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+    )
+    (tmp_path / "w.yaml").write_text("robot: w.urdf\nsimulation: {duration: 0.1 s}\n")
+    done = onorbit("run", "w.yaml", "--quiet", "--out", "out", cwd=tmp_path)
+    assert done.stderr.startswith("onorbit: warning: the inertia of link 'a'")
+    assert (done.returncode, len(done.stderr.splitlines())) == (0, 1)
+    assert "triangle inequality" in (tmp_path / "out" / "summary.json").read_text()
