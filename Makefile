@@ -4,9 +4,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 # an environment of the caller's must not leak in
-export VIRTUAL_ENV :=
-export PYTHONPATH :=
-unexport CONDA_PREFIX
+unexport VIRTUAL_ENV PYTHONPATH PYTHONHOME CONDA_PREFIX
 MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
@@ -42,7 +40,7 @@ test-python: $(VENV)/.built $(VENV)/.tested ## the package, against independent 
 
 lint: $(VENV)/.built $(VENV)/.tested ## formatting, lints as errors, types
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets -- -D warnings
+	PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps -p onorbit-core
 	$(BIN)/ruff format --check python tests benches
 	$(BIN)/ruff check python tests benches
