@@ -6,7 +6,7 @@ use crate::dynamics::{
     momentum, positions,
 };
 use crate::model::{Model, difference, integrate};
-use crate::spatial::{Force, Real, Vec3};
+use crate::spatial::{Force, Real, Vec3, pose_rows};
 
 /// What to compute from a state; frames by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,25 +107,7 @@ impl Kernel {
                     #[inline(always)]
                     || frame_pose(model, data, q, frame),
                 );
-                let (r, p, zero) = (pose.rot_wf, pose.pos_w, S::of(0.0));
-                out[0].copy_from_slice(&[
-                    r.x.x,
-                    r.y.x,
-                    r.z.x,
-                    p.x,
-                    r.x.y,
-                    r.y.y,
-                    r.z.y,
-                    p.y,
-                    r.x.z,
-                    r.y.z,
-                    r.z.z,
-                    p.z,
-                    zero,
-                    zero,
-                    zero,
-                    S::of(1.0),
-                ]);
+                out[0].copy_from_slice(&pose_rows(&pose.rot_wf, pose.pos_w));
             }
             Self::FrameVelocity(frame) => {
                 kinematics(model, data, q, &inputs[1]);

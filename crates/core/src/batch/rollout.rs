@@ -3,11 +3,10 @@
 use super::input::{InputError, check_finite, check_quaternions};
 use super::threads::for_each;
 use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
-use crate::dynamics::{kinematics, momentum};
 use crate::model::Model;
 use crate::reference::TaskReference;
 use crate::simulation::{Integrator, Nothing, Plant, Stages, State};
-use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Quat, Real};
+use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What drives the joints in a rollout.
@@ -125,12 +124,8 @@ impl<'a, S: Real> Lanes<'a, S> {
         let gather = |rows: &[f64], width: usize| -> Vec<S> {
             (0..width).map(|i| S::from_lanes(|lane| rows[lane.min(count - 1) * width + i])).collect()
         };
-        let (mut q, v) = (gather(q0, model.nq()), gather(v0, model.nv()));
-        Quat::from_xyzw(&q[3..]).normalized().write_xyzw(&mut q[3..]);
         let mut plant = Plant::new(model, Nothing);
-        kinematics(model, &mut plant.data, &q, &v);
-        let start = momentum(&plant.data, &q);
-        let state = State { q, v, start, impulse: Default::default(), work: S::of(0.0) };
+        let state = State::at(model, &mut plant.data, gather(q0, model.nq()), gather(v0, model.nv()));
         let stages = Stages::new(model, &state, settings.integrator);
         let is_controlled = matches!(settings.control, RolloutControl::ComputedTorque(..));
         let work = is_controlled.then(|| ComputedTorqueWork::new(model));

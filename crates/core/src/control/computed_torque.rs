@@ -185,9 +185,7 @@ const SLIP: f64 = 1e-2;
 /// `b q̇ + f sat(q̇/s)`: what the joint takes of its torque.
 #[inline(always)]
 fn friction<S: Real>(joint: &JointProperties, rate: S) -> S {
-    let one = S::of(1.0);
-    let share = rate * S::of(1.0 / SLIP);
-    let share = S::select(S::less(share, -one), -one, S::select(S::less(one, share), one, share));
+    let share = (rate * S::of(1.0 / SLIP)).saturate();
     rate * S::of(joint.damping) + share * S::of(joint.friction)
 }
 

@@ -1,6 +1,6 @@
 //! One instant of a reference.
 
-use crate::spatial::{Mat3, Motion, Real, Vec3};
+use crate::spatial::{Mat3, Motion, Real, Vec3, pose_rows};
 
 /// Desired pose, velocity and acceleration of a frame, in W axes at its origin.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,6 @@ impl<S: Real> TaskSample<S> {
 impl TaskSample<f64> {
     /// The pose as a row-major `(4, 4)` matrix.
     pub fn pose_rows(&self) -> [f64; 16] {
-        let (r, p) = (&self.rot_wd, &self.pos_w);
-        [r.x.x, r.y.x, r.z.x, p.x, r.x.y, r.y.y, r.z.y, p.y, r.x.z, r.y.z, r.z.z, p.z, 0.0, 0.0, 0.0, 1.0]
+        pose_rows(&self.rot_wd, self.pos_w)
     }
 }

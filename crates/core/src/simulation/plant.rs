@@ -124,7 +124,7 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
         let Self { model, data, command, forces, slip, carried, .. } = self;
         for (j, joint) in model.joints().iter().enumerate() {
             // −b q̇ − f sat(q̇/s): friction develops within the rate that one step of it brakes
-            let share = clamp_to_one(v[j + 6] / slip[j]);
+            let share = (v[j + 6] / slip[j]).saturate();
             forces[j + 6] = command[j] - (v[j + 6] * S::of(joint.damping) + share * S::of(joint.friction));
         }
         forward_dynamics_recursion(model, data, v, forces, &mut rate.a);
@@ -187,11 +187,4 @@ fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], carried: Vec3<S>, forces: 
     let about_com = total.angular - center_of_mass_b(data).cross(total.linear);
     rate.wrench = Momentum { linear: rot_wb * total.linear, angular: rot_wb * about_com };
     rate.power = power + rate.wrench.linear.dot(carried);
-}
-
-/// The nearest number in -1..1.
-fn clamp_to_one<S: Real>(x: S) -> S {
-    let one = S::of(1.0);
-    let low = S::select(S::less(x, -one), -one, x);
-    S::select(S::less(one, low), one, low)
 }

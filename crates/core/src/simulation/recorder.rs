@@ -9,7 +9,7 @@ use crate::control::task_error;
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
 use crate::orbit::OrbitState;
 use crate::reference::TaskReference;
-use crate::spatial::{Mat3, Scalar, Vec3};
+use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
 
 /// Fills a trace, row by row, without allocating.
 pub(super) struct Recorder<'a> {
@@ -133,9 +133,5 @@ fn push_vector<S: Scalar>(column: &mut Vec<f64>, v: Vec3<S>) {
 }
 
 fn push_pose<S: Scalar>(column: &mut Vec<f64>, r: &Mat3<S>, p: Vec3<S>) {
-    let row = |a: S, b: S, c: S, d: S| [a.value(), b.value(), c.value(), d.value()];
-    column.extend(row(r.x.x, r.y.x, r.z.x, p.x));
-    column.extend(row(r.x.y, r.y.y, r.z.y, p.y));
-    column.extend(row(r.x.z, r.y.z, r.z.z, p.z));
-    column.extend([0.0, 0.0, 0.0, 1.0]);
+    push(column, &pose_rows(r, p));
 }

@@ -12,7 +12,6 @@ use super::state::State;
 use super::surroundings::Surroundings;
 use super::trace::Trace;
 use crate::control::ControlError;
-use crate::dynamics::{kinematics, momentum};
 use crate::environment::{DifferentialGravity, Effect};
 use crate::spatial::{Fused, InstructionSet, Scalar};
 use std::ops::ControlFlow;
@@ -49,9 +48,11 @@ impl Simulation {
         let events = effects.iter().flat_map(|effect| effect.event_times()).collect();
         let schedule = Schedule::new(self.time_step, duration, self.control_period, events);
         let surroundings = Surroundings::new(&model, effects, self.orbit.clone());
+        let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
+        let mut plant = Plant::<S, _>::new(&model, surroundings);
         let mut run = Run {
-            state: initial_state(self),
-            plant: Plant::<S, _>::new(&model, surroundings),
+            state: State::at(&model, &mut plant.data, numbers(&self.q), numbers(&self.v)),
+            plant,
             driver: Driver::new(&mut self.control, self.reference.as_ref(), &model).map_err(fail)?,
             recorder: Recorder::new(
                 rows(&schedule, self.record_every),
@@ -80,18 +81,6 @@ impl Simulation {
         }
         effects
     }
-}
-
-/// The given state with the momentum that goes with it.
-fn initial_state<S: Scalar>(simulation: &Simulation) -> State<S> {
-    let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
-    let (mut q, v) = (numbers(&simulation.q), numbers(&simulation.v));
-    let attitude = crate::spatial::Quat::from_xyzw(&q[3..]).normalized();
-    attitude.write_xyzw(&mut q[3..]);
-    let mut data = crate::dynamics::Data::new(&simulation.model);
-    kinematics(&simulation.model, &mut data, &q, &v);
-    let start = momentum(&data, &q);
-    State { q, v, start, impulse: Default::default(), work: S::of(0.0) }
 }
 
 /// How many rows to make room for.

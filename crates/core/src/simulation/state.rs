@@ -1,6 +1,6 @@
 //! What evolves, and how fast.
 
-use crate::dynamics::Momentum;
+use crate::dynamics::{Data, Momentum, kinematics, momentum};
 use crate::model::Model;
 use crate::spatial::{Quat, Real, Vec3, exp_so3};
 
@@ -77,6 +77,15 @@ impl<S: Real> Rate<S> {
 }
 
 impl<S: Real> State<S> {
+    /// At `q`, its quaternion normalised, and `v`, with the momentum that goes with them; leaves the
+    /// kinematics in `data`.
+    pub(crate) fn at(model: &Model, data: &mut Data<S>, mut q: Vec<S>, v: Vec<S>) -> Self {
+        Quat::from_xyzw(&q[3..]).normalized().write_xyzw(&mut q[3..]);
+        kinematics(model, data, &q, &v);
+        let start = momentum(data, &q);
+        Self { q, v, start, impulse: Momentum::default(), work: S::of(0.0) }
+    }
+
     /// Whether every number of the state is one.
     pub(crate) fn is_finite(&self) -> bool {
         self.q.iter().chain(&self.v).all(|x| (0..S::LANES).all(|lane| x.lane(lane).is_finite()))

@@ -1,6 +1,5 @@
 //! Inertia of a rigid body: ten numbers.
 
-use super::mat3::Mat3;
 use super::motion::{Force, Motion};
 use super::scalar::Real;
 use super::sym3::Sym3;
@@ -32,12 +31,6 @@ impl<S: Real> SpatialInertia<S> {
     pub fn at_com(mass: S, c: Vec3<S>, about_com: Sym3<S>) -> Self {
         let moment = c * mass;
         Self { mass, moment, about_origin: about_com.shift(moment, c) }
-    }
-
-    /// The body placed at `(rot, pos)`, given its centre of mass and inertia in its own frame.
-    #[inline(always)]
-    pub fn placed(mass: S, c: Vec3<S>, about_com: &Sym3<S>, rot: &Mat3<S>, pos: Vec3<S>) -> Self {
-        Self::at_com(mass, *rot * c + pos, about_com.rotate(rot))
     }
 
     /// Momentum `I v`: `p = m v + ω × h`, `L = I_o ω + h × v`.
@@ -88,12 +81,6 @@ impl<S: Real> InverseInertia<S> {
     pub fn apply(&self, f: Force<S>) -> Motion<S> {
         let angular = self.inverse_about_com * (f.angular - self.com.cross(f.linear));
         Motion::new(f.linear.scale_add(self.inverse_mass, self.com.cross(angular)), angular)
-    }
-
-    /// Centre of mass, m.
-    #[inline(always)]
-    pub fn com(&self) -> Vec3<S> {
-        self.com
     }
 }
 

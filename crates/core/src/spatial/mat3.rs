@@ -113,3 +113,10 @@ impl<S: Real> AddAssign for Mat3<S> {
         *self = *self + o;
     }
 }
+
+/// A pose as a row-major `(4, 4)` matrix.
+#[inline(always)]
+pub fn pose_rows<S: Real>(r: &Mat3<S>, p: Vec3<S>) -> [S; 16] {
+    let (o, l) = (S::of(0.0), S::of(1.0));
+    [r.x.x, r.y.x, r.z.x, p.x, r.x.y, r.y.y, r.z.y, p.y, r.x.z, r.y.z, r.z.z, p.z, o, o, o, l]
+}
