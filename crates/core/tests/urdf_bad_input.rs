@@ -149,7 +149,7 @@ fn names_that_are_missing_or_used_twice() {
 
 #[test]
 fn joints_that_are_not_ours() {
-    for kind in ["planar", "spherical", "floating", "ball", "Revolute", "hinge"] {
+    for kind in ["Planar", "universal", "floating", "screw", "Revolute", "hinge"] {
         let joints = joint("j", kind, "a", "b", "") + &joint("bc", "fixed", "b", "c", "");
         assert_eq!(
             problem(&robot(&joints)),
