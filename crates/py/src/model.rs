@@ -3,13 +3,15 @@
 use crate::arrays::{Count, array_of, fixed};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
+use crate::records::{self, PyBody, PyFrame, PyJoint};
 use nalgebra::Matrix3;
 use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel};
-use onorbit_core::model::{Geometry, Model, Visual, neutral, urdf};
+use onorbit_core::model::urdf::{self, UrdfProblem};
+use onorbit_core::model::{Geometry, Model, ModelWarning, Visual, neutral};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -54,12 +56,28 @@ impl PyModel {
 #[pymethods]
 impl PyModel {
     /// Load a robot from a URDF file; its root link floats.
+    ///
+    /// A xacro file is expanded first, with PyPI's ``xacro`` (``pip install 'onorbit-rs[xacro]'``), which runs
+    /// the expressions in it. ``package_paths``: folders that hold ROS packages or are one, searched for
+    /// ``package://`` and ``$(find ...)``; ``xacro_arguments``: ``{name: value}``, what ``$(arg name)`` gives.
     #[staticmethod]
-    #[pyo3(signature = (path, *, package_paths=None))]
-    fn from_urdf(py: Python<'_>, path: PathBuf, package_paths: Option<Vec<PathBuf>>) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None))]
+    fn from_urdf(
+        py: Python<'_>,
+        path: PathBuf,
+        package_paths: Option<Vec<PathBuf>>,
+        xacro_arguments: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
         let packages = package_paths.unwrap_or_default();
-        let model = urdf::from_file(&path, &packages).map_err(|error| error.into_python(py))?;
-        Self::wrap(py, model)
+        let is_xacro = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xacro"));
+        if !is_xacro && xacro_arguments.is_none() {
+            match urdf::from_file(&path, &packages) {
+                Ok(model) => return Self::wrap(py, model),
+                Err(error) if matches!(*error.problem, UrdfProblem::Xacro { .. }) => {}
+                Err(error) => return Err(error.into_python(py)),
+            }
+        }
+        Self::wrap(py, from_xacro(py, &path, &packages, xacro_arguments)?)
     }
 
     /// Load a robot from the text of a URDF; ``folder`` is where its relative paths start.
@@ -127,6 +145,24 @@ impl PyModel {
     #[getter]
     fn frame_names(&self) -> Vec<&str> {
         self.model.frame_names().collect()
+    }
+
+    /// The moving joints, in the order of ``v``.
+    #[getter]
+    fn joints(&self) -> Vec<PyJoint> {
+        records::joints(&self.model)
+    }
+
+    /// The bodies, base first: masses, centres of mass, inertias.
+    #[getter]
+    fn bodies(&self) -> Vec<PyBody> {
+        records::bodies(&self.model)
+    }
+
+    /// The frames: every link, and frames added.
+    #[getter]
+    fn frames(&self) -> Vec<PyFrame> {
+        records::frames(&self.model)
     }
 
     /// What was odd in the description, one line each.
@@ -347,6 +383,28 @@ impl PyModel {
         let mut outputs = evaluate(py, self, kernel, values, external, &[shape], threads)?;
         Ok(outputs.swap_remove(0))
     }
+}
+
+/// Text and remarks come from `onorbit_rs.robots.expand`; errors name the file, and no line: it
+/// would be one of the expanded text, which nobody sees.
+fn from_xacro(
+    py: Python<'_>,
+    path: &Path,
+    packages: &[PathBuf],
+    arguments: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Model> {
+    let expand = py.import("onorbit_rs.robots.expand")?.getattr("expand")?;
+    let (text, remarks): (String, Vec<String>) = expand.call1((path, packages, arguments))?.extract()?;
+    let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned));
+    let mut model = urdf::from_str(&text, folder.as_deref(), packages).map_err(|mut error| {
+        error.file = Some(path.to_owned());
+        error.line = None;
+        error.into_python(py)
+    })?;
+    for remark in remarks {
+        model.warn(ModelWarning::Note(remark));
+    }
+    Ok(model)
 }
 
 /// A shape fixed to a frame.

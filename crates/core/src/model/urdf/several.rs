@@ -44,7 +44,8 @@ pub(super) fn in_turn(
     };
     let dropped = ["limit", "dynamics", "mimic"].into_iter().filter(|tag| hinge.element.child(tag).is_some());
     let dropped: Vec<String> = dropped.map(|tag| format!("<{tag}>")).collect();
-    let lost = if dropped.is_empty() { String::new() } else { format!("; its {} is not read", dropped.join(", ")) };
+    let lost =
+        if dropped.is_empty() { String::new() } else { format!("; its {} is not read", dropped.join(", ")) };
     let names: Vec<String> = parts.iter().map(|(ending, _)| format!("'{name}{ending}'")).collect();
     if names.len() > 1 {
         let note = format!("joint '{name}' {remark}, {}{lost}", names.join(", "));
