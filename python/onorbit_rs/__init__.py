@@ -11,7 +11,7 @@ SI and radians everywhere; frames and layouts are those of ``docs/``: ``q = [p(3
 
 from __future__ import annotations
 
-from onorbit_rs import exceptions, robots, scenarios
+from onorbit_rs import exceptions, layouts, robots, scenarios
 from onorbit_rs._core import (
     MU_EARTH,
     BodyWrench,
@@ -54,6 +54,7 @@ __all__ = [
     "Trace",
     "build_info",
     "exceptions",
+    "layouts",
     "robots",
     "rollout",
     "run",

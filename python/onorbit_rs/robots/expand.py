@@ -68,7 +68,8 @@ def expand(
         raise ReadError(f"cannot read {file}: {error.strerror or error}", path=str(file), kind="robot") from error
     except Exception as error:  # xacro's own, expat's, and whatever an expression in the file raises
         raise ModelError(f"{file}: {_reason(error)}", path=str(file)) from error
-    remarks += [f"xacro says: {line}" for line in dict.fromkeys(said.getvalue().splitlines()) if "warning" in line]
+    lines = [line for line in dict.fromkeys(said.getvalue().splitlines()) if line.startswith("warning: ")]
+    remarks += [f"xacro {line}" for line in lines if "redefining global symbol" not in line]  # pi, mostly
     return text, remarks
 
 
