@@ -129,6 +129,22 @@ def info(
         print_info(model)
 
 
+@app.command()
+def convert(
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="YAML files of OnOrbitROS, and the robot's URDF.")
+    ],
+    out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write it here.")] = None,
+    controller: Annotated[str | None, typer.Option(metavar="NAME", help="Which of several controllers.")] = None,
+    keep_going: Annotated[bool, typer.Option("--keep-going", help="Pass over unknown keys.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
+) -> None:
+    """Make a scenario of OnOrbitROS' YAML files, and say what became of every line."""
+    from onorbit_rs import report
+
+    report.print_converted(files, out, controller=controller, keep_going=keep_going, force=force)
+
+
 def _as_mapping(arguments: list[str] | None) -> dict[str, str] | None:
     """``name=value`` or, as xacro writes it, ``name:=value``."""
     pairs = [argument.replace(":=", "=", 1).partition("=") for argument in arguments or []]
