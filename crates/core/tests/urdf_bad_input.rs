@@ -157,6 +157,8 @@ fn joints_that_are_not_ours() {
             "{kind}"
         );
     }
+    let typo = joint("j", "revolut", "a", "b", "") + &joint("bc", "fixed", "b", "c", "");
+    assert!(error(&robot(&typo)).to_string().ends_with("did you mean 'revolute'?"));
     let zero = joint("j", "revolute", "a", "b", "<axis xyz='0 0 0'/>") + &joint("bc", "fixed", "b", "c", "");
     assert_eq!(problem(&robot(&zero)), UrdfProblem::Model(ModelError::ZeroAxis { joint: "j".into() }));
     let reversed = joint("j", "revolute", "a", "b", "<limit lower='1' upper='-1'/>")

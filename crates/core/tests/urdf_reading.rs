@@ -58,6 +58,9 @@ fn limits_not_given_are_none() {
     assert_eq!(position("revolute", "<limit upper='1'/>"), Some((0.0, 1.0)));
     assert_eq!(position("revolute", "<limit lower='-inf' upper='inf'/>"), None);
     assert_eq!(pair("revolute", "<limit effort='inf'/>").joints()[0].limits.effort, None);
+    let gazebo = pair("revolute", "<limit effort='-1' velocity='-1.0'/>");
+    assert_eq!(gazebo.joints()[0].limits, Limits::default());
+    assert!(gazebo.warnings()[0].to_string().contains("velocity limit below zero"));
 }
 
 #[test]
@@ -118,13 +121,15 @@ fn colours_are_found_by_name_and_shapes_that_cannot_be_read_are_told() {
         format!("<visual><geometry>{geometry}</geometry><material {material}</visual>")
     };
     let model = load(&format!(
-        "<material name='red'><color rgba='1 0 0 1'/></material><link name='a'>{INERTIAL}{}{}{}{}{}\
+        "<material name='red'><color rgba='1 0 0 1'/></material><link name='a'>{INERTIAL}{}{}{}{}{}{}{}\
          <collision><geometry><cylinder radius='${{r}}'/></geometry></collision></link>",
         visual("<box size='1 2 3'/>", "name='red'/>"),
         visual("<capsule radius='1' length='2'/>", "name='red'><color rgba='0 1 0 0.5'/></material>"),
         visual("<mesh filename='package://x/a.stl' scale='1 1 2'/>", "name='unknown'/>"),
         visual("<sphere radius='${r}'/>", "name='red'/>"),
         visual("<cylinder radius='1'/>", "name='red'/>"),
+        visual("<sphere radius='-1'/>", "name='red'/>"),
+        visual("<box size='1 0 1'/>", "name='red'/>"),
     ));
     let shapes: Vec<_> = model.visuals().iter().map(|(_, visual)| visual.clone()).collect();
     assert_eq!(shapes.len(), 3);
@@ -139,7 +144,7 @@ fn colours_are_found_by_name_and_shapes_that_cannot_be_read_are_told() {
     let texts: Vec<String> = model.warnings().iter().map(ToString::to_string).collect();
     assert_eq!(
         texts.iter().filter(|t| t.contains("visual shape of link 'a' is left out")).count(),
-        2,
+        4,
         "{texts:?}"
     );
 }

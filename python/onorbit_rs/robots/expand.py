@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from onorbit_rs.exceptions import ModelError, NotFoundError, ReadError
+from onorbit_rs.names import did_you_mean
 
 _LOCK = threading.Lock()  # xacro keeps its state in globals
 
@@ -57,10 +58,12 @@ def expand(
     folders = [Path(folder) for folder in package_paths] + list(file.absolute().parents)
     values = {name: _text(value) for name, value in (arguments or {}).items()}
     remarks: list[str] = []
+    used: set[str] = set()
     said = io.StringIO()
     try:
-        with _LOCK, _patched(xacro, folders, remarks), contextlib.redirect_stderr(said):
-            document = xacro.process_file(str(file), mappings=values)
+        _check_text(file)
+        with _LOCK, _patched(xacro, folders, remarks, used), contextlib.redirect_stderr(said):
+            document = xacro.process_file(str(file), mappings=dict(values))
             text = document.documentElement.toxml()
     except RecursionError:
         raise ModelError(f"{file}: macros or elements nested too deep", path=str(file)) from None
@@ -68,9 +71,22 @@ def expand(
         raise ReadError(f"cannot read {file}: {error.strerror or error}", path=str(file), kind="robot") from error
     except Exception as error:  # xacro's own, expat's, and whatever an expression in the file raises
         raise ModelError(f"{file}: {_reason(error)}", path=str(file)) from error
+    for name in values:
+        if name not in used:
+            remarks.append(f"the file does not ask for the argument {name!r}{did_you_mean(name, used)}")
     lines = [line for line in dict.fromkeys(said.getvalue().splitlines()) if line.startswith("warning: ")]
     remarks += [f"xacro {line}" for line in lines if "redefining global symbol" not in line]  # pi, mostly
     return text, remarks
+
+
+def _check_text(file: Path) -> None:
+    raw = file.read_bytes()
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"not UTF-8 text (at byte {error.start}); save it as UTF-8") from None
+    if not text.strip():
+        raise ValueError("the file is empty")
 
 
 def _text(value: object) -> str:
@@ -79,10 +95,13 @@ def _text(value: object) -> str:
 
 
 @contextlib.contextmanager
-def _patched(xacro: Any, folders: Sequence[Path], remarks: list[str]) -> Iterator[None]:
-    """``$(find ...)`` looks in ``folders``; a simulator's extras that are not there are left out and told."""
+def _patched(xacro: Any, folders: Sequence[Path], remarks: list[str], used: set[str]) -> Iterator[None]:
+    """``$(find ...)`` looks in ``folders``; a simulator's extras that are not there are left out and told.
+
+    ``used`` receives the names of arguments that the file asks for.
+    """
     substitution = importlib.import_module("xacro.substitution_args")
-    include, call = xacro.process_include, xacro.handle_macro_call
+    include, call, argument = xacro.process_include, xacro.handle_macro_call, substitution._eval_arg
     left_out: list[str] = []
 
     def find(package: str) -> str:
@@ -93,6 +112,13 @@ def _patched(xacro: Any, folders: Sequence[Path], remarks: list[str]) -> Iterato
                 return str(folder / package)
         return f"package://{package}"  # a mesh stays so and is not drawn; an include is told as missing
 
+    def argument_told(name: str, args: Any) -> Any:
+        used.add(name)
+        return argument(name=name, args=args)
+
+    def folder_of(_: object) -> str:
+        return str(Path(xacro.filestack[-1] or ".").absolute().parent)
+
     def include_if_there(node: Any, *others: Any) -> None:
         stack = list(xacro.filestack)
         try:
@@ -102,7 +128,7 @@ def _patched(xacro: Any, folders: Sequence[Path], remarks: list[str]) -> Iterato
             if not isinstance(error.exc, OSError):
                 raise
             if not _EXTRAS.search(name):
-                raise FileNotFoundError(_missing(name)) from error
+                raise ValueError(_missing(name)) from error
             xacro.filestack[:] = stack
             _leave_out(node, f"the file {name!r} is not there", remarks)
             left_out.append(name)
@@ -120,6 +146,8 @@ def _patched(xacro: Any, folders: Sequence[Path], remarks: list[str]) -> Iterato
     with contextlib.ExitStack() as undo:
         for owner, name, ours in (
             (substitution, "_eval_find", find),
+            (substitution, "_eval_arg", argument_told),
+            (substitution, "_eval_dirname", folder_of),
             (xacro, "process_include", include_if_there),
             (xacro, "handle_macro_call", call_if_known),
         ):
@@ -149,5 +177,8 @@ def _reason(error: Exception) -> str:
         name = undefined[1]
         return f"xacro argument {name!r} is not given; pass xacro_arguments={{{name!r}: ...}}"
     if type(error).__module__.startswith("xml."):
-        return f"not XML: {text}"
-    return re.sub(r"^<class '[^']*'>: ", "", text)
+        hint = '; declare xmlns:xacro="http://www.ros.org/wiki/xacro"' if "unbound prefix" in text else ""
+        return f"not XML: {text}{hint}"
+    text = re.sub(r"^<class '[^']*'>: ", "", text)
+    half = text[: len(text) // 2]
+    return half if text == f"{half} {half}" else text  # xacro repeats the reason

@@ -1,6 +1,6 @@
 //! What can be wrong with a URDF file, where.
 
-use crate::model::error::{ModelError, nearest};
+use crate::model::error::{ModelError, closest, nearest};
 use roxmltree::Node;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -97,6 +97,8 @@ pub enum UrdfProblem {
         amount_of_numbers(.expected)
     )]
     BadNumber { owner: String, element: String, attribute: &'static str, text: String, expected: usize },
+    #[error("{owner}: {attribute} of <{element}> is {value}, it must be positive")]
+    NotPositive { owner: String, element: String, attribute: &'static str, value: f64 },
     #[error("{owner}: <origin> has both rpy and quat_xyzw; keep one")]
     TwoOrientations { owner: String },
     #[error("{owner}: the quaternion '{text}' has no length")]
@@ -142,8 +144,8 @@ fn amount_of_numbers(expected: &usize) -> String {
     }
 }
 
-fn way_out(kind: &str) -> &'static str {
-    match kind.to_lowercase().as_str() {
+fn way_out(kind: &str) -> String {
+    let told = match kind.to_lowercase().as_str() {
         "revolute" | "continuous" | "prismatic" | "fixed" | "planar" | "spherical" | "ball" => {
             "; write it in lower case"
         }
@@ -155,8 +157,13 @@ fn way_out(kind: &str) -> &'static str {
         "slide" | "slider" | "translational" => "; write prismatic",
         "weld" => "; write fixed",
         "floating" => "; a robot here is one tree on one floating base: load the other body by itself",
-        _ => "",
-    }
+        other => {
+            let kinds = ["revolute", "continuous", "prismatic", "fixed", "planar", "ball"].map(str::to_owned);
+            return closest(&kinds, other.trim())
+                .map_or_else(String::new, |k| format!("; did you mean '{k}'?"));
+        }
+    };
+    told.to_owned()
 }
 
 /// The names, the first of them if there are many.

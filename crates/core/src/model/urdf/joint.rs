@@ -49,6 +49,15 @@ pub(super) fn read_joints(
         return Ok(vec![joint]);
     }
     joint.limits = read_limits(element, hinge.kind == "continuous")?;
+    // Gazebo writes -1 where a bound does not hold
+    let Limits { velocity, effort, .. } = &mut joint.limits;
+    for (what, limit) in [("velocity", velocity), ("effort", effort)] {
+        if limit.is_some_and(|value| value < 0.0) {
+            let note = format!("joint '{}': a {what} limit below zero is read as none", hinge.name);
+            warnings.push(ModelWarning::Note(note));
+            *limit = None;
+        }
+    }
     if let Some(dynamics) = element.child("dynamics") {
         let amount = |name| Ok::<_, UrdfError>(dynamics.number(name)?.unwrap_or(0.0));
         joint.damping = amount("damping")?;
