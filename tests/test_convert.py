@@ -1,4 +1,4 @@
-"""Files of OnOrbitROS become scenarios; what became of each line is said, and what is no file of its is refused."""
+"""Files of OnOrbitROS become scenarios: what became of each line, and what is refused."""
 
 from __future__ import annotations
 
@@ -79,9 +79,14 @@ def test_an_orbit(tmp_path: Path) -> None:
     # its node starts n (start - perigee) after the mean anomaly of the file
     shift = math.sqrt(oo.MU_EARTH / 7e6**3) * 90.0
     assert orbit == {
-        "kind": "kepler", "semi_major_axis": 7e6, "eccentricity": 0.001, "inclination": pytest.approx(math.radians(51.6)),
-        "raan": 0.5, "argument_of_periapsis": 0.25, "mean_anomaly": pytest.approx(math.pi / 3 + shift, rel=1e-15),
-    }  # fmt: skip
+        "kind": "kepler",
+        "semi_major_axis": 7e6,
+        "eccentricity": 0.001,
+        "inclination": pytest.approx(math.radians(51.6)),
+        "raan": 0.5,
+        "argument_of_periapsis": 0.25,
+        "mean_anomaly": pytest.approx(math.pi / 3 + shift, rel=1e-15),
+    }
     built = build(load(done.scenario))
     assert built.orbit is not None and built.orbit.semi_major_axis == pytest.approx(7e6)
     # the control: without the two dates the spacecraft is 90 s behind
@@ -94,12 +99,19 @@ def test_an_orbit(tmp_path: Path) -> None:
 def test_every_line_of_an_orbit_is_answered(tmp_path: Path) -> None:
     done = convert(write(tmp_path, orbit=ORBIT))
     assert verdicts(done) == {
-        "publish_rate": "no meaning", "eccentricity": "understood", "semi_major_axix": "corrected",
-        "inclination": "corrected", "rate_of_right_ascension": "no meaning", "right_ascension_ini": "understood",
-        "argument_of_perigee_ini": "understood", "rate_argument_Of_perigee": "no meaning",
-        "mean_anomaly_ini": "corrected", "time_pass_perigee": "understood", "time_start": "understood",
+        "publish_rate": "no meaning",
+        "eccentricity": "understood",
+        "semi_major_axix": "corrected",
+        "inclination": "corrected",
+        "rate_of_right_ascension": "no meaning",
+        "right_ascension_ini": "understood",
+        "argument_of_perigee_ini": "understood",
+        "rate_argument_Of_perigee": "no meaning",
+        "mean_anomaly_ini": "corrected",
+        "time_pass_perigee": "understood",
+        "time_start": "understood",
         "angular_velocity": "no meaning",
-    }  # fmt: skip
+    }
     assert [note.line for note in done.notes] == list(range(1, 13))
     told = {note.key: note.text for note in done.notes}
     assert "takes 12000 km" in told["semi_major_axix"]  # its node passes over the misspelt key
@@ -141,7 +153,10 @@ def test_a_fixed_pose(tmp_path: Path) -> None:
 def test_a_controller_with_its_robot(tmp_path: Path) -> None:
     done = convert([*write(tmp_path, orbit=ORBIT, control=CONTROL), ROBOT])
     scenario = done.scenario
-    assert (scenario["tool"], scenario["controller"]) == ("tool", {"kind": "computed_torque", "kp": 1000.0, "kd": 200.0})
+    assert (scenario["tool"], scenario["controller"]) == (
+        "tool",
+        {"kind": "computed_torque", "kp": 1000.0, "kd": 200.0},
+    )
     assert scenario["reference"]["duration"] == scenario["simulation"]["duration"] == 15.0
     assert build(load(scenario)).model.joint_names[0] == "arm_joint_1"
     told = verdicts(done)
@@ -154,10 +169,17 @@ def test_a_controller_with_its_robot(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "value"),
     [
-        ("(60.0*pi)/180.0", math.pi / 3), ("-pi/2", -math.pi / 2), ("2**3", 8.0), ("sqrt(2)*1e3", math.sqrt(2e6)),
-        ("deg(180)", math.pi), ("rad(2*pi)", 2 * math.pi), ("  1.5 ", 1.5), (7, 7.0), ("+3", 3.0),
+        ("(60.0*pi)/180.0", math.pi / 3),
+        ("-pi/2", -math.pi / 2),
+        ("2**3", 8.0),
+        ("sqrt(2)*1e3", math.sqrt(2e6)),
+        ("deg(180)", math.pi),
+        ("rad(2*pi)", 2 * math.pi),
+        ("  1.5 ", 1.5),
+        (7, 7.0),
+        ("+3", 3.0),
     ],
-)  # fmt: skip
+)
 def test_expressions(text: Any, value: float) -> None:
     assert evaluate(text) == pytest.approx(value, rel=1e-15)
 
@@ -165,11 +187,38 @@ def test_expressions(text: Any, value: float) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "__import__('os').system('true')", "pi.real", "[1][0]", "lambda: 1", "1 if 1 else 2", "x", "open('f')", "1j",
-        "'a'*9", "9**9**9**9", "1/0", "sqrt(-1)", "1e999", "(" * 300, "(" * 90 + "1" + ")" * 90, "", "1,2", "True",
-        True, None, [1], math.nan, 10**400, "f()", "sqrt(1, 2)", "sqrt(*[1])", "1 +", "pi = 3", "a" * 500, "-" * 190 + "1",
+        "__import__('os').system('true')",
+        "pi.real",
+        "[1][0]",
+        "lambda: 1",
+        "1 if 1 else 2",
+        "x",
+        "open('f')",
+        "1j",
+        "'a'*9",
+        "9**9**9**9",
+        "1/0",
+        "sqrt(-1)",
+        "1e999",
+        "(" * 300,
+        "(" * 90 + "1" + ")" * 90,
+        "",
+        "1,2",
+        "True",
+        True,
+        None,
+        [1],
+        math.nan,
+        10**400,
+        "f()",
+        "sqrt(1, 2)",
+        "sqrt(*[1])",
+        "1 +",
+        "pi = 3",
+        "a" * 500,
+        "-" * 190 + "1",
     ],
-)  # fmt: skip
+)
 def test_what_is_no_arithmetic_is_refused(text: Any) -> None:
     if text in ("(" * 90 + "1" + ")" * 90, "-" * 190 + "1"):
         assert abs(evaluate(text)) == 1.0  # long, but arithmetic
@@ -179,30 +228,54 @@ def test_what_is_no_arithmetic_is_refused(text: Any) -> None:
 
 
 BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
-    "unknown key": ("semi_major_axes: 7000", "ScenarioError", (":1:", "semi_major_axes", "semi_major_axis", "--keep-going")),
-    "unknown key inside": (CONTROL.replace("kp_value: 1000", "kp_valeu: 1000"), "ScenarioError", (":9:", "kp_value")),
+    "unknown key": (
+        "semi_major_axes: 7000",
+        "ScenarioError",
+        (":1:", "semi_major_axes", "semi_major_axis", "--keep-going"),
+    ),
+    "unknown key inside": (
+        CONTROL.replace("kp_value: 1000", "kp_valeu: 1000"),
+        "ScenarioError",
+        (":9:", "kp_value"),
+    ),
     "metres": ("semi_major_axis: 7000000", "ScenarioError", (":1:", "km")),
     "degrees": ("inclination: 51.6", "ScenarioError", ("51.6 rad", "(51.6*pi)/180.0")),
     "no number": ("eccentricity: round", "ScenarioError", ("eccentricity", "'round'")),
     "code": ("eccentricity: __import__('os')", "ScenarioError", ("eccentricity",)),
     "both spellings": ("semi_major_axis: 7000\nsemi_major_axix: 7000", "ScenarioError", (":2:", "keep one")),
-    "date": ("eccentricity: 0\ntime_start: {sec: x, min: 0, hour: 0, mday: 1, mon: 0, year: 2000}", "ScenarioError", ("sec",)),
+    "date": (
+        "eccentricity: 0\ntime_start: {sec: x, min: 0, hour: 0, mday: 1, mon: 0, year: 2000}",
+        "ScenarioError",
+        ("sec",),
+    ),
     "part of a date": ("eccentricity: 0\ntime_start: {second: 1}", "ScenarioError", ("second", "sec")),
     "year": (
-        "eccentricity: 0\ntime_start: {sec: 0, min: 0, hour: 0, mday: 1, mon: 0, year: 99999}", "ScenarioError", ("99999",)
+        "eccentricity: 0\ntime_start: {sec: 0, min: 0, hour: 0, mday: 1, mon: 0, year: 99999}",
+        "ScenarioError",
+        ("99999",),
     ),
     "no quaternion": (POSE.replace("orientation_w: 0.7", "orientation_w: 7.7"), "ScenarioError", ("norm",)),
-    "no link": (CONTROL.replace("    end_effector_link: tool\n", ""), "ScenarioError", ("end_effector_link", "missing")),
+    "no link": (
+        CONTROL.replace("    end_effector_link: tool\n", ""),
+        "ScenarioError",
+        ("end_effector_link", "missing"),
+    ),
     "gain negative": (CONTROL.replace("1000.0", "-1"), "ScenarioError", ("kp_value", "negative")),
     "duration": (CONTROL.replace("15.0", "0"), "ScenarioError", ("trajectory_duration", "positive")),
-    "joints no list": (CONTROL.replace("[arm_joint_1, arm_joint_2]", "3"), "ScenarioError", ("joints", "list")),
+    "joints no list": (
+        CONTROL.replace("[arm_joint_1, arm_joint_2]", "3"),
+        "ScenarioError",
+        ("joints", "list"),
+    ),
     "ROS Control": (
-        "arm:\n  type: effort_controllers/JointTrajectoryController\n", "ScenarioError", ("ROS Control", "Trajectory")
+        "arm:\n  type: effort_controllers/JointTrajectoryController\n",
+        "ScenarioError",
+        ("ROS Control", "Trajectory"),
     ),
     "empty": ("", "ScenarioError", ("no parameters",)),
     "a list": ("- 1", "ScenarioError", ("no parameters",)),
     "no YAML": ("a: [", "ScenarioError", ("broken YAML",)),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", BAD)

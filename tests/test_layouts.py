@@ -1,4 +1,4 @@
-"""Converters of layouts: round trips on batches, closed forms, and what they refuse. The engines: `oracles/`."""
+"""Converters of layouts: round trips on batches, closed forms, refusals. The engines stand in `oracles/`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,9 @@ def back(engine: str, *arguments: Any, **known: Any) -> Any:
 @pytest.mark.parametrize("names", [None, NAMES], ids=["our order", "shuffled"])
 def test_there_and_back(engine: str, names: list[str] | None) -> None:
     q, v = back(engine, *there(engine, Q, V, names), names)
-    sign = np.sign(np.sum(q[:, 3:7] * Q[:, 3:7], axis=1, keepdims=True))  # a matrix knows no sign of a quaternion
+    sign = np.sign(
+        np.sum(q[:, 3:7] * Q[:, 3:7], axis=1, keepdims=True)
+    )  # a matrix knows no sign of a quaternion
     q[:, 3:7] *= sign
     np.testing.assert_allclose(q, Q, atol=1e-14)
     np.testing.assert_allclose(v, V, atol=1e-14)
@@ -109,7 +111,9 @@ BAD: dict[str, Bad] = {
         ("R0", "rotation"),
     ),
     "a mirror": Bad(
-        lambda: back("spart", (-np.eye(3), np.zeros(3), Q[0][7:]), (V[0][:6], V[0][6:])), "InputError", ("R0",)
+        lambda: back("spart", (-np.eye(3), np.zeros(3), Q[0][7:]), (V[0][:6], V[0][6:])),
+        "InputError",
+        ("R0",),
     ),
     "unknown joint": Bad(
         lambda: there("rbdl", Q[0], V[0], ["left_joint_11", *NAMES[1:]]),
@@ -123,7 +127,9 @@ BAD: dict[str, Bad] = {
     "unbounded that is none": Bad(
         lambda: there("pinocchio", Q[0], V[0], unbounded=["x"]), "InputError", ("unbounded", "'x'")
     ),
-    "their base is fixed": Bad(lambda: there("mujoco", Q[0], V[0], NoBase()), "InputError", ("floating base",)),
+    "their base is fixed": Bad(
+        lambda: there("mujoco", Q[0], V[0], NoBase()), "InputError", ("floating base",)
+    ),
     "the centre of mass of SPART": Bad(
         lambda: there("spart", Q[0], V[0], base_com=[[0, 0, 0]]), "InputError", ("base_com",)
     ),

@@ -60,9 +60,20 @@ def test_joints_and_frames_place_what_they_carry() -> None:
 def test_limits_friction_and_rotors_are_told() -> None:
     builder = oo.ModelBuilder("r", base="b", mass=1.0, inertia=np.eye(3))
     builder.add_link(
-        "l", parent="b", joint="j", kind="prismatic", axis=[0, -2, 0], mass=1.0, inertia=np.eye(3), damping=0.1,
-        friction=0.2, rotor_inertia=0.3, lower=-1.0, velocity=2.0, upper=float("inf"),
-    )  # fmt: skip
+        "l",
+        parent="b",
+        joint="j",
+        kind="prismatic",
+        axis=[0, -2, 0],
+        mass=1.0,
+        inertia=np.eye(3),
+        damping=0.1,
+        friction=0.2,
+        rotor_inertia=0.3,
+        lower=-1.0,
+        velocity=2.0,
+        upper=float("inf"),
+    )
     (record,) = builder.build().joints
     assert (record.kind, list(record.axis)) == ("prismatic", [0.0, -1.0, 0.0])
     assert (record.lower, record.upper, record.velocity, record.effort) == (-1.0, None, 2.0, None)
@@ -101,7 +112,9 @@ def test_what_was_odd_stands_at_the_end(tmp_path: Path) -> None:
 
 
 def test_a_chain_of_500_links_is_printed_whole() -> None:
-    body = massive("l0") + "".join(massive(f"l{i}") + joint(f"j{i}", f"l{i - 1}", f"l{i}") for i in range(1, 500))
+    body = massive("l0") + "".join(
+        massive(f"l{i}") + joint(f"j{i}", f"l{i - 1}", f"l{i}") for i in range(1, 500)
+    )
     lines = text_of(urdf(body)).splitlines()
     assert any("l499 by j499 on l498" in line for line in lines)
     assert max(map(len, lines)) <= 80

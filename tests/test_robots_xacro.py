@@ -25,12 +25,13 @@ ARM = (
     HEAD
     + '<xacro:macro name="arm" params="prefix">'
     + LINK.format("${prefix}arm", "${2*3}")
-    + '<joint name="${prefix}joint" type="continuous"><parent link="base"/><child link="${prefix}arm"/></joint>'
-    "</xacro:macro></robot>"
+    + '<joint name="${prefix}joint" type="continuous">'
+    '<parent link="base"/><child link="${prefix}arm"/></joint></xacro:macro></robot>'
 )
 ROBOT = (
     HEAD
-    + '<xacro:arg name="side" default="left"/><xacro:include filename="$(find arm_description)/urdf/arm.xacro"/>'
+    + '<xacro:arg name="side" default="left"/>'
+    + '<xacro:include filename="$(find arm_description)/urdf/arm.xacro"/>'
     + LINK.format("base", "10")
     + '<xacro:arm prefix="$(arg side)_"/></robot>'
 )
@@ -80,7 +81,8 @@ def test_a_urdf_that_holds_xacro_is_expanded(tmp_path: Path) -> None:
 def test_a_scenario_gives_packages_and_arguments(robot: Path) -> None:
     file = robot.parents[1] / "mine.yaml"
     file.write_text(
-        "robot: {urdf: elsewhere/robot.urdf.xacro, package_paths: [packages], xacro_arguments: {side: right}}\n"
+        "robot:\n  urdf: elsewhere/robot.urdf.xacro\n  package_paths: [packages]\n"
+        "  xacro_arguments: {side: right}\n"
         "simulation: {duration: 0.01 s}\n"
     )
     from onorbit_rs.scenario import load
@@ -169,7 +171,9 @@ def test_files_that_are_no_xacro(content: bytes, word: str, tmp_path: Path) -> N
 
 
 def test_files_that_are_not_there(tmp_path: Path) -> None:
-    check(Bad(lambda: oo.Model.from_urdf(tmp_path / "no.xacro"), "NotFoundError", ("no.xacro", "no such file")))
+    check(
+        Bad(lambda: oo.Model.from_urdf(tmp_path / "no.xacro"), "NotFoundError", ("no.xacro", "no such file"))
+    )
     folder = tmp_path / "folder.xacro"
     folder.mkdir()
     check(Bad(lambda: oo.Model.from_urdf(folder), "ReadError", ("folder",)))

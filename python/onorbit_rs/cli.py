@@ -135,7 +135,9 @@ def convert(
         list[Path], typer.Argument(metavar="FILE...", help="YAML files of OnOrbitROS, and the robot's URDF.")
     ],
     out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write it here.")] = None,
-    controller: Annotated[str | None, typer.Option(metavar="NAME", help="Which of several controllers.")] = None,
+    controller: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Which of several controllers.")
+    ] = None,
     keep_going: Annotated[bool, typer.Option("--keep-going", help="Pass over unknown keys.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
 ) -> None:

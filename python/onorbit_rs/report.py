@@ -200,7 +200,9 @@ def print_converted(
     for note in done.notes:
         typer.echo(str(note), err=True)
     made_of = ", ".join(file.name for file in files)
-    text = scenario_text(done.scenario, done.comments, f"Made by onorbit convert of {made_of}. SI and radians.")
+    text = scenario_text(
+        done.scenario, done.comments, f"Made by onorbit convert of {made_of}. SI and radians."
+    )
     if out is None:
         typer.echo(text, nl=False)
         return

@@ -1,8 +1,9 @@
-"""Layouts of others against the engines themselves: the same state puts every link in the same place and motion.
+"""Layouts of others against the engines: the same state puts every link in the same place and motion.
 
-Pinocchio and MuJoCo run here. Drake (large), SPART (needs Intel's OpenMP) and RBDL (its wheel builds on no
-current Python) were run by `generate_layouts.py`, which wrote `fixtures/layouts.json`: states in their layouts with
-the poses and velocities of links that they computed. Drake also runs here where it is installed.
+Pinocchio and MuJoCo run here. Drake (large), SPART (needs Intel's OpenMP) and RBDL (its package builds on no
+current Python; its C++ was compiled) were run by `generate_layouts.py`, which wrote `fixtures/layouts.json`:
+states in their layouts with the poses and velocities of links that they computed. Drake also runs here where
+it is installed.
 Gate 1e-13 of the largest entry; seen is 3e-15 at most.
 """
 
@@ -67,7 +68,9 @@ def test_pinocchio_s_order_matters() -> None:
     theirs = pin.buildModelFromXML(oo.robots.path("humanoid_dual_arm").read_text(), pin.JointModelFreeFlyer())
     assert list(theirs.names)[2:] != DUAL.joint_names
     q, v = state(DUAL, 3)
-    assert not np.array_equal(layouts.to_pinocchio(DUAL, q, v)[0], layouts.to_pinocchio(DUAL, q, v, theirs)[0])
+    assert not np.array_equal(
+        layouts.to_pinocchio(DUAL, q, v)[0], layouts.to_pinocchio(DUAL, q, v, theirs)[0]
+    )
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -128,11 +131,16 @@ def test_drake_s_table() -> None:
     assert deviation(again[0], theirs_q) < GATE and deviation(again[1], theirs_v) < GATE
     # the control: velocities in MuJoCo's manner are others
     swapped = np.concatenate([theirs_v[3:6], theirs_v[:3], theirs_v[6:]])
-    assert compare_links(q, layouts.from_drake(DUAL, theirs_q, swapped, table["joints"])[1], table["links"]) > 1e-3
+    assert (
+        compare_links(q, layouts.from_drake(DUAL, theirs_q, swapped, table["joints"])[1], table["links"])
+        > 1e-3
+    )
 
 
 def test_drake_itself() -> None:
-    parsing = pytest.importorskip("pydrake.multibody.parsing", reason="large: pip install drake to run this one")
+    parsing = pytest.importorskip(
+        "pydrake.multibody.parsing", reason="large: pip install drake to run this one"
+    )
     from pydrake.multibody.plant import MultibodyPlant
 
     plant = MultibodyPlant(0.0)
@@ -147,7 +155,10 @@ def test_drake_itself() -> None:
         body = plant.GetBodyByName(name)
         velocity = plant.EvalBodySpatialVelocityInWorld(context, body)
         twist = np.concatenate([velocity.translational(), velocity.rotational()])
-        assert deviation(DUAL.frame_pose(q, name), plant.EvalBodyPoseInWorld(context, body).GetAsMatrix4()) < GATE
+        assert (
+            deviation(DUAL.frame_pose(q, name), plant.EvalBodyPoseInWorld(context, body).GetAsMatrix4())
+            < GATE
+        )
         assert deviation(DUAL.frame_velocity(q, v, name), twist) < GATE
     same_state((q, v), layouts.from_drake(DUAL, theirs_q, theirs_v, plant))
 
@@ -162,7 +173,10 @@ def test_rbdl_s_table() -> None:
     wrong = np.array(table["q"])
     wrong[[6, -1]] = wrong[[-1, 6]]
     wrong[[3, 4, 5, -1]] /= np.linalg.norm(wrong[[3, 4, 5, -1]])
-    assert compare_links(layouts.from_rbdl(DUAL, wrong, table["v"], table["joints"])[0], v, table["links"]) > 1e-3
+    assert (
+        compare_links(layouts.from_rbdl(DUAL, wrong, table["v"], table["joints"])[0], v, table["links"])
+        > 1e-3
+    )
 
 
 def test_spart_s_table() -> None:

@@ -3,15 +3,16 @@
 use crate::arrays::{Count, array_of, fixed};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
-use crate::records::{self, PyBody, PyFrame, PyJoint};
+use crate::records::{self, PyBody, PyFrame, PyJoint, PyVisual};
+use crate::xacro::from_xacro;
 use nalgebra::Matrix3;
 use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel};
 use onorbit_core::model::urdf::{self, UrdfProblem};
-use onorbit_core::model::{Geometry, Model, ModelWarning, Visual, neutral};
+use onorbit_core::model::{Model, neutral};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -174,12 +175,7 @@ impl PyModel {
     /// Shapes to draw.
     #[getter]
     fn visuals(&self) -> Vec<PyVisual> {
-        let frames = self.model.frames();
-        self.model
-            .visuals()
-            .iter()
-            .map(|(frame, visual)| PyVisual::new(&frames[*frame].name, visual))
-            .collect()
+        records::visuals(&self.model)
     }
 
     /// The configuration at W's origin, unrotated, joints at zero: (nq,).
@@ -382,61 +378,5 @@ impl PyModel {
     ) -> PyResult<Array<'py>> {
         let mut outputs = evaluate(py, self, kernel, values, external, &[shape], threads)?;
         Ok(outputs.swap_remove(0))
-    }
-}
-
-/// Text and remarks come from `onorbit_rs.robots.expand`; errors name the file, and no line: it
-/// would be one of the expanded text, which nobody sees.
-fn from_xacro(
-    py: Python<'_>,
-    path: &Path,
-    packages: &[PathBuf],
-    arguments: Option<&Bound<'_, PyDict>>,
-) -> PyResult<Model> {
-    let expand = py.import("onorbit_rs.robots.expand")?.getattr("expand")?;
-    let (text, remarks): (String, Vec<String>) = expand.call1((path, packages, arguments))?.extract()?;
-    let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned));
-    let mut model = urdf::from_str(&text, folder.as_deref(), packages).map_err(|mut error| {
-        error.file = Some(path.to_owned());
-        error.line = None;
-        error.into_python(py)
-    })?;
-    for remark in remarks {
-        model.warn(ModelWarning::Note(remark));
-    }
-    Ok(model)
-}
-
-/// A shape fixed to a frame.
-#[pyclass(name = "Visual", frozen, get_all, module = "onorbit_rs")]
-pub(crate) struct PyVisual {
-    /// Name of the frame it is fixed to.
-    link: String,
-    /// Pose in that frame as rows of a (4, 4) matrix, m.
-    pose: [[f64; 4]; 4],
-    /// ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``.
-    kind: &'static str,
-    /// Box: edge lengths; cylinder, capsule: radius and length; sphere: radius; m.
-    size: Vec<f64>,
-    /// Path of a mesh.
-    filename: Option<String>,
-    /// Scale of a mesh.
-    scale: [f64; 3],
-    /// Red, green, blue, opacity, 0 to 1.
-    rgba: Option<[f64; 4]>,
-}
-
-impl PyVisual {
-    fn new(link: &str, visual: &Visual) -> Self {
-        let m = visual.pose.to_homogeneous();
-        let pose = std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]));
-        let (kind, size, filename, scale) = match &visual.geometry {
-            Geometry::Box(edges) => ("box", edges.to_vec(), None, [1.0; 3]),
-            Geometry::Cylinder { radius, length } => ("cylinder", vec![*radius, *length], None, [1.0; 3]),
-            Geometry::Capsule { radius, length } => ("capsule", vec![*radius, *length], None, [1.0; 3]),
-            Geometry::Sphere { radius } => ("sphere", vec![*radius], None, [1.0; 3]),
-            Geometry::Mesh { filename, scale } => ("mesh", Vec::new(), Some(filename.clone()), *scale),
-        };
-        Self { link: link.to_owned(), pose, kind, size, filename, scale, rgba: visual.rgba }
     }
 }

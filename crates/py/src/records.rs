@@ -1,6 +1,6 @@
 //! What a robot is made of, as plain records.
 
-use onorbit_core::model::{Axis, Frame, Model};
+use onorbit_core::model::{Axis, Frame, Geometry, Model, Visual};
 use onorbit_core::spatial::{Mat3, Vec3};
 use pyo3::prelude::*;
 
@@ -60,6 +60,45 @@ pub(crate) struct PyFrame {
     body: String,
     /// Pose in the body's link: (4, 4), m.
     pose: Matrix4,
+}
+
+/// A shape fixed to a frame.
+#[pyclass(name = "Visual", frozen, get_all, module = "onorbit_rs")]
+pub(crate) struct PyVisual {
+    /// Name of the frame it is fixed to.
+    link: String,
+    /// Pose in that frame as rows of a (4, 4) matrix, m.
+    pose: [[f64; 4]; 4],
+    /// ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``.
+    kind: &'static str,
+    /// Box: edge lengths; cylinder, capsule: radius and length; sphere: radius; m.
+    size: Vec<f64>,
+    /// Path of a mesh.
+    filename: Option<String>,
+    /// Scale of a mesh.
+    scale: [f64; 3],
+    /// Red, green, blue, opacity, 0 to 1.
+    rgba: Option<[f64; 4]>,
+}
+
+impl PyVisual {
+    fn new(link: &str, visual: &Visual) -> Self {
+        let m = visual.pose.to_homogeneous();
+        let pose = std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]));
+        let (kind, size, filename, scale) = match &visual.geometry {
+            Geometry::Box(edges) => ("box", edges.to_vec(), None, [1.0; 3]),
+            Geometry::Cylinder { radius, length } => ("cylinder", vec![*radius, *length], None, [1.0; 3]),
+            Geometry::Capsule { radius, length } => ("capsule", vec![*radius, *length], None, [1.0; 3]),
+            Geometry::Sphere { radius } => ("sphere", vec![*radius], None, [1.0; 3]),
+            Geometry::Mesh { filename, scale } => ("mesh", Vec::new(), Some(filename.clone()), *scale),
+        };
+        Self { link: link.to_owned(), pose, kind, size, filename, scale, rgba: visual.rgba }
+    }
+}
+
+pub(crate) fn visuals(model: &Model) -> Vec<PyVisual> {
+    let frame = |index: usize| &model.frames()[index].name;
+    model.visuals().iter().map(|(index, visual)| PyVisual::new(frame(*index), visual)).collect()
 }
 
 pub(crate) fn joints(model: &Model) -> Vec<PyJoint> {

@@ -38,6 +38,7 @@ class Note:
     text: str
 
     def __str__(self) -> str:
+        """``orbit.yaml:4: semi_major_axix: corrected: ...``."""
         where = f"{self.file}:{self.line}" if self.line else f"{self.file}"
         return f"{where}: {self.key}: {self.verdict}: {self.text}"
 
@@ -79,7 +80,9 @@ class Source:
             part = part.setdefault(str(step), {})
         part[str(at[-1])] = value
         line = self.lines.get((*self.at, key))
-        self.comments[at] = f"{self.file.name}{f':{line}' if line else ''}: {key}: {self.data.get(key, 'not given')}"
+        self.comments[at] = (
+            f"{self.file.name}{f':{line}' if line else ''}: {key}: {self.data.get(key, 'not given')}"
+        )
 
     def fail(self, key: str, message: str) -> OnOrbitError:
         """An error at the line of ``key``."""
@@ -134,7 +137,9 @@ def convert(
         raise InputError(what, name="paths", got=len(files), expected="YAML files and at most one robot")
     notes: list[Note] = []
     scenario: dict[str, Any] = {"robot": dict(PLACEHOLDER)}
-    comments: dict[Location, str] = {("robot",): "a placeholder: give onorbit convert a URDF or xacro as well"}
+    comments: dict[Location, str] = {
+        ("robot",): "a placeholder: give onorbit convert a URDF or xacro as well"
+    }
     for robot in robots:
         where = os.path.relpath(robot, beside) if beside is not None else str(robot)
         scenario["robot"] = {"urdf": Path(where).as_posix()}
@@ -160,7 +165,9 @@ def _sources(files: Sequence[Path], keep_going: bool, notes: list[Note]) -> list
     for file in files:
         data, lines = read_yaml(file)
         if not isinstance(data, dict) or not data:
-            raise scenario_error("no parameters: a YAML of OnOrbitROS is a mapping of keys to values", file, None)
+            raise scenario_error(
+                "no parameters: a YAML of OnOrbitROS is a mapping of keys to values", file, None
+            )
         top = Source(file, lines, (), data, keep_going, notes)
         found += _unwrapped(top)
     return found
@@ -176,7 +183,9 @@ def _unwrapped(source: Source) -> list[Source]:
     for key, part in source.data.items():
         text = "a wrapper of ROS 2" if key in ("/**", "ros__parameters") else "a namespace of ROS: left away"
         source.note(key, "understood", text)
-        below += _unwrapped(Source(source.file, source.lines, (*source.at, key), part, source.keep_going, source.notes))
+        below += _unwrapped(
+            Source(source.file, source.lines, (*source.at, key), part, source.keep_going, source.notes)
+        )
     return below
 
 
@@ -187,7 +196,9 @@ def _is_known(data: Mapping[str, Any]) -> bool:
 def _read(source: Source, controller: str | None) -> None:
     """An orbit, a fixed pose or controllers: by the keys."""
     inner = [part for part in source.data.values() if isinstance(part, dict)]
-    if CONTROLLER_MARKS & set(source.data) or any(CONTROLLER_MARKS & set(part) or "type" in part for part in inner):
+    if CONTROLLER_MARKS & set(source.data) or any(
+        CONTROLLER_MARKS & set(part) or "type" in part for part in inner
+    ):
         read_controllers(source, controller)
     elif any(key in FIXED_KEYS and key not in ORBIT_KEYS for key in source.data):
         source.refuse_unknown(FIXED_KEYS)

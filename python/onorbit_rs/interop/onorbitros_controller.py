@@ -11,7 +11,16 @@ from onorbit_rs.names import did_you_mean
 if TYPE_CHECKING:
     from onorbit_rs.interop.onorbitros import Source
 
-KEYS = ("type", "end_effector_link", "base_link", "joints", "kp_value", "kv_value", "trajectory_duration", "goal_tolerance")
+KEYS = (
+    "type",
+    "end_effector_link",
+    "base_link",
+    "joints",
+    "kp_value",
+    "kv_value",
+    "trajectory_duration",
+    "goal_tolerance",
+)
 _SCENARIO = "one scenario moves one tool; choose it with --controller"
 
 
@@ -25,8 +34,8 @@ def read_controllers(source: Source, wanted: str | None) -> None:
         kinds = {str(part.get("type")) for part in source.data.values() if isinstance(part, dict)}
         name = next(iter(source.data))
         raise source.fail(
-            name, f"no controller with an end_effector_link, but {', '.join(sorted(kinds))}: controllers of ROS "
-            "Control are not converted",
+            name, f"no controller with an end_effector_link, but {', '.join(sorted(kinds))}: controllers of "
+            "ROS Control are not converted",
         )  # fmt: skip
     if wanted is not None and wanted not in of_tasks:
         raise source.fail(of_tasks[0], f"no controller is named {wanted!r}{did_you_mean(wanted, of_tasks)}")
@@ -66,7 +75,11 @@ def _read(source: Source) -> None:
     if "joints" in data:
         if not isinstance(data["joints"], list) or not all(isinstance(name, str) for name in data["joints"]):
             raise source.fail("joints", "must be a list of names")
-        source.note("joints", "no meaning", "the law drives all joints that move the tool, as the reduced model has them")
+        source.note(
+            "joints",
+            "no meaning",
+            "the law drives all joints that move the tool, as the reduced model has them",
+        )
     if "base_link" in data:
         source.note("base_link", "no meaning", "the robot's root link is its base, and floats")
     if "goal_tolerance" in data:
@@ -86,7 +99,8 @@ def _gains(source: Source) -> None:
         source.put(("controller", ours), value, key)
         source.note(
             key, "understood",
-            f"{ours} {value:g} {unit}, the paper's gain; the node of robot_torso takes it for a stiffness (Jᵀ law): tune it",
+            f"{ours} {value:g} {unit}, the paper's gain; "
+            "the node of robot_torso takes it for a stiffness (Jᵀ law): tune it",
         )  # fmt: skip
 
 
@@ -102,8 +116,12 @@ def _trajectory(source: Source) -> None:
     source.put(("reference", "duration"), seconds, key)
     source.put(("simulation", "duration"), seconds, key)
     source.comments.pop(("reference", "kind"))
-    source.comments[("reference", "displacement")] = "the target came over a ROS topic: write it here, m, W axes"
-    source.note(key, "understood", f"{seconds:g} s; the target comes over a topic there: fill in 'displacement'")
+    source.comments[("reference", "displacement")] = (
+        "the target came over a ROS topic: write it here, m, W axes"
+    )
+    source.note(
+        key, "understood", f"{seconds:g} s; the target comes over a topic there: fill in 'displacement'"
+    )
 
 
 def _number(source: Source, key: str) -> float:

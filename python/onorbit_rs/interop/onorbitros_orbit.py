@@ -37,8 +37,8 @@ _OURS = {
 _DATES = ("time_pass_perigee", "time_start")
 _DATE_PARTS = ("sec", "min", "hour", "mday", "mon", "year")
 _IDLE = {
-    "rate_of_right_ascension": "its node overwrites it with its own J2 rate; here the orbit is Kepler's, node fixed",
-    "rate_argument_of_perigee": "its node overwrites it with its own J2 rate; here the perigee stays",
+    "rate_of_right_ascension": "its node puts its own J2 rate in its place; here the node stays",
+    "rate_argument_of_perigee": "its node puts its own J2 rate in its place; here the perigee stays",
     "publish_rate": "nothing is published; 'record_every' says how often the trace has a row",
     "period": "it follows from the semi-major axis",
     "time_of_applicability": "its node does not read it",
@@ -48,7 +48,8 @@ ORBIT_KEYS = (
     *(f"{date}/{part}" for date in _DATES for part in _DATE_PARTS),
 )  # fmt: skip
 FIXED_KEYS = (
-    "pos_x", "pos_y", "pos_z", "orientation_x", "orientation_y", "orientation_z", "orientation_w", "publish_rate",
+    "pos_x", "pos_y", "pos_z", "orientation_x", "orientation_y", "orientation_z", "orientation_w",
+    "publish_rate",
 )  # fmt: skip
 EARTH_RADIUS = 6378e3
 
@@ -61,13 +62,11 @@ def read_orbit(source: Source) -> None:
     for wrong, right in MISSPELT.items():
         if wrong in source.data and right in source.data:
             raise source.fail(wrong, f"{right!r} is given as well; keep one")
+    values = {name: _element(source, name, given.get(name)) for name in _OURS}
+    a_m = values["semi_major_axis"] = values["semi_major_axis"] * 1e3
+    values["mean_anomaly_ini"] += _since_perigee(source, a_m)
     for name, ours in _OURS.items():
-        value = _element(source, name, given.get(name))
-        if name == "mean_anomaly_ini":
-            value += _since_perigee(source, a_m)
-        if name == "semi_major_axis":
-            value = a_m = value * 1e3
-        source.put(("orbit", ours), value, given.get(name, name))
+        source.put(("orbit", ours), values[name], given.get(name, name))
     for name, why in _IDLE.items():
         if name in given:
             source.note(given[name], "no meaning", why)
@@ -88,7 +87,9 @@ def _element(source: Source, name: str, key: str | None) -> float:
     value = _number(source, key)
     unit = {"semi_major_axis": "km", "eccentricity": ""}.get(name, "rad")
     if name == "semi_major_axis" and not (1e3 < abs(value) < 1e6):
-        raise source.fail(key, f"{value:g} km is no semi-major axis around the Earth; OnOrbitROS counts it in km")
+        raise source.fail(
+            key, f"{value:g} km is no semi-major axis around the Earth; OnOrbitROS counts it in km"
+        )
     if unit == "rad" and abs(value) > 2.0 * math.pi + 1e-9:
         raise source.fail(key, f"{value:g} rad is more than a turn; for degrees write ({value:g}*pi)/180.0")
     what = f"{_OURS[name]} {value:.9g} {unit}".rstrip()
@@ -110,15 +111,21 @@ def _since_perigee(source: Source, a_m: float) -> float:
     start, perigee = dates["time_start"], dates["time_pass_perigee"]
     if start is None or perigee is None:
         for key in keys:
-            source.note(key, "no meaning", "a date is not complete: OnOrbitROS' node would take the wall clock for it")
+            source.note(
+                key, "no meaning", "a date is not complete: OnOrbitROS' node would take the wall clock for it"
+            )
         return 0.0
     seconds = (start - perigee).total_seconds()
     shift = math.sqrt(MU_EARTH / a_m**3) * seconds
     for key in keys:
         if seconds:
-            source.note(key, "understood", f"start - perigee = {seconds:g} s adds {shift:.9g} rad to the mean anomaly")
+            source.note(
+                key, "understood", f"start - perigee = {seconds:g} s adds {shift:.9g} rad to the mean anomaly"
+            )
         else:
-            source.note(key, "no meaning", "start and perigee are one date: nothing is added to the mean anomaly")
+            source.note(
+                key, "no meaning", "start and perigee are one date: nothing is added to the mean anomaly"
+            )
     return shift
 
 
@@ -173,7 +180,9 @@ def read_fixed_pose(source: Source) -> None:
         source.put(("orbit", "mu"), MU_EARTH, "mu")
         source.put(("orbit", "gravity_mode"), "carried", "gravity_mode")
         source.comments[("orbit", "mu")] = "the Earth pulls"
-        source.comments[("orbit", "gravity_mode")] = "tides alone: the robot stays with the pose, as in OnOrbitROS"
+        source.comments[("orbit", "gravity_mode")] = (
+            "tides alone: the robot stays with the pose, as in OnOrbitROS"
+        )
 
 
 def _number(source: Source, key: str, default: float | None = None) -> float:

@@ -9,7 +9,9 @@ from typing import Any
 _COLUMN = 44
 
 
-def scenario_text(scenario: Mapping[str, Any], comments: Mapping[tuple[str | int, ...], str], head: str) -> str:
+def scenario_text(
+    scenario: Mapping[str, Any], comments: Mapping[tuple[str | int, ...], str], head: str
+) -> str:
     """Nested mappings indented, everything else on one line; ``comments`` by place."""
     lines = [f"# {line}".rstrip() for line in head.splitlines()]
     return "\n".join([*lines, "", *_lines(scenario, comments, ())]) + "\n"

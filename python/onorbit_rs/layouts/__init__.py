@@ -14,10 +14,10 @@ onorbit_rs      ``p, quat xyzw, joints``                  ``v_B, w_B, rates``
 ``spart``       ``(R0, r0, qm)``, ``r0`` the mass centre  ``(u0, um)``, ``u0 = w_B, v_W`` of it
 ==============  ========================================  ======================================
 
-For each engine there is ``to_engine(model, q, v)`` and its inverse ``from_engine(model, theirs_q, theirs_v)``.
+For each engine there is ``to_engine(model, q, v)`` and its inverse ``from_engine(model, their_q, their_v)``.
 One state ``(n,)`` or a batch ``(B, n)``. Engines order joints their own way (Pinocchio by name among
-siblings): ``joints=`` takes their names in the other engine's order, or for Pinocchio, MuJoCo and Drake the other
-engine's model itself. Ours is the order where nothing is given. Both must call the same link the base.
+siblings): ``joints=`` takes their names in the other engine's order, or for Pinocchio, MuJoCo and Drake the
+other engine's model itself. Ours is the order where nothing is given. Both must call the same link the base.
 
 >>> import onorbit_rs as oo
 >>> model = oo.Model.rigid_body(1.0, [[1, 0, 0], [0, 1, 0], [0, 0, 1]])

@@ -1,4 +1,4 @@
-"""MuJoCo: scalar-first quaternion; the free joint's linear velocity in world axes, its angular in body axes."""
+"""MuJoCo: scalar-first quaternion; the base's linear velocity in world axes, its angular in body axes."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def to_pinocchio(
     ----------
     q : (nq,) or (B, nq) array, v : (nv,) or (B, nv) array
     joints : names in Pinocchio's order, or its ``pin.Model`` with a ``JointModelFreeFlyer`` as root
-    unbounded : names of the joints it writes as (cos, sin): ``continuous`` in a URDF; read from a ``pin.Model``
+    unbounded : names of the joints it writes as (cos, sin), a URDF's ``continuous``; a ``pin.Model`` says
     """
     ours_q, ours_v = pair(model, q, v)
     order, is_unbounded = _layout(model, joints, unbounded)
@@ -83,6 +83,9 @@ def _layout(model: Model, joints: Any, unbounded: Sequence[str]) -> tuple[Any, l
     unknown = [name for name in unbounded if name not in names]
     if unknown:
         raise InputError(
-            f"unbounded names {unknown[0]!r}, which is no joint", name="unbounded", got=unknown, expected=names
+            f"unbounded names {unknown[0]!r}, which is no joint",
+            name="unbounded",
+            got=unknown,
+            expected=names,
         )
     return order, [name in unbounded for name in names]

@@ -1,4 +1,4 @@
-"""RBDL: a floating base is three translations and a spherical joint, whose quaternion's scalar goes to the end."""
+"""RBDL: the base is three translations and a spherical joint, whose quaternion's scalar goes to the end."""
 
 from __future__ import annotations
 

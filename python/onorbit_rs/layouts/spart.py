@@ -39,7 +39,7 @@ def to_spart(
     """SPART's ``(R0, r0, qm)`` and ``(u0, um)``.
 
     ``R0`` takes base components to inertial ones; ``r0 = p + R c`` is the centre of mass of the base link;
-    ``u0 = [w_B, v_W + R (w_B × c)]``: its angular velocity in base axes, the velocity of ``r0`` in inertial axes.
+    ``u0 = [w_B, v_W + R (w_B × c)]``: its angular velocity in base axes, that of ``r0`` in inertial ones.
     Its twist in inertial axes is ``t0 = P0 u0``.
 
     Parameters
@@ -75,7 +75,11 @@ def from_spart(
     """Our `q` and `v` from ``(R0, r0, qm)`` and ``(u0, um)``."""
     order, com = order_of(model, joints), _com(model, base_com)
     n = len(order)
-    rot, r0, qm = checked("R0", position[0], 3, 3), checked("r0", position[1], 3), checked("qm", position[2], n)
+    rot, r0, qm = (
+        checked("R0", position[0], 3, 3),
+        checked("r0", position[1], 3),
+        checked("qm", position[2], n),
+    )
     u0, um = checked("u0", velocity[0], 6), checked("um", velocity[1], n)
     same_batch(
         R0=rot[..., 0, 0], r0=r0[..., 0], qm=qm.sum(-1), u0=u0[..., 0], um=um.sum(-1),

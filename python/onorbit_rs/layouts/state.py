@@ -27,7 +27,10 @@ def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise DtypeError(
-            f"{name} is not an array of real numbers: {error}", name=name, expected="floats", got=type(value).__name__
+            f"{name} is not an array of real numbers: {error}",
+            name=name,
+            expected="floats",
+            got=type(value).__name__,
         ) from error
     extra = array.ndim - len(shape)
     if extra not in (0, 1) or array.shape[extra:] != shape:
@@ -35,7 +38,9 @@ def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
         message = f"{name} has shape {array.shape}, expected ({wanted}) or a batch (B, {wanted.rstrip(',')})"
         raise ShapeError(message, name=name, expected=shape, got=array.shape)
     if not np.isfinite(array).all():
-        raise InputError(f"{name} holds NaN or infinity", name=name, got="not finite", expected="finite numbers")
+        raise InputError(
+            f"{name} holds NaN or infinity", name=name, got="not finite", expected="finite numbers"
+        )
     return array
 
 
@@ -51,7 +56,9 @@ def same_batch(**first: Floats) -> None:
     """All single, or all batches of one length."""
     shapes = {name: value.shape for name, value in first.items()}
     if len(set(shapes.values())) > 1:
-        told = ", ".join(f"{name} {shape[0] if shape else 'a single state'}" for name, shape in shapes.items())
+        told = ", ".join(
+            f"{name} {shape[0] if shape else 'a single state'}" for name, shape in shapes.items()
+        )
         raise ShapeError(f"batches differ: {told}", name="batch", expected="one length", got=told)
 
 
@@ -78,7 +85,9 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
     if names is None:
         return np.arange(len(ours))
     if isinstance(names, str):
-        raise DtypeError("joints is a text, a list of names is needed", name="joints", expected="list", got="str")
+        raise DtypeError(
+            "joints is a text, a list of names is needed", name="joints", expected="list", got="str"
+        )
     theirs = [str(name) for name in names]
     for name in theirs:
         if name not in ours:
@@ -89,7 +98,9 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
     missing = [name for name in ours if name not in theirs]
     if missing or len(theirs) != len(ours):
         what = f"lacks {', '.join(map(repr, missing))}" if missing else "names a joint twice"
-        raise InputError(f"joints {what}; it must name each moving joint once", name="joints", got=theirs, expected=ours)
+        raise InputError(
+            f"joints {what}; it must name each moving joint once", name="joints", got=theirs, expected=ours
+        )
     return np.array([ours.index(name) for name in theirs], dtype=np.intp)
 
 
@@ -101,7 +112,7 @@ def names_in(joints: Any, attribute: str) -> bool:
 def no_floating_base(engine: str) -> InputError:
     """Their model has no free joint in front."""
     return InputError(
-        f"the model of {engine} does not begin with one floating base and go on with joints of one degree of freedom",
+        f"the model of {engine} is not one floating base and then joints of one degree of freedom each",
         name="joints", got=engine, expected="a floating base",
     )  # fmt: skip
 

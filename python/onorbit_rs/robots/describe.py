@@ -55,7 +55,9 @@ def print_info(model: Model, console: Console | None = None) -> None:
     console = console or Console(highlight=False)
     com, moments = _whole(model)
     counts = f"{_count(len(model.bodies), 'body', 'bodies')}, {_count(len(model.joints), 'joint', 'joints')}"
-    console.print(f"[bold]{escape(model.name)}[/bold]: {counts}, {_count(len(model.frames), 'frame', 'frames')}")
+    console.print(
+        f"[bold]{escape(model.name)}[/bold]: {counts}, {_count(len(model.frames), 'frame', 'frames')}"
+    )
     console.print(f"mass {model.mass:.6g} kg, nq = {model.nq}, nv = {model.nv}")
     console.print(f"joints at zero: centre of mass {_row(com)} m from the base's origin,")
     console.print(f"principal moments about it {_row(moments)} kg m²")
@@ -64,7 +66,9 @@ def print_info(model: Model, console: Console | None = None) -> None:
     console.print("\n[bold]bodies[/bold]: a link with what is fixed to it; centre of mass in the link's axes")
     console.print(_bodies(model))
     if model.joints:
-        console.print("\n[bold]joints[/bold]: axis in the child's link; rad and N m, or m and N where it slides")
+        console.print(
+            "\n[bold]joints[/bold]: axis in the child's link; rad and N m, or m and N where it slides"
+        )
         console.print(_joints(model))
         if any(joint.damping or joint.friction or joint.rotor_inertia for joint in model.joints):
             console.print("\n[bold]losses and rotors[/bold]: N m s/rad, N m, kg m² (N s/m, N, kg)")
@@ -100,7 +104,9 @@ def _tree(model: Model) -> Tree:
 def _bodies(model: Model) -> Table:
     table = _table("name", "mass, kg", "centre of mass, m", "principal moments, kg m²")
     for body in model.bodies:
-        table.add_row(escape(body.name), f"{body.mass:.5g}", _row(body.com), _row(_moments(np.array(body.inertia))))
+        table.add_row(
+            escape(body.name), f"{body.mass:.5g}", _row(body.com), _row(_moments(np.array(body.inertia)))
+        )
     return table
 
 

@@ -53,7 +53,8 @@ def expand(
         xacro = importlib.import_module("xacro")
     except ImportError as error:
         raise ModelError(
-            f"{file}: this is xacro, which PyPI's xacro expands: pip install 'onorbit-rs[xacro]'", path=str(file)
+            f"{file}: this is xacro, which PyPI's xacro expands: pip install 'onorbit-rs[xacro]'",
+            path=str(file),
         ) from error
     folders = [Path(folder) for folder in package_paths] + list(file.absolute().parents)
     values = {name: _text(value) for name, value in (arguments or {}).items()}
@@ -68,7 +69,9 @@ def expand(
     except RecursionError:
         raise ModelError(f"{file}: macros or elements nested too deep", path=str(file)) from None
     except OSError as error:
-        raise ReadError(f"cannot read {file}: {error.strerror or error}", path=str(file), kind="robot") from error
+        raise ReadError(
+            f"cannot read {file}: {error.strerror or error}", path=str(file), kind="robot"
+        ) from error
     except Exception as error:  # xacro's own, expat's, and whatever an expression in the file raises
         raise ModelError(f"{file}: {_reason(error)}", path=str(file)) from error
     for name in values:
