@@ -1,5 +1,6 @@
 //! What can stop a run.
 
+use super::checkpoint::CheckpointError;
 use super::trace::Trace;
 use crate::control::ControlError;
 use crate::environment::EnvironmentError;
@@ -47,6 +48,8 @@ pub enum SimulationError {
     Orbit { time: f64, source: OrbitError },
     #[error("at t = {time} s: {source}")]
     Environment { time: f64, source: EnvironmentError },
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     #[error(transparent)]
     Control(#[from] ControlError),
 }

@@ -1,6 +1,7 @@
 //! Runs: the plant, its integrators, events, the trace and its certificate.
 
 mod certificate;
+mod checkpoint;
 mod driver;
 mod error;
 mod integrator;
@@ -15,11 +16,12 @@ mod surroundings;
 mod trace;
 
 pub use certificate::{Certificate, Check, certify};
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use error::{RunFailure, SimulationError};
 pub use integrator::Integrator;
 pub(crate) use integrator::Stages;
 pub(crate) use plant::{Nothing, Plant};
-pub use run::Monitor;
+pub use run::{Moment, Monitor};
 pub use settings::Simulation;
 pub(crate) use state::State;
 pub use trace::Trace;

@@ -1,5 +1,6 @@
 //! Writing rows of the trace.
 
+use super::checkpoint::CheckpointError;
 use super::error::SimulationError;
 use super::plant::Plant;
 use super::state::State;
@@ -56,6 +57,19 @@ impl<'a> Recorder<'a> {
             reserve(|t| &mut t.velocity_eci, 3)?;
         }
         Ok(Self { trace, tool, reference })
+    }
+
+    /// Goes on after the rows of an earlier part of the run.
+    pub(super) fn go_on_from(&mut self, mut rows: Trace) -> Result<(), CheckpointError> {
+        let count = rows.rows();
+        for ((name, to), (_, from)) in self.trace.columns_mut().zip(rows.columns_mut()) {
+            let is_kept = to.capacity() > 0;
+            if is_kept == from.is_empty() || from.len().checked_rem(count).is_some_and(|rest| rest > 0) {
+                return Err(CheckpointError::OtherSize { name, got: from.len(), expected: count });
+            }
+            to.append(from);
+        }
+        Ok(())
     }
 
     /// Adds a row for a state whose kinematics are in the plant; the acceleration follows with

@@ -45,6 +45,41 @@ pub struct Trace {
     pub has_every_step: bool,
 }
 
+macro_rules! columns {
+    ($($name:ident),* $(,)?) => {
+        impl Trace {
+            /// Every column with its name, empty ones too; row major.
+            pub fn columns(&self) -> impl Iterator<Item = (&'static str, &Vec<f64>)> {
+                [$((stringify!($name), &self.$name)),*].into_iter()
+            }
+
+            /// Every column with its name, to fill.
+            pub fn columns_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut Vec<f64>)> {
+                [$((stringify!($name), &mut self.$name)),*].into_iter()
+            }
+        }
+    };
+}
+
+columns!(
+    time,
+    q,
+    v,
+    tau,
+    acceleration,
+    momentum,
+    impulse,
+    kinetic_energy,
+    work,
+    center_of_mass,
+    tool_pose,
+    reference_pose,
+    position_error,
+    attitude_error,
+    position_eci,
+    velocity_eci,
+);
+
 impl Trace {
     /// Number of rows, `T`.
     pub fn rows(&self) -> usize {
