@@ -15,6 +15,7 @@ from onorbit_rs import exceptions, robots, scenarios
 from onorbit_rs._core import (
     MU_EARTH,
     BodyWrench,
+    Checkpoint,
     ComputedTorque,
     FreeFloating,
     GravityGradient,
@@ -31,12 +32,13 @@ from onorbit_rs._core import (
 )
 from onorbit_rs.control import Controller
 from onorbit_rs.exceptions import OnOrbitError
-from onorbit_rs.running import Run, run
+from onorbit_rs.running import Run, resume, run
 from onorbit_rs.scenario import Scenario
 
 __all__ = [
     "MU_EARTH",
     "BodyWrench",
+    "Checkpoint",
     "ComputedTorque",
     "Controller",
     "FreeFloating",
@@ -54,6 +56,7 @@ __all__ = [
     "Trace",
     "build_info",
     "exceptions",
+    "resume",
     "robots",
     "rollout",
     "run",

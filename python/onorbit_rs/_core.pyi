@@ -27,6 +27,7 @@ class _BuildInfo(TypedDict):
 __all__ = [
     "MU_EARTH",
     "BodyWrench",
+    "Checkpoint",
     "ComputedTorque",
     "Effect",
     "FreeFloating",
@@ -320,7 +321,25 @@ class Simulation:
         integrator: _Integrator = "rk4",
         record_every: int = 1,
     ) -> Simulation: ...
-    def run(self, duration: float, *, progress: Callable[[float, float], object] | None = None) -> Trace: ...
+    def run(
+        self,
+        duration: float,
+        *,
+        progress: Callable[[float, float], object] | None = None,
+        checkpoint: Callable[[Checkpoint], object] | None = None,
+        checkpoint_every: float = 30.0,
+        resume: Checkpoint | None = None,
+    ) -> Trace: ...
+
+@final
+class Checkpoint:
+    def __new__(cls, state: str, columns: dict[str, _Array], *, wall_s: float = 0.0) -> Checkpoint: ...
+    @property
+    def state(self) -> str: ...
+    @property
+    def columns(self) -> dict[str, _Array]: ...
+    @property
+    def wall_s(self) -> float: ...
 
 @final
 class Trace:

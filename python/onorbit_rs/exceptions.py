@@ -15,6 +15,7 @@ class                       built-in               fields
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
+``CheckpointError``         ``ValueError``         ``path``: a run cannot go on from it: broken, of another run
 ``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or factorisation
 ``NotFoundError``           ``FileNotFoundError``  ``path, kind, suggestion``: no such file, robot or scenario
 ``ReadError``               ``OSError``            ``path, kind``: a file is there but cannot be read
@@ -34,6 +35,7 @@ from __future__ import annotations
 from typing import Any
 
 __all__ = [
+    "CheckpointError",
     "ControlError",
     "ConvergenceError",
     "DtypeError",
@@ -157,6 +159,12 @@ class SimulationError(OnOrbitError, ArithmeticError):
     q: Any = None
     v: Any = None
     trace: Any = None
+
+
+class CheckpointError(OnOrbitError, ValueError):
+    """A run cannot go on from its checkpoint: broken, or of another scenario, version or instruction set."""
+
+    path: Any = None
 
 
 class ConvergenceError(OnOrbitError, ArithmeticError):

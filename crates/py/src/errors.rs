@@ -227,6 +227,7 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::Environment { time, source } => {
                 with_trace(py, source.into_python(py), time, trace)
             }
+            SimulationError::Checkpoint(_) => plain(py, "CheckpointError", &message),
             SimulationError::Control(source) => source.into_python(py),
         }
     }

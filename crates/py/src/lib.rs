@@ -2,6 +2,7 @@
 
 mod arrays;
 mod builder;
+mod checkpoint;
 mod control;
 mod environment;
 mod errors;
@@ -59,6 +60,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<reference::PyLineParabola>()?;
     m.add_class::<simulation::PySimulation>()?;
     m.add_class::<trace::PyTrace>()?;
+    m.add_class::<checkpoint::PyCheckpoint>()?;
     m.add_function(wrap_pyfunction!(build_info, m)?)?;
     m.add_function(wrap_pyfunction!(rollout::rollout, m)?)?;
     Ok(())

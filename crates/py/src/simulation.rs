@@ -1,6 +1,7 @@
 //! Runs.
 
 use crate::arrays::{Input, wrong_shape};
+use crate::checkpoint::{Keeper, PyCheckpoint};
 use crate::control::{PyComputedTorque, PythonController};
 use crate::environment::PyEffect;
 use crate::errors::{SimulationErrorExt, fields, plain, raise};
@@ -10,7 +11,7 @@ use crate::reference;
 use crate::trace::PyTrace;
 use onorbit_core::control::{ControlError, ControlLaw};
 use onorbit_core::model::Model;
-use onorbit_core::simulation::{Integrator, RunFailure, Simulation, SimulationError};
+use onorbit_core::simulation::{Integrator, Moment, RunFailure, Simulation, SimulationError};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, TryLockError};
@@ -103,10 +104,32 @@ impl PySimulation {
 
     /// Run from the given state for ``duration`` s and return the :class:`Trace`.
     ///
-    /// ``progress(t, duration)`` is called at a steady wall-clock pace. Ctrl-C raises ``RunInterrupted``, a diverging
-    /// run ``SimulationError``; both carry the trace so far.
-    #[pyo3(signature = (duration, *, progress=None))]
-    fn run(&self, py: Python<'_>, duration: f64, progress: Option<Py<PyAny>>) -> PyResult<PyTrace> {
+    /// ``progress(t, duration)`` is called at a steady wall-clock pace. ``checkpoint(c)`` is handed a :class:`Checkpoint` every
+    /// ``checkpoint_every`` s of wall clock and at Ctrl-C; with ``resume`` the run goes on from one, to the same bits.
+    /// Ctrl-C raises ``RunInterrupted``, a diverging run ``SimulationError``; both carry the trace so far.
+    #[pyo3(signature = (duration, *, progress=None, checkpoint=None, checkpoint_every=30.0, resume=None))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        duration: f64,
+        progress: Option<Py<PyAny>>,
+        checkpoint: Option<Py<PyAny>>,
+        checkpoint_every: f64,
+        resume: Option<&Bound<'_, PyCheckpoint>>,
+    ) -> PyResult<PyTrace> {
+        let every = Duration::try_from_secs_f64(checkpoint_every).map_err(|_| {
+            let message = format!("checkpoint_every is {checkpoint_every} s, it must be zero or positive");
+            raise(
+                py,
+                "InputError",
+                &message,
+                &fields!(py, "name": "checkpoint_every", "got": checkpoint_every),
+            )
+        })?;
+        let from = resume.map(|checkpoint| checkpoint.get().read(py)).transpose()?;
+        let (rows, wall) =
+            (from.as_ref().map_or(0, |from| from.0.rows()), resume.map_or(0.0, |c| c.get().wall_s));
+        let mut keeper = Keeper::new(checkpoint, every, rows, wall);
         let mut raised: Option<PyErr> = None;
         let ran = py.detach(|| {
             let mut simulation = match self.simulation.try_lock() {
@@ -114,14 +137,19 @@ impl PySimulation {
                 Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
                 Err(TryLockError::WouldBlock) => return None,
             };
-            let start = Instant::now();
-            let mut last = start;
-            let mut monitor = |t: f64| {
+            let mut last = Instant::now();
+            let mut monitor = |now: &Moment<'_>| {
                 if last.elapsed() < PACE {
                     return ControlFlow::Continue(());
                 }
                 last = Instant::now();
-                match Python::attach(|py| look(py, progress.as_ref(), t, duration)) {
+                let looked = Python::attach(|py| {
+                    look(py, progress.as_ref(), now.time, duration).inspect_err(|_| {
+                        let _ = keeper.keep(py, now); // the first error is told
+                    })?;
+                    keeper.keep_if_due(py, now)
+                });
+                match looked {
                     Ok(()) => ControlFlow::Continue(()),
                     Err(error) => {
                         raised = Some(error);
@@ -129,15 +157,18 @@ impl PySimulation {
                     }
                 }
             };
-            let result = simulation.run(duration, &mut monitor);
-            Some((result, start.elapsed().as_secs_f64()))
+            Some(match from {
+                None => simulation.run(duration, &mut monitor),
+                Some((checkpoint, rows)) => simulation.resume(duration, (&checkpoint, rows), &mut monitor),
+            })
         });
-        let Some((result, wall)) = ran else {
+        let Some(result) = ran else {
             let message = "this simulation is running already; make another one to run beside it";
             return Err(plain(py, "SimulationError", message));
         };
+        let wall_s = keeper.wall();
         let wrap =
-            |trace, is_complete| PyTrace { trace, model: Arc::clone(&self.model), is_complete, wall_s: wall };
+            |trace, is_complete| PyTrace { trace, model: Arc::clone(&self.model), is_complete, wall_s };
         match result {
             Ok(trace) => Ok(wrap(trace, true)),
             Err(RunFailure { error, trace }) => Err(self.failure(py, error, wrap(*trace, false), raised)),
