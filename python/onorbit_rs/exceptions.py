@@ -15,7 +15,7 @@ class                       built-in               fields
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
-``CheckpointError``         ``ValueError``         ``path``: a run cannot go on from it: broken, of another run
+``CheckpointError``         ``ValueError``         ``path``: broken, or of another run: no going on from it
 ``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or factorisation
 ``NotFoundError``           ``FileNotFoundError``  ``path, kind, suggestion``: no such file, robot or scenario
 ``ReadError``               ``OSError``            ``path, kind``: a file is there but cannot be read

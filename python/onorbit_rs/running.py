@@ -72,7 +72,7 @@ def run(
     quiet : bool
         No progress bar, even on a terminal.
     checkpoint_every : float
-        Wall-clock time between two checkpoints in ``out``, s; a run that was killed goes on with :func:`resume`.
+        Wall-clock time between two checkpoints in ``out``, s; :func:`resume` goes on from the last one.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def resume(
     Raises
     ------
     CheckpointError
-        Nothing to go on from: the run ended, or its scenario, robot or the version of onorbit_rs changed since.
+        Nothing to go on from: the run ended, or its scenario, robot or our version changed since.
     OnOrbitError
         As :func:`run`.
     """

@@ -1,7 +1,7 @@
 """``checkpoint/`` in the output folder: the rows so far and where the run stands, to go on from after a kill.
 
-``<column>.f64`` holds the rows of a column, appended; ``state.json`` is replaced as a whole and says how many rows
-count, so that a kill at any instant leaves a checkpoint that is whole.
+``<column>.f64`` holds the rows of a column, appended; ``state.json`` is replaced as a whole and says how many
+rows count, so that a kill at any instant leaves a checkpoint that is whole.
 """
 
 from __future__ import annotations
@@ -26,15 +26,12 @@ _STATE = "state.json"
 
 
 class CheckpointWriter:
-    """Takes what :meth:`onorbit_rs.Simulation.run` hands to its ``checkpoint``."""
+    """Takes what :meth:`onorbit_rs.Simulation.run` hands to its ``checkpoint``; ``rows`` are there already."""
 
     def __init__(self, folder: OutputFolder, fingerprint: str, *, rows: int = 0) -> None:
-        self._folder, self._path, self._fingerprint, self._rows = (
-            folder,
-            folder.path / CHECKPOINT,
-            fingerprint,
-            rows,
-        )
+        """For a run whose scenario has this fingerprint."""
+        self._folder, self._path = folder, folder.path / CHECKPOINT
+        self._fingerprint, self._rows = fingerprint, rows
 
     def __call__(self, checkpoint: Checkpoint) -> None:
         """Append the new rows, then say that they count."""
@@ -72,7 +69,8 @@ def read_checkpoint(folder: Path, fingerprint: str) -> tuple[Checkpoint, int]:
     path = folder / CHECKPOINT
     if not (path / _STATE).is_file():
         raise _refused(
-            f"no checkpoint in {folder}: the run ended, or was stopped before it left one; run the scenario again",
+            f"no checkpoint in {folder}: the run ended, or was stopped before it left one; "
+            "run the scenario again",
             path,
         )
     try:
