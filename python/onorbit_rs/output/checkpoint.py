@@ -26,7 +26,7 @@ _STATE = "state.json"
 
 
 class CheckpointWriter:
-    """Takes what :meth:`onorbit_rs.Simulation.run` hands to its ``checkpoint``; ``rows`` are there already."""
+    """Takes what :meth:`onorbit_rs.Simulation.run` hands to its ``checkpoint``; ``rows`` are there."""
 
     def __init__(self, folder: OutputFolder, fingerprint: str, *, rows: int = 0) -> None:
         """For a run whose scenario has this fingerprint."""
