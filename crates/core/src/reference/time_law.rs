@@ -1,38 +1,13 @@
 //! How fast a path is gone along.
 
-use super::ReferenceError;
+use super::{ReferenceError, TaskLimits, TaskPath};
 
 /// `s(t)` from 0 to 1, at rest and without acceleration at both ends; 0 before, 1 after.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeLaw {
     duration: f64,
-    /// Time to reach the constant rate, s; the quintic where there is none.
+    /// Share of the duration until the constant rate is reached; the quintic where there is none.
     ramp: Option<f64>,
-}
-
-/// Largest rate of the quintic, at half time: `15/8 /T`.
-const PEAK_RATE: f64 = 1.875;
-
-/// Largest acceleration of the quintic, at `u = ½ ± √3/6`: `10/√3 /T²`.
-const PEAK_ACCELERATION: f64 = 5.773_502_691_896_258;
-
-/// The most a motion may reach: a rate and its derivative, infinite where nothing limits.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RateLimit {
-    /// m/s or rad/s.
-    pub rate: f64,
-    /// m/s² or rad/s².
-    pub acceleration: f64,
-}
-
-impl RateLimit {
-    /// No limit.
-    pub const NONE: Self = Self { rate: f64::INFINITY, acceleration: f64::INFINITY };
-
-    /// The least time, s, in which the quintic goes over `distance`: `max(15/8 d/v, √(10/√3 d/a))`.
-    pub fn time_for(&self, distance: f64) -> f64 {
-        (PEAK_RATE * distance / self.rate).max((PEAK_ACCELERATION * distance / self.acceleration).sqrt())
-    }
 }
 
 impl TimeLaw {
@@ -50,16 +25,33 @@ impl TimeLaw {
         Ok(Self { duration, ramp: None })
     }
 
-    /// A constant rate between two ramps of `ramp` seconds, all in `duration`, s.
+    /// A constant rate between two ramps that take the share `ramp` of `duration` (s) each.
     ///
     /// # Errors
-    /// As [`TimeLaw::quintic`]; [`ReferenceError::Ramp`] for a ramp longer than half of it.
+    /// As [`TimeLaw::quintic`]; [`ReferenceError::Ramp`] for a share that is not in 0..½.
     pub fn ramped(duration: f64, ramp: f64) -> Result<Self, ReferenceError> {
         let law = Self::quintic(duration)?;
-        if !(ramp > 0.0 && ramp <= 0.5 * duration) {
-            return Err(ReferenceError::Ramp { value: ramp, longest: 0.5 * duration });
+        if !(ramp > 0.0 && ramp <= 0.5) {
+            return Err(ReferenceError::Ramp { value: ramp });
         }
         Ok(Self { ramp: Some(ramp), ..law })
+    }
+
+    /// The law with which `path_with` makes a path as fast as `limits` allow; `ramp` as in
+    /// [`TimeLaw::ramped`], the quintic without.
+    ///
+    /// # Errors
+    /// [`ReferenceError::LimitNotPositive`], [`ReferenceError::Ramp`]; [`ReferenceError::NoLimit`] where the
+    /// limits let the path take no time.
+    pub fn within<P: TaskPath>(
+        limits: &TaskLimits,
+        ramp: Option<f64>,
+        path_with: impl Fn(Self) -> P,
+    ) -> Result<Self, ReferenceError> {
+        limits.check()?;
+        let law = ramp.map_or_else(|| Self::quintic(1.0), |ramp| Self::ramped(1.0, ramp))?;
+        let duration = limits.stretch(&path_with(law), 4);
+        if duration > 0.0 { Ok(Self { duration, ..law }) } else { Err(ReferenceError::NoLimit) }
     }
 
     /// When it comes to rest, s.
@@ -71,7 +63,7 @@ impl TimeLaw {
     pub fn at(&self, t: f64) -> (f64, f64, f64) {
         match self.ramp {
             None => quintic(t, self.duration),
-            Some(ramp) => ramped(t, self.duration, ramp),
+            Some(ramp) => ramped(t, self.duration, ramp * self.duration),
         }
     }
 }
