@@ -69,11 +69,15 @@ pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, 
     let z = lvlh.rot_il.column(2);
     let climb = r.dot(v) / radius;
     let along_z = z.dot(&r.cross(&state.acceleration)) / (radius * radius) - 2.0 * rate.z * climb / radius;
-    // the plane's turn has the jerk in its rate: a difference, over a thousandth of a radian of orbit
+    // the plane's turn has the jerk in its rate: differences over thousandths of a radian of orbit,
+    // one-sided at the ends of what is known, the error of second order extrapolated away
     let step = 1e-3 / rate.norm();
     let near = |dt: f64| orbit.lvlh(t + dt).map_or((0.0, rate.x), |there| (dt, there.rate_l.x));
-    let ((t0, x0), (t1, x1)) = (near(-step), near(step)); // one-sided at the ends of what is known
-    let along_x = if t1 > t0 { (x1 - x0) / (t1 - t0) } else { 0.0 };
+    let slope = |dt: f64| {
+        let ((t0, x0), (t1, x1)) = (near(-dt), near(dt));
+        if t1 > t0 { (x1 - x0) / (t1 - t0) } else { 0.0 }
+    };
+    let along_x = (4.0 * slope(step) - slope(2.0 * step)) / 3.0;
     let rot = Mat3::from(lvlh.rot_il);
     let in_w = |x: Vector3<f64>| Motion::new(Vec3::zero(), rot * Vec3::from(x));
     Ok(TaskSample {

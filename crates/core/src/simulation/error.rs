@@ -35,6 +35,13 @@ pub enum SimulationError {
     NeedsTool,
     #[error("frame {frame} is asked for, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame { frame: usize, count: usize },
+    #[error(
+        "the reference starts {position} m and {angle} rad from the tool, at most {tolerance_m} m and {tolerance_rad} rad are \
+         accepted: start it at the tool, or raise reference_start_tolerance",
+        tolerance_m = tolerance[0],
+        tolerance_rad = tolerance[1]
+    )]
+    ReferenceStartsAway { position: f64, angle: f64, tolerance: [f64; 2] },
     #[error("{rows} recorded rows do not fit in memory; record fewer with record_every")]
     TooManyRows { rows: usize },
     #[error(

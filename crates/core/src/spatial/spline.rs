@@ -147,21 +147,30 @@ impl Place {
     }
 
     /// The quintic between two knots, each `[value, slope, curvature]`; at rest outside.
-    pub(super) fn blend(&self, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 3] {
+    pub(super) fn blend(&self, start: [f64; 3], end: [f64; 3]) -> [f64; 3] {
         let (h, u) = (self.length, self.u);
         if self.is_outside {
-            return [if u > 0.5 { p1 } else { p }, 0.0, 0.0];
+            return [if u > 0.5 { end[0] } else { start[0] }, 0.0, 0.0];
         }
-        let (d, v, v1, a, a1) = (p1 - p, v * h, v1 * h, a * h * h, a1 * h * h);
-        // the six conditions at u = 0 and 1, solved for p + v u + a u²/2 + c₃u³ + c₄u⁴ + c₅u⁵
-        let c3 = 10.0 * d - 6.0 * v - 4.0 * v1 - 1.5 * a + 0.5 * a1;
-        let c4 = -15.0 * d + 8.0 * v + 7.0 * v1 + 1.5 * a - a1;
-        let c5 = 6.0 * d - 3.0 * (v + v1) - 0.5 * (a - a1);
-        let value = p + u * (v + u * (0.5 * a + u * (c3 + u * (c4 + u * c5))));
-        let slope = v + u * (a + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)));
-        let curvature = a + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5));
-        [value, slope / h, curvature / (h * h)]
+        if u <= 0.5 {
+            return quintic(h, u, start, end);
+        }
+        // the later half backwards in time, so that the end is met exactly too
+        let back = |[p, v, a]: [f64; 3]| [p, -v, a];
+        back(quintic(h, 1.0 - u, back(end), back(start)))
     }
+}
+
+/// The six conditions at `u = 0` and `1`, solved for `p + v u + a u²/2 + c₃u³ + c₄u⁴ + c₅u⁵`.
+fn quintic(h: f64, u: f64, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 3] {
+    let (d, v, v1, a, a1) = (p1 - p, v * h, v1 * h, a * h * h, a1 * h * h);
+    let c3 = 10.0 * d - 6.0 * v - 4.0 * v1 - 1.5 * a + 0.5 * a1;
+    let c4 = -15.0 * d + 8.0 * v + 7.0 * v1 + 1.5 * a - a1;
+    let c5 = 6.0 * d - 3.0 * (v + v1) - 0.5 * (a - a1);
+    let value = p + u * (v + u * (0.5 * a + u * (c3 + u * (c4 + u * c5))));
+    let slope = v + u * (a + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)));
+    let curvature = a + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5));
+    [value, slope / h, curvature / (h * h)]
 }
 
 /// Two or more times that increase.
