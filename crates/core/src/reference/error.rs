@@ -35,6 +35,8 @@ pub enum ReferenceError {
         "rotation of the reference pose is not a rotation: RᵀR differs from 1 by {error}, at most 1e-6 is accepted"
     )]
     NotARotation { error: f64 },
+    #[error("the last row of the pose is {row:?}, it must be [0, 0, 0, 1]")]
+    LastRow { row: [f64; 4] },
     #[error("the points of the reference give no curve: {0}")]
     Spline(#[from] SplineError),
     #[error("the reference is given in the frame of an orbit: {0}")]

@@ -39,13 +39,21 @@ impl Target {
         velocity: Vector3<f64>,
         spin: Vector3<f64>,
     ) -> Result<Self, ReferenceError> {
+        Self::at(Hold::new(rot_wt, pos_w)?, velocity, spin)
+    }
+
+    /// As [`Target::new`], from a pose.
+    ///
+    /// # Errors
+    /// [`ReferenceError::NotFinite`].
+    pub fn at(start: Hold, velocity: Vector3<f64>, spin: Vector3<f64>) -> Result<Self, ReferenceError> {
         for (name, v) in [("velocity", &velocity), ("spin", &spin)] {
             if !v.iter().all(|x| x.is_finite()) {
                 return Err(ReferenceError::NotFinite { name });
             }
         }
         let velocity = Motion::new(velocity.into(), spin.into());
-        Ok(Self { start: Hold::new(rot_wt, pos_w)?, velocity })
+        Ok(Self { start, velocity })
     }
 
     /// How the target moves at `t`, s of simulation.

@@ -29,7 +29,19 @@ impl LineParabola {
         height: Vector3<f64>,
         duration: f64,
     ) -> Result<Self, ReferenceError> {
-        let start = Hold::new(rot_fd, pos_f)?;
+        Self::from_pose(Hold::new(rot_fd, pos_f)?, displacement, height, duration)
+    }
+
+    /// As [`LineParabola::new`], from a pose.
+    ///
+    /// # Errors
+    /// As [`LineParabola::new`].
+    pub fn from_pose(
+        start: Hold,
+        displacement: Vector3<f64>,
+        height: Vector3<f64>,
+        duration: f64,
+    ) -> Result<Self, ReferenceError> {
         for (name, v) in [("displacement", &displacement), ("height", &height)] {
             if !v.iter().all(|x| x.is_finite()) {
                 return Err(ReferenceError::NotFinite { name });

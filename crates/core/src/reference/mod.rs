@@ -16,6 +16,7 @@ mod line_parabola;
 mod pose_spline;
 mod sample;
 mod screw;
+mod table;
 mod task;
 mod time_law;
 
@@ -30,5 +31,6 @@ pub use line_parabola::LineParabola;
 pub use pose_spline::PoseSpline;
 pub use sample::TaskSample;
 pub use screw::Screw;
+pub use table::{joint_table, task_table};
 pub use task::{TaskPath, TaskReference};
 pub use time_law::TimeLaw;

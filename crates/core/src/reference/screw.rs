@@ -1,6 +1,6 @@
 //! Round an axis, and along it: circles and screws.
 
-use super::{Hold, ReferenceError, TaskPath, TaskSample, TimeLaw};
+use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw, Timing};
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
 use nalgebra::Vector3;
 
@@ -47,6 +47,30 @@ impl Screw {
         }
         let axis = (axis / length).into();
         Ok(Self { start, center: center.into(), axis, angle, advance, turns, law })
+    }
+
+    /// As [`Screw::new`] in a given duration, s, or as fast as limits allow; `ramp` as in
+    /// [`TimeLaw::ramped`], the quintic without.
+    ///
+    /// # Errors
+    /// As [`Screw::new`] and [`TimeLaw`]'s constructors.
+    pub fn timed(
+        start: Hold,
+        center: Vector3<f64>,
+        axis: Vector3<f64>,
+        angle: f64,
+        advance: f64,
+        turns: bool,
+        timing: &Timing<f64, TaskLimits>,
+        ramp: Option<f64>,
+    ) -> Result<Self, ReferenceError> {
+        let mut screw = Self::new(start, center, axis, angle, advance, turns, TimeLaw::quintic(1.0)?)?;
+        screw.law = match (timing, ramp) {
+            (Timing::Given(duration), None) => TimeLaw::quintic(*duration)?,
+            (Timing::Given(duration), Some(ramp)) => TimeLaw::ramped(*duration, ramp)?,
+            (Timing::Limits(limits), ramp) => TimeLaw::within(limits, ramp, |law| screw.with_law(law))?,
+        };
+        Ok(screw)
     }
 
     /// The same path under another law.
