@@ -36,7 +36,7 @@ pub enum SimulationError {
     #[error("frame {frame} is asked for, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame { frame: usize, count: usize },
     #[error(
-        "the reference starts {position} m and {angle} rad from the tool, at most {tolerance_m} m and {tolerance_rad} rad are \
+        "the reference starts {position:.4} m and {angle:.4} rad from the tool, at most {tolerance_m} m and {tolerance_rad} rad are \
          accepted: start it at the tool, or raise reference_start_tolerance",
         tolerance_m = tolerance[0],
         tolerance_rad = tolerance[1]
