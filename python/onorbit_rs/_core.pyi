@@ -15,7 +15,6 @@ _Path = str | PathLike[str]
 _External = Mapping[str, ArrayLike]
 _JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
 _Integrator = Literal["rk4", "semi_implicit_euler"]
-_Frame = Literal["world", "lvlh", "base"] | Target
 _CertificateRow = tuple[str, float | None, float, bool]
 
 class _Controller(Protocol):
@@ -311,6 +310,8 @@ class Target:
     def __new__(
         cls, pose: ArrayLike, *, velocity: ArrayLike | None = None, spin: ArrayLike | None = None
     ) -> Target: ...
+
+_Frame = Literal["world", "lvlh", "base"] | Target
 
 @final
 class Hold(Reference):

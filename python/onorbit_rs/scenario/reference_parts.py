@@ -1,4 +1,4 @@
-"""References, as a scenario writes them. A new kind is one class with its own ``kind``, added to the union at the end.
+"""References, as a scenario writes them. A new kind is one class with its own ``kind``, added to the union.
 
 Those of a tool begin at its first pose unless ``start`` is given, and are written in the axes of ``frame``.
 """
