@@ -67,6 +67,7 @@ fn simulation(control: usize, integrator: Integrator) -> Simulation {
     simulation.integrator = integrator;
     let hold = Hold::new(Matrix3::identity(), Vector3::new(-0.1, -0.2, 0.5)).unwrap();
     simulation.reference = Some(hold.into());
+    simulation.reference_start_tolerance = [1.0, 4.0]; // from wherever the tool is
     simulation.control = match control {
         0 => ControlLaw::None,
         1 => ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(tool, 1.0, 2.0))),

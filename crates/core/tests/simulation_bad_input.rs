@@ -32,6 +32,7 @@ fn tracking(simulation: &mut Simulation) -> usize {
     let tool = simulation.model.frame("tool").unwrap();
     let hold = Hold::new(Matrix3::identity(), Vector3::zeros()).unwrap();
     simulation.reference = Some(hold.into());
+    simulation.reference_start_tolerance = [1.0, 4.0]; // from wherever the tool is
     simulation.tool = Some(tool);
     tool
 }
@@ -131,4 +132,14 @@ fn frames_the_robot_does_not_have() {
         s.control = ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(99, 1.0, 1.0)));
     });
     assert!(matches!(error, SimulationError::UnknownFrame { frame: 99, .. }), "{error}");
+}
+
+#[test]
+fn a_reference_that_starts_away_says_how_far() {
+    let error = refused(|s| {
+        tracking(s);
+        s.reference_start_tolerance = [0.05, 0.1];
+    });
+    let SimulationError::ReferenceStartsAway { position, angle, .. } = error else { panic!("{error}") };
+    assert!(position > 0.05 || angle > 0.1);
 }
