@@ -1,4 +1,5 @@
 //! References: in every frame position, velocity and acceleration agree, ends and limits are met.
+#![allow(clippy::unwrap_used, clippy::panic)] // set-up that fails should stop
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::orbit::{Elements, Kepler, MU_EARTH, Orbit, OrbitError, OrbitState, Phase, Size};

@@ -1,4 +1,5 @@
 //! Splines: through their points, twice continuously differentiable, exact where they must be.
+#![allow(clippy::unwrap_used, clippy::panic)] // set-up that fails should stop
 
 use onorbit_core::spatial::{Ends, Quat, RotationSpline, Spline, SplineError, Vec3, exp_so3, log_so3};
 
