@@ -28,20 +28,31 @@ __all__ = [
     "MU_EARTH",
     "BodyWrench",
     "Checkpoint",
+    "Circle",
     "ComputedTorque",
     "Effect",
     "FreeFloating",
     "GravityGradient",
     "Hold",
+    "JointHold",
+    "JointReference",
+    "JointSampled",
+    "JointWaypoints",
     "Kepler",
+    "Line",
     "LineParabola",
     "Model",
     "ModelBuilder",
     "Orbit",
+    "Reference",
+    "Sampled",
+    "Screw",
     "Simulation",
     "State",
+    "Target",
     "Trace",
     "Visual",
+    "Waypoints",
     "__version__",
     "build_info",
     "rollout",
@@ -288,12 +299,27 @@ class State:
     @property
     def reference_acceleration(self) -> _Column: ...
 
-@final
-class Hold:
-    def __new__(cls, pose: ArrayLike) -> Hold: ...
+@disjoint_base
+class Reference:
+    @property
+    def duration(self) -> float: ...
+    def sample(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...
+    def in_world(self, t: ArrayLike, *, orbit: Orbit | None = None) -> tuple[_Array, _Array, _Array]: ...
 
 @final
-class LineParabola:
+class Target:
+    def __new__(
+        cls, pose: ArrayLike, *, velocity: ArrayLike | None = None, spin: ArrayLike | None = None
+    ) -> Target: ...
+
+_Frame = Literal["world", "lvlh", "base"] | Target
+
+@final
+class Hold(Reference):
+    def __new__(cls, pose: ArrayLike, *, frame: _Frame | None = None) -> Hold: ...
+
+@final
+class LineParabola(Reference):
     def __new__(
         cls,
         start_pose: ArrayLike,
@@ -301,7 +327,125 @@ class LineParabola:
         displacement: ArrayLike,
         duration: float,
         height: ArrayLike | None = None,
+        frame: _Frame | None = None,
     ) -> LineParabola: ...
+
+@final
+class Line(Reference):
+    def __new__(
+        cls,
+        start_pose: ArrayLike,
+        end_pose: ArrayLike,
+        *,
+        duration: float | None = None,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
+        frame: _Frame | None = None,
+    ) -> Line: ...
+
+@final
+class Circle(Reference):
+    def __new__(
+        cls,
+        start_pose: ArrayLike,
+        *,
+        center: ArrayLike,
+        axis: ArrayLike,
+        angle: float,
+        turns: bool = True,
+        ramp: float | None = None,
+        duration: float | None = None,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
+        frame: _Frame | None = None,
+    ) -> Circle: ...
+
+@final
+class Screw(Reference):
+    def __new__(
+        cls,
+        start_pose: ArrayLike,
+        *,
+        center: ArrayLike,
+        axis: ArrayLike,
+        angle: float,
+        advance: float,
+        turns: bool = True,
+        ramp: float | None = None,
+        duration: float | None = None,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
+        frame: _Frame | None = None,
+    ) -> Screw: ...
+
+@final
+class Waypoints(Reference):
+    def __new__(
+        cls,
+        poses: ArrayLike,
+        *,
+        times: ArrayLike | None = None,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
+        stops: bool = True,
+        frame: _Frame | None = None,
+    ) -> Waypoints: ...
+
+@final
+class Sampled(Reference):
+    def __new__(
+        cls,
+        times: ArrayLike,
+        poses: ArrayLike,
+        *,
+        velocities: ArrayLike | None = None,
+        frame: _Frame | None = None,
+    ) -> Sampled: ...
+
+@disjoint_base
+class JointReference:
+    @property
+    def duration(self) -> float: ...
+    def sample(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...
+
+@final
+class JointHold(JointReference):
+    def __new__(cls, q: ArrayLike) -> JointHold: ...
+
+@final
+class JointWaypoints(JointReference):
+    def __new__(
+        cls,
+        points: ArrayLike,
+        *,
+        times: ArrayLike | None = None,
+        speed: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        stops: bool = True,
+    ) -> JointWaypoints: ...
+    @staticmethod
+    def one_by_one(
+        start: ArrayLike,
+        moves: Sequence[tuple[int, float]],
+        *,
+        times: ArrayLike | None = None,
+        speed: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+    ) -> JointWaypoints: ...
+
+@final
+class JointSampled(JointReference):
+    def __new__(
+        cls, times: ArrayLike, positions: ArrayLike, *, rates: ArrayLike | None = None
+    ) -> JointSampled: ...
 
 @final
 class Simulation:
@@ -314,12 +458,13 @@ class Simulation:
         orbit: Orbit | None = None,
         environment: Sequence[Effect] | None = None,
         controller: ComputedTorque | _Controller | None = None,
-        reference: Hold | LineParabola | None = None,
+        reference: Reference | None = None,
         tool: str | None = None,
         time_step: float = 0.001,
         control_period: float | None = None,
         integrator: _Integrator = "rk4",
         record_every: int = 1,
+        reference_start_tolerance: ArrayLike | None = None,
     ) -> Simulation: ...
     def run(
         self,
@@ -392,7 +537,7 @@ def rollout(
     time_step: float = 0.001,
     tau: ArrayLike | None = None,
     controller: ComputedTorque | None = None,
-    reference: Hold | LineParabola | None = None,
+    reference: Reference | None = None,
     integrator: _Integrator = "rk4",
     record_every: int | None = None,
     threads: int | None = None,

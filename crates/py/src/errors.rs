@@ -9,6 +9,7 @@ use onorbit_core::model::urdf::{UrdfError, UrdfProblem};
 use onorbit_core::orbit::OrbitError;
 use onorbit_core::reference::ReferenceError;
 use onorbit_core::simulation::SimulationError;
+use onorbit_core::spatial::SplineError;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -101,6 +102,7 @@ impl IntoPython for InputError {
             }
             Self::Singular { .. } => plain(py, "ConvergenceError", &message),
             Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
+            Self::NeedsOrbit => plain(py, "ControlError", &message),
             Self::Diverged { .. } => plain(py, "SimulationError", &message),
             Self::QuaternionNorm { norm, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
@@ -159,6 +161,30 @@ impl IntoPython for ReferenceError {
             Self::DurationNotPositive { value } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": "duration", "got": value))
             }
+            Self::Ramp { value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "ramp", "got": value))
+            }
+            Self::LimitNotPositive { value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "limit", "got": value))
+            }
+            Self::LastRow { row } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "pose", "got": row.to_vec()))
+            }
+            Self::WrongLength { name, expected, got } => raise(
+                py,
+                "ShapeError",
+                &message,
+                &fields!(py, "name": name, "expected": expected, "got": got),
+            ),
+            Self::NoJoint { joint, .. } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "joint", "got": joint))
+            }
+            Self::Spline(SplineError::WrongLength { name, expected, got }) => raise(
+                py,
+                "ShapeError",
+                &message,
+                &fields!(py, "name": name, "expected": expected, "got": got),
+            ),
             _ => plain(py, "ControlError", &message),
         }
     }
@@ -211,6 +237,12 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::NeedsReference
             | SimulationError::NeedsTool
             | SimulationError::OtherTool { .. } => plain(py, "ControlError", &message),
+            SimulationError::ReferenceStartsAway { position, angle, tolerance } => raise(
+                py,
+                "ControlError",
+                &message,
+                &fields!(py, "name": "reference", "got": (position, angle), "expected": tolerance.to_vec()),
+            ),
             SimulationError::UnknownFrame { .. } | SimulationError::TooManyRows { .. } => {
                 plain(py, "InputError", &message)
             }
@@ -228,6 +260,9 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
                 with_trace(py, source.into_python(py), time, trace)
             }
             SimulationError::Checkpoint(_) => plain(py, "CheckpointError", &message),
+            SimulationError::Reference { time, source } => {
+                with_trace(py, source.into_python(py), time, trace)
+            }
             SimulationError::Control(source) => source.into_python(py),
         }
     }

@@ -56,8 +56,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<environment::PyBodyWrench>()?;
     m.add_class::<control::PyComputedTorque>()?;
     m.add_class::<control::PyState>()?;
-    m.add_class::<reference::PyHold>()?;
-    m.add_class::<reference::PyLineParabola>()?;
+    reference::add_classes(m)?;
     m.add_class::<simulation::PySimulation>()?;
     m.add_class::<trace::PyTrace>()?;
     m.add_class::<checkpoint::PyCheckpoint>()?;

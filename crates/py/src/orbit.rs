@@ -55,7 +55,7 @@ impl PyOrbit {
 }
 
 /// One instant (shape ``()``) or many (shape ``(T,)``).
-fn times(t: Any<'_, '_>) -> PyResult<(Vec<f64>, Vec<usize>)> {
+pub(crate) fn times(t: Any<'_, '_>) -> PyResult<(Vec<f64>, Vec<usize>)> {
     if let Ok(one) = t.extract::<f64>() {
         return Ok((vec![one], Vec::new()));
     }

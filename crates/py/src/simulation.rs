@@ -1,6 +1,6 @@
 //! Runs.
 
-use crate::arrays::{Input, wrong_shape};
+use crate::arrays::{Input, fixed, wrong_shape};
 use crate::checkpoint::{Keeper, PyCheckpoint};
 use crate::control::{PyComputedTorque, PythonController};
 use crate::environment::PyEffect;
@@ -26,7 +26,7 @@ pub(crate) const PACE: Duration = Duration::from_millis(50);
 ///
 /// ``q`` (nq,), ``v`` (nv,); ``orbit`` brings gravity on every body; ``environment`` lists effects; ``controller`` is
 /// a ``ComputedTorque`` or an object with ``update(t, state) -> tau (n,)``; ``reference`` is for the frame ``tool`` (by
-/// default the controller's); ``control_period`` s between calls of the controller (every step by default);
+/// default the controller's) and may start ``reference_start_tolerance`` (m, rad) from it, (0.05, 0.1) by default; ``control_period`` s between calls of the controller (every step by default);
 /// ``integrator`` is ``rk4`` or ``semi_implicit_euler``.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
@@ -39,7 +39,7 @@ impl PySimulation {
     #[new]
     #[pyo3(signature = (
         model, q, v, *, orbit=None, environment=None, controller=None, reference=None, tool=None, time_step=1e-3,
-        control_period=None, integrator="rk4", record_every=1,
+        control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -55,6 +55,7 @@ impl PySimulation {
         control_period: Option<f64>,
         integrator: &str,
         record_every: i64,
+        reference_start_tolerance: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
         let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
         let core = Arc::clone(&model.model);
@@ -75,7 +76,11 @@ impl PySimulation {
             .iter()
             .map(|effect| effect.get().on(py, &core))
             .collect::<PyResult<_>>()?;
-        simulation.reference = reference.map(reference::extract).transpose()?;
+        simulation.reference =
+            reference.map(|value| reference::extract(value, simulation.orbit.as_ref())).transpose()?;
+        if let Some(tolerance) = reference_start_tolerance {
+            simulation.reference_start_tolerance = fixed(tolerance, "reference_start_tolerance", &[2])?;
+        }
         simulation.tool = tool.map(|tool| model.frame(tool)).transpose()?;
         if let Some(controller) = controller {
             if let Ok(law) = controller.cast::<PyComputedTorque>() {

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core, robots
-from onorbit_rs.exceptions import EffectError, FrameError, OnOrbitError, OrbitError
+from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.environment import BodyWrenchEffect
 from onorbit_rs.scenario.orbit import KeplerOrbit
 from onorbit_rs.scenario.place import dotted, file_and_line
-from onorbit_rs.scenario.reference import reference_of
+from onorbit_rs.scenario.reference import Start, reference_of
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.start import initial_state
 
@@ -64,7 +64,11 @@ def build(scenario: Scenario) -> Built:
             gains = scenario.controller.model_dump(exclude_none=True, exclude={"kind"})
             controller = _core.ComputedTorque(model, scenario.tool, **_as_arrays(gains))
         with located(scenario, "reference"):
-            reference = reference_of(scenario.reference, tool_pose)
+            folder = scenario.file.parent if scenario.file else Path()
+            tracked = reference_of(scenario.reference, Start(model, q, tool_pose, orbit, folder))
+            if not isinstance(tracked, _core.Reference):
+                raise ControlError(f"{scenario.controller.kind} tracks a frame, this reference is for joints")
+            reference = tracked
     with located(scenario, "simulation"):
         settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
         simulation = _core.Simulation(

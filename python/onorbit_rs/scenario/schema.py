@@ -9,11 +9,12 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.complaints import first_complaint
-from onorbit_rs.scenario.control import Controller, HoldReference, Reference
+from onorbit_rs.scenario.control import Controller
 from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.orbit import Orbit
 from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.reference_parts import HoldReference, Reference
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import SimulationSettings
 from onorbit_rs.scenario.yaml_lines import Lines, Location
@@ -94,6 +95,8 @@ class Scenario(Part):
                     raise _wrong(("environment", index), "the gravity gradient needs an 'orbit'")
             if self.initial.frame == "lvlh":
                 raise _wrong(("initial", "frame"), "the frame lvlh needs an 'orbit'")
+            if getattr(self.reference, "frame", None) == "lvlh":
+                raise _wrong(("reference", "frame"), "the frame lvlh needs an 'orbit'")
         return self
 
 

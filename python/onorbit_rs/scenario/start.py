@@ -48,7 +48,7 @@ def initial_state(initial: InitialState, model: Model, orbit: Kepler | None) -> 
         Metres on a joint that turns, radians on one that slides.
     """
     q, v = np.array(model.neutral(), dtype=np.float64), np.zeros(model.nv)
-    rot_fb = matrix_from_quaternion(_quaternion(initial.attitude))
+    rot_fb = matrix_from_quaternion(quaternion_of(initial.attitude))
     position, linear, angular = (
         np.array(values) for values in (initial.position, initial.linear_velocity, initial.angular_velocity)
     )
@@ -59,12 +59,13 @@ def initial_state(initial: InitialState, model: Model, orbit: Kepler | None) -> 
         position, rot_fb = rot_il @ position, rot_il @ rot_fb
     q[:3], q[3:7] = position, quaternion_from_matrix(rot_fb)
     v[:3], v[3:6] = linear, angular
-    q[7:] = _joint_values("joints", initial.joints, q[7:], model)
-    v[6:] = _joint_values("joint_rates", initial.joint_rates, v[6:], model)
+    q[7:] = joint_values("joints", initial.joints, q[7:], model)
+    v[6:] = joint_values("joint_rates", initial.joint_rates, v[6:], model)
     return q, v
 
 
-def _quaternion(attitude: Attitude | None) -> Floats:
+def quaternion_of(attitude: Attitude | None) -> Floats:
+    """xyzw, of unit length; no turn where not given."""
     if attitude is None:
         return np.array([0.0, 0.0, 0.0, 1.0])
     if attitude.quaternion_xyzw is not None:
@@ -74,7 +75,7 @@ def _quaternion(attitude: Attitude | None) -> Floats:
     return quaternion_from_roll_pitch_yaw(np.array(attitude.roll_pitch_yaw))
 
 
-def _joint_values(
+def joint_values(
     name: str, given: list[JointValue] | dict[str, JointValue], default: Floats, model: Model
 ) -> Floats:
     """Values in the order of the model's joints."""

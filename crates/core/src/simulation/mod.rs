@@ -11,6 +11,7 @@ mod recorder;
 mod run;
 mod schedule;
 mod settings;
+mod start;
 mod state;
 mod surroundings;
 mod trace;
