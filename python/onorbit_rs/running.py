@@ -81,7 +81,7 @@ def run(
     except (SimulationError, RunInterrupted) as stop:
         _keep(stop, built, folder)
         raise
-    summary = summarize(trace, checked, warnings=built.model.warnings)
+    summary = summarize(trace, checked, built.orbit, warnings=built.model.warnings)
     if folder is not None:
         write_trace(folder, trace)
         write_summary(folder, summary)
@@ -108,7 +108,9 @@ def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFo
         return
     with np.errstate(all="ignore"):  # numbers near the end of the range of floats
         status = "diverged" if diverged else "interrupted"
-        summary = summarize(stop.trace, built.scenario, status=status, warnings=built.model.warnings)
+        summary = summarize(
+            stop.trace, built.scenario, built.orbit, status=status, warnings=built.model.warnings
+        )
     write_trace(folder, stop.trace)
     write_summary(folder, summary)
     stop.message += f"; the trace so far is in {folder.path}"

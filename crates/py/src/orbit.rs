@@ -98,7 +98,7 @@ impl PyOrbit {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
-        Ok((py.import("onorbit_rs.names")?.getattr("rebuild")?, self.made.clone_ref(py)))
+        Ok((py.import("onorbit_rs.rebuild")?.getattr("rebuild")?, self.made.clone_ref(py)))
     }
 }
 
