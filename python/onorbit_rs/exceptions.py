@@ -150,8 +150,8 @@ class ElementSetError(OrbitError):
 class Sgp4Error(OrbitError):
     """SGP4 has no state at ``time``, s from the epoch: ``code`` is the reference code's error number.
 
-    1 mean eccentricity, 2 mean motion, 3 perturbed eccentricity, 4 semi-latus rectum, 6 decayed; 5 is no longer
-    raised. ``got`` is the offending value.
+    1 mean eccentricity, 2 mean motion, 3 perturbed eccentricity, 4 semi-latus rectum, 6 decayed; 5 is no
+    longer raised. ``got`` is the offending value.
     """
 
     code: Any = None

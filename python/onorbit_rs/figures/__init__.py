@@ -17,6 +17,7 @@ from onorbit_rs.figures.motion import base_motion, conservation
 from onorbit_rs.figures.orbit import orbit_overview
 from onorbit_rs.figures.tracking import joint_torques, tracking_errors
 from onorbit_rs.figures.trajectory import desired_trajectory, obtained_trajectory
+from onorbit_rs.rotations import has_local_frame
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model, Trace
@@ -71,7 +72,7 @@ def _fitting(trace: Trace, model: Model, has_planet: bool) -> Iterator[tuple[str
         yield "fig7_joint_torques", lambda: joint_torques(trace, model)
     yield "base_motion", lambda: base_motion(trace)
     yield "conservation", lambda: conservation(trace)
-    if has_planet and "position_eci" in columns and _angle_flown_deg(trace) > WORTH_AN_ORBIT_DEG:
+    if has_planet and has_local_frame(trace) and _angle_flown_deg(trace) > WORTH_AN_ORBIT_DEG:
         yield "orbit", lambda: orbit_overview(trace)
 
 

@@ -51,9 +51,9 @@ def write_pictures(folder: OutputFolder, trace: Trace, summary: dict[str, Any], 
     # Imported here: matplotlib and rerun take a second that a run without output should not pay.
     from onorbit_rs import figures, viewer
 
+    has_planet = built.orbit is not None and built.orbit.mu is not None
     if len(trace.time) > 1:
         with folder.refusals(FIGURES):
-            has_planet = built.orbit is not None and built.orbit.mu is not None
             figures.save_all(trace, built.model, folder.path / FIGURES, has_planet=has_planet)
     with folder.writing("run.rrd") as path:
         viewer.write_recording(
@@ -63,6 +63,7 @@ def write_pictures(folder: OutputFolder, trace: Trace, summary: dict[str, Any], 
             title=built.scenario.name,
             notes=notes(summary, built.scenario),
             orbit_path=path_around_planet(built.orbit),
+            has_planet=has_planet,
         )
 
 

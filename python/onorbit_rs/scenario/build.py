@@ -69,7 +69,8 @@ def build(scenario: Scenario) -> Built:
     with located(scenario, "simulation"):
         settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
         simulation = _core.Simulation(
-            model, q, v, orbit=orbit, gravity_mode=scenario.gravity_mode, environment=effects, controller=controller, reference=reference,
+            model, q, v, orbit=orbit, gravity_mode=scenario.gravity_mode, environment=effects,
+            controller=controller, reference=reference,
             tool=scenario.tool, **settings,
         )  # fmt: skip
     _try_one_step(scenario, simulation)

@@ -1,4 +1,4 @@
-"""References of other kinds than Kepler's. A new kind is one class with its own ``kind``, added to the union."""
+"""Orbits of other kinds than Kepler's. A new kind is one class with its ``kind``, added to the union."""
 
 from __future__ import annotations
 
@@ -106,8 +106,6 @@ def _with_kind(value: Any) -> Any:
 
 
 Orbit = Annotated[
-    Annotated[
-        KeplerOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit, Field(discriminator="kind")
-    ],
+    Annotated[KeplerOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit, Field(discriminator="kind")],
     BeforeValidator(_with_kind),
 ]

@@ -85,17 +85,7 @@ impl Sgp4 {
     /// [`Sgp4Error::MeanMotion`] when the elements' mean motion comes out negative.
     pub fn new(elements: MeanElements, model: EarthModel) -> Result<Self, OrbitError> {
         let geopotential = model.geopotential();
-        let no_motion = |_| Sgp4Error::MeanMotion { time: 0.0, mean_motion: elements.mean_motion_rev_day };
-        let mean = sgp4::Orbit::from_kozai_elements(
-            &geopotential,
-            elements.inclination_deg.to_radians(),
-            elements.raan_deg.to_radians(),
-            elements.eccentricity,
-            elements.argument_of_perigee_deg.to_radians(),
-            elements.mean_anomaly_deg.to_radians(),
-            elements.mean_motion_rev_day * (PI / 720.0),
-        )
-        .map_err(no_motion)?;
+        let mean = brouwer(&elements, &geopotential)?;
         let constants = Constants::new(
             geopotential,
             sgp4::iau_epoch_to_sidereal_time,
@@ -142,15 +132,43 @@ impl Sgp4 {
         }
     }
 
-    /// Second derivative of the position, m/s².
-    fn acceleration(&self, t: f64, r: &Vector3<f64>) -> Result<Vector3<f64>, Sgp4Error> {
+    /// Second derivative of the position over steps of `h`, m/s².
+    fn acceleration(&self, t: f64, r: &Vector3<f64>, h: f64) -> Result<Vector3<f64>, Sgp4Error> {
         // r̈ ≈ Σ wₖ (r(t + k h) + r(t - k h))/(180 h²)
         let mut sum = r * WEIGHTS[0];
         for (k, weight) in WEIGHTS.iter().enumerate().skip(1) {
-            let h = k as f64 * STEP;
-            sum += (self.propagate(t + h)?.0 + self.propagate(t - h)?.0) * *weight;
+            let away = k as f64 * h;
+            sum += (self.propagate(t + away)?.0 + self.propagate(t - away)?.0) * *weight;
         }
-        Ok(sum / (180.0 * STEP * STEP))
+        Ok(sum / (180.0 * h * h))
+    }
+}
+
+/// Brouwer's mean motion in place of Kozai's; operation by operation as the reference code, since its last digit
+/// tells after two thousand revolutions.
+///
+/// `n = n₀/(1 + δ₀)`, `δ₀ = d/a₀²`, `a₀ = a₁ (1 - δ₁² - δ₁ (1/3 + 134 δ₁²/81))`, `δ₁ = d/a₁²`,
+/// `a₁ = (kₑ/n₀)^{2/3}`, `d = ¾ J₂ (3 cos²i - 1)/(1 - e²)^{3/2}`.
+fn brouwer(elements: &MeanElements, model: &Geopotential) -> Result<sgp4::Orbit, Sgp4Error> {
+    let (inclination, eccentricity) = (elements.inclination_deg.to_radians(), elements.eccentricity);
+    let n = elements.mean_motion_rev_day / (1440.0 / (2.0 * PI)); // rad/min
+    let (cos, p) = (inclination.cos(), 1.0 - eccentricity * eccentricity);
+    let a1 = (model.ke / n).powf(2.0 / 3.0);
+    let d = 0.75 * model.j2 * (3.0 * (cos * cos) - 1.0) / (p.sqrt() * p);
+    let d1 = d / (a1 * a1);
+    let a0 = a1 * (1.0 - d1 * d1 - d1 * (1.0 / 3.0 + 134.0 * d1 * d1 / 81.0));
+    let mean_motion = n / (1.0 + d / (a0 * a0));
+    if mean_motion > 0.0 {
+        Ok(sgp4::Orbit {
+            inclination,
+            right_ascension: elements.raan_deg.to_radians(),
+            eccentricity,
+            argument_of_perigee: elements.argument_of_perigee_deg.to_radians(),
+            mean_anomaly: elements.mean_anomaly_deg.to_radians(),
+            mean_motion,
+        })
+    } else {
+        Err(Sgp4Error::MeanMotion { time: 0.0, mean_motion: mean_motion * (720.0 / PI) })
     }
 }
 
@@ -178,6 +196,10 @@ impl Orbit for Sgp4 {
         if distance < radius {
             return Err(Sgp4Error::Decayed { time: t, distance, radius }.into());
         }
-        Ok(OrbitState { position, velocity, acceleration: self.acceleration(t, &position)? })
+        // where the elements fail within 90 s, a shorter reach will do
+        let acceleration = self
+            .acceleration(t, &position, STEP)
+            .or_else(|_| self.acceleration(t, &position, STEP / 16.0))?;
+        Ok(OrbitState { position, velocity, acceleration })
     }
 }
