@@ -53,10 +53,11 @@ fn the_acceleration_is_that_of_the_position() {
         println!("acceleration at {t} s: {apart:.1e} m/s²");
         assert!(apart < 2e-7);
         // and not that of the published velocity
-        let slope = (at(t + h).position - at(t - h).position) * 8.0 - (at(t + 2.0 * h).position - at(t - 2.0 * h).position);
+        let slope = (at(t + h).position - at(t - h).position) * 8.0
+            - (at(t + 2.0 * h).position - at(t - 2.0 * h).position);
         let off = (slope / (12.0 * h) - state.velocity).norm();
         println!("velocity at {t} s: {off:.1e} m/s from the derivative of the position");
-        assert!(off > 1e-4 && off < 0.1);
+        assert!(off > 1e-3 && off < 3.0); // short-period terms of J2 times the eccentricity: J2 e v
     }
 }
 
@@ -68,9 +69,22 @@ fn corrupted_lines_are_refused_with_their_column() {
         MeanElements::from_tle(&lines[0], &lines[1], false).expect_err(text)
     };
     for (line, column, text) in [
-        (1, 1, "2"), (2, 1, "1"), (1, 2, "x"), (1, 3, "I0005"), (1, 19, "x0"), (1, 21, "000.5"), (1, 34, " .0x000023"),
-        (1, 54, "*28098-4"), (1, 54, " 2809.-4"), (2, 8, "1"), (2, 9, " 34.26x2"), (2, 18, "348,7242"), (2, 27, "18596.7"),
-        (2, 35, "331 7664"), (2, 44, " 1-.3264"), (2, 53, "1e.82419157"),
+        (1, 1, "2"),
+        (2, 1, "1"),
+        (1, 2, "x"),
+        (1, 3, "I0005"),
+        (1, 19, "x0"),
+        (1, 21, "000.5"),
+        (1, 34, " .0x000023"),
+        (1, 54, "*28098-4"),
+        (1, 54, " 2809.-4"),
+        (2, 8, "1"),
+        (2, 9, " 34.26x2"),
+        (2, 18, "348,7242"),
+        (2, 27, "18596.7"),
+        (2, 35, "331 7664"),
+        (2, 44, " 1-.3264"),
+        (2, 53, "1e.82419157"),
     ] {
         match replaced(line, column, text) {
             ElementSetError::Column { line: l, column: c, .. } => {

@@ -39,7 +39,7 @@ impl EarthModel {
     /// Gravitational parameter, m³/s².
     pub fn mu(self) -> f64 {
         match self {
-            Self::Wgs72Old => 3.986_007_9964e14,
+            Self::Wgs72Old => 3.986_007_996_4e14,
             Self::Wgs72 => 3.986_008e14,
             Self::Wgs84 => 3.986_005e14,
         }
@@ -68,7 +68,7 @@ const WEIGHTS: [f64; 4] = [-490.0, 270.0, -27.0, 2.0];
 /// The orbit of an element set; simulation time zero is its epoch, axes are TEME.
 ///
 /// Position and velocity are SGP4's own, as published. Its velocity is not exactly the derivative of its
-/// position (1.4 cm/s in low orbits). The acceleration is the second derivative of the *position*, by
+/// position (2 cm/s on circular low orbits, 1 m/s at eccentricity 0.19). The acceleration is the second derivative of the *position*, by
 /// sixth-order central differences over ±90 s: good to 1e-7 m/s².
 #[derive(Clone, Debug)]
 pub struct Sgp4 {
