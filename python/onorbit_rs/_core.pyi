@@ -14,6 +14,8 @@ _Column = _Array | Any  # None where the run has nothing to fill it with
 _Path = str | PathLike[str]
 _External = Mapping[str, ArrayLike]
 _JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
+_EarthModel = Literal["wgs72", "wgs72old", "wgs84"]
+_GravityMode = Literal["true", "carried"]
 _Integrator = Literal["rk4", "semi_implicit_euler"]
 _CertificateRow = tuple[str, float | None, float, bool]
 
@@ -30,7 +32,9 @@ __all__ = [
     "Checkpoint",
     "Circle",
     "ComputedTorque",
+    "CustomPath",
     "Effect",
+    "FixedFrame",
     "FreeFloating",
     "GravityGradient",
     "Hold",
@@ -47,6 +51,7 @@ __all__ = [
     "Reference",
     "Sampled",
     "Screw",
+    "Sgp4",
     "Simulation",
     "State",
     "Target",
@@ -213,8 +218,14 @@ class ModelBuilder:
 class Orbit:
     @property
     def mu(self) -> float | None: ...
+    @property
+    def axes(self) -> str: ...
+    @property
+    def velocity_source(self) -> str: ...
     def state(self, t: ArrayLike) -> tuple[_Array, _Array]: ...
     def lvlh(self, t: ArrayLike) -> tuple[_Array, _Array]: ...
+    def frame(self, t: ArrayLike) -> tuple[_Array, _Array]: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @final
 class Kepler(Orbit):
@@ -251,6 +262,50 @@ class Kepler(Orbit):
     def mean_anomaly(self) -> float | None: ...
     @property
     def period(self) -> float | None: ...
+
+@final
+class Sgp4(Orbit):
+    def __new__(
+        cls, line1: str, line2: str, *, gravity: _EarthModel = "wgs72", check_checksum: bool = True
+    ) -> Sgp4: ...
+    @staticmethod
+    def from_omm(message: Mapping[str, Any] | str, *, gravity: _EarthModel = "wgs72") -> Sgp4: ...
+    @property
+    def satellite(self) -> int: ...
+    @property
+    def epoch(self) -> str: ...
+    @property
+    def julian_date(self) -> tuple[float, float]: ...
+    @property
+    def period(self) -> float: ...
+
+@final
+class CustomPath(Orbit):
+    def __new__(
+        cls,
+        times: ArrayLike,
+        positions: ArrayLike,
+        *,
+        velocities: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+        attitudes: ArrayLike | None = None,
+        mu: float | None = None,
+        ends: Literal["error", "coast"] = "error",
+    ) -> CustomPath: ...
+    @property
+    def span(self) -> tuple[float, float]: ...
+    @property
+    def has_attitudes(self) -> bool: ...
+
+@final
+class FixedFrame(Orbit):
+    def __new__(
+        cls,
+        *,
+        position: ArrayLike | None = None,
+        attitude: ArrayLike | None = None,
+        mu: float | None = None,
+    ) -> FixedFrame: ...
 
 @disjoint_base
 class Effect: ...
@@ -456,6 +511,7 @@ class Simulation:
         v: ArrayLike,
         *,
         orbit: Orbit | None = None,
+        gravity_mode: _GravityMode = "true",
         environment: Sequence[Effect] | None = None,
         controller: ComputedTorque | _Controller | None = None,
         reference: Reference | None = None,
@@ -524,6 +580,8 @@ class Trace:
     def position_eci(self) -> _Column: ...
     @property
     def velocity_eci(self) -> _Column: ...
+    @property
+    def reference_residual(self) -> _Column: ...
     def columns(self) -> list[str]: ...
     def certificate(self) -> list[_CertificateRow]: ...
     def __len__(self) -> int: ...

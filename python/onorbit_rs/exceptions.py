@@ -12,6 +12,9 @@ class                       built-in               fields
 ``ModelError``              ``ValueError``         ``link, joint, path``: masses, inertias, loops, bad URDF
 ``FrameError``              ``KeyError``           ``name, kind, known, suggestion``: no such frame or joint
 ``OrbitError``              ``ValueError``         ``name, got, expected``: no orbit, or gravity refused
+``ElementSetError``         ``OrbitError``         ``line, column, name``: a TLE or OMM that cannot be read
+``Sgp4Error``               ``OrbitError``         ``code, time, got``: what SGP4 refuses, decay included
+``PathError``               ``OrbitError``         ``time, start, end``: no path, or none at that time
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
@@ -40,6 +43,7 @@ __all__ = [
     "ConvergenceError",
     "DtypeError",
     "EffectError",
+    "ElementSetError",
     "FrameError",
     "InputError",
     "ModelError",
@@ -49,10 +53,12 @@ __all__ = [
     "OutputFolderError",
     "OutputNotEmptyError",
     "OutputNotWritableError",
+    "PathError",
     "QuantityError",
     "ReadError",
     "RunInterrupted",
     "ScenarioError",
+    "Sgp4Error",
     "ShapeError",
     "SimulationError",
 ]
@@ -134,6 +140,32 @@ class OrbitError(OnOrbitError, ValueError):
     name: Any = None
     got: Any = None
     expected: Any = None
+
+
+class ElementSetError(OrbitError):
+    """A TLE or OMM that cannot be read: ``line`` and ``column`` (from 1) of a TLE, ``name`` of an entry."""
+
+    line: Any = None
+    column: Any = None
+
+
+class Sgp4Error(OrbitError):
+    """SGP4 has no state at ``time``, s from the epoch: ``code`` is the reference code's error number.
+
+    1 mean eccentricity, 2 mean motion, 3 perturbed eccentricity, 4 semi-latus rectum, 6 decayed; 5 is no
+    longer raised. ``got`` is the offending value.
+    """
+
+    code: Any = None
+    time: Any = None
+
+
+class PathError(OrbitError):
+    """Points that make no path; or a ``time`` before its ``start`` or after its ``end``, s."""
+
+    time: Any = None
+    start: Any = None
+    end: Any = None
 
 
 class EffectError(OnOrbitError, ValueError):

@@ -138,7 +138,7 @@ def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints
     except (SimulationError, RunInterrupted) as stop:
         _keep(stop, built, folder)
         raise
-    summary = summarize(trace, scenario, warnings=built.model.warnings)
+    summary = summarize(trace, scenario, built.orbit, warnings=built.model.warnings)
     if folder is not None:
         write_trace(folder, trace)
         write_summary(folder, summary)
@@ -160,7 +160,9 @@ def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFo
         return
     with np.errstate(all="ignore"):  # numbers near the end of the range of floats
         status = "diverged" if diverged else "interrupted"
-        summary = summarize(stop.trace, built.scenario, status=status, warnings=built.model.warnings)
+        summary = summarize(
+            stop.trace, built.scenario, built.orbit, status=status, warnings=built.model.warnings
+        )
     write_trace(folder, stop.trace)
     write_summary(folder, summary)
     stop.message += f"; the trace so far is in {folder.path}"

@@ -6,7 +6,8 @@ use onorbit_core::control::ControlError;
 use onorbit_core::environment::EnvironmentError;
 use onorbit_core::model::ModelError;
 use onorbit_core::model::urdf::{UrdfError, UrdfProblem};
-use onorbit_core::orbit::OrbitError;
+use onorbit_core::orbit::sgp4::{ElementSetError, Sgp4Error};
+use onorbit_core::orbit::{OrbitError, PathError};
 use onorbit_core::reference::ReferenceError;
 use onorbit_core::simulation::SimulationError;
 use onorbit_core::spatial::SplineError;
@@ -134,9 +135,61 @@ impl IntoPython for OrbitError {
             Self::BeyondAsymptote { value, .. } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": "true_anomaly", "got": value))
             }
+            Self::Path(error) => path_error(py, error, &message),
+            Self::ElementSet(error) => element_set_error(py, error, &message),
+            Self::Sgp4(error) => sgp4_error(py, error, &message),
             _ => plain(py, "OrbitError", &message),
         }
     }
+}
+
+fn path_error(py: Python<'_>, error: &PathError, message: &str) -> PyErr {
+    let fields = match error {
+        PathError::TimeOutOfPath { time, start, end } => {
+            fields!(py, "name": "t", "got": time, "time": time, "start": start, "end": end)
+        }
+        PathError::NotIncreasing { time, .. } => fields!(py, "name": "times", "got": time),
+        PathError::NotFinite { name, value, .. } => fields!(py, "name": name, "got": value),
+        PathError::WrongLength { name, expected, got } => {
+            fields!(py, "name": name, "expected": expected, "got": got)
+        }
+        PathError::TooFewPoints { got } => fields!(py, "name": "times", "got": got, "expected": "at least 2"),
+        PathError::QuaternionNorm { norm, .. } => {
+            fields!(py, "name": "attitudes", "got": norm, "expected": 1.0)
+        }
+        PathError::TurnTooFar { angle, .. } => fields!(py, "name": "attitudes", "got": angle),
+        _ => fields!(py,),
+    };
+    raise(py, "PathError", message, &fields)
+}
+
+fn element_set_error(py: Python<'_>, error: &ElementSetError, message: &str) -> PyErr {
+    let fields = match error {
+        ElementSetError::Length { line, got } => fields!(py, "line": line, "got": got, "expected": 69),
+        ElementSetError::Column { line, column, got, expected } => {
+            fields!(py, "line": line, "column": column, "got": got, "expected": expected)
+        }
+        ElementSetError::Checksum { line, got, expected } => {
+            fields!(py, "line": line, "column": 69, "got": got, "expected": expected)
+        }
+        ElementSetError::TwoSatellites { first, second } => {
+            fields!(py, "line": 2, "column": 3, "got": second, "expected": first)
+        }
+        ElementSetError::Missing { key } => fields!(py, "name": key),
+        ElementSetError::Entry { key, got, expected } => {
+            fields!(py, "name": key, "got": got, "expected": expected)
+        }
+        ElementSetError::Range { name, got, range } => {
+            fields!(py, "name": name, "got": got, "expected": (*range.start(), *range.end()))
+        }
+        _ => fields!(py,),
+    };
+    raise(py, "ElementSetError", message, &fields)
+}
+
+fn sgp4_error(py: Python<'_>, error: &Sgp4Error, message: &str) -> PyErr {
+    let fields = fields!(py, "code": error.code(), "time": error.time(), "got": error.value());
+    raise(py, "Sgp4Error", message, &fields)
 }
 
 impl IntoPython for EnvironmentError {

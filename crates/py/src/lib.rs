@@ -51,6 +51,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<builder::PyModelBuilder>()?;
     m.add_class::<orbit::PyOrbit>()?;
     m.add_class::<orbit::PyKepler>()?;
+    m.add_class::<orbit::PySgp4>()?;
+    m.add_class::<orbit::PyCustomPath>()?;
+    m.add_class::<orbit::PyFixedFrame>()?;
     m.add_class::<environment::PyEffect>()?;
     m.add_class::<environment::PyGravityGradient>()?;
     m.add_class::<environment::PyBodyWrench>()?;

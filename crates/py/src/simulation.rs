@@ -10,6 +10,7 @@ use crate::orbit::PyOrbit;
 use crate::reference;
 use crate::trace::PyTrace;
 use onorbit_core::control::{ControlError, ControlLaw};
+use onorbit_core::environment::ReferenceMotion;
 use onorbit_core::model::Model;
 use onorbit_core::simulation::{Integrator, Moment, RunFailure, Simulation, SimulationError};
 use pyo3::prelude::*;
@@ -24,7 +25,9 @@ pub(crate) const PACE: Duration = Duration::from_millis(50);
 
 /// A robot, where it starts, what acts on it and how time is cut; :meth:`run` starts afresh at every call.
 ///
-/// ``q`` (nq,), ``v`` (nv,); ``orbit`` brings gravity on every body; ``environment`` lists effects; ``controller`` is
+/// ``q`` (nq,), ``v`` (nv,); ``orbit`` brings gravity on every body: ``gravity_mode`` is
+/// ``true`` (the robot falls away from a reference that does not fall freely) or ``carried`` (tides only, the robot goes
+/// along; what is left out is ``trace.reference_residual``). ``environment`` lists effects; ``controller`` is
 /// a ``ComputedTorque`` or an object with ``update(t, state) -> tau (n,)``; ``reference`` is for the frame ``tool`` (by
 /// default the controller's) and may start ``reference_start_tolerance`` (m, rad) from it, (0.05, 0.1) by default; ``control_period`` s between calls of the controller (every step by default);
 /// ``integrator`` is ``rk4`` or ``semi_implicit_euler``.
@@ -38,8 +41,8 @@ pub(crate) struct PySimulation {
 impl PySimulation {
     #[new]
     #[pyo3(signature = (
-        model, q, v, *, orbit=None, environment=None, controller=None, reference=None, tool=None, time_step=1e-3,
-        control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
+        model, q, v, *, orbit=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
+        time_step=1e-3, control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -47,6 +50,7 @@ impl PySimulation {
         q: Any<'_, '_>,
         v: Any<'_, '_>,
         orbit: Option<&Bound<'_, PyOrbit>>,
+        gravity_mode: &str,
         environment: Option<Vec<Bound<'_, PyEffect>>>,
         controller: Option<Any<'_, '_>>,
         reference: Option<Any<'_, '_>>,
@@ -71,6 +75,15 @@ impl PySimulation {
         };
         let mut simulation = Simulation::new(Arc::clone(&core), q.data().to_vec(), v.data().to_vec());
         simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
+        simulation.reference_motion = match gravity_mode {
+            "true" => ReferenceMotion::True,
+            "carried" => ReferenceMotion::Carried,
+            other => {
+                let message = format!("gravity_mode is '{other}'; there are 'true' and 'carried'");
+                let fields = fields!(py, "name": "gravity_mode", "got": other);
+                return Err(raise(py, "InputError", &message, &fields));
+            }
+        };
         simulation.effects = environment
             .unwrap_or_default()
             .iter()

@@ -20,12 +20,12 @@ from onorbit_rs.scenario.units import LENGTH, SPEED
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Kepler, Model
+    from onorbit_rs._core import Model, Orbit
 
     Floats = NDArray[np.float64]
 
 
-def initial_state(initial: InitialState, model: Model, orbit: Kepler | None) -> tuple[Floats, Floats]:
+def initial_state(initial: InitialState, model: Model, orbit: Orbit | None) -> tuple[Floats, Floats]:
     """Configuration and velocity at time zero.
 
     Given relative to L, position and attitude turn with `R_il`, and the motion of L is added in body axes:
@@ -52,8 +52,9 @@ def initial_state(initial: InitialState, model: Model, orbit: Kepler | None) -> 
     position, linear, angular = (
         np.array(values) for values in (initial.position, initial.linear_velocity, initial.angular_velocity)
     )
-    if initial.frame == "lvlh" and orbit is not None:
-        rot_il, rate = (np.asarray(value, dtype=np.float64) for value in orbit.lvlh(0.0))
+    if initial.frame != "world" and orbit is not None:
+        frame = orbit.lvlh(0.0) if initial.frame == "lvlh" else orbit.frame(0.0)
+        rot_il, rate = (np.asarray(value, dtype=np.float64) for value in frame)
         linear = linear + rot_fb.T @ np.cross(rate, position)
         angular = angular + rot_fb.T @ rate
         position, rot_fb = rot_il @ position, rot_il @ rot_fb
@@ -65,7 +66,7 @@ def initial_state(initial: InitialState, model: Model, orbit: Kepler | None) -> 
 
 
 def quaternion_of(attitude: Attitude | None) -> Floats:
-    """xyzw, of unit length; no turn where not given."""
+    """Unit quaternion xyzw of an attitude; no turn where none is given."""
     if attitude is None:
         return np.array([0.0, 0.0, 0.0, 1.0])
     if attitude.quaternion_xyzw is not None:

@@ -24,7 +24,7 @@ pub enum SimulationError {
     QuaternionNorm { norm: f64 },
     #[error("record_every is 0, it must be at least 1 step")]
     RecordEvery,
-    #[error("{effect} needs an orbit: give the simulation one")]
+    #[error("{effect} needs an orbit around a planet: give the simulation one, or give the path its mu")]
     NeedsOrbit { effect: String },
     #[error("the controller tracks a frame but the simulation has no reference to track: give it one")]
     NeedsReference,

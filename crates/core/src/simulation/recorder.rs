@@ -9,7 +9,8 @@ use super::surroundings::Surroundings;
 use super::trace::Trace;
 use crate::control::task_error;
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
-use crate::orbit::OrbitState;
+use crate::environment::{DifferentialGravity, Reference, ReferenceMotion};
+use crate::orbit::{Orbit, OrbitState};
 use crate::reference::{TaskReference, TaskSample};
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
 
@@ -18,6 +19,8 @@ pub(super) struct Recorder<'a> {
     pub(super) trace: Trace,
     tool: Option<usize>,
     reference: Option<&'a TaskReference>,
+    /// Parameter of the planet along whose gravity the robot is carried.
+    carried_around: Option<f64>,
 }
 
 impl<'a> Recorder<'a> {
@@ -26,7 +29,8 @@ impl<'a> Recorder<'a> {
         sizes: (usize, usize),
         tool: Option<usize>,
         reference: Option<&'a TaskReference>,
-        has_orbit: bool,
+        orbit: Option<&dyn Orbit>,
+        motion: ReferenceMotion,
         has_every_step: bool,
     ) -> Result<Self, SimulationError> {
         let (nq, nv) = sizes;
@@ -53,11 +57,15 @@ impl<'a> Recorder<'a> {
             reserve(|t| &mut t.position_error, 3)?;
             reserve(|t| &mut t.attitude_error, 3)?;
         }
-        if has_orbit {
+        let carried_around = orbit.and_then(|o| o.mu()).filter(|_| motion == ReferenceMotion::Carried);
+        if carried_around.is_some() {
+            reserve(|t| &mut t.reference_residual, 3)?;
+        }
+        if orbit.is_some() {
             reserve(|t| &mut t.position_eci, 3)?;
             reserve(|t| &mut t.velocity_eci, 3)?;
         }
-        Ok(Self { trace, tool, reference })
+        Ok(Self { trace, tool, reference, carried_around })
     }
 
     /// Goes on after the rows of an earlier part of the run.
@@ -124,6 +132,10 @@ impl<'a> Recorder<'a> {
             let velocity = orbit.velocity + (base_rotation(q) * Vec3::from_slice(v)).to_nalgebra();
             trace.position_eci.extend_from_slice(origin.as_slice());
             trace.velocity_eci.extend_from_slice(velocity.as_slice());
+            let reference = Reference { state: orbit, mu: self.carried_around };
+            if let Some(residual) = DifferentialGravity::residual(&reference) {
+                trace.reference_residual.extend_from_slice(residual.as_slice());
+            }
         }
     }
 

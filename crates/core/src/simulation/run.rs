@@ -90,7 +90,8 @@ impl Simulation {
         let fail = |error| RunFailure { error, trace: Box::default() };
         let model = Arc::clone(&self.model);
         let effects = self.all_effects();
-        let events = effects.iter().flat_map(|effect| effect.event_times()).collect();
+        let jumps = self.orbit.iter().flat_map(|orbit| orbit.event_times());
+        let events = effects.iter().flat_map(|effect| effect.event_times()).chain(jumps).collect();
         let schedule = Schedule::new(self.time_step, duration, self.control_period, events);
         let surroundings = Surroundings::new(&model, effects, self.orbit.clone());
         let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
@@ -101,7 +102,8 @@ impl Simulation {
             (model.nq(), model.nv()),
             self.tool,
             self.reference.as_ref(),
-            self.orbit.is_some(),
+            self.orbit.as_deref(),
+            self.reference_motion,
             self.record_every == 1,
         );
         let mut run = Run {
@@ -130,7 +132,7 @@ impl Simulation {
     fn all_effects(&self) -> Vec<Arc<dyn Effect>> {
         let mut effects = self.effects.clone();
         if self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some()) {
-            effects.push(Arc::new(DifferentialGravity::default()));
+            effects.push(Arc::new(DifferentialGravity { motion: self.reference_motion }));
         }
         effects
     }

@@ -4,7 +4,7 @@ use super::error::SimulationError;
 use super::integrator::Integrator;
 use super::start::check_start;
 use crate::control::ControlLaw;
-use crate::environment::Effect;
+use crate::environment::{Effect, ReferenceMotion};
 use crate::model::Model;
 use crate::orbit::Orbit;
 use crate::reference::TaskReference;
@@ -25,6 +25,8 @@ pub struct Simulation {
     pub v: Vec<f64>,
     /// Reference orbit; W's origin rides on it.
     pub orbit: Option<Arc<dyn Orbit>>,
+    /// Whether the robot falls away from a reference that does not fall freely, or is carried along.
+    pub reference_motion: ReferenceMotion,
     /// Effects beside gravity.
     pub effects: Vec<Arc<dyn Effect>>,
     /// What drives the joints.
@@ -53,6 +55,7 @@ impl Simulation {
             q,
             v,
             orbit: None,
+            reference_motion: ReferenceMotion::True,
             effects: Vec::new(),
             control: ControlLaw::None,
             tool: None,

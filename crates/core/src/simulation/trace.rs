@@ -36,6 +36,9 @@ pub struct Trace {
     pub position_eci: Vec<f64>,
     /// Its velocity, m/s, `(T, 3)`; only with an orbit.
     pub velocity_eci: Vec<f64>,
+    /// Gravity that the reference does not follow and that was left out, `g - r̈_ref`, axes of I, m/s²,
+    /// `(T, 3)`; only around a planet with the robot carried along.
+    pub reference_residual: Vec<f64>,
     /// Sum of the work of every step, whatever its sign, J: what rows far apart would miss.
     pub work_done: f64,
     /// Sum of what steps and halved steps differ by in attitude, rad: an estimate of its error at the
