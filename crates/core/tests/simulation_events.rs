@@ -10,7 +10,7 @@ use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::environment::{BodyWrench, GravityGradient};
 use onorbit_core::model::{Model, neutral};
 use onorbit_core::orbit::{Kepler, MU_EARTH};
-use onorbit_core::reference::{Hold, TaskReference};
+use onorbit_core::reference::Hold;
 use onorbit_core::simulation::{Simulation, SimulationError, Trace};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
@@ -36,7 +36,7 @@ fn holding(kp: f64, kd: f64) -> Simulation {
     let mut simulation = Simulation::new(Arc::new(model), q, v);
     simulation.tool = Some(tool);
     let hold = Hold::new(pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra()).unwrap();
-    simulation.reference = Some(TaskReference::Hold(hold));
+    simulation.reference = Some(hold.into());
     simulation.control = ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(tool, kp, kd)));
     simulation.orbit = Some(low_orbit());
     simulation.effects.push(Arc::new(GravityGradient));
@@ -167,9 +167,9 @@ fn an_interrupted_run_keeps_its_trace_up_to_there() {
     let mut simulation = holding(100.0, 20.0);
     let mut asked = 0;
     let failure = simulation
-        .run(10.0, &mut |t| {
+        .run(10.0, &mut |now| {
             asked += 1;
-            if t > 0.2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if now.time > 0.2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
         .unwrap_err();
     let SimulationError::Interrupted { time } = failure.error else { panic!("{failure}") };

@@ -112,4 +112,7 @@ columns! {
     position_eci: |_t| &[3];
     /// Velocity of the base's origin, inertial axes, (T, 3), m/s.
     velocity_eci: |_t| &[3];
+    /// Gravity that the reference does not follow and that was left out, inertial axes, (T, 3), m/s²; with
+    /// ``gravity_mode="carried"`` around a planet.
+    reference_residual: |_t| &[3];
 }

@@ -7,9 +7,10 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from onorbit_rs.scenario.fields import Positive, Time
+from onorbit_rs.scenario.fields import NotNegative, Number, Positive, Time
 from onorbit_rs.scenario.part import Part
 
+NotNegativeNumber = Annotated[Number, NotNegative]
 MAX_STEPS = 10**10
 MAX_ROWS = 10**7
 """Of the trace; a row is about half a kilobyte."""
@@ -25,6 +26,10 @@ class SimulationSettings(Part):
     integrator: Literal["rk4", "semi_implicit_euler"] = "rk4"
     record_every: int = Field(default=1, ge=1, le=MAX_STEPS)
     """One row of the trace every so many steps."""
+    reference_start_tolerance: (
+        Annotated[list[NotNegativeNumber], Field(min_length=2, max_length=2)] | None
+    ) = None
+    """How far from the tool a reference may start, m and rad; 0.05 and 0.1 where not given."""
 
     @model_validator(mode="after")
     def _steps_fit(self) -> SimulationSettings:

@@ -27,6 +27,16 @@ impl<S: Scalar> Probe<S> {
         Self { whole: state.clone(), halved: state.clone(), last: (0.0, 0), sum: 0.0 }
     }
 
+    /// What there is to keep of it.
+    pub(super) fn numbers(&self) -> (f64, usize, f64) {
+        (self.last.0, self.last.1, self.sum)
+    }
+
+    /// Goes on from what was kept.
+    pub(super) fn go_on_from(&mut self, (difference, step, sum): (f64, usize, f64)) {
+        (self.last, self.sum) = ((difference, step), sum);
+    }
+
     /// Sum of the differences over `steps` steps so far, rad.
     pub(super) fn estimate(&self, steps: usize) -> f64 {
         self.sum + self.last.0 * (steps - self.last.1) as f64

@@ -1,5 +1,6 @@
 //! The loop.
 
+use super::checkpoint::{Checkpoint, CheckpointError};
 use super::driver::Driver;
 use super::error::{RunFailure, SimulationError};
 use super::integrator::Stages;
@@ -17,8 +18,24 @@ use crate::spatial::{Fused, InstructionSet, Scalar};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Called with the simulated time now and then; `Break` stops the run with what it has.
-pub type Monitor<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
+/// A run between two steps.
+pub struct Moment<'a> {
+    /// Time reached, s.
+    pub time: f64,
+    /// The rows so far.
+    pub trace: &'a Trace,
+    checkpoint: &'a dyn Fn() -> Checkpoint,
+}
+
+impl Moment<'_> {
+    /// What the run can go on from, with the rows so far: see [`Simulation::resume`].
+    pub fn checkpoint(&self) -> Checkpoint {
+        (self.checkpoint)()
+    }
+}
+
+/// Looks at the run now and then; `Break` stops it with what it has.
+pub type Monitor<'a> = &'a mut dyn FnMut(&Moment<'_>) -> ControlFlow<()>;
 
 /// How many steps pass between two calls of the monitor.
 const MONITOR_EVERY: usize = 64;
@@ -30,42 +47,80 @@ impl Simulation {
     /// What [`Simulation::check`] finds, a state that is no longer finite, a monitor that breaks,
     /// or what orbit, environment or controller refuse; the trace so far comes along.
     pub fn run(&mut self, duration: f64, monitor: Monitor<'_>) -> Result<Trace, RunFailure> {
+        self.go(duration, None, monitor)
+    }
+
+    /// Goes on from a checkpoint of a run of the same simulation for the same `duration`, with the rows that it
+    /// had recorded; the same bits as if it had not stopped.
+    ///
+    /// # Errors
+    /// As [`Simulation::run`], and a checkpoint of another robot, schedule or instruction set.
+    pub fn resume(
+        &mut self,
+        duration: f64,
+        from: (&Checkpoint, Trace),
+        monitor: Monitor<'_>,
+    ) -> Result<Trace, RunFailure> {
+        self.go(duration, Some(from), monitor)
+    }
+
+    fn go(
+        &mut self,
+        duration: f64,
+        from: Option<(&Checkpoint, Trace)>,
+        monitor: Monitor<'_>,
+    ) -> Result<Trace, RunFailure> {
         let fail = |error| RunFailure { error, trace: Box::default() };
         self.check().map_err(fail)?;
         if !(duration.is_finite() && duration > 0.0) {
             return Err(fail(SimulationError::NotPositive { name: "duration", value: duration }));
         }
         match InstructionSet::current() {
-            InstructionSet::Baseline => self.run_with::<f64>(duration, monitor),
-            InstructionSet::Fused | InstructionSet::Wide => self.run_with::<Fused>(duration, monitor),
+            InstructionSet::Baseline => self.go_with::<f64>(duration, from, monitor),
+            InstructionSet::Fused | InstructionSet::Wide => self.go_with::<Fused>(duration, from, monitor),
         }
     }
 
-    fn run_with<S: Scalar>(&mut self, duration: f64, monitor: Monitor<'_>) -> Result<Trace, RunFailure> {
+    fn go_with<S: Scalar>(
+        &mut self,
+        duration: f64,
+        from: Option<(&Checkpoint, Trace)>,
+        monitor: Monitor<'_>,
+    ) -> Result<Trace, RunFailure> {
         let fail = |error| RunFailure { error, trace: Box::default() };
         let model = Arc::clone(&self.model);
         let effects = self.all_effects();
-        let events = effects.iter().flat_map(|effect| effect.event_times()).collect();
+        let jumps = self.orbit.iter().flat_map(|orbit| orbit.event_times());
+        let events = effects.iter().flat_map(|effect| effect.event_times()).chain(jumps).collect();
         let schedule = Schedule::new(self.time_step, duration, self.control_period, events);
         let surroundings = Surroundings::new(&model, effects, self.orbit.clone());
         let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
         let mut plant = Plant::<S, _>::new(&model, surroundings);
+        let state = State::at(&model, &mut plant.data, numbers(&self.q), numbers(&self.v));
+        let recorder = Recorder::new(
+            rows(&schedule, self.record_every),
+            (model.nq(), model.nv()),
+            self.tool,
+            self.reference.as_ref(),
+            self.orbit.as_deref(),
+            self.reference_motion,
+            self.record_every == 1,
+        );
         let mut run = Run {
-            state: State::at(&model, &mut plant.data, numbers(&self.q), numbers(&self.v)),
+            stages: Stages::new(&model, &state, self.integrator),
+            probe: Probe::new(&state),
+            state,
             plant,
             driver: Driver::new(&mut self.control, self.reference.as_ref(), &model).map_err(fail)?,
-            recorder: Recorder::new(
-                rows(&schedule, self.record_every),
-                (model.nq(), model.nv()),
-                self.tool,
-                self.reference.as_ref(),
-                self.orbit.is_some(),
-                self.record_every == 1,
-            )
-            .map_err(fail)?,
+            recorder: recorder.map_err(fail)?,
+            schedule,
+            steps: 0,
         };
-        let mut stages = Stages::new(&model, &run.state, self.integrator);
-        let outcome = run.all(schedule, &mut stages, self.record_every, duration, monitor);
+        match from {
+            None => run.plant.settle(&mut run.state),
+            Some((checkpoint, trace)) => run.go_on_from(checkpoint, trace).map_err(|e| fail(e.into()))?,
+        }
+        let outcome = run.all(self.record_every, monitor);
         let trace = run.recorder.trace;
         match outcome {
             Ok(()) => Ok(trace),
@@ -77,7 +132,7 @@ impl Simulation {
     fn all_effects(&self) -> Vec<Arc<dyn Effect>> {
         let mut effects = self.effects.clone();
         if self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some()) {
-            effects.push(Arc::new(DifferentialGravity::default()));
+            effects.push(Arc::new(DifferentialGravity { motion: self.reference_motion }));
         }
         effects
     }
@@ -95,61 +150,81 @@ struct Run<'a, S> {
     plant: Plant<'a, S, Surroundings>,
     driver: Driver<'a, S>,
     recorder: Recorder<'a>,
+    stages: Stages<S>,
+    probe: Probe<S>,
+    schedule: Schedule,
+    steps: usize,
 }
 
 impl<S: Scalar> Run<'_, S> {
-    fn all(
-        &mut self,
-        mut schedule: Schedule,
-        stages: &mut Stages<S>,
-        record_every: usize,
-        duration: f64,
-        monitor: Monitor<'_>,
-    ) -> Result<(), SimulationError> {
-        self.plant.settle(&mut self.state);
+    fn all(&mut self, record_every: usize, monitor: Monitor<'_>) -> Result<(), SimulationError> {
         self.plant.prime(&self.state);
-        let (mut count, mut probe) = (0, Probe::new(&self.state));
-        while let Some(stretch) = schedule.next() {
+        while let Some(stretch) = self.schedule.next() {
             let interval = (stretch.start, stretch.end);
-            let begun = self.begin(stages, stretch.start, interval, stretch.is_control_tick);
-            begun.map_err(|error| self.name_divergence(error, stages, stretch.start))?;
+            let begun = self.begin(stretch.start, interval, stretch.is_control_tick);
+            begun.map_err(|error| self.name_divergence(error, stretch.start))?;
             // a step cut short by an event is a step: with all of them recorded, jumps lie at rows
             let is_row = record_every == 1 || stretch.grid_step.is_some_and(|step| step % record_every == 0);
             if is_row {
                 self.record(stretch.start)?;
             }
-            // a probe that fails is a step that will: the step tells
-            let _ = probe.look(count, interval, &self.state, &mut self.plant, stages);
-            let result = stages.step(&mut self.plant, &mut self.state, interval);
-            if is_row {
-                self.recorder.accelerated(stages.first_acceleration());
-            }
-            result.map_err(|error| self.name_divergence(error, stages, stretch.start))?;
-            self.recorder.trace.work_done += (self.state.work - stages.start_work()).value().abs();
+            self.step(interval, is_row).map_err(|error| self.name_divergence(error, stretch.start))?;
             if !self.state.is_finite() {
-                return Err(self.diverged(stages, stretch.start));
+                return Err(self.diverged(stretch.start));
             }
-            count += 1;
-            self.recorder.trace.attitude_step_doubling = Some(probe.estimate(count));
-            if count % MONITOR_EVERY == 0 && monitor(stretch.end).is_break() {
-                self.end(stages, stretch.end, schedule.is_control_tick())?;
+            if self.steps.is_multiple_of(MONITOR_EVERY) && self.look(monitor, stretch.end).is_break() {
+                self.end(stretch.end)?;
                 return Err(SimulationError::Interrupted { time: stretch.end });
             }
         }
-        self.end(stages, duration, schedule.is_control_tick())
+        self.end(self.schedule.now())
+    }
+
+    /// One step from a state that [`Run::begin`] prepared.
+    fn step(&mut self, interval: (f64, f64), is_row: bool) -> Result<(), SimulationError> {
+        let Self { state, plant, stages, probe, recorder, .. } = self;
+        // a probe that fails is a step that will: the step tells
+        let _ = probe.look(self.steps, interval, state, plant, stages);
+        let result = stages.step(plant, state, interval);
+        if is_row {
+            recorder.accelerated(stages.first_acceleration());
+        }
+        result?;
+        recorder.trace.work_done += (state.work - stages.start_work()).value().abs();
+        self.steps += 1;
+        recorder.trace.attitude_step_doubling = Some(probe.estimate(self.steps));
+        Ok(())
+    }
+
+    /// Shows the run to its monitor.
+    fn look(&self, monitor: Monitor<'_>, time: f64) -> ControlFlow<()> {
+        let trace = &self.recorder.trace;
+        let checkpoint = || {
+            let (counts, probe) = ((trace.rows(), self.steps), self.probe.numbers());
+            let command = &self.plant.command;
+            Checkpoint::new(&self.state, command, &self.schedule, counts, probe, trace.work_done)
+        };
+        monitor(&Moment { time, trace, checkpoint: &checkpoint })
+    }
+
+    /// Takes up where a checkpoint was made.
+    fn go_on_from(&mut self, from: &Checkpoint, trace: Trace) -> Result<(), CheckpointError> {
+        from.check(self.plant.model, &self.schedule, trace.rows())?;
+        self.state = from.state();
+        self.schedule = from.schedule.clone();
+        self.steps = from.steps;
+        self.probe.go_on_from(from.probe);
+        self.recorder.go_on_from(trace)?;
+        self.recorder.trace.work_done = from.work_done;
+        self.plant.command.iter_mut().zip(&from.command).for_each(|(to, from)| *to = S::of(*from));
+        Ok(())
     }
 
     /// Kinematics, wrenches and torques at the start of a step.
-    fn begin(
-        &mut self,
-        stages: &Stages<S>,
-        t: f64,
-        interval: (f64, f64),
-        is_control_tick: bool,
-    ) -> Result<(), SimulationError> {
+    fn begin(&mut self, t: f64, interval: (f64, f64), is_control_tick: bool) -> Result<(), SimulationError> {
         self.plant.settle(&mut self.state);
         if !self.state.is_finite() {
-            return Err(self.diverged(stages, t));
+            return Err(self.diverged(t));
         }
         let Self { state, plant, driver, .. } = self;
         if is_control_tick && !driver.compensates() {
@@ -165,36 +240,35 @@ impl<S: Scalar> Run<'_, S> {
 
     /// What a state that ran away brings about elsewhere is called by its name: a built-in law that
     /// overflows, an orbit or an effect asked about places that are none.
-    fn name_divergence(&self, error: SimulationError, stages: &Stages<S>, t: f64) -> SimulationError {
+    fn name_divergence(&self, error: SimulationError, t: f64) -> SimulationError {
         let is_overflow = matches!(&error, SimulationError::Control(ControlError::TorqueNotFinite { .. }))
             && self.driver.is_built_in();
-        if is_overflow || !self.state.is_finite() || !stages.is_finite() {
-            self.diverged(stages, t)
+        if is_overflow || !self.state.is_finite() || !self.stages.is_finite() {
+            self.diverged(t)
         } else {
             error
         }
     }
 
     /// The error that carries the last finite state.
-    fn diverged(&self, stages: &Stages<S>, time: f64) -> SimulationError {
+    fn diverged(&self, time: f64) -> SimulationError {
         let now = [&self.state.q, &self.state.v].map(|x| x.iter().map(|x| x.value()).collect());
-        let [q, v] = if self.state.is_finite() { now } else { stages.start() };
+        let [q, v] = if self.state.is_finite() { now } else { self.stages.start() };
         SimulationError::Diverged { time, q, v }
     }
 
     fn record(&mut self, t: f64) -> Result<(), SimulationError> {
         let orbit = self.plant.surroundings.orbit_state(t)?;
-        self.recorder.row(t, &self.state, &self.plant, orbit);
-        Ok(())
+        self.recorder.row(t, &self.state, &self.plant, orbit)
     }
 
     /// The last row: the state at the end, with the torque that would be held from there.
-    fn end(&mut self, stages: &mut Stages<S>, t: f64, is_control_tick: bool) -> Result<(), SimulationError> {
-        let begun = self.begin(stages, t, (t, t), is_control_tick);
-        begun.map_err(|error| self.name_divergence(error, stages, t))?;
+    fn end(&mut self, t: f64) -> Result<(), SimulationError> {
+        let begun = self.begin(t, (t, t), self.schedule.is_control_tick());
+        begun.map_err(|error| self.name_divergence(error, t))?;
         self.record(t)?;
-        stages.accelerate(&mut self.plant, &self.state);
-        self.recorder.accelerated(stages.first_acceleration());
+        self.stages.accelerate(&mut self.plant, &self.state);
+        self.recorder.accelerated(self.stages.first_acceleration());
         Ok(())
     }
 }

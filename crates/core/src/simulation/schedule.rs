@@ -1,5 +1,7 @@
 //! Where steps end: the regular grid, control ticks, and instants at which something jumps.
 
+use serde::{Deserialize, Serialize};
+
 /// Two instants closer than this share of a step are the same instant.
 const SAME_INSTANT: f64 = 1e-9;
 
@@ -17,7 +19,7 @@ pub(super) struct Stretch {
 }
 
 /// Cuts `0..duration` at every multiple of the step and of the control period, and at every event.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Schedule {
     time_step: f64,
     duration: f64,
@@ -48,6 +50,22 @@ impl Schedule {
             next_tick: 0,
             next_event: 0,
         }
+    }
+
+    /// Instant reached, s.
+    pub(super) fn now(&self) -> f64 {
+        self.now
+    }
+
+    /// Duration and regular step, s.
+    pub(super) fn duration_and_step(&self) -> (f64, f64) {
+        (self.duration, self.time_step)
+    }
+
+    /// Whether another schedule has the same cuts, wherever the two stand.
+    pub(super) fn cuts_like(&self, other: &Self) -> bool {
+        let Self { now, next_grid, next_tick, next_event, .. } = *self;
+        *self == Self { now, next_grid, next_tick, next_event, ..other.clone() }
     }
 
     /// Number of grid steps; the last may be shorter.

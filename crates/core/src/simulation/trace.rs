@@ -36,6 +36,9 @@ pub struct Trace {
     pub position_eci: Vec<f64>,
     /// Its velocity, m/s, `(T, 3)`; only with an orbit.
     pub velocity_eci: Vec<f64>,
+    /// Gravity that the reference does not follow and that was left out, `g - r̈_ref`, axes of I, m/s²,
+    /// `(T, 3)`; only around a planet with the robot carried along.
+    pub reference_residual: Vec<f64>,
     /// Sum of the work of every step, whatever its sign, J: what rows far apart would miss.
     pub work_done: f64,
     /// Sum of what steps and halved steps differ by in attitude, rad: an estimate of its error at the
@@ -44,6 +47,41 @@ pub struct Trace {
     /// Whether every step of the run is a row.
     pub has_every_step: bool,
 }
+
+macro_rules! columns {
+    ($($name:ident),* $(,)?) => {
+        impl Trace {
+            /// Every column with its name, empty ones too; row major.
+            pub fn columns(&self) -> impl Iterator<Item = (&'static str, &Vec<f64>)> {
+                [$((stringify!($name), &self.$name)),*].into_iter()
+            }
+
+            /// Every column with its name, to fill.
+            pub fn columns_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut Vec<f64>)> {
+                [$((stringify!($name), &mut self.$name)),*].into_iter()
+            }
+        }
+    };
+}
+
+columns!(
+    time,
+    q,
+    v,
+    tau,
+    acceleration,
+    momentum,
+    impulse,
+    kinetic_energy,
+    work,
+    center_of_mass,
+    tool_pose,
+    reference_pose,
+    position_error,
+    attitude_error,
+    position_eci,
+    velocity_eci,
+);
 
 impl Trace {
     /// Number of rows, `T`.
