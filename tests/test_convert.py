@@ -146,8 +146,12 @@ def test_a_fixed_pose(tmp_path: Path) -> None:
     assert (orbit["kind"], orbit["position"]) == ("fixed_frame", [6.778e6, 0.0, 0.0])
     assert orbit["attitude"] == {"quaternion_xyzw": pytest.approx([0.0, 0.0, half, half])}
     assert (orbit["mu"], orbit["gravity_mode"]) == (oo.MU_EARTH, "carried")
+    built = build(load(done.scenario))
+    assert built.orbit is not None
+    np.testing.assert_allclose(built.orbit.state(5.0)[0], orbit["position"])
     at_center = convert(write(tmp_path, center="pos_x: 0.0\norientation_w: 1.0\n"))
     assert "mu" not in at_center.scenario["orbit"]  # nothing pulls there
+    build(load(at_center.scenario))
 
 
 def test_a_controller_with_its_robot(tmp_path: Path) -> None:

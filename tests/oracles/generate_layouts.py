@@ -1,4 +1,4 @@
-"""Writes `fixtures/layouts.json`: states of a bundled robot as Drake, SPART and RBDL write them, and its links.
+"""Writes `fixtures/layouts.json`: states of a bundled robot as Drake, SPART and RBDL write them, and links.
 
 Run where `drake` and `spartpy` (with `intel-openmp` on the library path) are installed, with the path of a
 program built from `generate_layouts_rbdl.cc`:
