@@ -133,6 +133,7 @@ BODIES = {
     ),
     "missing file": ('<xacro:include filename="other.xacro"/>', ("'other.xacro'", "not there")),
     "endless macro": ('<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/>', ("nested too deep",)),
+    "a file in itself": ('<xacro:include filename="$(dirname)/bad.xacro"/>', ("nested too deep",)),
     "deep": ("<a>" * 3000 + "</a>" * 3000, ("nested too deep",)),
     "no link": ("", ("no links",)),
     "python's own names": (LINK.format("${__import__('os').getcwd()}", 1), ("__import__",)),

@@ -60,7 +60,7 @@ fn limits_not_given_are_none() {
     assert_eq!(pair("revolute", "<limit effort='inf'/>").joints()[0].limits.effort, None);
     let gazebo = pair("revolute", "<limit effort='-1' velocity='-1.0'/>");
     assert_eq!(gazebo.joints()[0].limits, Limits::default());
-    assert!(gazebo.warnings()[0].to_string().contains("velocity limit below zero"));
+    assert!(gazebo.warnings()[0].to_string().contains("velocity limit is below zero"));
 }
 
 #[test]

@@ -67,7 +67,7 @@ def expand(
             document = xacro.process_file(str(file), mappings=dict(values))
             text = document.documentElement.toxml()
     except RecursionError:
-        raise ModelError(f"{file}: macros or elements nested too deep", path=str(file)) from None
+        raise ModelError(f"{file}: macros, includes or elements nested too deep", path=str(file)) from None
     except OSError as error:
         raise ReadError(
             f"cannot read {file}: {error.strerror or error}", path=str(file), kind="robot"
@@ -175,6 +175,8 @@ def _missing(name: str) -> str:
 def _reason(error: Exception) -> str:
     """In one line, without xacro's class names."""
     text = " ".join(str(error).split()) or type(error).__name__
+    if "maximum recursion depth" in text:
+        return "macros, includes or elements nested too deep"
     undefined = re.search(r"Undefined substitution argument\s+(\S+)", text)
     if undefined:
         name = undefined[1]
