@@ -81,6 +81,7 @@ columns!(
     attitude_error,
     position_eci,
     velocity_eci,
+    reference_residual,
 );
 
 impl Trace {
