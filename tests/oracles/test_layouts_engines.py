@@ -4,7 +4,7 @@ Pinocchio and MuJoCo run here. Drake (large), SPART (needs Intel's OpenMP) and R
 current Python; its C++ was compiled) were run by `generate_layouts.py`, which wrote `fixtures/layouts.json`:
 states in their layouts with the poses and velocities of links that they computed. Drake also runs here where
 it is installed.
-Gate 1e-13 of the largest entry; seen is 3e-15 at most.
+Gate 1e-13 of the largest entry; seen is 4e-15 at most.
 """
 
 from __future__ import annotations
