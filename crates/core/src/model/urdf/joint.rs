@@ -53,7 +53,8 @@ pub(super) fn read_joints(
     let Limits { velocity, effort, .. } = &mut joint.limits;
     for (what, limit) in [("velocity", velocity), ("effort", effort)] {
         if limit.is_some_and(|value| value < 0.0) {
-            let note = format!("joint '{}': its {what} limit is below zero, which is read as none", hinge.name);
+            let note =
+                format!("joint '{}': its {what} limit is below zero, which is read as none", hinge.name);
             warnings.push(ModelWarning::Note(note));
             *limit = None;
         }
