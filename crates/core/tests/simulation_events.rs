@@ -167,9 +167,9 @@ fn an_interrupted_run_keeps_its_trace_up_to_there() {
     let mut simulation = holding(100.0, 20.0);
     let mut asked = 0;
     let failure = simulation
-        .run(10.0, &mut |t| {
+        .run(10.0, &mut |now| {
             asked += 1;
-            if t > 0.2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if now.time > 0.2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
         .unwrap_err();
     let SimulationError::Interrupted { time } = failure.error else { panic!("{failure}") };

@@ -2,9 +2,11 @@
 
 mod certificate;
 mod checkpoint;
+mod contacts;
 mod driver;
 mod error;
 mod integrator;
+mod pair;
 mod plant;
 mod probe;
 mod recorder;
@@ -12,16 +14,19 @@ mod run;
 mod schedule;
 mod settings;
 mod state;
+mod stepping;
+mod stick;
 mod surroundings;
+mod tableau;
 mod trace;
 
 pub use certificate::{Certificate, Check, certify};
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use error::{RunFailure, SimulationError};
 pub use integrator::Integrator;
-pub(crate) use integrator::Stages;
 pub(crate) use plant::{Nothing, Plant};
 pub use run::{Moment, Monitor};
 pub use settings::Simulation;
 pub(crate) use state::State;
+pub(crate) use stepping::{Stepper, Stepping};
 pub use trace::Trace;

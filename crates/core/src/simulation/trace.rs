@@ -20,8 +20,10 @@ pub struct Trace {
     pub impulse: Vec<f64>,
     /// Kinetic energy in W, J, `(T,)`.
     pub kinetic_energy: Vec<f64>,
-    /// Work of joint torques and external wrenches in W, J, `(T,)`.
+    /// Work on the robot in W, J, `(T,)`: of motors and external wrenches, less `dissipated`.
     pub work: Vec<f64>,
+    /// Energy that damping, friction and stops of the joints took, J, `(T,)`.
+    pub dissipated: Vec<f64>,
     /// Centre of mass in W, m, `(T, 3)`.
     pub center_of_mass: Vec<f64>,
     /// Pose of the tool in W, `(T, 4, 4)`; only with a tool.
@@ -38,8 +40,8 @@ pub struct Trace {
     pub velocity_eci: Vec<f64>,
     /// Sum of the work of every step, whatever its sign, J: what rows far apart would miss.
     pub work_done: f64,
-    /// Sum of what steps and halved steps differ by in attitude, rad: an estimate of its error at the
-    /// end, but for what the motion amplifies.
+    /// Sum of what steps and halved steps differ by in attitude, rad (of an embedded pair: its two
+    /// solutions): an estimate of its error at the end, but for what the motion amplifies.
     pub attitude_step_doubling: Option<f64>,
     /// Whether every step of the run is a row.
     pub has_every_step: bool,
@@ -71,6 +73,7 @@ columns!(
     impulse,
     kinetic_energy,
     work,
+    dissipated,
     center_of_mass,
     tool_pose,
     reference_pose,

@@ -1,0 +1,226 @@
+//! Steps of Dormand and Prince on the group, as long as the tolerance lets them be.
+
+use super::error::SimulationError;
+use super::integrator::Stages;
+use super::plant::{Plant, World};
+use super::state::{Rate, State};
+use super::tableau::{A, C, E, dense};
+use crate::dynamics::{base_rotation, composite_momentum};
+use crate::model::Axis;
+use crate::spatial::{Real, Vec3, dexp_inv_exact};
+use serde::{Deserialize, Serialize};
+
+/// Largest turn of the base in a step, rad: its rotation vector must stay short of a whole turn.
+const LARGEST_TURN: f64 = 2.0;
+/// Below this share of the fastest rate of the run, errors of rates are as small as they need be.
+const SLOW: f64 = 1e-3;
+/// What the step may change by at once.
+const CHANGE: (f64, f64) = (0.2, 5.0);
+
+/// What the step control remembers, all of it: a run goes on from here with the same bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Memory {
+    /// Step to try next, s; zero before the first.
+    pub(super) step: f64,
+    /// Error of the last step that was taken, as a share of what is allowed.
+    pub(super) error: f64,
+    /// Fastest rate so far, rad/s, and speed, m/s.
+    pub(super) fastest: [f64; 2],
+    /// Sum of the estimated errors of the attitude, rad.
+    pub(super) turn: f64,
+    /// Radius of gyration of the robot at the start of the run, m: the scale of lengths.
+    pub(super) size: f64,
+}
+
+/// The later stages of a step, and its control.
+#[derive(Clone, Debug)]
+pub(super) struct Pair<S> {
+    pub(super) k: Vec<Rate<S>>,
+    tolerance: f64,
+    pub(super) memory: Memory,
+    /// The interval of the last step.
+    span: (f64, f64),
+    /// Weight of the attitude in the error; tests take it away.
+    pub(super) attitude: f64,
+}
+
+impl<S: Real> Pair<S> {
+    pub(super) fn new(rate: &Rate<S>, tolerance: f64) -> Self {
+        let (k, memory) = (vec![rate.clone(); 7], Memory::default());
+        Self { k, tolerance, memory, span: (0.0, 0.0), attitude: 1.0 }
+    }
+}
+
+impl<S: Real> Stages<S> {
+    /// `y' = y ⊕ h Σ b_i k_i` with the attitude as the rotation vector since the start of the step,
+    /// whose rate is `dexp⁻¹(θ) ω`. Expects the first stage in `rate`.
+    pub(super) fn dormand_prince(
+        &mut self,
+        plant: &mut Plant<'_, S, impl World<S>>,
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<(), SimulationError> {
+        let Self { start, trial, rate, sum, pair, .. } = self;
+        let Some(pair) = pair else { return Ok(()) };
+        let (t, h) = (interval.0, interval.1 - interval.0);
+        pair.span = interval;
+        pair.k[0].copy_from(rate);
+        for (i, (weights, c)) in A.iter().zip(C).enumerate() {
+            let (known, next) = pair.k.split_at_mut(i + 1);
+            combine(sum, known, weights);
+            let turned = sum.turn * S::of(h);
+            S::enter(
+                #[inline(always)]
+                || trial.move_from(start, sum, S::of(h)),
+            );
+            let instant = if c == 1.0 { interval.1 } else { t + c * h };
+            plant.evaluate(instant, interval, trial, &mut next[0])?;
+            next[0].turn = S::enter(
+                #[inline(always)]
+                || dexp_inv_exact(turned, Vec3::from_slice(&trial.v[3..])),
+            );
+        }
+        state.copy_from(trial); // the seventh stage stands at the end
+        Ok(())
+    }
+
+    /// A step from the start of `interval`, at most to its end, that keeps the tolerance; returns where
+    /// it ended. Expects what [`Stages::step`] expects.
+    ///
+    /// Proportional-integral control: `h' = 0.9 h ε^−0.17 ε₋₁^0.04` (Hairer and Wanner, IV.2).
+    pub(super) fn adapt(
+        &mut self,
+        plant: &mut Plant<'_, S, impl World<S>>,
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<f64, SimulationError> {
+        let (start, whole) = (interval.0, interval.1 - interval.0);
+        self.accelerate(plant, state);
+        let mut h = self.first_try(plant).min(self.longest()).min(whole);
+        let mut was_rejected = false;
+        loop {
+            // no sliver at the end: two halves rather
+            let end = match whole - h {
+                rest if rest <= 1e-9 * whole => interval.1,
+                rest if rest < h => start + 0.5 * whole,
+                _ => start + h,
+            };
+            h = end - start;
+            let taken = self.dormand_prince(plant, state, (start, end));
+            Self::leave(plant, state);
+            let (error, turn) = if taken.is_ok() { self.error(plant, h) } else { (f64::NAN, 0.0) };
+            let Some(pair) = &mut self.pair else { return Ok(end) };
+            if error <= 1.0 {
+                let memory = &mut pair.memory;
+                let last = memory.error.max(1e-4);
+                let factor = 0.9 * error.max(1e-10).powf(-0.17) * last.powf(0.04);
+                let most = if was_rejected { 1.0 } else { CHANGE.1 };
+                memory.step = h * factor.clamp(CHANGE.0, most);
+                memory.error = error;
+                memory.turn += turn;
+                return Ok(end);
+            }
+            was_rejected = true;
+            h *= if error.is_finite() { (0.9 * error.powf(-0.2)).max(CHANGE.0) } else { CHANGE.0 };
+            if h <= 16.0 * f64::EPSILON * interval.1.abs() {
+                // what refused the state says so; else nothing is short enough
+                return Err(taken.err().unwrap_or(SimulationError::StepTooSmall { time: start, step: h }));
+            }
+        }
+    }
+
+    /// The step to try: what the last one left, or `ε^⅕ / (ω + √ω̇)`.
+    fn first_try(&mut self, plant: &Plant<'_, S, impl World<S>>) -> f64 {
+        let (rate, start) = (&self.rate, &self.start);
+        let Some(pair) = &mut self.pair else { return f64::INFINITY };
+        if pair.memory.size == 0.0 {
+            let inertia = composite_momentum(&plant.data).0;
+            let about = inertia.about_com();
+            let trace = (about.xx + about.yy + about.zz).lane(0);
+            pair.memory.size = (trace / (2.0 * inertia.mass.lane(0))).sqrt();
+        }
+        if pair.memory.step > 0.0 {
+            return pair.memory.step;
+        }
+        let fastest = |v: &[S]| {
+            let linear = Vec3::from_slice(v).norm().lane(0) / pair.memory.size;
+            let angular = Vec3::from_slice(&v[3..]).norm().lane(0);
+            v[6..].iter().map(|x| x.lane(0).abs()).fold(linear.max(angular), f64::max)
+        };
+        pair.tolerance.powf(0.2) / (fastest(&start.v) + fastest(&rate.a).sqrt())
+    }
+
+    /// The longest step that the attitude's chart takes.
+    fn longest(&self) -> f64 {
+        LARGEST_TURN / Vec3::from_slice(&self.start.v[3..]).norm().lane(0)
+    }
+
+    /// Error of the last step as a share of what is allowed, and that of its attitude, rad.
+    ///
+    /// Allowed are `ε` of a radian in attitude and joints, of the robot's radius of gyration (or of the
+    /// distance from W's origin) in lengths, of their own size in rates.
+    fn error(&mut self, plant: &Plant<'_, S, impl World<S>>, h: f64) -> (f64, f64) {
+        let Self { start, trial, sum, pair, .. } = self;
+        let Some(pair) = pair else { return (0.0, 0.0) };
+        combine(sum, &pair.k, &E);
+        let norm = |v: Vec3<S>| v.norm().lane(0);
+        let vector = |x: &[S]| norm(Vec3::from_slice(x));
+        let (turn, size) = (h * norm(sum.turn), pair.memory.size);
+        let carried = norm(plant.carried());
+        let spin = vector(&start.v[3..]).max(vector(&trial.v[3..]));
+        let speed = carried.max(vector(&trial.v));
+        let prismatic = |j: usize| plant.model.nodes()[j + 1].axis == Axis::Prismatic;
+        let rate = |j: usize| start.v[j + 6].lane(0).abs().max(trial.v[j + 6].lane(0).abs());
+        let n = start.v.len() - 6;
+
+        let [fastest, farthest] = &mut pair.memory.fastest;
+        *fastest = (0..n).map(|j| if prismatic(j) { rate(j) / size } else { rate(j) }).fold(fastest.max(spin), f64::max);
+        *farthest = farthest.max(speed).max(size * *fastest);
+        let (slow, crawl) = (SLOW * *fastest, SLOW * *farthest);
+
+        let share = |error: f64, scale: f64| if error == 0.0 { 0.0 } else { error / (pair.tolerance * scale) };
+        let mut worst = [
+            pair.attitude * share(turn, 1.0),
+            share(h * norm(sum.origin), size.max(vector(&start.q))),
+            pair.attitude * share(h * vector(&sum.a[3..]), spin + slow),
+            share(h * vector(&sum.a), speed + size * spin + crawl),
+        ]
+        .into_iter()
+        .fold(0.0, worse);
+        for j in 0..n {
+            let scale = if prismatic(j) { size } else { 1.0 };
+            worst = worse(worst, share(h * sum.v[j + 6].lane(0).abs(), scale));
+            worst = worse(worst, share(h * sum.a[j + 6].lane(0).abs(), rate(j) + slow * scale));
+        }
+        let is_folded = vector(&trial.q[3..]).is_nan() || h * norm(pair.k[6].turn) > 2.0 * LARGEST_TURN;
+        (if is_folded { f64::NAN } else { worst }, turn)
+    }
+
+    /// The state at `t` within the last step, momentum not yet put right.
+    pub(super) fn interpolate(&mut self, t: f64, state: &mut State<S>) {
+        let Self { start, sum, pair, passing, .. } = self;
+        let Some(pair) = pair else { return };
+        let h = pair.span.1 - pair.span.0;
+        combine(sum, &pair.k, &dense((t - pair.span.0) / h));
+        state.move_from(start, sum, S::of(h));
+        // back to W: v = v' + Rᵀ u
+        let carried = base_rotation(&start.q) * *passing;
+        (Vec3::from_slice(&state.v) + base_rotation(&state.q).transpose_mul(carried)).write(&mut state.v);
+    }
+}
+
+/// `Σ w_i k_i`.
+fn combine<S: Real>(sum: &mut Rate<S>, stages: &[Rate<S>], weights: &[f64]) {
+    sum.clear();
+    for (k, &weight) in stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+        S::enter(
+            #[inline(always)]
+            || sum.accumulate(k, S::of(weight)),
+        );
+    }
+}
+
+/// The larger of two, and not a number if either is.
+fn worse(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
