@@ -122,7 +122,7 @@ impl<S: Real> Stages<S> {
             }
             was_rejected = true;
             h *= if error.is_finite() { (0.9 * error.powf(-0.2)).max(CHANGE.0) } else { CHANGE.0 };
-            if h <= 16.0 * f64::EPSILON * interval.1.abs() {
+            if h <= 64.0 * f64::EPSILON * interval.1.abs() {
                 // what refused the state says so; else nothing is short enough
                 return Err(taken.err().unwrap_or(SimulationError::StepTooSmall { time: start, step: h }));
             }
@@ -173,10 +173,11 @@ impl<S: Real> Stages<S> {
         let rate = |j: usize| start.v[j + 6].lane(0).abs().max(trial.v[j + 6].lane(0).abs());
         let n = start.v.len() - 6;
 
-        let [fastest, farthest] = &mut pair.memory.fastest;
-        *fastest = (0..n).map(|j| if prismatic(j) { rate(j) / size } else { rate(j) }).fold(fastest.max(spin), f64::max);
-        *farthest = farthest.max(speed).max(size * *fastest);
-        let (slow, crawl) = (SLOW * *fastest, SLOW * *farthest);
+        let [fastest, highest] = pair.memory.fastest;
+        let turning = |j: usize| if prismatic(j) { rate(j) / size } else { rate(j) };
+        let fastest = (0..n).map(turning).fold(fastest.max(spin), f64::max);
+        let highest = highest.max(speed).max(size * fastest);
+        let (slow, crawl) = (SLOW * fastest, SLOW * highest);
 
         let share = |error: f64, scale: f64| if error == 0.0 { 0.0 } else { error / (pair.tolerance * scale) };
         let mut worst = [
@@ -193,6 +194,9 @@ impl<S: Real> Stages<S> {
             worst = worse(worst, share(h * sum.a[j + 6].lane(0).abs(), rate(j) + slow * scale));
         }
         let is_folded = vector(&trial.q[3..]).is_nan() || h * norm(pair.k[6].turn) > 2.0 * LARGEST_TURN;
+        if worst <= 1.0 {
+            pair.memory.fastest = [fastest, highest]; // what is tried in vain does not count
+        }
         (if is_folded { f64::NAN } else { worst }, turn)
     }
 
@@ -223,4 +227,46 @@ fn combine<S: Real>(sum: &mut Rate<S>, stages: &[Rate<S>], weights: &[f64]) {
 /// The larger of two, and not a number if either is.
 fn worse(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)] // a test that cannot set up should stop
+
+    use super::super::integrator::{Integrator, Stages};
+    use super::super::plant::{Nothing, Plant};
+    use super::super::state::State;
+    use crate::model::{Model, difference, neutral};
+    use nalgebra::{Matrix3, Vector3};
+
+    /// Attitude of a tumbling spacecraft after 8 s, the attitude and its rate weighed in the error or not.
+    fn tumble(tolerance: f64, weight: f64) -> Vec<f64> {
+        let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.5));
+        let model = Model::rigid_body(10.0, inertia).unwrap();
+        let mut plant = Plant::<f64, _>::new(&model, Nothing, None);
+        let v = vec![0.1, 0.0, -0.2, 0.7, 0.9, -0.4];
+        let mut state = State::at(&model, &mut plant.data, neutral(&model), v);
+        let mut stages = Stages::new(&model, &state, Integrator::DormandPrince, tolerance);
+        stages.pair.as_mut().unwrap().attitude = weight;
+        let mut t = 0.0;
+        while t < 8.0 {
+            plant.settle(&mut state);
+            t = stages.advance(&mut plant, &mut state, (t, 8.0)).unwrap();
+        }
+        state.q
+    }
+
+    /// Negative control: positions and joints alone do not see a spacecraft turn.
+    #[test]
+    fn without_the_attitude_in_its_error_the_tolerance_is_missed() {
+        let exact = tumble(1e-12, 1.0);
+        for tolerance in [1e-5, 1e-8] {
+            let off = [1.0, 0.0].map(|weight| {
+                let mut delta = vec![0.0; 6];
+                difference(&exact, &tumble(tolerance, weight), &mut delta);
+                Vector3::from_column_slice(&delta[3..]).norm()
+            });
+            assert!(off[0] < 10.0 * tolerance && off[1] > 100.0 * tolerance, "{off:?}");
+        }
+    }
 }

@@ -109,30 +109,31 @@ impl<S: Real> Stepper<S> {
         state: &mut State<S>,
         whole: (f64, f64),
     ) -> Result<f64, SimulationError> {
-        let (mut high, mut beyond) = (1.0, self.margin(plant, state, whole.1)?);
-        let (mut low, mut before) = (0.0, 0.0);
+        let (mut high, mut beyond) = (1.0, self.margin(plant, state, whole)?);
         if beyond >= 0.0 {
             return Ok(1.0);
         }
-        // a joint that starts to slip has no margin at first: look for one
+        state.copy_from(&self.start);
+        let (mut low, mut before) = (0.0, self.room(plant, state));
+        // a joint that starts to slip has no margin at first: it gets one soon, or sticks for this step
+        let mut share = 1.0;
         for _ in 0..10 {
             if before > 0.0 {
                 break;
             }
-            low = if low == 0.0 { 0.5 * high } else { 0.5 * low };
-            before = self.again(plant, state, whole, low)?;
-            if before < 0.0 {
-                (high, beyond, before) = (low, before, 0.0);
+            share *= 0.5;
+            let margin = self.again(plant, state, whole, share)?;
+            if margin > 0.0 {
+                (low, before) = (share, margin);
+            } else {
+                (high, beyond) = (share, margin);
             }
         }
-        if before <= 0.0 && self.forgive(plant, state) {
+        if before <= 0.0 && self.hold_back(plant, state) {
             self.again(plant, state, whole, 1.0)?;
             return self.locate(plant, state, whole);
         }
-        if before <= 0.0 {
-            low = 0.0;
-        }
-        for round in 0..60 {
+        for round in 0..100 {
             if high - low <= RESOLUTION {
                 break;
             }
@@ -165,7 +166,7 @@ impl<S: Real> Stepper<S> {
         plant.settle(state);
         plant.surround(whole.0, (whole.0, end), &state.q)?;
         self.stages.step(plant, state, (whole.0, end))?;
-        self.margin(plant, state, end)
+        self.margin(plant, state, (whole.0, end))
     }
 
     /// What is left, as shares, before a joint changes its mode; negative when one should have.
@@ -173,19 +174,22 @@ impl<S: Real> Stepper<S> {
         &mut self,
         plant: &mut Plant<'_, S, impl World<S>>,
         state: &State<S>,
-        t: f64,
+        interval: (f64, f64),
     ) -> Result<f64, SimulationError> {
-        let mut least = f64::INFINITY;
-        for j in 0..self.is_forgiven.len() {
-            least = least.min(self.slip(plant, state, j)).min(self.clearance(plant, state, j));
-        }
+        let mut least = self.room(plant, state);
         if plant.contacts.locked().is_some() && self.cuts.0 < MOST_CUTS {
             self.seen.copy_from(state);
             plant.settle(&mut self.seen);
-            plant.surround(t, (t, t), &self.seen.q)?;
+            plant.surround(interval.1, interval, &self.seen.q)?;
             least = least.min(plant.least_hold(&self.seen.q, &self.seen.v));
         }
         Ok(least)
+    }
+
+    /// What the moving joints have left.
+    fn room(&self, plant: &Plant<'_, S, impl World<S>>, state: &State<S>) -> f64 {
+        let left = |j| self.slip(plant, state, j).min(self.clearance(plant, state, j));
+        (0..self.is_forgiven.len()).map(left).fold(f64::INFINITY, f64::min)
     }
 
     /// Rate of a slipping joint along its slip.
@@ -205,16 +209,16 @@ impl<S: Real> Stepper<S> {
             return f64::INFINITY;
         }
         let (first, last) = (self.start.q[j + 7].lane(0), state.q[j + 7].lane(0));
-        let way = (upper - last).min(last - lower) + AT_LIMIT;
-        way / (last - first).abs().max(AT_LIMIT)
+        let way = |q: f64| (upper - q).min(q - lower);
+        (way(last) + AT_LIMIT) / (way(first).abs() + AT_LIMIT)
     }
 
-    /// Gives up on joints that slip back at once; whether there was one.
-    fn forgive(&mut self, plant: &Plant<'_, S, impl World<S>>, state: &State<S>) -> bool {
-        let turned = |j: &usize| self.slip(plant, state, *j) < 0.0;
+    /// Locks a joint that would leave rest only to slip back at once; whether there was one.
+    fn hold_back(&self, plant: &mut Plant<'_, S, impl World<S>>, state: &State<S>) -> bool {
+        let turned = |j: &usize| self.start.v[j + 6].lane(0) == 0.0 && self.slip(plant, state, *j) <= 0.0;
         let found = (0..self.is_forgiven.len()).find(turned);
         if let Some(j) = found {
-            self.is_forgiven[j] = true;
+            plant.contacts.lock(j);
         }
         found.is_some()
     }
