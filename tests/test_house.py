@@ -33,6 +33,7 @@ ORDER = (
 
 LONGEST = 400
 LONGER_WITH_REASON = {
+    "python/onorbit_rs/_core.pyi": "one module, one stub",
     "crates/core/tests/simulation_nasa.rs": "NASA's tables stand beside the cases they belong to",
 }
 

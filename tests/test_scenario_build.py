@@ -169,7 +169,7 @@ def test_the_resolved_scenario_holds_every_default() -> None:
     assert {"damping", "null_space_damping", "compensate_environment", "compensate_friction"} <= set(
         data["controller"]
     )
-    assert data["reference"] == {"kind": "hold"}
+    assert data["reference"] == {"kind": "hold", "frame": "world"}
 
 
 def test_metres_on_a_joint_that_turns_are_refused() -> None:

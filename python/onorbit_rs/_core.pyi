@@ -14,7 +14,9 @@ _Column = _Array | Any  # None where the run has nothing to fill it with
 _Path = str | PathLike[str]
 _External = Mapping[str, ArrayLike]
 _JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
-_Integrator = Literal["rk4", "semi_implicit_euler"]
+_EarthModel = Literal["wgs72", "wgs72old", "wgs84"]
+_GravityMode = Literal["true", "carried"]
+_Integrator = Literal["rk4", "semi_implicit_euler", "dormand_prince"]
 _CertificateRow = tuple[str, float | None, float, bool]
 
 class _Controller(Protocol):
@@ -27,20 +29,35 @@ class _BuildInfo(TypedDict):
 __all__ = [
     "MU_EARTH",
     "BodyWrench",
+    "Checkpoint",
+    "Circle",
     "ComputedTorque",
+    "CustomPath",
     "Effect",
+    "FixedFrame",
     "FreeFloating",
     "GravityGradient",
     "Hold",
+    "JointHold",
+    "JointReference",
+    "JointSampled",
+    "JointWaypoints",
     "Kepler",
+    "Line",
     "LineParabola",
     "Model",
     "ModelBuilder",
     "Orbit",
+    "Reference",
+    "Sampled",
+    "Screw",
+    "Sgp4",
     "Simulation",
     "State",
+    "Target",
     "Trace",
     "Visual",
+    "Waypoints",
     "__version__",
     "build_info",
     "rollout",
@@ -201,8 +218,14 @@ class ModelBuilder:
 class Orbit:
     @property
     def mu(self) -> float | None: ...
+    @property
+    def axes(self) -> str: ...
+    @property
+    def velocity_source(self) -> str: ...
     def state(self, t: ArrayLike) -> tuple[_Array, _Array]: ...
     def lvlh(self, t: ArrayLike) -> tuple[_Array, _Array]: ...
+    def frame(self, t: ArrayLike) -> tuple[_Array, _Array]: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @final
 class Kepler(Orbit):
@@ -239,6 +262,50 @@ class Kepler(Orbit):
     def mean_anomaly(self) -> float | None: ...
     @property
     def period(self) -> float | None: ...
+
+@final
+class Sgp4(Orbit):
+    def __new__(
+        cls, line1: str, line2: str, *, gravity: _EarthModel = "wgs72", check_checksum: bool = True
+    ) -> Sgp4: ...
+    @staticmethod
+    def from_omm(message: Mapping[str, Any] | str, *, gravity: _EarthModel = "wgs72") -> Sgp4: ...
+    @property
+    def satellite(self) -> int: ...
+    @property
+    def epoch(self) -> str: ...
+    @property
+    def julian_date(self) -> tuple[float, float]: ...
+    @property
+    def period(self) -> float: ...
+
+@final
+class CustomPath(Orbit):
+    def __new__(
+        cls,
+        times: ArrayLike,
+        positions: ArrayLike,
+        *,
+        velocities: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+        attitudes: ArrayLike | None = None,
+        mu: float | None = None,
+        ends: Literal["error", "coast"] = "error",
+    ) -> CustomPath: ...
+    @property
+    def span(self) -> tuple[float, float]: ...
+    @property
+    def has_attitudes(self) -> bool: ...
+
+@final
+class FixedFrame(Orbit):
+    def __new__(
+        cls,
+        *,
+        position: ArrayLike | None = None,
+        attitude: ArrayLike | None = None,
+        mu: float | None = None,
+    ) -> FixedFrame: ...
 
 @disjoint_base
 class Effect: ...
@@ -287,12 +354,27 @@ class State:
     @property
     def reference_acceleration(self) -> _Column: ...
 
-@final
-class Hold:
-    def __new__(cls, pose: ArrayLike) -> Hold: ...
+@disjoint_base
+class Reference:
+    @property
+    def duration(self) -> float: ...
+    def sample(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...
+    def in_world(self, t: ArrayLike, *, orbit: Orbit | None = None) -> tuple[_Array, _Array, _Array]: ...
 
 @final
-class LineParabola:
+class Target:
+    def __new__(
+        cls, pose: ArrayLike, *, velocity: ArrayLike | None = None, spin: ArrayLike | None = None
+    ) -> Target: ...
+
+_Frame = Literal["world", "lvlh", "base"] | Target
+
+@final
+class Hold(Reference):
+    def __new__(cls, pose: ArrayLike, *, frame: _Frame | None = None) -> Hold: ...
+
+@final
+class LineParabola(Reference):
     def __new__(
         cls,
         start_pose: ArrayLike,
@@ -300,7 +382,125 @@ class LineParabola:
         displacement: ArrayLike,
         duration: float,
         height: ArrayLike | None = None,
+        frame: _Frame | None = None,
     ) -> LineParabola: ...
+
+@final
+class Line(Reference):
+    def __new__(
+        cls,
+        start_pose: ArrayLike,
+        end_pose: ArrayLike,
+        *,
+        duration: float | None = None,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
+        frame: _Frame | None = None,
+    ) -> Line: ...
+
+@final
+class Circle(Reference):
+    def __new__(
+        cls,
+        start_pose: ArrayLike,
+        *,
+        center: ArrayLike,
+        axis: ArrayLike,
+        angle: float,
+        turns: bool = True,
+        ramp: float | None = None,
+        duration: float | None = None,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
+        frame: _Frame | None = None,
+    ) -> Circle: ...
+
+@final
+class Screw(Reference):
+    def __new__(
+        cls,
+        start_pose: ArrayLike,
+        *,
+        center: ArrayLike,
+        axis: ArrayLike,
+        angle: float,
+        advance: float,
+        turns: bool = True,
+        ramp: float | None = None,
+        duration: float | None = None,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
+        frame: _Frame | None = None,
+    ) -> Screw: ...
+
+@final
+class Waypoints(Reference):
+    def __new__(
+        cls,
+        poses: ArrayLike,
+        *,
+        times: ArrayLike | None = None,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
+        stops: bool = True,
+        frame: _Frame | None = None,
+    ) -> Waypoints: ...
+
+@final
+class Sampled(Reference):
+    def __new__(
+        cls,
+        times: ArrayLike,
+        poses: ArrayLike,
+        *,
+        velocities: ArrayLike | None = None,
+        frame: _Frame | None = None,
+    ) -> Sampled: ...
+
+@disjoint_base
+class JointReference:
+    @property
+    def duration(self) -> float: ...
+    def sample(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...
+
+@final
+class JointHold(JointReference):
+    def __new__(cls, q: ArrayLike) -> JointHold: ...
+
+@final
+class JointWaypoints(JointReference):
+    def __new__(
+        cls,
+        points: ArrayLike,
+        *,
+        times: ArrayLike | None = None,
+        speed: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        stops: bool = True,
+    ) -> JointWaypoints: ...
+    @staticmethod
+    def one_by_one(
+        start: ArrayLike,
+        moves: Sequence[tuple[int, float]],
+        *,
+        times: ArrayLike | None = None,
+        speed: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+    ) -> JointWaypoints: ...
+
+@final
+class JointSampled(JointReference):
+    def __new__(
+        cls, times: ArrayLike, positions: ArrayLike, *, rates: ArrayLike | None = None
+    ) -> JointSampled: ...
 
 @final
 class Simulation:
@@ -311,16 +511,39 @@ class Simulation:
         v: ArrayLike,
         *,
         orbit: Orbit | None = None,
+        gravity_mode: _GravityMode = "true",
         environment: Sequence[Effect] | None = None,
         controller: ComputedTorque | _Controller | None = None,
-        reference: Hold | LineParabola | None = None,
+        reference: Reference | None = None,
         tool: str | None = None,
         time_step: float = 0.001,
         control_period: float | None = None,
         integrator: _Integrator = "rk4",
         record_every: int = 1,
+        reference_start_tolerance: ArrayLike | None = None,
+        tolerance: float = 1e-9,
+        enforce_limits: bool = False,
+        restitution: float = 0.0,
     ) -> Simulation: ...
-    def run(self, duration: float, *, progress: Callable[[float, float], object] | None = None) -> Trace: ...
+    def run(
+        self,
+        duration: float,
+        *,
+        progress: Callable[[float, float], object] | None = None,
+        checkpoint: Callable[[Checkpoint], object] | None = None,
+        checkpoint_every: float = 30.0,
+        resume: Checkpoint | None = None,
+    ) -> Trace: ...
+
+@final
+class Checkpoint:
+    def __new__(cls, state: str, columns: dict[str, _Array], *, wall_s: float = 0.0) -> Checkpoint: ...
+    @property
+    def state(self) -> str: ...
+    @property
+    def columns(self) -> dict[str, _Array]: ...
+    @property
+    def wall_s(self) -> float: ...
 
 @final
 class Trace:
@@ -347,6 +570,8 @@ class Trace:
     @property
     def work(self) -> _Array: ...
     @property
+    def dissipated(self) -> _Array: ...
+    @property
     def center_of_mass(self) -> _Array: ...
     @property
     def tool_pose(self) -> _Column: ...
@@ -360,7 +585,10 @@ class Trace:
     def position_eci(self) -> _Column: ...
     @property
     def velocity_eci(self) -> _Column: ...
+    @property
+    def reference_residual(self) -> _Column: ...
     def columns(self) -> list[str]: ...
+    def joint_limits_exceeded(self) -> list[str]: ...
     def certificate(self) -> list[_CertificateRow]: ...
     def __len__(self) -> int: ...
 
@@ -373,7 +601,7 @@ def rollout(
     time_step: float = 0.001,
     tau: ArrayLike | None = None,
     controller: ComputedTorque | None = None,
-    reference: Hold | LineParabola | None = None,
+    reference: Reference | None = None,
     integrator: _Integrator = "rk4",
     record_every: int | None = None,
     threads: int | None = None,

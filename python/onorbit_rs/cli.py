@@ -1,4 +1,4 @@
-"""The command ``onorbit``: run, list, check, show."""
+"""The command ``onorbit``: run, resume, list, check, show."""
 
 from __future__ import annotations
 
@@ -6,11 +6,16 @@ import os
 import sys
 import warnings
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
 from onorbit_rs.exceptions import OnOrbitError, RunInterrupted
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from onorbit_rs.running import Run
 
 app = typer.Typer(
     name="onorbit",
@@ -35,9 +40,13 @@ ScenarioArgument = Annotated[
 VersionOption = Annotated[
     bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
 ]
+FolderArgument = Annotated[Path, typer.Argument(metavar="DIR", help="A folder that a run has written.")]
 OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write results here.")]
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace the run that is in DIR.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar, no summary.")]
+CheckpointOption = Annotated[
+    float, typer.Option(metavar="SECONDS", help="Wall-clock time between checkpoints in DIR.")
+]
 
 
 @app.callback()
@@ -51,13 +60,33 @@ def run(
     out: OutOption = None,
     force: ForceOption = False,
     quiet: QuietOption = False,
+    checkpoint_every: CheckpointOption = 30.0,
 ) -> None:
     """Run a scenario and certify its momentum and energy."""
-    from onorbit_rs import report
     from onorbit_rs.running import run as run_scenario
 
+    _report(
+        lambda: run_scenario(scenario, out, force=force, quiet=quiet, checkpoint_every=checkpoint_every),
+        quiet=quiet,
+    )
+
+
+@app.command()
+def resume(
+    folder: FolderArgument, quiet: QuietOption = False, checkpoint_every: CheckpointOption = 30.0
+) -> None:
+    """Go on with a run that was killed or interrupted, to the same bits."""
+    from onorbit_rs.running import resume as resume_run
+
+    _report(lambda: resume_run(folder, quiet=quiet, checkpoint_every=checkpoint_every), quiet=quiet)
+
+
+def _report(job: Callable[[], Run], *, quiet: bool) -> None:
+    """Do it and print the summary."""
+    from onorbit_rs import report
+
     try:
-        result = run_scenario(scenario, out=out, force=force, quiet=quiet)
+        result = job()
     except RunInterrupted as stop:  # caught here: typer would swallow a KeyboardInterrupt and its message
         _fail(str(stop), 130)
     if not quiet:
@@ -84,7 +113,7 @@ def check(scenario: ScenarioArgument) -> None:
 
 @app.command()
 def show(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that a run has written.")],
+    folder: FolderArgument,
     viewer: Annotated[bool, typer.Option(help="Open the recording where there is a screen.")] = True,
     picture: Annotated[Path | None, typer.Option(metavar="FILE", help="Save a PNG of the viewer.")] = None,
     at: Annotated[float, typer.Option(metavar="SECONDS", help="Moment of the picture.")] = 0.0,

@@ -12,9 +12,13 @@ class                       built-in               fields
 ``ModelError``              ``ValueError``         ``link, joint, path``: masses, inertias, loops, bad URDF
 ``FrameError``              ``KeyError``           ``name, kind, known, suggestion``: no such frame or joint
 ``OrbitError``              ``ValueError``         ``name, got, expected``: no orbit, or gravity refused
+``ElementSetError``         ``OrbitError``         ``line, column, name``: a TLE or OMM that cannot be read
+``Sgp4Error``               ``OrbitError``         ``code, time, got``: what SGP4 refuses, decay included
+``PathError``               ``OrbitError``         ``time, start, end``: no path, or none at that time
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
+``CheckpointError``         ``ValueError``         ``path``: broken, or of another run: no going on from it
 ``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or factorisation
 ``NotFoundError``           ``FileNotFoundError``  ``path, kind, suggestion``: no such file, robot or scenario
 ``ReadError``               ``OSError``            ``path, kind``: a file is there but cannot be read
@@ -34,10 +38,12 @@ from __future__ import annotations
 from typing import Any
 
 __all__ = [
+    "CheckpointError",
     "ControlError",
     "ConvergenceError",
     "DtypeError",
     "EffectError",
+    "ElementSetError",
     "FrameError",
     "InputError",
     "ModelError",
@@ -47,10 +53,12 @@ __all__ = [
     "OutputFolderError",
     "OutputNotEmptyError",
     "OutputNotWritableError",
+    "PathError",
     "QuantityError",
     "ReadError",
     "RunInterrupted",
     "ScenarioError",
+    "Sgp4Error",
     "ShapeError",
     "SimulationError",
 ]
@@ -134,6 +142,32 @@ class OrbitError(OnOrbitError, ValueError):
     expected: Any = None
 
 
+class ElementSetError(OrbitError):
+    """A TLE or OMM that cannot be read: ``line`` and ``column`` (from 1) of a TLE, ``name`` of an entry."""
+
+    line: Any = None
+    column: Any = None
+
+
+class Sgp4Error(OrbitError):
+    """SGP4 has no state at ``time``, s from the epoch: ``code`` is the reference code's error number.
+
+    1 mean eccentricity, 2 mean motion, 3 perturbed eccentricity, 4 semi-latus rectum, 6 decayed; 5 is no
+    longer raised. ``got`` is the offending value.
+    """
+
+    code: Any = None
+    time: Any = None
+
+
+class PathError(OrbitError):
+    """Points that make no path; or a ``time`` before its ``start`` or after its ``end``, s."""
+
+    time: Any = None
+    start: Any = None
+    end: Any = None
+
+
 class EffectError(OnOrbitError, ValueError):
     """An effect of the environment that makes no sense."""
 
@@ -157,6 +191,12 @@ class SimulationError(OnOrbitError, ArithmeticError):
     q: Any = None
     v: Any = None
     trace: Any = None
+
+
+class CheckpointError(OnOrbitError, ValueError):
+    """A run cannot go on from its checkpoint: broken, or of another scenario, version or instruction set."""
+
+    path: Any = None
 
 
 class ConvergenceError(OnOrbitError, ArithmeticError):

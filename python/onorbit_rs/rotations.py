@@ -9,6 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from onorbit_rs._core import Trace
+
     Floats = NDArray[np.float64]
 
 
@@ -84,6 +86,15 @@ def local_orbital_axes(position: ArrayLike, velocity: ArrayLike) -> Floats:
     momentum = np.cross(r, v)
     z = momentum / np.linalg.norm(momentum, axis=-1, keepdims=True)
     return np.stack([x, np.cross(z, x), z], axis=-1)
+
+
+def has_local_frame(trace: Trace) -> bool:
+    """Whether the run has an orbit on which L is defined all along: it neither stands nor moves radially."""
+    if "position_eci" not in trace.columns():
+        return False
+    r, v = np.asarray(trace.position_eci), np.asarray(trace.velocity_eci)
+    momentum = np.linalg.norm(np.cross(r, v), axis=1)
+    return bool(np.all(momentum > 1e-10 * np.linalg.norm(r, axis=1) * np.linalg.norm(v, axis=1)))
 
 
 def attitude_in_orbit(quat_xyzw: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Floats:

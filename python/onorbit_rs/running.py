@@ -1,8 +1,9 @@
-"""One call from a scenario to results: :func:`run`."""
+"""One call from a scenario to results: :func:`run`; :func:`resume` goes on with one that was stopped."""
 
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,10 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import RunInterrupted, SimulationError
+from onorbit_rs.exceptions import NotFoundError, RunInterrupted, SimulationError
 from onorbit_rs.output import (
+    CheckpointWriter,
     OutputFolder,
+    discard_checkpoint,
+    fingerprint_of,
+    read_checkpoint,
     summarize,
+    with_absolute_paths,
     write_pictures,
     write_scenario,
     write_summary,
@@ -41,12 +47,17 @@ class Run:
     out: Path | None
 
 
+CHECKPOINT_EVERY = 30.0
+"""Wall-clock time between two checkpoints, s."""
+
+
 def run(
     scenario: str | os.PathLike[str] | Mapping[str, Any] | Scenario,
     out: str | os.PathLike[str] | None = None,
     *,
     force: bool = False,
     quiet: bool = False,
+    checkpoint_every: float = CHECKPOINT_EVERY,
 ) -> Run:
     """Run a scenario and, if asked, write its folder.
 
@@ -60,6 +71,8 @@ def run(
         Replace the files of an earlier run in ``out``.
     quiet : bool
         No progress bar, even on a terminal.
+    checkpoint_every : float
+        Wall-clock time between two checkpoints in ``out``, s; :func:`resume` goes on from the last one.
 
     Raises
     ------
@@ -74,25 +87,64 @@ def run(
     checked = load(scenario)
     built = build(checked)
     folder = None if out is None else OutputFolder.claim(out, force=force)
-    if folder is not None:
-        write_scenario(folder, checked)
+    if folder is None:
+        return _go(built, None, quiet=quiet)
+    write_scenario(folder, checked)
+    writer = CheckpointWriter(folder, fingerprint_of(with_absolute_paths(checked)))
+    return _go(built, folder, quiet=quiet, checkpoint=writer, checkpoint_every=checkpoint_every)
+
+
+def resume(
+    out: str | os.PathLike[str], *, quiet: bool = False, checkpoint_every: float = CHECKPOINT_EVERY
+) -> Run:
+    """Go on with a run that was killed or interrupted, to the same bits as if it had not been.
+
+    Parameters
+    ----------
+    out : str or path
+        The folder of the run: its ``scenario.yaml`` and its last checkpoint.
+    quiet : bool
+        No progress bar, even on a terminal.
+    checkpoint_every : float
+        Wall-clock time between two checkpoints, s.
+
+    Raises
+    ------
+    CheckpointError
+        Nothing to go on from: the run ended, or its scenario, robot or our version changed since.
+    OnOrbitError
+        As :func:`run`.
+    """
+    folder = OutputFolder(Path(out))
+    if not (folder.path / "scenario.yaml").is_file():
+        what = "no run in this folder (no scenario.yaml)" if folder.path.is_dir() else "no such folder"
+        raise NotFoundError(f"{what}: {folder.path}", path=str(folder.path), kind="run")
+    scenario = load(folder.path / "scenario.yaml")
+    fingerprint = fingerprint_of(with_absolute_paths(scenario))
+    checkpoint, rows = read_checkpoint(folder.path, fingerprint)
+    writer = CheckpointWriter(folder, fingerprint, rows=rows)
+    return _go(
+        build(scenario), folder, quiet=quiet,
+        checkpoint=writer, checkpoint_every=checkpoint_every, resume=checkpoint,
+    )  # fmt: skip
+
+
+def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints: Any) -> Run:
+    """Simulate, and write what came of it."""
+    scenario, duration = built.scenario, built.scenario.simulation.duration
     try:
-        trace = _simulate(built, quiet=quiet)
+        with progress_bar(scenario.name, duration, quiet=quiet) as progress:
+            trace = built.simulation.run(duration, progress=progress, **checkpoints)
     except (SimulationError, RunInterrupted) as stop:
         _keep(stop, built, folder)
         raise
-    summary = summarize(trace, checked, warnings=built.model.warnings)
+    summary = summarize(trace, scenario, built.orbit, warnings=built.model.warnings)
     if folder is not None:
         write_trace(folder, trace)
         write_summary(folder, summary)
         write_pictures(folder, trace, summary, built)
-    return Run(trace, summary, built.model, checked, folder.path if folder else None)
-
-
-def _simulate(built: Built, *, quiet: bool) -> Trace:
-    duration = built.scenario.simulation.duration
-    with progress_bar(built.scenario.name, duration, quiet=quiet) as progress:
-        return built.simulation.run(duration, progress=progress)
+        discard_checkpoint(folder)
+    return Run(trace, summary, built.model, scenario, folder.path if folder else None)
 
 
 def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFolder | None) -> None:
@@ -108,9 +160,14 @@ def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFo
         return
     with np.errstate(all="ignore"):  # numbers near the end of the range of floats
         status = "diverged" if diverged else "interrupted"
-        summary = summarize(stop.trace, built.scenario, status=status, warnings=built.model.warnings)
+        summary = summarize(
+            stop.trace, built.scenario, built.orbit, status=status, warnings=built.model.warnings
+        )
     write_trace(folder, stop.trace)
     write_summary(folder, summary)
     stop.message += f"; the trace so far is in {folder.path}"
-    if not diverged:  # such numbers make no picture
+    if diverged:  # such numbers make no picture, and there is nothing to go on to
+        discard_checkpoint(folder)
+    else:
+        stop.message += f"; go on with: onorbit resume {shlex.quote(str(folder.path))}"
         write_pictures(folder, stop.trace, summary, built)

@@ -7,7 +7,7 @@ use common::humanoid::{humanoid, start};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::control::{ComputedTorque, ControlError, ControlLaw};
 use onorbit_core::environment::{BodyWrench, EnvironmentError, GravityGradient};
-use onorbit_core::reference::{Hold, TaskReference};
+use onorbit_core::reference::Hold;
 use onorbit_core::simulation::{Simulation, SimulationError};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -31,7 +31,8 @@ fn refused(spoil: impl FnOnce(&mut Simulation)) -> SimulationError {
 fn tracking(simulation: &mut Simulation) -> usize {
     let tool = simulation.model.frame("tool").unwrap();
     let hold = Hold::new(Matrix3::identity(), Vector3::zeros()).unwrap();
-    simulation.reference = Some(TaskReference::Hold(hold));
+    simulation.reference = Some(hold.into());
+    simulation.reference_start_tolerance = [1.0, 4.0]; // from wherever the tool is
     simulation.tool = Some(tool);
     tool
 }
@@ -131,4 +132,14 @@ fn frames_the_robot_does_not_have() {
         s.control = ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(99, 1.0, 1.0)));
     });
     assert!(matches!(error, SimulationError::UnknownFrame { frame: 99, .. }), "{error}");
+}
+
+#[test]
+fn a_reference_that_starts_away_says_how_far() {
+    let error = refused(|s| {
+        tracking(s);
+        s.reference_start_tolerance = [0.05, 0.1];
+    });
+    let SimulationError::ReferenceStartsAway { position, angle, .. } = error else { panic!("{error}") };
+    assert!(position > 0.05 || angle > 0.1);
 }

@@ -9,7 +9,7 @@ use onorbit_core::control::{ComputedTorque, ControlLaw};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::environment::{BodyWrench, GravityGradient};
 use onorbit_core::orbit::{Kepler, MU_EARTH};
-use onorbit_core::reference::{LineParabola, TaskReference};
+use onorbit_core::reference::LineParabola;
 use onorbit_core::simulation::{
     Checkpoint, CheckpointError, Integrator, Simulation, SimulationError, Trace, certify,
 };
@@ -35,7 +35,7 @@ fn simulation(integrator: Integrator, record_every: usize) -> Simulation {
     simulation.effects = vec![Arc::new(GravityGradient), Arc::new(push.during(0.2503, 1.1007).unwrap())];
     simulation.control = ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(tool, 100.0, 20.0)));
     simulation.tool = Some(tool);
-    simulation.reference = Some(TaskReference::LineParabola(line));
+    simulation.reference = Some(line.into());
     simulation.control_period = Some(2.5e-3);
     simulation.integrator = integrator;
     simulation.record_every = record_every;

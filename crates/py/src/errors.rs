@@ -6,9 +6,11 @@ use onorbit_core::control::ControlError;
 use onorbit_core::environment::EnvironmentError;
 use onorbit_core::model::ModelError;
 use onorbit_core::model::urdf::{UrdfError, UrdfProblem};
-use onorbit_core::orbit::OrbitError;
+use onorbit_core::orbit::sgp4::{ElementSetError, Sgp4Error};
+use onorbit_core::orbit::{OrbitError, PathError};
 use onorbit_core::reference::ReferenceError;
 use onorbit_core::simulation::SimulationError;
+use onorbit_core::spatial::SplineError;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -100,7 +102,12 @@ impl IntoPython for InputError {
                 raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
             }
             Self::Singular { .. } => plain(py, "ConvergenceError", &message),
+            Self::Adaptive => {
+                let fields = fields!(py, "name": "integrator", "got": "dormand_prince");
+                raise(py, "InputError", &message, &fields)
+            }
             Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
+            Self::NeedsOrbit => plain(py, "ControlError", &message),
             Self::Diverged { .. } => plain(py, "SimulationError", &message),
             Self::QuaternionNorm { norm, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
@@ -132,9 +139,61 @@ impl IntoPython for OrbitError {
             Self::BeyondAsymptote { value, .. } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": "true_anomaly", "got": value))
             }
+            Self::Path(error) => path_error(py, error, &message),
+            Self::ElementSet(error) => element_set_error(py, error, &message),
+            Self::Sgp4(error) => sgp4_error(py, error, &message),
             _ => plain(py, "OrbitError", &message),
         }
     }
+}
+
+fn path_error(py: Python<'_>, error: &PathError, message: &str) -> PyErr {
+    let fields = match error {
+        PathError::TimeOutOfPath { time, start, end } => {
+            fields!(py, "name": "t", "got": time, "time": time, "start": start, "end": end)
+        }
+        PathError::NotIncreasing { time, .. } => fields!(py, "name": "times", "got": time),
+        PathError::NotFinite { name, value, .. } => fields!(py, "name": name, "got": value),
+        PathError::WrongLength { name, expected, got } => {
+            fields!(py, "name": name, "expected": expected, "got": got)
+        }
+        PathError::TooFewPoints { got } => fields!(py, "name": "times", "got": got, "expected": "at least 2"),
+        PathError::QuaternionNorm { norm, .. } => {
+            fields!(py, "name": "attitudes", "got": norm, "expected": 1.0)
+        }
+        PathError::TurnTooFar { angle, .. } => fields!(py, "name": "attitudes", "got": angle),
+        _ => fields!(py,),
+    };
+    raise(py, "PathError", message, &fields)
+}
+
+fn element_set_error(py: Python<'_>, error: &ElementSetError, message: &str) -> PyErr {
+    let fields = match error {
+        ElementSetError::Length { line, got } => fields!(py, "line": line, "got": got, "expected": 69),
+        ElementSetError::Column { line, column, got, expected } => {
+            fields!(py, "line": line, "column": column, "got": got, "expected": expected)
+        }
+        ElementSetError::Checksum { line, got, expected } => {
+            fields!(py, "line": line, "column": 69, "got": got, "expected": expected)
+        }
+        ElementSetError::TwoSatellites { first, second } => {
+            fields!(py, "line": 2, "column": 3, "got": second, "expected": first)
+        }
+        ElementSetError::Missing { key } => fields!(py, "name": key),
+        ElementSetError::Entry { key, got, expected } => {
+            fields!(py, "name": key, "got": got, "expected": expected)
+        }
+        ElementSetError::Range { name, got, range } => {
+            fields!(py, "name": name, "got": got, "expected": (*range.start(), *range.end()))
+        }
+        _ => fields!(py,),
+    };
+    raise(py, "ElementSetError", message, &fields)
+}
+
+fn sgp4_error(py: Python<'_>, error: &Sgp4Error, message: &str) -> PyErr {
+    let fields = fields!(py, "code": error.code(), "time": error.time(), "got": error.value());
+    raise(py, "Sgp4Error", message, &fields)
 }
 
 impl IntoPython for EnvironmentError {
@@ -159,6 +218,30 @@ impl IntoPython for ReferenceError {
             Self::DurationNotPositive { value } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": "duration", "got": value))
             }
+            Self::Ramp { value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "ramp", "got": value))
+            }
+            Self::LimitNotPositive { value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "limit", "got": value))
+            }
+            Self::LastRow { row } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "pose", "got": row.to_vec()))
+            }
+            Self::WrongLength { name, expected, got } => raise(
+                py,
+                "ShapeError",
+                &message,
+                &fields!(py, "name": name, "expected": expected, "got": got),
+            ),
+            Self::NoJoint { joint, .. } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "joint", "got": joint))
+            }
+            Self::Spline(SplineError::WrongLength { name, expected, got }) => raise(
+                py,
+                "ShapeError",
+                &message,
+                &fields!(py, "name": name, "expected": expected, "got": got),
+            ),
             _ => plain(py, "ControlError", &message),
         }
     }
@@ -206,11 +289,35 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::QuaternionNorm { norm } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
             }
+            SimulationError::Tolerance { value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "tolerance", "got": value))
+            }
+            SimulationError::Restitution { value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "restitution", "got": value))
+            }
+            SimulationError::OutsideLimits { joint, value, lower, upper } => raise(
+                py,
+                "InputError",
+                &message,
+                &fields!(py, "name": joint, "got": value, "expected": (lower, upper)),
+            ),
+            SimulationError::StepTooSmall { time, step } => raise(
+                py,
+                "SimulationError",
+                &message,
+                &fields!(py, "time": time, "step": step, "trace": trace),
+            ),
             SimulationError::RecordEvery => plain(py, "InputError", &message),
             SimulationError::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
             SimulationError::NeedsReference
             | SimulationError::NeedsTool
             | SimulationError::OtherTool { .. } => plain(py, "ControlError", &message),
+            SimulationError::ReferenceStartsAway { position, angle, tolerance } => raise(
+                py,
+                "ControlError",
+                &message,
+                &fields!(py, "name": "reference", "got": (position, angle), "expected": tolerance.to_vec()),
+            ),
             SimulationError::UnknownFrame { .. } | SimulationError::TooManyRows { .. } => {
                 plain(py, "InputError", &message)
             }
@@ -225,6 +332,10 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             }
             SimulationError::Orbit { time, source } => with_trace(py, source.into_python(py), time, trace),
             SimulationError::Environment { time, source } => {
+                with_trace(py, source.into_python(py), time, trace)
+            }
+            SimulationError::Checkpoint(_) => plain(py, "CheckpointError", &message),
+            SimulationError::Reference { time, source } => {
                 with_trace(py, source.into_python(py), time, trace)
             }
             SimulationError::Control(source) => source.into_python(py),

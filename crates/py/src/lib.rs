@@ -2,6 +2,7 @@
 
 mod arrays;
 mod builder;
+mod checkpoint;
 mod control;
 mod environment;
 mod errors;
@@ -50,15 +51,18 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<builder::PyModelBuilder>()?;
     m.add_class::<orbit::PyOrbit>()?;
     m.add_class::<orbit::PyKepler>()?;
+    m.add_class::<orbit::PySgp4>()?;
+    m.add_class::<orbit::PyCustomPath>()?;
+    m.add_class::<orbit::PyFixedFrame>()?;
     m.add_class::<environment::PyEffect>()?;
     m.add_class::<environment::PyGravityGradient>()?;
     m.add_class::<environment::PyBodyWrench>()?;
     m.add_class::<control::PyComputedTorque>()?;
     m.add_class::<control::PyState>()?;
-    m.add_class::<reference::PyHold>()?;
-    m.add_class::<reference::PyLineParabola>()?;
+    reference::add_classes(m)?;
     m.add_class::<simulation::PySimulation>()?;
     m.add_class::<trace::PyTrace>()?;
+    m.add_class::<checkpoint::PyCheckpoint>()?;
     m.add_function(wrap_pyfunction!(build_info, m)?)?;
     m.add_function(wrap_pyfunction!(rollout::rollout, m)?)?;
     Ok(())

@@ -1,10 +1,21 @@
 //! Reference orbits.
 
-use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
+mod custom_path;
+mod fixed_frame;
+mod sgp4;
+
+pub(crate) use custom_path::PyCustomPath;
+pub(crate) use fixed_frame::PyFixedFrame;
+pub(crate) use sgp4::PySgp4;
+
+use crate::arrays::{Input, array_of, fixed, fresh, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use nalgebra::Vector3;
-use onorbit_core::orbit::{Elements, Kepler, Orbit, Phase, Size, lvlh_frames, states};
+use onorbit_core::orbit::{
+    Elements, Kepler, Orbit, OrbitError, Phase, Size, lvlh_frames, path_frames, states,
+};
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
@@ -13,7 +24,23 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 #[pyclass(name = "Orbit", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyOrbit {
     pub(crate) orbit: Arc<dyn Orbit>,
+    /// Constructor, arguments and keywords that make it again.
+    made: Py<PyTuple>,
 }
+
+/// The base object of an orbit of any kind.
+fn base(
+    orbit: Arc<dyn Orbit>,
+    constructor: &str,
+    arguments: &Bound<'_, PyTuple>,
+    keywords: &Bound<'_, PyDict>,
+) -> PyResult<PyOrbit> {
+    let made = (constructor, arguments, keywords).into_pyobject(arguments.py())?;
+    Ok(PyOrbit { orbit, made: made.unbind() })
+}
+
+/// One of the functions that fill rotations and rates.
+type FillFrames = fn(&dyn Orbit, &[f64], &mut [f64], &mut [f64]) -> Result<(), OrbitError>;
 
 #[pymethods]
 impl PyOrbit {
@@ -21,6 +48,18 @@ impl PyOrbit {
     #[getter]
     fn mu(&self) -> Option<f64> {
         self.orbit.mu()
+    }
+
+    /// Inertial axes of positions and velocities: ``GCRF``, or ``TEME`` for an element set.
+    #[getter]
+    fn axes(&self) -> &'static str {
+        self.orbit.axes().name()
+    }
+
+    /// Where the velocity comes from: SGP4's is not exactly the derivative of its position.
+    #[getter]
+    fn velocity_source(&self) -> &'static str {
+        self.orbit.velocity_source()
     }
 
     /// Position and velocity at ``t`` s: (3,), (3,) or for (T,) times (T, 3), (T, 3); m, m/s, inertial axes.
@@ -45,17 +84,42 @@ impl PyOrbit {
         py: Python<'py>,
         t: Any<'_, 'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        self.frames(py, t, lvlh_frames)
+    }
+
+    /// Frame that rides on the reference at ``t`` s: the attitude it was given (its axes to inertial ones), else the
+    /// local orbital frame; shapes as those of :meth:`lvlh`.
+    fn frame<'py>(
+        &self,
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        self.frames(py, t, path_frames)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
+        Ok((py.import("onorbit_rs.rebuild")?.getattr("rebuild")?, self.made.clone_ref(py)))
+    }
+}
+
+impl PyOrbit {
+    fn frames<'py>(
+        &self,
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+        fill: FillFrames,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let (times, shape) = times(t)?;
         let with = |tail: &[usize]| shape.iter().chain(tail).copied().collect::<Vec<usize>>();
         let (rotations, rates) = (zeros(py, &with(&[3, 3]))?, zeros(py, &with(&[3]))?);
         let (to_r, to_w) = (fresh(&rotations), fresh(&rates));
-        py.detach(|| lvlh_frames(&*self.orbit, &times, to_r, to_w)).map_err(|error| error.into_python(py))?;
+        py.detach(|| fill(&*self.orbit, &times, to_r, to_w)).map_err(|error| error.into_python(py))?;
         Ok((rotations.into_any(), rates.into_any()))
     }
 }
 
 /// One instant (shape ``()``) or many (shape ``(T,)``).
-fn times(t: Any<'_, '_>) -> PyResult<(Vec<f64>, Vec<usize>)> {
+pub(crate) fn times(t: Any<'_, '_>) -> PyResult<(Vec<f64>, Vec<usize>)> {
     if let Ok(one) = t.extract::<f64>() {
         return Ok((vec![one], Vec::new()));
     }
@@ -76,10 +140,13 @@ pub(crate) struct PyKepler {
     kepler: Arc<Kepler>,
 }
 
-fn wrap(kepler: Kepler) -> PyClassInitializer<PyKepler> {
+fn wrap(
+    kepler: Kepler,
+    made: impl FnOnce(Arc<dyn Orbit>) -> PyResult<PyOrbit>,
+) -> PyResult<PyClassInitializer<PyKepler>> {
     let kepler = Arc::new(kepler);
-    PyClassInitializer::from(PyOrbit { orbit: Arc::clone(&kepler) as Arc<dyn Orbit> })
-        .add_subclass(PyKepler { kepler })
+    let orbit = made(Arc::clone(&kepler) as Arc<dyn Orbit>)?;
+    Ok(PyClassInitializer::from(orbit).add_subclass(PyKepler { kepler }))
 }
 
 #[pymethods]
@@ -118,7 +185,14 @@ impl PyKepler {
         };
         let elements =
             Elements { size, eccentricity, inclination, raan, argument_of_periapsis, phase, mu, epoch };
-        Ok(wrap(Kepler::new(&elements).map_err(|error| error.into_python(py))?))
+        let keywords = fields!(
+            py, "semi_major_axis": semi_major_axis, "semi_latus_rectum": semi_latus_rectum,
+            "eccentricity": eccentricity, "inclination": inclination, "raan": raan,
+            "argument_of_periapsis": argument_of_periapsis, "mean_anomaly": mean_anomaly,
+            "true_anomaly": true_anomaly, "periapsis_time": periapsis_time, "epoch": epoch, "mu": mu,
+        );
+        let kepler = Kepler::new(&elements).map_err(|error| error.into_python(py))?;
+        wrap(kepler, |orbit| base(orbit, "Kepler", &PyTuple::empty(py), &keywords))
     }
 
     /// The orbit through position ``r`` (3,) m with velocity ``v`` (3,) m/s at time zero, inertial axes.
@@ -131,8 +205,12 @@ impl PyKepler {
         mu: f64,
     ) -> PyResult<Bound<'py, Self>> {
         let vector = |value, name| Ok::<_, PyErr>(Vector3::from(fixed::<3>(value, name, &[3])?));
-        let kepler = Kepler::from_state(vector(r, "r")?, vector(v, "v")?, mu);
-        Bound::new(py, wrap(kepler.map_err(|error| error.into_python(py))?))
+        let (r, v) = (vector(r, "r")?, vector(v, "v")?);
+        let kepler = Kepler::from_state(r, v, mu).map_err(|error| error.into_python(py))?;
+        let arguments =
+            (array_of(py, &[3], r.as_slice()), array_of(py, &[3], v.as_slice())).into_pyobject(py)?;
+        let keywords = fields!(py, "mu": mu);
+        Bound::new(py, wrap(kepler, |orbit| base(orbit, "Kepler.from_state", &arguments, &keywords))?)
     }
 
     /// Semi-major axis, m; negative for a hyperbola, infinite for a parabola.

@@ -58,7 +58,7 @@ pub(crate) fn rollout<'py>(
         return Err(plain(py, "InputError", "record_every is 0, it must be at least 1 step"));
     }
     let tau = tau.map(|tau| Input::new(tau, "tau")).transpose()?;
-    let reference = reference.map(reference::extract).transpose()?;
+    let reference = reference.map(|value| reference::extract(value, None)).transpose()?;
     let control = match (&tau, controller, &reference) {
         (None, None, _) => RolloutControl::Passive,
         (Some(tau), None, _) => {

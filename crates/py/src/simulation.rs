@@ -1,6 +1,7 @@
 //! Runs.
 
-use crate::arrays::{Input, wrong_shape};
+use crate::arrays::{Input, fixed, wrong_shape};
+use crate::checkpoint::{Keeper, PyCheckpoint};
 use crate::control::{PyComputedTorque, PythonController};
 use crate::environment::PyEffect;
 use crate::errors::{SimulationErrorExt, fields, plain, raise};
@@ -9,8 +10,9 @@ use crate::orbit::PyOrbit;
 use crate::reference;
 use crate::trace::PyTrace;
 use onorbit_core::control::{ControlError, ControlLaw};
+use onorbit_core::environment::ReferenceMotion;
 use onorbit_core::model::Model;
-use onorbit_core::simulation::{Integrator, RunFailure, Simulation, SimulationError};
+use onorbit_core::simulation::{Integrator, Moment, RunFailure, Simulation, SimulationError};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, TryLockError};
@@ -23,10 +25,14 @@ pub(crate) const PACE: Duration = Duration::from_millis(50);
 
 /// A robot, where it starts, what acts on it and how time is cut; :meth:`run` starts afresh at every call.
 ///
-/// ``q`` (nq,), ``v`` (nv,); ``orbit`` brings gravity on every body; ``environment`` lists effects; ``controller`` is
+/// ``q`` (nq,), ``v`` (nv,); ``orbit`` brings gravity on every body: ``gravity_mode`` is
+/// ``true`` (the robot falls away from a reference that does not fall freely) or ``carried`` (tides only, the robot goes
+/// along; what is left out is ``trace.reference_residual``). ``environment`` lists effects; ``controller`` is
 /// a ``ComputedTorque`` or an object with ``update(t, state) -> tau (n,)``; ``reference`` is for the frame ``tool`` (by
-/// default the controller's); ``control_period`` s between calls of the controller (every step by default);
-/// ``integrator`` is ``rk4`` or ``semi_implicit_euler``.
+/// default the controller's) and may start ``reference_start_tolerance`` (m, rad) from it, (0.05, 0.1) by default; ``control_period`` s between calls of the controller (every step by default);
+/// ``integrator`` is ``rk4``, ``semi_implicit_euler`` or ``dormand_prince``, which takes steps as long as ``tolerance`` lets
+/// it (a share: of a radian, of the robot's size, of rates) and records its rows on the grid of ``time_step`` in between;
+/// ``enforce_limits`` puts rigid stops at the joints' position limits, which give back ``restitution`` (0 to 1) of the rate.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     simulation: Mutex<Simulation>,
@@ -37,8 +43,9 @@ pub(crate) struct PySimulation {
 impl PySimulation {
     #[new]
     #[pyo3(signature = (
-        model, q, v, *, orbit=None, environment=None, controller=None, reference=None, tool=None, time_step=1e-3,
-        control_period=None, integrator="rk4", record_every=1,
+        model, q, v, *, orbit=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
+        time_step=1e-3, control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
+        tolerance=1e-9, enforce_limits=false, restitution=0.0,
     ))]
     fn new(
         py: Python<'_>,
@@ -46,6 +53,7 @@ impl PySimulation {
         q: Any<'_, '_>,
         v: Any<'_, '_>,
         orbit: Option<&Bound<'_, PyOrbit>>,
+        gravity_mode: &str,
         environment: Option<Vec<Bound<'_, PyEffect>>>,
         controller: Option<Any<'_, '_>>,
         reference: Option<Any<'_, '_>>,
@@ -54,6 +62,10 @@ impl PySimulation {
         control_period: Option<f64>,
         integrator: &str,
         record_every: i64,
+        reference_start_tolerance: Option<Any<'_, '_>>,
+        tolerance: f64,
+        enforce_limits: bool,
+        restitution: f64,
     ) -> PyResult<Self> {
         let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
         let core = Arc::clone(&model.model);
@@ -69,12 +81,25 @@ impl PySimulation {
         };
         let mut simulation = Simulation::new(Arc::clone(&core), q.data().to_vec(), v.data().to_vec());
         simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
+        simulation.reference_motion = match gravity_mode {
+            "true" => ReferenceMotion::True,
+            "carried" => ReferenceMotion::Carried,
+            other => {
+                let message = format!("gravity_mode is '{other}'; there are 'true' and 'carried'");
+                let fields = fields!(py, "name": "gravity_mode", "got": other);
+                return Err(raise(py, "InputError", &message, &fields));
+            }
+        };
         simulation.effects = environment
             .unwrap_or_default()
             .iter()
             .map(|effect| effect.get().on(py, &core))
             .collect::<PyResult<_>>()?;
-        simulation.reference = reference.map(reference::extract).transpose()?;
+        simulation.reference =
+            reference.map(|value| reference::extract(value, simulation.orbit.as_ref())).transpose()?;
+        if let Some(tolerance) = reference_start_tolerance {
+            simulation.reference_start_tolerance = fixed(tolerance, "reference_start_tolerance", &[2])?;
+        }
         simulation.tool = tool.map(|tool| model.frame(tool)).transpose()?;
         if let Some(controller) = controller {
             if let Ok(law) = controller.cast::<PyComputedTorque>() {
@@ -97,16 +122,40 @@ impl PySimulation {
         simulation.control_period = control_period;
         simulation.integrator = integrator_named(py, integrator)?;
         simulation.record_every = record_every;
+        simulation.tolerance = tolerance;
+        simulation.stops = enforce_limits.then_some(restitution);
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         Ok(Self { simulation: Mutex::new(simulation), model: core })
     }
 
     /// Run from the given state for ``duration`` s and return the :class:`Trace`.
     ///
-    /// ``progress(t, duration)`` is called at a steady wall-clock pace. Ctrl-C raises ``RunInterrupted``, a diverging
-    /// run ``SimulationError``; both carry the trace so far.
-    #[pyo3(signature = (duration, *, progress=None))]
-    fn run(&self, py: Python<'_>, duration: f64, progress: Option<Py<PyAny>>) -> PyResult<PyTrace> {
+    /// ``progress(t, duration)`` is called at a steady wall-clock pace. ``checkpoint(c)`` is handed a :class:`Checkpoint` every
+    /// ``checkpoint_every`` s of wall clock and at Ctrl-C; with ``resume`` the run goes on from one, to the same bits.
+    /// Ctrl-C raises ``RunInterrupted``, a diverging run ``SimulationError``; both carry the trace so far.
+    #[pyo3(signature = (duration, *, progress=None, checkpoint=None, checkpoint_every=30.0, resume=None))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        duration: f64,
+        progress: Option<Py<PyAny>>,
+        checkpoint: Option<Py<PyAny>>,
+        checkpoint_every: f64,
+        resume: Option<&Bound<'_, PyCheckpoint>>,
+    ) -> PyResult<PyTrace> {
+        let every = Duration::try_from_secs_f64(checkpoint_every).map_err(|_| {
+            let message = format!("checkpoint_every is {checkpoint_every} s, it must be zero or positive");
+            raise(
+                py,
+                "InputError",
+                &message,
+                &fields!(py, "name": "checkpoint_every", "got": checkpoint_every),
+            )
+        })?;
+        let from = resume.map(|checkpoint| checkpoint.get().read(py)).transpose()?;
+        let (rows, wall) =
+            (from.as_ref().map_or(0, |from| from.0.rows()), resume.map_or(0.0, |c| c.get().wall_s));
+        let mut keeper = Keeper::new(checkpoint, every, rows, wall);
         let mut raised: Option<PyErr> = None;
         let ran = py.detach(|| {
             let mut simulation = match self.simulation.try_lock() {
@@ -114,14 +163,19 @@ impl PySimulation {
                 Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
                 Err(TryLockError::WouldBlock) => return None,
             };
-            let start = Instant::now();
-            let mut last = start;
-            let mut monitor = |t: f64| {
+            let mut last = Instant::now();
+            let mut monitor = |now: &Moment<'_>| {
                 if last.elapsed() < PACE {
                     return ControlFlow::Continue(());
                 }
                 last = Instant::now();
-                match Python::attach(|py| look(py, progress.as_ref(), t, duration)) {
+                let looked = Python::attach(|py| {
+                    look(py, progress.as_ref(), now.time, duration).inspect_err(|_| {
+                        let _ = keeper.keep(py, now); // the first error is told
+                    })?;
+                    keeper.keep_if_due(py, now)
+                });
+                match looked {
                     Ok(()) => ControlFlow::Continue(()),
                     Err(error) => {
                         raised = Some(error);
@@ -129,15 +183,18 @@ impl PySimulation {
                     }
                 }
             };
-            let result = simulation.run(duration, &mut monitor);
-            Some((result, start.elapsed().as_secs_f64()))
+            Some(match from {
+                None => simulation.run(duration, &mut monitor),
+                Some((checkpoint, rows)) => simulation.resume(duration, (&checkpoint, rows), &mut monitor),
+            })
         });
-        let Some((result, wall)) = ran else {
+        let Some(result) = ran else {
             let message = "this simulation is running already; make another one to run beside it";
             return Err(plain(py, "SimulationError", message));
         };
+        let wall_s = keeper.wall();
         let wrap =
-            |trace, is_complete| PyTrace { trace, model: Arc::clone(&self.model), is_complete, wall_s: wall };
+            |trace, is_complete| PyTrace { trace, model: Arc::clone(&self.model), is_complete, wall_s };
         match result {
             Ok(trace) => Ok(wrap(trace, true)),
             Err(RunFailure { error, trace }) => Err(self.failure(py, error, wrap(*trace, false), raised)),
@@ -187,8 +244,9 @@ pub(crate) fn integrator_named(py: Python<'_>, name: &str) -> PyResult<Integrato
     match name {
         "rk4" => Ok(Integrator::Rk4),
         "semi_implicit_euler" => Ok(Integrator::SemiImplicitEuler),
+        "dormand_prince" => Ok(Integrator::DormandPrince),
         other => {
-            let message = format!("integrator is '{other}'; there are 'rk4' and 'semi_implicit_euler'");
+            let message = format!("integrator is '{other}'; there are 'rk4', 'semi_implicit_euler' and 'dormand_prince'");
             Err(raise(py, "InputError", &message, &fields!(py, "name": "integrator", "got": other)))
         }
     }

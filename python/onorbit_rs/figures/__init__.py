@@ -17,6 +17,7 @@ from onorbit_rs.figures.motion import base_motion, conservation
 from onorbit_rs.figures.orbit import orbit_overview
 from onorbit_rs.figures.tracking import joint_torques, tracking_errors
 from onorbit_rs.figures.trajectory import desired_trajectory, obtained_trajectory
+from onorbit_rs.rotations import has_local_frame
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model, Trace
@@ -36,7 +37,7 @@ WORTH_AN_ORBIT_DEG = 5.0
 """Angle flown around the planet from which the orbit is drawn."""
 
 
-def save_all(trace: Trace, model: Model, folder: Path) -> list[Path]:
+def save_all(trace: Trace, model: Model, folder: Path, *, has_planet: bool = True) -> list[Path]:
     """Write every figure that this trace has the columns for.
 
     Parameters
@@ -45,6 +46,8 @@ def save_all(trace: Trace, model: Model, folder: Path) -> list[Path]:
     model : Model
     folder : Path
         Made where missing.
+    has_planet : bool
+        Whether the orbit, if any, is around a planet: else it is not drawn around one.
 
     Returns
     -------
@@ -53,13 +56,13 @@ def save_all(trace: Trace, model: Model, folder: Path) -> list[Path]:
     """
     folder.mkdir(parents=True, exist_ok=True)
     files = []
-    for name, draw in _fitting(trace, model):
+    for name, draw in _fitting(trace, model, has_planet):
         files.append(folder / f"{name}.png")
         draw().savefig(files[-1])
     return files
 
 
-def _fitting(trace: Trace, model: Model) -> Iterator[tuple[str, Callable[[], Figure]]]:
+def _fitting(trace: Trace, model: Model, has_planet: bool) -> Iterator[tuple[str, Callable[[], Figure]]]:
     columns = set(trace.columns())
     if "reference_pose" in columns:
         yield "fig4_desired_trajectory", lambda: desired_trajectory(trace, model)
@@ -69,7 +72,7 @@ def _fitting(trace: Trace, model: Model) -> Iterator[tuple[str, Callable[[], Fig
         yield "fig7_joint_torques", lambda: joint_torques(trace, model)
     yield "base_motion", lambda: base_motion(trace)
     yield "conservation", lambda: conservation(trace)
-    if "position_eci" in columns and _angle_flown_deg(trace) > WORTH_AN_ORBIT_DEG:
+    if has_planet and has_local_frame(trace) and _angle_flown_deg(trace) > WORTH_AN_ORBIT_DEG:
         yield "orbit", lambda: orbit_overview(trace)
 
 

@@ -2,13 +2,30 @@
 
 from __future__ import annotations
 
+from onorbit_rs.output.checkpoint import (
+    CheckpointWriter,
+    discard_checkpoint,
+    fingerprint_of,
+    read_checkpoint,
+)
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.summary import summarize
-from onorbit_rs.output.write import write_pictures, write_scenario, write_summary, write_trace
+from onorbit_rs.output.write import (
+    with_absolute_paths,
+    write_pictures,
+    write_scenario,
+    write_summary,
+    write_trace,
+)
 
 __all__ = [
+    "CheckpointWriter",
     "OutputFolder",
+    "discard_checkpoint",
+    "fingerprint_of",
+    "read_checkpoint",
     "summarize",
+    "with_absolute_paths",
     "write_pictures",
     "write_scenario",
     "write_summary",

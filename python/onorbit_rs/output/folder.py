@@ -18,6 +18,7 @@ from onorbit_rs.exceptions import (
 
 OURS = ("scenario.yaml", "trace.npz", "summary.json", "run.rrd")
 FIGURES = "figures"
+CHECKPOINT = "checkpoint"
 
 
 @dataclass(frozen=True)
@@ -113,8 +114,12 @@ class OutputFolder:
 
     def _remove_earlier_run(self) -> None:
         """Only what a run writes."""
-        figures = self.path / FIGURES
-        for file in [*(self.path / name for name in OURS), *figures.glob("*.png")]:
+        figures, checkpoint = self.path / FIGURES, self.path / CHECKPOINT
+        rows = [
+            checkpoint / "state.json",
+            *checkpoint.glob("*.f64"),
+        ]  # the state first: rows alone count nothing
+        for file in [*(self.path / name for name in OURS), *figures.glob("*.png"), *rows]:
             try:
                 file.unlink(missing_ok=True)
             except OSError as error:

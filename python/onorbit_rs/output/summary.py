@@ -13,7 +13,7 @@ from onorbit_rs import _core
 from onorbit_rs.rotations import angle_between
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Trace
+    from onorbit_rs._core import Orbit, Trace
     from onorbit_rs.scenario import Scenario
 
 Summary = dict[str, Any]
@@ -31,7 +31,12 @@ CHECKS = (
 
 
 def summarize(
-    trace: Trace, scenario: Scenario, *, status: str = "complete", warnings: Sequence[str] = ()
+    trace: Trace,
+    scenario: Scenario,
+    orbit: Orbit | None = None,
+    *,
+    status: str = "complete",
+    warnings: Sequence[str] = (),
 ) -> Summary:
     """Everything a reader wants to know of a run without opening its trace.
 
@@ -39,6 +44,8 @@ def summarize(
     ----------
     trace : Trace
     scenario : Scenario
+    orbit : Orbit, optional
+        What it flew on.
     status : str
         ``complete``, ``interrupted`` or ``diverged``.
     warnings : sequence of str
@@ -54,10 +61,12 @@ def summarize(
         {"scenario": scenario.name, "status": status}
         | _tracking(trace)
         | _motion(trace)
+        | _losses(trace)
         | _certificate(trace)
         | {"simulated_s": simulated_s, "wall_s": trace.wall_s}
         | {"real_time_factor": simulated_s / max(trace.wall_s, 1e-9), "rows": len(trace.time)}
         | _settings(scenario)
+        | _orbit(trace, scenario, orbit)
         | {"warnings": "; ".join(warnings)}
         | _versions()
     )
@@ -100,9 +109,32 @@ def _motion(trace: Trace) -> Summary:
     return motion
 
 
+def _losses(trace: Trace) -> Summary:
+    """Energy the joints took, and the joints that went past limits nothing enforced."""
+    if "dissipated" not in trace.columns() or np.asarray(trace.q).shape[1] == 7:
+        return {}
+    return {
+        "joint_dissipation_j": np.asarray(trace.dissipated)[-1],
+        "joint_limits_exceeded": ", ".join(trace.joint_limits_exceeded()),
+    }
+
+
 def _settings(scenario: Scenario) -> Summary:
     settings = scenario.simulation
     return {"time_step_s": settings.time_step, "integrator": settings.integrator}
+
+
+def _orbit(trace: Trace, scenario: Scenario, orbit: Orbit | None) -> Summary:
+    """Axes of the absolute states, where their velocity comes from, and the gravity that was left out."""
+    if orbit is None:
+        return {}
+    summary: Summary = {"inertial_axes": orbit.axes, "velocity_eci_source": orbit.velocity_source}
+    if orbit.mu is not None:
+        summary["gravity_mode"] = scenario.gravity_mode
+    if "reference_residual" in trace.columns():
+        residual = np.linalg.norm(np.asarray(trace.reference_residual), axis=1)
+        summary["reference_residual_max_m_s2"] = residual.max()
+    return summary
 
 
 def _versions() -> Summary:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import yaml
 
+from onorbit_rs.exceptions import OrbitError
 from onorbit_rs.output.folder import FIGURES, OutputFolder
 
 if TYPE_CHECKING:
@@ -50,9 +51,10 @@ def write_pictures(folder: OutputFolder, trace: Trace, summary: dict[str, Any], 
     # Imported here: matplotlib and rerun take a second that a run without output should not pay.
     from onorbit_rs import figures, viewer
 
+    has_planet = built.orbit is not None and built.orbit.mu is not None
     if len(trace.time) > 1:
         with folder.refusals(FIGURES):
-            figures.save_all(trace, built.model, folder.path / FIGURES)
+            figures.save_all(trace, built.model, folder.path / FIGURES, has_planet=has_planet)
     with folder.writing("run.rrd") as path:
         viewer.write_recording(
             path,
@@ -60,7 +62,8 @@ def write_pictures(folder: OutputFolder, trace: Trace, summary: dict[str, Any], 
             built.model,
             title=built.scenario.name,
             notes=notes(summary, built.scenario),
-            orbit_path=one_revolution(built.orbit),
+            orbit_path=path_around_planet(built.orbit),
+            has_planet=has_planet,
         )
 
 
@@ -73,6 +76,10 @@ def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
         robot["urdf"] = str((beside / robot["urdf"]).resolve())
     if "package_paths" in robot:
         robot["package_paths"] = [str((beside / folder).resolve()) for folder in robot["package_paths"]]
+    orbit = data.get("orbit", {})
+    for name in ("file", "tle_file", "omm_file"):
+        if name in orbit:
+            orbit[name] = str((beside / orbit[name]).resolve())
     settings = data["simulation"]
     settings.setdefault("control_period", settings["time_step"])
     return data
@@ -84,12 +91,18 @@ def notes(summary: dict[str, Any], scenario: Scenario) -> str:
     return f"# {scenario.name}\n\n{scenario.description}\n\n| | |\n|-|-|\n{rows}\n"
 
 
-def one_revolution(orbit: Any, points: int = 361) -> Any:
-    """(k, 3) positions along a closed orbit, m; None where there is none."""
-    period = getattr(orbit, "period", None)
-    if period is None or not np.isfinite(period):
+def path_around_planet(orbit: Any, points: int = 361) -> Any:
+    """(k, 3) positions along a closed orbit or a whole path, m; None where there is none around a planet."""
+    if orbit is None or orbit.mu is None:
         return None
-    return np.asarray(orbit.state(np.linspace(0.0, period, points))[0])
+    period = getattr(orbit, "period", None)
+    start, end = getattr(orbit, "span", (0.0, period))
+    if end is None or not np.isfinite(end):
+        return None
+    try:
+        return np.asarray(orbit.state(np.linspace(start, end, points))[0])
+    except OrbitError:  # decays within its first revolution
+        return None
 
 
 def _short(value: Any) -> str:

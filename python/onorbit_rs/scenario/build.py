@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core, robots
-from onorbit_rs.exceptions import EffectError, FrameError, OnOrbitError, OrbitError
+from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.environment import BodyWrenchEffect
-from onorbit_rs.scenario.orbit import KeplerOrbit
+from onorbit_rs.scenario.make_orbit import make_orbit
 from onorbit_rs.scenario.place import dotted, file_and_line
-from onorbit_rs.scenario.reference import reference_of
+from onorbit_rs.scenario.reference import Start, reference_of
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.start import initial_state
 
@@ -32,7 +32,7 @@ class Built:
 
     scenario: Scenario
     model: _core.Model
-    orbit: _core.Kepler | None
+    orbit: _core.Orbit | None
     q: Floats
     v: Floats
     simulation: _core.Simulation
@@ -49,7 +49,8 @@ def build(scenario: Scenario) -> Built:
     with located(scenario, "robot"):
         model = _robot(scenario)
     with located(scenario, "orbit"):
-        orbit = None if scenario.orbit is None else _orbit(scenario.orbit)
+        beside = scenario.file.parent if scenario.file else Path()
+        orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, beside)
     with located(scenario, "initial"):
         q, v = initial_state(scenario.initial, model, orbit)
     with located(scenario, "tool"):
@@ -64,11 +65,16 @@ def build(scenario: Scenario) -> Built:
             gains = scenario.controller.model_dump(exclude_none=True, exclude={"kind"})
             controller = _core.ComputedTorque(model, scenario.tool, **_as_arrays(gains))
         with located(scenario, "reference"):
-            reference = reference_of(scenario.reference, tool_pose)
+            folder = scenario.file.parent if scenario.file else Path()
+            tracked = reference_of(scenario.reference, Start(model, q, tool_pose, orbit, folder))
+            if not isinstance(tracked, _core.Reference):
+                raise ControlError(f"{scenario.controller.kind} tracks a frame, this reference is for joints")
+            reference = tracked
     with located(scenario, "simulation"):
         settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
         simulation = _core.Simulation(
-            model, q, v, orbit=orbit, environment=effects, controller=controller, reference=reference,
+            model, q, v, orbit=orbit, gravity_mode=scenario.gravity_mode, environment=effects,
+            controller=controller, reference=reference,
             tool=scenario.tool, **settings,
         )  # fmt: skip
     _try_one_step(scenario, simulation)
@@ -109,14 +115,6 @@ def _robot(scenario: Scenario) -> _core.Model:
     beside = scenario.file.parent if scenario.file else Path()
     packages = [beside / folder for folder in robot.package_paths]
     return _core.Model.from_urdf(beside / robot.urdf, package_paths=packages or None)
-
-
-def _orbit(orbit: KeplerOrbit) -> _core.Kepler:
-    given = orbit.given()
-    if orbit.is_from_state:
-        position, velocity = given.pop("position"), given.pop("velocity")
-        return _core.Kepler.from_state(np.array(position), np.array(velocity), **given)
-    return _core.Kepler(**given)
 
 
 def _effect(effect: Any, model: _core.Model) -> Any:

@@ -1,20 +1,17 @@
-"""Controllers and references. A new kind is one class with its own ``kind``, added to its union."""
+"""Controllers. A new kind is one class with its own ``kind``, added to its union."""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator
 
 from onorbit_rs.scenario.fields import (
-    Length3,
     NotNegative,
     Number,
-    Positive,
     Rate,
     RateGain,
     StiffnessGain,
-    Time,
 )
 from onorbit_rs.scenario.part import Part, expand_kind
 
@@ -37,25 +34,4 @@ class ComputedTorqueController(Part):
     """Whether the controller knows the damping and friction of the joints."""
 
 
-class HoldReference(Part):
-    """The tool stays where it starts."""
-
-    kind: Literal["hold"] = "hold"
-
-
-class LineParabolaReference(Part):
-    """Start + s·displacement + s(1 - s)·height, s the quintic from 0 to 1; attitude held, later the end."""
-
-    kind: Literal["line_parabola"] = "line_parabola"
-    displacement: Length3
-    """From the tool's first position to its last, W axes."""
-    height: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Factor of s(1 - s), W axes; a quarter of it is the top of the parabola."""
-    duration: Annotated[Time, Positive]
-
-
 Controller = Annotated[ComputedTorqueController, BeforeValidator(expand_kind)]
-Reference = Annotated[
-    Annotated[HoldReference | LineParabolaReference, Field(discriminator="kind")],
-    BeforeValidator(expand_kind),
-]

@@ -56,9 +56,10 @@ class Attitude(Part):
 class InitialState(Part):
     """Pose and twist of the base, and the joints; zero where not given."""
 
-    frame: Literal["world", "lvlh"] = "world"
-    """What ``position`` and ``attitude`` are given in, and what the velocities are relative to: W, or the
-    local orbital frame L (x radial outward, y along track, z along the orbital angular momentum)."""
+    frame: Literal["world", "lvlh", "path"] = "world"
+    """What ``position`` and ``attitude`` are given in, and what the velocities are relative to: W, the
+    local orbital frame L (x radial outward, y along track, z along the orbital angular momentum), or the
+    attitude of the path (L where it has none)."""
     position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     attitude: Attitude | None = None
     linear_velocity: Speed3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])

@@ -1,10 +1,10 @@
-"""The reference orbit. A new kind is one class with its own ``kind``, added to the union at the end."""
+"""Orbits: two-body motion. The other kinds, and their union, stand in ``path.py``."""
 
 from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
 from onorbit_rs._core import MU_EARTH
@@ -19,7 +19,7 @@ from onorbit_rs.scenario.fields import (
     Speed3,
     Time,
 )
-from onorbit_rs.scenario.part import Part, expand_kind
+from onorbit_rs.scenario.part import Part
 
 SIZES = ("semi_major_axis", "semi_latus_rectum")
 PHASES = ("mean_anomaly", "true_anomaly", "periapsis_time")
@@ -104,6 +104,3 @@ def _listed(names: tuple[str, ...]) -> str:
 
 def _wrong(message: str) -> PydanticCustomError:
     return PydanticCustomError("orbit_elements", "{message}", {"message": message})
-
-
-Orbit = Annotated[KeplerOrbit, BeforeValidator(expand_kind)]

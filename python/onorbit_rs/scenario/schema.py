@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.complaints import first_complaint
-from onorbit_rs.scenario.control import Controller, HoldReference, Reference
+from onorbit_rs.scenario.control import Controller
 from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
 from onorbit_rs.scenario.initial import InitialState
-from onorbit_rs.scenario.orbit import Orbit
 from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.path import Orbit
+from onorbit_rs.scenario.reference_parts import HoldReference, Reference
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import SimulationSettings
 from onorbit_rs.scenario.yaml_lines import Lines, Location
@@ -62,6 +63,11 @@ class Scenario(Part):
         """The YAML it was read from."""
         return self._file
 
+    @property
+    def gravity_mode(self) -> Literal["true", "carried"]:
+        """``true``, or ``carried`` where the orbit says so; a Kepler orbit obeys its field, both are one."""
+        return "carried" if getattr(self.orbit, "gravity_mode", None) == "carried" else "true"
+
     def line_of(self, *at: str | int) -> int | None:
         """Line in the YAML of an entry, or of the nearest entry around it."""
         for end in range(len(at), 0, -1):
@@ -92,8 +98,10 @@ class Scenario(Part):
             for index, effect in enumerate(self.environment):
                 if isinstance(effect, GravityGradientEffect):
                     raise _wrong(("environment", index), "the gravity gradient needs an 'orbit'")
-            if self.initial.frame == "lvlh":
-                raise _wrong(("initial", "frame"), "the frame lvlh needs an 'orbit'")
+            if self.initial.frame != "world":
+                raise _wrong(("initial", "frame"), f"the frame {self.initial.frame} needs an 'orbit'")
+            if getattr(self.reference, "frame", None) == "lvlh":
+                raise _wrong(("reference", "frame"), "the frame lvlh needs an 'orbit'")
         return self
 
 

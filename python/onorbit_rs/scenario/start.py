@@ -20,12 +20,12 @@ from onorbit_rs.scenario.units import LENGTH, SPEED
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Kepler, Model
+    from onorbit_rs._core import Model, Orbit
 
     Floats = NDArray[np.float64]
 
 
-def initial_state(initial: InitialState, model: Model, orbit: Kepler | None) -> tuple[Floats, Floats]:
+def initial_state(initial: InitialState, model: Model, orbit: Orbit | None) -> tuple[Floats, Floats]:
     """Configuration and velocity at time zero.
 
     Given relative to L, position and attitude turn with `R_il`, and the motion of L is added in body axes:
@@ -48,23 +48,25 @@ def initial_state(initial: InitialState, model: Model, orbit: Kepler | None) -> 
         Metres on a joint that turns, radians on one that slides.
     """
     q, v = np.array(model.neutral(), dtype=np.float64), np.zeros(model.nv)
-    rot_fb = matrix_from_quaternion(_quaternion(initial.attitude))
+    rot_fb = matrix_from_quaternion(quaternion_of(initial.attitude))
     position, linear, angular = (
         np.array(values) for values in (initial.position, initial.linear_velocity, initial.angular_velocity)
     )
-    if initial.frame == "lvlh" and orbit is not None:
-        rot_il, rate = (np.asarray(value, dtype=np.float64) for value in orbit.lvlh(0.0))
+    if initial.frame != "world" and orbit is not None:
+        frame = orbit.lvlh(0.0) if initial.frame == "lvlh" else orbit.frame(0.0)
+        rot_il, rate = (np.asarray(value, dtype=np.float64) for value in frame)
         linear = linear + rot_fb.T @ np.cross(rate, position)
         angular = angular + rot_fb.T @ rate
         position, rot_fb = rot_il @ position, rot_il @ rot_fb
     q[:3], q[3:7] = position, quaternion_from_matrix(rot_fb)
     v[:3], v[3:6] = linear, angular
-    q[7:] = _joint_values("joints", initial.joints, q[7:], model)
-    v[6:] = _joint_values("joint_rates", initial.joint_rates, v[6:], model)
+    q[7:] = joint_values("joints", initial.joints, q[7:], model)
+    v[6:] = joint_values("joint_rates", initial.joint_rates, v[6:], model)
     return q, v
 
 
-def _quaternion(attitude: Attitude | None) -> Floats:
+def quaternion_of(attitude: Attitude | None) -> Floats:
+    """Unit quaternion xyzw of an attitude; no turn where none is given."""
     if attitude is None:
         return np.array([0.0, 0.0, 0.0, 1.0])
     if attitude.quaternion_xyzw is not None:
@@ -74,7 +76,7 @@ def _quaternion(attitude: Attitude | None) -> Floats:
     return quaternion_from_roll_pitch_yaw(np.array(attitude.roll_pitch_yaw))
 
 
-def _joint_values(
+def joint_values(
     name: str, given: list[JointValue] | dict[str, JointValue], default: Floats, model: Model
 ) -> Floats:
     """Values in the order of the model's joints."""

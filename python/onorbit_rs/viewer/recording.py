@@ -42,6 +42,7 @@ def write_recording(
     title: str = "",
     notes: str = "",
     orbit_path: Floats | None = None,
+    has_planet: bool = True,
 ) -> Path:
     """Write a recording of a run that ``rerun PATH`` opens.
 
@@ -57,6 +58,8 @@ def write_recording(
         Markdown shown beside the picture.
     orbit_path : (k, 3) array, optional
         One revolution of the reference orbit, inertial axes, m.
+    has_planet : bool
+        Whether the orbit, if any, is around a planet.
 
     Raises
     ------
@@ -77,7 +80,7 @@ def write_recording(
     send_robot(recording, time, trace, model, robot, rows)
     send_tool(recording, time, trace, rows)
     send_frames(recording, time, trace, rows)
-    send_orbit(recording, time, trace, rows, orbit_path)
+    send_orbit(recording, time, trace, rows, orbit_path, has_planet)
     for series in plots:
         send_series(recording, time, series, rows)
     if notes:

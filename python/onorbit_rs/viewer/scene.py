@@ -8,7 +8,7 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.geometry import Shape
-from onorbit_rs.rotations import local_orbital_axes, quaternion_from_matrix
+from onorbit_rs.rotations import has_local_frame, local_orbital_axes, quaternion_from_matrix
 from onorbit_rs.viewer.blueprint import TIMELINE
 from onorbit_rs.viewer.solids import log_shape
 
@@ -75,14 +75,19 @@ def _send_trail(recording: rr.RecordingStream, trace: Trace, rows: Rows, path: F
 def send_frames(recording: rr.RecordingStream, time: rr.TimeColumn, trace: Trace, rows: Rows) -> None:
     """Inertial axes, and where there is an orbit the local orbital frame."""
     _log_axes(recording, "world/frames/inertial", 0.7, "I")
-    if "position_eci" not in trace.columns():
+    if not has_local_frame(trace):
         return
     _send_poses(recording, time, "world/frames/lvlh", _local_orbital_poses(trace, rows))
     _log_axes(recording, "world/frames/lvlh", 0.6, "L")
 
 
 def send_orbit(
-    recording: rr.RecordingStream, time: rr.TimeColumn, trace: Trace, rows: Rows, orbit_path: Floats | None
+    recording: rr.RecordingStream,
+    time: rr.TimeColumn,
+    trace: Trace,
+    rows: Rows,
+    orbit_path: Floats | None,
+    has_planet: bool,
 ) -> None:
     """The planet, the path flown, one revolution of the reference, and L at the spacecraft: km."""
     if "position_eci" not in trace.columns():
@@ -91,13 +96,16 @@ def send_orbit(
     planet = rr.Ellipsoids3D(
         radii=[EARTH_RADIUS_KM], colors=[(60, 110, 170)], fill_mode=rr.components.FillMode.DenseWireframe
     )
-    recording.log("orbit/planet", planet, static=True, strict=True)
+    if has_planet:
+        recording.log("orbit/planet", planet, static=True, strict=True)
     path = rr.LineStrips3D([position_km], colors=[_OBTAINED], radii=rr.Radius.ui_points(1.5))
     recording.log("orbit/path", path, static=True, strict=True)
     if orbit_path is not None:
         ring = rr.LineStrips3D([orbit_path / 1e3], colors=[(130, 130, 130)], radii=rr.Radius.ui_points(0.8))
         recording.log("orbit/reference", ring, static=True, strict=True)
-    poses = _local_orbital_poses(trace, rows)
+    poses = np.tile(np.eye(4), (len(rows), 1, 1))
+    if has_local_frame(trace):
+        poses = _local_orbital_poses(trace, rows)
     poses[:, :3, 3] = position_km
     _send_poses(recording, time, "orbit/spacecraft", poses)
     _log_axes(recording, "orbit/spacecraft", 1500.0)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.rotations import attitude_in_orbit, roll_pitch_yaw
+from onorbit_rs.rotations import attitude_in_orbit, has_local_frame, roll_pitch_yaw
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -63,9 +63,10 @@ def series_of(trace: Trace, model: Model) -> Iterator[Series]:
     yield Series("plots/base_attitude", "Base attitude in W", "deg", ("roll", "pitch", "yaw"), angles)
     if "position_eci" in columns:
         position, velocity = np.asarray(trace.position_eci), np.asarray(trace.velocity_eci)
-        angles = np.degrees(attitude_in_orbit(base[:, 3:7], position, velocity))
-        title = "Base attitude in the local orbital frame"
-        yield Series("plots/base_attitude_lvlh", title, "deg", ("roll", "pitch", "yaw"), angles)
+        if has_local_frame(trace):
+            angles = np.degrees(attitude_in_orbit(base[:, 3:7], position, velocity))
+            title = "Base attitude in the local orbital frame"
+            yield Series("plots/base_attitude_lvlh", title, "deg", ("roll", "pitch", "yaw"), angles)
         yield Series("exact/position_eci", "Position of the base, inertial", "m", xyz, position)
         yield Series("exact/velocity_eci", "Velocity of the base, inertial", "m/s", xyz, velocity)
 

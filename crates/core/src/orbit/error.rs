@@ -1,5 +1,8 @@
 //! What can be wrong with a reference orbit.
 
+use super::custom_path::PathError;
+use super::sgp4::{ElementSetError, Sgp4Error};
+
 /// Refusals of the `orbit` module; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -122,6 +125,15 @@ pub enum OrbitError {
         /// Length given.
         got: usize,
     },
+    /// An element set cannot be read.
+    #[error(transparent)]
+    ElementSet(#[from] ElementSetError),
+    /// SGP4 has no state here.
+    #[error(transparent)]
+    Sgp4(#[from] Sgp4Error),
+    /// A path cannot be built, or has no state here.
+    #[error(transparent)]
+    Path(#[from] PathError),
 }
 
 /// `value` if it is finite.

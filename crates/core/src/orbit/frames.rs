@@ -79,6 +79,21 @@ impl From<&Lvlh> for Nadir {
     }
 }
 
+/// A frame that rides on a reference, letter `P`: the attitude of a path, or its local orbital frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathFrame {
+    /// Takes `P` components to `I` components.
+    pub rot_ip: Matrix3<f64>,
+    /// Angular velocity of `P` with respect to `I`, in `P` axes, rad/s.
+    pub rate_p: Vector3<f64>,
+}
+
+impl From<Lvlh> for PathFrame {
+    fn from(l: Lvlh) -> Self {
+        Self { rot_ip: l.rot_il, rate_p: l.rate_l }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,15 +3,22 @@
 //! [`Orbit`] is the one trait; each kind is one file. All vectors have inertial axes `I`
 //! and are measured from the centre of the planet; metres, seconds, radians.
 
+mod custom_path;
 mod error;
+mod fixed_frame;
 mod frames;
 pub mod kepler;
+mod quintic;
+pub mod sgp4;
 
 use nalgebra::Vector3;
 
+pub use custom_path::{CustomPath, Ends, PathError, PathPoints};
 pub use error::OrbitError;
-pub use frames::{Lvlh, Nadir};
+pub use fixed_frame::FixedFrame;
+pub use frames::{Lvlh, Nadir, PathFrame};
 pub use kepler::{Elements, Kepler, Phase, Size};
+pub use sgp4::{EarthModel, MeanElements, Sgp4};
 
 /// Gravitational parameter of the Earth, `3.986004418e14 m³/s²`, atmosphere included.
 ///
@@ -29,6 +36,26 @@ pub struct OrbitState {
     pub acceleration: Vector3<f64>,
 }
 
+/// Inertial axes that an orbit is given in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Axes {
+    /// Geocentric celestial reference frame; for other planets any axes that do not turn.
+    #[default]
+    Gcrf,
+    /// True equator, mean equinox of date: SGP4's; a third of a degree from GCRF in 2024, and growing.
+    Teme,
+}
+
+impl Axes {
+    /// `GCRF` or `TEME`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gcrf => "GCRF",
+            Self::Teme => "TEME",
+        }
+    }
+}
+
 /// A reference orbit as a function of time.
 pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Gravitational parameter of the planet, m³/s²; `None` around no planet.
@@ -39,6 +66,29 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// # Errors
     /// [`OrbitError`] where the orbit is not defined, such as at a time that is not finite.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError>;
+
+    /// Axes of `I` in this run.
+    fn axes(&self) -> Axes {
+        Axes::default()
+    }
+
+    /// Where [`OrbitState::velocity`] comes from, in words.
+    fn velocity_source(&self) -> &'static str {
+        "derivative of the position"
+    }
+
+    /// Instants at which the acceleration jumps, s of simulation; the integrator stops at each.
+    fn event_times(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Frame that rides on the reference: the attitude it was given, else its local orbital frame.
+    ///
+    /// # Errors
+    /// As [`Orbit::state`] and [`Orbit::lvlh`].
+    fn frame(&self, t: f64) -> Result<PathFrame, OrbitError> {
+        self.lvlh(t).map(PathFrame::from)
+    }
 
     /// Local orbital frame at `t` seconds of simulation, in the Hill (RSW) sense.
     ///
@@ -101,6 +151,28 @@ pub fn lvlh_frames(
     rotations: &mut [f64],
     rates: &mut [f64],
 ) -> Result<(), OrbitError> {
+    frames_at(times, rotations, rates, |t| orbit.lvlh(t).map(PathFrame::from))
+}
+
+/// Frames that ride on the reference, at many instants; as [`lvlh_frames`], of [`Orbit::frame`].
+///
+/// # Errors
+/// [`OrbitError::WrongLength`]; otherwise the first error of [`Orbit::frame`].
+pub fn path_frames(
+    orbit: &dyn Orbit,
+    times: &[f64],
+    rotations: &mut [f64],
+    rates: &mut [f64],
+) -> Result<(), OrbitError> {
+    frames_at(times, rotations, rates, |t| orbit.frame(t))
+}
+
+fn frames_at(
+    times: &[f64],
+    rotations: &mut [f64],
+    rates: &mut [f64],
+    frame: impl Fn(f64) -> Result<PathFrame, OrbitError>,
+) -> Result<(), OrbitError> {
     for (name, expected, got) in
         [("rotations", 9 * times.len(), rotations.len()), ("rates", 3 * times.len(), rates.len())]
     {
@@ -110,9 +182,9 @@ pub fn lvlh_frames(
     }
     let rows = rotations.chunks_exact_mut(9).zip(rates.chunks_exact_mut(3));
     for (&t, (rotation, rate)) in times.iter().zip(rows) {
-        let lvlh = orbit.lvlh(t)?;
-        rotation.copy_from_slice(lvlh.rot_il.transpose().as_slice()); // column major, transposed
-        rate.copy_from_slice(lvlh.rate_l.as_slice());
+        let frame = frame(t)?;
+        rotation.copy_from_slice(frame.rot_ip.transpose().as_slice()); // column major, transposed
+        rate.copy_from_slice(frame.rate_p.as_slice());
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ use super::trace::Trace;
 use crate::control::ControlError;
 use crate::environment::EnvironmentError;
 use crate::orbit::OrbitError;
+use crate::reference::ReferenceError;
 use thiserror::Error;
 
 /// A simulation that cannot start, or that had to stop.
@@ -35,7 +36,7 @@ pub enum SimulationError {
     StepTooSmall { time: f64, step: f64 },
     #[error("record_every is 0, it must be at least 1 step")]
     RecordEvery,
-    #[error("{effect} needs an orbit: give the simulation one")]
+    #[error("{effect} needs an orbit around a planet: give the simulation one, or give the path its mu")]
     NeedsOrbit { effect: String },
     #[error("the controller tracks a frame but the simulation has no reference to track: give it one")]
     NeedsReference,
@@ -47,6 +48,13 @@ pub enum SimulationError {
     NeedsTool,
     #[error("frame {frame} is asked for, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame { frame: usize, count: usize },
+    #[error(
+        "the reference starts {position:.4} m and {angle:.4} rad from the tool, at most {tolerance_m} m and {tolerance_rad} rad are \
+         accepted: start it at the tool, or raise reference_start_tolerance",
+        tolerance_m = tolerance[0],
+        tolerance_rad = tolerance[1]
+    )]
+    ReferenceStartsAway { position: f64, angle: f64, tolerance: [f64; 2] },
     #[error("{rows} recorded rows do not fit in memory; record fewer with record_every")]
     TooManyRows { rows: usize },
     #[error(
@@ -60,6 +68,8 @@ pub enum SimulationError {
     Orbit { time: f64, source: OrbitError },
     #[error("at t = {time} s: {source}")]
     Environment { time: f64, source: EnvironmentError },
+    #[error("at t = {time} s: {source}")]
+    Reference { time: f64, source: ReferenceError },
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
     #[error(transparent)]

@@ -13,6 +13,7 @@ mod recorder;
 mod run;
 mod schedule;
 mod settings;
+mod start;
 mod state;
 mod stepping;
 mod stick;

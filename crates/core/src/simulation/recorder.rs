@@ -1,6 +1,7 @@
 //! Writing rows of the trace.
 
 use super::checkpoint::CheckpointError;
+use super::driver::at;
 use super::error::SimulationError;
 use super::plant::Plant;
 use super::state::State;
@@ -8,8 +9,9 @@ use super::surroundings::Surroundings;
 use super::trace::Trace;
 use crate::control::task_error;
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
-use crate::orbit::OrbitState;
-use crate::reference::TaskReference;
+use crate::environment::{DifferentialGravity, Reference, ReferenceMotion};
+use crate::orbit::{Orbit, OrbitState};
+use crate::reference::{TaskReference, TaskSample};
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
 
 /// Fills a trace, row by row, without allocating.
@@ -17,6 +19,8 @@ pub(super) struct Recorder<'a> {
     pub(super) trace: Trace,
     tool: Option<usize>,
     reference: Option<&'a TaskReference>,
+    /// Parameter of the planet along whose gravity the robot is carried.
+    carried_around: Option<f64>,
 }
 
 impl<'a> Recorder<'a> {
@@ -25,7 +29,8 @@ impl<'a> Recorder<'a> {
         sizes: (usize, usize),
         tool: Option<usize>,
         reference: Option<&'a TaskReference>,
-        has_orbit: bool,
+        orbit: Option<&dyn Orbit>,
+        motion: ReferenceMotion,
         has_every_step: bool,
     ) -> Result<Self, SimulationError> {
         let (nq, nv) = sizes;
@@ -53,11 +58,15 @@ impl<'a> Recorder<'a> {
             reserve(|t| &mut t.position_error, 3)?;
             reserve(|t| &mut t.attitude_error, 3)?;
         }
-        if has_orbit {
+        let carried_around = orbit.and_then(|o| o.mu()).filter(|_| motion == ReferenceMotion::Carried);
+        if carried_around.is_some() {
+            reserve(|t| &mut t.reference_residual, 3)?;
+        }
+        if orbit.is_some() {
             reserve(|t| &mut t.position_eci, 3)?;
             reserve(|t| &mut t.velocity_eci, 3)?;
         }
-        Ok(Self { trace, tool, reference })
+        Ok(Self { trace, tool, reference, carried_around })
     }
 
     /// Goes on after the rows of an earlier part of the run.
@@ -81,11 +90,13 @@ impl<'a> Recorder<'a> {
         state: &State<S>,
         plant: &Plant<'_, S, Surroundings>,
         orbit: Option<OrbitState>,
-    ) {
+    ) -> Result<(), SimulationError> {
+        let desired = self.reference.map(|reference| at(reference, t)).transpose()?;
         S::enter(
             #[inline(always)]
-            || self.row_kernel(t, state, plant, orbit),
+            || self.row_kernel(t, state, plant, orbit, desired),
         );
+        Ok(())
     }
 
     #[inline(always)]
@@ -95,6 +106,7 @@ impl<'a> Recorder<'a> {
         state: &State<S>,
         plant: &Plant<'_, S, Surroundings>,
         orbit: Option<OrbitState>,
+        desired: Option<TaskSample<f64>>,
     ) {
         let (trace, data, q, v) = (&mut self.trace, &plant.data, &state.q, &state.v);
         trace.time.push(t);
@@ -113,8 +125,8 @@ impl<'a> Recorder<'a> {
         if let Some(tool) = self.tool {
             let pose = frame_pose(plant.model, data, q, tool);
             push_pose(&mut trace.tool_pose, &pose.rot_wf, pose.pos_w);
-            if let Some(reference) = self.reference {
-                push_tracking(trace, reference, t, &pose);
+            if let Some(desired) = desired {
+                push_tracking(trace, &desired.lift(), &pose);
             }
         }
         if let Some(orbit) = orbit {
@@ -122,6 +134,10 @@ impl<'a> Recorder<'a> {
             let velocity = orbit.velocity + (base_rotation(q) * Vec3::from_slice(v)).to_nalgebra();
             trace.position_eci.extend_from_slice(origin.as_slice());
             trace.velocity_eci.extend_from_slice(velocity.as_slice());
+            let reference = Reference { state: orbit, mu: self.carried_around };
+            if let Some(residual) = DifferentialGravity::residual(&reference) {
+                trace.reference_residual.extend_from_slice(residual.as_slice());
+            }
         }
     }
 
@@ -132,9 +148,8 @@ impl<'a> Recorder<'a> {
 }
 
 #[inline(always)]
-fn push_tracking<S: Scalar>(trace: &mut Trace, reference: &TaskReference, t: f64, pose: &FramePose<S>) {
-    let desired = reference.sample(S::of(t));
-    let error = task_error(&pose.rot_wf, pose.pos_w, &desired);
+fn push_tracking<S: Scalar>(trace: &mut Trace, desired: &TaskSample<S>, pose: &FramePose<S>) {
+    let error = task_error(&pose.rot_wf, pose.pos_w, desired);
     push_pose(&mut trace.reference_pose, &desired.rot_wd, desired.pos_w);
     push_vector(&mut trace.position_error, error.linear);
     push_vector(&mut trace.attitude_error, error.angular);

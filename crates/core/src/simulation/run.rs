@@ -91,7 +91,8 @@ impl Simulation {
         let fail = |error| RunFailure { error, trace: Box::default() };
         let model = Arc::clone(&self.model);
         let effects = self.all_effects();
-        let events = effects.iter().flat_map(|effect| effect.event_times()).collect();
+        let jumps = self.orbit.iter().flat_map(|orbit| orbit.event_times());
+        let events = effects.iter().flat_map(|effect| effect.event_times()).chain(jumps).collect();
         let schedule = self.schedule(duration, events);
         let surroundings = Surroundings::new(&model, effects, self.orbit.clone());
         let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
@@ -102,7 +103,8 @@ impl Simulation {
             (model.nq(), model.nv()),
             self.tool,
             self.reference.as_ref(),
-            self.orbit.is_some(),
+            self.orbit.as_deref(),
+            self.reference_motion,
             self.record_every == 1 && !self.is_adaptive(),
         );
         let Self { integrator, tolerance, time_step, .. } = *self;
@@ -146,7 +148,7 @@ impl Simulation {
     fn all_effects(&self) -> Vec<Arc<dyn Effect>> {
         let mut effects = self.effects.clone();
         if self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some()) {
-            effects.push(Arc::new(DifferentialGravity::default()));
+            effects.push(Arc::new(DifferentialGravity { motion: self.reference_motion }));
         }
         effects
     }
@@ -238,7 +240,7 @@ impl<S: Scalar> Run<'_, S> {
         plant.settle(state);
         plant.surround(t, (t, t), &state.q)?;
         let orbit = plant.surroundings.orbit_state(t)?;
-        recorder.row(t, state, plant, orbit);
+        recorder.row(t, state, plant, orbit)?;
         stages.accelerate(plant, state);
         recorder.accelerated(stages.first_acceleration());
         Ok(())
@@ -329,8 +331,7 @@ impl<S: Scalar> Run<'_, S> {
 
     fn record(&mut self, t: f64) -> Result<(), SimulationError> {
         let orbit = self.plant.surroundings.orbit_state(t)?;
-        self.recorder.row(t, &self.state, &self.plant, orbit);
-        Ok(())
+        self.recorder.row(t, &self.state, &self.plant, orbit)
     }
 
     /// The last row: the state at the end, with the torque that would be held from there.

@@ -3,8 +3,9 @@
 use super::error::SimulationError;
 use super::integrator::Integrator;
 use super::contacts::AT_LIMIT;
+use super::start::check_start;
 use crate::control::ControlLaw;
-use crate::environment::Effect;
+use crate::environment::{Effect, ReferenceMotion};
 use crate::model::Model;
 use crate::orbit::Orbit;
 use crate::reference::TaskReference;
@@ -25,6 +26,8 @@ pub struct Simulation {
     pub v: Vec<f64>,
     /// Reference orbit; W's origin rides on it.
     pub orbit: Option<Arc<dyn Orbit>>,
+    /// Whether the robot falls away from a reference that does not fall freely, or is carried along.
+    pub reference_motion: ReferenceMotion,
     /// Effects beside gravity.
     pub effects: Vec<Arc<dyn Effect>>,
     /// What drives the joints.
@@ -33,6 +36,8 @@ pub struct Simulation {
     pub tool: Option<usize>,
     /// What the tool should do.
     pub reference: Option<TaskReference>,
+    /// How far from the tool the reference may start: m, rad.
+    pub reference_start_tolerance: [f64; 2],
     /// Step, s.
     pub time_step: f64,
     /// Time between two calls of the controller, s; every step if none.
@@ -57,10 +62,12 @@ impl Simulation {
             q,
             v,
             orbit: None,
+            reference_motion: ReferenceMotion::True,
             effects: Vec::new(),
             control: ControlLaw::None,
             tool: None,
             reference: None,
+            reference_start_tolerance: [0.05, 0.1],
             time_step: 1e-3,
             control_period: None,
             integrator: Integrator::Rk4,
@@ -75,7 +82,7 @@ impl Simulation {
     /// # Errors
     /// Wrong lengths, numbers that are not finite, a quaternion off unit norm, steps that are not
     /// positive, an effect without its orbit, a controller without its reference, a frame that the
-    /// robot does not have.
+    /// robot does not have, a reference that starts away from its tool.
     pub fn check(&self) -> Result<(), SimulationError> {
         check_state(&self.model, &self.q, &self.v)?;
         let periods = [("time_step", Some(self.time_step)), ("control_period", self.control_period)];
@@ -116,7 +123,12 @@ impl Simulation {
         if self.reference.is_some() && self.tool.is_none() {
             return Err(SimulationError::NeedsTool);
         }
-        Ok(())
+        match (self.tool, &self.reference) {
+            (Some(tool), Some(reference)) => {
+                check_start(&self.model, &self.q, tool, reference, self.reference_start_tolerance)
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Restitution, and whether the joints start within their limits.

@@ -1,5 +1,7 @@
 //! What a run leaves behind.
 
+use crate::model::Model;
+
 /// Columns of a run, one row per recorded step, row major; the first row is the initial state, the
 /// last the end. W axes unless said; empty columns are those the run did not have.
 #[derive(Clone, Debug, Default)]
@@ -38,6 +40,9 @@ pub struct Trace {
     pub position_eci: Vec<f64>,
     /// Its velocity, m/s, `(T, 3)`; only with an orbit.
     pub velocity_eci: Vec<f64>,
+    /// Gravity that the reference does not follow and that was left out, `g - r̈_ref`, axes of I, m/s²,
+    /// `(T, 3)`; only around a planet with the robot carried along.
+    pub reference_residual: Vec<f64>,
     /// Sum of the work of every step, whatever its sign, J: what rows far apart would miss.
     pub work_done: f64,
     /// Sum of what steps and halved steps differ by in attitude, rad (of an embedded pair: its two
@@ -87,6 +92,20 @@ impl Trace {
     /// Number of rows, `T`.
     pub fn rows(&self) -> usize {
         self.time.len()
+    }
+
+    /// Names of the joints that some row sees more than rounding past their position limits.
+    pub fn limits_exceeded<'m>(&self, model: &'m Model) -> Vec<&'m str> {
+        const ROUNDING: f64 = 1e-9;
+        let is_past = |j: usize, (lower, upper): (f64, f64)| {
+            let mut values = self.q.chunks_exact(model.nq()).map(|q| q[7 + j]);
+            values.any(|q| q < lower - ROUNDING || q > upper + ROUNDING)
+        };
+        let joints = model.joints().iter().enumerate();
+        joints
+            .filter(|(j, joint)| joint.limits.position.is_some_and(|limits| is_past(*j, limits)))
+            .map(|(_, joint)| joint.name.as_str())
+            .collect()
     }
 
     /// Row `k` of a column with `width` numbers per row.

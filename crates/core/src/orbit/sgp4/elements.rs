@@ -1,0 +1,92 @@
+//! Mean elements as SGP4 takes them, whatever they were written in.
+
+use super::epoch::Epoch;
+use super::error::ElementSetError;
+
+/// Mean elements of one satellite at one epoch, in the units in which element sets publish them.
+///
+/// They belong to SGP4 alone: no other theory gives their orbit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeanElements {
+    /// Catalogue number.
+    pub satellite: u32,
+    /// When they hold.
+    pub epoch: Epoch,
+    /// `B*`, 1/Earth radii.
+    pub drag_term: f64,
+    /// Inclination, degrees.
+    pub inclination_deg: f64,
+    /// Right ascension of the ascending node, degrees.
+    pub raan_deg: f64,
+    /// Eccentricity.
+    pub eccentricity: f64,
+    /// Argument of perigee, degrees.
+    pub argument_of_perigee_deg: f64,
+    /// Mean anomaly, degrees.
+    pub mean_anomaly_deg: f64,
+    /// Mean motion as Kozai defines it, revolutions per day.
+    pub mean_motion_rev_day: f64,
+}
+
+impl MeanElements {
+    /// From the entries of a CCSDS Orbit Mean-Elements Message: `entry` gives the text of a keyword.
+    ///
+    /// # Errors
+    /// [`ElementSetError::Missing`], [`ElementSetError::Entry`] and [`ElementSetError::Range`].
+    ///
+    /// Source: CCSDS 502.0-B-3, section 4.
+    pub fn from_omm(entry: impl Fn(&str) -> Option<String>) -> Result<Self, ElementSetError> {
+        let text = |key: &'static str| entry(key).ok_or(ElementSetError::Missing { key });
+        let wrong = |key, got, expected| ElementSetError::Entry { key, got, expected };
+        let number = |key: &'static str| {
+            let got = text(key)?;
+            let value = got.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+            value.ok_or_else(|| wrong(key, got, "a finite number"))
+        };
+        let optional = [
+            ("MEAN_ELEMENT_THEORY", ["SGP4", "SGP/SGP4"], "SGP4"),
+            ("CENTER_NAME", ["EARTH", "EARTH"], "EARTH"),
+            ("REF_FRAME", ["TEME", "TEME"], "TEME"),
+            ("TIME_SYSTEM", ["UTC", "UTC"], "UTC"),
+        ];
+        for (key, accepted, expected) in optional {
+            if let Some(got) =
+                entry(key).filter(|got| !accepted.contains(&got.trim().to_uppercase().as_str()))
+            {
+                return Err(wrong(key, got, expected));
+            }
+        }
+        let epoch = text("EPOCH")?;
+        let satellite = text("NORAD_CAT_ID")?;
+        Self {
+            satellite: satellite
+                .trim()
+                .parse()
+                .map_err(|_| wrong("NORAD_CAT_ID", satellite, "a whole number"))?,
+            epoch: Epoch::parse(&epoch)
+                .ok_or_else(|| wrong("EPOCH", epoch, "a UTC date such as 2024-01-31T12:34:56.789"))?,
+            drag_term: number("BSTAR")?,
+            inclination_deg: number("INCLINATION")?,
+            raan_deg: number("RA_OF_ASC_NODE")?,
+            eccentricity: number("ECCENTRICITY")?,
+            argument_of_perigee_deg: number("ARG_OF_PERICENTER")?,
+            mean_anomaly_deg: number("MEAN_ANOMALY")?,
+            mean_motion_rev_day: number("MEAN_MOTION")?,
+        }
+        .checked()
+    }
+
+    /// Itself, if its numbers can be those of an orbit.
+    pub(super) fn checked(self) -> Result<Self, ElementSetError> {
+        let within = |name, got: f64, range: std::ops::RangeInclusive<f64>| {
+            if range.contains(&got) { Ok(()) } else { Err(ElementSetError::Range { name, got, range }) }
+        };
+        within("inclination (deg)", self.inclination_deg, 0.0..=180.0)?;
+        within("right ascension of the node (deg)", self.raan_deg, -360.0..=360.0)?;
+        within("eccentricity", self.eccentricity, 0.0..=1.0 - f64::EPSILON)?;
+        within("argument of perigee (deg)", self.argument_of_perigee_deg, -360.0..=360.0)?;
+        within("mean anomaly (deg)", self.mean_anomaly_deg, -360.0..=360.0)?;
+        within("mean motion (rev/day)", self.mean_motion_rev_day, f64::MIN_POSITIVE..=18.0)?;
+        Ok(self)
+    }
+}

@@ -1,0 +1,44 @@
+//! What can be wrong with a reference.
+
+use crate::orbit::OrbitError;
+use crate::spatial::SplineError;
+
+/// A reference that makes no sense.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)] // the fields are what the messages say
+pub enum ReferenceError {
+    #[error("{name} of the reference is not finite")]
+    NotFinite { name: &'static str },
+    #[error("{name} of the reference has {got} numbers, expected {expected}")]
+    WrongLength { name: &'static str, expected: usize, got: usize },
+    #[error("duration of the reference is {value} s, it must be positive")]
+    DurationNotPositive { value: f64 },
+    #[error(
+        "ramp of the reference is {value}, it must be above 0 and at most 0.5: its share of the duration"
+    )]
+    Ramp { value: f64 },
+    #[error("a limit of the reference is {value}, it must be positive; leave it out for none")]
+    LimitNotPositive { value: f64 },
+    #[error("nothing tells how long the reference takes: give times, or limit a rate or acceleration it has")]
+    NoLimit,
+    #[error(
+        "points {point} and {next} of the reference are the same, so no limit gives a time between them: leave one \
+         out, or give times",
+        next = point + 1
+    )]
+    SamePoint { point: usize },
+    #[error("the axis of the reference has length {length}, a direction is needed")]
+    NoAxis { length: f64 },
+    #[error("joint {joint} is to move, there are joints 0 to {last}", last = count.saturating_sub(1))]
+    NoJoint { joint: usize, count: usize },
+    #[error(
+        "rotation of the reference pose is not a rotation: RᵀR differs from 1 by {error}, at most 1e-6 is accepted"
+    )]
+    NotARotation { error: f64 },
+    #[error("the last row of the pose is {row:?}, it must be [0, 0, 0, 1]")]
+    LastRow { row: [f64; 4] },
+    #[error("the points of the reference give no curve: {0}")]
+    Spline(#[from] SplineError),
+    #[error("the reference is given in the frame of an orbit: {0}")]
+    Orbit(#[from] OrbitError),
+}

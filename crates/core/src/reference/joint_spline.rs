@@ -1,0 +1,109 @@
+//! Joints through given positions.
+
+use super::limits::joint_stretch;
+use super::pose_spline::rest_times;
+use super::{JointPath, JointSample, RateLimit, ReferenceError, Timing};
+use crate::spatial::{Ends, Spline};
+
+/// Quintics through joint positions: waypoints, or samples of a motion; all joints arrive together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointSpline {
+    spline: Spline,
+}
+
+impl JointSpline {
+    /// From rest to rest through `points` (K, n), rad or m, stopping at each or passing through.
+    ///
+    /// Limits, one per joint, are kept everywhere and reached somewhere: in each piece when it stops,
+    /// over all when it passes.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] for less than two points, wrong lengths, times that do not increase, limits that
+    /// give no time.
+    pub fn waypoints(
+        count: usize,
+        points: &[f64],
+        timing: &Timing<Vec<f64>, Vec<RateLimit>>,
+        stops: bool,
+    ) -> Result<Self, ReferenceError> {
+        let through = |times: &[f64]| {
+            let spline = match stops {
+                true => Spline::resting(times, count, points),
+                false => Spline::passing(times, count, points, Ends::Rest),
+            };
+            Ok(Self { spline: spline? })
+        };
+        match timing {
+            Timing::Given(times) => through(times),
+            Timing::Limits(limits) => {
+                if limits.len() != count {
+                    let (name, got) = ("limits", limits.len());
+                    return Err(ReferenceError::WrongLength { name, expected: count, got });
+                }
+                limits.iter().try_for_each(RateLimit::check)?;
+                let rows: Vec<&[f64]> = points.chunks_exact(count.max(1)).collect();
+                let mut times = rest_times(&rows, |a, b| {
+                    let joints = a.iter().zip(*b).zip(limits);
+                    joints.map(|((a, b), limit)| limit.time_for((b - a).abs())).fold(0.0, f64::max)
+                })?;
+                let path = through(&times)?;
+                if stops {
+                    return Ok(path);
+                }
+                let stretch = joint_stretch(limits, &path, times.len() - 1);
+                times.iter_mut().for_each(|t| *t *= stretch);
+                through(&times)
+            }
+        }
+    }
+
+    /// From `start` (n,) one joint after the other: each of `moves` brings one joint to a position, rad or
+    /// m, from rest to rest, all others held.
+    ///
+    /// # Errors
+    /// As [`JointSpline::waypoints`]; [`ReferenceError::NoJoint`] for a joint that is none.
+    pub fn one_by_one(
+        start: &[f64],
+        moves: &[(usize, f64)],
+        timing: &Timing<Vec<f64>, Vec<RateLimit>>,
+    ) -> Result<Self, ReferenceError> {
+        let (mut now, mut points) = (start.to_vec(), start.to_vec());
+        for &(joint, goal) in moves {
+            *now.get_mut(joint).ok_or(ReferenceError::NoJoint { joint, count: start.len() })? = goal;
+            points.extend_from_slice(&now);
+        }
+        Self::waypoints(start.len(), &points, timing, true)
+    }
+
+    /// Through samples of a motion at `times`, s, of `positions` (K, n), with their `rates` (K, n) where
+    /// known. Before and after, the ends are held.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] for less than two samples, wrong lengths, times that do not increase.
+    pub fn sampled(
+        count: usize,
+        times: &[f64],
+        positions: &[f64],
+        rates: Option<&[f64]>,
+    ) -> Result<Self, ReferenceError> {
+        let spline = match rates {
+            None => Spline::passing(times, count, positions, Ends::Free),
+            Some(rates) => Spline::with_slopes(times, count, positions, rates),
+        };
+        Ok(Self { spline: spline? })
+    }
+}
+
+impl JointPath for JointSpline {
+    fn count(&self) -> usize {
+        self.spline.width()
+    }
+
+    fn sample(&self, t: f64, out: &mut JointSample) {
+        self.spline.sample(t, &mut out.q, &mut out.v, &mut out.a);
+    }
+
+    fn duration(&self) -> f64 {
+        self.spline.times().last().map_or(0.0, |end| end.max(0.0))
+    }
+}

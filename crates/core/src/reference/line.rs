@@ -1,0 +1,56 @@
+//! Straight from one pose to another.
+
+use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw};
+use crate::spatial::{Mat3, Motion, Vec3, exp_so3, log_rotation};
+
+/// `p(t) = p₀ + s d`, `R(t) = exp(s θ) R₀`: a straight line, the attitude on the geodesic of SO(3).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    start: Hold,
+    displacement: Vec3<f64>,
+    /// Rotation vector in the axes of the reference's frame, rad.
+    turn: Vec3<f64>,
+    law: TimeLaw,
+}
+
+impl Line {
+    /// From `start` to `end` as `law` says; the attitude turns the shorter way.
+    pub fn new(start: Hold, end: &Hold, law: TimeLaw) -> Self {
+        let turn = log_rotation(&(end.rot_fd * start.rot_fd.transpose()));
+        Self { displacement: end.pos_f - start.pos_f, turn, start, law }
+    }
+
+    /// From `start` to `end` at rest to rest, as fast as `limits` allow.
+    ///
+    /// # Errors
+    /// [`ReferenceError::LimitNotPositive`]; [`ReferenceError::NoLimit`] where it would take no time.
+    pub fn within(start: Hold, end: &Hold, limits: &TaskLimits) -> Result<Self, ReferenceError> {
+        limits.check()?;
+        let mut line = Self::new(start, end, TimeLaw::quintic(1.0)?);
+        let (linear, angular) = (line.displacement.norm(), line.turn.norm());
+        let duration = limits.linear.time_for(linear).max(limits.angular.time_for(angular));
+        if duration == 0.0 {
+            return Err(ReferenceError::NoLimit);
+        }
+        line.law = TimeLaw::quintic(duration)?;
+        Ok(line)
+    }
+}
+
+impl TaskPath for Line {
+    fn sample(&self, t: f64) -> TaskSample<f64> {
+        let (s, rate, acceleration) = self.law.at(t);
+        let rot: Mat3<f64> = exp_so3(self.turn * s).matrix();
+        let along = |x: f64| Motion::new(self.displacement * x, self.turn * x);
+        TaskSample {
+            rot_wd: rot * self.start.rot_fd,
+            pos_w: self.start.pos_f + self.displacement * s,
+            velocity: along(rate),
+            acceleration: along(acceleration),
+        }
+    }
+
+    fn duration(&self) -> f64 {
+        self.law.duration()
+    }
+}

@@ -1,0 +1,108 @@
+//! Round an axis, and along it: circles and screws.
+
+use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw, Timing};
+use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
+use nalgebra::Vector3;
+
+/// `p(t) = c + exp(s θ u)(p₀ − c) + s d u`, `R(t) = exp(s θ u) R₀` or held.
+///
+/// With attitude turning this is the exponential of a twist on SE(3); without advance, a circle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Screw {
+    start: Hold,
+    center: Vec3<f64>,
+    axis: Vec3<f64>,
+    angle: f64,
+    advance: f64,
+    turns: bool,
+    law: TimeLaw,
+}
+
+impl Screw {
+    /// From `start` about the line through `center` (m) along `axis` (any length) by `angle` (rad,
+    /// right-handed, any size), while it advances along it by `advance` (m); whether the attitude
+    /// `turns` along.
+    ///
+    /// # Errors
+    /// [`ReferenceError::NotFinite`], [`ReferenceError::NoAxis`].
+    pub fn new(
+        start: Hold,
+        center: Vector3<f64>,
+        axis: Vector3<f64>,
+        angle: f64,
+        advance: f64,
+        turns: bool,
+        law: TimeLaw,
+    ) -> Result<Self, ReferenceError> {
+        for (name, v) in
+            [("center", &center), ("axis", &axis), ("angle, advance", &Vector3::new(angle, advance, 0.0))]
+        {
+            if !v.iter().all(|x| x.is_finite()) {
+                return Err(ReferenceError::NotFinite { name });
+            }
+        }
+        let length = axis.norm();
+        if length < 1e-9 {
+            return Err(ReferenceError::NoAxis { length });
+        }
+        let axis = (axis / length).into();
+        Ok(Self { start, center: center.into(), axis, angle, advance, turns, law })
+    }
+
+    /// As [`Screw::new`] in a given duration, s, or as fast as limits allow; `ramp` as in
+    /// [`TimeLaw::ramped`], the quintic without.
+    ///
+    /// # Errors
+    /// As [`Screw::new`] and [`TimeLaw`]'s constructors.
+    pub fn timed(
+        start: Hold,
+        center: Vector3<f64>,
+        axis: Vector3<f64>,
+        angle: f64,
+        advance: f64,
+        turns: bool,
+        timing: &Timing<f64, TaskLimits>,
+        ramp: Option<f64>,
+    ) -> Result<Self, ReferenceError> {
+        let mut screw = Self::new(start, center, axis, angle, advance, turns, TimeLaw::quintic(1.0)?)?;
+        screw.law = match (timing, ramp) {
+            (Timing::Given(duration), None) => TimeLaw::quintic(*duration)?,
+            (Timing::Given(duration), Some(ramp)) => TimeLaw::ramped(*duration, ramp)?,
+            (Timing::Limits(limits), ramp) => TimeLaw::within(limits, ramp, |law| screw.with_law(law))?,
+        };
+        Ok(screw)
+    }
+
+    /// The same path under another law.
+    #[must_use]
+    pub fn with_law(&self, law: TimeLaw) -> Self {
+        Self { law, ..self.clone() }
+    }
+}
+
+impl TaskPath for Screw {
+    fn sample(&self, t: f64) -> TaskSample<f64> {
+        let (s, rate, acceleration) = self.law.at(t);
+        let (u, rot): (_, Mat3<f64>) = (self.axis, exp_so3(self.axis * (self.angle * s)).matrix());
+        let (omega, alpha) = (u * (self.angle * rate), u * (self.angle * acceleration));
+        let arm = rot * (self.start.pos_f - self.center);
+        // ṗ = ω × r + d ṡ u,  p̈ = α × r + ω × (ω × r) + d s̈ u
+        let swept = omega.cross(arm);
+        let velocity = swept + u * (self.advance * rate);
+        let linear = alpha.cross(arm) + omega.cross(swept) + u * (self.advance * acceleration);
+        let (rot_wd, omega, alpha) = match self.turns {
+            true => (rot * self.start.rot_fd, omega, alpha),
+            false => (self.start.rot_fd, Vec3::zero(), Vec3::zero()),
+        };
+        TaskSample {
+            rot_wd,
+            pos_w: self.center + arm + u * (self.advance * s),
+            velocity: Motion::new(velocity, omega),
+            acceleration: Motion::new(linear, alpha),
+        }
+    }
+
+    fn duration(&self) -> f64 {
+        self.law.duration()
+    }
+}

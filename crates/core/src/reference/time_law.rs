@@ -1,0 +1,99 @@
+//! How fast a path is gone along.
+
+use super::{ReferenceError, TaskLimits, TaskPath};
+
+/// `s(t)` from 0 to 1, at rest and without acceleration at both ends; 0 before, 1 after.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeLaw {
+    duration: f64,
+    /// Share of the duration until the constant rate is reached; the quintic where there is none.
+    ramp: Option<f64>,
+}
+
+impl TimeLaw {
+    /// The quintic over `duration`, s.
+    ///
+    /// # Errors
+    /// [`ReferenceError::NotFinite`], [`ReferenceError::DurationNotPositive`].
+    pub fn quintic(duration: f64) -> Result<Self, ReferenceError> {
+        if !duration.is_finite() {
+            return Err(ReferenceError::NotFinite { name: "duration" });
+        }
+        if duration <= 0.0 {
+            return Err(ReferenceError::DurationNotPositive { value: duration });
+        }
+        Ok(Self { duration, ramp: None })
+    }
+
+    /// A constant rate between two ramps that take the share `ramp` of `duration` (s) each.
+    ///
+    /// # Errors
+    /// As [`TimeLaw::quintic`]; [`ReferenceError::Ramp`] for a share that is not in 0..½.
+    pub fn ramped(duration: f64, ramp: f64) -> Result<Self, ReferenceError> {
+        let law = Self::quintic(duration)?;
+        if !(ramp > 0.0 && ramp <= 0.5) {
+            return Err(ReferenceError::Ramp { value: ramp });
+        }
+        Ok(Self { ramp: Some(ramp), ..law })
+    }
+
+    /// The law with which `path_with` makes a path as fast as `limits` allow; `ramp` as in
+    /// [`TimeLaw::ramped`], the quintic without.
+    ///
+    /// # Errors
+    /// [`ReferenceError::LimitNotPositive`], [`ReferenceError::Ramp`]; [`ReferenceError::NoLimit`] where the
+    /// limits let the path take no time.
+    pub fn within<P: TaskPath>(
+        limits: &TaskLimits,
+        ramp: Option<f64>,
+        path_with: impl Fn(Self) -> P,
+    ) -> Result<Self, ReferenceError> {
+        limits.check()?;
+        let law = ramp.map_or_else(|| Self::quintic(1.0), |ramp| Self::ramped(1.0, ramp))?;
+        let duration = limits.stretch(&path_with(law), 4);
+        if duration > 0.0 { Ok(Self { duration, ..law }) } else { Err(ReferenceError::NoLimit) }
+    }
+
+    /// When it comes to rest, s.
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// `s` and its first two derivatives in time.
+    pub fn at(&self, t: f64) -> (f64, f64, f64) {
+        match self.ramp {
+            None => quintic(t, self.duration),
+            Some(ramp) => ramped(t, self.duration, ramp * self.duration),
+        }
+    }
+}
+
+/// `s = 10u³ − 15u⁴ + 6u⁵` with `u = t/T` kept in 0..1.
+fn quintic(t: f64, duration: f64) -> (f64, f64, f64) {
+    let per_s = 1.0 / duration;
+    let u = (t * per_s).clamp(0.0, 1.0);
+    let v = 1.0 - u;
+    let s = u * u * u * (10.0 + u * (6.0 * u - 15.0));
+    let rate = 30.0 * u * u * v * v * per_s; // 30u² − 60u³ + 30u⁴
+    let acceleration = 60.0 * u * v * (v - u) * per_s * per_s; // 60u − 180u² + 120u³
+    (s, rate, acceleration)
+}
+
+/// `ṡ = c (3u² − 2u³)` with `u = t/r` on the ramp, `ṡ = c = 1/(T − r)` between the ramps.
+fn ramped(t: f64, duration: f64, ramp: f64) -> (f64, f64, f64) {
+    let t = t.clamp(0.0, duration);
+    let cruise = 1.0 / (duration - ramp);
+    let up = |t: f64| {
+        let u = t / ramp;
+        let s = cruise * ramp * u * u * u * (1.0 - 0.5 * u); // ∫ 3u² − 2u³
+        (s, cruise * u * u * (3.0 - 2.0 * u), cruise * 6.0 * u * (1.0 - u) / ramp)
+    };
+    if t < ramp {
+        up(t)
+    } else if t > duration - ramp {
+        let (s, rate, acceleration) = up(duration - t);
+        (1.0 - s, rate, -acceleration)
+    } else {
+        (cruise * (t - 0.5 * ramp), cruise, 0.0)
+    }
+}

@@ -1,0 +1,172 @@
+//! Curves through given attitudes, twice continuously differentiable.
+
+use super::rotation::{Quat, exp_so3, log_so3};
+use super::spline::{Ends, Place, Spline, SplineError, check_rows, check_times};
+use super::vec3::Vec3;
+use nalgebra::{Matrix3, Vector3};
+
+/// Angle, rad, this near to a half turn the shorter way is chance.
+const HALF_TURN_MARGIN: f64 = 1e-6;
+
+/// `R(t) = Rk exp(φ(t))` from attitude to attitude, `φ` the quintic whose rates fit at the knots.
+///
+/// Resting at every knot, each piece is the geodesic. Outside the knots it holds its ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RotationSpline {
+    times: Vec<f64>,
+    pieces: Vec<Piece>,
+}
+
+/// From one attitude to the next.
+#[derive(Clone, Debug, PartialEq)]
+struct Piece {
+    start: Quat<f64>,
+    /// `φ` and its first two derivatives at the start.
+    from: [Vec3<f64>; 3],
+    /// The same at the end.
+    to: [Vec3<f64>; 3],
+}
+
+impl RotationSpline {
+    /// Rests at every attitude (K,).
+    ///
+    /// # Errors
+    /// [`SplineError`] for less than two points, wrong lengths, times that do not increase, two
+    /// neighbours half a turn apart.
+    pub fn resting(times: &[f64], attitudes: &[Quat<f64>]) -> Result<Self, SplineError> {
+        let zeros = vec![Vec3::zero(); attitudes.len()];
+        Self::new(times, attitudes, &zeros, &zeros)
+    }
+
+    /// Passes through the attitudes, rates and accelerations being those of the C² cubic spline
+    /// through their quaternions.
+    ///
+    /// # Errors
+    /// As [`RotationSpline::resting`].
+    pub fn passing(times: &[f64], attitudes: &[Quat<f64>], ends: Ends) -> Result<Self, SplineError> {
+        let attitudes = continuous(attitudes);
+        let mut rows = vec![0.0; 4 * attitudes.len()];
+        attitudes.iter().zip(rows.chunks_exact_mut(4)).for_each(|(q, row)| q.write_xyzw(row));
+        let spline = Spline::passing(times, 4, &rows, ends)?;
+        let knot = |k: usize| -> (Vec3<f64>, Vec3<f64>) {
+            // ω = 2 vec(q* q̇) and α = 2 vec(q* q̈) for q = s/|s|, where |s| = 1 and d|s|/dt = s·ṡ
+            let [s, s1, s2] = [0, 4, 8].map(|i| Quat::from_xyzw(&spline.knot(k)[i..i + 4]));
+            let (turn, bend) = (s.conjugate().product(s1).v, s.conjugate().product(s2).v);
+            let growth = s.v.dot(s1.v) + s.w * s1.w;
+            (turn * 2.0, (bend - turn * (2.0 * growth)) * 2.0)
+        };
+        let (rates, accelerations): (Vec<_>, Vec<_>) = (0..times.len()).map(knot).unzip();
+        Self::new(times, &attitudes, &rates, &accelerations)
+    }
+
+    /// Passes through the attitudes with the given `rates` (K,), rad/s in body axes, whose own cubic
+    /// spline has the accelerations.
+    ///
+    /// # Errors
+    /// As [`RotationSpline::resting`].
+    pub fn with_rates(
+        times: &[f64],
+        attitudes: &[Quat<f64>],
+        rates: &[Vec3<f64>],
+    ) -> Result<Self, SplineError> {
+        let rows: Vec<f64> = rates.iter().flat_map(|w| [w.x, w.y, w.z]).collect();
+        let spline = Spline::passing(times, 3, &rows, Ends::Free)?;
+        let accelerations: Vec<_> =
+            (0..times.len()).map(|k| Vec3::from_slice(&spline.knot(k)[3..])).collect();
+        Self::new(times, attitudes, rates, &accelerations)
+    }
+
+    /// From attitudes with rates and accelerations in body axes.
+    fn new(
+        times: &[f64],
+        attitudes: &[Quat<f64>],
+        rates: &[Vec3<f64>],
+        accelerations: &[Vec3<f64>],
+    ) -> Result<Self, SplineError> {
+        check_times(times)?;
+        let numbers: Vec<f64> = attitudes.iter().flat_map(|q| [q.v.x, q.v.y, q.v.z, q.w]).collect();
+        check_rows("attitudes", &numbers, times.len(), 4)?;
+        let piece = |k: usize| {
+            let start = attitudes[k];
+            let turn = log_so3(start.conjugate().product(attitudes[k + 1]));
+            if turn.norm() > std::f64::consts::PI - HALF_TURN_MARGIN {
+                return Err(SplineError::HalfTurn { point: k });
+            }
+            // φ̇ = J⁻¹ ω, φ̈ = J⁻¹ (α − J̇ φ̇); J is 1 where φ is 0
+            let rate = undo_differential(turn, rates[k + 1]);
+            let (_, leftover) = differential(turn, rate, Vec3::zero());
+            let bend = undo_differential(turn, accelerations[k + 1] - leftover);
+            Ok(Piece { start, from: [Vec3::zero(), rates[k], accelerations[k]], to: [turn, rate, bend] })
+        };
+        let pieces = (0..times.len() - 1).map(piece).collect::<Result<_, _>>()?;
+        Ok(Self { times: times.to_vec(), pieces })
+    }
+
+    /// Attitude at `t`, and its rate (rad/s) and acceleration (rad/s²) in the axes it is given in.
+    pub fn sample(&self, t: f64) -> (Quat<f64>, Vec3<f64>, Vec3<f64>) {
+        let at = Place::of(&self.times, t);
+        let Piece { start, from, to } = &self.pieces[at.segment];
+        let component = |pick: fn(&Vec3<f64>) -> f64| at.blend(from.map(|x| pick(&x)), to.map(|x| pick(&x)));
+        let (x, y, z) = (component(|v| v.x), component(|v| v.y), component(|v| v.z));
+        let [phi, rate, bend] = [0, 1, 2].map(|i| Vec3::new(x[i], y[i], z[i]));
+        let (omega, alpha) = differential(phi, rate, bend);
+        let attitude = start.product(exp_so3(phi));
+        let rot = attitude.matrix();
+        (attitude, rot * omega, rot * alpha) // d/dt (R ω) = R (ω × ω + ω̇)
+    }
+}
+
+/// The same attitudes with signs that make neighbours near.
+fn continuous(attitudes: &[Quat<f64>]) -> Vec<Quat<f64>> {
+    let mut out: Vec<Quat<f64>> = Vec::with_capacity(attitudes.len());
+    for q in attitudes {
+        let is_far = out.last().is_some_and(|last| last.v.dot(q.v) + last.w * q.w < 0.0);
+        out.push(if is_far { Quat { v: -q.v, w: -q.w } } else { *q });
+    }
+    out
+}
+
+/// Rate and acceleration in body axes of `exp(φ)`.
+///
+/// `ω = φ̇ − B φ×φ̇ + C φ×(φ×φ̇)` and its derivative, `B = (1 − cos|φ|)/|φ|²`, `C = (|φ| − sin|φ|)/|φ|³`.
+///
+/// Source: Iserles et al., Acta Numerica 9, 2000, eq. B.11.
+fn differential(phi: Vec3<f64>, rate: Vec3<f64>, bend: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>) {
+    let ([b, c], [b1, c1]) = coefficients(phi.dot(phi));
+    let growth = 2.0 * phi.dot(rate); // d|φ|²/dt
+    let (once, bent) = (phi.cross(rate), phi.cross(bend));
+    let twice = phi.cross(once);
+    let omega = rate - once * b + twice * c;
+    let alpha = bend - bent * b - once * (b1 * growth)
+        + (rate.cross(once) + phi.cross(bent)) * c
+        + twice * (c1 * growth);
+    (omega, alpha)
+}
+
+/// `φ̇` that turns at `ω` in body axes.
+fn undo_differential(phi: Vec3<f64>, omega: Vec3<f64>) -> Vec3<f64> {
+    let column = |axis: Vector3<f64>| differential(phi, axis.into(), Vec3::zero()).0.to_nalgebra();
+    let jacobian = Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(column));
+    let inverse = jacobian.try_inverse().expect("det J = 2(1 − cos|φ|)/|φ|² > 0 below a full turn");
+    (inverse * omega.to_nalgebra()).into()
+}
+
+/// `B` and `C` as functions of `x = |φ|²`, and their derivatives in `x`, by their series
+/// `Σ (−x)ᵏ/(2k+2)!` and `Σ (−x)ᵏ/(2k+3)!`: no cancellation at zero, 1e-16 up to a full turn.
+fn coefficients(x: f64) -> ([f64; 2], [f64; 2]) {
+    let (mut value, mut slope) = ([0.0; 2], [0.0; 2]);
+    let mut term = 0.5; // 1/(2k+2)! times (−1)ᵏ
+    let mut power = 1.0; // xᵏ
+    let mut before = 0.0; // xᵏ⁻¹
+    for k in 0..24 {
+        let count = f64::from(k);
+        for (i, coefficient) in [term, term / (2.0 * count + 3.0)].into_iter().enumerate() {
+            value[i] += coefficient * power;
+            slope[i] += coefficient * count * before;
+        }
+        term /= -(2.0 * count + 3.0) * (2.0 * count + 4.0);
+        before = power;
+        power *= x;
+    }
+    (value, slope)
+}

@@ -1,0 +1,264 @@
+//! Curves through given points, twice continuously differentiable.
+
+use thiserror::Error;
+
+/// Points that no curve can be laid through.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[allow(missing_docs)] // the fields are what the messages say
+pub enum SplineError {
+    #[error("{name} holds {value} at point {point}, it must be finite")]
+    NotFinite { name: &'static str, point: usize, value: f64 },
+    #[error("{name} holds {got} numbers, expected {expected}: one row per time")]
+    WrongLength { name: &'static str, expected: usize, got: usize },
+    #[error("{got} points are given, at least {least} are needed")]
+    TooFew { got: usize, least: usize },
+    #[error("times[{index}] is {after} s after {before} s: times must increase")]
+    NotIncreasing { index: usize, before: f64, after: f64 },
+    #[error("the attitudes at points {point} and {next} are half a turn apart, so either way round is as short: \
+             put another between them", next = point + 1)]
+    HalfTurn { point: usize },
+}
+
+/// How a curve begins and ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ends {
+    /// At rest, without acceleration.
+    Rest,
+    /// With the slope of the cubic through the four points nearest to the end.
+    Free,
+}
+
+/// Quintics between knots with given value, slope and curvature: C² by construction.
+///
+/// A cubic is one of them, so this is also the C² cubic spline. Outside the knots it holds its ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spline {
+    times: Vec<f64>,
+    width: usize,
+    /// (K, 3, n): value, slope and curvature of each knot.
+    knots: Vec<f64>,
+}
+
+impl Spline {
+    /// From `times` (K,), s, and `values`, `slopes`, `curvatures` (K, n).
+    ///
+    /// # Errors
+    /// [`SplineError`] for less than two points, wrong lengths, numbers that are not finite, times that
+    /// do not increase.
+    pub fn new(
+        times: &[f64],
+        width: usize,
+        values: &[f64],
+        slopes: &[f64],
+        curvatures: &[f64],
+    ) -> Result<Self, SplineError> {
+        check_times(times)?;
+        let mut knots = vec![0.0; 3 * width * times.len()];
+        for (place, (name, rows)) in
+            [("values", values), ("slopes", slopes), ("curvatures", curvatures)].into_iter().enumerate()
+        {
+            check_rows(name, rows, times.len(), width)?;
+            for (knot, row) in knots.chunks_exact_mut(3 * width).zip(rows.chunks_exact(width)) {
+                knot[place * width..][..width].copy_from_slice(row);
+            }
+        }
+        Ok(Self { times: times.to_vec(), width, knots })
+    }
+
+    /// Rests at every point.
+    ///
+    /// # Errors
+    /// As [`Spline::new`].
+    pub fn resting(times: &[f64], width: usize, values: &[f64]) -> Result<Self, SplineError> {
+        let zeros = vec![0.0; values.len()];
+        Self::new(times, width, values, &zeros, &zeros)
+    }
+
+    /// Passes through the points with the slopes and curvatures of the C² cubic spline through them.
+    ///
+    /// # Errors
+    /// As [`Spline::new`].
+    pub fn passing(times: &[f64], width: usize, values: &[f64], ends: Ends) -> Result<Self, SplineError> {
+        check_times(times)?;
+        check_rows("values", values, times.len(), width)?;
+        let slopes = cubic_slopes(times, width, values, ends);
+        let curvatures = cubic_curvatures(times, width, values, &slopes, ends);
+        Self::new(times, width, values, &slopes, &curvatures)
+    }
+
+    /// Passes through the points with the given `slopes`, whose own cubic spline has the curvatures.
+    ///
+    /// # Errors
+    /// As [`Spline::new`].
+    pub fn with_slopes(
+        times: &[f64],
+        width: usize,
+        values: &[f64],
+        slopes: &[f64],
+    ) -> Result<Self, SplineError> {
+        check_times(times)?;
+        check_rows("slopes", slopes, times.len(), width)?;
+        Self::new(times, width, values, slopes, &cubic_slopes(times, width, slopes, Ends::Free))
+    }
+
+    /// Times of the knots, (K,) s.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Components of a value.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Value, slope and curvature of knot `k`, (3, n).
+    pub fn knot(&self, k: usize) -> &[f64] {
+        &self.knots[3 * self.width * k..][..3 * self.width]
+    }
+
+    /// Value, slope and curvature at `t`, (n,) each.
+    pub fn sample(&self, t: f64, value: &mut [f64], slope: &mut [f64], curvature: &mut [f64]) {
+        let (n, at) = (self.width, Place::of(&self.times, t));
+        let (start, end) = (self.knot(at.segment), self.knot(at.segment + 1));
+        for i in 0..n {
+            let pick = |knot: &[f64]| [knot[i], knot[n + i], knot[2 * n + i]];
+            [value[i], slope[i], curvature[i]] = at.blend(pick(start), pick(end));
+        }
+    }
+}
+
+/// Where a time falls between knots.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) segment: usize,
+    length: f64,
+    /// Share of the segment, 0..1.
+    u: f64,
+    is_outside: bool,
+}
+
+impl Place {
+    pub(super) fn of(times: &[f64], t: f64) -> Self {
+        let last = times.len() - 2;
+        let segment = times.partition_point(|knot| *knot <= t).saturating_sub(1).min(last);
+        let length = times[segment + 1] - times[segment];
+        let is_outside = t < times[0] || t > times[last + 1];
+        Self { segment, length, u: ((t - times[segment]) / length).clamp(0.0, 1.0), is_outside }
+    }
+
+    /// The quintic between two knots, each `[value, slope, curvature]`; at rest outside.
+    pub(super) fn blend(&self, start: [f64; 3], end: [f64; 3]) -> [f64; 3] {
+        let (h, u) = (self.length, self.u);
+        if self.is_outside {
+            return [if u > 0.5 { end[0] } else { start[0] }, 0.0, 0.0];
+        }
+        if u <= 0.5 {
+            return quintic(h, u, start, end);
+        }
+        // the later half backwards in time, so that the end is met exactly too
+        let back = |[p, v, a]: [f64; 3]| [p, -v, a];
+        back(quintic(h, 1.0 - u, back(end), back(start)))
+    }
+}
+
+/// The six conditions at `u = 0` and `1`, solved for `p + v u + a u²/2 + c₃u³ + c₄u⁴ + c₅u⁵`.
+fn quintic(h: f64, u: f64, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 3] {
+    let (d, v, v1, a, a1) = (p1 - p, v * h, v1 * h, a * h * h, a1 * h * h);
+    let c3 = 10.0 * d - 6.0 * v - 4.0 * v1 - 1.5 * a + 0.5 * a1;
+    let c4 = -15.0 * d + 8.0 * v + 7.0 * v1 + 1.5 * a - a1;
+    let c5 = 6.0 * d - 3.0 * (v + v1) - 0.5 * (a - a1);
+    let value = p + u * (v + u * (0.5 * a + u * (c3 + u * (c4 + u * c5))));
+    let slope = v + u * (a + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)));
+    let curvature = a + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5));
+    [value, slope / h, curvature / (h * h)]
+}
+
+/// Two or more times that increase.
+pub(super) fn check_times(times: &[f64]) -> Result<(), SplineError> {
+    if times.len() < 2 {
+        return Err(SplineError::TooFew { got: times.len(), least: 2 });
+    }
+    check_rows("times", times, times.len(), 1)?;
+    match times.windows(2).position(|pair| pair[0] >= pair[1]) {
+        Some(k) => Err(SplineError::NotIncreasing { index: k + 1, before: times[k], after: times[k + 1] }),
+        None => Ok(()),
+    }
+}
+
+/// `points` rows of `width` finite numbers.
+pub(super) fn check_rows(
+    name: &'static str,
+    rows: &[f64],
+    points: usize,
+    width: usize,
+) -> Result<(), SplineError> {
+    if rows.len() != points * width {
+        return Err(SplineError::WrongLength { name, expected: points * width, got: rows.len() });
+    }
+    match rows.iter().position(|x| !x.is_finite()) {
+        Some(i) => Err(SplineError::NotFinite { name, point: i / width.max(1), value: rows[i] }),
+        None => Ok(()),
+    }
+}
+
+/// Slopes of the C² cubic through the points.
+///
+/// `m₋/h₋ + 2 (1/h₋ + 1/h) m + m₊/h = 3 (Δ₋/h₋ + Δ/h)` at every inner point, `Δ` the slope of a chord.
+///
+/// Source: de Boor, A Practical Guide to Splines, 1978, ch. IV.
+fn cubic_slopes(times: &[f64], width: usize, values: &[f64], ends: Ends) -> Vec<f64> {
+    let (last, mut m) = (times.len() - 1, vec![0.0; values.len()]);
+    let inverse = |k: usize| 1.0 / (times[k + 1] - times[k]);
+    let mut carried = vec![0.0; times.len()]; // the upper diagonal over the pivot
+    for i in 0..width {
+        let at = |k: usize| k * width + i;
+        if ends == Ends::Free {
+            m[at(0)] = end_slope(times, |k| values[at(k)], |k| k);
+            m[at(last)] = end_slope(times, |k| values[at(k)], |k| last - k);
+        }
+        // forward elimination and back substitution (Thomas)
+        carried[0] = 0.0;
+        for k in 1..last {
+            let (before, after) = (inverse(k - 1), inverse(k));
+            let chord = |k: usize, h: f64| (values[at(k + 1)] - values[at(k)]) * h * h;
+            let pivot = 2.0 * (before + after) - before * carried[k - 1];
+            carried[k] = after / pivot;
+            m[at(k)] = (3.0 * (chord(k - 1, before) + chord(k, after)) - before * m[at(k - 1)]) / pivot;
+        }
+        for k in (1..last).rev() {
+            m[at(k)] -= carried[k] * m[at(k + 1)];
+        }
+    }
+    m
+}
+
+/// Slope at one end of the polynomial through the (at most four) points nearest to it.
+fn end_slope(times: &[f64], value: impl Fn(usize) -> f64, index: impl Fn(usize) -> usize) -> f64 {
+    let count = times.len().min(4);
+    let t = |k: usize| times[index(k)];
+    let mut slope = 0.0;
+    for j in 1..count {
+        // derivative at t₀ of Lagrange's polynomial that is 1 at t_j
+        let others = (1..count).filter(|&k| k != j);
+        let weight: f64 = others.map(|k| (t(0) - t(k)) / (t(j) - t(k))).product();
+        slope += (value(index(j)) - value(index(0))) * weight / (t(j) - t(0));
+    }
+    slope
+}
+
+/// Curvatures of the cubics with these values and slopes.
+fn cubic_curvatures(times: &[f64], width: usize, values: &[f64], slopes: &[f64], ends: Ends) -> Vec<f64> {
+    let last = times.len() - 1;
+    let mut out = vec![0.0; values.len()];
+    for (j, out) in out.iter_mut().enumerate() {
+        let k = j / width;
+        let is_end = k == 0 || k == last;
+        if !(is_end && ends == Ends::Rest) {
+            // p̈ = (6Δ − 4m − 2m₊)/h from the next point, or (−6Δ + 4m + 2m₋)/h from the one before
+            let other = if k < last { j + width } else { j - width };
+            let h = times[other / width] - times[k];
+            *out = (6.0 * (values[other] - values[j]) / h - 4.0 * slopes[j] - 2.0 * slopes[other]) / h;
+        }
+    }
+    out
+}

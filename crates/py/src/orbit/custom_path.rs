@@ -1,0 +1,104 @@
+//! Paths through given points.
+
+use super::{Any, PyOrbit, base};
+use crate::arrays::{Input, array_of, wrong_shape};
+use crate::errors::{IntoPython, fields, raise};
+use nalgebra::{SVector, Vector3, Vector4};
+use onorbit_core::orbit::{CustomPath, Ends, Orbit, PathPoints};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::Arc;
+
+/// A path whose acceleration is continuous, exactly through what is given at ``times`` (T,), s of simulation.
+///
+/// ``positions`` (T, 3) m; ``velocities`` (T, 3) m/s, and with them ``accelerations`` (T, 3) m/s², inertial axes;
+/// ``attitudes`` (T, 4) quaternions xyzw, path axes to inertial ones, returned by :meth:`frame`. ``mu`` m³/s² brings
+/// gravity, None is around no planet. Outside of the times: ``ends`` is ``error`` (``PathError``) or ``coast`` (on at
+/// the last velocity and rate).
+#[pyclass(name = "CustomPath", extends = PyOrbit, frozen, module = "onorbit_rs")]
+pub(crate) struct PyCustomPath {
+    path: Arc<CustomPath>,
+}
+
+type Rows<const D: usize> = Vec<SVector<f64, D>>;
+
+/// Rows of `D` numbers, remembered under their name.
+fn table<const D: usize>(value: Any<'_, '_>, name: &str, kept: &Bound<'_, PyDict>) -> PyResult<Rows<D>> {
+    let input = Input::new(value, name)?;
+    match input.shape() {
+        [_, width] if *width == D => {
+            kept.set_item(name, array_of(value.py(), input.shape(), input.data()))?;
+            Ok(input.data().chunks_exact(D).map(SVector::from_column_slice).collect())
+        }
+        other => Err(wrong_shape(value.py(), name, &format!("(T, {D})"), other)),
+    }
+}
+
+#[pymethods]
+impl PyCustomPath {
+    #[new]
+    #[pyo3(signature = (
+        times, positions, *, velocities=None, accelerations=None, attitudes=None, mu=None, ends="error",
+    ))]
+    fn new(
+        py: Python<'_>,
+        times: Any<'_, '_>,
+        positions: Any<'_, '_>,
+        velocities: Option<Any<'_, '_>>,
+        accelerations: Option<Any<'_, '_>>,
+        attitudes: Option<Any<'_, '_>>,
+        mu: Option<f64>,
+        ends: &str,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let kept = fields!(py, "mu": mu, "ends": ends);
+        let behaviour = match ends {
+            "error" => Ends::Error,
+            "coast" => Ends::Coast,
+            other => {
+                let message = format!("ends is '{other}'; there are 'error' and 'coast'");
+                return Err(raise(py, "InputError", &message, &fields!(py, "name": "ends", "got": other)));
+            }
+        };
+        let instants = Input::new(times, "times")?;
+        if instants.shape().len() != 1 {
+            return Err(wrong_shape(py, "times", "(T,)", instants.shape()));
+        }
+        let instants = instants.data().to_vec();
+        kept.set_item("times", array_of(py, &[instants.len()], &instants))?;
+        let optional = |value: Option<Any<'_, '_>>, name| -> PyResult<Option<Vec<Vector3<f64>>>> {
+            value.map(|value| table::<3>(value, name, &kept)).transpose()
+        };
+        let points = PathPoints {
+            times: instants,
+            positions: table(positions, "positions", &kept)?,
+            velocities: optional(velocities, "velocities")?,
+            accelerations: optional(accelerations, "accelerations")?,
+            attitudes: attitudes
+                .map(|value| -> PyResult<Vec<Vector4<f64>>> { table(value, "attitudes", &kept) })
+                .transpose()?,
+        };
+        let path =
+            py.detach(|| CustomPath::new(points, mu, behaviour)).map_err(|error| error.into_python(py))?;
+        let path = Arc::new(path);
+        let orbit =
+            base(Arc::clone(&path) as Arc<dyn Orbit>, "CustomPath", &pyo3::types::PyTuple::empty(py), &kept)?;
+        Ok(PyClassInitializer::from(orbit).add_subclass(Self { path }))
+    }
+
+    /// First and last time, s.
+    #[getter]
+    fn span(&self) -> (f64, f64) {
+        self.path.span()
+    }
+
+    /// Whether attitudes were given.
+    #[getter]
+    fn has_attitudes(&self) -> bool {
+        self.path.has_attitudes()
+    }
+
+    fn __repr__(&self) -> String {
+        let (start, end) = self.path.span();
+        format!("<CustomPath: {start} s to {end} s>")
+    }
+}

@@ -1,0 +1,51 @@
+//! A reference at rest.
+
+use super::{Any, PyOrbit, base};
+use crate::arrays::{array_of, fixed};
+use crate::errors::{IntoPython, fields, raise};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
+use onorbit_core::orbit::{FixedFrame, Orbit};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use std::sync::Arc;
+
+/// A reference that stands still in inertial axes: ``position`` (3,) m, ``attitude`` (4,) quaternion xyzw.
+///
+/// Without ``mu`` (m³/s²) it is around no planet. With it gravity pulls the robot away from it, as the frame does not
+/// fall. It has no local orbital frame; :meth:`frame` gives its attitude.
+#[pyclass(name = "FixedFrame", extends = PyOrbit, frozen, module = "onorbit_rs")]
+pub(crate) struct PyFixedFrame;
+
+#[pymethods]
+impl PyFixedFrame {
+    #[new]
+    #[pyo3(signature = (*, position=None, attitude=None, mu=None))]
+    fn new(
+        py: Python<'_>,
+        position: Option<Any<'_, '_>>,
+        attitude: Option<Any<'_, '_>>,
+        mu: Option<f64>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let position = position.map_or(Ok([0.0; 3]), |p| fixed::<3>(p, "position", &[3]))?;
+        let attitude = attitude.map_or(Ok([0.0, 0.0, 0.0, 1.0]), |q| fixed::<4>(q, "attitude", &[4]))?;
+        let vector = Vector4::from(attitude);
+        let norm = vector.norm();
+        if (norm - 1.0).abs() > 1e-6 {
+            let message =
+                format!("attitude has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w");
+            let fields = fields!(py, "name": "attitude", "got": norm, "expected": 1.0);
+            return Err(raise(py, "InputError", &message, &fields));
+        }
+        let turn = UnitQuaternion::from_quaternion(Quaternion::from_vector(vector));
+        let frame =
+            FixedFrame::new(Vector3::from(position), turn, mu).map_err(|error| error.into_python(py))?;
+        let (p, q) = (array_of(py, &[3], &position), array_of(py, &[4], &attitude));
+        let keywords = fields!(py, "position": p, "attitude": q, "mu": mu);
+        let orbit = base(Arc::new(frame) as Arc<dyn Orbit>, "FixedFrame", &PyTuple::empty(py), &keywords)?;
+        Ok(PyClassInitializer::from(orbit).add_subclass(Self))
+    }
+
+    fn __repr__(&self) -> &'static str {
+        "<FixedFrame>"
+    }
+}

@@ -1,0 +1,50 @@
+"""Reference orbits of the engine from a checked scenario."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.orbit import KeplerOrbit
+from onorbit_rs.scenario.path import CustomPathOrbit, FixedFrameOrbit, Sgp4Orbit
+from onorbit_rs.scenario.path_file import GROUPS, read_points, read_text, two_lines
+from onorbit_rs.scenario.start import quaternion_of
+
+
+def make_orbit(
+    orbit: KeplerOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit, beside: Path
+) -> _core.Orbit:
+    """The orbit; its files lie ``beside`` the scenario unless their paths are absolute."""
+    if isinstance(orbit, Sgp4Orbit):
+        return _sgp4(orbit, beside)
+    if isinstance(orbit, CustomPathOrbit):
+        given = {name: getattr(orbit, name) for name in GROUPS}
+        points = (
+            {name: np.array(rows) for name, rows in given.items() if rows is not None}
+            if orbit.file is None
+            else read_points(beside / orbit.file)
+        )
+        return _core.CustomPath(**points, mu=orbit.mu, ends=orbit.ends)
+    if isinstance(orbit, FixedFrameOrbit):
+        attitude = quaternion_of(orbit.attitude)
+        return _core.FixedFrame(position=np.array(orbit.position), attitude=attitude, mu=orbit.mu)
+    given = orbit.given()
+    if orbit.is_from_state:
+        position, velocity = given.pop("position"), given.pop("velocity")
+        return _core.Kepler.from_state(np.array(position), np.array(velocity), **given)
+    return _core.Kepler(**given)
+
+
+def _sgp4(orbit: Sgp4Orbit, beside: Path) -> _core.Sgp4:
+    if orbit.omm_file is not None:
+        return _core.Sgp4.from_omm(read_text(beside / orbit.omm_file), gravity=orbit.gravity)
+    if orbit.tle_file is not None:
+        lines = two_lines(read_text(beside / orbit.tle_file), str(beside / orbit.tle_file))
+    elif orbit.tle is not None:
+        lines = two_lines(orbit.tle, "tle")
+    else:
+        assert orbit.line1 is not None and orbit.line2 is not None  # the schema lets no other through
+        lines = (orbit.line1, orbit.line2)
+    return _core.Sgp4(*lines, gravity=orbit.gravity, check_checksum=orbit.check_checksum)

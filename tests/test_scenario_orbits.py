@@ -1,0 +1,148 @@
+"""Orbits of every kind in a scenario: read, refused with file and line, written so that they run again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+import onorbit_rs as oo
+from onorbit_rs.exceptions import ElementSetError, NotFoundError, OnOrbitError, PathError, ScenarioError
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import build
+
+LINE1 = "1 00005U 58002B   00179.78495062  .00000023  00000-0  28098-4 0  4753"
+LINE2 = "2 00005  34.2682 348.7242 1859667 331.7664  19.3264 10.82419157413667"
+CSV = "t,x,y,z,vx,vy,vz\n0,7e6,0,0,0,7500,0\n\n10,7e6,75000,0,0,7500,0\n20,7e6,150000,0,0,7500,0\n"
+
+
+def scenario(orbit: Any, **parts: Any) -> dict[str, Any]:
+    body = {"rigid_body": {"mass": 10.0, "inertia": [1.0, 2.0, 2.5]}}
+    return {"robot": body, "orbit": orbit, "simulation": {"duration": 1.0, "time_step": 0.1}} | parts
+
+
+def written(folder: Path, orbit: Any, **parts: Any) -> Path:
+    file = folder / "mine.yaml"
+    file.write_text(yaml.safe_dump(scenario(orbit, **parts), sort_keys=False))
+    return file
+
+
+def orbit_of(source: Any) -> oo.Orbit:
+    made = build(load(source)).orbit
+    assert made is not None
+    return made
+
+
+@pytest.mark.parametrize("key", ["lines", "tle", "tle_file"])
+def test_an_element_set_can_be_written_in_three_ways(key: str, tmp_path: Path) -> None:
+    text = f"VANGUARD 1\n{LINE1}\n{LINE2}\n"
+    (tmp_path / "set.txt").write_text(text)
+    ways = {
+        "lines": {"line1": LINE1, "line2": LINE2},
+        "tle": {"tle": text},
+        "tle_file": {"tle_file": "set.txt"},
+    }
+    made = orbit_of(written(tmp_path, {"kind": "sgp4"} | ways[key]))
+    np.testing.assert_array_equal(made.state(60.0)[0], oo.Sgp4(LINE1, LINE2).state(60.0)[0])
+
+
+def test_points_come_with_units_or_from_a_file_beside_the_scenario(tmp_path: Path) -> None:
+    (tmp_path / "path.csv").write_text(CSV)
+    from_file = orbit_of(written(tmp_path, {"kind": "custom_path", "file": "path.csv", "mu": oo.MU_EARTH}))
+    inline = orbit_of(
+        scenario(
+            {
+                "kind": "custom_path",
+                "times": [0, "10 s", 20],
+                "positions": [["7000 km", 0, 0], ["7000 km", "75 km", 0], ["7000 km", "150 km", 0]],
+                "velocities": [[0, "7.5 km/s", 0]] * 3,
+                "mu": "398600.4418 km^3/s^2",
+            }
+        )
+    )
+    np.testing.assert_allclose(from_file.state(13.0)[0], inline.state(13.0)[0], rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (CSV.replace("vx", "ux"), "path.csv:1: unknown column 'ux'"),
+        (CSV.replace(",vz", ""), "path.csv:1: velocities need"),
+        (CSV.replace("75000,0,0", "75000,zero,0"), "path.csv:4: could not convert"),
+        (CSV.replace("10,7e6,75000,0,0,7500,0", "10,7e6"), "path.csv:4: 2 cells under 7 columns"),
+        ("", "path.csv:1: times need"),
+        ("t,x,y,z\n", "at least 2"),
+        (CSV.replace("20,7e6", "5,7e6"), "times must increase"),
+    ],
+)
+def test_a_broken_file_of_points_says_its_line(text: str, says: str, tmp_path: Path) -> None:
+    (tmp_path / "path.csv").write_text(text)
+    with pytest.raises(PathError, match=says) as caught:
+        orbit_of(written(tmp_path, {"kind": "custom_path", "file": "path.csv"}))
+    assert "mine.yaml:" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("orbit", "error", "says"),
+    [
+        ({"kind": "sgp4", "line1": LINE1}, ScenarioError, "both 'line1' and 'line2'"),
+        ({"kind": "sgp4"}, ScenarioError, "give one element set"),
+        ({"kind": "sgp4", "tle": LINE1}, ElementSetError, "holds 1 lines"),
+        ({"kind": "sgp4", "tle_file": "none.txt"}, NotFoundError, "none.txt"),
+        ({"kind": "sgp4", "line1": LINE1, "line2": LINE2 + "7"}, ElementSetError, "70 columns"),
+        ({"kind": "sgp4", "line1": LINE1, "line2": LINE2, "gravity": "wgs27"}, ScenarioError, "'wgs72'"),
+        ({"kind": "sgp44"}, ScenarioError, "did you mean 'sgp4'"),
+        ({"kind": "custom_path", "times": [0, 1]}, ScenarioError, "'times' and 'positions'"),
+        ({"kind": "custom_path", "file": "a.csv", "times": [0]}, ScenarioError, "not both"),
+        ({"kind": "custom_path", "times": [0, 0], "positions": [[0, 0, 0]] * 2}, PathError, "increase"),
+        ({"kind": "custom_path", "times": [0, "1 m"], "positions": [[0, 0, 0]] * 2}, ScenarioError, "a time"),
+        ({"kind": "fixed_frame", "gravity_mode": "free"}, ScenarioError, "'carried'"),
+        ({"kind": "fixed_frame", "mu": -1}, ScenarioError, "not above zero"),
+    ],
+)
+def test_orbits_without_sense_say_where_they_stand(
+    orbit: Any, error: type[OnOrbitError], says: str, tmp_path: Path
+) -> None:
+    with pytest.raises(error, match=says) as caught:
+        orbit_of(written(tmp_path, orbit))
+    assert "mine.yaml:" in str(caught.value)
+
+
+def test_a_path_too_short_for_the_run_is_told_before_it_runs(tmp_path: Path) -> None:
+    orbit = {"kind": "custom_path", "times": [0.05, 9.0], "positions": [[0, 0, 0], [1, 0, 0]]}
+    with pytest.raises(PathError, match=r"mine\.yaml:.*give times that cover the run"):
+        orbit_of(written(tmp_path, orbit))
+
+
+@pytest.mark.parametrize("kind", ["custom_path", "fixed_frame", "sgp4", "standing"])
+def test_the_folder_of_a_run_runs_again_and_says_what_it_flew(kind: str, tmp_path: Path) -> None:
+    (tmp_path / "path.csv").write_text(CSV)
+    (tmp_path / "set.txt").write_text(f"{LINE1}\n{LINE2}\n")
+    orbits: dict[str, Any] = {
+        "custom_path": {"kind": "custom_path", "file": "path.csv", "mu": oo.MU_EARTH, "gravity_mode": True},
+        "fixed_frame": "fixed_frame",
+        "sgp4": {"kind": "sgp4", "tle_file": "set.txt", "gravity_mode": "carried"},
+        "standing": {"kind": "fixed_frame", "position": ["7000 km", 0, 0], "mu": oo.MU_EARTH},
+    }
+    first = oo.run(written(tmp_path, orbits[kind]), out=tmp_path / "out", quiet=True)
+    again = oo.run(tmp_path / "out" / "scenario.yaml", quiet=True)
+    np.testing.assert_array_equal(first.trace.q, again.trace.q)
+    assert first.summary["certificate_passed"], first.summary["certificate_failures"]
+    assert first.summary["inertial_axes"] == ("TEME" if kind == "sgp4" else "GCRF")
+    assert ("SGP4's own" in first.summary["velocity_eci_source"]) == (kind == "sgp4")
+    assert first.summary.get("gravity_mode") == {"sgp4": "carried", "fixed_frame": None}.get(kind, "true")
+    assert ("reference_residual_max_m_s2" in first.summary) == (kind == "sgp4")
+    assert (tmp_path / "out" / "run.rrd").stat().st_size > 1000
+
+
+def test_a_start_relative_to_the_path_turns_with_it() -> None:
+    orbit = {
+        "kind": "custom_path", "times": [0, 1, 2], "positions": [[0, 0, 0], [1, 0, 0], [2, 0, 0]],
+        "attitudes": [[0, 0, np.sin(t / 4), np.cos(t / 4)] for t in (0, 1, 2)],
+    }  # fmt: skip
+    made = build(load(scenario(orbit, initial={"frame": "path"})))
+    np.testing.assert_allclose(made.v[3:6], [0.0, 0.0, 0.5], atol=2e-2)  # a spline of three points
+    np.testing.assert_allclose(made.v[3:6], made.orbit.frame(0.0)[1] if made.orbit else 0.0, atol=1e-15)
