@@ -79,11 +79,14 @@ impl Counter {
     }
 }
 
+/// Name, start, duration in s.
+type Case = (&'static str, fn() -> Simulation, f64);
+
 /// One turn of the spacecraft, a swing of the arm: errors of steps add up, and later the motion itself
 /// amplifies them. Not only at the end: the largest of twenty rows.
 #[test]
 fn the_tolerance_is_met_within_a_factor_of_ten_over_five_decades() {
-    let cases: [(&str, fn() -> Simulation, f64); 2] = [("tumbling", tumbling, 8.0), ("limp arm", limp, 5.0)];
+    let cases: [Case; 2] = [("tumbling", tumbling, 8.0), ("limp arm", limp, 5.0)];
     for (name, make, duration) in cases {
         let mut reference = make();
         (reference.time_step, reference.record_every) = (duration / 40_000.0, 2_000);
@@ -92,7 +95,8 @@ fn the_tolerance_is_met_within_a_factor_of_ten_over_five_decades() {
             let mut simulation = adaptive(make(), tolerance, duration / 20.0);
             let trace = run(&mut simulation, duration);
             let mut shares = [0.0_f64; 3];
-            for (exact, q) in exact.q.chunks(simulation.model.nq()).zip(trace.q.chunks(simulation.model.nq())) {
+            for (exact, q) in exact.q.chunks(simulation.model.nq()).zip(trace.q.chunks(simulation.model.nq()))
+            {
                 let found = errors(&simulation.model, exact, q);
                 (0..3).for_each(|i| shares[i] = shares[i].max(found[i] / tolerance));
             }
@@ -156,7 +160,8 @@ fn steps_follow_the_pace_of_an_eccentric_orbit() {
     // the stages of a step share its interval; what asks once is a look ahead or a row
     let lengths: Vec<f64> =
         counter.0.lock().unwrap().windows(2).filter(|w| w[0] == w[1]).map(|w| w[0].1 - w[0].0).collect();
-    let (shortest, longest) = (lengths.iter().copied().fold(f64::INFINITY, f64::min), lengths.iter().copied().fold(0.0, f64::max));
+    let (shortest, longest) =
+        (lengths.iter().copied().fold(f64::INFINITY, f64::min), lengths.iter().copied().fold(0.0, f64::max));
     let evaluations = counter.evaluations();
     let mut reference = eccentric(1.0);
     reference.record_every = 60_000;
@@ -186,7 +191,8 @@ fn steps_follow_the_pace_of_an_eccentric_orbit() {
 #[test]
 fn events_cut_adaptive_steps_and_ticks_do_where_something_asks() {
     let model = Model::rigid_body(7.0, Matrix3::identity()).unwrap();
-    let mut simulation = adaptive(Simulation::new(Arc::new(model.clone()), neutral(&model), vec![0.0; 6]), 1e-9, 0.1);
+    let mut simulation =
+        adaptive(Simulation::new(Arc::new(model.clone()), neutral(&model), vec![0.0; 6]), 1e-9, 0.1);
     let force = Vector3::new(3.0, -1.0, 0.5);
     let push = BodyWrench::new(0, force, Vector3::zeros()).unwrap().during(0.1234, 0.456_789).unwrap();
     simulation.effects.push(Arc::new(push));

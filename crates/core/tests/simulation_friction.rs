@@ -77,7 +77,9 @@ fn it_breaks_away_within_a_step_when_the_spin_is_fast_enough() {
     let time = (FRICTION / (REDUCED * offset)).sqrt() * inertia / torque;
     for integrator in [Integrator::Rk4, Integrator::DormandPrince] {
         let mut simulation = moving(slider(FRICTION, 0.0, None, offset), 0.0, integrator, 0.05);
-        simulation.effects.push(Arc::new(BodyWrench::new(0, Vector3::zeros(), Vector3::z() * torque).unwrap()));
+        simulation
+            .effects
+            .push(Arc::new(BodyWrench::new(0, Vector3::zeros(), Vector3::z() * torque).unwrap()));
         let trace = run(&mut simulation, time + 1.0);
         let first = trace.time.iter().zip(trace.v.chunks(7)).find(|(_, v)| v[6] != 0.0).unwrap();
         let certificate = certify(&simulation.model, &trace);
@@ -118,7 +120,11 @@ fn a_stick_slip_run_is_certified_and_does_not_chatter() {
             })
             .sum();
         let stuck = trace.v[trace.v.len() - 7..].iter().filter(|u| **u == 0.0).count();
-        println!("{integrator:?}: {} rows, {changes} changes, {stuck} stuck at the end; {:?}", trace.rows(), certificate.checks());
+        println!(
+            "{integrator:?}: {} rows, {changes} changes, {stuck} stuck at the end; {:?}",
+            trace.rows(),
+            certificate.checks()
+        );
         assert!(certificate.passed(), "{certificate:#?}");
         assert!(certificate.energy_balance_error_rel < 1e-8);
         assert!(changes < 100 && stuck > 2);

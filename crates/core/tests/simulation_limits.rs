@@ -51,7 +51,8 @@ fn a_stop_pushes_and_does_not_pull() {
     for friction in [0.0, 1.0] {
         for integrator in INTEGRATORS {
             let model = slider(friction, 0.0, Some((-1.0, 0.1)), 0.3);
-            let mut simulation = driven(moving(model, 0.0, integrator, 0.01), |t| if t < 1.995 { 3.0 } else { -3.0 });
+            let mut simulation =
+                driven(moving(model, 0.0, integrator, 0.01), |t| if t < 1.995 { 3.0 } else { -3.0 });
             simulation.stops = Some(0.4);
             let trace = run(&mut simulation, 2.5);
             let certificate = certify(&simulation.model, &trace);
@@ -62,7 +63,11 @@ fn a_stop_pushes_and_does_not_pull() {
             let k = trace.rows() - 1;
             let (u, way) = (trace.v[7 * k + 6], trace.q[8 * k + 7] - 0.1);
             let exact = -(3.0 - friction) / REDUCED * 0.5;
-            println!("{integrator:?}, friction {friction}: {} rows, leaves {way} m, rate {:e} off", trace.rows(), u - exact);
+            println!(
+                "{integrator:?}, friction {friction}: {} rows, leaves {way} m, rate {:e} off",
+                trace.rows(),
+                u - exact
+            );
             assert!((u - exact).abs() < 1e-11);
             let is_first_order = integrator == Integrator::SemiImplicitEuler;
             assert!(is_first_order || certificate.energy_balance_error_rel < 1e-8, "{certificate:#?}");
@@ -74,7 +79,8 @@ fn a_stop_pushes_and_does_not_pull() {
 /// An arm with limits all around its swing.
 #[test]
 fn an_arm_swings_between_its_stops_and_keeps_its_ledgers() {
-    for (integrator, e) in [(Integrator::Rk4, 0.3), (Integrator::Rk4, 0.0), (Integrator::DormandPrince, 0.3)] {
+    for (integrator, e) in [(Integrator::Rk4, 0.3), (Integrator::Rk4, 0.0), (Integrator::DormandPrince, 0.3)]
+    {
         let model = humanoid_with(|joint| {
             let at = common::humanoid::START[joint.name[4..].parse::<usize>().unwrap() - 1];
             joint.limits.position = Some((at - 0.3, at + 0.3));
@@ -88,7 +94,11 @@ fn an_arm_swings_between_its_stops_and_keeps_its_ledgers() {
         let certificate = certify(&simulation.model, &trace);
         let beyond = trace.q.chunks(14).flat_map(|row| (7..14).map(|j| (row[j] - q[j]).abs() - 0.3));
         let beyond = beyond.fold(f64::NEG_INFINITY, f64::max);
-        println!("{integrator:?} {e}: {} rows, {beyond:e} rad beyond; {:?}", trace.rows(), certificate.checks());
+        println!(
+            "{integrator:?} {e}: {} rows, {beyond:e} rad beyond; {:?}",
+            trace.rows(),
+            certificate.checks()
+        );
         assert!(beyond < 1e-9 && beyond > -1e-5);
         assert!(certificate.passed(), "{certificate:#?}");
         assert!(certificate.energy_balance_error_rel < 1e-8);
@@ -103,7 +113,9 @@ fn a_start_outside_a_limit_is_named() {
     simulation.check().unwrap(); // limits are not kept unless asked for
     simulation.stops = Some(0.0);
     let error = simulation.check().unwrap_err();
-    assert!(matches!(&error, SimulationError::OutsideLimits { joint, value, .. } if joint == "slide" && *value == 0.2));
+    assert!(
+        matches!(&error, SimulationError::OutsideLimits { joint, value, .. } if joint == "slide" && *value == 0.2)
+    );
     assert!(error.to_string().contains("-0.1 to 0.1"), "{error}");
     simulation.stops = Some(1.5);
     assert!(matches!(simulation.check(), Err(SimulationError::Restitution { .. })));

@@ -246,7 +246,9 @@ pub(crate) fn integrator_named(py: Python<'_>, name: &str) -> PyResult<Integrato
         "semi_implicit_euler" => Ok(Integrator::SemiImplicitEuler),
         "dormand_prince" => Ok(Integrator::DormandPrince),
         other => {
-            let message = format!("integrator is '{other}'; there are 'rk4', 'semi_implicit_euler' and 'dormand_prince'");
+            let message = format!(
+                "integrator is '{other}'; there are 'rk4', 'semi_implicit_euler' and 'dormand_prince'"
+            );
             Err(raise(py, "InputError", &message, &fields!(py, "name": "integrator", "got": other)))
         }
     }

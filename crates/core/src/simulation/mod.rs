@@ -10,6 +10,7 @@ mod pair;
 mod plant;
 mod probe;
 mod recorder;
+mod rows;
 mod run;
 mod schedule;
 mod settings;
@@ -19,6 +20,7 @@ mod stepping;
 mod stick;
 mod surroundings;
 mod tableau;
+mod tolerance;
 mod trace;
 
 pub use certificate::{Certificate, Check, certify};

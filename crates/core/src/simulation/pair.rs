@@ -4,16 +4,13 @@ use super::error::SimulationError;
 use super::integrator::Stages;
 use super::plant::{Plant, World};
 use super::state::{Rate, State};
-use super::tableau::{A, C, E, dense};
+use super::tableau::{A, C, dense};
 use crate::dynamics::{base_rotation, composite_momentum};
-use crate::model::Axis;
 use crate::spatial::{Real, Vec3, dexp_inv_exact};
 use serde::{Deserialize, Serialize};
 
 /// Largest turn of the base in a step, rad: its rotation vector must stay short of a whole turn.
-const LARGEST_TURN: f64 = 2.0;
-/// Below this share of the fastest rate of the run, errors of rates are as small as they need be.
-const SLOW: f64 = 1e-3;
+pub(super) const LARGEST_TURN: f64 = 2.0;
 /// What the step may change by at once.
 const CHANGE: (f64, f64) = (0.2, 5.0);
 
@@ -36,7 +33,7 @@ pub(crate) struct Memory {
 #[derive(Clone, Debug)]
 pub(super) struct Pair<S> {
     pub(super) k: Vec<Rate<S>>,
-    tolerance: f64,
+    pub(super) tolerance: f64,
     pub(super) memory: Memory,
     /// The interval of the last step.
     span: (f64, f64),
@@ -155,51 +152,6 @@ impl<S: Real> Stages<S> {
         LARGEST_TURN / Vec3::from_slice(&self.start.v[3..]).norm().lane(0)
     }
 
-    /// Error of the last step as a share of what is allowed, and that of its attitude, rad.
-    ///
-    /// Allowed are `ε` of a radian in attitude and joints, of the robot's radius of gyration (or of the
-    /// distance from W's origin) in lengths, of their own size in rates.
-    fn error(&mut self, plant: &Plant<'_, S, impl World<S>>, h: f64) -> (f64, f64) {
-        let Self { start, trial, sum, pair, .. } = self;
-        let Some(pair) = pair else { return (0.0, 0.0) };
-        combine(sum, &pair.k, &E);
-        let norm = |v: Vec3<S>| v.norm().lane(0);
-        let vector = |x: &[S]| norm(Vec3::from_slice(x));
-        let (turn, size) = (h * norm(sum.turn), pair.memory.size);
-        let carried = norm(plant.carried());
-        let spin = vector(&start.v[3..]).max(vector(&trial.v[3..]));
-        let speed = carried.max(vector(&trial.v));
-        let prismatic = |j: usize| plant.model.nodes()[j + 1].axis == Axis::Prismatic;
-        let rate = |j: usize| start.v[j + 6].lane(0).abs().max(trial.v[j + 6].lane(0).abs());
-        let n = start.v.len() - 6;
-
-        let [fastest, highest] = pair.memory.fastest;
-        let turning = |j: usize| if prismatic(j) { rate(j) / size } else { rate(j) };
-        let fastest = (0..n).map(turning).fold(fastest.max(spin), f64::max);
-        let highest = highest.max(speed).max(size * fastest);
-        let (slow, crawl) = (SLOW * fastest, SLOW * highest);
-
-        let share = |error: f64, scale: f64| if error == 0.0 { 0.0 } else { error / (pair.tolerance * scale) };
-        let mut worst = [
-            pair.attitude * share(turn, 1.0),
-            share(h * norm(sum.origin), size.max(vector(&start.q))),
-            pair.attitude * share(h * vector(&sum.a[3..]), spin + slow),
-            share(h * vector(&sum.a), speed + size * spin + crawl),
-        ]
-        .into_iter()
-        .fold(0.0, worse);
-        for j in 0..n {
-            let scale = if prismatic(j) { size } else { 1.0 };
-            worst = worse(worst, share(h * sum.v[j + 6].lane(0).abs(), scale));
-            worst = worse(worst, share(h * sum.a[j + 6].lane(0).abs(), rate(j) + slow * scale));
-        }
-        let is_folded = vector(&trial.q[3..]).is_nan() || h * norm(pair.k[6].turn) > 2.0 * LARGEST_TURN;
-        if worst <= 1.0 {
-            pair.memory.fastest = [fastest, highest]; // what is tried in vain does not count
-        }
-        (if is_folded { f64::NAN } else { worst }, turn)
-    }
-
     /// The state at `t` within the last step, momentum not yet put right.
     pub(super) fn interpolate(&mut self, t: f64, state: &mut State<S>) {
         let Self { start, sum, pair, passing, .. } = self;
@@ -214,7 +166,7 @@ impl<S: Real> Stages<S> {
 }
 
 /// `Σ w_i k_i`.
-fn combine<S: Real>(sum: &mut Rate<S>, stages: &[Rate<S>], weights: &[f64]) {
+pub(super) fn combine<S: Real>(sum: &mut Rate<S>, stages: &[Rate<S>], weights: &[f64]) {
     sum.clear();
     for (k, &weight) in stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
         S::enter(
@@ -222,11 +174,6 @@ fn combine<S: Real>(sum: &mut Rate<S>, stages: &[Rate<S>], weights: &[f64]) {
             || sum.accumulate(k, S::of(weight)),
         );
     }
-}
-
-/// The larger of two, and not a number if either is.
-fn worse(a: f64, b: f64) -> f64 {
-    if b > a || b.is_nan() { b } else { a }
 }
 
 #[cfg(test)]

@@ -161,17 +161,17 @@ fn rows(schedule: &Schedule, record_every: usize) -> usize {
 }
 
 /// A run under way.
-struct Run<'a, S> {
-    state: State<S>,
-    plant: Plant<'a, S, Surroundings>,
-    driver: Driver<'a, S>,
-    recorder: Recorder<'a>,
-    stepper: Stepper<S>,
+pub(super) struct Run<'a, S> {
+    pub(super) state: State<S>,
+    pub(super) plant: Plant<'a, S, Surroundings>,
+    pub(super) driver: Driver<'a, S>,
+    pub(super) recorder: Recorder<'a>,
+    pub(super) stepper: Stepper<S>,
     /// For rows within a step.
-    between: (State<S>, Stages<S>),
-    probe: Probe<S>,
-    schedule: Schedule,
-    steps: usize,
+    pub(super) between: (State<S>, Stages<S>),
+    pub(super) probe: Probe<S>,
+    pub(super) schedule: Schedule,
+    pub(super) steps: usize,
 }
 
 impl<S: Scalar> Run<'_, S> {
@@ -233,19 +233,6 @@ impl<S: Scalar> Run<'_, S> {
         Ok(())
     }
 
-    /// A row within the last step.
-    fn record_between(&mut self, t: f64) -> Result<(), SimulationError> {
-        let Self { plant, stepper, between: (state, stages), recorder, .. } = self;
-        stepper.stages.interpolate(t, state);
-        plant.settle(state);
-        plant.surround(t, (t, t), &state.q)?;
-        let orbit = plant.surroundings.orbit_state(t)?;
-        recorder.row(t, state, plant, orbit)?;
-        stages.accelerate(plant, state);
-        recorder.accelerated(stages.first_acceleration());
-        Ok(())
-    }
-
     /// Shows the run to its monitor.
     fn look(&self, monitor: Monitor<'_>) -> ControlFlow<()> {
         let (time, trace) = (self.schedule.now(), &self.recorder.trace);
@@ -273,7 +260,12 @@ impl<S: Scalar> Run<'_, S> {
     }
 
     /// Kinematics, wrenches and torques at the start of a step.
-    fn begin(&mut self, t: f64, interval: (f64, f64), is_control_tick: bool) -> Result<(), SimulationError> {
+    pub(super) fn begin(
+        &mut self,
+        t: f64,
+        interval: (f64, f64),
+        is_control_tick: bool,
+    ) -> Result<(), SimulationError> {
         self.plant.settle(&mut self.state);
         if !self.state.is_finite() {
             return Err(self.diverged(t));
@@ -292,27 +284,9 @@ impl<S: Scalar> Run<'_, S> {
         Ok(())
     }
 
-    /// Joints that run into their stops bounce; with every step a row, the instant has one before and
-    /// one after.
-    fn bounce(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
-        if !self.plant.contacts.is_active() || self.plant.hits(&self.state).is_none() {
-            return Ok(());
-        }
-        if self.recorder.trace.has_every_step {
-            self.plant.surround(t, interval, &self.state.q)?;
-            self.record(t)?;
-            let Self { state, plant, between: (_, stages), recorder, .. } = self;
-            stages.accelerate(plant, state);
-            recorder.accelerated(stages.first_acceleration());
-            plant.settle(state);
-        }
-        self.stepper.bounce(&mut self.plant, &mut self.state);
-        Ok(())
-    }
-
     /// What a state that ran away brings about elsewhere is called by its name: a built-in law that
     /// overflows, an orbit or an effect asked about places that are none.
-    fn name_divergence(&self, error: SimulationError, t: f64) -> SimulationError {
+    pub(super) fn name_divergence(&self, error: SimulationError, t: f64) -> SimulationError {
         let is_overflow = matches!(&error, SimulationError::Control(ControlError::TorqueNotFinite { .. }))
             && self.driver.is_built_in();
         if is_overflow || !self.state.is_finite() || !self.stepper.stages.is_finite() {
@@ -327,21 +301,5 @@ impl<S: Scalar> Run<'_, S> {
         let now = [&self.state.q, &self.state.v].map(|x| x.iter().map(|x| x.value()).collect());
         let [q, v] = if self.state.is_finite() { now } else { self.stepper.stages.start() };
         SimulationError::Diverged { time, q, v }
-    }
-
-    fn record(&mut self, t: f64) -> Result<(), SimulationError> {
-        let orbit = self.plant.surroundings.orbit_state(t)?;
-        self.recorder.row(t, &self.state, &self.plant, orbit)
-    }
-
-    /// The last row: the state at the end, with the torque that would be held from there.
-    fn end(&mut self, t: f64) -> Result<(), SimulationError> {
-        let begun = self.begin(t, (t, t), self.schedule.is_control_tick());
-        begun.map_err(|error| self.name_divergence(error, t))?;
-        self.record(t)?;
-        let (_, stages) = &mut self.between;
-        stages.accelerate(&mut self.plant, &self.state);
-        self.recorder.accelerated(stages.first_acceleration());
-        Ok(())
     }
 }

@@ -1,8 +1,8 @@
 //! What a run is made of, checked before it starts.
 
+use super::contacts::AT_LIMIT;
 use super::error::SimulationError;
 use super::integrator::Integrator;
-use super::contacts::AT_LIMIT;
 use super::start::check_start;
 use crate::control::ControlLaw;
 use crate::environment::{Effect, ReferenceMotion};

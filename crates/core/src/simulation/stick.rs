@@ -34,7 +34,11 @@ impl<S: Real, W: World<S>> Plant<'_, S, W> {
             for j in 0..n {
                 let change = self.revision(j, q, v, &a);
                 if let Some(change) = change {
-                    if change == 0.0 { self.contacts.lock(j) } else { self.contacts.release(j, change) }
+                    if change == 0.0 {
+                        self.contacts.lock(j)
+                    } else {
+                        self.contacts.release(j, change)
+                    }
                     is_settled = false;
                     if pass > n {
                         break;
