@@ -138,7 +138,9 @@ impl<'a, S: Real> Lanes<'a, S> {
         let mut plant = Plant::new(model, Nothing, None);
         let state = State::at(model, &mut plant.data, gather(q0, model.nq()), gather(v0, model.nv()));
         let Rollout { integrator, time_step, .. } = *settings;
-        let stepper = Stepper::new(model, &state, &Stepping { integrator, tolerance: 0.0, time_step });
+        let duration = time_step * settings.steps as f64;
+        let how = Stepping { integrator, tolerance: 0.0, time_step, duration };
+        let stepper = Stepper::new(model, &state, &how);
         let is_controlled = matches!(settings.control, RolloutControl::ComputedTorque(..));
         let work = is_controlled.then(|| ComputedTorqueWork::new(model));
         Self { settings, plant, state, stepper, work, first, count }

@@ -4,6 +4,7 @@ use super::error::SimulationError;
 use super::pair::Pair;
 use super::plant::{Plant, World};
 use super::state::{Rate, State};
+use super::stepping::Stepping;
 use crate::dynamics::base_rotation;
 use crate::model::{Model, integrate};
 use crate::spatial::{Real, Vec3, dexp_inv};
@@ -45,12 +46,12 @@ pub(crate) struct Stages<S> {
 }
 
 impl<S: Real> Stages<S> {
-    /// `tolerance` is for the adaptive method.
-    pub(crate) fn new(model: &Model, state: &State<S>, integrator: Integrator, tolerance: f64) -> Self {
+    pub(crate) fn new(model: &Model, state: &State<S>, how: &Stepping) -> Self {
+        let integrator = how.integrator;
         let (rate, first) = (Rate::new(model), vec![S::of(0.0); model.nv()]);
         let (start, trial, sum) = (state.clone(), state.clone(), rate.clone());
         let is_adaptive = integrator == Integrator::DormandPrince;
-        let pair = is_adaptive.then(|| Box::new(Pair::new(&rate, tolerance)));
+        let pair = is_adaptive.then(|| Box::new(Pair::new(&rate, how)));
         Self { start, trial, sum, rate, first, passing: Vec3::zero(), integrator, pair }
     }
 

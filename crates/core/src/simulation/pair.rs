@@ -4,6 +4,7 @@ use super::error::SimulationError;
 use super::integrator::Stages;
 use super::plant::{Plant, World};
 use super::state::{Rate, State};
+use super::stepping::Stepping;
 use super::tableau::{A, C, dense};
 use crate::dynamics::{base_rotation, composite_momentum};
 use crate::spatial::{Real, Vec3, dexp_inv_exact};
@@ -34,6 +35,8 @@ pub(crate) struct Memory {
 pub(super) struct Pair<S> {
     pub(super) k: Vec<Rate<S>>,
     pub(super) tolerance: f64,
+    /// Duration of the run, s.
+    pub(super) horizon: f64,
     pub(super) memory: Memory,
     /// The interval of the last step.
     span: (f64, f64),
@@ -42,9 +45,10 @@ pub(super) struct Pair<S> {
 }
 
 impl<S: Real> Pair<S> {
-    pub(super) fn new(rate: &Rate<S>, tolerance: f64) -> Self {
+    pub(super) fn new(rate: &Rate<S>, how: &Stepping) -> Self {
+        let Stepping { tolerance, duration: horizon, .. } = *how;
         let (k, memory) = (vec![rate.clone(); 7], Memory::default());
-        Self { k, tolerance, memory, span: (0.0, 0.0), attitude: 1.0 }
+        Self { k, tolerance, horizon, memory, span: (0.0, 0.0), attitude: 1.0 }
     }
 }
 
@@ -183,6 +187,7 @@ mod tests {
     use super::super::integrator::{Integrator, Stages};
     use super::super::plant::{Nothing, Plant};
     use super::super::state::State;
+    use super::super::stepping::Stepping;
     use crate::model::{Model, difference, neutral};
     use nalgebra::{Matrix3, Vector3};
 
@@ -193,7 +198,9 @@ mod tests {
         let mut plant = Plant::<f64, _>::new(&model, Nothing, None);
         let v = vec![0.1, 0.0, -0.2, 0.7, 0.9, -0.4];
         let mut state = State::at(&model, &mut plant.data, neutral(&model), v);
-        let mut stages = Stages::new(&model, &state, Integrator::DormandPrince, tolerance);
+        let integrator = Integrator::DormandPrince;
+        let how = Stepping { integrator, tolerance, time_step: 1.0, duration: 8.0 };
+        let mut stages = Stages::new(&model, &state, &how);
         stages.pair.as_mut().unwrap().attitude = weight;
         let mut t = 0.0;
         while t < 8.0 {

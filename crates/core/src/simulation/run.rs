@@ -108,10 +108,13 @@ impl Simulation {
             self.record_every == 1 && !self.is_adaptive(),
         );
         let Self { integrator, tolerance, time_step, .. } = *self;
-        let how = Stepping { integrator, tolerance, time_step };
+        let how = Stepping { integrator, tolerance, time_step, duration };
         let mut run = Run {
             stepper: Stepper::new(&model, &state, &how),
-            between: (state.clone(), Stages::new(&model, &state, Integrator::Rk4, tolerance)),
+            between: (
+                state.clone(),
+                Stages::new(&model, &state, &Stepping { integrator: Integrator::Rk4, ..how }),
+            ),
             probe: Probe::new(&state),
             state,
             plant,

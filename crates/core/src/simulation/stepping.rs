@@ -23,6 +23,8 @@ pub(crate) struct Stepping {
     pub(crate) tolerance: f64,
     /// s.
     pub(crate) time_step: f64,
+    /// Of the run, s.
+    pub(crate) duration: f64,
 }
 
 /// Steps a plant and finds what happens in between.
@@ -40,7 +42,7 @@ pub(crate) struct Stepper<S> {
 impl<S: Real> Stepper<S> {
     pub(crate) fn new(model: &Model, state: &State<S>, how: &Stepping) -> Self {
         Self {
-            stages: Stages::new(model, state, how.integrator, how.tolerance),
+            stages: Stages::new(model, state, how),
             start: state.clone(),
             seen: state.clone(),
             is_forgiven: vec![false; model.joint_count()],

@@ -33,7 +33,9 @@ impl<S: Real> Stages<S> {
         let turning = |j: usize| if prismatic(j) { rate(j) / size } else { rate(j) };
         let fastest = (0..n).map(turning).fold(fastest.max(spin), f64::max);
         let highest = highest.max(speed).max(size * fastest);
-        let (slow, crawl) = (SLOW * fastest, SLOW * highest);
+        // rounding of what does not turn must not stop the run: drifts of ε/1000 until its end will do
+        let slow = SLOW * fastest.max(vector(&trial.v) / size).max(1.0 / pair.horizon);
+        let crawl = SLOW * highest.max(size / pair.horizon);
 
         let share =
             |error: f64, scale: f64| if error == 0.0 { 0.0 } else { error / (pair.tolerance * scale) };
