@@ -16,7 +16,7 @@ _External = Mapping[str, ArrayLike]
 _JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
 _EarthModel = Literal["wgs72", "wgs72old", "wgs84"]
 _GravityMode = Literal["true", "carried"]
-_Integrator = Literal["rk4", "semi_implicit_euler"]
+_Integrator = Literal["rk4", "semi_implicit_euler", "dormand_prince"]
 _CertificateRow = tuple[str, float | None, float, bool]
 
 class _Controller(Protocol):
@@ -584,6 +584,9 @@ class Simulation:
         integrator: _Integrator = "rk4",
         record_every: int = 1,
         reference_start_tolerance: ArrayLike | None = None,
+        tolerance: float = 1e-9,
+        enforce_limits: bool = False,
+        restitution: float = 0.0,
     ) -> Simulation: ...
     def run(
         self,
@@ -630,6 +633,8 @@ class Trace:
     @property
     def work(self) -> _Array: ...
     @property
+    def dissipated(self) -> _Array: ...
+    @property
     def center_of_mass(self) -> _Array: ...
     @property
     def tool_pose(self) -> _Column: ...
@@ -646,6 +651,7 @@ class Trace:
     @property
     def reference_residual(self) -> _Column: ...
     def columns(self) -> list[str]: ...
+    def joint_limits_exceeded(self) -> list[str]: ...
     def certificate(self) -> list[_CertificateRow]: ...
     def __len__(self) -> int: ...
 
