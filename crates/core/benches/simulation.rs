@@ -12,7 +12,7 @@ use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::environment::GravityGradient;
 use onorbit_core::model::neutral;
 use onorbit_core::orbit::{Kepler, MU_EARTH};
-use onorbit_core::reference::{LineParabola, TaskReference};
+use onorbit_core::reference::LineParabola;
 use onorbit_core::simulation::{Integrator, Simulation};
 use onorbit_core::spatial::InstructionSet;
 use std::hint::black_box;
@@ -50,7 +50,7 @@ fn controlled(mut simulation: Simulation) -> Simulation {
     let pose = frame_pose(&simulation.model, &data, &simulation.q, tool);
     let (rot, pos) = (pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra());
     let line = LineParabola::new(rot, pos, Vector3::x() * 0.1, Vector3::zeros(), 10.0).unwrap();
-    simulation.reference = Some(TaskReference::LineParabola(line));
+    simulation.reference = Some(line.into());
     simulation.tool = Some(tool);
     let law = ComputedTorque { null_space_damping: 5.0, ..ComputedTorque::new(tool, 100.0, 20.0) };
     simulation.control = ControlLaw::ComputedTorque(Box::new(law));

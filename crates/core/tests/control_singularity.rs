@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use onorbit_core::control::{ComputedTorque, ControlLaw};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::model::neutral;
-use onorbit_core::reference::{LineParabola, TaskReference};
+use onorbit_core::reference::LineParabola;
 use onorbit_core::simulation::{Simulation, Trace};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ fn reach(displacement: [f64; 3], adjust: impl Fn(&mut ComputedTorque)) -> Result
     let mut law = ComputedTorque::new(tool, 100.0, 20.0);
     adjust(&mut law);
     simulation.control = ControlLaw::ComputedTorque(Box::new(law));
-    simulation.reference = Some(TaskReference::LineParabola(line));
+    simulation.reference = Some(line.into());
     simulation.tool = Some(tool);
     simulation.run(20.0, &mut |_| ControlFlow::Continue(())).map_err(|failure| failure.to_string())
 }

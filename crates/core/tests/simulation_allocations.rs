@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 use onorbit_core::control::{ComputedTorque, ControlError, ControlLaw, Controller, Observation};
 use onorbit_core::environment::{BodyWrench, GravityGradient};
 use onorbit_core::orbit::{Kepler, MU_EARTH};
-use onorbit_core::reference::{Hold, TaskReference};
+use onorbit_core::reference::Hold;
 use onorbit_core::simulation::{Integrator, Simulation};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -66,7 +66,7 @@ fn simulation(control: usize, integrator: Integrator) -> Simulation {
     simulation.tool = Some(tool);
     simulation.integrator = integrator;
     let hold = Hold::new(Matrix3::identity(), Vector3::new(-0.1, -0.2, 0.5)).unwrap();
-    simulation.reference = Some(TaskReference::Hold(hold));
+    simulation.reference = Some(hold.into());
     simulation.control = match control {
         0 => ControlLaw::None,
         1 => ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(tool, 1.0, 2.0))),

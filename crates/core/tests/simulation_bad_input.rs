@@ -7,7 +7,7 @@ use common::humanoid::{humanoid, start};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::control::{ComputedTorque, ControlError, ControlLaw};
 use onorbit_core::environment::{BodyWrench, EnvironmentError, GravityGradient};
-use onorbit_core::reference::{Hold, TaskReference};
+use onorbit_core::reference::Hold;
 use onorbit_core::simulation::{Simulation, SimulationError};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ fn refused(spoil: impl FnOnce(&mut Simulation)) -> SimulationError {
 fn tracking(simulation: &mut Simulation) -> usize {
     let tool = simulation.model.frame("tool").unwrap();
     let hold = Hold::new(Matrix3::identity(), Vector3::zeros()).unwrap();
-    simulation.reference = Some(TaskReference::Hold(hold));
+    simulation.reference = Some(hold.into());
     simulation.tool = Some(tool);
     tool
 }

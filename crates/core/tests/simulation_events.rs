@@ -10,7 +10,7 @@ use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::environment::{BodyWrench, GravityGradient};
 use onorbit_core::model::{Model, neutral};
 use onorbit_core::orbit::{Kepler, MU_EARTH};
-use onorbit_core::reference::{Hold, TaskReference};
+use onorbit_core::reference::Hold;
 use onorbit_core::simulation::{Simulation, SimulationError, Trace};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
@@ -36,7 +36,7 @@ fn holding(kp: f64, kd: f64) -> Simulation {
     let mut simulation = Simulation::new(Arc::new(model), q, v);
     simulation.tool = Some(tool);
     let hold = Hold::new(pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra()).unwrap();
-    simulation.reference = Some(TaskReference::Hold(hold));
+    simulation.reference = Some(hold.into());
     simulation.control = ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(tool, kp, kd)));
     simulation.orbit = Some(low_orbit());
     simulation.effects.push(Arc::new(GravityGradient));

@@ -6,7 +6,7 @@ mod common;
 use common::humanoid::{humanoid, start};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use onorbit_core::control::{ComputedTorque, ControlLaw};
-use onorbit_core::reference::{LineParabola, TaskReference};
+use onorbit_core::reference::LineParabola;
 use onorbit_core::simulation::{Simulation, Trace, certify};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -33,7 +33,7 @@ fn reach(duration: f64) -> Trace {
     let law = ComputedTorque { damping: 0.0, ..ComputedTorque::new(tool, 100.0, 20.0) };
     simulation.control = ControlLaw::ComputedTorque(Box::new(law));
     simulation.tool = Some(tool);
-    simulation.reference = Some(TaskReference::LineParabola(line.unwrap()));
+    simulation.reference = Some(line.unwrap().into());
     let trace = simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap();
     let certificate = certify(&model, &trace);
     assert!(certificate.passed(), "{certificate:#?}");

@@ -101,6 +101,7 @@ impl IntoPython for InputError {
             }
             Self::Singular { .. } => plain(py, "ConvergenceError", &message),
             Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
+            Self::NeedsOrbit => plain(py, "ControlError", &message),
             Self::Diverged { .. } => plain(py, "SimulationError", &message),
             Self::QuaternionNorm { norm, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
@@ -225,6 +226,9 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             }
             SimulationError::Orbit { time, source } => with_trace(py, source.into_python(py), time, trace),
             SimulationError::Environment { time, source } => {
+                with_trace(py, source.into_python(py), time, trace)
+            }
+            SimulationError::Reference { time, source } => {
                 with_trace(py, source.into_python(py), time, trace)
             }
             SimulationError::Control(source) => source.into_python(py),

@@ -20,7 +20,7 @@ impl PyHold {
     fn new(py: Python<'_>, pose: Any<'_, '_>) -> PyResult<Self> {
         let (rot, pos) = split(pose)?;
         let hold = Hold::new(rot, pos).map_err(|error| error.into_python(py))?;
-        Ok(Self { reference: TaskReference::Hold(hold) })
+        Ok(Self { reference: hold.into() })
     }
 }
 
@@ -47,7 +47,7 @@ impl PyLineParabola {
         let displacement = Vector3::from(fixed::<3>(displacement, "displacement", &[3])?);
         let height = Vector3::from(height.map_or(Ok([0.0; 3]), |value| fixed::<3>(value, "height", &[3]))?);
         let line = LineParabola::new(rot, pos, displacement, height, duration);
-        Ok(Self { reference: TaskReference::LineParabola(line.map_err(|error| error.into_python(py))?) })
+        Ok(Self { reference: line.map_err(|error| error.into_python(py))?.into() })
     }
 }
 

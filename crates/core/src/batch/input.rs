@@ -22,6 +22,8 @@ pub enum InputError {
          around it an inertia or the joint a rotor"
     )]
     Singular { state: usize },
+    #[error("the reference is given in the frame of an orbit, a rollout is in empty space: use a simulation")]
+    NeedsOrbit,
     #[error("threads is 0, it must be at least 1; leave it out for all cores")]
     NoThreads,
     #[error(

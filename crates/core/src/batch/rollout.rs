@@ -17,7 +17,7 @@ pub enum RolloutControl<'a> {
     Passive,
     /// Given torques, `(B, steps, n)`, N m.
     Torques(&'a [f64]),
-    /// Computed torque towards one reference for all.
+    /// Computed torque towards one reference for all, in no orbit's frame.
     ComputedTorque(&'a ComputedTorque, &'a TaskReference),
 }
 
@@ -65,6 +65,11 @@ impl Rollout<'_> {
         check_quaternions(q0, model.nq())?;
         if let RolloutControl::Torques(tau) = self.control {
             check_finite("tau", tau, self.steps * model.joint_count())?;
+        }
+        if let RolloutControl::ComputedTorque(_, reference) = self.control
+            && reference.needs_orbit()
+        {
+            return Err(InputError::NeedsOrbit);
         }
         match InstructionSet::current() {
             InstructionSet::Baseline => self.all::<f64>(model, q0, v0, q, v),
@@ -170,7 +175,8 @@ impl<'a, S: Real> Lanes<'a, S> {
             }
             RolloutControl::ComputedTorque(law, reference) => {
                 let Some(work) = work else { return };
-                let desired = reference.sample(S::of(step as f64 * settings.time_step));
+                let t = step as f64 * settings.time_step;
+                let desired = reference.sample(t, 0.0).expect("no frame of an orbit: checked").lift();
                 let (data, command) = (&mut plant.data, &mut plant.command);
                 computed_torque(law, plant.model, data, &state.q, &state.v, &desired, work, command);
             }

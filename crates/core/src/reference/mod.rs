@@ -1,47 +1,24 @@
-//! What a tool should follow: pose, velocity and acceleration as functions of time, in W axes.
+//! What a tool or the joints should follow: positions, velocities and accelerations that agree, as
+//! functions of time.
 //!
-//! Kinds are plain data and generic over the scalar; [`TaskReference`] lists them.
+//! All lanes share the time, so that references are evaluated in `f64`, once per instant, and
+//! [lifted](TaskSample::lift). A path of a frame is a [`TaskPath`], in one of four
+//! [frames](ReferenceFrame); a path of joints is a [`JointPath`].
 
+mod error;
+mod frame;
 mod hold;
+mod joint;
 mod line_parabola;
 mod sample;
+mod task;
+mod time_law;
 
+pub use error::ReferenceError;
+pub use frame::{ReferenceFrame, Target};
 pub use hold::Hold;
+pub use joint::{JointHold, JointPath, JointReference, JointSample, joint_start_offset};
 pub use line_parabola::LineParabola;
 pub use sample::TaskSample;
-
-use crate::spatial::Real;
-
-/// A reference for a frame of the robot; a new kind is one file and one line here.
-#[derive(Clone, Debug, PartialEq)]
-pub enum TaskReference {
-    /// Stay.
-    Hold(Hold),
-    /// A straight line with a parabola across it.
-    LineParabola(LineParabola),
-}
-
-impl TaskReference {
-    /// Where the frame should be at the time `t`, s.
-    #[inline(always)]
-    pub fn sample<S: Real>(&self, t: S) -> TaskSample<S> {
-        match self {
-            Self::Hold(hold) => hold.sample(),
-            Self::LineParabola(line) => line.sample(t),
-        }
-    }
-}
-
-/// A reference that makes no sense.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // the fields are what the messages say
-pub enum ReferenceError {
-    #[error("{name} of the reference is not finite")]
-    NotFinite { name: &'static str },
-    #[error("duration of the reference is {value} s, it must be positive")]
-    DurationNotPositive { value: f64 },
-    #[error(
-        "rotation of the reference pose is not a rotation: RᵀR differs from 1 by {error}, at most 1e-6 is accepted"
-    )]
-    NotARotation { error: f64 },
-}
+pub use task::{TaskPath, TaskReference};
+pub use time_law::{RateLimit, TimeLaw};

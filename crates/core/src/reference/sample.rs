@@ -2,8 +2,9 @@
 
 use crate::spatial::{Mat3, Motion, Real, Vec3, pose_rows};
 
-/// Desired pose, velocity and acceleration of a frame, in W axes at its origin.
-#[derive(Clone, Copy, Debug)]
+/// Desired pose, velocity and acceleration of a frame D, in the axes of the frame it is given in (W
+/// unless a reference says otherwise), at D's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaskSample<S> {
     /// Takes the desired frame's components to W.
     pub rot_wd: Mat3<S>,
@@ -11,7 +12,7 @@ pub struct TaskSample<S> {
     pub pos_w: Vec3<S>,
     /// Velocity, m/s and rad/s.
     pub velocity: Motion<S>,
-    /// Acceleration, m/s² and rad/s².
+    /// Acceleration of the origin, m/s², and angular acceleration, rad/s².
     pub acceleration: Motion<S>,
 }
 
@@ -24,6 +25,42 @@ impl<S: Real> TaskSample<S> {
 }
 
 impl TaskSample<f64> {
+    /// The same in every lane.
+    #[inline(always)]
+    pub fn lift<S: Real>(&self) -> TaskSample<S> {
+        let motion = |m: &Motion<f64>| Motion::new(Vec3::of(&m.linear), Vec3::of(&m.angular));
+        TaskSample {
+            rot_wd: Mat3::of(&self.rot_wd),
+            pos_w: Vec3::of(&self.pos_w),
+            velocity: motion(&self.velocity),
+            acceleration: motion(&self.acceleration),
+        }
+    }
+
+    /// What moves like `inner` in a frame that itself moves like `self`, in the axes of `self`'s frame.
+    ///
+    /// `p = p_f + R x`, `v = v_f + ω × Rx + R ẋ`, `a = a_f + α × Rx + ω × (ω × Rx) + 2 ω × R ẋ + R ẍ`;
+    /// rates `ω + R ω'`, `α + ω × R ω' + R α'`.
+    #[must_use]
+    pub fn carry(&self, inner: &Self) -> Self {
+        let (r, w, alpha) = (&self.rot_wd, self.velocity.angular, self.acceleration.angular);
+        let (arm, slip, spin) = (*r * inner.pos_w, *r * inner.velocity.linear, *r * inner.velocity.angular);
+        let swept = w.cross(arm);
+        Self {
+            rot_wd: *r * inner.rot_wd,
+            pos_w: self.pos_w + arm,
+            velocity: Motion::new(self.velocity.linear + swept + slip, w + spin),
+            acceleration: Motion::new(
+                self.acceleration.linear
+                    + alpha.cross(arm) // Euler
+                    + w.cross(swept) // centripetal
+                    + w.cross(slip) * 2.0 // Coriolis
+                    + *r * inner.acceleration.linear,
+                alpha + w.cross(spin) + *r * inner.acceleration.angular,
+            ),
+        }
+    }
+
     /// The pose as a row-major `(4, 4)` matrix.
     pub fn pose_rows(&self) -> [f64; 16] {
         pose_rows(&self.rot_wd, self.pos_w)

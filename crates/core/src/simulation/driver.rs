@@ -60,14 +60,14 @@ impl<'a, S: Scalar> Driver<'a, S> {
         match self {
             Self::None => return Ok(()),
             Self::ComputedTorque { law, reference, work } => {
-                let desired = reference.sample(S::of(t));
+                let desired = at(reference, t)?.lift();
                 let data: &mut Data<S> = data;
                 computed_torque(law, model, data, &state.q, &state.v, &desired, work, command);
             }
             Self::User { controller, reference, buffers: [q, v, tau] } => {
                 q.iter_mut().zip(&state.q).for_each(|(to, from)| *to = from.value());
                 v.iter_mut().zip(&state.v).for_each(|(to, from)| *to = from.value());
-                let desired: Option<TaskSample<f64>> = reference.map(|reference| reference.sample(t));
+                let desired = reference.map(|reference| at(reference, t)).transpose()?;
                 controller.update(&Observation { time: t, q, v, model, desired }, tau)?;
                 command.iter_mut().zip(tau.iter()).for_each(|(to, from)| *to = S::of(*from));
             }
@@ -80,4 +80,9 @@ impl<'a, S: Scalar> Driver<'a, S> {
             _ => Ok(()),
         }
     }
+}
+
+/// What the reference of the run wants at `t`.
+pub(super) fn at(reference: &TaskReference, t: f64) -> Result<TaskSample<f64>, SimulationError> {
+    reference.sample(t, 0.0).map_err(|source| SimulationError::Reference { time: t, source })
 }

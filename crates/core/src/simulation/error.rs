@@ -4,6 +4,7 @@ use super::trace::Trace;
 use crate::control::ControlError;
 use crate::environment::EnvironmentError;
 use crate::orbit::OrbitError;
+use crate::reference::ReferenceError;
 use thiserror::Error;
 
 /// A simulation that cannot start, or that had to stop.
@@ -47,6 +48,8 @@ pub enum SimulationError {
     Orbit { time: f64, source: OrbitError },
     #[error("at t = {time} s: {source}")]
     Environment { time: f64, source: EnvironmentError },
+    #[error("at t = {time} s: {source}")]
+    Reference { time: f64, source: ReferenceError },
     #[error(transparent)]
     Control(#[from] ControlError),
 }

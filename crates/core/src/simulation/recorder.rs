@@ -1,5 +1,6 @@
 //! Writing rows of the trace.
 
+use super::driver::at;
 use super::error::SimulationError;
 use super::plant::Plant;
 use super::state::State;
@@ -8,7 +9,7 @@ use super::trace::Trace;
 use crate::control::task_error;
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
 use crate::orbit::OrbitState;
-use crate::reference::TaskReference;
+use crate::reference::{TaskReference, TaskSample};
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
 
 /// Fills a trace, row by row, without allocating.
@@ -66,11 +67,13 @@ impl<'a> Recorder<'a> {
         state: &State<S>,
         plant: &Plant<'_, S, Surroundings>,
         orbit: Option<OrbitState>,
-    ) {
+    ) -> Result<(), SimulationError> {
+        let desired = self.reference.map(|reference| at(reference, t)).transpose()?;
         S::enter(
             #[inline(always)]
-            || self.row_kernel(t, state, plant, orbit),
+            || self.row_kernel(t, state, plant, orbit, desired),
         );
+        Ok(())
     }
 
     #[inline(always)]
@@ -80,6 +83,7 @@ impl<'a> Recorder<'a> {
         state: &State<S>,
         plant: &Plant<'_, S, Surroundings>,
         orbit: Option<OrbitState>,
+        desired: Option<TaskSample<f64>>,
     ) {
         let (trace, data, q, v) = (&mut self.trace, &plant.data, &state.q, &state.v);
         trace.time.push(t);
@@ -97,8 +101,8 @@ impl<'a> Recorder<'a> {
         if let Some(tool) = self.tool {
             let pose = frame_pose(plant.model, data, q, tool);
             push_pose(&mut trace.tool_pose, &pose.rot_wf, pose.pos_w);
-            if let Some(reference) = self.reference {
-                push_tracking(trace, reference, t, &pose);
+            if let Some(desired) = desired {
+                push_tracking(trace, &desired.lift(), &pose);
             }
         }
         if let Some(orbit) = orbit {
@@ -116,9 +120,8 @@ impl<'a> Recorder<'a> {
 }
 
 #[inline(always)]
-fn push_tracking<S: Scalar>(trace: &mut Trace, reference: &TaskReference, t: f64, pose: &FramePose<S>) {
-    let desired = reference.sample(S::of(t));
-    let error = task_error(&pose.rot_wf, pose.pos_w, &desired);
+fn push_tracking<S: Scalar>(trace: &mut Trace, desired: &TaskSample<S>, pose: &FramePose<S>) {
+    let error = task_error(&pose.rot_wf, pose.pos_w, desired);
     push_pose(&mut trace.reference_pose, &desired.rot_wd, desired.pos_w);
     push_vector(&mut trace.position_error, error.linear);
     push_vector(&mut trace.attitude_error, error.angular);

@@ -184,8 +184,7 @@ impl<S: Scalar> Run<'_, S> {
 
     fn record(&mut self, t: f64) -> Result<(), SimulationError> {
         let orbit = self.plant.surroundings.orbit_state(t)?;
-        self.recorder.row(t, &self.state, &self.plant, orbit);
-        Ok(())
+        self.recorder.row(t, &self.state, &self.plant, orbit)
     }
 
     /// The last row: the state at the end, with the torque that would be held from there.

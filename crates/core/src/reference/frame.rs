@@ -1,0 +1,85 @@
+//! Frames a reference may be given in.
+
+use super::{Hold, ReferenceError, TaskSample};
+use crate::orbit::Orbit;
+use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
+use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
+
+/// The frame whose axes and origin a path is given in.
+#[derive(Clone, Debug, Default)]
+pub enum ReferenceFrame {
+    /// W: inertial axes, origin on the reference orbit.
+    #[default]
+    World,
+    /// L, the local orbital frame (Hill) of an orbit; its origin is W's.
+    Lvlh(Arc<dyn Orbit>),
+    /// The robot's base: a law tracks the tool relative to it.
+    Base,
+    /// A spacecraft that moves by itself.
+    Target(Target),
+}
+
+/// A spacecraft that nothing acts on: constant velocity, constant spin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    start: Hold,
+    velocity: Motion<f64>,
+}
+
+impl Target {
+    /// At the pose `(rot_wt, pos_w)`, m, at time zero of the simulation, with `velocity`, m/s, and
+    /// `spin`, rad/s, both in W axes.
+    ///
+    /// # Errors
+    /// [`ReferenceError::NotFinite`], [`ReferenceError::NotARotation`].
+    pub fn new(
+        rot_wt: Matrix3<f64>,
+        pos_w: Vector3<f64>,
+        velocity: Vector3<f64>,
+        spin: Vector3<f64>,
+    ) -> Result<Self, ReferenceError> {
+        for (name, v) in [("velocity", &velocity), ("spin", &spin)] {
+            if !v.iter().all(|x| x.is_finite()) {
+                return Err(ReferenceError::NotFinite { name });
+            }
+        }
+        let velocity = Motion::new(velocity.into(), spin.into());
+        Ok(Self { start: Hold::new(rot_wt, pos_w)?, velocity })
+    }
+
+    /// How the target moves at `t`, s of simulation.
+    pub fn sample(&self, t: f64) -> TaskSample<f64> {
+        TaskSample {
+            rot_wd: exp_so3(self.velocity.angular * t).matrix() * self.start.rot_fd,
+            pos_w: self.start.pos_f + self.velocity.linear * t,
+            velocity: self.velocity,
+            acceleration: Motion::zero(),
+        }
+    }
+}
+
+/// How L moves in W at `t`, s of simulation.
+pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, ReferenceError> {
+    let state = orbit.state(t)?;
+    let lvlh = orbit.lvlh(t)?;
+    let (r, v, rate) = (&state.position, &state.velocity, &lvlh.rate_l);
+    let radius = r.norm();
+    // d/dt (h/r²) = ẑ·(r × a)/r² − 2 (h/r²) ṙ/r
+    let z = lvlh.rot_il.column(2);
+    let climb = r.dot(v) / radius;
+    let along_z = z.dot(&r.cross(&state.acceleration)) / (radius * radius) - 2.0 * rate.z * climb / radius;
+    // the plane's turn has the jerk in its rate: a difference, over a thousandth of a radian of orbit
+    let step = 1e-3 / rate.norm();
+    let near = |dt: f64| orbit.lvlh(t + dt).map_or((0.0, rate.x), |there| (dt, there.rate_l.x));
+    let ((t0, x0), (t1, x1)) = (near(-step), near(step)); // one-sided at the ends of what is known
+    let along_x = if t1 > t0 { (x1 - x0) / (t1 - t0) } else { 0.0 };
+    let rot = Mat3::from(lvlh.rot_il);
+    let in_w = |x: Vector3<f64>| Motion::new(Vec3::zero(), rot * Vec3::from(x));
+    Ok(TaskSample {
+        rot_wd: rot,
+        pos_w: Vec3::zero(),
+        velocity: in_w(*rate),
+        acceleration: in_w(Vector3::new(along_x, 0.0, along_z)),
+    })
+}
