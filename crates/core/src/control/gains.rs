@@ -44,7 +44,11 @@ impl PerJoint {
         if got == 1 || got == count {
             return Ok(());
         }
-        Err(ControlError::WrongLength { name, expected: format!("1 or {count}, one per joint of the group"), got })
+        Err(ControlError::WrongLength {
+            name,
+            expected: format!("1 or {count}, one per joint of the group"),
+            got,
+        })
     }
 }
 

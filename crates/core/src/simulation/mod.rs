@@ -22,4 +22,4 @@ pub(crate) use plant::{Nothing, Plant};
 pub use run::Monitor;
 pub use settings::Simulation;
 pub(crate) use state::State;
-pub use trace::Trace;
+pub use trace::{GoalResult, Trace, Tracking};

@@ -1,32 +1,32 @@
 //! Writing rows of the trace.
 
-use super::driver::at;
 use super::error::SimulationError;
 use super::plant::Plant;
 use super::state::State;
 use super::surroundings::Surroundings;
-use super::trace::Trace;
-use crate::control::task_error;
+use super::trace::{Trace, Tracking};
+use crate::control::{Control, Stack, task_error};
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
 use crate::orbit::OrbitState;
-use crate::reference::{TaskReference, TaskSample};
+use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
 
 /// Fills a trace, row by row, without allocating.
-pub(super) struct Recorder<'a> {
+pub(super) struct Recorder {
     pub(super) trace: Trace,
     tool: Option<usize>,
-    reference: Option<&'a TaskReference>,
+    has_reference: bool,
 }
 
-impl<'a> Recorder<'a> {
+impl Recorder {
     pub(super) fn new(
         rows: usize,
         sizes: (usize, usize),
         tool: Option<usize>,
-        reference: Option<&'a TaskReference>,
+        has_reference: bool,
         has_orbit: bool,
         has_every_step: bool,
+        controls: &[Control],
     ) -> Result<Self, SimulationError> {
         let (nq, nv) = sizes;
         let mut trace = Trace { has_every_step, ..Trace::default() };
@@ -47,7 +47,7 @@ impl<'a> Recorder<'a> {
         if tool.is_some() {
             reserve(|t| &mut t.tool_pose, 16)?;
         }
-        if reference.is_some() {
+        if has_reference {
             reserve(|t| &mut t.reference_pose, 16)?;
             reserve(|t| &mut t.position_error, 3)?;
             reserve(|t| &mut t.attitude_error, 3)?;
@@ -56,7 +56,13 @@ impl<'a> Recorder<'a> {
             reserve(|t| &mut t.position_eci, 3)?;
             reserve(|t| &mut t.velocity_eci, 3)?;
         }
-        Ok(Self { trace, tool, reference })
+        for control in controls.iter().filter(|control| control.width() > 0) {
+            let (name, width, mut error) = (control.name.clone(), control.width(), Vec::new());
+            let numbers = rows.checked_mul(width).ok_or(SimulationError::TooManyRows { rows })?;
+            error.try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })?;
+            trace.tracking.push(Tracking { name, width, error });
+        }
+        Ok(Self { trace, tool, has_reference })
     }
 
     /// Adds a row for a state whose kinematics are in the plant; the acceleration follows with
@@ -67,13 +73,20 @@ impl<'a> Recorder<'a> {
         state: &State<S>,
         plant: &Plant<'_, S, Surroundings>,
         orbit: Option<OrbitState>,
-    ) -> Result<(), SimulationError> {
-        let desired = self.reference.map(|reference| at(reference, t)).transpose()?;
+        desired: Option<(TaskSample<f64>, bool)>,
+    ) {
         S::enter(
             #[inline(always)]
             || self.row_kernel(t, state, plant, orbit, desired),
         );
-        Ok(())
+    }
+
+    /// Adds the tracking errors of several controls to the row.
+    pub(super) fn tracked<S: Scalar>(&mut self, stack: &Stack<'_, S>) {
+        let tracked = (0..stack.controls().len()).filter(|&i| stack.controls()[i].width() > 0);
+        for (column, control) in self.trace.tracking.iter_mut().zip(tracked) {
+            column.error.extend_from_slice(stack.error(control));
+        }
     }
 
     #[inline(always)]
@@ -83,7 +96,7 @@ impl<'a> Recorder<'a> {
         state: &State<S>,
         plant: &Plant<'_, S, Surroundings>,
         orbit: Option<OrbitState>,
-        desired: Option<TaskSample<f64>>,
+        desired: Option<(TaskSample<f64>, bool)>,
     ) {
         let (trace, data, q, v) = (&mut self.trace, &plant.data, &state.q, &state.v);
         trace.time.push(t);
@@ -101,8 +114,14 @@ impl<'a> Recorder<'a> {
         if let Some(tool) = self.tool {
             let pose = frame_pose(plant.model, data, q, tool);
             push_pose(&mut trace.tool_pose, &pose.rot_wf, pose.pos_w);
-            if let Some(desired) = desired {
-                push_tracking(trace, &desired.lift(), &pose);
+            if self.has_reference {
+                let desired = desired.map(|(desired, is_relative)| {
+                    let desired = desired.lift();
+                    if is_relative { carried_by_base(q, &desired) } else { desired }
+                });
+                // a tool that nothing leads for a while is where it should be
+                let here = || TaskSample::at_rest(pose.rot_wf, pose.pos_w);
+                push_tracking(trace, &desired.unwrap_or_else(here), &pose);
             }
         }
         if let Some(orbit) = orbit {
@@ -117,6 +136,13 @@ impl<'a> Recorder<'a> {
     pub(super) fn accelerated<S: Scalar>(&mut self, a: &[S]) {
         push(&mut self.trace.acceleration, a);
     }
+}
+
+/// The pose of a sample relative to the base, in W.
+#[inline(always)]
+fn carried_by_base<S: Scalar>(q: &[S], relative: &TaskSample<S>) -> TaskSample<S> {
+    let rot_wb = base_rotation(q);
+    TaskSample::at_rest(rot_wb * relative.rot_wd, rot_wb * relative.pos_w + Vec3::from_slice(q))
 }
 
 #[inline(always)]

@@ -10,9 +10,11 @@ use super::schedule::Schedule;
 use super::settings::Simulation;
 use super::state::State;
 use super::surroundings::Surroundings;
-use super::trace::Trace;
-use crate::control::ControlError;
+use super::trace::{GoalResult, Trace};
+use crate::control::{ControlError, Stack};
 use crate::environment::{DifferentialGravity, Effect};
+use crate::model::Model;
+use crate::reference::TaskReference;
 use crate::spatial::{Fused, InstructionSet, Scalar};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -46,27 +48,32 @@ impl Simulation {
         let model = Arc::clone(&self.model);
         let effects = self.all_effects();
         let events = effects.iter().flat_map(|effect| effect.event_times()).collect();
-        let schedule = Schedule::new(self.time_step, duration, self.control_period, events);
+        let schedule = Schedule::new(self.time_step, duration, self.control_period, events)
+            .switching(self.control.switch_times());
         let surroundings = Surroundings::new(&model, effects, self.orbit.clone());
         let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
         let mut plant = Plant::<S, _>::new(&model, surroundings);
         let mut run = Run {
             state: State::at(&model, &mut plant.data, numbers(&self.q), numbers(&self.v)),
             plant,
-            driver: Driver::new(&mut self.control, self.reference.as_ref(), &model).map_err(fail)?,
+            tracked: (self.tool, self.reference.as_ref()),
             recorder: Recorder::new(
                 rows(&schedule, self.record_every),
                 (model.nq(), model.nv()),
                 self.tool,
-                self.reference.as_ref(),
+                self.reference.is_some() || self.control.tracks(self.tool),
                 self.orbit.is_some(),
                 self.record_every == 1,
+                self.control.controls(),
             )
             .map_err(fail)?,
+            driver: Driver::new(&mut self.control, self.reference.as_ref(), &model, self.time_step)
+                .map_err(fail)?,
         };
         let mut stages = Stages::new(&model, &run.state, self.integrator);
         let outcome = run.all(schedule, &mut stages, self.record_every, duration, monitor);
-        let trace = run.recorder.trace;
+        let mut trace = run.recorder.trace;
+        trace.results = run.driver.stack().map_or_else(Vec::new, |stack| goal_results(stack, &model));
         match outcome {
             Ok(()) => Ok(trace),
             Err(error) => Err(RunFailure { error, trace: Box::new(trace) }),
@@ -89,12 +96,29 @@ fn rows(schedule: &Schedule, record_every: usize) -> usize {
     steps.saturating_add(2)
 }
 
+/// What came of the goals.
+fn goal_results<S: Scalar>(stack: &Stack<'_, S>, model: &Model) -> Vec<GoalResult> {
+    let with_goal = stack.controls().iter().enumerate().filter(|(_, control)| control.goal.is_some());
+    with_goal
+        .map(|(i, control)| {
+            let outcome = stack.outcome(i);
+            let component = outcome.miss().map(|miss| match control.task() {
+                Some(_) => ["position", "attitude"][miss.component].to_owned(),
+                None => model.joints()[control.joints[miss.component]].name.clone(),
+            });
+            GoalResult { name: control.name.clone(), outcome, component }
+        })
+        .collect()
+}
+
 /// A run under way.
 struct Run<'a, S> {
     state: State<S>,
     plant: Plant<'a, S, Surroundings>,
     driver: Driver<'a, S>,
-    recorder: Recorder<'a>,
+    recorder: Recorder,
+    /// The tool of the run and its reference.
+    tracked: (Option<usize>, Option<&'a TaskReference>),
 }
 
 impl<S: Scalar> Run<'_, S> {
@@ -184,7 +208,12 @@ impl<S: Scalar> Run<'_, S> {
 
     fn record(&mut self, t: f64) -> Result<(), SimulationError> {
         let orbit = self.plant.surroundings.orbit_state(t)?;
-        self.recorder.row(t, &self.state, &self.plant, orbit)
+        let desired = self.driver.desired(t, &self.state, &self.plant, self.tracked)?;
+        self.recorder.row(t, &self.state, &self.plant, orbit, desired);
+        if let Some(stack) = self.driver.stack() {
+            self.recorder.tracked(stack);
+        }
+        Ok(())
     }
 
     /// The last row: the state at the end, with the torque that would be held from there.

@@ -1,5 +1,7 @@
 //! What a run leaves behind.
 
+use crate::control::Outcome;
+
 /// Columns of a run, one row per recorded step, row major; the first row is the initial state, the
 /// last the end. W axes unless said; empty columns are those the run did not have.
 #[derive(Clone, Debug, Default)]
@@ -36,6 +38,10 @@ pub struct Trace {
     pub position_eci: Vec<f64>,
     /// Its velocity, m/s, `(T, 3)`; only with an orbit.
     pub velocity_eci: Vec<f64>,
+    /// Tracking errors of several controls, each on its own.
+    pub tracking: Vec<Tracking>,
+    /// What came of the goals of several controls.
+    pub results: Vec<GoalResult>,
     /// Sum of the work of every step, whatever its sign, J: what rows far apart would miss.
     pub work_done: f64,
     /// Sum of what steps and halved steps differ by in attitude, rad: an estimate of its error at the
@@ -43,6 +49,29 @@ pub struct Trace {
     pub attitude_step_doubling: Option<f64>,
     /// Whether every step of the run is a row.
     pub has_every_step: bool,
+}
+
+/// How well one control followed its reference.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tracking {
+    /// The control's name.
+    pub name: String,
+    /// Numbers per row: 6 for a task (m and rad, in the axes of W, or of B where its reference is relative to
+    /// the base), one per joint of the group otherwise.
+    pub width: usize,
+    /// Desired less actual, `(T, width)`; zeros while the control does not run.
+    pub error: Vec<f64>,
+}
+
+/// What came of a goal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GoalResult {
+    /// The control's name.
+    pub name: String,
+    /// The outcome.
+    pub outcome: Outcome,
+    /// Whose error was too large: a joint, `position` or `attitude`.
+    pub component: Option<String>,
 }
 
 impl Trace {
