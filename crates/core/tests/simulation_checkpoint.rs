@@ -50,7 +50,7 @@ fn stopped(simulation: &mut Simulation, stop: f64) -> (Checkpoint, Trace) {
             if now.time < stop {
                 return ControlFlow::Continue(());
             }
-            kept = Some((now.checkpoint(), now.trace.clone()));
+            kept = Some((now.checkpoint().unwrap(), now.trace.clone()));
             ControlFlow::Break(())
         })
         .unwrap_err();

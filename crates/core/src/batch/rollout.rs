@@ -199,7 +199,9 @@ impl<'a, S: Real> Lanes<'a, S> {
                 let t = step as f64 * settings.time_step;
                 let desired = reference.sample(t, 0.0).expect("no frame of an orbit: checked").lift();
                 let (data, command) = (&mut plant.data, &mut plant.command);
-                computed_torque(law, plant.model, data, &state.q, &state.v, &desired, work, command);
+                let is_relative = reference.is_relative_to_base();
+                let (q, v) = (&state.q, &state.v);
+                computed_torque(law, plant.model, data, q, v, &desired, is_relative, work, command);
             }
         }
     }

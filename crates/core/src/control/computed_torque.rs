@@ -1,8 +1,9 @@
 //! Task-space computed torque for an arm on a free base: Eq. (6)-(8) of the OnOrbitROS paper.
 
 use super::error::ControlError;
+use super::gains::{check_matrix, check_numbers};
 use super::pseudo_inverse::PseudoInverse;
-use crate::dynamics::{Data, FreeFloating, free_floating_recursion};
+use crate::dynamics::{Data, FreeFloating, base_relative_frame, free_floating_recursion};
 use crate::model::{JointProperties, Model};
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
@@ -55,37 +56,41 @@ impl ComputedTorque {
         out
     }
 
+    /// `κ`, the mean of `Kd`'s diagonal, 1/s.
+    pub(super) fn brake(&self) -> f64 {
+        (0..6).map(|i| self.kd[7 * i]).sum::<f64>() / 6.0
+    }
+
+    /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`.
+    #[inline(always)]
+    pub(super) fn command<S: Real>(&self, error: Motion<S>, lag: Motion<S>, desired: Motion<S>) -> Motion<S> {
+        desired + gain(&self.kd, lag) + gain(&self.kp, error)
+    }
+
     /// Checks that the law can work on a robot.
     ///
     /// # Errors
     /// Gains that are not finite or have a negative diagonal, negative damping, a frame that
     /// fewer than six joints move.
     pub fn check(&self, model: &Model) -> Result<(), ControlError> {
-        for (name, gains) in [("kp", &self.kp), ("kd", &self.kd)] {
-            if let Some(&value) = gains.iter().find(|x| !x.is_finite()) {
-                return Err(ControlError::NotFinite { name, value });
-            }
-            if let Some(value) = (0..6).map(|i| gains[7 * i]).find(|x| *x < 0.0) {
-                return Err(ControlError::Negative { name, value });
-            }
-        }
-        let dampings = [("damping", self.damping), ("null_space_damping", self.null_space_damping)];
-        for (name, value) in dampings {
-            if !value.is_finite() {
-                return Err(ControlError::NotFinite { name, value });
-            }
-            if value < 0.0 {
-                return Err(ControlError::Negative { name, value });
-            }
-        }
+        check_matrix("kp", &self.kp)?;
+        check_matrix("kd", &self.kd)?;
+        check_numbers("damping", &[self.damping])?;
+        check_numbers("null_space_damping", &[self.null_space_damping])?;
         let frame = &model.frames()[self.frame];
-        let path = std::iter::successors(Some(frame.body), |&k| (k > 0).then(|| model.nodes()[k].parent));
-        let joints = path.filter(|&k| k > 0).count();
+        let joints = path_joints(model, self.frame).count();
         if joints < 6 {
             return Err(ControlError::TooFewJoints { frame: frame.name.clone(), joints });
         }
         Ok(())
     }
+}
+
+/// Joints between a frame and the base, from the frame on.
+pub(super) fn path_joints(model: &Model, frame: usize) -> impl Iterator<Item = usize> {
+    let body = model.frames()[frame].body;
+    let path = std::iter::successors(Some(body), |&k| (k > 0).then(|| model.nodes()[k].parent));
+    path.filter(|&k| k > 0).map(|k| k - 1)
 }
 
 /// Workspace of [`computed_torque`], allocated once.
@@ -105,7 +110,7 @@ impl<S: Real> ComputedTorqueWork<S> {
         let n = model.joint_count();
         Self {
             reduced: FreeFloating::new(model),
-            inverse: PseudoInverse::new(),
+            inverse: PseudoInverse::new(1),
             acceleration: vec![S::of(0.0); n],
             free: vec![S::of(0.0); n],
             lost: vec![S::of(0.0); n],
@@ -122,7 +127,8 @@ pub fn task_error<S: Real>(rot_wf: &Mat3<S>, pos_w: Vec3<S>, desired: &TaskSampl
 /// Joint torques, `(n,)`, N m, towards the `desired` pose and motion.
 ///
 /// Needs [`kinematics`](crate::dynamics::kinematics) at `q`, `v`, and in `data` the external
-/// wrenches to compensate.
+/// wrenches to compensate. With `is_relative`, `desired` is relative to the base and the tool is
+/// tracked as the base sees it.
 pub fn computed_torque<S: Real>(
     law: &ComputedTorque,
     model: &Model,
@@ -130,10 +136,14 @@ pub fn computed_torque<S: Real>(
     q: &[S],
     v: &[S],
     desired: &TaskSample<S>,
+    is_relative: bool,
     work: &mut ComputedTorqueWork<S>,
     tau: &mut [S],
 ) {
     free_floating_recursion(model, data, q, v, law.frame, &mut work.reduced);
+    if is_relative {
+        base_relative_frame(model, data, v, law.frame, &mut work.reduced);
+    }
     S::enter(
         #[inline(always)]
         || kernel(law, model, v, desired, work, tau),
@@ -154,16 +164,16 @@ fn kernel<S: Real>(
     // p̈r − d,  p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)
     let error = task_error(&reduced.pose.rot_wf, reduced.pose.pos_w, desired);
     let lag = desired.velocity - reduced.velocity;
-    let command = desired.acceleration + gain(&law.kd, lag) + gain(&law.kp, error) - reduced.drift;
+    let command = law.command(error, lag, desired.acceleration) - reduced.drift;
 
     // q̈ = Jg⁺ (p̈r − d) − k N q̇ − κ D q̇
     let jacobian = &reduced.jacobian;
-    work.inverse.factor(jacobian, n, S::of(law.damping));
+    work.inverse.factor(jacobian, n, &[law.damping]);
     let mut task = [S::of(0.0); 6];
     command.write(&mut task);
-    work.inverse.apply(jacobian, task, &mut work.acceleration);
+    work.inverse.apply(jacobian, &task, &mut work.acceleration);
     work.inverse.split(jacobian, &v[6..], &mut work.free, &mut work.lost);
-    let brake = S::of((0..6).map(|i| law.kd[7 * i]).sum::<f64>() / 6.0);
+    let brake = S::of(law.brake());
     for (j, a) in work.acceleration.iter_mut().enumerate() {
         *a = *a - work.free[j] * S::of(law.null_space_damping) - work.lost[j] * brake;
     }
@@ -184,14 +194,14 @@ const SLIP: f64 = 1e-2;
 
 /// `b q̇ + f sat(q̇/s)`: what the joint takes of its torque.
 #[inline(always)]
-fn friction<S: Real>(joint: &JointProperties, rate: S) -> S {
+pub(super) fn friction<S: Real>(joint: &JointProperties, rate: S) -> S {
     let share = (rate * S::of(1.0 / SLIP)).saturate();
     rate * S::of(joint.damping) + share * S::of(joint.friction)
 }
 
 /// `K x` for a row-major `(6, 6)` gain.
 #[inline(always)]
-fn gain<S: Real>(k: &[f64; 36], x: Motion<S>) -> Motion<S> {
+pub(super) fn gain<S: Real>(k: &[f64; 36], x: Motion<S>) -> Motion<S> {
     let (mut from, mut to) = ([S::of(0.0); 6], [S::of(0.0); 6]);
     x.write(&mut from);
     for (i, to) in to.iter_mut().enumerate() {

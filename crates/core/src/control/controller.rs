@@ -2,6 +2,7 @@
 
 use super::computed_torque::ComputedTorque;
 use super::error::ControlError;
+use super::group::{Begin, Control};
 use crate::model::Model;
 use crate::reference::TaskSample;
 
@@ -16,7 +17,9 @@ pub struct Observation<'a> {
     pub v: &'a [f64],
     /// The robot.
     pub model: &'a Model,
-    /// Where the run's reference wants the tool, if it has one.
+    /// Joints to drive, by index, in the order of the torques.
+    pub joints: &'a [usize],
+    /// Where the reference wants the tool, if there is one.
     pub desired: Option<TaskSample<f64>>,
 }
 
@@ -44,11 +47,27 @@ pub trait Controller: Send {
         Ok(())
     }
 
-    /// Writes the joint torques, `(n,)`, N m (N), that are held until the next call.
+    /// Writes the torques of its joints, N m (N), that are held until the next call.
     ///
     /// # Errors
     /// Whatever stops the run.
     fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError>;
+
+    /// What it remembers between calls, for a checkpoint; nothing by default.
+    ///
+    /// # Errors
+    /// What keeps it from being written.
+    fn save(&self) -> Result<Vec<u8>, ControlError> {
+        Ok(Vec::new())
+    }
+
+    /// Takes up what [`Controller::save`] gave.
+    ///
+    /// # Errors
+    /// What does not fit.
+    fn load(&mut self, _saved: &[u8]) -> Result<(), ControlError> {
+        Ok(())
+    }
 }
 
 /// What drives the joints.
@@ -59,6 +78,31 @@ pub enum ControlLaw {
     None,
     /// Task-space computed torque on the generalized Jacobian.
     ComputedTorque(Box<ComputedTorque>),
-    /// A user's controller.
+    /// A user's controller on all joints.
     User(Box<dyn Controller>),
+    /// Several controls, each on its own joints, side by side or one after the other.
+    Stack(Vec<Control>),
+}
+
+impl ControlLaw {
+    /// The controls, where there are several.
+    pub fn controls(&self) -> &[Control] {
+        if let Self::Stack(controls) = self { controls } else { &[] }
+    }
+
+    /// Instants at which a control starts or stops, as far as they are known, s.
+    pub fn switch_times(&self) -> Vec<f64> {
+        let starts = self.controls().iter().filter_map(|control| match control.begin {
+            Begin::At(start) => Some(start),
+            Begin::After(_) => None,
+        });
+        let ends = self.controls().iter().map(|control| control.end);
+        starts.chain(ends).filter(|t| t.is_finite() && *t > 0.0).collect()
+    }
+
+    /// Whether one of several controls leads this frame.
+    pub fn tracks(&self, tool: Option<usize>) -> bool {
+        let leads = |control: &Control| control.task().is_some_and(|(frame, _)| Some(frame) == tool);
+        self.controls().iter().any(leads)
+    }
 }

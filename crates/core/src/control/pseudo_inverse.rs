@@ -1,128 +1,168 @@
-//! Damped pseudo-inverse of a task Jacobian, and the projector on its null space.
+//! Damped pseudo-inverse of stacked task Jacobians, and the projector on their null space.
 
 use crate::spatial::{Real, cholesky_factor, cholesky_solve, dot};
 
-/// Task rows: three of position, three of attitude.
-const ROWS: usize = 6;
+/// Rows of one task: three of position, three of attitude.
+pub(super) const ROWS: usize = 6;
 
-/// `J⁺ = Jᵀ (J Jᵀ + λ²)⁻¹`, undamped where the Jacobian is well conditioned.
+/// `J⁺ = Jᵀ (J Jᵀ + Λ²)⁻¹` for `k` tasks of six rows, undamped where a task is well conditioned.
 ///
-/// `σ² = 1/tr (J Jᵀ)⁻¹` is at most the square of the smallest singular value, and at least a sixth of
-/// it. Where it falls below `λ₀²` the damping makes up for what is missing, `λ² = λ₀² − σ²`. The
-/// null-space projector is always built from the undamped inverse: a damped one leaks into the
-/// task.
+/// `σ² = 1/tr [(J Jᵀ)⁻¹]` over the six rows of a task is at most the square of the smallest singular
+/// value, and for one task at least a sixth of it. Where it falls below the task's `λ₀²` the damping makes
+/// up for what is missing, `λ² = λ₀² − σ²`, in the rows of that task alone. The null-space projector is
+/// always built from the undamped inverse: a damped one leaks into the task.
 ///
 /// Source: Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control 108(3), 1986, with another measure of
 /// the distance from singularity.
 #[derive(Clone, Debug)]
 pub struct PseudoInverse<S> {
-    gram: [S; ROWS * ROWS],
-    damped: [S; ROWS * ROWS],
-    undamped: [S; ROWS * ROWS],
+    rows: usize,
+    gram: Vec<S>,
+    damped: Vec<S>,
+    undamped: Vec<S>,
+    x: Vec<S>,
     is_damped: bool,
 }
 
 impl<S: Real> PseudoInverse<S> {
-    /// Space for a factor.
-    pub fn new() -> Self {
-        let empty = [S::of(0.0); ROWS * ROWS];
-        Self { gram: empty, damped: empty, undamped: empty, is_damped: false }
+    /// Space for the factors of up to `tasks` tasks.
+    pub fn new(tasks: usize) -> Self {
+        let (rows, zero) = (ROWS * tasks, S::of(0.0));
+        let square = vec![zero; rows * rows];
+        Self {
+            rows,
+            gram: square.clone(),
+            damped: square.clone(),
+            undamped: square,
+            x: vec![zero; rows],
+            is_damped: false,
+        }
     }
 
-    /// Factors `J Jᵀ` of a row-major `(6, n)` Jacobian; `damping` is `λ₀`.
+    /// Factors `J Jᵀ` of a row-major `(6 k, n)` Jacobian; `damping` has the `k` numbers `λ₀`.
     #[inline(always)]
-    pub fn factor(&mut self, jacobian: &[S], n: usize, damping: S) {
+    pub fn factor(&mut self, jacobian: &[S], n: usize, damping: &[f64]) {
+        self.rows = ROWS * damping.len();
+        match damping.len() {
+            1 => self.factor_rows(ROWS, jacobian, n, damping), // its own code, loops unrolled
+            k => self.factor_rows(ROWS * k, jacobian, n, damping),
+        }
+    }
+
+    #[inline(always)]
+    fn factor_rows(&mut self, rows: usize, jacobian: &[S], n: usize, damping: &[f64]) {
+        let [gram, damped, undamped] =
+            [&mut self.gram, &mut self.damped, &mut self.undamped].map(|a| &mut a[..rows * rows]);
         let mut trace = S::of(0.0);
-        for i in 0..ROWS {
+        for i in 0..rows {
             for j in 0..=i {
                 let (a, b) = (&jacobian[i * n..(i + 1) * n], &jacobian[j * n..(j + 1) * n]);
-                self.gram[i * ROWS + j] = dot(a, b);
+                gram[i * rows + j] = dot(a, b);
             }
-            trace += self.gram[i * ROWS + i];
+            trace += gram[i * rows + i];
         }
         // the floor keeps the factor of a singular Jacobian finite; it is rounding otherwise
-        self.undamped = self.gram;
+        undamped.copy_from_slice(gram);
         let floor = trace * S::of(1e-14) + S::of(f64::MIN_POSITIVE);
-        add_diagonal(&mut self.undamped, floor);
-        cholesky_factor(&mut self.undamped, ROWS);
+        add_diagonal(undamped, rows, 0..rows, floor);
+        cholesky_factor(undamped, rows);
 
-        // λ² = max(λ₀² − σ², 0)
-        let missing = damping * damping - S::of(1.0) / inverse_trace(&self.undamped);
-        let is_short = S::less(S::of(0.0), missing);
-        self.is_damped = S::any(is_short);
+        self.is_damped = false;
+        for (task, damping) in damping.iter().enumerate() {
+            // λ² = max(λ₀² − σ², 0)
+            let block = ROWS * task..ROWS * (task + 1);
+            let sigma2 = S::of(1.0) / inverse_trace(undamped, rows, block.clone(), &mut self.x[..rows]);
+            let missing = S::of(damping * damping) - sigma2;
+            let is_short = S::less(S::of(0.0), missing);
+            if S::any(is_short) {
+                if !self.is_damped {
+                    damped.copy_from_slice(gram);
+                    add_diagonal(damped, rows, 0..rows, floor);
+                }
+                self.is_damped = true;
+                add_diagonal(damped, rows, block, S::select(is_short, missing, S::of(0.0)));
+            }
+        }
         if self.is_damped {
-            self.damped = self.gram;
-            add_diagonal(&mut self.damped, S::select(is_short, missing, S::of(0.0)) + floor);
-            cholesky_factor(&mut self.damped, ROWS);
+            cholesky_factor(damped, rows);
         }
     }
 
-    /// `out = J⁺ x`, damped; `x` is `(6,)`, `out` `(n,)`.
+    /// `out = J⁺ x`, damped; `x` is `(6 k,)`, `out` `(n,)`.
     #[inline(always)]
-    pub fn apply(&self, jacobian: &[S], x: [S; ROWS], out: &mut [S]) {
+    pub fn apply(&mut self, jacobian: &[S], x: &[S], out: &mut [S]) {
+        self.x[..self.rows].copy_from_slice(&x[..self.rows]);
         let factor = if self.is_damped { &self.damped } else { &self.undamped };
-        transpose_apply(factor, jacobian, x, out);
+        transpose_apply(self.rows, factor, jacobian, &mut self.x, out);
     }
 
-    /// Splits joint rates `y`, `(n,)`: what the task does not feel, `(1 − J⁺ J) y` undamped, into
-    /// `free`, and what it feels but gives up for the damping, into `lost` (zero where undamped).
+    /// Splits joint rates `y`, `(n,)`: what the tasks do not feel, `(1 − J⁺ J) y` undamped, into
+    /// `free`, and what they feel but give up for the damping, into `lost` (zero where undamped).
     #[inline(always)]
-    pub fn split(&self, jacobian: &[S], y: &[S], free: &mut [S], lost: &mut [S]) {
+    pub fn split(&mut self, jacobian: &[S], y: &[S], free: &mut [S], lost: &mut [S]) {
         let n = y.len();
-        let mut felt = [S::of(0.0); ROWS];
-        for (i, felt) in felt.iter_mut().enumerate() {
-            *felt = dot(&jacobian[i * n..(i + 1) * n], y);
-        }
-        transpose_apply(&self.undamped, jacobian, felt, free);
+        self.feel(jacobian, y);
+        transpose_apply(self.rows, &self.undamped, jacobian, &mut self.x, free);
         lost.copy_from_slice(free);
         if self.is_damped {
-            transpose_apply(&self.damped, jacobian, felt, lost);
+            self.feel(jacobian, y);
+            transpose_apply(self.rows, &self.damped, jacobian, &mut self.x, lost);
         }
         for j in 0..n {
             lost[j] = free[j] - lost[j];
             free[j] = y[j] - free[j];
         }
     }
-}
 
-impl<S: Real> Default for PseudoInverse<S> {
-    fn default() -> Self {
-        Self::new()
+    /// `x = J y`.
+    #[inline(always)]
+    fn feel(&mut self, jacobian: &[S], y: &[S]) {
+        let n = y.len();
+        for i in 0..self.rows {
+            self.x[i] = dot(&jacobian[i * n..(i + 1) * n], y);
+        }
     }
 }
 
 #[inline(always)]
-fn add_diagonal<S: Real>(a: &mut [S; ROWS * ROWS], x: S) {
-    for i in 0..ROWS {
-        a[i * ROWS + i] += x;
+fn add_diagonal<S: Real>(a: &mut [S], rows: usize, at: std::ops::Range<usize>, x: S) {
+    for i in at {
+        a[i * rows + i] += x;
     }
 }
 
-/// `out = Jᵀ A⁻¹ x` with the factor of `A`.
+/// `out = Jᵀ A⁻¹ x` with the factor of `A`; `x` is used up.
 #[inline(always)]
-fn transpose_apply<S: Real>(factor: &[S], jacobian: &[S], mut x: [S; ROWS], out: &mut [S]) {
-    let n = out.len();
-    cholesky_solve(factor, ROWS, &mut x);
+fn transpose_apply<S: Real>(rows: usize, factor: &[S], jacobian: &[S], x: &mut [S], out: &mut [S]) {
+    match rows {
+        ROWS => transpose_apply_rows(ROWS, factor, jacobian, x, out),
+        rows => transpose_apply_rows(rows, factor, jacobian, x, out),
+    }
+}
+
+#[inline(always)]
+fn transpose_apply_rows<S: Real>(rows: usize, factor: &[S], jacobian: &[S], x: &mut [S], out: &mut [S]) {
+    let (n, x) = (out.len(), &mut x[..rows]);
+    cholesky_solve(&factor[..rows * rows], rows, x);
     for (j, out) in out.iter_mut().enumerate() {
         *out = S::of(0.0);
-        for i in 0..ROWS {
+        for i in 0..rows {
             *out = jacobian[i * n + j].mul_add(x[i], *out);
         }
     }
 }
 
-/// `tr A⁻¹ = Σ (L⁻¹)²` with the factor of `A`.
+/// `Σ (A⁻¹)_jj = Σ (L⁻¹)²` over some columns `j`, with the factor of `A`; `column` is room for one.
 #[inline(always)]
-fn inverse_trace<S: Real>(factor: &[S; ROWS * ROWS]) -> S {
+fn inverse_trace<S: Real>(factor: &[S], rows: usize, columns: std::ops::Range<usize>, column: &mut [S]) -> S {
     let mut trace = S::of(0.0);
-    for j in 0..ROWS {
+    for j in columns {
         // column j of L⁻¹ by forward substitution; the factor's diagonal holds 1/L_ii
-        let mut column = [S::of(0.0); ROWS];
-        column[j] = factor[j * ROWS + j];
+        column[j] = factor[j * rows + j];
         trace = column[j].mul_add(column[j], trace);
-        for i in j + 1..ROWS {
-            let sum = dot(&factor[i * ROWS + j..i * ROWS + i], &column[j..i]);
-            column[i] = -sum * factor[i * ROWS + i];
+        for i in j + 1..rows {
+            let sum = dot(&factor[i * rows + j..i * rows + i], &column[j..i]);
+            column[i] = -sum * factor[i * rows + i];
             trace = column[i].mul_add(column[i], trace);
         }
     }

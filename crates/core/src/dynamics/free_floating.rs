@@ -4,7 +4,9 @@ use super::crba::{composites, coupling};
 use super::data::Data;
 use super::external::{FrameWrench, apply_external};
 use super::jacobian::{frame_drift, write_column};
-use super::kinematics::{FramePose, base_rotation, frame_origin_b, frame_pose, frame_velocity, kinematics};
+use super::kinematics::{
+    FramePose, base_rotation, frame_origin_b, frame_pose, frame_rotation_b, frame_velocity, kinematics,
+};
 use super::rnea::inverse_dynamics_recursion;
 use crate::model::{Model, Node};
 use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, Vec3};
@@ -84,6 +86,63 @@ pub fn free_floating_recursion<S: Real>(
     S::enter(
         #[inline(always)]
         || kernel(model, data, q, frame, out),
+    );
+}
+
+/// Another frame of the same reduced model: pose, twist, `Jg` and `d` anew, after
+/// [`free_floating_recursion`].
+pub fn free_floating_frame<S: Real>(
+    model: &Model,
+    data: &Data<S>,
+    q: &[S],
+    v: &[S],
+    frame: usize,
+    out: &mut FreeFloating<S>,
+) {
+    out.drift = frame_drift(model, data, q, v, frame);
+    S::enter(
+        #[inline(always)]
+        || {
+            out.pose = frame_pose(model, data, q, frame);
+            out.velocity = frame_velocity(model, data, q, frame);
+            reduce_task(model, data, q, frame, &data.bodies[0].composite.inverse(), out);
+        },
+    );
+}
+
+/// [`free_floating_frame`] as the base sees it: pose, twist, Jacobian and drift relative to B, in its
+/// axes. The base's recoil does not show there, so `Jg` is the arm's own Jacobian.
+///
+/// `ẋ = J q̇`, `ẍ = J q̈ + d`, `d = J̇ q̇` with the bodies' twists less the base's.
+pub fn base_relative_frame<S: Real>(
+    model: &Model,
+    data: &Data<S>,
+    v: &[S],
+    frame: usize,
+    out: &mut FreeFloating<S>,
+) {
+    S::enter(
+        #[inline(always)]
+        || {
+            let n = model.joint_count();
+            let frame = &model.frames()[frame];
+            let (p, base) = (frame_origin_b(data, frame), data.bodies[0].velocity);
+            out.pose = FramePose { rot_wf: frame_rotation_b(data, frame), pos_w: p };
+            let twist = data.bodies[frame.body].velocity - base;
+            out.velocity = Motion::new(twist.at(p), twist.angular);
+            out.jacobian.fill(S::of(0.0));
+            let mut spatial = Motion::zero();
+            let mut k = frame.body;
+            while k > 0 {
+                let body = &data.bodies[k];
+                write_column(&mut out.jacobian, n, k - 1, Mat3::identity(), p, body.subspace);
+                spatial += (body.velocity - base).cross(body.subspace * v[k + 5]);
+                k = model.nodes()[k].parent;
+            }
+            // the point's acceleration: a + α × p + ω × (v + ω × p)
+            let linear = spatial.at(p) + twist.angular.cross(twist.at(p));
+            out.drift = Motion::new(linear, spatial.angular);
+        },
     );
 }
 

@@ -21,7 +21,9 @@ pub use aba::{forward_dynamics, forward_dynamics_recursion};
 pub use crba::mass_matrix;
 pub use data::{BodyData, Data};
 pub use external::{FrameWrench, apply_external};
-pub use free_floating::{FreeFloating, free_floating, free_floating_recursion};
+pub use free_floating::{
+    FreeFloating, base_relative_frame, free_floating, free_floating_frame, free_floating_recursion,
+};
 pub use jacobian::{frame_acceleration, frame_drift, frame_jacobian};
 pub(crate) use kinematics::base_rotation;
 pub use kinematics::{FramePose, frame_pose, frame_velocity, kinematics, positions};

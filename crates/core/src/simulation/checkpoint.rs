@@ -33,6 +33,16 @@ pub struct Checkpoint {
     pub(super) probe: (f64, usize, f64),
     /// Work of every step so far, whatever its sign, J.
     pub(super) work_done: f64,
+    pub(super) controls: ControlMemory,
+}
+
+/// What controllers remember between calls.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct ControlMemory {
+    /// Of those built in: the bits of numbers, which may be infinite.
+    pub(super) bits: Vec<u64>,
+    /// Of the user's own, in their order.
+    pub(super) users: Vec<Vec<u8>>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -83,6 +93,7 @@ impl Checkpoint {
         (memory, cuts): (Memory, (usize, f64)),
         probe: (f64, usize, f64),
         work_done: f64,
+        controls: ControlMemory,
     ) -> Self {
         let numbers = |x: &[S]| x.iter().map(|x| x.value()).collect();
         let mut momentum = [0.0; 12];
@@ -109,6 +120,7 @@ impl Checkpoint {
             cuts,
             probe,
             work_done,
+            controls,
         }
     }
 

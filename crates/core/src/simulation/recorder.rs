@@ -1,81 +1,101 @@
 //! Writing rows of the trace.
 
 use super::checkpoint::CheckpointError;
-use super::driver::at;
 use super::error::SimulationError;
 use super::plant::Plant;
 use super::state::State;
 use super::surroundings::Surroundings;
-use super::trace::Trace;
-use crate::control::task_error;
+use super::trace::{Trace, Tracking};
+use crate::control::{Control, Stack, task_error};
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
-use crate::environment::{DifferentialGravity, Reference, ReferenceMotion};
-use crate::orbit::{Orbit, OrbitState};
-use crate::reference::{TaskReference, TaskSample};
+use crate::environment::{DifferentialGravity, Reference};
+use crate::model::Model;
+use crate::orbit::OrbitState;
+use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
 
-/// Fills a trace, row by row, without allocating.
-pub(super) struct Recorder<'a> {
-    pub(super) trace: Trace,
-    tool: Option<usize>,
-    reference: Option<&'a TaskReference>,
+/// What a run has to record beside its state.
+#[derive(Clone, Copy)]
+pub(super) struct Extras {
+    /// Index of the frame to record.
+    pub(super) tool: Option<usize>,
+    /// Whether something leads it.
+    pub(super) has_reference: bool,
+    /// Whether there is an orbit.
+    pub(super) has_orbit: bool,
     /// Parameter of the planet along whose gravity the robot is carried.
-    carried_around: Option<f64>,
+    pub(super) carried_around: Option<f64>,
 }
 
-impl<'a> Recorder<'a> {
+impl Extras {
+    /// Numbers per row of a column; none where the run does not have it.
+    fn width(&self, column: &str, model: &Model) -> usize {
+        let given = |is_given: bool, width: usize| if is_given { width } else { 0 };
+        match column {
+            "q" => model.nq(),
+            "v" | "acceleration" => model.nv(),
+            "tau" => model.joint_count(),
+            "momentum" | "impulse" => 6,
+            "center_of_mass" => 3,
+            "tool_pose" => given(self.tool.is_some(), 16),
+            "reference_pose" => given(self.has_reference, 16),
+            "position_error" | "attitude_error" => given(self.has_reference, 3),
+            "position_eci" | "velocity_eci" => given(self.has_orbit, 3),
+            "reference_residual" => given(self.carried_around.is_some(), 3),
+            _ => 1,
+        }
+    }
+}
+
+/// Fills a trace, row by row, without allocating.
+pub(super) struct Recorder {
+    pub(super) trace: Trace,
+    extras: Extras,
+    /// Numbers per row of each column.
+    widths: Vec<usize>,
+}
+
+impl Recorder {
     pub(super) fn new(
         rows: usize,
-        sizes: (usize, usize),
-        tool: Option<usize>,
-        reference: Option<&'a TaskReference>,
-        orbit: Option<&dyn Orbit>,
-        motion: ReferenceMotion,
+        model: &Model,
+        extras: Extras,
+        controls: &[Control],
         has_every_step: bool,
     ) -> Result<Self, SimulationError> {
-        let (nq, nv) = sizes;
-        let mut trace = Trace { has_every_step, ..Trace::default() };
-        let mut reserve = |column: fn(&mut Trace) -> &mut Vec<f64>, width: usize| {
-            let numbers = rows.checked_mul(width).ok_or(SimulationError::TooManyRows { rows })?;
-            column(&mut trace).try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })
-        };
-        reserve(|t| &mut t.time, 1)?;
-        reserve(|t| &mut t.q, nq)?;
-        reserve(|t| &mut t.v, nv)?;
-        reserve(|t| &mut t.tau, nv - 6)?;
-        reserve(|t| &mut t.acceleration, nv)?;
-        reserve(|t| &mut t.momentum, 6)?;
-        reserve(|t| &mut t.impulse, 6)?;
-        reserve(|t| &mut t.kinetic_energy, 1)?;
-        reserve(|t| &mut t.work, 1)?;
-        reserve(|t| &mut t.dissipated, 1)?;
-        reserve(|t| &mut t.center_of_mass, 3)?;
-        if tool.is_some() {
-            reserve(|t| &mut t.tool_pose, 16)?;
+        let tracked = controls.iter().filter(|control| control.width() > 0);
+        let tracking: Vec<Tracking> = tracked
+            .map(|control| Tracking { name: control.name.clone(), width: control.width(), error: Vec::new() })
+            .collect();
+        let bare = Trace::default();
+        let widths = bare.columns().map(|(name, _)| extras.width(&name, model));
+        let widths: Vec<usize> = widths.chain(tracking.iter().map(|tracking| tracking.width)).collect();
+        let mut trace = Trace { has_every_step, tracking, ..Trace::default() };
+        for ((_, column), width) in trace.columns_mut().zip(&widths) {
+            let numbers = rows.checked_mul(*width).ok_or(SimulationError::TooManyRows { rows })?;
+            column.try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })?;
         }
-        if reference.is_some() {
-            reserve(|t| &mut t.reference_pose, 16)?;
-            reserve(|t| &mut t.position_error, 3)?;
-            reserve(|t| &mut t.attitude_error, 3)?;
-        }
-        let carried_around = orbit.and_then(|o| o.mu()).filter(|_| motion == ReferenceMotion::Carried);
-        if carried_around.is_some() {
-            reserve(|t| &mut t.reference_residual, 3)?;
-        }
-        if orbit.is_some() {
-            reserve(|t| &mut t.position_eci, 3)?;
-            reserve(|t| &mut t.velocity_eci, 3)?;
-        }
-        Ok(Self { trace, tool, reference, carried_around })
+        Ok(Self { trace, extras, widths })
     }
 
     /// Goes on after the rows of an earlier part of the run.
     pub(super) fn go_on_from(&mut self, mut rows: Trace) -> Result<(), CheckpointError> {
         let count = rows.rows();
-        for ((name, to), (_, from)) in self.trace.columns_mut().zip(rows.columns_mut()) {
-            let is_kept = to.capacity() > 0;
-            if is_kept == from.is_empty() || from.len().checked_rem(count).is_some_and(|rest| rest > 0) {
-                return Err(CheckpointError::OtherSize { name, got: from.len(), expected: count });
+        let names = |trace: &Trace| trace.columns().map(|(name, _)| name.into_owned()).collect::<Vec<_>>();
+        let (own, given) = (names(&self.trace), names(&rows));
+        if own != given {
+            return Err(CheckpointError::OtherSize {
+                name: "columns",
+                got: given.len(),
+                expected: own.len(),
+            });
+        }
+        for (((_, from), (_, to)), width) in
+            rows.columns_mut().zip(self.trace.columns_mut()).zip(&self.widths)
+        {
+            if from.len() != count * width {
+                let (got, expected) = (from.len(), count * width);
+                return Err(CheckpointError::OtherSize { name: "recorded numbers", got, expected });
             }
             to.append(from);
         }
@@ -90,13 +110,20 @@ impl<'a> Recorder<'a> {
         state: &State<S>,
         plant: &Plant<'_, S, Surroundings>,
         orbit: Option<OrbitState>,
-    ) -> Result<(), SimulationError> {
-        let desired = self.reference.map(|reference| at(reference, t)).transpose()?;
+        desired: Option<(TaskSample<f64>, bool)>,
+    ) {
         S::enter(
             #[inline(always)]
             || self.row_kernel(t, state, plant, orbit, desired),
         );
-        Ok(())
+    }
+
+    /// Adds the tracking errors of several controls to the row.
+    pub(super) fn tracked<S: Scalar>(&mut self, stack: &Stack<'_, S>) {
+        let tracked = (0..stack.controls().len()).filter(|&i| stack.controls()[i].width() > 0);
+        for (column, control) in self.trace.tracking.iter_mut().zip(tracked) {
+            column.error.extend_from_slice(stack.error(control));
+        }
     }
 
     #[inline(always)]
@@ -106,7 +133,7 @@ impl<'a> Recorder<'a> {
         state: &State<S>,
         plant: &Plant<'_, S, Surroundings>,
         orbit: Option<OrbitState>,
-        desired: Option<TaskSample<f64>>,
+        desired: Option<(TaskSample<f64>, bool)>,
     ) {
         let (trace, data, q, v) = (&mut self.trace, &plant.data, &state.q, &state.v);
         trace.time.push(t);
@@ -122,11 +149,17 @@ impl<'a> Recorder<'a> {
         trace.work.push(state.work.value());
         trace.dissipated.push(state.dissipated.value());
         push_vector(&mut trace.center_of_mass, center_of_mass(data, q));
-        if let Some(tool) = self.tool {
+        if let Some(tool) = self.extras.tool {
             let pose = frame_pose(plant.model, data, q, tool);
             push_pose(&mut trace.tool_pose, &pose.rot_wf, pose.pos_w);
-            if let Some(desired) = desired {
-                push_tracking(trace, &desired.lift(), &pose);
+            if self.extras.has_reference {
+                let desired = desired.map(|(desired, is_relative)| {
+                    let desired = desired.lift();
+                    if is_relative { carried_by_base(q, &desired) } else { desired }
+                });
+                // a tool that nothing leads for a while is where it should be
+                let here = || TaskSample::at_rest(pose.rot_wf, pose.pos_w);
+                push_tracking(trace, &desired.unwrap_or_else(here), &pose);
             }
         }
         if let Some(orbit) = orbit {
@@ -134,7 +167,7 @@ impl<'a> Recorder<'a> {
             let velocity = orbit.velocity + (base_rotation(q) * Vec3::from_slice(v)).to_nalgebra();
             trace.position_eci.extend_from_slice(origin.as_slice());
             trace.velocity_eci.extend_from_slice(velocity.as_slice());
-            let reference = Reference { state: orbit, mu: self.carried_around };
+            let reference = Reference { state: orbit, mu: self.extras.carried_around };
             if let Some(residual) = DifferentialGravity::residual(&reference) {
                 trace.reference_residual.extend_from_slice(residual.as_slice());
             }
@@ -145,6 +178,13 @@ impl<'a> Recorder<'a> {
     pub(super) fn accelerated<S: Scalar>(&mut self, a: &[S]) {
         push(&mut self.trace.acceleration, a);
     }
+}
+
+/// The pose of a sample relative to the base, in W.
+#[inline(always)]
+fn carried_by_base<S: Scalar>(q: &[S], relative: &TaskSample<S>) -> TaskSample<S> {
+    let rot_wb = base_rotation(q);
+    TaskSample::at_rest(rot_wb * relative.rot_wd, rot_wb * relative.pos_w + Vec3::from_slice(q))
 }
 
 #[inline(always)]

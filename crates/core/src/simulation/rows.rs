@@ -7,18 +7,22 @@ use crate::spatial::Scalar;
 impl<S: Scalar> Run<'_, S> {
     /// A row for the state whose kinematics are in the plant.
     pub(super) fn record(&mut self, t: f64) -> Result<(), SimulationError> {
-        let orbit = self.plant.surroundings.orbit_state(t)?;
-        self.recorder.row(t, &self.state, &self.plant, orbit)
+        let Self { state, plant, driver, recorder, tracked, .. } = self;
+        let orbit = plant.surroundings.orbit_state(t)?;
+        recorder.row(t, state, plant, orbit, driver.desired(t, state, plant, *tracked)?);
+        driver.stack().into_iter().for_each(|stack| recorder.tracked(stack));
+        Ok(())
     }
 
     /// A row within the last step.
     pub(super) fn record_between(&mut self, t: f64) -> Result<(), SimulationError> {
-        let Self { plant, stepper, between: (state, stages), recorder, .. } = self;
+        let Self { plant, stepper, driver, tracked, between: (state, stages), recorder, .. } = self;
         stepper.stages.interpolate(t, state);
         plant.settle(state);
         plant.surround(t, (t, t), &state.q)?;
         let orbit = plant.surroundings.orbit_state(t)?;
-        recorder.row(t, state, plant, orbit)?;
+        recorder.row(t, state, plant, orbit, driver.desired(t, state, plant, *tracked)?);
+        driver.stack().into_iter().for_each(|stack| recorder.tracked(stack));
         stages.accelerate(plant, state);
         recorder.accelerated(stages.first_acceleration());
         Ok(())

@@ -1,20 +1,22 @@
 //! The loop.
 
-use super::checkpoint::{Checkpoint, CheckpointError};
+use super::checkpoint::Checkpoint;
 use super::driver::Driver;
 use super::error::{RunFailure, SimulationError};
 use super::integrator::{Integrator, Stages};
 use super::plant::Plant;
 use super::probe::Probe;
-use super::recorder::Recorder;
+use super::recorder::{Extras, Recorder};
 use super::schedule::Schedule;
 use super::settings::Simulation;
 use super::state::State;
 use super::stepping::{Stepper, Stepping};
 use super::surroundings::Surroundings;
-use super::trace::Trace;
-use crate::control::{ControlError, ControlLaw};
-use crate::environment::{DifferentialGravity, Effect};
+use super::trace::{GoalResult, Trace};
+use crate::control::{ControlError, ControlLaw, Stack};
+use crate::environment::{DifferentialGravity, Effect, ReferenceMotion};
+use crate::model::Model;
+use crate::reference::TaskReference;
 use crate::spatial::{Fused, InstructionSet, Scalar};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -25,12 +27,15 @@ pub struct Moment<'a> {
     pub time: f64,
     /// The rows so far.
     pub trace: &'a Trace,
-    checkpoint: &'a dyn Fn() -> Checkpoint,
+    checkpoint: &'a dyn Fn() -> Result<Checkpoint, ControlError>,
 }
 
 impl Moment<'_> {
     /// What the run can go on from, with the rows so far: see [`Simulation::resume`].
-    pub fn checkpoint(&self) -> Checkpoint {
+    ///
+    /// # Errors
+    /// What a user's controller raises when it is asked to save what it remembers.
+    pub fn checkpoint(&self) -> Result<Checkpoint, ControlError> {
         (self.checkpoint)()
     }
 }
@@ -98,15 +103,16 @@ impl Simulation {
         let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
         let mut plant = Plant::<S, _>::new(&model, surroundings, self.stops);
         let state = State::at(&model, &mut plant.data, numbers(&self.q), numbers(&self.v));
-        let recorder = Recorder::new(
-            rows(&schedule, self.record_every),
-            (model.nq(), model.nv()),
-            self.tool,
-            self.reference.as_ref(),
-            self.orbit.as_deref(),
-            self.reference_motion,
-            self.record_every == 1 && !self.is_adaptive(),
-        );
+        let planet = self.orbit.as_ref().and_then(|orbit| orbit.mu());
+        let extras = Extras {
+            tool: self.tool,
+            has_reference: self.reference.is_some() || self.control.tracks(self.tool),
+            has_orbit: self.orbit.is_some(),
+            carried_around: planet.filter(|_| self.reference_motion == ReferenceMotion::Carried),
+        };
+        let is_dense = self.record_every == 1 && !self.is_adaptive();
+        let controls = self.control.controls();
+        let recorder = Recorder::new(rows(&schedule, self.record_every), &model, extras, controls, is_dense);
         let Self { integrator, tolerance, time_step, .. } = *self;
         let how = Stepping { integrator, tolerance, time_step, duration };
         let mut run = Run {
@@ -118,17 +124,20 @@ impl Simulation {
             probe: Probe::new(&state),
             state,
             plant,
-            driver: Driver::new(&mut self.control, self.reference.as_ref(), &model).map_err(fail)?,
+            tracked: (self.tool, self.reference.as_ref()),
+            driver: Driver::new(&mut self.control, self.reference.as_ref(), &model, time_step)
+                .map_err(fail)?,
             recorder: recorder.map_err(fail)?,
             schedule,
             steps: 0,
         };
         match from {
             None => run.plant.settle(&mut run.state),
-            Some((checkpoint, trace)) => run.go_on_from(checkpoint, trace).map_err(|e| fail(e.into()))?,
+            Some((checkpoint, trace)) => run.go_on_from(checkpoint, trace).map_err(fail)?,
         }
         let outcome = run.all(self.record_every, monitor);
-        let trace = run.recorder.trace;
+        let mut trace = run.recorder.trace;
+        trace.results = run.driver.stack().map_or_else(Vec::new, |stack| goal_results(stack, &model));
         match outcome {
             Ok(()) => Ok(trace),
             Err(error) => Err(RunFailure { error, trace: Box::new(trace) }),
@@ -143,7 +152,8 @@ impl Simulation {
     fn schedule(&self, duration: f64, events: Vec<f64>) -> Schedule {
         let asks = !matches!(self.control, ControlLaw::None);
         let period = if self.is_adaptive() && !asks { Some(f64::MAX) } else { self.control_period };
-        let schedule = Schedule::new(self.time_step, duration, period, events);
+        let schedule =
+            Schedule::new(self.time_step, duration, period, events).switching(self.control.switch_times());
         if self.is_adaptive() { schedule.over_the_grid() } else { schedule }
     }
 
@@ -163,12 +173,29 @@ fn rows(schedule: &Schedule, record_every: usize) -> usize {
     steps.saturating_add(2)
 }
 
+/// What came of the goals.
+fn goal_results<S: Scalar>(stack: &Stack<'_, S>, model: &Model) -> Vec<GoalResult> {
+    let with_goal = stack.controls().iter().enumerate().filter(|(_, control)| control.goal.is_some());
+    with_goal
+        .map(|(i, control)| {
+            let outcome = stack.outcome(i);
+            let component = outcome.miss().map(|miss| match control.task() {
+                Some(_) => ["position", "attitude"][miss.component].to_owned(),
+                None => model.joints()[control.joints[miss.component]].name.clone(),
+            });
+            GoalResult { name: control.name.clone(), outcome, component }
+        })
+        .collect()
+}
+
 /// A run under way.
 pub(super) struct Run<'a, S> {
     pub(super) state: State<S>,
     pub(super) plant: Plant<'a, S, Surroundings>,
     pub(super) driver: Driver<'a, S>,
-    pub(super) recorder: Recorder<'a>,
+    /// The tool of the run and its reference.
+    pub(super) tracked: (Option<usize>, Option<&'a TaskReference>),
+    pub(super) recorder: Recorder,
     pub(super) stepper: Stepper<S>,
     /// For rows within a step.
     pub(super) between: (State<S>, Stages<S>),
@@ -243,13 +270,15 @@ impl<S: Scalar> Run<'_, S> {
             let (counts, probe) = ((trace.rows(), self.steps), self.probe.numbers());
             let (command, memory) = (&self.plant.command, self.stepper.memory().unwrap_or_default());
             let stepper = (memory, self.stepper.cuts);
-            Checkpoint::new(&self.state, command, &self.schedule, counts, stepper, probe, trace.work_done)
+            let (schedule, controls) = (&self.schedule, self.driver.save()?);
+            let done = trace.work_done;
+            Ok(Checkpoint::new(&self.state, command, schedule, counts, stepper, probe, done, controls))
         };
         monitor(&Moment { time, trace, checkpoint: &checkpoint })
     }
 
     /// Takes up where a checkpoint was made.
-    fn go_on_from(&mut self, from: &Checkpoint, trace: Trace) -> Result<(), CheckpointError> {
+    fn go_on_from(&mut self, from: &Checkpoint, trace: Trace) -> Result<(), SimulationError> {
         from.check(self.plant.model, &self.schedule, trace.rows())?;
         self.state = from.state();
         self.schedule = from.schedule.clone();
@@ -259,7 +288,7 @@ impl<S: Scalar> Run<'_, S> {
         self.recorder.go_on_from(trace)?;
         self.recorder.trace.work_done = from.work_done;
         self.plant.command.iter_mut().zip(&from.command).for_each(|(to, from)| *to = S::of(*from));
-        Ok(())
+        self.driver.load(&from.controls)
     }
 
     /// Kinematics, wrenches and torques at the start of a step.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Two instants closer than this share of a step are the same instant.
-const SAME_INSTANT: f64 = 1e-9;
+pub(super) const SAME_INSTANT: f64 = 1e-9;
 
 /// A stretch that the integrator crosses in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +27,8 @@ pub(super) struct Schedule {
     events: Vec<f64>,
     /// Whether steps end at the grid.
     cuts_at_grid: bool,
+    /// Instants at which the controller is asked beside its own.
+    switches: Vec<f64>,
     now: f64,
     next_grid: usize,
     next_tick: usize,
@@ -40,6 +42,7 @@ impl Schedule {
         control_period: Option<f64>,
         mut events: Vec<f64>,
     ) -> Self {
+        events.retain(|t| t.is_finite());
         events.sort_by(f64::total_cmp);
         let control_period = control_period.unwrap_or(time_step);
         Self {
@@ -48,6 +51,7 @@ impl Schedule {
             control_period,
             events,
             cuts_at_grid: true,
+            switches: Vec::new(),
             now: 0.0,
             next_grid: 0,
             next_tick: 0,
@@ -90,6 +94,14 @@ impl Schedule {
         *self == Self { now, next_grid, next_tick, next_event, ..other.clone() }
     }
 
+    /// With instants at which controls are switched: steps end there, and the controller is asked.
+    pub(super) fn switching(mut self, switches: Vec<f64>) -> Self {
+        self.events.extend(&switches);
+        self.events.sort_by(f64::total_cmp);
+        self.switches = switches;
+        self
+    }
+
     /// Number of grid steps; the last may be shorter.
     pub(super) fn grid_steps(&self) -> usize {
         (self.duration / self.time_step - SAME_INSTANT).ceil().max(1.0) as usize
@@ -109,6 +121,10 @@ impl Schedule {
 
     /// Whether the controller is due now.
     pub(super) fn is_control_tick(&self) -> bool {
+        self.is_regular_tick() || self.switches.iter().any(|&t| self.is_now(t))
+    }
+
+    fn is_regular_tick(&self) -> bool {
         self.is_now(self.next_tick as f64 * self.control_period)
     }
 
@@ -128,7 +144,7 @@ impl Iterator for Schedule {
         let grid_step = self.is_now(grid).then_some(self.next_grid);
         self.next_grid += usize::from(grid_step.is_some());
         let is_control_tick = self.is_control_tick();
-        self.next_tick += usize::from(is_control_tick);
+        self.next_tick += usize::from(self.is_regular_tick());
         while self.events.get(self.next_event).is_some_and(|&t| t <= self.now + self.tolerance()) {
             self.next_event += 1;
         }
@@ -174,6 +190,13 @@ mod tests {
         assert_eq!(ticks, [0.0, 0.25, 0.5, 0.75]);
         let fast = Schedule::new(0.1, 0.2, Some(0.05), vec![]);
         assert_eq!(fast.filter(|s| s.is_control_tick).count(), 4);
+    }
+
+    #[test]
+    fn a_switch_is_a_cut_and_a_tick() {
+        let schedule = Schedule::new(0.1, 1.0, Some(0.5), vec![]).switching(vec![0.73, 0.1]);
+        let ticks: Vec<f64> = schedule.filter(|s| s.is_control_tick).map(|s| s.start).collect();
+        assert_eq!(ticks, [0.0, 0.1, 0.5, 0.73]);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::contacts::AT_LIMIT;
 use super::error::SimulationError;
 use super::integrator::Integrator;
 use super::start::check_start;
-use crate::control::ControlLaw;
+use crate::control::{Control, ControlLaw, check_controls};
 use crate::environment::{Effect, ReferenceMotion};
 use crate::model::Model;
 use crate::orbit::Orbit;
@@ -119,6 +119,13 @@ impl Simulation {
             if self.reference.is_none() {
                 return Err(SimulationError::NeedsReference);
             }
+        }
+        if let ControlLaw::Stack(controls) = &self.control {
+            let known = |control: &Control| control.task().is_none_or(|(frame, _)| frame < count);
+            if let Some(frame) = controls.iter().find(|c| !known(c)).and_then(|c| c.task()) {
+                return Err(SimulationError::UnknownFrame { frame: frame.0, count });
+            }
+            check_controls(controls, &self.model)?;
         }
         if self.reference.is_some() && self.tool.is_none() {
             return Err(SimulationError::NeedsTool);

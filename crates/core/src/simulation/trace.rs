@@ -1,6 +1,8 @@
 //! What a run leaves behind.
 
+use crate::control::Outcome;
 use crate::model::Model;
+use std::borrow::Cow;
 
 /// Columns of a run, one row per recorded step, row major; the first row is the initial state, the
 /// last the end. W axes unless said; empty columns are those the run did not have.
@@ -43,6 +45,10 @@ pub struct Trace {
     /// Gravity that the reference does not follow and that was left out, `g - r̈_ref`, axes of I, m/s²,
     /// `(T, 3)`; only around a planet with the robot carried along.
     pub reference_residual: Vec<f64>,
+    /// Tracking errors of several controls, each on its own.
+    pub tracking: Vec<Tracking>,
+    /// What came of the goals of several controls.
+    pub results: Vec<GoalResult>,
     /// Sum of the work of every step, whatever its sign, J: what rows far apart would miss.
     pub work_done: f64,
     /// Sum of what steps and halved steps differ by in attitude, rad (of an embedded pair: its two
@@ -55,14 +61,17 @@ pub struct Trace {
 macro_rules! columns {
     ($($name:ident),* $(,)?) => {
         impl Trace {
-            /// Every column with its name, empty ones too; row major.
-            pub fn columns(&self) -> impl Iterator<Item = (&'static str, &Vec<f64>)> {
-                [$((stringify!($name), &self.$name)),*].into_iter()
+            /// Every column with its name, empty ones too, then `tracking_<name>` of every control; row major.
+            pub fn columns(&self) -> impl Iterator<Item = (Cow<'static, str>, &Vec<f64>)> {
+                let tracking = self.tracking.iter().map(|tracking| (tracking.column(), &tracking.error));
+                [$((Cow::Borrowed(stringify!($name)), &self.$name)),*].into_iter().chain(tracking)
             }
 
-            /// Every column with its name, to fill.
-            pub fn columns_mut(&mut self) -> impl Iterator<Item = (&'static str, &mut Vec<f64>)> {
-                [$((stringify!($name), &mut self.$name)),*].into_iter()
+            /// As [`Trace::columns`], to fill.
+            pub fn columns_mut(&mut self) -> impl Iterator<Item = (Cow<'static, str>, &mut Vec<f64>)> {
+                let tracking =
+                    self.tracking.iter_mut().map(|tracking| (tracking.column(), &mut tracking.error));
+                [$((Cow::Borrowed(stringify!($name)), &mut self.$name)),*].into_iter().chain(tracking)
             }
         }
     };
@@ -88,6 +97,35 @@ columns!(
     velocity_eci,
     reference_residual,
 );
+/// How well one control followed its reference.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tracking {
+    /// The control's name.
+    pub name: String,
+    /// Numbers per row: 6 for a task (m and rad, in the axes of W, or of B where its reference is relative to
+    /// the base), one per joint of the group otherwise.
+    pub width: usize,
+    /// Desired less actual, `(T, width)`; zeros while the control does not run.
+    pub error: Vec<f64>,
+}
+
+impl Tracking {
+    /// Name of its column.
+    fn column(&self) -> Cow<'static, str> {
+        Cow::Owned(format!("tracking_{}", self.name))
+    }
+}
+
+/// What came of a goal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GoalResult {
+    /// The control's name.
+    pub name: String,
+    /// The outcome.
+    pub outcome: Outcome,
+    /// Whose error was too large: a joint, `position` or `attitude`.
+    pub component: Option<String>,
+}
 
 impl Trace {
     /// Number of rows, `T`.

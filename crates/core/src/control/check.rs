@@ -1,0 +1,149 @@
+//! What can be wrong with several controls, as far as it is known before the run.
+
+use super::computed_torque::path_joints;
+use super::error::ControlError;
+use super::group::{Begin, Control, Law};
+use crate::model::Model;
+
+/// Checks that each control can work on the robot, and all of them side by side.
+///
+/// # Errors
+/// [`ControlError`]: groups that are empty, repeat a joint or overlap while both run; gains, goals or
+/// references that do not fit a group; windows that cannot open.
+pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), ControlError> {
+    for (i, control) in controls.iter().enumerate() {
+        if controls[..i].iter().any(|other| other.name == control.name) {
+            return Err(ControlError::RepeatedName { name: control.name.clone() });
+        }
+        check_group(control, model)?;
+        check_law(control, model)?;
+        check_goal(control)?;
+        check_window(i, controls)?;
+        for other in &controls[..i] {
+            check_pair(other, control, controls, model)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_group(control: &Control, model: &Model) -> Result<(), ControlError> {
+    let (name, count) = (&control.name, model.joint_count());
+    if control.joints.is_empty() {
+        return Err(ControlError::EmptyGroup { control: name.clone() });
+    }
+    for (place, &joint) in control.joints.iter().enumerate() {
+        if joint >= count {
+            return Err(ControlError::NoSuchJoint { control: name.clone(), joint, count });
+        }
+        if control.joints[..place].contains(&joint) {
+            let joint = model.joints()[joint].name.clone();
+            return Err(ControlError::RepeatedJoint { control: name.clone(), joint });
+        }
+    }
+    Ok(())
+}
+
+fn check_law(control: &Control, model: &Model) -> Result<(), ControlError> {
+    let count = control.joints.len();
+    match &control.law {
+        Law::TaskComputedTorque(law, _) => {
+            law.check(model)?;
+            let joints = path_joints(model, law.frame).filter(|j| control.joints.contains(j)).count();
+            if joints < 6 {
+                let (control, frame) = (control.name.clone(), model.frames()[law.frame].name.clone());
+                return Err(ControlError::TooFewInGroup { control, frame, joints });
+            }
+        }
+        Law::JointComputedTorque(law, _) => law.check(count)?,
+        Law::Pid(law, _) => law.check(count)?,
+        Law::Compliance(law, _) => law.check()?,
+        Law::User(..) => {}
+    }
+    match control.joint_reference().map(|path| path.count()) {
+        Some(got) if got != count => {
+            Err(ControlError::ReferenceLength { control: control.name.clone(), expected: count, got })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_goal(control: &Control) -> Result<(), ControlError> {
+    if control.starts_at_present && control.width() == 0 {
+        return Err(ControlError::NothingTracked { control: control.name.clone() });
+    }
+    let Some(goal) = &control.goal else { return Ok(()) };
+    match control.width() {
+        0 => Err(ControlError::NothingTracked { control: control.name.clone() }),
+        _ if control.task().is_some() => goal.check(2),
+        width => goal.check(width),
+    }
+}
+
+fn check_window(i: usize, controls: &[Control]) -> Result<(), ControlError> {
+    let control = &controls[i];
+    let name = || control.name.clone();
+    let begin = match control.begin {
+        Begin::At(start) => start,
+        Begin::After(other) if other >= controls.len() => {
+            return Err(ControlError::NoSuchControl { control: name(), after: other.to_string() });
+        }
+        Begin::After(other) => {
+            let mut before = other;
+            for _ in controls {
+                match controls[before].begin {
+                    Begin::After(next) if next < controls.len() && before != i => before = next,
+                    _ => break,
+                }
+            }
+            if before == i {
+                return Err(ControlError::AfterItself { control: name() });
+            }
+            let other = &controls[other];
+            if other.goal.is_none() && other.end == f64::INFINITY {
+                return Err(ControlError::NeverEnds { control: name(), after: other.name.clone() });
+            }
+            0.0
+        }
+    };
+    let is_window = begin.is_finite() && !control.end.is_nan() && begin < control.end;
+    if is_window {
+        Ok(())
+    } else {
+        Err(ControlError::EmptyWindow { control: name(), begin, end: control.end })
+    }
+}
+
+fn check_pair(a: &Control, b: &Control, controls: &[Control], model: &Model) -> Result<(), ControlError> {
+    if let (Some(one), Some(other)) = (a.compensates_environment(), b.compensates_environment())
+        && one != other
+    {
+        return Err(ControlError::MixedCompensation { first: a.name.clone(), second: b.name.clone() });
+    }
+    // one that waits for another runs when that is known at run time only
+    if let (Begin::At(start_a), Begin::At(start_b)) = (a.begin, b.begin) {
+        let time = start_a.max(start_b).max(0.0);
+        if time < a.end.min(b.end) && !(stops_before(a, controls) || stops_before(b, controls)) {
+            check_disjoint(a, b, model, time)?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether a successor may stop it at a time that only the run will tell.
+fn stops_before(control: &Control, controls: &[Control]) -> bool {
+    let is_it = |index: usize| controls.get(index).is_some_and(|other| std::ptr::eq(other, control));
+    controls.iter().any(|other| matches!(other.begin, Begin::After(index) if is_it(index)))
+}
+
+/// Refuses two controls with a joint in common.
+pub(super) fn check_disjoint(a: &Control, b: &Control, model: &Model, time: f64) -> Result<(), ControlError> {
+    match a.joints.iter().find(|joint| b.joints.contains(joint)) {
+        Some(&joint) => Err(ControlError::Overlap {
+            first: a.name.clone(),
+            second: b.name.clone(),
+            joint: model.joints()[joint].name.clone(),
+            time,
+        }),
+        None => Ok(()),
+    }
+}
