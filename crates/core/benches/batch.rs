@@ -5,7 +5,10 @@ mod common;
 
 use common::torso;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use nalgebra::{Matrix3, Vector3};
 use onorbit_core::batch::{Evaluator, Kernel, Rollout, RolloutControl, Rows};
+use onorbit_core::control::ComputedTorque;
+use onorbit_core::reference::Hold;
 use onorbit_core::simulation::Integrator;
 use onorbit_core::spatial::InstructionSet;
 use std::hint::black_box;
@@ -48,6 +51,24 @@ fn batches(c: &mut Criterion, arms: usize, level: InstructionSet) {
         };
         b.iter(|| rollout.run(&model, black_box(&q), &v, &mut to_q, &mut to_v).unwrap());
     });
+    if arms == 1 {
+        group.bench_function("rollout_computed_torque", |b| {
+            let (mut to_q, mut to_v, stop) = (q.clone(), v.clone(), AtomicBool::new(false));
+            let law = ComputedTorque::new(model.frames().len() - 1, 4.0, 4.0);
+            let hold = Hold::new(Matrix3::identity(), Vector3::new(0.2, 0.0, 0.5)).unwrap().into();
+            let rollout = Rollout {
+                steps: STEPS,
+                time_step: 1e-3,
+                integrator: Integrator::SemiImplicitEuler, // the law once per evaluation
+                control: RolloutControl::ComputedTorque(&law, &hold),
+                record_every: None,
+                threads: Some(1),
+                stop: &stop,
+            };
+            // a state that runs away costs the same
+            b.iter(|| _ = rollout.run(&model, black_box(&q), &v, &mut to_q, &mut to_v));
+        });
+    }
     group.finish();
 }
 

@@ -5,10 +5,13 @@ mod common;
 
 use common::humanoid::{humanoid, start};
 use nalgebra::{Matrix3, Vector3};
-use onorbit_core::control::{ComputedTorque, ControlError, ControlLaw, Controller, Observation};
+use onorbit_core::control::{
+    Compliance, ComputedTorque, Control, ControlError, ControlLaw, Controller, Goal, Interface,
+    JointComputedTorque, JointPid, Law, Observation,
+};
 use onorbit_core::environment::{BodyWrench, GravityGradient};
 use onorbit_core::orbit::{Kepler, MU_EARTH};
-use onorbit_core::reference::Hold;
+use onorbit_core::reference::{Hold, JointHold};
 use onorbit_core::simulation::{Integrator, Simulation};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -54,6 +57,31 @@ impl Controller for Still {
     }
 }
 
+/// Every kind of law on one arm, with a goal that stays open.
+fn every_law(tool: usize, hold: &Hold) -> Vec<Control> {
+    let joint = |q: f64| Arc::new(JointHold::new(vec![q]).unwrap());
+    let compliance = Compliance {
+        frame: tool,
+        stiffness: ComputedTorque::diagonal([1.0; 6]),
+        damping: ComputedTorque::diagonal([0.1; 6]),
+        null_space_damping: 0.01,
+    };
+    let mut pid =
+        Control::new("pid", vec![0], Law::Pid(JointPid::new(Interface::Position, 1.0, 0.1, 0.1), joint(0.6)));
+    (pid.goal, pid.starts_at_present) = (Some(Goal::within(0.0)), true);
+    let soft = Law::Compliance(Box::new(compliance), hold.clone().into());
+    vec![
+        pid,
+        Control::new(
+            "joint",
+            vec![1],
+            Law::JointComputedTorque(JointComputedTorque::new(1.0, 2.0), joint(-2.3)),
+        ),
+        Control::new("soft", vec![2, 3], soft),
+        Control::new("user", vec![4], Law::User(Box::new(Still), Some((tool, hold.clone().into())))),
+    ]
+}
+
 fn simulation(control: usize, integrator: Integrator) -> Simulation {
     let model = humanoid();
     let tool = model.frame("tool").unwrap();
@@ -66,12 +94,17 @@ fn simulation(control: usize, integrator: Integrator) -> Simulation {
     simulation.tool = Some(tool);
     simulation.integrator = integrator;
     let hold = Hold::new(Matrix3::identity(), Vector3::new(-0.1, -0.2, 0.5)).unwrap();
-    simulation.reference = Some(hold.into());
+    simulation.reference = Some(hold.clone().into());
     simulation.reference_start_tolerance = [1.0, 4.0]; // from wherever the tool is
     simulation.control = match control {
         0 => ControlLaw::None,
         1 => ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(tool, 1.0, 2.0))),
-        _ => ControlLaw::User(Box::new(Still)),
+        2 => ControlLaw::User(Box::new(Still)),
+        3 => ControlLaw::Stack(every_law(tool, &hold)),
+        _ => {
+            let law = Law::TaskComputedTorque(Box::new(ComputedTorque::new(tool, 1.0, 2.0)), hold.into());
+            ControlLaw::Stack(vec![Control::new("task", (0..7).collect(), law)])
+        }
     };
     simulation
 }
@@ -87,7 +120,7 @@ fn allocations(simulation: &mut Simulation, steps: usize) -> usize {
 
 #[test]
 fn allocations_do_not_grow_with_the_number_of_steps() {
-    for control in 0..3 {
+    for control in 0..5 {
         for integrator in [Integrator::Rk4, Integrator::SemiImplicitEuler, Integrator::DormandPrince] {
             let mut simulation = simulation(control, integrator);
             let (few, many) = (allocations(&mut simulation, 100), allocations(&mut simulation, 1000));

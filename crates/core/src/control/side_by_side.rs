@@ -78,7 +78,7 @@ impl SideBySide {
             list.clear();
             list.extend((0..*n).filter(|&j| drives[j] == drive));
         }
-        (self.jacobian.clear(), self.command.clear(), self.damping.clear());
+        [&mut self.jacobian, &mut self.command, &mut self.damping].into_iter().for_each(Vec::clear);
         let e = self.given.len();
         for (row, &i) in self.given.iter().enumerate() {
             y[row] = tau[i] - load[i];

@@ -1,0 +1,275 @@
+//! Several laws on one robot: each gets exactly what it asks for, whatever the others do.
+#![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
+
+mod common;
+
+use common::humanoid::{START, humanoid, start};
+use common::{Random, difference};
+use nalgebra::{Isometry3, Vector3};
+use onorbit_core::control::{
+    ComputedTorque, Control, ControlError, ControlLaw, Controller, Interface, JointComputedTorque, JointPid,
+    Law, Observation, Stack,
+};
+use onorbit_core::dynamics::{
+    Data, FrameWrench, apply_external, forward_dynamics_recursion, frame_acceleration, frame_pose,
+    frame_velocity, inverse_dynamics_recursion, kinematics, positions,
+};
+use onorbit_core::model::urdf::from_file;
+use onorbit_core::model::{Joint, JointKind, Link, Model, ModelBuilder, neutral};
+use onorbit_core::reference::{Hold, JointHold, LineParabola, ReferenceFrame, TaskReference};
+use onorbit_core::simulation::{Simulation, Trace};
+use onorbit_core::spatial::{Force, Motion, Vec3, log_rotation};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Two arms of seven joints and a tail of two on a base, frames `right`, `left` and `tail`.
+fn two_arms() -> Model {
+    let mut random = Random::new(7);
+    let mut inertial = |mass: f64| {
+        let mut of = random.inertial();
+        (of.inertia, of.mass) = (of.inertia * (mass / of.mass), mass);
+        Some(of)
+    };
+    let base = Link::new("base", inertial(40.0));
+    let mut builder = ModelBuilder::new("two_arms", base).unwrap();
+    let axes =
+        [Vector3::z(), Vector3::x(), Vector3::z(), Vector3::y(), Vector3::z(), Vector3::x(), Vector3::y()];
+    for (side, count, at) in [("right", 7, -0.3), ("left", 7, 0.3), ("tail", 2, 0.0)] {
+        let mut parent = "base".to_owned();
+        for (i, axis) in axes.into_iter().take(count).enumerate() {
+            let step = if i == 0 { Vector3::new(0.1, at, 0.2) } else { Vector3::new(0.02, 0.1 * at, -0.16) };
+            let origin = Isometry3::translation(step.x, step.y, step.z);
+            let mut joint = Joint::new(&format!("{side}_{i}"), JointKind::Revolute(axis), origin);
+            (joint.damping, joint.friction) = (0.3, 0.1);
+            let name = format!("{side}_link_{i}");
+            builder.add(&parent, joint, Link::new(&name, inertial(3.0 - 0.3 * i as f64))).unwrap();
+            parent = name;
+        }
+        builder.add_frame(side, &parent, Isometry3::translation(0.0, 0.0, -0.1)).unwrap();
+    }
+    builder.build().unwrap()
+}
+
+fn joints(model: &Model, side: &str) -> Vec<usize> {
+    let named = model.joint_names().enumerate().filter(|(_, name)| name.starts_with(side));
+    named.map(|(j, _)| j).collect()
+}
+
+/// A pose near where a frame is at `q`, in W.
+fn near(model: &Model, q: &[f64], frame: usize) -> Hold {
+    let mut data = Data::<f64>::new(model);
+    positions(model, &mut data, q);
+    let pose = frame_pose(model, &data, q, frame);
+    Hold::new(pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra() + Vector3::new(0.02, -0.01, 0.03)).unwrap()
+}
+
+/// `ẍ` and `p̈r` of a frame, W axes, under torques; `relative` is the base's frame where it counts.
+fn wanted(law: &ComputedTorque, model: &Model, data: &Data<f64>, q: &[f64], hold: &Hold) -> Motion<f64> {
+    let (pose, twist) = (frame_pose(model, data, q, law.frame), frame_velocity(model, data, q, law.frame));
+    let desired = TaskReference::from(hold.clone()).sample(0.0, 0.0).unwrap();
+    let turn = log_rotation(&(desired.rot_wd * pose.rot_wf.transpose()));
+    let error = Motion::new(desired.pos_w - pose.pos_w, turn);
+    error * law.kp[0] - twist * law.kd[0]
+}
+
+#[test]
+fn every_law_of_a_stack_gets_the_acceleration_it_asks_for() {
+    let model = two_arms();
+    let (n, mut random) = (model.joint_count(), Random::new(3));
+    let [right, left] = ["right", "left"].map(|name| model.frame(name).unwrap());
+    let (mut q, v) = (neutral(&model), random.numbers(model.nv()));
+    q[7..].copy_from_slice(&random.numbers(n));
+    // undamped: near a singularity a law gives up what it asks for
+    let law = |frame| ComputedTorque { damping: 0.0, ..ComputedTorque::new(frame, 100.0, 20.0) };
+    let [law_r, law_l] = [right, left].map(law);
+    let [hold_r, hold_l] = [right, left].map(|frame| near(&model, &q, frame));
+    // the left arm's last joint is a task's no more: six work for the left tool, one follows its own law;
+    // of the tail one joint is driven by a PID and one by nothing
+    let [group_r, mut group_l, tail] = ["right", "left", "tail"].map(|side| joints(&model, side));
+    let single = vec![group_l.pop().unwrap()];
+    let hold = |q: f64| Arc::new(JointHold::new(vec![q]).unwrap());
+    let single_law = JointComputedTorque::new(25.0, 7.0);
+    let mut controls = [
+        Control::new("r", group_r, Law::TaskComputedTorque(Box::new(law_r.clone()), hold_r.clone().into())),
+        Control::new("l", group_l, Law::TaskComputedTorque(Box::new(law_l.clone()), hold_l.clone().into())),
+        Control::new("j", single.clone(), Law::JointComputedTorque(single_law, hold(0.3))),
+        Control::new(
+            "p",
+            vec![tail[0]],
+            Law::Pid(JointPid::new(Interface::Position, 8.0, 0.0, 2.0), hold(0.5)),
+        ),
+    ];
+    let mut stack = Stack::<f64>::new(&mut controls, &model, 1e-12).unwrap();
+    let mut data = Data::new(&model);
+    kinematics(&model, &mut data, &q, &v);
+    let push = Force::new(Vec3::new(3.0, -2.0, 1.0), Vec3::new(0.4, 0.2, -0.3));
+    let external = [FrameWrench { frame: left, wrench: push }, FrameWrench { frame: 0, wrench: push }];
+    apply_external(&model, &mut data, &external);
+    let mut tau = vec![0.0; n];
+    stack.update(0.0, &model, &mut data, &q, &v, &mut tau).unwrap();
+    assert_eq!(tau[tail[0]], 8.0 * (0.5 - q[7 + tail[0]]) - 2.0 * v[6 + tail[0]]);
+    assert_eq!(tau[tail[1]], 0.0);
+
+    // what these torques do, by articulated bodies: damping and friction take their part at every joint
+    let mut forces = vec![0.0; model.nv()];
+    for (j, joint) in model.joints().iter().enumerate() {
+        let rate = v[j + 6];
+        forces[j + 6] = tau[j] - joint.damping * rate - joint.friction * (rate / 1e-2).clamp(-1.0, 1.0);
+    }
+    let mut a = vec![0.0; model.nv()];
+    forward_dynamics_recursion(&model, &mut data, &v, &forces, &mut a);
+    let j = single[0];
+    let expected = 25.0 * (0.3 - q[7 + j]) - 7.0 * v[6 + j];
+    assert!((a[6 + j] - expected).abs() < 1e-9 * expected.abs(), "{} {expected}", a[6 + j]);
+    let mut whole = vec![0.0; model.nv()];
+    inverse_dynamics_recursion(&model, &mut data, &v, Some(&a), &mut whole);
+    for (law, hold) in [(&law_r, &hold_r), (&law_l, &hold_l)] {
+        let got = frame_acceleration(&model, &data, &q, law.frame);
+        let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
+        got.write(&mut a);
+        wanted(law, &model, &data, &q, hold).write(&mut b);
+        assert!(difference(&a, &b) < 1e-9, "{}: {a:?} {b:?}", law.frame); // rounding through M_EE⁻¹ and J⁺
+    }
+}
+
+fn runs(mut simulation: Simulation, duration: f64) -> Trace {
+    simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+/// The humanoid reaching, its base turning, in the frame given.
+fn reach(frame: ReferenceFrame, stacked: bool, time_step: f64) -> Trace {
+    let model = humanoid();
+    let (q, tool) = (start(&model), model.frame("tool").unwrap());
+    let mut data = Data::<f64>::new(&model);
+    positions(&model, &mut data, &q);
+    let pose = frame_pose(&model, &data, &q, tool); // the base is at the origin: the same in W and B
+    let (rot, pos) = (pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra());
+    let line = LineParabola::new(rot, pos, Vector3::new(0.3, 0.1, 0.0), Vector3::z() * 0.2, 1.0).unwrap();
+    let reference = TaskReference { path: Arc::new(line), frame };
+    let mut v = vec![0.0; model.nv()];
+    v[..6].copy_from_slice(&[0.02, -0.01, 0.03, 0.05, -0.08, 0.03]);
+    let mut law = ComputedTorque::new(tool, 100.0, 20.0);
+    law.null_space_damping = 2.0;
+    let mut simulation = Simulation::new(Arc::new(model), q, v);
+    (simulation.tool, simulation.time_step) = (Some(tool), time_step);
+    if stacked {
+        let all = (0..7).collect();
+        let control = Control::new("arm", all, Law::TaskComputedTorque(Box::new(law), reference));
+        simulation.control = ControlLaw::Stack(vec![control]);
+    } else {
+        simulation.control = ControlLaw::ComputedTorque(Box::new(law));
+        simulation.reference = Some(reference);
+    }
+    runs(simulation, 1.2)
+}
+
+#[test]
+fn one_task_law_in_a_stack_is_the_law_alone() {
+    for frame in [ReferenceFrame::World, ReferenceFrame::Base] {
+        let (alone, stacked) = (reach(frame.clone(), false, 1e-3), reach(frame, true, 1e-3));
+        // the same products in another order, through a second of motion
+        assert!(difference(&stacked.tau, &alone.tau) < 1e-9);
+        assert!(difference(&stacked.reference_pose, &alone.reference_pose) < 1e-12);
+        let errors = &stacked.tracking[0].error;
+        for row in 0..stacked.rows() {
+            let norm = |e: &[f64]| e.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let (own, run) =
+                (norm(&errors[6 * row..6 * row + 3]), norm(&stacked.position_error[3 * row..3 * row + 3]));
+            assert!((own - run).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_line_in_the_base_frame_is_tracked_while_the_base_turns() {
+    let largest = |trace: &Trace| trace.position_error.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+    let trace = reach(ReferenceFrame::Base, true, 1e-3);
+    // 3.3e-5 m: the torque is held over each step, so that the error halves with it
+    let (coarse, fine) = (largest(&trace), largest(&reach(ReferenceFrame::Base, true, 5e-4)));
+    assert!(coarse < 5e-5 && (coarse / fine - 2.0).abs() < 0.1, "{coarse} {fine}");
+    // independently: the tool's pose in the trace, seen from the base of the trace, goes along the line
+    let model = humanoid();
+    let seen = |row: usize| {
+        let q = &trace.q[row * model.nq()..];
+        let turn =
+            nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(q[6], q[3], q[4], q[5]));
+        let t = &trace.tool_pose[16 * row..];
+        turn.inverse() * (Vector3::new(t[3], t[7], t[11]) - Vector3::new(q[0], q[1], q[2]))
+    };
+    let moved = seen(1000) - seen(0);
+    assert!((moved - Vector3::new(0.3, 0.1, 0.0)).norm() < 5e-5, "{moved}");
+    // and the base did move, so that the same line in W is another motion of the arm
+    assert!((trace.q[1000 * model.nq() + 4]).abs() > 0.03);
+    let in_w = reach(ReferenceFrame::World, true, 1e-3);
+    assert!(difference(&in_w.tau, &trace.tau) > 1e-2);
+}
+
+/// Two arms, each driven as if the other were limp.
+struct Deaf {
+    model: Arc<Model>,
+    arms: Vec<Stack<'static, f64>>,
+}
+
+impl Controller for Deaf {
+    fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError> {
+        let (mut data, mut own) = (Data::new(&self.model), vec![0.0; tau.len()]);
+        tau.fill(0.0);
+        for arm in &mut self.arms {
+            kinematics(&self.model, &mut data, now.q, now.v);
+            arm.update(now.time, &self.model, &mut data, now.q, now.v, &mut own)?;
+            tau.iter_mut().zip(&own).for_each(|(tau, own)| *tau += own); // the groups are disjoint
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn two_arms_track_at_once_and_not_when_each_ignores_the_other() {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../python/onorbit_rs/robots");
+    let model = Arc::new(from_file(&folder.join("humanoid_dual_arm.urdf"), &[]).unwrap());
+    let mut q = neutral(&model);
+    q[7..14].copy_from_slice(&START); // equal values are mirror images
+    q[14..].copy_from_slice(&START);
+    let mut data = Data::<f64>::new(&model);
+    positions(&model, &mut data, &q);
+    let parts = ["right", "left"].map(|side| {
+        let frame = model.frame(&format!("{side}_tool")).unwrap();
+        let pose = frame_pose(&model, &data, &q, frame);
+        let (rot, pos) = (pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra());
+        // the paper's reach with the right arm, a shorter and lower one with the left
+        let (way, height) = if side == "right" { (0.5, 0.4) } else { (0.3, -0.1) };
+        let line = LineParabola::new(rot, pos, Vector3::x() * way, Vector3::z() * height, 2.0).unwrap();
+        // soft, so that what a law does not know shows: an error is an acceleration over kp
+        let mut law = ComputedTorque::new(frame, 4.0, 4.0);
+        law.null_space_damping = 2.0;
+        (law, TaskReference::from(line), joints(&model, side))
+    });
+    let run = |control: ControlLaw| {
+        let v = vec![0.0; model.nv()];
+        let mut simulation = Simulation::new(Arc::clone(&model), q.clone(), v);
+        simulation.control = control;
+        (simulation.tool, simulation.time_step) = (Some(parts[0].0.frame), 1e-4);
+        runs(simulation, 2.5)
+    };
+    let control = |i: usize| {
+        let (law, reference, group) = &parts[i];
+        let law = Law::TaskComputedTorque(Box::new(law.clone()), reference.clone());
+        Control::new(["right", "left"][i], group.clone(), law)
+    };
+    let trace = run(ControlLaw::Stack(vec![control(0), control(1)]));
+    for tracking in &trace.tracking {
+        let most = tracking.error.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+        assert!(most < 1e-4, "{}: {most}", tracking.name);
+    }
+    let alone = |i| Stack::new(Box::leak(Box::new([control(i)])), &model, 1e-12).unwrap();
+    let deaf = Deaf { model: Arc::clone(&model), arms: vec![alone(0), alone(1)] };
+    let trace = run(ControlLaw::User(Box::new(deaf)));
+    let off = |row: usize| {
+        let desired = parts[0].1.sample(trace.time[row], 0.0).unwrap().pos_w.to_nalgebra();
+        let t = &trace.tool_pose[16 * row..];
+        (desired - Vector3::new(t[3], t[7], t[11])).norm()
+    };
+    let most = (0..trace.rows()).map(off).fold(0.0, f64::max);
+    assert!(most > 3e-4, "each on its own is off by {most}");
+}
