@@ -1,7 +1,7 @@
 """Damping, friction and rotors of joints against MuJoCo with the same parameters.
 
-A spacecraft with an arm of three joints, hinge, slide, hinge. MuJoCo integrates with its RK4 at 0.1 ms. Its dry friction is
-soft: the constraint gives way by a share ``1 - d`` of the unconstrained acceleration, ``d`` being ``solimpfriction``; at its
+A spacecraft with an arm of hinge, slide, hinge. MuJoCo integrates with its RK4 at 0.1 ms. Its dry friction is
+soft: it gives way by a share ``1 - d`` of the unconstrained acceleration, ``d`` its ``solimp``; at its
 hardest, 0.9999, a slide of 4 s agrees to 3e-6 and what sticks here creeps there at 1e-9.
 """
 
@@ -25,7 +25,7 @@ RATES = np.array([0.0, 0.0, 0.0, 0.05, -0.1, 0.08, 0.6, 0.15, -0.9])
 MJCF = """
 <mujoco>
   <compiler angle="radian" inertiafromgeom="false"/>
-  <option gravity="0 0 0" integrator="RK4" timestep="1e-4" solver="Newton" tolerance="1e-15" iterations="200"/>
+  <option gravity="0 0 0" integrator="RK4" timestep="1e-4" tolerance="1e-15" iterations="200"/>
   <default><joint solreffriction="2e-4 1" solimpfriction="0.9999 0.9999 0.001 0.5 2"/></default>
   <worldbody>
     <body name="base">
@@ -54,7 +54,17 @@ def ours(damping: Any, friction: Any, rotor: Any) -> oo.Model:
     builder = oo.ModelBuilder("arm", base="base", mass=40.0, inertia=np.diag([4.0, 5.0, 3.0]))
     links = (
         ("upper", "base", "a", "revolute", (0, 0, 1), (0.4, 0, 0.1), 4.0, (0.2, 0, 0), (0.02, 0.1, 0.1)),
-        ("middle", "upper", "b", "prismatic", (1, 0, 0), (0.4, 0, 0), 3.0, (0.1, 0.02, 0), (0.02, 0.05, 0.05)),
+        (
+            "middle",
+            "upper",
+            "b",
+            "prismatic",
+            (1, 0, 0),
+            (0.4, 0, 0),
+            3.0,
+            (0.1, 0.02, 0),
+            (0.02, 0.05, 0.05),
+        ),
         ("tip", "middle", "c", "revolute", (0, 1, 0), (0.2, 0, 0), 2.0, (0.1, 0, 0.03), (0.01, 0.03, 0.03)),
     )
     for k, (name, parent, joint, kind, axis, xyz, mass, com, inertia) in enumerate(links):
@@ -88,7 +98,9 @@ def deviation(trace: oo.Trace, data: Any, k: int = -1) -> float:
     """Largest difference of base origin, attitude and joints, m and rad."""
     q, (w, x, y, z) = trace.q[k], data.qpos[3:7]
     turn = 2.0 * (1.0 - abs(q[3:7] @ np.array([x, y, z, w])))
-    return max(np.abs(q[:3] - data.qpos[:3]).max(), np.sqrt(max(turn, 0.0)), np.abs(q[7:] - data.qpos[7:]).max())
+    return max(
+        np.abs(q[:3] - data.qpos[:3]).max(), np.sqrt(max(turn, 0.0)), np.abs(q[7:] - data.qpos[7:]).max()
+    )
 
 
 def test_damping_and_rotors_accelerate_the_same() -> None:

@@ -1,0 +1,70 @@
+"""What joints do at rest and at their limits, and how runs are stepped, from Python."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.exceptions import InputError
+
+
+def slider(friction: float = 0.0) -> oo.Model:
+    """A block of 5 kg on a base of 20 kg, within 0.1 m of the middle."""
+    builder = oo.ModelBuilder("slider", base="base", mass=20.0, inertia=np.eye(3))
+    builder.add_link(
+        "block", parent="base", joint="slide", kind="prismatic", axis=np.array([1.0, 0, 0]), mass=5.0,
+        inertia=np.eye(3), friction=friction, lower=-0.1, upper=0.1,
+    )  # fmt: skip
+    return builder.build()
+
+
+V = np.array([0.0, 0, 0, 0, 0, 0, 0.5])
+
+
+def test_limits_are_kept_on_request_and_reported_otherwise() -> None:
+    model = slider()
+    free = oo.Simulation(model, model.neutral(), V).run(1.0)
+    assert free.joint_limits_exceeded() == ["slide"]
+    kept = oo.Simulation(model, model.neutral(), V, enforce_limits=True, restitution=0.5).run(1.0)
+    assert kept.joint_limits_exceeded() == []
+    assert np.abs(kept.q[:, 7]).max() <= 0.1 + 1e-12
+    lost = kept.kinetic_energy[0] - kept.kinetic_energy[-1]
+    assert kept.dissipated[-1] == pytest.approx(lost, rel=1e-12)
+    assert all(passed for *_, passed in kept.certificate())
+
+
+def test_a_start_outside_a_limit_names_the_joint() -> None:
+    model = slider()
+    q = model.neutral()
+    q[7] = 0.2
+    with pytest.raises(InputError, match="slide") as caught:
+        oo.Simulation(model, q, V, enforce_limits=True)
+    assert caught.value.expected == (-0.1, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("settings", "name"),
+    [({"tolerance": 1.0}, "tolerance"), ({"enforce_limits": True, "restitution": 2.0}, "restitution")],
+)
+def test_settings_out_of_range_are_named(settings: dict[str, float], name: str) -> None:
+    model = slider()
+    with pytest.raises(InputError, match=name):
+        oo.Simulation(model, model.neutral(), V, **settings)  # type: ignore[arg-type]
+
+
+def test_integrators_are_listed_and_rollouts_do_not_adapt() -> None:
+    model = slider()
+    with pytest.raises(InputError, match="dormand_prince"):
+        oo.Simulation(model, model.neutral(), V, integrator="rk5")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="rk4"):
+        oo.rollout(model, model.neutral()[None], V[None], steps=2, integrator="dormand_prince")
+
+
+def test_adaptive_steps_leave_rows_on_the_grid() -> None:
+    model = slider(friction=2.0)
+    simulation = oo.Simulation(model, model.neutral(), V, integrator="dormand_prince", time_step=0.1)
+    trace = simulation.run(2.0)
+    assert np.allclose(trace.time, 0.1 * np.arange(21), rtol=0, atol=1e-12)
+    assert trace.v[-1, 6] == 0.0  # sticks
+    assert trace.q[-1, 7] == pytest.approx(0.5 * 0.5**2 * 4.0 / 2.0, rel=1e-12)  # μ u²/2f
