@@ -8,7 +8,6 @@ mod error;
 mod fixed_frame;
 mod frames;
 pub mod kepler;
-mod quintic;
 pub mod sgp4;
 
 use nalgebra::Vector3;
