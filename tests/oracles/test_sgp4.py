@@ -15,7 +15,9 @@ from onorbit_rs.exceptions import Sgp4Error
 sgp4_api = pytest.importorskip("sgp4.api", reason="PyPI's sgp4 is in the test extra")
 
 TOLERANCE = 2e-7  # km and km/s: python-sgp4's own; the tables are printed to 1e-8 km and 1e-9 km/s
-CLOSE = 1e-8  # km and km/s against PyPI on the same machine: measured 1.4e-10, another libm may round otherwise
+CLOSE = (
+    1e-8  # km and km/s against PyPI on the same machine: measured 1.4e-10, another libm may round otherwise
+)
 WRONG_CHECKSUMS = ("33333", "33334", "33335")
 
 
