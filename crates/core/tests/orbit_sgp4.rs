@@ -96,6 +96,7 @@ fn the_acceleration_is_that_of_the_position() {
     for t in [0.0, 1234.5, 40_000.0] {
         let at = |t| orbit.state(t).expect("no decay");
         let (state, h) = (at(t), 10.0);
+        assert_eq!(orbit.position_velocity(t), Ok((state.position, state.velocity)));
         // fourth order, another step: -r(±2h) + 16 r(±h) - 30 r
         let far = at(t + 2.0 * h).position + at(t - 2.0 * h).position;
         let near = at(t + h).position + at(t - h).position;

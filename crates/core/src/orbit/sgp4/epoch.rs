@@ -126,6 +126,13 @@ mod tests {
     }
 
     #[test]
+    fn sidereal_time_is_the_published_one() {
+        // Vallado, Fundamentals of Astrodynamics and Applications, example 3-5: 152.5788°
+        let epoch = Epoch::parse("1992-08-20T12:14:00").expect("a date");
+        assert!((epoch.sidereal_time().to_degrees() - 152.578_788).abs() < 1e-6);
+    }
+
+    #[test]
     fn texts_that_are_no_dates_are_refused() {
         for text in [
             "",

@@ -8,6 +8,7 @@ mod deep_space;
 mod elements;
 mod epoch;
 mod error;
+mod harmonics;
 mod lunar_solar;
 mod near_earth;
 mod periodics;
