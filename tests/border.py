@@ -81,6 +81,7 @@ BUILT_IN = {
     "ControlError": ValueError,
     "NotFoundError": FileNotFoundError,
     "ReadError": OSError,
+    "ScenarioError": ValueError,
 }
 
 

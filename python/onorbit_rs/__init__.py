@@ -11,7 +11,7 @@ SI and radians everywhere; frames and layouts are those of ``docs/``: ``q = [p(3
 
 from __future__ import annotations
 
-from onorbit_rs import exceptions, robots, scenarios
+from onorbit_rs import exceptions, layouts, robots, scenarios
 from onorbit_rs._core import (
     MU_EARTH,
     BodyWrench,
@@ -86,6 +86,7 @@ __all__ = [
     "Waypoints",
     "build_info",
     "exceptions",
+    "layouts",
     "resume",
     "robots",
     "rollout",

@@ -16,7 +16,7 @@ _External = Mapping[str, ArrayLike]
 _JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
 _EarthModel = Literal["wgs72", "wgs72old", "wgs84"]
 _GravityMode = Literal["true", "carried"]
-_Integrator = Literal["rk4", "semi_implicit_euler"]
+_Integrator = Literal["rk4", "semi_implicit_euler", "dormand_prince"]
 _CertificateRow = tuple[str, float | None, float, bool]
 
 class _Controller(Protocol):
@@ -28,6 +28,7 @@ class _BuildInfo(TypedDict):
 
 __all__ = [
     "MU_EARTH",
+    "Body",
     "BodyWrench",
     "Checkpoint",
     "Circle",
@@ -35,9 +36,11 @@ __all__ = [
     "CustomPath",
     "Effect",
     "FixedFrame",
+    "Frame",
     "FreeFloating",
     "GravityGradient",
     "Hold",
+    "Joint",
     "JointHold",
     "JointReference",
     "JointSampled",
@@ -71,7 +74,12 @@ def build_info() -> _BuildInfo: ...
 @final
 class Model:
     @staticmethod
-    def from_urdf(path: _Path, *, package_paths: Sequence[_Path] | None = None) -> Model: ...
+    def from_urdf(
+        path: _Path,
+        *,
+        package_paths: Sequence[_Path] | None = None,
+        xacro_arguments: Mapping[str, object] | None = None,
+    ) -> Model: ...
     @staticmethod
     def from_urdf_string(
         text: str, *, folder: _Path | None = None, package_paths: Sequence[_Path] | None = None
@@ -92,6 +100,12 @@ class Model:
     def body_names(self) -> list[str]: ...
     @property
     def frame_names(self) -> list[str]: ...
+    @property
+    def joints(self) -> list[Joint]: ...
+    @property
+    def bodies(self) -> list[Body]: ...
+    @property
+    def frames(self) -> list[Frame]: ...
     @property
     def warnings(self) -> list[str]: ...
     @property
@@ -146,6 +160,55 @@ class Model:
         external: _External | None = None,
         threads: int | None = None,
     ) -> FreeFloating: ...
+
+@final
+class Joint:
+    @property
+    def name(self) -> str: ...
+    @property
+    def kind(self) -> Literal["revolute", "prismatic"]: ...
+    @property
+    def parent(self) -> str: ...
+    @property
+    def child(self) -> str: ...
+    @property
+    def pose(self) -> list[list[float]]: ...
+    @property
+    def axis(self) -> list[float]: ...
+    @property
+    def lower(self) -> float | None: ...
+    @property
+    def upper(self) -> float | None: ...
+    @property
+    def velocity(self) -> float | None: ...
+    @property
+    def effort(self) -> float | None: ...
+    @property
+    def damping(self) -> float: ...
+    @property
+    def friction(self) -> float: ...
+    @property
+    def rotor_inertia(self) -> float: ...
+
+@final
+class Body:
+    @property
+    def name(self) -> str: ...
+    @property
+    def mass(self) -> float: ...
+    @property
+    def com(self) -> list[float]: ...
+    @property
+    def inertia(self) -> list[list[float]]: ...
+
+@final
+class Frame:
+    @property
+    def name(self) -> str: ...
+    @property
+    def body(self) -> str: ...
+    @property
+    def pose(self) -> list[list[float]]: ...
 
 @final
 class Visual:
@@ -521,6 +584,9 @@ class Simulation:
         integrator: _Integrator = "rk4",
         record_every: int = 1,
         reference_start_tolerance: ArrayLike | None = None,
+        tolerance: float = 1e-9,
+        enforce_limits: bool = False,
+        restitution: float = 0.0,
     ) -> Simulation: ...
     def run(
         self,
@@ -567,6 +633,8 @@ class Trace:
     @property
     def work(self) -> _Array: ...
     @property
+    def dissipated(self) -> _Array: ...
+    @property
     def center_of_mass(self) -> _Array: ...
     @property
     def tool_pose(self) -> _Column: ...
@@ -583,6 +651,7 @@ class Trace:
     @property
     def reference_residual(self) -> _Column: ...
     def columns(self) -> list[str]: ...
+    def joint_limits_exceeded(self) -> list[str]: ...
     def certificate(self) -> list[_CertificateRow]: ...
     def __len__(self) -> int: ...
 

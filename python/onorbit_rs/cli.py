@@ -1,4 +1,4 @@
-"""The command ``onorbit``: run, resume, list, check, show."""
+"""The command ``onorbit``: run, resume, list, check, show, info, convert."""
 
 from __future__ import annotations
 
@@ -46,6 +46,14 @@ ForceOption = Annotated[bool, typer.Option("--force", help="Replace the run that
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar, no summary.")]
 CheckpointOption = Annotated[
     float, typer.Option(metavar="SECONDS", help="Wall-clock time between checkpoints in DIR.")
+]
+
+PackagesOption = Annotated[
+    list[Path] | None,
+    typer.Option("--package-path", metavar="DIR", help="Where ROS packages are; may be repeated."),
+]
+ArgumentsOption = Annotated[
+    list[str] | None, typer.Option("--arg", metavar="NAME=VALUE", help="For a xacro; may be repeated.")
 ]
 
 
@@ -126,6 +134,55 @@ def show(
         report.save_picture(folder, picture, at, float(summary.get("simulated_s") or 0.0))
     elif viewer:
         report.open_viewer(folder)
+
+
+@app.command()
+def info(
+    robot: Annotated[str, typer.Argument(metavar="ROBOT", help="A bundled name, a URDF or a xacro file.")],
+    packages: PackagesOption = None,
+    arguments: ArgumentsOption = None,
+    as_json: Annotated[bool, typer.Option("--json", help="As data, for programs.")] = False,
+) -> None:
+    """Print a robot's tree, masses, joints, frames and what was odd."""
+    import json
+
+    from onorbit_rs import robots
+    from onorbit_rs.robots.describe import describe, print_info
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # they are printed with the rest
+        model = robots.load(robot, package_paths=packages, xacro_arguments=_as_mapping(arguments))
+    if as_json:
+        typer.echo(json.dumps(describe(model), indent=1))
+    else:
+        print_info(model)
+
+
+@app.command()
+def convert(
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="YAML files of OnOrbitROS, and the robot's URDF.")
+    ],
+    out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write it here.")] = None,
+    controller: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Which of several controllers.")
+    ] = None,
+    keep_going: Annotated[bool, typer.Option("--keep-going", help="Pass over unknown keys.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
+) -> None:
+    """Make a scenario of OnOrbitROS' YAML files, and say what became of every line."""
+    from onorbit_rs import report
+
+    report.print_converted(files, out, controller=controller, keep_going=keep_going, force=force)
+
+
+def _as_mapping(arguments: list[str] | None) -> dict[str, str] | None:
+    """``name=value`` or, as xacro writes it, ``name:=value``."""
+    pairs = [argument.replace(":=", "=", 1).partition("=") for argument in arguments or []]
+    for name, equals, _ in pairs:
+        if not equals or not name:
+            raise typer.BadParameter(f"write an argument of a xacro as name=value, not {name!r}")
+    return {name: value for name, _, value in pairs} or None
 
 
 def main(arguments: list[str] | None = None) -> None:

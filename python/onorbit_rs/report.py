@@ -13,7 +13,14 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from onorbit_rs.exceptions import InputError, NotFoundError, OnOrbitError, OutputFolderError, ReadError
+from onorbit_rs.exceptions import (
+    InputError,
+    NotFoundError,
+    OnOrbitError,
+    OutputFolderError,
+    OutputNotEmptyError,
+    ReadError,
+)
 from onorbit_rs.output.summary import CHECKS
 
 if TYPE_CHECKING:
@@ -170,3 +177,37 @@ def save_picture(folder: Path, picture: Path, at_s: float, end_s: float) -> None
         reason = error.strerror or error
         raise OutputFolderError(f"cannot write {picture}: {reason}", path=str(picture)) from error
     typer.echo(f"picture: {picture}")
+
+
+def print_converted(
+    files: list[Path], out: Path | None, *, controller: str | None, keep_going: bool, force: bool
+) -> None:
+    """Convert files of OnOrbitROS: remarks on stderr, the scenario to ``out`` or stdout.
+
+    Raises
+    ------
+    OutputFolderError
+        ``out`` is there already, or cannot be written.
+    """
+    from onorbit_rs.interop.onorbitros import convert
+    from onorbit_rs.interop.write_scenario import scenario_text
+    from onorbit_rs.scenario.load import check
+
+    if out is not None and out.exists() and not force:
+        raise OutputNotEmptyError(f"{out} is there already; replace it with --force", path=str(out))
+    done = convert(files, controller=controller, keep_going=keep_going, beside=out.parent if out else None)
+    check(done.scenario, None, {})
+    for note in done.notes:
+        typer.echo(str(note), err=True)
+    made_of = ", ".join(file.name for file in files)
+    text = scenario_text(
+        done.scenario, done.comments, f"Made by onorbit convert of {made_of}. SI and radians."
+    )
+    if out is None:
+        typer.echo(text, nl=False)
+        return
+    try:
+        out.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OutputFolderError(f"cannot write {out}: {error.strerror or error}", path=str(out)) from error
+    typer.echo(f"scenario: {out}\nnext: onorbit check {shlex.quote(str(out))}")

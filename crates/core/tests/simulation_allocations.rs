@@ -88,7 +88,7 @@ fn allocations(simulation: &mut Simulation, steps: usize) -> usize {
 #[test]
 fn allocations_do_not_grow_with_the_number_of_steps() {
     for control in 0..3 {
-        for integrator in [Integrator::Rk4, Integrator::SemiImplicitEuler] {
+        for integrator in [Integrator::Rk4, Integrator::SemiImplicitEuler, Integrator::DormandPrince] {
             let mut simulation = simulation(control, integrator);
             let (few, many) = (allocations(&mut simulation, 100), allocations(&mut simulation, 1000));
             println!("control {control}, {integrator:?}: {few} allocations for 100 steps, {many} for 1000");

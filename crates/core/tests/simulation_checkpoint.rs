@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::humanoid::{humanoid, start};
+use common::humanoid::{START, humanoid, humanoid_with, start};
 use nalgebra::Vector3;
 use onorbit_core::control::{ComputedTorque, ControlLaw};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
@@ -69,9 +69,12 @@ fn assert_same_bits(a: &Trace, b: &Trace) {
 
 #[test]
 fn a_run_continued_has_the_bits_of_one_that_was_not_stopped() {
-    for (integrator, every) in
-        [(Integrator::Rk4, 1), (Integrator::Rk4, 7), (Integrator::SemiImplicitEuler, 1)]
-    {
+    for (integrator, every) in [
+        (Integrator::Rk4, 1),
+        (Integrator::Rk4, 7),
+        (Integrator::SemiImplicitEuler, 1),
+        (Integrator::DormandPrince, 1),
+    ] {
         let whole = simulation(integrator, every).run(DURATION, &mut |_| ControlFlow::Continue(())).unwrap();
         for stop in [0.1, 0.4, 0.77] {
             let (checkpoint, rows) = stopped(&mut simulation(integrator, every), stop);
@@ -82,6 +85,33 @@ fn a_run_continued_has_the_bits_of_one_that_was_not_stopped() {
             assert_same_bits(&rest, &whole);
             assert_eq!(certify(&second.model, &rest), certify(&second.model, &whole));
         }
+    }
+}
+
+/// Joints that stick, slip and hit stops; steps that adapt: what they remember is kept.
+#[test]
+fn modes_of_joints_and_the_pace_of_steps_are_continued_too() {
+    let make = |integrator| {
+        let mut simulation = simulation(integrator, 1);
+        simulation.model = Arc::new(humanoid_with(|joint| {
+            let at = START[joint.name[4..].parse::<usize>().unwrap() - 1];
+            joint.limits.position = Some((at - 0.2, at + 0.2));
+            joint.friction = 1e-3;
+        }));
+        simulation.v[6..].copy_from_slice(&[1.0, -0.8, 0.9, 1.1, -0.7, 1.0, -1.2]);
+        simulation.control = ControlLaw::None;
+        (simulation.reference, simulation.tool) = (None, None);
+        simulation.stops = Some(0.5);
+        simulation
+    };
+    for integrator in [Integrator::Rk4, Integrator::DormandPrince] {
+        let whole = make(integrator).run(DURATION, &mut |_| ControlFlow::Continue(())).unwrap();
+        assert!(*whole.dissipated.last().unwrap() > 0.0);
+        let (checkpoint, rows) = stopped(&mut make(integrator), 0.3);
+        let read = Checkpoint::from_json(&checkpoint.to_json()).unwrap();
+        let mut second = make(integrator);
+        let rest = second.resume(DURATION, (&read, rows), &mut |_| ControlFlow::Continue(())).unwrap();
+        assert_same_bits(&rest, &whole);
     }
 }
 

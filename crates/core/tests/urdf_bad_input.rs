@@ -149,7 +149,7 @@ fn names_that_are_missing_or_used_twice() {
 
 #[test]
 fn joints_that_are_not_ours() {
-    for kind in ["planar", "spherical", "floating", "ball", "Revolute", "hinge"] {
+    for kind in ["Planar", "universal", "floating", "screw", "Revolute", "hinge"] {
         let joints = joint("j", kind, "a", "b", "") + &joint("bc", "fixed", "b", "c", "");
         assert_eq!(
             problem(&robot(&joints)),
@@ -157,6 +157,8 @@ fn joints_that_are_not_ours() {
             "{kind}"
         );
     }
+    let typo = joint("j", "revolut", "a", "b", "") + &joint("bc", "fixed", "b", "c", "");
+    assert!(error(&robot(&typo)).to_string().ends_with("did you mean 'revolute'?"));
     let zero = joint("j", "revolute", "a", "b", "<axis xyz='0 0 0'/>") + &joint("bc", "fixed", "b", "c", "");
     assert_eq!(problem(&robot(&zero)), UrdfProblem::Model(ModelError::ZeroAxis { joint: "j".into() }));
     let reversed = joint("j", "revolute", "a", "b", "<limit lower='1' upper='-1'/>")

@@ -58,6 +58,9 @@ fn limits_not_given_are_none() {
     assert_eq!(position("revolute", "<limit upper='1'/>"), Some((0.0, 1.0)));
     assert_eq!(position("revolute", "<limit lower='-inf' upper='inf'/>"), None);
     assert_eq!(pair("revolute", "<limit effort='inf'/>").joints()[0].limits.effort, None);
+    let gazebo = pair("revolute", "<limit effort='-1' velocity='-1.0'/>");
+    assert_eq!(gazebo.joints()[0].limits, Limits::default());
+    assert!(gazebo.warnings()[0].to_string().contains("velocity limit is below zero"));
 }
 
 #[test]
@@ -118,13 +121,15 @@ fn colours_are_found_by_name_and_shapes_that_cannot_be_read_are_told() {
         format!("<visual><geometry>{geometry}</geometry><material {material}</visual>")
     };
     let model = load(&format!(
-        "<material name='red'><color rgba='1 0 0 1'/></material><link name='a'>{INERTIAL}{}{}{}{}{}\
+        "<material name='red'><color rgba='1 0 0 1'/></material><link name='a'>{INERTIAL}{}{}{}{}{}{}{}\
          <collision><geometry><cylinder radius='${{r}}'/></geometry></collision></link>",
         visual("<box size='1 2 3'/>", "name='red'/>"),
         visual("<capsule radius='1' length='2'/>", "name='red'><color rgba='0 1 0 0.5'/></material>"),
         visual("<mesh filename='package://x/a.stl' scale='1 1 2'/>", "name='unknown'/>"),
         visual("<sphere radius='${r}'/>", "name='red'/>"),
         visual("<cylinder radius='1'/>", "name='red'/>"),
+        visual("<sphere radius='-1'/>", "name='red'/>"),
+        visual("<box size='1 0 1'/>", "name='red'/>"),
     ));
     let shapes: Vec<_> = model.visuals().iter().map(|(_, visual)| visual.clone()).collect();
     assert_eq!(shapes.len(), 3);
@@ -139,7 +144,7 @@ fn colours_are_found_by_name_and_shapes_that_cannot_be_read_are_told() {
     let texts: Vec<String> = model.warnings().iter().map(ToString::to_string).collect();
     assert_eq!(
         texts.iter().filter(|t| t.contains("visual shape of link 'a' is left out")).count(),
-        2,
+        4,
         "{texts:?}"
     );
 }
@@ -164,4 +169,54 @@ fn joints_may_come_before_links_and_keep_their_order() {
     ));
     assert_eq!(model.joint_names().collect::<Vec<_>>(), ["left", "wrist", "right"]);
     assert_eq!(model.body_names().collect::<Vec<_>>(), ["body", "arm", "hand", "leg"]);
+}
+
+/// Pose of `b` for joint positions, by the engine.
+fn pose(model: &Model, joints: &[f64]) -> nalgebra::Isometry3<f64> {
+    let (mut data, mut q) = (Data::new(model), neutral(model));
+    q[7..].copy_from_slice(joints);
+    positions(model, &mut data, &q);
+    let pose = frame_pose(model, &data, &q, model.frame("b").unwrap());
+    let rotation = nalgebra::Rotation3::from_matrix_unchecked(pose.rot_wf.to_nalgebra());
+    nalgebra::Isometry3::from_parts(pose.pos_w.to_nalgebra().into(), rotation.into())
+}
+
+#[test]
+fn a_ball_joint_is_yaw_pitch_and_roll() {
+    for kind in ["ball", "spherical"] {
+        let model = pair(kind, "<origin xyz='1 2 3'/><limit effort='1'/>");
+        assert_eq!(model.joint_names().collect::<Vec<_>>(), ["j_yaw", "j_pitch", "j_roll"]);
+        assert_eq!(model.body_names().collect::<Vec<_>>(), ["a", "j_yaw", "j_pitch", "b"]);
+        let (roll, pitch, yaw) = (0.3, -0.7, 1.1);
+        let want = nalgebra::Isometry3::from_parts(
+            nalgebra::Translation3::new(1.0, 2.0, 3.0),
+            nalgebra::UnitQuaternion::from_euler_angles(roll, pitch, yaw),
+        );
+        let off = (pose(&model, &[yaw, pitch, roll]).inverse() * want).to_homogeneous()
+            - nalgebra::Matrix4::identity();
+        assert!(off.norm() < 1e-14, "{off}");
+        let text = model.warnings()[0].to_string();
+        assert!(text.contains("'j' is a ball joint") && text.contains("<limit> is not read"), "{text}");
+    }
+}
+
+#[test]
+fn a_planar_joint_slides_in_its_plane_and_turns_about_its_normal() {
+    let model = pair("planar", "<origin xyz='0 0 1'/><axis xyz='0 0 2'/>");
+    assert_eq!(model.joint_names().collect::<Vec<_>>(), ["j_x", "j_y", "j_yaw"]);
+    let got = pose(&model, &[0.4, -0.2, FRAC_PI_2]);
+    assert!((got.translation.vector - nalgebra::Vector3::new(0.4, -0.2, 1.0)).norm() < 1e-15);
+    assert!((got * nalgebra::Vector3::x() - nalgebra::Vector3::y()).norm() < 1e-15);
+    // with any normal: the motion stays in the plane
+    let skew = pair("planar", "<axis xyz='1 -2 0.5'/>");
+    let normal = nalgebra::Vector3::new(1.0, -2.0, 0.5).normalize();
+    assert!(pose(&skew, &[0.4, -0.2, 1.0]).translation.vector.dot(&normal).abs() < 1e-15);
+    assert!(skew.warnings()[0].to_string().contains("'j' is planar"));
+}
+
+#[test]
+fn a_mimic_joint_says_what_is_lost() {
+    let model = pair("revolute", "<mimic joint='other' multiplier='-2' offset='0.1'/>");
+    let text = model.warnings()[0].to_string();
+    assert!(text.contains("(j = -2 other + 0.1)"), "{text}");
 }

@@ -102,6 +102,10 @@ impl IntoPython for InputError {
                 raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
             }
             Self::Singular { .. } => plain(py, "ConvergenceError", &message),
+            Self::Adaptive => {
+                let fields = fields!(py, "name": "integrator", "got": "dormand_prince");
+                raise(py, "InputError", &message, &fields)
+            }
             Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
             Self::NeedsOrbit => plain(py, "ControlError", &message),
             Self::Diverged { .. } => plain(py, "SimulationError", &message),
@@ -285,6 +289,24 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::QuaternionNorm { norm } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
             }
+            SimulationError::Tolerance { value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "tolerance", "got": value))
+            }
+            SimulationError::Restitution { value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "restitution", "got": value))
+            }
+            SimulationError::OutsideLimits { joint, value, lower, upper } => raise(
+                py,
+                "InputError",
+                &message,
+                &fields!(py, "name": joint, "got": value, "expected": (lower, upper)),
+            ),
+            SimulationError::StepTooSmall { time, step } => raise(
+                py,
+                "SimulationError",
+                &message,
+                &fields!(py, "time": time, "step": step, "trace": trace),
+            ),
             SimulationError::RecordEvery => plain(py, "InputError", &message),
             SimulationError::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
             SimulationError::NeedsReference

@@ -9,10 +9,12 @@ mod errors;
 mod kernels;
 mod model;
 mod orbit;
+mod records;
 mod reference;
 mod rollout;
 mod simulation;
 mod trace;
+mod xacro;
 
 use onorbit_core::spatial::InstructionSet;
 use pyo3::prelude::*;
@@ -46,7 +48,10 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add("MU_EARTH", onorbit_core::orbit::MU_EARTH)?;
     m.add_class::<model::PyModel>()?;
-    m.add_class::<model::PyVisual>()?;
+    m.add_class::<records::PyVisual>()?;
+    m.add_class::<records::PyJoint>()?;
+    m.add_class::<records::PyBody>()?;
+    m.add_class::<records::PyFrame>()?;
     m.add_class::<kernels::PyFreeFloating>()?;
     m.add_class::<builder::PyModelBuilder>()?;
     m.add_class::<orbit::PyOrbit>()?;

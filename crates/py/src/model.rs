@@ -3,10 +3,13 @@
 use crate::arrays::{Count, array_of, fixed};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
+use crate::records::{self, PyBody, PyFrame, PyJoint, PyVisual};
+use crate::xacro::from_xacro;
 use nalgebra::Matrix3;
 use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel};
-use onorbit_core::model::{Geometry, Model, Visual, neutral, urdf};
+use onorbit_core::model::urdf::{self, UrdfProblem};
+use onorbit_core::model::{Model, neutral};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 use std::path::PathBuf;
@@ -54,12 +57,28 @@ impl PyModel {
 #[pymethods]
 impl PyModel {
     /// Load a robot from a URDF file; its root link floats.
+    ///
+    /// A xacro file is expanded first, with PyPI's ``xacro`` (``pip install 'onorbit-rs[xacro]'``), which runs
+    /// the expressions in it. ``package_paths``: folders that hold ROS packages or are one, searched for
+    /// ``package://`` and ``$(find ...)``; ``xacro_arguments``: ``{name: value}``, what ``$(arg name)`` gives.
     #[staticmethod]
-    #[pyo3(signature = (path, *, package_paths=None))]
-    fn from_urdf(py: Python<'_>, path: PathBuf, package_paths: Option<Vec<PathBuf>>) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None))]
+    fn from_urdf(
+        py: Python<'_>,
+        path: PathBuf,
+        package_paths: Option<Vec<PathBuf>>,
+        xacro_arguments: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
         let packages = package_paths.unwrap_or_default();
-        let model = urdf::from_file(&path, &packages).map_err(|error| error.into_python(py))?;
-        Self::wrap(py, model)
+        let is_xacro = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xacro"));
+        if !is_xacro && xacro_arguments.is_none() {
+            match urdf::from_file(&path, &packages) {
+                Ok(model) => return Self::wrap(py, model),
+                Err(error) if matches!(*error.problem, UrdfProblem::Xacro { .. }) => {}
+                Err(error) => return Err(error.into_python(py)),
+            }
+        }
+        Self::wrap(py, from_xacro(py, &path, &packages, xacro_arguments)?)
     }
 
     /// Load a robot from the text of a URDF; ``folder`` is where its relative paths start.
@@ -129,6 +148,24 @@ impl PyModel {
         self.model.frame_names().collect()
     }
 
+    /// The moving joints, in the order of ``v``.
+    #[getter]
+    fn joints(&self) -> Vec<PyJoint> {
+        records::joints(&self.model)
+    }
+
+    /// The bodies, base first: masses, centres of mass, inertias.
+    #[getter]
+    fn bodies(&self) -> Vec<PyBody> {
+        records::bodies(&self.model)
+    }
+
+    /// The frames: every link, and frames added.
+    #[getter]
+    fn frames(&self) -> Vec<PyFrame> {
+        records::frames(&self.model)
+    }
+
     /// What was odd in the description, one line each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
@@ -138,12 +175,7 @@ impl PyModel {
     /// Shapes to draw.
     #[getter]
     fn visuals(&self) -> Vec<PyVisual> {
-        let frames = self.model.frames();
-        self.model
-            .visuals()
-            .iter()
-            .map(|(frame, visual)| PyVisual::new(&frames[*frame].name, visual))
-            .collect()
+        records::visuals(&self.model)
     }
 
     /// The configuration at W's origin, unrotated, joints at zero: (nq,).
@@ -346,39 +378,5 @@ impl PyModel {
     ) -> PyResult<Array<'py>> {
         let mut outputs = evaluate(py, self, kernel, values, external, &[shape], threads)?;
         Ok(outputs.swap_remove(0))
-    }
-}
-
-/// A shape fixed to a frame.
-#[pyclass(name = "Visual", frozen, get_all, module = "onorbit_rs")]
-pub(crate) struct PyVisual {
-    /// Name of the frame it is fixed to.
-    link: String,
-    /// Pose in that frame as rows of a (4, 4) matrix, m.
-    pose: [[f64; 4]; 4],
-    /// ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``.
-    kind: &'static str,
-    /// Box: edge lengths; cylinder, capsule: radius and length; sphere: radius; m.
-    size: Vec<f64>,
-    /// Path of a mesh.
-    filename: Option<String>,
-    /// Scale of a mesh.
-    scale: [f64; 3],
-    /// Red, green, blue, opacity, 0 to 1.
-    rgba: Option<[f64; 4]>,
-}
-
-impl PyVisual {
-    fn new(link: &str, visual: &Visual) -> Self {
-        let m = visual.pose.to_homogeneous();
-        let pose = std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]));
-        let (kind, size, filename, scale) = match &visual.geometry {
-            Geometry::Box(edges) => ("box", edges.to_vec(), None, [1.0; 3]),
-            Geometry::Cylinder { radius, length } => ("cylinder", vec![*radius, *length], None, [1.0; 3]),
-            Geometry::Capsule { radius, length } => ("capsule", vec![*radius, *length], None, [1.0; 3]),
-            Geometry::Sphere { radius } => ("sphere", vec![*radius], None, [1.0; 3]),
-            Geometry::Mesh { filename, scale } => ("mesh", Vec::new(), Some(filename.clone()), *scale),
-        };
-        Self { link: link.to_owned(), pose, kind, size, filename, scale, rgba: visual.rgba }
     }
 }

@@ -30,7 +30,9 @@ pub(crate) const PACE: Duration = Duration::from_millis(50);
 /// along; what is left out is ``trace.reference_residual``). ``environment`` lists effects; ``controller`` is
 /// a ``ComputedTorque`` or an object with ``update(t, state) -> tau (n,)``; ``reference`` is for the frame ``tool`` (by
 /// default the controller's) and may start ``reference_start_tolerance`` (m, rad) from it, (0.05, 0.1) by default; ``control_period`` s between calls of the controller (every step by default);
-/// ``integrator`` is ``rk4`` or ``semi_implicit_euler``.
+/// ``integrator`` is ``rk4``, ``semi_implicit_euler`` or ``dormand_prince``, which takes steps as long as ``tolerance`` lets
+/// it (a share: of a radian, of the robot's size, of rates) and records its rows on the grid of ``time_step`` in between;
+/// ``enforce_limits`` puts rigid stops at the joints' position limits, which give back ``restitution`` (0 to 1) of the rate.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     simulation: Mutex<Simulation>,
@@ -43,6 +45,7 @@ impl PySimulation {
     #[pyo3(signature = (
         model, q, v, *, orbit=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
         time_step=1e-3, control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
+        tolerance=1e-9, enforce_limits=false, restitution=0.0,
     ))]
     fn new(
         py: Python<'_>,
@@ -60,6 +63,9 @@ impl PySimulation {
         integrator: &str,
         record_every: i64,
         reference_start_tolerance: Option<Any<'_, '_>>,
+        tolerance: f64,
+        enforce_limits: bool,
+        restitution: f64,
     ) -> PyResult<Self> {
         let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
         let core = Arc::clone(&model.model);
@@ -116,6 +122,8 @@ impl PySimulation {
         simulation.control_period = control_period;
         simulation.integrator = integrator_named(py, integrator)?;
         simulation.record_every = record_every;
+        simulation.tolerance = tolerance;
+        simulation.stops = enforce_limits.then_some(restitution);
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         Ok(Self { simulation: Mutex::new(simulation), model: core })
     }
@@ -236,8 +244,11 @@ pub(crate) fn integrator_named(py: Python<'_>, name: &str) -> PyResult<Integrato
     match name {
         "rk4" => Ok(Integrator::Rk4),
         "semi_implicit_euler" => Ok(Integrator::SemiImplicitEuler),
+        "dormand_prince" => Ok(Integrator::DormandPrince),
         other => {
-            let message = format!("integrator is '{other}'; there are 'rk4' and 'semi_implicit_euler'");
+            let message = format!(
+                "integrator is '{other}'; there are 'rk4', 'semi_implicit_euler' and 'dormand_prince'"
+            );
             Err(raise(py, "InputError", &message, &fields!(py, "name": "integrator", "got": other)))
         }
     }

@@ -71,6 +71,11 @@ macro_rules! columns {
                 checks.iter().map(|check| (check.name, check.value, check.gate, check.passed())).collect()
             }
 
+            /// Names of the joints that a row sees past their position limits, which nothing enforced then.
+            fn joint_limits_exceeded(&self) -> Vec<&str> {
+                self.trace.limits_exceeded(&self.model)
+            }
+
             /// Number of rows.
             fn __len__(&self) -> usize {
                 self.trace.rows()
@@ -96,8 +101,10 @@ columns! {
     impulse: |_t| &[6];
     /// Kinetic energy in W, (T,), J.
     kinetic_energy: |_t| &[];
-    /// Work of joint torques and external wrenches in W, (T,), J.
+    /// Work on the robot in W, (T,), J: of motors and external wrenches, less ``dissipated``.
     work: |_t| &[];
+    /// Energy that damping, friction and stops of the joints took, (T,), J.
+    dissipated: |_t| &[];
     /// Centre of mass in W, (T, 3), m.
     center_of_mass: |_t| &[3];
     /// Pose of the tool in W, (T, 4, 4), m.

@@ -61,6 +61,7 @@ def summarize(
         {"scenario": scenario.name, "status": status}
         | _tracking(trace)
         | _motion(trace)
+        | _losses(trace)
         | _certificate(trace)
         | {"simulated_s": simulated_s, "wall_s": trace.wall_s}
         | {"real_time_factor": simulated_s / max(trace.wall_s, 1e-9), "rows": len(trace.time)}
@@ -106,6 +107,16 @@ def _motion(trace: Trace) -> Summary:
     motion["base_rotation_max_rad"] = angle_between(q[:, 3:7], q[0, 3:7]).max()
     motion["base_displacement_max_m"] = np.linalg.norm(q[:, :3] - q[0, :3], axis=1).max()
     return motion
+
+
+def _losses(trace: Trace) -> Summary:
+    """Energy the joints took, and the joints that went past limits nothing enforced."""
+    if "dissipated" not in trace.columns() or np.asarray(trace.q).shape[1] == 7:
+        return {}
+    return {
+        "joint_dissipation_j": np.asarray(trace.dissipated)[-1],
+        "joint_limits_exceeded": ", ".join(trace.joint_limits_exceeded()),
+    }
 
 
 def _settings(scenario: Scenario) -> Summary:

@@ -1,7 +1,9 @@
-"""Bundled robots: one URDF each."""
+"""Bundled robots, one URDF each, and those of others from their files."""
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,19 +35,35 @@ def path(name: str) -> Path:
     return _FOLDER / f"{name}.urdf"
 
 
-def load(name: str) -> Model:
-    """A bundled robot; its root link floats.
+def load(
+    name: str | os.PathLike[str],
+    *,
+    package_paths: Sequence[str | os.PathLike[str]] | None = None,
+    xacro_arguments: Mapping[str, object] | None = None,
+) -> Model:
+    """A bundled robot, or one from a file; its root link floats.
 
     Parameters
     ----------
-    name : str
-        One of :func:`names`.
+    name : str or path
+        One of :func:`names`, or a URDF or xacro file: what has a folder or one of their endings.
+    package_paths, xacro_arguments
+        As for :meth:`onorbit_rs.Model.from_urdf`, for files.
 
     Raises
     ------
     NotFoundError
-        No bundled robot has this name.
+        No bundled robot has this name, or there is no such file.
     """
     from onorbit_rs._core import Model
 
-    return Model.from_urdf(path(name))
+    if not is_file(name):
+        return Model.from_urdf(path(os.fspath(name)))
+    return Model.from_urdf(name, package_paths=package_paths, xacro_arguments=xacro_arguments)
+
+
+def is_file(name: str | os.PathLike[str]) -> bool:
+    """Whether a robot is named by a path: ``arms/my_arm.urdf``, and not ``humanoid_torso``."""
+    text = os.fspath(name)
+    has_ending = text.lower().endswith((".urdf", ".xml", ".xacro"))
+    return not isinstance(name, str) or has_ending or "/" in text or "\\" in text

@@ -114,7 +114,9 @@ def _robot(scenario: Scenario) -> _core.Model:
     assert robot.urdf is not None  # the schema lets exactly one through
     beside = scenario.file.parent if scenario.file else Path()
     packages = [beside / folder for folder in robot.package_paths]
-    return _core.Model.from_urdf(beside / robot.urdf, package_paths=packages or None)
+    return _core.Model.from_urdf(
+        beside / robot.urdf, package_paths=packages or None, xacro_arguments=robot.xacro_arguments or None
+    )
 
 
 def _effect(effect: Any, model: _core.Model) -> Any:

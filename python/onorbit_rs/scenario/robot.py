@@ -1,4 +1,4 @@
-"""The robot: a bundled name, a URDF, or one rigid body written in place."""
+"""The robot: a bundled name, a URDF or xacro file, or one rigid body written in place."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from pydantic import Field, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
+from onorbit_rs import robots
 from onorbit_rs.scenario.fields import Inertia, Mass, Positive
 from onorbit_rs.scenario.part import Part
 
@@ -43,7 +44,9 @@ class Robot(Part):
     urdf: Path | None = None
     rigid_body: RigidBody | None = None
     package_paths: list[Path] = Field(default_factory=list)
-    """Folders in which ``package://`` is looked up."""
+    """Folders in which ``package://`` and xacro's ``$(find ...)`` are looked up."""
+    xacro_arguments: dict[str, str | bool | int | float] = Field(default_factory=dict)
+    """What ``$(arg name)`` gives in a xacro file."""
 
     @model_validator(mode="before")
     @classmethod
@@ -57,8 +60,7 @@ class Robot(Part):
             )
         if not isinstance(value, str):
             return value
-        looks_like_path = "/" in value or "\\" in value or value.lower().endswith((".urdf", ".xml", ".xacro"))
-        return {"urdf": value} if looks_like_path else {"bundled": value}
+        return {"urdf": value} if robots.is_file(value) else {"bundled": value}
 
     @model_validator(mode="after")
     def _exactly_one(self) -> Robot:
@@ -68,5 +70,9 @@ class Robot(Part):
                 "robot_choice",
                 "give exactly one of 'bundled', 'urdf' and 'rigid_body'; given: {given}",
                 {"given": ", ".join(given) or "none"},
+            )
+        if self.urdf is None and (self.package_paths or self.xacro_arguments):
+            raise PydanticCustomError(
+                "robot_choice", "'package_paths' and 'xacro_arguments' belong to a 'urdf'"
             )
         return self

@@ -84,7 +84,9 @@ class Scenario(Part):
         return self.model_dump(mode="json", exclude_none=True, exclude=self._empty_parts())
 
     def _empty_parts(self) -> dict[str, Any]:
-        return {"robot": {"package_paths"}} if not self.robot.package_paths else {}
+        return {
+            "robot": {name for name in ("package_paths", "xacro_arguments") if not getattr(self.robot, name)}
+        }
 
     @model_validator(mode="after")
     def _parts_fit(self) -> Scenario:

@@ -23,7 +23,14 @@ class SimulationSettings(Part):
     time_step: Annotated[Time, Positive] = 1e-3
     control_period: Annotated[Time, Positive] | None = None
     """How often the controller runs; every time step where not given."""
-    integrator: Literal["rk4", "semi_implicit_euler"] = "rk4"
+    integrator: Literal["rk4", "semi_implicit_euler", "dormand_prince"] = "rk4"
+    """``dormand_prince`` adapts its steps; ``time_step`` is then the grid of the rows."""
+    tolerance: float = Field(default=1e-9, ge=1e-13, le=0.1)
+    """Of ``dormand_prince``: error of a step as a share of a radian, of the robot's size, of rates."""
+    enforce_limits: bool = False
+    """Whether rigid stops keep the joints within their position limits."""
+    restitution: float = Field(default=0.0, ge=0.0, le=1.0)
+    """Share of its rate that a joint keeps when it hits a stop."""
     record_every: int = Field(default=1, ge=1, le=MAX_STEPS)
     """One row of the trace every so many steps."""
     reference_start_tolerance: (

@@ -22,6 +22,10 @@ pub enum InputError {
          around it an inertia or the joint a rotor"
     )]
     Singular { state: usize },
+    #[error(
+        "a rollout steps all states alike: take 'rk4' or 'semi_implicit_euler', or simulate states one by one"
+    )]
+    Adaptive,
     #[error("the reference is given in the frame of an orbit, a rollout is in empty space: use a simulation")]
     NeedsOrbit,
     #[error("threads is 0, it must be at least 1; leave it out for all cores")]

@@ -5,7 +5,7 @@ use super::threads::for_each;
 use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
 use crate::model::Model;
 use crate::reference::TaskReference;
-use crate::simulation::{Integrator, Nothing, Plant, Stages, State};
+use crate::simulation::{Integrator, Nothing, Plant, State, Stepper, Stepping};
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -66,6 +66,11 @@ impl Rollout<'_> {
         if let RolloutControl::Torques(tau) = self.control {
             check_finite("tau", tau, self.steps * model.joint_count())?;
         }
+        if self.integrator == Integrator::DormandPrince {
+            return Err(InputError::Adaptive);
+        }
+        // joints that stick and slip do so each at its own time: one state after the other
+        let sticks = model.joints().iter().any(|joint| joint.friction > 0.0);
         if let RolloutControl::ComputedTorque(_, reference) = self.control
             && reference.needs_orbit()
         {
@@ -73,6 +78,7 @@ impl Rollout<'_> {
         }
         match InstructionSet::current() {
             InstructionSet::Baseline => self.all::<f64>(model, q0, v0, q, v),
+            InstructionSet::Fused | InstructionSet::Wide if sticks => self.all::<Fused>(model, q0, v0, q, v),
             InstructionSet::Fused if q0.len() == model.nq() => self.all::<Fused>(model, q0, v0, q, v),
             InstructionSet::Fused => self.all::<Lanes4>(model, q0, v0, q, v),
             InstructionSet::Wide => self.all::<Lanes8>(model, q0, v0, q, v),
@@ -115,7 +121,7 @@ struct Lanes<'a, S> {
     settings: &'a Rollout<'a>,
     plant: Plant<'a, S, Nothing>,
     state: State<S>,
-    stages: Stages<S>,
+    stepper: Stepper<S>,
     work: Option<ComputedTorqueWork<S>>,
     /// Number of the first run.
     first: usize,
@@ -129,13 +135,15 @@ impl<'a, S: Real> Lanes<'a, S> {
         let gather = |rows: &[f64], width: usize| -> Vec<S> {
             (0..width).map(|i| S::from_lanes(|lane| rows[lane.min(count - 1) * width + i])).collect()
         };
-        let mut plant = Plant::new(model, Nothing);
+        let mut plant = Plant::new(model, Nothing, None);
         let state = State::at(model, &mut plant.data, gather(q0, model.nq()), gather(v0, model.nv()));
-        let stages = Stages::new(model, &state, settings.integrator);
+        let Rollout { integrator, time_step, .. } = *settings;
+        let duration = time_step * settings.steps as f64;
+        let how = Stepping { integrator, tolerance: 0.0, time_step, duration };
+        let stepper = Stepper::new(model, &state, &how);
         let is_controlled = matches!(settings.control, RolloutControl::ComputedTorque(..));
         let work = is_controlled.then(|| ComputedTorqueWork::new(model));
-        plant.prime(&state);
-        Self { settings, plant, state, stages, work, first, count }
+        Self { settings, plant, state, stepper, work, first, count }
     }
 
     fn run(mut self, q: &mut [f64], v: &mut [f64]) {
@@ -151,13 +159,26 @@ impl<'a, S: Real> Lanes<'a, S> {
                 row += 1;
             }
             self.drive(step);
-            let interval = (step as f64 * time_step, (step + 1) as f64 * time_step);
-            // in empty space nothing refuses a step
-            let _: Result<(), _> = self.stages.step(&mut self.plant, &mut self.state, interval);
+            self.advance(step as f64 * time_step, (step + 1) as f64 * time_step);
         }
         self.plant.settle(&mut self.state);
         if record_every.is_none_or(|every| steps % every == 0) {
             self.write(row, q, v);
+        }
+    }
+
+    /// One step, in pieces where joints stop or break away.
+    fn advance(&mut self, mut t: f64, end: f64) {
+        let Self { plant, state, stepper, .. } = self;
+        plant.decide(&state.q, &state.v);
+        // in empty space nothing refuses a step
+        while let Ok(reached) = stepper.advance(plant, state, (t, end)) {
+            if reached >= end {
+                break;
+            }
+            t = reached;
+            plant.settle(state);
+            plant.decide(&state.q, &state.v);
         }
     }
 

@@ -35,12 +35,35 @@ pub fn forward_dynamics_recursion<S: Real>(
 ) {
     S::enter(
         #[inline(always)]
-        || kernel(model, data, v, tau, a),
+        || kernel(model, data, v, tau, a, |_| false),
+    );
+}
+
+/// [`forward_dynamics_recursion`] with some joints (`locked`, `(n,)`) held as they are: they accelerate
+/// by exactly zero, and the torque that it takes is left in `drive` of their bodies, N m (N).
+pub(crate) fn locked_dynamics_recursion<S: Real>(
+    model: &Model,
+    data: &mut Data<S>,
+    v: &[S],
+    tau: &[S],
+    locked: &[bool],
+    a: &mut [S],
+) {
+    S::enter(
+        #[inline(always)]
+        || kernel(model, data, v, tau, a, |k| locked[k - 1]),
     );
 }
 
 #[inline(always)]
-pub(crate) fn kernel<S: Real>(model: &Model, data: &mut Data<S>, v: &[S], tau: &[S], a: &mut [S]) {
+fn kernel<S: Real>(
+    model: &Model,
+    data: &mut Data<S>,
+    v: &[S],
+    tau: &[S],
+    a: &mut [S],
+    is_locked: impl Fn(usize) -> bool,
+) {
     let nodes = model.nodes();
     let bodies = &mut data.bodies[..nodes.len()];
     let (v, tau, a) = (&v[..nodes.len() + 5], &tau[..nodes.len() + 5], &mut a[..nodes.len() + 5]);
@@ -60,7 +83,11 @@ pub(crate) fn kernel<S: Real>(model: &Model, data: &mut Data<S>, v: &[S], tau: &
         let parent = &mut before[node.parent];
         // U = IA S,  D = Sᵀ U + rotor,  u = τ − Sᵀ pA
         body.reach = body.articulated.apply(body.subspace);
-        body.inverse_pivot = S::of(1.0) / (body.subspace.dot(body.reach) + S::of(node.rotor_inertia));
+        // a locked joint hands on all of IA: as if nothing could move it, 1/D = 0
+        body.inverse_pivot = match is_locked(k) {
+            true => S::of(0.0),
+            false => S::of(1.0) / (body.subspace.dot(body.reach) + S::of(node.rotor_inertia)),
+        };
         body.drive = tau[k + 5] - body.subspace.dot(body.force);
         // Ia = IA − U Uᵀ/D,  pa = pA + IA ζ + U (u − Uᵀ ζ)/D
         let share = (body.drive - body.acceleration.dot(body.reach)) * body.inverse_pivot;
@@ -79,7 +106,11 @@ pub(crate) fn kernel<S: Real>(model: &Model, data: &mut Data<S>, v: &[S], tau: &
         let (parent, body) = (&done[nodes[k].parent], &mut rest[0]);
         // a' = a_p + ζ,  q̈ = (u − Uᵀ a')/D,  a = a' + S q̈
         let carried: Motion<S> = parent.acceleration + body.acceleration;
-        let acceleration = (body.drive - carried.dot(body.reach)) * body.inverse_pivot;
+        let missing = body.drive - carried.dot(body.reach);
+        let acceleration = missing * body.inverse_pivot;
+        if is_locked(k) {
+            body.drive = -missing; // λ = Uᵀ a' − u
+        }
         body.acceleration = body.subspace.scale_add(acceleration, carried);
         a[k + 5] = acceleration;
     }

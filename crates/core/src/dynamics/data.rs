@@ -35,7 +35,7 @@ pub struct BodyData<S> {
     pub reach: Force<S>,
     /// `1 / (Sᵀ U + rotor)`. Set by ABA.
     pub inverse_pivot: S,
-    /// `τ − Sᵀ pA`. Set by ABA.
+    /// `τ − Sᵀ pA`, of a locked joint the torque that holds it. Set by ABA.
     pub drive: S,
 }
 

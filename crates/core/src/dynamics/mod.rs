@@ -16,6 +16,7 @@ mod kinematics;
 mod momentum;
 mod rnea;
 
+pub(crate) use aba::locked_dynamics_recursion;
 pub use aba::{forward_dynamics, forward_dynamics_recursion};
 pub use crba::mass_matrix;
 pub use data::{BodyData, Data};

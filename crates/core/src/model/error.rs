@@ -104,7 +104,7 @@ pub(super) fn nearest(candidates: &[String], name: &str) -> String {
 }
 
 /// The candidate a few letters away, or else one that contains the name.
-fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a str> {
+pub(super) fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a str> {
     const LONGEST: usize = 100; // comparing takes the product of the lengths
     let is_name = |c: &&String| c.len() <= LONGEST && name.len() <= LONGEST;
     let best = candidates.iter().filter(is_name).min_by_key(|c| distance(c, name));

@@ -12,6 +12,8 @@ mod tree;
 pub mod urdf;
 mod well_posed;
 
+use align::rotation_to_axis;
+
 pub use builder::ModelBuilder;
 pub use configuration::{difference, integrate, neutral};
 pub use description::{Geometry, Inertial, Joint, JointKind, Limits, Link, Visual};

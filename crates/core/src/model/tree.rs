@@ -135,6 +135,18 @@ impl Model {
         &self.warnings
     }
 
+    /// Keeps a remark for the reader of the model.
+    pub fn warn(&mut self, warning: ModelWarning) {
+        self.warnings.push(warning);
+    }
+
+    /// Pose of a frame of body `k` in the axes of `k`'s link: where the user knows it.
+    pub fn pose_in_link(&self, frame: &Frame) -> (Mat3<f64>, Vec3<f64>) {
+        let link = self.body_frame(frame.body);
+        let to_link = link.rot_kf.transpose();
+        (to_link * frame.rot_kf, to_link * (frame.pos_kf - link.pos_kf))
+    }
+
     /// Total mass, kg.
     pub fn mass(&self) -> f64 {
         self.nodes.iter().map(|node| node.mass).sum()

@@ -1,5 +1,6 @@
 //! Where a run stands between two steps, kept so that it goes on with the same bits.
 
+use super::pair::Memory;
 use super::schedule::Schedule;
 use super::state::State;
 use crate::dynamics::Momentum;
@@ -24,6 +25,10 @@ pub struct Checkpoint {
     state: StateNumbers,
     /// Torques held, `(n,)`, N m.
     pub(super) command: Vec<f64>,
+    /// What the control of an adaptive step remembers.
+    pub(super) memory: Memory,
+    /// Cuts in a row, and when the first was.
+    pub(super) cuts: (usize, f64),
     /// What the step-doubling probe has: difference found last, the step it was found at, the sum.
     pub(super) probe: (f64, usize, f64),
     /// Work of every step so far, whatever its sign, J.
@@ -37,6 +42,7 @@ struct StateNumbers {
     /// Momentum at the start of the run, then what was added.
     momentum: [f64; 12],
     work: f64,
+    dissipated: f64,
 }
 
 /// A checkpoint that cannot be continued from.
@@ -74,6 +80,7 @@ impl Checkpoint {
         command: &[S],
         schedule: &Schedule,
         (rows, steps): (usize, usize),
+        (memory, cuts): (Memory, (usize, f64)),
         probe: (f64, usize, f64),
         work_done: f64,
     ) -> Self {
@@ -90,8 +97,16 @@ impl Checkpoint {
             rows,
             steps,
             schedule: schedule.clone(),
-            state: StateNumbers { q, v, momentum, work: state.work.value() },
+            state: StateNumbers {
+                q,
+                v,
+                momentum,
+                work: state.work.value(),
+                dissipated: state.dissipated.value(),
+            },
             command: numbers(command),
+            memory,
+            cuts,
             probe,
             work_done,
         }
@@ -170,6 +185,7 @@ impl Checkpoint {
             start: Momentum { linear: vector(0), angular: vector(1) },
             impulse: Momentum { linear: vector(2), angular: vector(3) },
             work: S::of(self.state.work),
+            dissipated: S::of(self.state.dissipated),
         }
     }
 }

@@ -22,6 +22,18 @@ pub enum SimulationError {
         "the quaternion q[3:7] has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w: normalise it first"
     )]
     QuaternionNorm { norm: f64 },
+    #[error("tolerance is {value}, it must be in 1e-13..0.1")]
+    Tolerance { value: f64 },
+    #[error("restitution is {value}, it must be in 0..1")]
+    Restitution { value: f64 },
+    #[error(
+        "joint '{joint}' starts at {value}, its limits are {lower} to {upper}: start within, or do not enforce limits"
+    )]
+    OutsideLimits { joint: String, value: f64, lower: f64, upper: f64 },
+    #[error(
+        "at t = {time} s no step keeps the tolerance, not even one of {step} s: loosen tolerance, or soften what acts there"
+    )]
+    StepTooSmall { time: f64, step: f64 },
     #[error("record_every is 0, it must be at least 1 step")]
     RecordEvery,
     #[error("{effect} needs an orbit around a planet: give the simulation one, or give the path its mu")]

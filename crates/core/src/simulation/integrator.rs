@@ -1,8 +1,10 @@
 //! One step: Runge-Kutta on the group, or semi-implicit Euler.
 
 use super::error::SimulationError;
+use super::pair::Pair;
 use super::plant::{Plant, World};
 use super::state::{Rate, State};
+use super::stepping::Stepping;
 use crate::dynamics::base_rotation;
 use crate::model::{Model, integrate};
 use crate::spatial::{Real, Vec3, dexp_inv};
@@ -15,6 +17,9 @@ pub enum Integrator {
     Rk4,
     /// Semi-implicit Euler, first order: velocities first, then positions with the new ones.
     SemiImplicitEuler,
+    /// Dormand and Prince's embedded pair 5(4), the attitude on its group: steps as long as the tolerance
+    /// lets them be, rows between them by dense output of fourth order.
+    DormandPrince,
 }
 
 /// Reach and weight of the second to fourth stage.
@@ -28,21 +33,40 @@ const BEND: [[f64; 3]; 3] = [[0.125, 0.0, 0.0], [1.0 / 24.0, 1.0 / 12.0, 0.0], [
 
 /// Stages of a step, allocated once.
 pub(crate) struct Stages<S> {
-    start: State<S>,
-    trial: State<S>,
-    rate: Rate<S>,
-    sum: Rate<S>,
+    pub(super) start: State<S>,
+    pub(super) trial: State<S>,
+    pub(super) rate: Rate<S>,
+    pub(super) sum: Rate<S>,
     first: Vec<S>,
     /// Velocity of the base's origin at the start of the step, base axes: `start` is relative to it.
-    passing: Vec3<S>,
+    pub(super) passing: Vec3<S>,
     integrator: Integrator,
+    /// What the adaptive method has besides.
+    pub(super) pair: Option<Box<Pair<S>>>,
 }
 
 impl<S: Real> Stages<S> {
-    pub(crate) fn new(model: &Model, state: &State<S>, integrator: Integrator) -> Self {
+    pub(crate) fn new(model: &Model, state: &State<S>, how: &Stepping) -> Self {
+        let integrator = how.integrator;
         let (rate, first) = (Rate::new(model), vec![S::of(0.0); model.nv()]);
         let (start, trial, sum) = (state.clone(), state.clone(), rate.clone());
-        Self { start, trial, sum, rate, first, passing: Vec3::zero(), integrator }
+        let is_adaptive = integrator == Integrator::DormandPrince;
+        let pair = is_adaptive.then(|| Box::new(Pair::new(&rate, how)));
+        Self { start, trial, sum, rate, first, passing: Vec3::zero(), integrator, pair }
+    }
+
+    /// Moves `state` from the start of `interval` to its end, or as far as the tolerance allows; returns
+    /// where it got. Expects kinematics and wrenches at the start in the plant.
+    pub(crate) fn advance(
+        &mut self,
+        plant: &mut Plant<'_, S, impl World<S>>,
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<f64, SimulationError> {
+        match self.integrator {
+            Integrator::DormandPrince => self.adapt(plant, state, interval),
+            _ => self.step(plant, state, interval).map(|()| interval.1),
+        }
     }
 
     /// Acceleration at the start of the last step, `(nv,)`.
@@ -92,13 +116,18 @@ impl<S: Real> Stages<S> {
         state: &mut State<S>,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
-        plant.set_slip(interval.1 - interval.0);
         self.accelerate(plant, state);
         match self.integrator {
             Integrator::Rk4 => self.rk4(plant, state, interval)?,
             Integrator::SemiImplicitEuler => self.euler(plant.carried(), state, interval),
+            Integrator::DormandPrince => self.dormand_prince(plant, state, interval)?,
         }
-        // back to W: v = v' + Rᵀ u
+        Self::leave(plant, state);
+        Ok(())
+    }
+
+    /// Back from the frame of the step to W: `v = v' + Rᵀ u`.
+    pub(super) fn leave(plant: &Plant<'_, S, impl World<S>>, state: &mut State<S>) {
         S::enter(
             #[inline(always)]
             || {
@@ -106,7 +135,6 @@ impl<S: Real> Stages<S> {
                 (Vec3::from_slice(&state.v) + passing).write(&mut state.v);
             },
         );
-        Ok(())
     }
 
     /// `y' = y ⊕ h (k₁ + 2 k₂ + 2 k₃ + k₄)/6`, attitude rates pulled back by the inverse

@@ -1,9 +1,11 @@
 //! The robot as the integrator sees it: from a state and torques to its rate of change.
 
+use super::contacts::Contacts;
 use super::error::SimulationError;
 use super::state::{Rate, State};
 use crate::dynamics::{
     Data, Momentum, base_rotation, base_twist, center_of_mass_b, forward_dynamics_recursion, kinematics,
+    locked_dynamics_recursion,
 };
 use crate::model::Model;
 use crate::spatial::{Force, Motion, Real, Vec3};
@@ -46,17 +48,22 @@ pub(crate) struct Plant<'a, S, W> {
     /// Commanded joint torques, `(n,)`, N m.
     pub(crate) command: Vec<S>,
     /// All generalized forces of a stage, `(nv,)`: command, damping and friction.
-    forces: Vec<S>,
+    pub(super) forces: Vec<S>,
+    /// Accelerations or changes of velocity in passing, `(nv,)`.
+    pub(super) scratch: Vec<S>,
     /// Velocity, W axes, of the frame in which `data` has its velocities: W's own outside a step, that
     /// of the base's origin at the start of the step within it.
     carried: Vec3<S>,
     mass: S,
-    /// Joint rate at which Coulomb friction is fully developed, rad/s (m/s).
-    slip: Vec<S>,
+    /// Joints that stick or stand at a stop.
+    pub(crate) contacts: Contacts,
+    /// Whether joints lose energy while they move.
+    is_lossy: bool,
 }
 
 impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
-    pub(crate) fn new(model: &'a Model, surroundings: W) -> Self {
+    /// `stops`: the restitution of the joints' limits, where they are to be kept.
+    pub(crate) fn new(model: &'a Model, surroundings: W, stops: Option<f64>) -> Self {
         let (n, zero) = (model.joint_count(), S::of(0.0));
         Self {
             model,
@@ -64,9 +71,11 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
             surroundings,
             command: vec![zero; n],
             forces: vec![zero; model.nv()],
+            scratch: vec![zero; model.nv()],
             carried: Vec3::zero(),
             mass: S::of(model.mass()),
-            slip: vec![S::of(1.0); n],
+            contacts: Contacts::new(model, stops),
+            is_lossy: model.joints().iter().any(|joint| joint.damping > 0.0 || joint.friction > 0.0),
         }
     }
 
@@ -121,18 +130,28 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
 
     /// Rates at a state whose kinematics and wrenches are in `data`.
     pub(crate) fn accelerate(&mut self, q: &[S], v: &[S], rate: &mut Rate<S>) {
-        let Self { model, data, command, forces, slip, carried, .. } = self;
-        for (j, joint) in model.joints().iter().enumerate() {
-            // −b q̇ − f sat(q̇/s): friction develops within the rate that one step of it brakes
-            let share = (v[j + 6] / slip[j]).saturate();
-            forces[j + 6] = command[j] - (v[j + 6] * S::of(joint.damping) + share * S::of(joint.friction));
+        self.drive(v);
+        let Self { model, data, forces, contacts, carried, is_lossy, .. } = self;
+        match contacts.locked() {
+            Some(locked) => locked_dynamics_recursion(model, data, v, forces, locked, &mut rate.a),
+            None => forward_dynamics_recursion(model, data, v, forces, &mut rate.a),
         }
-        forward_dynamics_recursion(model, data, v, forces, &mut rate.a);
         rate.v.copy_from_slice(v);
         S::enter(
             #[inline(always)]
             || balance(data, q, v, *carried, forces, rate),
         );
+        if *is_lossy {
+            rate.loss = contacts.loss(model, v);
+        }
+    }
+
+    /// Torques at the joints: `τ − b q̇ − f s` with `s` the direction of slip.
+    pub(super) fn drive(&mut self, v: &[S]) {
+        for (j, joint) in self.model.joints().iter().enumerate() {
+            let drag = S::of(self.contacts.drag(j));
+            self.forces[j + 6] = self.command[j] - (v[j + 6] * S::of(joint.damping) + drag);
+        }
     }
 
     /// Kinematics, wrenches and rates of a later stage.
@@ -147,24 +166,6 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
         self.surround(t, interval, &state.q)?;
         self.accelerate(&state.q, &state.v, rate);
         Ok(())
-    }
-
-    /// Articulated inertias for the first [`Plant::set_slip`]. Needs kinematics at `state`.
-    pub(crate) fn prime(&mut self, state: &State<S>) {
-        let mut rate = Rate::new(self.model);
-        self.accelerate(&state.q, &state.v, &mut rate);
-    }
-
-    /// Chooses the rate at which friction is developed in the next step: what full friction changes in
-    /// one. Needs the articulated inertias of an earlier evaluation.
-    pub(crate) fn set_slip(&mut self, time_step: f64) {
-        let least = S::of(f64::MIN_POSITIVE);
-        for (j, joint) in self.model.joints().iter().enumerate() {
-            if joint.friction > 0.0 {
-                let slip = self.data.bodies[j + 1].inverse_pivot * S::of(2.0 * joint.friction * time_step);
-                self.slip[j] = S::select(S::less(slip, least), least, slip);
-            }
-        }
     }
 }
 

@@ -48,6 +48,7 @@ impl<'a> Recorder<'a> {
         reserve(|t| &mut t.impulse, 6)?;
         reserve(|t| &mut t.kinetic_energy, 1)?;
         reserve(|t| &mut t.work, 1)?;
+        reserve(|t| &mut t.dissipated, 1)?;
         reserve(|t| &mut t.center_of_mass, 3)?;
         if tool.is_some() {
             reserve(|t| &mut t.tool_pose, 16)?;
@@ -119,6 +120,7 @@ impl<'a> Recorder<'a> {
         push_vector(&mut trace.impulse, state.impulse.angular);
         trace.kinetic_energy.push(kinetic_energy(plant.model, data, v).value());
         trace.work.push(state.work.value());
+        trace.dissipated.push(state.dissipated.value());
         push_vector(&mut trace.center_of_mass, center_of_mass(data, q));
         if let Some(tool) = self.tool {
             let pose = frame_pose(plant.model, data, q, tool);

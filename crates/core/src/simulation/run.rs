@@ -3,16 +3,17 @@
 use super::checkpoint::{Checkpoint, CheckpointError};
 use super::driver::Driver;
 use super::error::{RunFailure, SimulationError};
-use super::integrator::Stages;
+use super::integrator::{Integrator, Stages};
 use super::plant::Plant;
 use super::probe::Probe;
 use super::recorder::Recorder;
 use super::schedule::Schedule;
 use super::settings::Simulation;
 use super::state::State;
+use super::stepping::{Stepper, Stepping};
 use super::surroundings::Surroundings;
 use super::trace::Trace;
-use crate::control::ControlError;
+use crate::control::{ControlError, ControlLaw};
 use crate::environment::{DifferentialGravity, Effect};
 use crate::spatial::{Fused, InstructionSet, Scalar};
 use std::ops::ControlFlow;
@@ -92,10 +93,10 @@ impl Simulation {
         let effects = self.all_effects();
         let jumps = self.orbit.iter().flat_map(|orbit| orbit.event_times());
         let events = effects.iter().flat_map(|effect| effect.event_times()).chain(jumps).collect();
-        let schedule = Schedule::new(self.time_step, duration, self.control_period, events);
+        let schedule = self.schedule(duration, events);
         let surroundings = Surroundings::new(&model, effects, self.orbit.clone());
         let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
-        let mut plant = Plant::<S, _>::new(&model, surroundings);
+        let mut plant = Plant::<S, _>::new(&model, surroundings, self.stops);
         let state = State::at(&model, &mut plant.data, numbers(&self.q), numbers(&self.v));
         let recorder = Recorder::new(
             rows(&schedule, self.record_every),
@@ -104,10 +105,16 @@ impl Simulation {
             self.reference.as_ref(),
             self.orbit.as_deref(),
             self.reference_motion,
-            self.record_every == 1,
+            self.record_every == 1 && !self.is_adaptive(),
         );
+        let Self { integrator, tolerance, time_step, .. } = *self;
+        let how = Stepping { integrator, tolerance, time_step, duration };
         let mut run = Run {
-            stages: Stages::new(&model, &state, self.integrator),
+            stepper: Stepper::new(&model, &state, &how),
+            between: (
+                state.clone(),
+                Stages::new(&model, &state, &Stepping { integrator: Integrator::Rk4, ..how }),
+            ),
             probe: Probe::new(&state),
             state,
             plant,
@@ -128,6 +135,18 @@ impl Simulation {
         }
     }
 
+    fn is_adaptive(&self) -> bool {
+        self.integrator == Integrator::DormandPrince
+    }
+
+    /// An adaptive integrator steps over the grid, and where nothing asks for ticks over them too.
+    fn schedule(&self, duration: f64, events: Vec<f64>) -> Schedule {
+        let asks = !matches!(self.control, ControlLaw::None);
+        let period = if self.is_adaptive() && !asks { Some(f64::MAX) } else { self.control_period };
+        let schedule = Schedule::new(self.time_step, duration, period, events);
+        if self.is_adaptive() { schedule.over_the_grid() } else { schedule }
+    }
+
     /// The effects of the scenario, and gravity where there is a planet.
     fn all_effects(&self) -> Vec<Arc<dyn Effect>> {
         let mut effects = self.effects.clone();
@@ -145,64 +164,86 @@ fn rows(schedule: &Schedule, record_every: usize) -> usize {
 }
 
 /// A run under way.
-struct Run<'a, S> {
-    state: State<S>,
-    plant: Plant<'a, S, Surroundings>,
-    driver: Driver<'a, S>,
-    recorder: Recorder<'a>,
-    stages: Stages<S>,
-    probe: Probe<S>,
-    schedule: Schedule,
-    steps: usize,
+pub(super) struct Run<'a, S> {
+    pub(super) state: State<S>,
+    pub(super) plant: Plant<'a, S, Surroundings>,
+    pub(super) driver: Driver<'a, S>,
+    pub(super) recorder: Recorder<'a>,
+    pub(super) stepper: Stepper<S>,
+    /// For rows within a step.
+    pub(super) between: (State<S>, Stages<S>),
+    pub(super) probe: Probe<S>,
+    pub(super) schedule: Schedule,
+    pub(super) steps: usize,
 }
 
 impl<S: Scalar> Run<'_, S> {
     fn all(&mut self, record_every: usize, monitor: Monitor<'_>) -> Result<(), SimulationError> {
-        self.plant.prime(&self.state);
         while let Some(stretch) = self.schedule.next() {
             let interval = (stretch.start, stretch.end);
             let begun = self.begin(stretch.start, interval, stretch.is_control_tick);
             begun.map_err(|error| self.name_divergence(error, stretch.start))?;
             // a step cut short by an event is a step: with all of them recorded, jumps lie at rows
-            let is_row = record_every == 1 || stretch.grid_step.is_some_and(|step| step % record_every == 0);
+            let is_dense = self.recorder.trace.has_every_step;
+            let is_row = is_dense || stretch.grid_step.is_some_and(|step| step % record_every == 0);
             if is_row {
                 self.record(stretch.start)?;
             }
-            self.step(interval, is_row).map_err(|error| self.name_divergence(error, stretch.start))?;
+            let stepped = self.step(interval, is_row, record_every);
+            stepped.map_err(|error| self.name_divergence(error, stretch.start))?;
             if !self.state.is_finite() {
                 return Err(self.diverged(stretch.start));
             }
-            if self.steps.is_multiple_of(MONITOR_EVERY) && self.look(monitor, stretch.end).is_break() {
-                self.end(stretch.end)?;
-                return Err(SimulationError::Interrupted { time: stretch.end });
+            if self.steps.is_multiple_of(MONITOR_EVERY) && self.look(monitor).is_break() {
+                let time = self.schedule.now();
+                self.end(time)?;
+                return Err(SimulationError::Interrupted { time });
             }
         }
         self.end(self.schedule.now())
     }
 
-    /// One step from a state that [`Run::begin`] prepared.
-    fn step(&mut self, interval: (f64, f64), is_row: bool) -> Result<(), SimulationError> {
-        let Self { state, plant, stages, probe, recorder, .. } = self;
-        // a probe that fails is a step that will: the step tells
-        let _ = probe.look(self.steps, interval, state, plant, stages);
-        let result = stages.step(plant, state, interval);
+    /// One step from a state that [`Run::begin`] prepared, and the rows within it.
+    fn step(
+        &mut self,
+        interval: (f64, f64),
+        is_row: bool,
+        record_every: usize,
+    ) -> Result<(), SimulationError> {
+        let Self { state, plant, stepper, probe, recorder, .. } = self;
+        if stepper.memory().is_none() {
+            // a probe that fails is a step that will: the step tells
+            let _ = probe.look(self.steps, interval, state, plant, &mut stepper.stages);
+        }
+        let result = stepper.advance(plant, state, interval);
+        let stages = &stepper.stages;
         if is_row {
             recorder.accelerated(stages.first_acceleration());
         }
-        result?;
+        let reached = result?;
         recorder.trace.work_done += (state.work - stages.start_work()).value().abs();
         self.steps += 1;
-        recorder.trace.attitude_step_doubling = Some(probe.estimate(self.steps));
+        let estimate = stepper.memory().map_or_else(|| probe.estimate(self.steps), |memory| memory.turn);
+        recorder.trace.attitude_step_doubling = Some(estimate);
+        if reached < interval.1 {
+            self.schedule.cut(reached);
+        }
+        while let Some((step, t)) = self.schedule.passed(reached) {
+            if step.is_multiple_of(record_every) {
+                self.record_between(t)?;
+            }
+        }
         Ok(())
     }
 
     /// Shows the run to its monitor.
-    fn look(&self, monitor: Monitor<'_>, time: f64) -> ControlFlow<()> {
-        let trace = &self.recorder.trace;
+    fn look(&self, monitor: Monitor<'_>) -> ControlFlow<()> {
+        let (time, trace) = (self.schedule.now(), &self.recorder.trace);
         let checkpoint = || {
             let (counts, probe) = ((trace.rows(), self.steps), self.probe.numbers());
-            let command = &self.plant.command;
-            Checkpoint::new(&self.state, command, &self.schedule, counts, probe, trace.work_done)
+            let (command, memory) = (&self.plant.command, self.stepper.memory().unwrap_or_default());
+            let stepper = (memory, self.stepper.cuts);
+            Checkpoint::new(&self.state, command, &self.schedule, counts, stepper, probe, trace.work_done)
         };
         monitor(&Moment { time, trace, checkpoint: &checkpoint })
     }
@@ -214,6 +255,7 @@ impl<S: Scalar> Run<'_, S> {
         self.schedule = from.schedule.clone();
         self.steps = from.steps;
         self.probe.go_on_from(from.probe);
+        self.stepper.go_on_from(from.memory, from.cuts);
         self.recorder.go_on_from(trace)?;
         self.recorder.trace.work_done = from.work_done;
         self.plant.command.iter_mut().zip(&from.command).for_each(|(to, from)| *to = S::of(*from));
@@ -221,11 +263,17 @@ impl<S: Scalar> Run<'_, S> {
     }
 
     /// Kinematics, wrenches and torques at the start of a step.
-    fn begin(&mut self, t: f64, interval: (f64, f64), is_control_tick: bool) -> Result<(), SimulationError> {
+    pub(super) fn begin(
+        &mut self,
+        t: f64,
+        interval: (f64, f64),
+        is_control_tick: bool,
+    ) -> Result<(), SimulationError> {
         self.plant.settle(&mut self.state);
         if !self.state.is_finite() {
             return Err(self.diverged(t));
         }
+        self.bounce(t, interval)?;
         let Self { state, plant, driver, .. } = self;
         if is_control_tick && !driver.compensates() {
             plant.data.clear_external();
@@ -235,15 +283,16 @@ impl<S: Scalar> Run<'_, S> {
         if is_control_tick && driver.compensates() {
             driver.ask(t, state, plant)?;
         }
+        plant.decide(&state.q, &state.v);
         Ok(())
     }
 
     /// What a state that ran away brings about elsewhere is called by its name: a built-in law that
     /// overflows, an orbit or an effect asked about places that are none.
-    fn name_divergence(&self, error: SimulationError, t: f64) -> SimulationError {
+    pub(super) fn name_divergence(&self, error: SimulationError, t: f64) -> SimulationError {
         let is_overflow = matches!(&error, SimulationError::Control(ControlError::TorqueNotFinite { .. }))
             && self.driver.is_built_in();
-        if is_overflow || !self.state.is_finite() || !self.stages.is_finite() {
+        if is_overflow || !self.state.is_finite() || !self.stepper.stages.is_finite() {
             self.diverged(t)
         } else {
             error
@@ -253,22 +302,7 @@ impl<S: Scalar> Run<'_, S> {
     /// The error that carries the last finite state.
     fn diverged(&self, time: f64) -> SimulationError {
         let now = [&self.state.q, &self.state.v].map(|x| x.iter().map(|x| x.value()).collect());
-        let [q, v] = if self.state.is_finite() { now } else { self.stages.start() };
+        let [q, v] = if self.state.is_finite() { now } else { self.stepper.stages.start() };
         SimulationError::Diverged { time, q, v }
-    }
-
-    fn record(&mut self, t: f64) -> Result<(), SimulationError> {
-        let orbit = self.plant.surroundings.orbit_state(t)?;
-        self.recorder.row(t, &self.state, &self.plant, orbit)
-    }
-
-    /// The last row: the state at the end, with the torque that would be held from there.
-    fn end(&mut self, t: f64) -> Result<(), SimulationError> {
-        let begun = self.begin(t, (t, t), self.schedule.is_control_tick());
-        begun.map_err(|error| self.name_divergence(error, t))?;
-        self.record(t)?;
-        self.stages.accelerate(&mut self.plant, &self.state);
-        self.recorder.accelerated(self.stages.first_acceleration());
-        Ok(())
     }
 }

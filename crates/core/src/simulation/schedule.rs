@@ -25,6 +25,8 @@ pub(super) struct Schedule {
     duration: f64,
     control_period: f64,
     events: Vec<f64>,
+    /// Whether steps end at the grid.
+    cuts_at_grid: bool,
     now: f64,
     next_grid: usize,
     next_tick: usize,
@@ -45,11 +47,31 @@ impl Schedule {
             duration,
             control_period,
             events,
+            cuts_at_grid: true,
             now: 0.0,
             next_grid: 0,
             next_tick: 0,
             next_event: 0,
         }
+    }
+
+    /// Steps that pass over the grid: it is for rows alone.
+    pub(super) fn over_the_grid(self) -> Self {
+        Self { cuts_at_grid: false, ..self }
+    }
+
+    /// Ends the present stretch early.
+    pub(super) fn cut(&mut self, t: f64) {
+        self.now = t;
+    }
+
+    /// Number and instant of the next grid step that begins before `t`, once each.
+    pub(super) fn passed(&mut self, t: f64) -> Option<(usize, f64)> {
+        let step = self.next_grid;
+        let instant = step as f64 * self.time_step;
+        let is_passed = instant < t - self.tolerance();
+        self.next_grid += usize::from(is_passed);
+        is_passed.then_some((step, instant))
     }
 
     /// Instant reached, s.
@@ -110,7 +132,8 @@ impl Iterator for Schedule {
         while self.events.get(self.next_event).is_some_and(|&t| t <= self.now + self.tolerance()) {
             self.next_event += 1;
         }
-        let mut end = (self.next_grid as f64 * self.time_step).min(self.duration);
+        let grid = if self.cuts_at_grid { self.next_grid as f64 * self.time_step } else { self.duration };
+        let mut end = grid.min(self.duration);
         let cuts =
             [Some(self.next_tick as f64 * self.control_period), self.events.get(self.next_event).copied()];
         for cut in cuts.into_iter().flatten() {

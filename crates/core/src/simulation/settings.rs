@@ -1,5 +1,6 @@
 //! What a run is made of, checked before it starts.
 
+use super::contacts::AT_LIMIT;
 use super::error::SimulationError;
 use super::integrator::Integrator;
 use super::start::check_start;
@@ -43,6 +44,12 @@ pub struct Simulation {
     pub control_period: Option<f64>,
     /// How to step.
     pub integrator: Integrator,
+    /// Error that a step of the adaptive integrator may make, as a share: of a radian in attitude and
+    /// joints, of the robot's size (or distance from W's origin) in lengths, of themselves in rates.
+    pub tolerance: f64,
+    /// Keeps the joints within their position limits by rigid stops, which give back this share of the
+    /// rate; joints pass them if none.
+    pub stops: Option<f64>,
     /// Every how many steps a row is recorded.
     pub record_every: usize,
 }
@@ -64,6 +71,8 @@ impl Simulation {
             time_step: 1e-3,
             control_period: None,
             integrator: Integrator::Rk4,
+            tolerance: 1e-9,
+            stops: None,
             record_every: 1,
         }
     }
@@ -82,6 +91,10 @@ impl Simulation {
                 return Err(SimulationError::NotPositive { name, value });
             }
         }
+        if !(1e-13..=0.1).contains(&self.tolerance) {
+            return Err(SimulationError::Tolerance { value: self.tolerance });
+        }
+        self.check_stops()?;
         if self.record_every == 0 {
             return Err(SimulationError::RecordEvery);
         }
@@ -116,6 +129,22 @@ impl Simulation {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Restitution, and whether the joints start within their limits.
+    fn check_stops(&self) -> Result<(), SimulationError> {
+        let Some(restitution) = self.stops else { return Ok(()) };
+        if !(0.0..=1.0).contains(&restitution) {
+            return Err(SimulationError::Restitution { value: restitution });
+        }
+        for (joint, &value) in self.model.joints().iter().zip(&self.q[7..]) {
+            let Some((lower, upper)) = joint.limits.position else { continue };
+            if value < lower - AT_LIMIT || value > upper + AT_LIMIT {
+                let joint = joint.name.clone();
+                return Err(SimulationError::OutsideLimits { joint, value, lower, upper });
+            }
+        }
+        Ok(())
     }
 }
 

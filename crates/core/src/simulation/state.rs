@@ -17,6 +17,8 @@ pub(crate) struct State<S> {
     pub(crate) impulse: Momentum<S>,
     /// Work done on the robot so far, J.
     pub(crate) work: S,
+    /// Energy that damping, friction and stops of the joints took so far, J.
+    pub(crate) dissipated: S,
 }
 
 /// Time derivatives at one stage.
@@ -36,6 +38,8 @@ pub(crate) struct Rate<S> {
     pub(crate) wrench: Momentum<S>,
     /// Power of joint torques and external wrenches, W.
     pub(crate) power: S,
+    /// What damping and friction take of it, W.
+    pub(crate) loss: S,
 }
 
 impl<S: Real> Rate<S> {
@@ -49,6 +53,7 @@ impl<S: Real> Rate<S> {
             a: zeros,
             wrench: Momentum::default(),
             power: S::of(0.0),
+            loss: S::of(0.0),
         }
     }
 
@@ -60,17 +65,27 @@ impl<S: Real> Rate<S> {
         self.wrench.linear = other.wrench.linear.scale_add(s, self.wrench.linear);
         self.wrench.angular = other.wrench.angular.scale_add(s, self.wrench.angular);
         self.power = other.power.mul_add(s, self.power);
+        self.loss = other.loss.mul_add(s, self.loss);
         for i in 0..self.v.len() {
             self.v[i] = other.v[i].mul_add(s, self.v[i]);
             self.a[i] = other.a[i].mul_add(s, self.a[i]);
         }
     }
 
+    /// Copies without allocating.
+    pub(crate) fn copy_from(&mut self, from: &Self) {
+        let Self { origin, bend, turn, wrench, power, loss, .. } = *from;
+        (self.origin, self.bend, self.turn) = (origin, bend, turn);
+        (self.wrench, self.power, self.loss) = (wrench, power, loss);
+        self.v.copy_from_slice(&from.v);
+        self.a.copy_from_slice(&from.a);
+    }
+
     /// Forgets everything.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
-        (self.origin, self.turn, self.wrench, self.power) =
-            (Vec3::zero(), Vec3::zero(), Momentum::default(), S::of(0.0));
+        (self.origin, self.turn, self.wrench) = (Vec3::zero(), Vec3::zero(), Momentum::default());
+        (self.power, self.loss) = (S::of(0.0), S::of(0.0));
         self.v.fill(S::of(0.0));
         self.a.fill(S::of(0.0));
     }
@@ -83,7 +98,7 @@ impl<S: Real> State<S> {
         Quat::from_xyzw(&q[3..]).normalized().write_xyzw(&mut q[3..]);
         kinematics(model, data, &q, &v);
         let start = momentum(data, &q);
-        Self { q, v, start, impulse: Momentum::default(), work: S::of(0.0) }
+        Self { q, v, start, impulse: Momentum::default(), work: S::of(0.0), dissipated: S::of(0.0) }
     }
 
     /// Whether every number of the state is one.
@@ -101,7 +116,8 @@ impl<S: Real> State<S> {
     pub(crate) fn copy_from(&mut self, from: &Self) {
         self.q.copy_from_slice(&from.q);
         self.v.copy_from_slice(&from.v);
-        (self.start, self.impulse, self.work) = (from.start, from.impulse, from.work);
+        (self.start, self.impulse) = (from.start, from.impulse);
+        (self.work, self.dissipated) = (from.work, from.dissipated);
     }
 
     /// `self = from` moved by `h` at `rate`: positions add, the attitude turns on the group.
@@ -119,5 +135,6 @@ impl<S: Real> State<S> {
         self.impulse.linear = rate.wrench.linear.scale_add(h, from.impulse.linear);
         self.impulse.angular = rate.wrench.angular.scale_add(h, from.impulse.angular);
         self.work = rate.power.mul_add(h, from.work);
+        self.dissipated = rate.loss.mul_add(h, from.dissipated);
     }
 }

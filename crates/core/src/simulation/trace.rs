@@ -1,5 +1,7 @@
 //! What a run leaves behind.
 
+use crate::model::Model;
+
 /// Columns of a run, one row per recorded step, row major; the first row is the initial state, the
 /// last the end. W axes unless said; empty columns are those the run did not have.
 #[derive(Clone, Debug, Default)]
@@ -20,8 +22,10 @@ pub struct Trace {
     pub impulse: Vec<f64>,
     /// Kinetic energy in W, J, `(T,)`.
     pub kinetic_energy: Vec<f64>,
-    /// Work of joint torques and external wrenches in W, J, `(T,)`.
+    /// Work on the robot in W, J, `(T,)`: of motors and external wrenches, less `dissipated`.
     pub work: Vec<f64>,
+    /// Energy that damping, friction and stops of the joints took, J, `(T,)`.
+    pub dissipated: Vec<f64>,
     /// Centre of mass in W, m, `(T, 3)`.
     pub center_of_mass: Vec<f64>,
     /// Pose of the tool in W, `(T, 4, 4)`; only with a tool.
@@ -41,8 +45,8 @@ pub struct Trace {
     pub reference_residual: Vec<f64>,
     /// Sum of the work of every step, whatever its sign, J: what rows far apart would miss.
     pub work_done: f64,
-    /// Sum of what steps and halved steps differ by in attitude, rad: an estimate of its error at the
-    /// end, but for what the motion amplifies.
+    /// Sum of what steps and halved steps differ by in attitude, rad (of an embedded pair: its two
+    /// solutions): an estimate of its error at the end, but for what the motion amplifies.
     pub attitude_step_doubling: Option<f64>,
     /// Whether every step of the run is a row.
     pub has_every_step: bool,
@@ -74,6 +78,7 @@ columns!(
     impulse,
     kinetic_energy,
     work,
+    dissipated,
     center_of_mass,
     tool_pose,
     reference_pose,
@@ -81,12 +86,27 @@ columns!(
     attitude_error,
     position_eci,
     velocity_eci,
+    reference_residual,
 );
 
 impl Trace {
     /// Number of rows, `T`.
     pub fn rows(&self) -> usize {
         self.time.len()
+    }
+
+    /// Names of the joints that some row sees more than rounding past their position limits.
+    pub fn limits_exceeded<'m>(&self, model: &'m Model) -> Vec<&'m str> {
+        const ROUNDING: f64 = 1e-9;
+        let is_past = |j: usize, (lower, upper): (f64, f64)| {
+            let mut values = self.q.chunks_exact(model.nq()).map(|q| q[7 + j]);
+            values.any(|q| q < lower - ROUNDING || q > upper + ROUNDING)
+        };
+        let joints = model.joints().iter().enumerate();
+        joints
+            .filter(|(j, joint)| joint.limits.position.is_some_and(|limits| is_past(*j, limits)))
+            .map(|(_, joint)| joint.name.as_str())
+            .collect()
     }
 
     /// Row `k` of a column with `width` numbers per row.

@@ -2,6 +2,7 @@
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)] // each test binary uses its own part
 
 pub mod humanoid;
+pub mod slider;
 pub mod spacecraft;
 pub mod stepper;
 

@@ -2,9 +2,9 @@
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
-use super::joint::{Hinge, read_joint};
+use super::joint::{Hinge, read_joints};
 use super::link::{Surroundings, read_link};
-use crate::model::{Model, ModelBuilder, ModelError};
+use crate::model::{Link, Model, ModelBuilder, ModelError};
 use std::collections::HashMap;
 
 /// A link's element with its name.
@@ -38,9 +38,18 @@ pub(super) fn assemble(
     let mut stack: Vec<usize> = tree.hinges_below[root].iter().rev().copied().collect();
     while let Some(h) = stack.pop() {
         let hinge = &hinges[h];
-        let joint = read_joint(hinge, &mut around.warnings)?;
+        let mut joints = read_joints(hinge, &mut around.warnings)?;
         let child = read(tree.child[h], around)?;
-        builder.add(hinge.parent, joint, child).map_err(|e| fail(hinge.element, e))?;
+        // between joints that stand for one there are links of no mass, named like the joint above
+        let last = joints.pop().expect("a joint is at least one");
+        let mut parent = hinge.parent.to_owned();
+        for joint in joints {
+            let name = joint.name.clone();
+            let link = Link::new(&name, None);
+            builder.add(&parent, joint, link).map_err(|e| fail(hinge.element, e))?;
+            parent = name;
+        }
+        builder.add(&parent, last, child).map_err(|e| fail(hinge.element, e))?;
         stack.extend(tree.hinges_below[tree.child[h]].iter().rev());
     }
     let mesh_warning = around.meshes.warning();

@@ -65,6 +65,20 @@ impl<'a> Element<'a> {
         Ok(self.number(attribute)?.expect("the attribute is there"))
     }
 
+    /// The length of an edge, a radius.
+    pub(super) fn required_size(&self, attribute: &'static str) -> Result<f64, UrdfError> {
+        let value = self.required_number(attribute)?;
+        self.positive(attribute, value)
+    }
+
+    pub(super) fn positive(&self, attribute: &'static str, value: f64) -> Result<f64, UrdfError> {
+        if value > 0.0 {
+            return Ok(value);
+        }
+        let (owner, element) = (self.owner.to_owned(), self.tag());
+        Err(self.fail(UrdfProblem::NotPositive { owner, element, attribute, value }))
+    }
+
     /// A limit: `inf` says that there is none.
     pub(super) fn limit(&self, attribute: &'static str) -> Result<Option<f64>, UrdfError> {
         let text = self.text(attribute).map(|text| text.trim().trim_start_matches(['+', '-']).to_lowercase());

@@ -1,6 +1,6 @@
 //! What can be wrong with a URDF file, where.
 
-use crate::model::error::{ModelError, nearest};
+use crate::model::error::{ModelError, closest, nearest};
 use roxmltree::Node;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -79,7 +79,10 @@ pub enum UrdfProblem {
     DocumentType,
     #[error("the outermost element is <{found}>, a URDF has <robot>{}", other_format(.found))]
     NotRobot { found: String },
-    #[error("{found} is xacro, not URDF; expand it first: xacro FILE.xacro > FILE.urdf")]
+    #[error(
+        "{found} is xacro, not URDF; expand it first: xacro FILE.xacro > FILE.urdf \
+         (onorbit_rs.Model.from_urdf does it by itself)"
+    )]
     Xacro { found: String },
     #[error("<{element}> is not URDF and would be lost; write it without the prefix")]
     ForeignElement { element: String },
@@ -94,12 +97,14 @@ pub enum UrdfProblem {
         amount_of_numbers(.expected)
     )]
     BadNumber { owner: String, element: String, attribute: &'static str, text: String, expected: usize },
+    #[error("{owner}: {attribute} of <{element}> is {value}, it must be positive")]
+    NotPositive { owner: String, element: String, attribute: &'static str, value: f64 },
     #[error("{owner}: <origin> has both rpy and quat_xyzw; keep one")]
     TwoOrientations { owner: String },
     #[error("{owner}: the quaternion '{text}' has no length")]
     ZeroQuaternion { owner: String, text: String },
     #[error(
-        "joint '{joint}' is of type '{kind}'; there are revolute, continuous, prismatic and fixed \
+        "joint '{joint}' is of type '{kind}'; there are revolute, continuous, prismatic, fixed, planar and ball \
          (floating only directly under a root without mass){}",
         way_out(.kind)
     )]
@@ -139,14 +144,26 @@ fn amount_of_numbers(expected: &usize) -> String {
     }
 }
 
-fn way_out(kind: &str) -> &'static str {
-    match kind.to_lowercase().as_str() {
-        "planar" => "; build it of two prismatic joints and a revolute one",
-        "spherical" | "ball" => "; build it of three revolute joints whose axes meet",
+fn way_out(kind: &str) -> String {
+    let told = match kind.to_lowercase().as_str() {
+        "revolute" | "continuous" | "prismatic" | "fixed" | "planar" | "spherical" | "ball" => {
+            "; write it in lower case"
+        }
         "universal" => "; build it of two revolute joints whose axes meet",
+        "screw" | "helical" | "cylindrical" => {
+            "; build it of a prismatic and a revolute joint on one axis (nothing couples them)"
+        }
+        "rotational" | "hinge" => "; write revolute",
+        "slide" | "slider" | "translational" => "; write prismatic",
+        "weld" => "; write fixed",
         "floating" => "; a robot here is one tree on one floating base: load the other body by itself",
-        _ => "",
-    }
+        other => {
+            let kinds = ["revolute", "continuous", "prismatic", "fixed", "planar", "ball"].map(str::to_owned);
+            return closest(&kinds, other.trim())
+                .map_or_else(String::new, |k| format!("; did you mean '{k}'?"));
+        }
+    };
+    told.to_owned()
 }
 
 /// The names, the first of them if there are many.

@@ -2,6 +2,7 @@
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
+use super::several::{Several, in_turn};
 use crate::model::{Joint, JointKind, Limits, ModelWarning};
 use nalgebra::Vector3;
 
@@ -21,8 +22,11 @@ pub(super) fn read_hinge<'a>(element: Element<'a>, name: &'a str) -> Result<Hing
     Ok(Hinge { element, name, kind: element.required_text("type")?, parent, child })
 }
 
-/// The rest of the joint.
-pub(super) fn read_joint(hinge: &Hinge<'_>, warnings: &mut Vec<ModelWarning>) -> Result<Joint, UrdfError> {
+/// The rest of the joint: one, or those of one degree of freedom that make it, in turn.
+pub(super) fn read_joints(
+    hinge: &Hinge<'_>,
+    warnings: &mut Vec<ModelWarning>,
+) -> Result<Vec<Joint>, UrdfError> {
     let element = hinge.element;
     // URDF: the axis is x where none is given
     let axis = || {
@@ -33,6 +37,8 @@ pub(super) fn read_joint(hinge: &Hinge<'_>, warnings: &mut Vec<ModelWarning>) ->
         "revolute" | "continuous" => JointKind::Revolute(axis()?),
         "prismatic" => JointKind::Prismatic(axis()?),
         "fixed" => JointKind::Fixed,
+        "planar" => return in_turn(hinge, Several::Planar(axis()?), warnings),
+        "ball" | "spherical" => return in_turn(hinge, Several::Ball, warnings),
         other => {
             let (joint, kind) = (hinge.name.to_owned(), other.to_owned());
             return Err(element.fail(UrdfProblem::JointType { joint, kind }));
@@ -40,9 +46,19 @@ pub(super) fn read_joint(hinge: &Hinge<'_>, warnings: &mut Vec<ModelWarning>) ->
     };
     let mut joint = Joint::new(hinge.name, kind, element.origin()?);
     if joint.kind == JointKind::Fixed {
-        return Ok(joint);
+        return Ok(vec![joint]);
     }
     joint.limits = read_limits(element, hinge.kind == "continuous")?;
+    // Gazebo writes -1 where a bound does not hold
+    let Limits { velocity, effort, .. } = &mut joint.limits;
+    for (what, limit) in [("velocity", velocity), ("effort", effort)] {
+        if limit.is_some_and(|value| value < 0.0) {
+            let note =
+                format!("joint '{}': its {what} limit is below zero, which is read as none", hinge.name);
+            warnings.push(ModelWarning::Note(note));
+            *limit = None;
+        }
+    }
     if let Some(dynamics) = element.child("dynamics") {
         let amount = |name| Ok::<_, UrdfError>(dynamics.number(name)?.unwrap_or(0.0));
         joint.damping = amount("damping")?;
@@ -54,12 +70,20 @@ pub(super) fn read_joint(hinge: &Hinge<'_>, warnings: &mut Vec<ModelWarning>) ->
         };
     }
     if let Some(mimic) = element.child("mimic") {
-        let leader = mimic.text("joint").unwrap_or_default();
-        let note =
-            format!("joint '{}' mimics joint '{leader}'; it is loaded as a joint of its own", hinge.name);
-        warnings.push(ModelWarning::Note(note));
+        warnings.push(ModelWarning::Note(mimic_note(hinge.name, mimic)));
     }
-    Ok(joint)
+    Ok(vec![joint])
+}
+
+/// What the file wanted, and what it gets.
+fn mimic_note(name: &str, mimic: Element<'_>) -> String {
+    let leader = mimic.text("joint").unwrap_or("?");
+    let factor = mimic.text("multiplier").unwrap_or("1");
+    let offset = mimic.text("offset").unwrap_or("0");
+    format!(
+        "joint '{name}' mimics joint '{leader}' ({name} = {factor} {leader} + {offset}): nothing couples them here, \
+         it is loaded as a joint of its own; start both where they fit and drive both, or make it fixed"
+    )
 }
 
 /// `<limit>`. One of the two position bounds alone leaves the other at 0, URDF's default; where

@@ -73,14 +73,18 @@ fn read_visual(visual: Element<'_>, around: &mut Surroundings<'_>) -> Result<Vis
 fn read_geometry(geometry: Element<'_>, around: &mut Surroundings<'_>) -> Result<Geometry, UrdfError> {
     if let Some(shape) = geometry.child("box") {
         shape.required_text("size")?;
-        Ok(Geometry::Box(shape.numbers("size")?.expect("the attribute is there")))
+        let edges: [f64; 3] = shape.numbers("size")?.expect("the attribute is there");
+        for edge in edges {
+            shape.positive("size", edge)?;
+        }
+        Ok(Geometry::Box(edges))
     } else if let Some(shape) = geometry.child("sphere") {
-        Ok(Geometry::Sphere { radius: shape.required_number("radius")? })
+        Ok(Geometry::Sphere { radius: shape.required_size("radius")? })
     } else if let Some(shape) = geometry.child("cylinder") {
-        let (radius, length) = (shape.required_number("radius")?, shape.required_number("length")?);
+        let (radius, length) = (shape.required_size("radius")?, shape.required_size("length")?);
         Ok(Geometry::Cylinder { radius, length })
     } else if let Some(shape) = geometry.child("capsule") {
-        let (radius, length) = (shape.required_number("radius")?, shape.required_number("length")?);
+        let (radius, length) = (shape.required_size("radius")?, shape.required_size("length")?);
         Ok(Geometry::Capsule { radius, length })
     } else if let Some(shape) = geometry.child("mesh") {
         let filename = around.meshes.resolve(shape.required_text("filename")?);

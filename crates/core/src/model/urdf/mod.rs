@@ -15,6 +15,7 @@ mod joint;
 mod link;
 mod material;
 mod mesh;
+mod several;
 
 pub use error::{UrdfError, UrdfProblem};
 

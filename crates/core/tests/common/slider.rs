@@ -1,0 +1,60 @@
+//! A mass that slides on a free base along x, all centres of mass on that line: closed forms hold.
+
+use nalgebra::{Isometry3, Matrix3, Vector3};
+use onorbit_core::control::{ControlError, ControlLaw, Controller, Observation};
+use onorbit_core::model::{Inertial, Joint, JointKind, Limits, Link, Model, ModelBuilder, neutral};
+use onorbit_core::simulation::{Integrator, Simulation, Trace};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Masses of base and slider, kg.
+pub const BASE: f64 = 20.0;
+pub const SLIDER: f64 = 5.0;
+/// What the joint feels of them: `M m/(M + m)`, kg.
+pub const REDUCED: f64 = BASE * SLIDER / (BASE + SLIDER);
+
+fn inertial(mass: f64) -> Option<Inertial> {
+    Some(Inertial { mass, com: Vector3::zeros(), inertia: Matrix3::identity() * (0.1 * mass) })
+}
+
+/// Joint `slide` with friction, N, damping, N s/m, and limits, m; at `offset` along x, m.
+pub fn slider(friction: f64, damping: f64, limits: Option<(f64, f64)>, offset: f64) -> Model {
+    let mut builder = ModelBuilder::new("slider", Link::new("base", inertial(BASE))).unwrap();
+    let origin = Isometry3::translation(offset, 0.0, 0.0);
+    let plain = Joint::new("slide", JointKind::Prismatic(Vector3::x()), origin);
+    let limits = Limits { position: limits, ..Limits::default() };
+    let joint = Joint { friction, damping, limits, ..plain };
+    builder.add("base", joint, Link::new("block", inertial(SLIDER))).unwrap();
+    builder.build().unwrap()
+}
+
+/// At rest but for the slider's rate, m/s.
+pub fn moving(model: Model, rate: f64, integrator: Integrator, time_step: f64) -> Simulation {
+    let (q, mut v) = (neutral(&model), vec![0.0; model.nv()]);
+    v[6] = rate;
+    let mut simulation = Simulation::new(Arc::new(model), q, v);
+    (simulation.integrator, simulation.time_step) = (integrator, time_step);
+    simulation
+}
+
+pub fn run(simulation: &mut Simulation, duration: f64) -> Trace {
+    simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+/// A force at the joint, N, as a function of time.
+pub struct Force(pub fn(f64) -> f64);
+
+impl Controller for Force {
+    fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError> {
+        tau.fill((self.0)(now.time));
+        Ok(())
+    }
+}
+
+pub fn driven(mut simulation: Simulation, force: fn(f64) -> f64) -> Simulation {
+    simulation.control = ControlLaw::User(Box::new(Force(force)));
+    simulation
+}
+
+pub const INTEGRATORS: [Integrator; 3] =
+    [Integrator::Rk4, Integrator::DormandPrince, Integrator::SemiImplicitEuler];

@@ -1,0 +1,208 @@
+"""From the YAML files of OnOrbitROS to a scenario of ours, saying of every line what became of it.
+
+Facts about its files and what its nodes make of them: github.com/OnOrbitROS/Simulation (``Orbit.cpp``,
+``orbit_publisher_pkg/config``) and github.com/OnOrbitROS/robot_torso (``talos_control``).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+from onorbit_rs.exceptions import InputError, OnOrbitError
+from onorbit_rs.interop.onorbitros_controller import read_controllers
+from onorbit_rs.interop.onorbitros_orbit import FIXED_KEYS, ORBIT_KEYS, read_fixed_pose, read_orbit
+from onorbit_rs.names import did_you_mean
+from onorbit_rs.scenario.place import dotted, scenario_error
+from onorbit_rs.scenario.yaml_lines import Lines, Location, read_yaml
+
+Verdict = Literal["understood", "corrected", "no meaning"]
+
+CONTROLLER_MARKS = {"end_effector_link", "kp_value", "kv_value"}
+PLACEHOLDER = {"rigid_body": {"mass": 100.0, "inertia": [10.0, 10.0, 10.0]}}
+DURATION = 60.0
+"""s, where no trajectory says how long."""
+
+
+@dataclass(frozen=True)
+class Note:
+    """What became of one line."""
+
+    file: Path
+    line: int | None
+    key: str
+    verdict: Verdict
+    text: str
+
+    def __str__(self) -> str:
+        """``orbit.yaml:4: semi_major_axix: corrected: ...``."""
+        where = f"{self.file}:{self.line}" if self.line else f"{self.file}"
+        return f"{where}: {self.key}: {self.verdict}: {self.text}"
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """A scenario, and how it came about."""
+
+    scenario: dict[str, Any]
+    """Ready for :func:`onorbit_rs.scenario.load`."""
+    notes: list[Note]
+    comments: dict[Location, str]
+    """Where each entry of the scenario came from."""
+
+
+@dataclass
+class Source:
+    """A mapping in a file, and where what is made of it goes."""
+
+    file: Path
+    lines: Lines
+    at: Location
+    data: dict[str, Any]
+    keep_going: bool
+    notes: list[Note]
+    result: dict[str, Any] = field(default_factory=dict)
+    comments: dict[Location, str] = field(default_factory=dict)
+
+    def note(self, key: str, verdict: Verdict, text: str) -> None:
+        """A remark on the line of ``key``."""
+        at = (*self.at, *key.split("/"))
+        line = self.lines.get(at) or self.lines.get((*self.at, key)) or self.lines.get(self.at)
+        self.notes.append(Note(self.file, line, key, verdict, text))
+
+    def put(self, at: Location, value: Any, key: str) -> None:
+        """An entry of the scenario, from the line of ``key``."""
+        part = self.result
+        for step in at[:-1]:
+            part = part.setdefault(str(step), {})
+        part[str(at[-1])] = value
+        line = self.lines.get((*self.at, key))
+        self.comments[at] = (
+            f"{self.file.name}{f':{line}' if line else ''}: {key}: {self.data.get(key, 'not given')}"
+        )
+
+    def fail(self, key: str, message: str) -> OnOrbitError:
+        """An error at the line of ``key``."""
+        at = (*self.at, key)
+        return scenario_error(message, self.file, self.lines.get(at), dotted(at))
+
+    def refuse_unknown(self, known: Sequence[str]) -> None:
+        """A key that OnOrbitROS does not have is an error, or with ``keep_going`` a remark."""
+        for key in self.data:
+            if key in known:
+                continue
+            hint = did_you_mean(key, known) or "; see docs/onorbitros.md"
+            if not self.keep_going:
+                way_out = "correct or remove it, or go on without it: --keep-going"
+                raise self.fail(key, f"no key of OnOrbitROS{hint} ({way_out})")
+            self.note(key, "no meaning", f"no key of OnOrbitROS{hint}")
+
+
+def convert(
+    paths: Sequence[str | os.PathLike[str]],
+    *,
+    controller: str | None = None,
+    keep_going: bool = False,
+    beside: str | os.PathLike[str] | None = None,
+) -> Conversion:
+    """One scenario from OnOrbitROS' files: an orbit or fixed pose, controllers, a robot, in any order.
+
+    Parameters
+    ----------
+    paths : sequence of paths
+        YAML files, and at most one URDF or xacro.
+    controller : str, optional
+        Which controller, where a file has several; the first where not given.
+    keep_going : bool
+        Whether an unknown key is a remark, not an error.
+    beside : path, optional
+        Folder of the scenario to be: the robot's path is written relative to it.
+
+    Raises
+    ------
+    NotFoundError, ReadError
+        A file that is not there or cannot be read.
+    ScenarioError
+        Unknown keys, values that are none, or files that do not fit together; with file and line.
+    InputError
+        No file, or two robots.
+    """
+    files = [Path(path) for path in paths]
+    robots = [file for file in files if file.suffix.lower() in (".urdf", ".xacro")]
+    if not files or len(robots) > 1:
+        what = "no file is given" if not files else f"two robots are given: {robots[0]} and {robots[1]}"
+        raise InputError(what, name="paths", got=len(files), expected="YAML files and at most one robot")
+    notes: list[Note] = []
+    scenario: dict[str, Any] = {"robot": dict(PLACEHOLDER)}
+    comments: dict[Location, str] = {
+        ("robot",): "a placeholder: give onorbit convert a URDF or xacro as well"
+    }
+    for robot in robots:
+        where = os.path.relpath(robot, beside) if beside is not None else str(robot)
+        scenario["robot"] = {"urdf": Path(where).as_posix()}
+        comments[("robot",)] = "its root link floats"
+        notes.append(Note(robot, None, "robot", "understood", "the robot; its root link floats"))
+    for source in _sources([file for file in files if file not in robots], keep_going, notes):
+        _read(source, controller)
+        for key, part in source.result.items():
+            if key in scenario and key not in ("simulation", "robot"):
+                raise scenario_error(f"'{key}' comes from two files; give one of them", source.file, None)
+            scenario[key] = part
+        comments |= source.comments
+    if "controller" in scenario and not robots:
+        raise scenario_error("a controller needs its robot: give the URDF or xacro as well", files[0], None)
+    scenario.setdefault("simulation", {"duration": DURATION})
+    notes.sort(key=lambda note: (files.index(note.file), note.line or 0))
+    return Conversion(scenario, notes, comments)
+
+
+def _sources(files: Sequence[Path], keep_going: bool, notes: list[Note]) -> list[Source]:
+    """Every mapping with parameters, out of namespaces and ROS 2's wrappers."""
+    found: list[Source] = []
+    for file in files:
+        data, lines = read_yaml(file)
+        if not isinstance(data, dict) or not data:
+            raise scenario_error(
+                "no parameters: a YAML of OnOrbitROS is a mapping of keys to values", file, None
+            )
+        top = Source(file, lines, (), data, keep_going, notes)
+        found += _unwrapped(top)
+    return found
+
+
+def _unwrapped(source: Source) -> list[Source]:
+    """Namespaces hold nothing but mappings; controllers of one namespace stay together."""
+    inner = source.data.values()
+    is_namespace = all(isinstance(part, dict) for part in inner) and not _is_known(source.data)
+    if not is_namespace or any(CONTROLLER_MARKS & set(part) or "type" in part for part in inner):
+        return [source]
+    below: list[Source] = []
+    for key, part in source.data.items():
+        text = "a wrapper of ROS 2" if key in ("/**", "ros__parameters") else "a namespace of ROS: left away"
+        source.note(key, "understood", text)
+        below += _unwrapped(
+            Source(source.file, source.lines, (*source.at, key), part, source.keep_going, source.notes)
+        )
+    return below
+
+
+def _is_known(data: Mapping[str, Any]) -> bool:
+    return any(key in ORBIT_KEYS or key in FIXED_KEYS for key in data)
+
+
+def _read(source: Source, controller: str | None) -> None:
+    """An orbit, a fixed pose or controllers: by the keys."""
+    inner = [part for part in source.data.values() if isinstance(part, dict)]
+    if CONTROLLER_MARKS & set(source.data) or any(
+        CONTROLLER_MARKS & set(part) or "type" in part for part in inner
+    ):
+        read_controllers(source, controller)
+    elif any(key in FIXED_KEYS and key not in ORBIT_KEYS for key in source.data):
+        source.refuse_unknown(FIXED_KEYS)
+        read_fixed_pose(source)
+    else:
+        source.refuse_unknown(ORBIT_KEYS)
+        read_orbit(source)

@@ -1,0 +1,194 @@
+"""Orbits and fixed poses of OnOrbitROS: kilometres, radians, struct tm."""
+
+from __future__ import annotations
+
+import math
+from datetime import datetime, timedelta
+from typing import TYPE_CHECKING
+
+from onorbit_rs._core import MU_EARTH
+from onorbit_rs.exceptions import QuantityError
+from onorbit_rs.interop.expressions import evaluate
+
+if TYPE_CHECKING:
+    from onorbit_rs.interop.onorbitros import Source
+
+MISSPELT = {"semi_major_axix": "semi_major_axis", "rate_argument_Of_perigee": "rate_argument_of_perigee"}
+"""As its own files write them and its node does not read them."""
+
+DEFAULTS = {
+    "semi_major_axis": 12000.0,
+    "eccentricity": 0.0004003,
+    "inclination": math.radians(51.6427),
+    "right_ascension_ini": 0.0,
+    "argument_of_perigee_ini": 0.0,
+    "mean_anomaly_ini": math.radians(60.0),
+}
+"""Of its node, where a parameter is missing or a text; km and rad."""
+
+_OURS = {
+    "semi_major_axis": "semi_major_axis",
+    "eccentricity": "eccentricity",
+    "inclination": "inclination",
+    "right_ascension_ini": "raan",
+    "argument_of_perigee_ini": "argument_of_periapsis",
+    "mean_anomaly_ini": "mean_anomaly",
+}
+_DATES = ("time_pass_perigee", "time_start")
+_DATE_PARTS = ("sec", "min", "hour", "mday", "mon", "year")
+_IDLE = {
+    "rate_of_right_ascension": "its node puts its own J2 rate in its place; here the node stays",
+    "rate_argument_of_perigee": "its node puts its own J2 rate in its place; here the perigee stays",
+    "publish_rate": "nothing is published; 'record_every' says how often the trace has a row",
+    "period": "it follows from the semi-major axis",
+    "time_of_applicability": "its node does not read it",
+}
+ORBIT_KEYS = (
+    *_OURS, *MISSPELT, *_IDLE, "angular_velocity", *_DATES,
+    *(f"{date}/{part}" for date in _DATES for part in _DATE_PARTS),
+)  # fmt: skip
+FIXED_KEYS = (
+    "pos_x", "pos_y", "pos_z", "orientation_x", "orientation_y", "orientation_z", "orientation_w",
+    "publish_rate",
+)  # fmt: skip
+EARTH_RADIUS = 6378e3
+
+
+def read_orbit(source: Source) -> None:
+    """Elements to ``orbit: {kind: kepler}``."""
+    source.put(("orbit", "kind"), "kepler", "kind")
+    source.comments.pop(("orbit", "kind"))
+    given = {MISSPELT.get(key, key): key for key in source.data}
+    for wrong, right in MISSPELT.items():
+        if wrong in source.data and right in source.data:
+            raise source.fail(wrong, f"{right!r} is given as well; keep one")
+    values = {name: _element(source, name, given.get(name)) for name in _OURS}
+    a_m = values["semi_major_axis"] = values["semi_major_axis"] * 1e3
+    values["mean_anomaly_ini"] += _since_perigee(source, a_m)
+    for name, ours in _OURS.items():
+        source.put(("orbit", ours), values[name], given.get(name, name))
+    for name, why in _IDLE.items():
+        if name in given:
+            source.note(given[name], "no meaning", why)
+    if "angular_velocity" in given:
+        rate, told = math.sqrt(MU_EARTH / a_m**3), _number(source, "angular_velocity")
+        source.note(
+            "angular_velocity", "no meaning",
+            f"it follows from the semi-major axis: sqrt(mu/a³) = {rate:.6g} rad/s (the file says {told:.6g})",
+        )  # fmt: skip
+
+
+def _element(source: Source, name: str, key: str | None) -> float:
+    """Its value in OnOrbitROS' unit; checked for what looks like another one."""
+    default = DEFAULTS[name]
+    if key is None:
+        source.note(name, "corrected", f"not given: OnOrbitROS' default, {default:.7g}")
+        return default
+    value = _number(source, key)
+    unit = {"semi_major_axis": "km", "eccentricity": ""}.get(name, "rad")
+    if name == "semi_major_axis" and not (1e3 < abs(value) < 1e6):
+        raise source.fail(
+            key, f"{value:g} km is no semi-major axis around the Earth; OnOrbitROS counts it in km"
+        )
+    if unit == "rad" and abs(value) > 2.0 * math.pi + 1e-9:
+        raise source.fail(key, f"{value:g} rad is more than a turn; for degrees write ({value:g}*pi)/180.0")
+    what = f"{_OURS[name]} {value:.9g} {unit}".rstrip()
+    if key != name:
+        lost = f"OnOrbitROS' node reads {name!r}, so it passes over this line and takes {default:.7g} {unit}"
+        source.note(key, "corrected", f"{what}; spelt {name!r}: {lost}")
+    elif isinstance(source.data[key], str):
+        lost = f"a text to ROS' parameter server, for which OnOrbitROS' node takes {default:.7g} {unit}"
+        source.note(key, "corrected", f"{what}; computed from {source.data[key]!r}: {lost}")
+    else:
+        source.note(key, "understood", what)
+    return value
+
+
+def _since_perigee(source: Source, a_m: float) -> float:
+    """Its node adds ``n (time_start - time_pass_perigee)`` to the mean anomaly: rad."""
+    dates = {name: _date(source, name) for name in _DATES}
+    keys = [key for key in source.data if key.split("/")[0] in _DATES]
+    start, perigee = dates["time_start"], dates["time_pass_perigee"]
+    if start is None or perigee is None:
+        for key in keys:
+            source.note(
+                key, "no meaning", "a date is not complete: OnOrbitROS' node would take the wall clock for it"
+            )
+        return 0.0
+    seconds = (start - perigee).total_seconds()
+    shift = math.sqrt(MU_EARTH / a_m**3) * seconds
+    for key in keys:
+        if seconds:
+            source.note(
+                key, "understood", f"start - perigee = {seconds:g} s adds {shift:.9g} rad to the mean anomaly"
+            )
+        else:
+            source.note(
+                key, "no meaning", "start and perigee are one date: nothing is added to the mean anomaly"
+            )
+    return shift
+
+
+def _date(source: Source, name: str) -> datetime | None:
+    """C's struct tm as mktime reads it: months from 0, days that may be 0; years written in full."""
+    nested = source.data.get(name)
+    parts: dict[str, object] = dict(nested) if isinstance(nested, dict) else {}
+    if nested is not None and not isinstance(nested, dict):
+        raise source.fail(name, f"a date is a mapping of {', '.join(_DATE_PARTS)}, not {nested!r}")
+    parts |= {part: source.data[key] for part in _DATE_PARTS if (key := f"{name}/{part}") in source.data}
+    unknown = [part for part in parts if part not in _DATE_PARTS]
+    if unknown:
+        raise source.fail(name, f"{unknown[0]!r} is no part of a date: {', '.join(_DATE_PARTS)}")
+    if not all(part in parts for part in _DATE_PARTS):
+        return None
+    values = {}
+    for part, value in parts.items():
+        if isinstance(value, bool) or not isinstance(value, int) or abs(value) > 10**6:
+            raise source.fail(name, f"{part} is a whole number, not {value!r}")
+        values[part] = value
+    year = values["year"] + (0 if values["year"] >= 1000 else 1900)  # struct tm counts from 1900
+    month = year * 12 + values["mon"]
+    try:
+        first = datetime(month // 12, month % 12 + 1, 1)
+        clock = timedelta(hours=values["hour"], minutes=values["min"], seconds=values["sec"])
+        return first + timedelta(days=values["mday"] - 1) + clock
+    except (ValueError, OverflowError):
+        raise source.fail(name, f"no such date: year {values['year']}") from None
+
+
+def read_fixed_pose(source: Source) -> None:
+    """A pose to ``orbit: {kind: fixed_frame}``: km, quaternion of the local frame in the inertial one."""
+    position = [_number(source, f"pos_{axis}", 0.0) * 1e3 for axis in "xyz"]
+    names = [f"orientation_{axis}" for axis in "xyzw"]
+    quat = [_number(source, name, float(name.endswith("w"))) for name in names]
+    norm = math.hypot(*quat)
+    if abs(norm - 1.0) > 1e-3:
+        raise source.fail("orientation_w", f"the quaternion has norm {norm:.6g}, it must be 1")
+    source.put(("orbit", "kind"), "fixed_frame", "kind")
+    source.put(("orbit", "position"), position, "pos_x")
+    source.put(("orbit", "attitude"), {"quaternion_xyzw": [part / norm for part in quat]}, "orientation_w")
+    source.comments[("orbit", "kind")] = f"{source.file.name}: a fixed pose"
+    source.comments[("orbit", "position")] = "m, from pos_x, pos_y, pos_z in km, the unit of its orbit topic"
+    source.comments[("orbit", "attitude")] = "from orientation_x, ..., orientation_w"
+    for key in source.data:
+        if key == "publish_rate":
+            source.note(key, "no meaning", _IDLE[key])
+        else:
+            unit = " km: its orbit topic counts in km" if key.startswith("pos_") else ""
+            source.note(key, "understood", f"{source.data[key]}{unit}")
+    if math.hypot(*position) > EARTH_RADIUS:
+        source.put(("orbit", "mu"), MU_EARTH, "mu")
+        source.put(("orbit", "gravity_mode"), "carried", "gravity_mode")
+        source.comments[("orbit", "mu")] = "the Earth pulls"
+        source.comments[("orbit", "gravity_mode")] = (
+            "tides alone: the robot stays with the pose, as in OnOrbitROS"
+        )
+
+
+def _number(source: Source, key: str, default: float | None = None) -> float:
+    if default is not None and key not in source.data:
+        return default
+    try:
+        return evaluate(source.data[key])
+    except QuantityError as error:
+        raise source.fail(key, str(error)) from None

@@ -1,0 +1,214 @@
+"""Xacro files through PyPI's xacro, without ROS: packages, arguments, what is left out, what is refused."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import pytest
+from border import Bad, check
+
+import onorbit_rs as oo
+
+HAS_XACRO = importlib.util.find_spec("xacro") is not None
+needs_xacro = pytest.mark.skipif(not HAS_XACRO, reason="in the test extra: pip install 'onorbit-rs[xacro]'")
+
+HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+LINK = (
+    '<link name="{0}"><inertial><mass value="{1}"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+)
+ARM = (
+    HEAD
+    + '<xacro:macro name="arm" params="prefix">'
+    + LINK.format("${prefix}arm", "${2*3}")
+    + '<joint name="${prefix}joint" type="continuous">'
+    '<parent link="base"/><child link="${prefix}arm"/></joint></xacro:macro></robot>'
+)
+ROBOT = (
+    HEAD
+    + '<xacro:arg name="side" default="left"/>'
+    + '<xacro:include filename="$(find arm_description)/urdf/arm.xacro"/>'
+    + LINK.format("base", "10")
+    + '<xacro:arm prefix="$(arg side)_"/></robot>'
+)
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    arm = tmp_path / "packages" / "arm_description" / "urdf" / "arm.xacro"
+    arm.parent.mkdir(parents=True)
+    arm.write_text(ARM)
+    file = tmp_path / "elsewhere" / "robot.urdf.xacro"
+    file.parent.mkdir()
+    file.write_text(ROBOT)
+    return file
+
+
+def packages(robot: Path) -> Path:
+    return robot.parents[1] / "packages"
+
+
+@needs_xacro
+def test_packages_and_arguments(robot: Path) -> None:
+    model = oo.Model.from_urdf(robot, package_paths=[packages(robot)])
+    assert (model.joint_names, model.mass) == (["left_joint"], 16.0)
+    itself = packages(robot) / "arm_description"  # the package's own folder will do
+    right = oo.Model.from_urdf(robot, package_paths=[itself], xacro_arguments={"side": "right"})
+    assert right.joint_names == ["right_joint"]
+    by_name = oo.robots.load(robot, package_paths=[packages(robot)], xacro_arguments={"side": 1})
+    assert by_name.joint_names == ["1_joint"]
+
+
+@needs_xacro
+def test_a_package_above_the_file_is_found(robot: Path) -> None:
+    inside = packages(robot) / "arm_description" / "urdf" / "robot.xacro"
+    inside.write_text(ROBOT)
+    assert oo.Model.from_urdf(inside).joint_names == ["left_joint"]
+
+
+@needs_xacro
+def test_a_urdf_that_holds_xacro_is_expanded(tmp_path: Path) -> None:
+    file = tmp_path / "robot.urdf"
+    file.write_text(HEAD + '<xacro:property name="m" value="2"/>' + LINK.format("base", "${m}") + "</robot>")
+    assert oo.Model.from_urdf(file).mass == 2.0
+
+
+@needs_xacro
+def test_a_scenario_gives_packages_and_arguments(robot: Path) -> None:
+    file = robot.parents[1] / "mine.yaml"
+    file.write_text(
+        "robot:\n  urdf: elsewhere/robot.urdf.xacro\n  package_paths: [packages]\n"
+        "  xacro_arguments: {side: right}\n"
+        "simulation: {duration: 0.01 s}\n"
+    )
+    from onorbit_rs.scenario import load
+    from onorbit_rs.scenario.build import build
+
+    assert build(load(file)).model.joint_names == ["right_joint"]
+    assert load(file).resolved()["robot"]["xacro_arguments"] == {"side": "right"}
+
+
+@needs_xacro
+def test_extras_of_simulators_are_left_out_and_told(tmp_path: Path) -> None:
+    file = tmp_path / "a.xacro"
+    extras = '<xacro:include filename="$(find x)/a.gazebo.xacro"/><xacro:a_gazebo/>'
+    file.write_text(HEAD + extras + LINK.format("base", 1) + "</robot>")
+    with pytest.warns(UserWarning) as told:
+        model = oo.Model.from_urdf(file)
+    assert model.frame_names == ["base"]
+    assert sum("left out, as an extra of a simulator" in str(warning.message) for warning in told) == 2
+    assert model.warnings == [str(warning.message) for warning in told]
+
+
+@needs_xacro
+def test_an_argument_that_nothing_asks_for_is_told(robot: Path) -> None:
+    with pytest.warns(UserWarning, match="does not ask for the argument 'sides', did you mean 'side'"):
+        oo.Model.from_urdf(robot, package_paths=[packages(robot)], xacro_arguments={"sides": "right"})
+
+
+@needs_xacro
+def test_xacro_is_as_it_was_afterwards(robot: Path) -> None:
+    import xacro
+    from xacro import substitution_args
+
+    before = (xacro.process_include, xacro.handle_macro_call, substitution_args._eval_find)
+    oo.Model.from_urdf(robot, package_paths=[packages(robot)])
+    with pytest.raises(oo.OnOrbitError):
+        oo.Model.from_urdf(robot)
+    assert before == (xacro.process_include, xacro.handle_macro_call, substitution_args._eval_find)
+
+
+BODIES = {
+    "argument not given": (LINK.format("$(arg zz)", 1), ("'zz' is not given", "xacro_arguments")),
+    "unknown property": (LINK.format("${zz}", 1), ("'zz' is not defined",)),
+    "division by zero": (LINK.format("${1/0}", 1), ("division by zero", "1/0")),
+    "unknown macro": ("<xacro:foo/>" + LINK.format("a", 1), ("xacro:foo",)),
+    "missing package": (
+        '<xacro:include filename="$(find arm_description)/arm.xacro"/>',
+        ("arm_description", "not there", "package_paths"),
+    ),
+    "missing file": ('<xacro:include filename="other.xacro"/>', ("'other.xacro'", "not there")),
+    "endless macro": ('<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/>', ("nested too deep",)),
+    "a file in itself": ('<xacro:include filename="$(dirname)/bad.xacro"/>', ("nested too deep",)),
+    "deep": ("<a>" * 3000 + "</a>" * 3000, ("nested too deep",)),
+    "no link": ("", ("no links",)),
+    "python's own names": (LINK.format("${__import__('os').getcwd()}", 1), ("__import__",)),
+    "a joint that is none": (
+        LINK.format("a", 1) + LINK.format("b", 1)
+        + '<joint name="j" type="screw"><parent link="a"/><child link="b"/></joint>',
+        ("'screw'", "prismatic and a revolute"),
+    ),
+}  # fmt: skip
+
+
+@needs_xacro
+@pytest.mark.parametrize("name", BODIES)
+def test_what_does_not_expand_names_the_file(name: str, tmp_path: Path) -> None:
+    body, words = BODIES[name]
+    file = tmp_path / "bad.xacro"
+    file.write_text(HEAD + body + "</robot>")
+    check(Bad(lambda: oo.Model.from_urdf(file), "ModelError", (str(file), *words), {"path": str(file)}))
+
+
+@needs_xacro
+@pytest.mark.parametrize(
+    ("content", "word"),
+    [
+        (b"", "empty"),
+        (b"\xff\xfe<\x00r\x00", "UTF-8"),
+        (b"hello", "not XML"),
+        (b"<robot><xacro:foo/></robot>", "xmlns:xacro"),
+        (b"<robot", "not XML"),
+    ],
+)
+def test_files_that_are_no_xacro(content: bytes, word: str, tmp_path: Path) -> None:
+    file = tmp_path / "bad.xacro"
+    file.write_bytes(content)
+    check(Bad(lambda: oo.Model.from_urdf(file), "ModelError", (str(file), word)))
+
+
+def test_files_that_are_not_there(tmp_path: Path) -> None:
+    check(
+        Bad(lambda: oo.Model.from_urdf(tmp_path / "no.xacro"), "NotFoundError", ("no.xacro", "no such file"))
+    )
+    folder = tmp_path / "folder.xacro"
+    folder.mkdir()
+    check(Bad(lambda: oo.Model.from_urdf(folder), "ReadError", ("folder",)))
+
+
+def test_without_xacro_the_error_says_what_to_install(tmp_path: Path) -> None:
+    file = tmp_path / "a.xacro"
+    file.write_text(ROBOT)
+    program = (
+        "import sys; sys.modules['xacro'] = None\nimport onorbit_rs as oo\n"
+        f"try:\n    oo.Model.from_urdf({str(file)!r})\nexcept oo.exceptions.ModelError as e:\n    print(e)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.strip().endswith("pip install 'onorbit-rs[xacro]'")
+
+
+# name, bodies, frames, mass (kg: the sum of <mass> by Python's ElementTree)
+SHARED = {
+    "ets_vii_onorbitros.xacro": ("base_link", 7, 7, 2692.2, "link_5"),
+    "spaceros_SSRMS_Canadarm2.urdf.xacro": ("Base_SSRMS", 8, 9, 1505.32, "gazebo"),
+}
+
+
+@needs_xacro
+@pytest.mark.parametrize("name", SHARED)
+def test_real_files(name: str, shared: Path) -> None:
+    base, bodies, frames, mass, odd = SHARED[name]
+    file = shared / "models" / name
+    if not file.is_file():
+        pytest.skip(f"{file} is not there")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # they are looked at below
+        model = oo.Model.from_urdf(file)
+    assert (model.body_names[0], len(model.bodies), len(model.frames)) == (base, bodies, frames)
+    assert model.mass == pytest.approx(mass, rel=1e-12)
+    assert any(odd in warning for warning in model.warnings)
+    assert ("world" in model.frame_names) == ("SSRMS" in name)
