@@ -260,7 +260,7 @@ def test_joint_references_of_scenarios(tmp_path: Path) -> None:
     ("text", "words"),
     [
         ("time,x,y,z,qx,qy,qz\n", "qw"),
-        ("time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,one\n", "row 2"),
+        ("time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,one\n", r"motion\.csv:2: could not convert"),
         ("time,x,y,z,qx,qy,qz,qw\n0,0,0\n", "3 cells"),
         ("time,x,y,z,qx,qy,qz,qw,vx\n", "vy"),
     ],

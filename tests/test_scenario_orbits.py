@@ -10,7 +10,14 @@ import pytest
 import yaml
 
 import onorbit_rs as oo
-from onorbit_rs.exceptions import ElementSetError, NotFoundError, OnOrbitError, PathError, ScenarioError
+from onorbit_rs.exceptions import (
+    ElementSetError,
+    NotFoundError,
+    OnOrbitError,
+    PathError,
+    ReadError,
+    ScenarioError,
+)
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
@@ -67,20 +74,23 @@ def test_points_come_with_units_or_from_a_file_beside_the_scenario(tmp_path: Pat
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "error", "says"),
     [
-        (CSV.replace("vx", "ux"), "path.csv:1: unknown column 'ux'"),
-        (CSV.replace(",vz", ""), "path.csv:1: velocities need"),
-        (CSV.replace("75000,0,0", "75000,zero,0"), "path.csv:4: could not convert"),
-        (CSV.replace("10,7e6,75000,0,0,7500,0", "10,7e6"), "path.csv:4: 2 cells under 7 columns"),
-        ("", "path.csv:1: times need"),
-        ("t,x,y,z\n", "at least 2"),
-        (CSV.replace("20,7e6", "5,7e6"), "times must increase"),
+        (CSV.replace("vx", "ux"), ReadError, "path.csv:1: unknown column 'ux'"),
+        (CSV.replace("vx", "x"), ReadError, "path.csv:1: the column 'x' is named twice"),
+        (CSV.replace(",vz", ""), ReadError, "path.csv:1: velocities: no column vz"),
+        (CSV.replace("75000,0,0", "75000,zero,0"), ReadError, "path.csv:4: could not convert"),
+        (CSV.replace("10,7e6,75000,0,0,7500,0", "10,7e6"), ReadError, "path.csv:4: 2 cells under 7 columns"),
+        ("", ReadError, "path.csv:1: times: no column t"),
+        ("t,x,y,z\n", PathError, "at least 2"),
+        (CSV.replace("20,7e6", "5,7e6"), PathError, "times must increase"),
     ],
 )
-def test_a_broken_file_of_points_says_its_line(text: str, says: str, tmp_path: Path) -> None:
+def test_a_broken_file_of_points_says_its_line(
+    text: str, error: type[OnOrbitError], says: str, tmp_path: Path
+) -> None:
     (tmp_path / "path.csv").write_text(text)
-    with pytest.raises(PathError, match=says) as caught:
+    with pytest.raises(error, match=says) as caught:
         orbit_of(written(tmp_path, {"kind": "custom_path", "file": "path.csv"}))
     assert "mine.yaml:" in str(caught.value)
 

@@ -9,8 +9,9 @@ import numpy as np
 from onorbit_rs import _core
 from onorbit_rs.scenario.orbit import KeplerOrbit
 from onorbit_rs.scenario.path import CustomPathOrbit, FixedFrameOrbit, Sgp4Orbit
-from onorbit_rs.scenario.path_file import GROUPS, read_points, read_text, two_lines
+from onorbit_rs.scenario.path_file import GROUPS, read_points, two_lines
 from onorbit_rs.scenario.start import quaternion_of
+from onorbit_rs.scenario.table import read_text
 
 
 def make_orbit(

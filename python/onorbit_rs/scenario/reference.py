@@ -14,7 +14,7 @@ from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.rotations import matrix_from_quaternion
 from onorbit_rs.scenario import reference_parts as parts
 from onorbit_rs.scenario.start import joint_values, quaternion_of
-from onorbit_rs.scenario.table import read_columns
+from onorbit_rs.scenario.table import read_table
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,8 +24,13 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 LIMITS = {"duration", "speed", "acceleration", "angular_speed", "angular_acceleration"}
-POSE_COLUMNS = ("x", "y", "z", "qx", "qy", "qz", "qw")
-VELOCITY_COLUMNS = ("vx", "vy", "vz", "wx", "wy", "wz")
+COLUMNS = {
+    "time": ("time",),
+    "position": ("x", "y", "z"),
+    "attitude": ("qx", "qy", "qz", "qw"),
+    "velocity": ("vx", "vy", "vz", "wx", "wy", "wz"),
+}
+"""Columns of a file of poses; SI."""
 
 
 @dataclass(frozen=True)
@@ -122,19 +127,18 @@ def _goal(goal: parts.Goal, start: Floats) -> Floats:
 
 
 def _sampled(part: parts.SampledReference, start: Floats, folder: Path, frame: Any) -> _core.Sampled:
-    names, table = read_columns(folder / part.file, ("time", *POSE_COLUMNS), VELOCITY_COLUMNS)
-    poses = np.tile(np.eye(4), (len(table), 1, 1))
-    quats = table[:, 4:8]
+    table = read_table(folder / part.file, COLUMNS, ("time", "position", "attitude"))
+    quats, velocities = table["attitude"], table.get("velocity")
+    poses = np.tile(np.eye(4), (len(quats), 1, 1))
     poses[:, :3, :3] = matrix_from_quaternion(quats / np.linalg.norm(quats, axis=1, keepdims=True))
-    poses[:, :3, 3] = table[:, 1:4]
-    velocities = table[:, 8:14] if VELOCITY_COLUMNS[0] in names else None
+    poses[:, :3, 3] = table["position"]
     if part.relative:
         turn = start[:3, :3] @ poses[0, :3, :3].T
         poses[:, :3, 3] = start[:3, 3] + (poses[:, :3, 3] - poses[0, :3, 3]) @ turn.T
         poses[:, :3, :3] = turn @ poses[:, :3, :3]
         if velocities is not None:
             velocities = np.concatenate([velocities[:, :3] @ turn.T, velocities[:, 3:] @ turn.T], axis=1)
-    return _core.Sampled(table[:, 0], poses, velocities=velocities, frame=frame)
+    return _core.Sampled(table["time"].ravel(), poses, velocities=velocities, frame=frame)
 
 
 def _joints(part: Any, at: Start) -> _core.JointReference:
@@ -145,11 +149,13 @@ def _joints(part: Any, at: Start) -> _core.JointReference:
     if isinstance(part, parts.JointHoldReference):
         return _core.JointHold(joint_values("joints", part.joints, at.q[7:], at.model)[indices])
     if isinstance(part, parts.JointSampledReference):
-        names, table = read_columns(at.folder / part.file, ("time",), tuple(group), all_or_none=False)
-        positions = np.tile(first, (len(table), 1))
-        for column, name in enumerate(names[1:], start=1):
-            positions[:, group.index(name)] = table[:, column]
-        return _core.JointSampled(table[:, 0], positions)
+        columns = {name: (name,) for name in ("time", *group)}
+        table = read_table(at.folder / part.file, columns, ("time",))
+        time = table.pop("time").ravel()
+        positions = np.tile(first, (len(time), 1))
+        for name, column in table.items():
+            positions[:, group.index(name)] = column.ravel()
+        return _core.JointSampled(time, positions)
     times = None if part.times is None else np.array([0.0, *part.times])
     timing: dict[str, Any] = {"times": times, "speed": part.speed, "acceleration": part.acceleration}
     if isinstance(part, parts.JointRampsReference):

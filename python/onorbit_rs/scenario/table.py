@@ -1,8 +1,9 @@
-"""Columns of numbers from a CSV with a header."""
+"""Small text files, and columns of numbers from a CSV with a header."""
 
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,46 +16,70 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-def read_columns(
-    path: Path, needed: tuple[str, ...], optional: tuple[str, ...], *, all_or_none: bool = True
-) -> tuple[list[str], NDArray[np.float64]]:
-    """Names and numbers (K, columns): the needed columns first, then the optional ones that are there.
+def read_text(path: Path) -> str:
+    """A small text file; raises ``NotFoundError`` or ``ReadError``."""
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise NotFoundError(f"no such file: {path}", path=str(path), kind="file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        why = "is no UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
+        raise ReadError(f"{path} cannot be read: {why}", path=str(path), kind="file") from None
+
+
+def read_table(
+    path: Path, groups: Mapping[str, tuple[str, ...]], needed: tuple[str, ...]
+) -> dict[str, NDArray[np.float64]]:
+    """Numbers (K, columns) of each group of columns that is there; lines that begin with ``#`` are left out.
 
     Raises
     ------
     NotFoundError
         No such file.
     ReadError
-        A column that is missing or unknown, or a cell that is no number; says where.
+        A needed group or a part of another is missing, a column is unknown or named twice, a cell is no
+        number; says the line.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise NotFoundError(f"no such file: {path}", path=str(path), kind="table") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise ReadError(f"{path} cannot be read: {error}", path=str(path)) from None
-    rows = [row for row in csv.reader(text.splitlines()) if row and not row[0].lstrip().startswith("#")]
-    header = [name.strip() for name in rows[0]] if rows else []
+    reader = csv.reader(read_text(path).splitlines())
+    rows = [(reader.line_num, row) for row in reader if _is_filled(row)]
+    top, header = rows[0] if rows else (1, [])
+    header = [name.strip() for name in header]
+    _check_header(header, groups, needed, f"{path}:{top}", path)
+    numbers = [_numbers(row, len(header), f"{path}:{line}", path) for line, row in rows[1:]]
+    table = np.array(numbers, dtype=np.float64).reshape(-1, len(header))
+    return {
+        name: np.ascontiguousarray(table[:, [header.index(column) for column in columns]])
+        for name, columns in groups.items()
+        if columns[0] in header
+    }
+
+
+def _is_filled(row: list[str]) -> bool:
+    return any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#")
+
+
+def _check_header(
+    header: list[str], groups: Mapping[str, tuple[str, ...]], needed: tuple[str, ...], where: str, path: Path
+) -> None:
+    known = [column for columns in groups.values() for column in columns]
     for name in header:
-        if name not in (*needed, *optional):
-            hint = did_you_mean(name, [*needed, *optional])
-            raise ReadError(f"{path}: unknown column {name!r}{hint}", path=str(path))
-    wanted = [*needed, *(name for name in optional if name in header)]
-    short = [name for name in needed if name not in header]
-    if all_or_none and len(wanted) > len(needed):
-        short += [name for name in optional if name not in header]
-    if short or len(set(header)) < len(header):
-        what = f"has no column {', '.join(map(repr, short))}" if short else "names a column twice"
-        raise ReadError(f"{path}: the header {what}; it is {','.join(header)}", path=str(path))
-    return wanted, np.array(
-        [_numbers(path, line, row, header, wanted) for line, row in enumerate(rows[1:], 2)]
-    )
+        if name not in known:
+            raise ReadError(f"{where}: unknown column {name!r}{did_you_mean(name, known)}", path=str(path))
+        if header.count(name) > 1:
+            raise ReadError(f"{where}: the column {name!r} is named twice", path=str(path))
+    for name, columns in groups.items():
+        missing = [column for column in columns if column not in header]
+        if missing and (name in needed or len(missing) < len(columns)):
+            raise ReadError(
+                f"{where}: {name}: no column {', '.join(missing)}; needed: {', '.join(columns)}",
+                path=str(path),
+            )
 
 
-def _numbers(path: Path, line: int, row: list[str], header: list[str], wanted: list[str]) -> list[float]:
-    if len(row) != len(header):
-        raise ReadError(f"{path}: row {line} has {len(row)} cells, the header {len(header)}", path=str(path))
+def _numbers(row: list[str], width: int, where: str, path: Path) -> list[float]:
+    if len(row) != width:
+        raise ReadError(f"{where}: {len(row)} cells under {width} columns", path=str(path))
     try:
-        return [float(row[header.index(name)]) for name in wanted]
+        return [float(cell) for cell in row]
     except ValueError as error:
-        raise ReadError(f"{path}: row {line}: {error}", path=str(path)) from None
+        raise ReadError(f"{where}: {error}; a bare number in SI is needed", path=str(path)) from None

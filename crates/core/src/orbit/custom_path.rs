@@ -1,9 +1,9 @@
 //! A path through given points: any motion, of nature or not.
 
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3, Vector4};
+use nalgebra::{Vector3, Vector4};
 
-use super::quintic::Quintic;
 use super::{Orbit, OrbitError, OrbitState, PathFrame};
+use crate::spatial::{self, Quat, RotationSpline, Spline, SplineError, exp_so3};
 
 /// A path that cannot be built, or that has no state at some time.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -38,6 +38,8 @@ pub enum PathError {
          it coast on beyond them with ends=\"coast\""
     )]
     TimeOutOfPath { time: f64, start: f64, end: f64 },
+    #[error(transparent)]
+    Spline(#[from] SplineError),
 }
 
 /// What happens before the first point and after the last.
@@ -68,15 +70,15 @@ pub struct PathPoints {
 
 /// A C² path exactly through the given points.
 ///
-/// Positions alone: cubic not-a-knot spline, of order 4. With velocities: quintic spline whose third
-/// derivative goes on across the points too, order 6. With accelerations: quintic Hermite pieces, order 6.
-/// Attitudes: the cubic spline of the quaternions, normalised, which is C² too and of order 4.
+/// Positions alone: cubic spline, of order 4. With velocities: quintic spline whose third derivative goes on
+/// across the points too, order 6. With accelerations: quintic pieces, order 6. Attitudes: [`RotationSpline`],
+/// of order 4.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CustomPath {
     mu: Option<f64>,
     ends: Ends,
-    position: Quintic<3>,
-    attitude: Option<Quintic<4>>,
+    position: Spline,
+    attitude: Option<RotationSpline>,
 }
 
 /// Largest turn between two points, rad.
@@ -93,18 +95,26 @@ impl CustomPath {
         }
         points.check()?;
         let PathPoints { times, positions, velocities, accelerations, attitudes } = points;
-        let attitude = attitudes.map(|given| Quintic::through(times.clone(), &aligned(given)));
+        let attitude = attitudes.map(|given| {
+            let given: Vec<_> = given.iter().map(|q| Quat::from_xyzw(q.normalize().as_slice())).collect();
+            RotationSpline::passing(&times, &given, spatial::Ends::Free)
+        });
+        let rows = |of: &[Vector3<f64>]| of.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<_>>();
+        let x = rows(&positions);
         let position = match (velocities, accelerations) {
-            (Some(v), Some(a)) => Quintic::hermite(times, &positions, &v, &a),
-            (Some(v), None) => Quintic::with_velocities(times, &positions, &v),
-            _ => Quintic::through(times, &positions),
+            (Some(v), Some(a)) => Spline::new(&times, 3, &x, &rows(&v), &rows(&a)),
+            (Some(v), None) => Spline::with_slopes(&times, 3, &x, &rows(&v)),
+            _ => Spline::passing(&times, 3, &x, spatial::Ends::Free),
         };
+        let (position, attitude) =
+            (position.map_err(PathError::from)?, attitude.transpose().map_err(PathError::from)?);
         Ok(Self { mu, ends, position, attitude })
     }
 
     /// First and last time, s.
     pub fn span(&self) -> (f64, f64) {
-        (self.position.start(), self.position.end())
+        let times = self.position.times();
+        (times[0], times[times.len() - 1])
     }
 
     /// What happens outside the span.
@@ -145,13 +155,19 @@ impl Orbit for CustomPath {
     fn event_times(&self) -> Vec<f64> {
         match self.ends {
             Ends::Error => Vec::new(),
-            Ends::Coast => vec![self.position.start(), self.position.end()],
+            Ends::Coast => vec![self.span().0, self.span().1],
         }
     }
 
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         let (inside, beyond) = self.clamped(t)?;
-        let [position, velocity, acceleration] = self.position.at(inside);
+        let [mut position, mut velocity, mut acceleration] = [Vector3::zeros(); 3];
+        self.position.sample(
+            inside,
+            position.as_mut_slice(),
+            velocity.as_mut_slice(),
+            acceleration.as_mut_slice(),
+        );
         if beyond == 0.0 {
             return Ok(OrbitState { position, velocity, acceleration });
         }
@@ -161,13 +177,10 @@ impl Orbit for CustomPath {
     fn frame(&self, t: f64) -> Result<PathFrame, OrbitError> {
         let Some(attitude) = &self.attitude else { return self.lvlh(t).map(PathFrame::from) };
         let (inside, beyond) = self.clamped(t)?;
-        let [q, q_dot, _] = attitude.at(inside);
-        let (u, w, u_dot, w_dot) = (q.xyz(), q.w, q_dot.xyz(), q_dot.w);
-        // ω = 2 q̄ ⊗ q̇ / |q|², its vector part, in the frame's own axes
-        let rate_p = (u_dot * w - u * w_dot - u.cross(&u_dot)) * (2.0 / q.norm_squared());
-        let turn = UnitQuaternion::from_quaternion(Quaternion::from_vector(q))
-            * UnitQuaternion::from_scaled_axis(rate_p * beyond);
-        Ok(PathFrame { rot_ip: Matrix3::from(turn.to_rotation_matrix()), rate_p })
+        let (turn, rate, _) = attitude.sample(inside);
+        let rot_ip = exp_so3(rate * beyond).product(turn).matrix();
+        let rate_p = rot_ip.transpose_mul(rate); // the axis of a steady turn stays where it is
+        Ok(PathFrame { rot_ip: rot_ip.to_nalgebra(), rate_p: rate_p.to_nalgebra() })
     }
 }
 
@@ -222,14 +235,4 @@ fn rows<T>(
         Some((index, value)) => Err(PathError::NotFinite { name, index, value }),
         None => Ok(()),
     }
-}
-
-/// Each quaternion with the sign that is nearer to the one before.
-fn aligned(mut quaternions: Vec<Vector4<f64>>) -> Vec<Vector4<f64>> {
-    for i in 1..quaternions.len() {
-        if quaternions[i].dot(&quaternions[i - 1]) < 0.0 {
-            quaternions[i] = -quaternions[i];
-        }
-    }
-    quaternions
 }

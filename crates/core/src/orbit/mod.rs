@@ -8,7 +8,6 @@ mod error;
 mod fixed_frame;
 mod frames;
 pub mod kepler;
-mod quintic;
 pub mod sgp4;
 
 use nalgebra::Vector3;
@@ -67,6 +66,14 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// [`OrbitError`] where the orbit is not defined, such as at a time that is not finite.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError>;
 
+    /// Position and velocity alone, m and m/s: what [`Orbit::state`] says of them.
+    ///
+    /// # Errors
+    /// As [`Orbit::state`], but for those of the acceleration.
+    fn position_velocity(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
+        self.state(t).map(|state| (state.position, state.velocity))
+    }
+
     /// Axes of `I` in this run.
     fn axes(&self) -> Axes {
         Axes::default()
@@ -116,7 +123,7 @@ pub(crate) fn point_mass_gravity(mu: f64, r: &Vector3<f64>) -> Vector3<f64> {
 ///
 /// # Errors
 /// [`OrbitError::WrongLength`] when an output does not hold 3 T numbers; otherwise the
-/// first error of [`Orbit::state`], rows before it being written.
+/// first error of [`Orbit::position_velocity`], rows before it being written.
 pub fn states(
     orbit: &dyn Orbit,
     times: &[f64],
@@ -131,9 +138,9 @@ pub fn states(
     }
     let rows = positions.chunks_exact_mut(3).zip(velocities.chunks_exact_mut(3));
     for (&t, (r, v)) in times.iter().zip(rows) {
-        let state = orbit.state(t)?;
-        r.copy_from_slice(state.position.as_slice());
-        v.copy_from_slice(state.velocity.as_slice());
+        let (position, velocity) = orbit.position_velocity(t)?;
+        r.copy_from_slice(position.as_slice());
+        v.copy_from_slice(velocity.as_slice());
     }
     Ok(())
 }

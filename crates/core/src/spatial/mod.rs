@@ -10,6 +10,7 @@ mod instruction_set;
 mod lanes;
 mod mat3;
 mod motion;
+mod quintic_spline;
 mod rotation;
 mod rotation_spline;
 mod scalar;

@@ -1,5 +1,6 @@
 //! Curves through given points, twice continuously differentiable.
 
+use super::quintic_spline::curvatures;
 use thiserror::Error;
 
 /// Points that no curve can be laid through.
@@ -86,7 +87,7 @@ impl Spline {
         Self::new(times, width, values, &slopes, &curvatures)
     }
 
-    /// Passes through the points with the given `slopes`, whose own cubic spline has the curvatures.
+    /// Passes through the points with the given `slopes`, its third derivative continuous too; order 6.
     ///
     /// # Errors
     /// As [`Spline::new`].
@@ -97,8 +98,9 @@ impl Spline {
         slopes: &[f64],
     ) -> Result<Self, SplineError> {
         check_times(times)?;
+        check_rows("values", values, times.len(), width)?;
         check_rows("slopes", slopes, times.len(), width)?;
-        Self::new(times, width, values, slopes, &cubic_slopes(times, width, slopes, Ends::Free))
+        Self::new(times, width, values, slopes, &curvatures(times, width, values, slopes))
     }
 
     /// Times of the knots, (K,) s.
@@ -161,16 +163,21 @@ impl Place {
     }
 }
 
-/// The six conditions at `u = 0` and `1`, solved for `p + v u + a u²/2 + c₃u³ + c₄u⁴ + c₅u⁵`.
+/// The six conditions at both ends, solved for `p + v s + a s²/2 + c₃s³ + c₄s⁴ + c₅s⁵`, `s = u h`; what is
+/// known at `s = 0` comes back to the bit.
 fn quintic(h: f64, u: f64, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 3] {
-    let (d, v, v1, a, a1) = (p1 - p, v * h, v1 * h, a * h * h, a1 * h * h);
-    let c3 = 10.0 * d - 6.0 * v - 4.0 * v1 - 1.5 * a + 0.5 * a1;
-    let c4 = -15.0 * d + 8.0 * v + 7.0 * v1 + 1.5 * a - a1;
-    let c5 = 6.0 * d - 3.0 * (v + v1) - 0.5 * (a - a1);
-    let value = p + u * (v + u * (0.5 * a + u * (c3 + u * (c4 + u * c5))));
-    let slope = v + u * (a + u * (3.0 * c3 + u * (4.0 * c4 + u * 5.0 * c5)));
-    let curvature = a + u * (6.0 * c3 + u * (12.0 * c4 + u * 20.0 * c5));
-    [value, slope / h, curvature / (h * h)]
+    // what position, velocity and acceleration lack at the far end, per h³, h² and h
+    let lack_p = ((p1 - p) / h - v - a * (0.5 * h)) / (h * h);
+    let lack_v = (v1 - v - a * h) / (h * h);
+    let lack_a = (a1 - a) / h;
+    let c3 = 10.0 * lack_p - 4.0 * lack_v + 0.5 * lack_a;
+    let c4 = (-15.0 * lack_p + 7.0 * lack_v - lack_a) / h;
+    let c5 = (6.0 * lack_p - 3.0 * lack_v + 0.5 * lack_a) / (h * h);
+    let s = u * h;
+    let value = p + s * (v + s * (0.5 * a + s * (c3 + s * (c4 + s * c5))));
+    let slope = v + s * (a + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)));
+    let curvature = a + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5));
+    [value, slope, curvature]
 }
 
 /// Two or more times that increase.

@@ -34,7 +34,7 @@ fn wrap(
     model: EarthModel,
     made: (&str, &Bound<'_, PyTuple>, &Bound<'_, PyDict>),
 ) -> PyResult<PyClassInitializer<PySgp4>> {
-    let sgp4 = elements.and_then(|elements| Sgp4::new(elements, model));
+    let sgp4 = elements.map(|elements| Sgp4::new(elements, model));
     let sgp4 = Arc::new(sgp4.map_err(|error| error.into_python(py))?);
     let orbit = base(Arc::clone(&sgp4) as Arc<dyn Orbit>, made.0, made.1, made.2)?;
     Ok(PyClassInitializer::from(orbit).add_subclass(PySgp4 { sgp4 }))

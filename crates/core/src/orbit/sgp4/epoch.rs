@@ -1,5 +1,7 @@
 //! An instant of UTC as element sets give it.
 
+use std::f64::consts::{PI, TAU};
+
 /// A day and the seconds since its midnight, UTC without leap seconds, as SGP4 counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Epoch {
@@ -41,13 +43,23 @@ impl Epoch {
         is_time.then(|| Self { day, seconds: (hour * 3600 + minute * 60) as f64 + seconds })
     }
 
-    /// Julian years of 365.25 days since 2000-01-01 12:00.
-    ///
-    /// By way of one number for the Julian date, good to 20 µs, as the reference code has it: on orbits of two
-    /// weeks the Moon's pull tells the difference (4 mm).
-    pub(super) fn julian_years(&self) -> f64 {
+    /// Julian date in one number, good to 20 µs, as the reference code has it: on orbits of two weeks the Moon's
+    /// pull tells the difference (4 mm).
+    pub(super) fn julian_day(&self) -> f64 {
         let (midnight, part) = self.julian_date();
-        ((midnight + part) - 2_451_545.0) / 365.25
+        midnight + part
+    }
+
+    /// Greenwich mean sidereal time of 1982, rad within [0, 2π), UTC taken for UT1.
+    ///
+    /// Source: Aoki et al., Astronomy and Astrophysics 105, 1982, eq. 14.
+    pub(super) fn sidereal_time(&self) -> f64 {
+        let t = (self.julian_day() - 2_451_545.0) / 36_525.0;
+        let seconds = -6.2e-6 * t * t * t
+            + 0.093_104 * t * t
+            + (876_600.0 * 3600.0 + 8_640_184.812_866) * t
+            + 67_310.548_41;
+        (seconds * (PI / 180.0) / 240.0).rem_euclid(TAU)
     }
 
     /// Julian date of the epoch's midnight, and the part of the day since.
@@ -111,6 +123,13 @@ mod tests {
         }
         assert_eq!(Epoch::parse("2024-060T06:00:00"), Epoch::parse("2024-02-29T06:00:00.0Z"));
         assert_eq!(Epoch::of_year(2000, 1.5).julian_date(), (2_451_544.5, 0.5));
+    }
+
+    #[test]
+    fn sidereal_time_is_the_published_one() {
+        // Vallado, Fundamentals of Astrodynamics and Applications, example 3-5: 152.5788°
+        let epoch = Epoch::parse("1992-08-20T12:14:00").expect("a date");
+        assert!((epoch.sidereal_time().to_degrees() - 152.578_788).abs() < 1e-6);
     }
 
     #[test]

@@ -100,7 +100,7 @@ pub enum Sgp4Error {
     MeanMotion {
         /// Time since the epoch, s.
         time: f64,
-        /// What came out; not a number where resonance drove it below zero on the way.
+        /// What came out.
         mean_motion: f64,
     },
     /// 3: eccentricity with the pull of Sun and Moon.
@@ -116,12 +116,14 @@ pub enum Sgp4Error {
     },
     /// 4: semi-latus rectum.
     #[error(
-        "SGP4 error 4 at t = {time} s: the semi-latus rectum is negative: the elements do not reach so far from \
-         their epoch"
+        "SGP4 error 4 at t = {time} s: the semi-latus rectum is {semi_latus_rectum} m, it must not be negative: \
+         the elements do not reach so far from their epoch"
     )]
     SemiLatusRectum {
         /// Time since the epoch, s.
         time: f64,
+        /// What came out, m.
+        semi_latus_rectum: f64,
     },
     /// 6: below the surface.
     #[error(
@@ -156,19 +158,19 @@ impl Sgp4Error {
             Self::MeanEccentricity { time, .. }
             | Self::MeanMotion { time, .. }
             | Self::PerturbedEccentricity { time, .. }
-            | Self::SemiLatusRectum { time }
+            | Self::SemiLatusRectum { time, .. }
             | Self::Decayed { time, .. } => time,
         }
     }
 
-    /// The offending value, where there is one.
-    pub fn value(&self) -> Option<f64> {
+    /// The offending value, in the unit of its message.
+    pub fn value(&self) -> f64 {
         match *self {
             Self::MeanEccentricity { eccentricity, .. }
-            | Self::PerturbedEccentricity { eccentricity, .. } => Some(eccentricity),
-            Self::MeanMotion { mean_motion, .. } => Some(mean_motion),
-            Self::SemiLatusRectum { .. } => None,
-            Self::Decayed { distance, .. } => Some(distance),
+            | Self::PerturbedEccentricity { eccentricity, .. } => eccentricity,
+            Self::MeanMotion { mean_motion, .. } => mean_motion,
+            Self::SemiLatusRectum { semi_latus_rectum, .. } => semi_latus_rectum,
+            Self::Decayed { distance, .. } => distance,
         }
     }
 }

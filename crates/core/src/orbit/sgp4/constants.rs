@@ -1,0 +1,81 @@
+//! Earth models, and the units that SGP4 counts in: Earth radii, minutes, radians.
+
+/// Earth model of an element set; published sets are fitted with [`EarthModel::Wgs72`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EarthModel {
+    /// WGS-72 with the rounded constants of Spacetrack Report #3.
+    Wgs72Old,
+    /// WGS-72.
+    #[default]
+    Wgs72,
+    /// WGS-84.
+    Wgs84,
+}
+
+impl EarthModel {
+    /// Every model with its name.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("wgs72old", Self::Wgs72Old), ("wgs72", Self::Wgs72), ("wgs84", Self::Wgs84)];
+
+    /// Gravitational parameter, m³/s².
+    pub fn mu(self) -> f64 {
+        match self {
+            Self::Wgs72Old => 3.986_007_996_4e14,
+            Self::Wgs72 => 3.986_008e14,
+            Self::Wgs84 => 3.986_005e14,
+        }
+    }
+
+    /// The constants of the theory.
+    pub(super) fn earth(self) -> Earth {
+        // kₑ = 60/√(aₑ³/μ)
+        let ke = |a: f64| 60.0 / (a * a * a / (self.mu() / 1e9)).sqrt();
+        let (j2, j3, j4) = (0.001_082_616, -0.000_002_538_81, -0.000_001_655_97);
+        match self {
+            Self::Wgs72Old => Earth::new(6378.135, 0.074_366_916_1, j2, j3, j4),
+            Self::Wgs72 => Earth::new(6378.135, ke(6378.135), j2, j3, j4),
+            Self::Wgs84 => Earth::new(
+                6378.137,
+                ke(6378.137),
+                0.001_082_629_989_05,
+                -0.000_002_532_153_06,
+                -0.000_001_610_987_61,
+            ),
+        }
+    }
+}
+
+/// An Earth model as the equations take it.
+///
+/// Source: AIAA 2006-6753, table 1 and the constants of its code.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Earth {
+    /// Equatorial radius `aₑ`, km.
+    pub(super) radius_km: f64,
+    /// `kₑ = √μ`, Earth radii^{3/2}/min.
+    pub(super) ke: f64,
+    pub(super) j2: f64,
+    pub(super) j3_j2: f64,
+    pub(super) j4: f64,
+}
+
+impl Earth {
+    fn new(radius_km: f64, ke: f64, j2: f64, j3: f64, j4: f64) -> Self {
+        Self { radius_km, ke, j2, j3_j2: j3 / j2, j4 }
+    }
+}
+
+/// Mean elements of one instant, rad and rad/min.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mean {
+    /// Brouwer's mean motion `n″`.
+    pub(super) n: f64,
+    pub(super) e: f64,
+    pub(super) i: f64,
+    /// Right ascension of the ascending node, `Ω`.
+    pub(super) node: f64,
+    /// Argument of perigee, `ω`.
+    pub(super) perigee: f64,
+    /// Mean anomaly, `M`.
+    pub(super) anomaly: f64,
+}

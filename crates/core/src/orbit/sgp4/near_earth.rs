@@ -1,0 +1,183 @@
+//! What the Earth's flattening and its air do to the mean elements, time after time.
+//!
+//! Source: Spacetrack Report #3, section 6, in the symbols of that report. The order of every sum and product
+//! is that of the reference code: after thousands of revolutions the last digit of a rate is worth centimetres.
+
+use super::constants::{Earth, Mean};
+use super::elements::MeanElements;
+use std::f64::consts::TAU;
+
+/// Lowest perigee, km of height, at which the drag's finer terms are kept.
+const FINE_PERIGEE: f64 = 220.0;
+/// Eccentricity from which drag depends on where in its orbit the satellite is.
+const ROUND: f64 = 1e-4;
+
+/// Elements at the epoch and how they drift.
+#[derive(Clone, Debug)]
+pub(super) struct NearEarth {
+    pub(super) epoch: Mean,
+    /// `Ṁ`, `ω̇`, `Ω̇`, rad/min.
+    pub(super) anomaly_rate: f64,
+    pub(super) perigee_rate: f64,
+    pub(super) node_rate: f64,
+    node_drag: f64,
+    b_star: f64,
+    c1: f64,
+    c4: f64,
+    fine: Option<Fine>,
+}
+
+/// Terms of drag beyond the first power of time, left out for low perigees and deep space.
+#[derive(Clone, Debug)]
+struct Fine {
+    eta: f64,
+    c5: f64,
+    d: [f64; 3],
+    t: [f64; 3],
+    perigee: f64,
+    anomaly: f64,
+    /// `(1 + η cos M₀)³` and `sin M₀`.
+    cube0: f64,
+    sin0: f64,
+}
+
+/// The drifting elements at one time, and what drag takes off them later on.
+pub(super) struct Drifted {
+    pub(super) mean: Mean,
+    /// Factor of `√a`.
+    pub(super) shrink: f64,
+    /// Loss of eccentricity.
+    pub(super) rounding: f64,
+    /// Gain of mean longitude over `n″₀`, min.
+    pub(super) lead: f64,
+}
+
+/// Brouwer's mean elements from the published ones.
+///
+/// `n″₀ = n₀/(1 + δ₀)`, `δ₀ = d/a₀²`, `a₀ = a₁ (1 - δ₁² - δ₁ (1/3 + 134 δ₁²/81))`, `δ₁ = d/a₁²`,
+/// `a₁ = (kₑ/n₀)^{2/3}`, `d = ¾ J₂ (3 cos²i - 1)/(1 - e²)^{3/2}`.
+pub(super) fn brouwer(set: &MeanElements, earth: &Earth) -> Mean {
+    let (i, e) = (set.inclination_deg.to_radians(), set.eccentricity);
+    let n = set.mean_motion_rev_day / (1440.0 / TAU);
+    let (cos, p) = (i.cos(), 1.0 - e * e);
+    let a1 = (earth.ke / n).powf(2.0 / 3.0);
+    let d = 0.75 * earth.j2 * (3.0 * (cos * cos) - 1.0) / (p.sqrt() * p);
+    let d1 = d / (a1 * a1);
+    let a0 = a1 * (1.0 - d1 * d1 - d1 * (1.0 / 3.0 + 134.0 * d1 * d1 / 81.0));
+    Mean {
+        n: n / (1.0 + d / (a0 * a0)),
+        e,
+        i,
+        node: set.raan_deg.to_radians(),
+        perigee: set.argument_of_perigee_deg.to_radians(),
+        anomaly: set.mean_anomaly_deg.to_radians(),
+    }
+}
+
+impl NearEarth {
+    pub(super) fn new(epoch: Mean, b_star: f64, earth: &Earth, is_deep: bool) -> Self {
+        let Mean { n, e, i, perigee, anomaly, .. } = epoch;
+        let (sin, cos) = i.sin_cos();
+        let c2 = cos * cos; // θ²
+        let c4 = c2 * c2; // θ⁴
+        let (e2, a) = (e * e, (earth.ke / n).powf(2.0 / 3.0));
+        let beta2 = 1.0 - e2;
+        let (p, rp) = (a * beta2, a * (1.0 - e));
+        let pinv2 = 1.0 / (p * p);
+        let (x3, x1) = (3.0 * c2 - 1.0, 1.0 - c2);
+
+        // density ~ ((q₀ - s)/(r - s))⁴, s lowered with the perigee
+        let height = (rp - 1.0) * earth.radius_km;
+        let s_km = if height < 98.0 { 20.0 } else { (height - 78.0).min(78.0) };
+        let s = s_km / earth.radius_km + 1.0;
+        let q4 = ((120.0 - s_km) / earth.radius_km).powi(4);
+        let xi = 1.0 / (a - s); // ξ
+        let eta = a * e * xi;
+        let (eta2, e_eta) = (eta * eta, e * eta);
+        let psi2 = (1.0 - eta2).abs();
+        let k = q4 * xi.powi(4); // (q₀ - s)⁴ ξ⁴
+        let k1 = k / psi2.powf(3.5);
+        // C₂, C₁ = B* C₂, C₃, C₄, C₅
+        let cc2 = k1
+            * n
+            * (a * (1.0 + 1.5 * eta2 + e_eta * (4.0 + eta2))
+                + 0.375 * earth.j2 * xi / psi2 * x3 * (8.0 + 3.0 * eta2 * (8.0 + eta2)));
+        let c1 = b_star * cc2;
+        let c3 = if e > ROUND { -2.0 * k * xi * earth.j3_j2 * n * sin / e } else { 0.0 };
+        let about_perigee = -3.0 * x3 * (1.0 - 2.0 * e_eta + eta2 * (1.5 - 0.5 * e_eta))
+            + 0.75 * x1 * (2.0 * eta2 - e_eta * (1.0 + eta2)) * (2.0 * perigee).cos();
+        let cc4 = 2.0
+            * n
+            * k1
+            * a
+            * beta2
+            * (eta * (2.0 + 0.5 * eta2) + e * (0.5 + 2.0 * eta2)
+                - earth.j2 * xi / (a * psi2) * about_perigee);
+        let c5 = 2.0 * k1 * a * beta2 * (1.0 + 2.75 * (eta2 + e_eta) + e_eta * eta2);
+
+        // rates by J₂, J₂², J₄
+        let k2 = 1.5 * earth.j2 * pinv2 * n;
+        let k22 = 0.5 * k2 * earth.j2 * pinv2;
+        let k4 = -0.46875 * earth.j4 * pinv2 * pinv2 * n;
+        let beta = beta2.sqrt();
+        let anomaly_rate = n + 0.5 * k2 * beta * x3 + 0.0625 * k22 * beta * (13.0 - 78.0 * c2 + 137.0 * c4);
+        let perigee_rate = -0.5 * k2 * (1.0 - 5.0 * c2)
+            + 0.0625 * k22 * (7.0 - 114.0 * c2 + 395.0 * c4)
+            + k4 * (3.0 - 36.0 * c2 + 49.0 * c4);
+        let node_first = -k2 * cos;
+        let node_rate = node_first + (0.5 * k22 * (4.0 - 19.0 * c2) + 2.0 * k4 * (3.0 - 7.0 * c2)) * cos;
+
+        let is_fine = !is_deep && rp >= FINE_PERIGEE / earth.radius_km + 1.0;
+        let fine = is_fine.then(|| {
+            let c1_2 = c1 * c1;
+            let d2 = 4.0 * a * xi * c1_2;
+            let third = d2 * xi * c1 / 3.0;
+            let d3 = (17.0 * a + s) * third;
+            let d4 = 0.5 * third * a * xi * (221.0 * a + 31.0 * s) * c1;
+            let t3 = d2 + 2.0 * c1_2;
+            let t4 = 0.25 * (3.0 * d3 + c1 * (12.0 * d2 + 10.0 * c1_2));
+            let t5 = 0.2 * (3.0 * d4 + 12.0 * c1 * d3 + 6.0 * d2 * d2 + 15.0 * c1_2 * (2.0 * d2 + c1_2));
+            Fine {
+                eta,
+                c5,
+                d: [d2, d3, d4],
+                t: [t3, t4, t5],
+                perigee: b_star * c3 * perigee.cos(),
+                anomaly: if e > ROUND { -2.0 / 3.0 * k * b_star / e_eta } else { 0.0 },
+                cube0: cube(1.0 + eta * anomaly.cos()),
+                sin0: anomaly.sin(),
+            }
+        });
+        let node_drag = 3.5 * beta2 * node_first * c1;
+        Self { epoch, anomaly_rate, perigee_rate, node_rate, node_drag, b_star, c1, c4: cc4, fine }
+    }
+
+    /// Elements `t` minutes from the epoch.
+    pub(super) fn at(&self, t: f64) -> Drifted {
+        let t2 = t * t;
+        let mut mean = self.epoch;
+        mean.anomaly += self.anomaly_rate * t;
+        mean.perigee += self.perigee_rate * t;
+        mean.node = mean.node + self.node_rate * t + self.node_drag * t2;
+        let mut shrink = 1.0 - self.c1 * t;
+        let mut rounding = self.b_star * self.c4 * t;
+        let mut lead = 1.5 * self.c1 * t2;
+        if let Some(fine) = &self.fine {
+            // δω = B* C₃ cos ω₀ t,  δM = -⅔ (q₀ - s)⁴ B* ξ⁴/(e η) [(1 + η cos M)³ - (1 + η cos M₀)³]
+            let swing =
+                fine.perigee * t + fine.anomaly * (cube(1.0 + fine.eta * mean.anomaly.cos()) - fine.cube0);
+            mean.anomaly += swing;
+            mean.perigee -= swing;
+            let (t3, [d2, d3, d4], [l3, l4, l5]) = (t2 * t, fine.d, fine.t);
+            let t4 = t3 * t;
+            shrink = shrink - d2 * t2 - d3 * t3 - d4 * t4;
+            rounding += self.b_star * fine.c5 * (mean.anomaly.sin() - fine.sin0);
+            lead = lead + l3 * t3 + t4 * (l4 + t * l5);
+        }
+        Drifted { mean, shrink, rounding, lead }
+    }
+}
+
+fn cube(x: f64) -> f64 {
+    x * x * x
+}
