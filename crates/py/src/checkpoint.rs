@@ -1,8 +1,8 @@
 //! Where a run stands, for Python to keep and to go on from.
 
 use crate::arrays::{Input, array_of};
-use crate::errors::SimulationErrorExt;
-use onorbit_core::simulation::{self, Moment, SimulationError, Trace};
+use crate::errors::{IntoPython, SimulationErrorExt};
+use onorbit_core::simulation::{self, Moment, SimulationError, Trace, Tracking};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::time::{Duration, Instant};
@@ -44,9 +44,16 @@ impl PyCheckpoint {
             |error: simulation::CheckpointError| SimulationError::from(error).into_python_with(py, None);
         let checkpoint = simulation::Checkpoint::from_json(&self.state).map_err(refuse)?;
         let (mut rows, columns) = (Trace::default(), self.columns.bind(py));
+        for (name, values) in columns {
+            let name: String = name.extract()?;
+            if let Some(name) = name.strip_prefix("tracking_") {
+                let width = Input::new(&values, name)?.shape().get(1).copied().unwrap_or(1);
+                rows.tracking.push(Tracking { name: name.to_owned(), width, error: Vec::new() });
+            }
+        }
         for (name, column) in rows.columns_mut() {
-            if let Some(values) = columns.get_item(name)? {
-                column.extend_from_slice(Input::new(&values, name)?.data());
+            if let Some(values) = columns.get_item(&*name)? {
+                column.extend_from_slice(Input::new(&values, &name)?.data());
             }
         }
         Ok((checkpoint, rows))
@@ -89,7 +96,7 @@ impl Keeper {
             let since = &column[self.rows * width..];
             columns.set_item(name, array_of(py, &[rows - self.rows, width], since))?;
         }
-        let state = now.checkpoint().to_json();
+        let state = now.checkpoint().map_err(|error| error.into_python(py))?.to_json();
         let checkpoint = PyCheckpoint { state, columns: columns.unbind(), wall_s: self.wall() };
         to.call1(py, (checkpoint,))?;
         (self.rows, self.last) = (rows, Instant::now());
