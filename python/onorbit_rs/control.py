@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -23,6 +24,14 @@ class Controller:
 
     def reset(self) -> None:
         """Called at the start of every run; forget what an earlier run left behind."""
+
+    def get_state(self) -> bytes:
+        """What a checkpoint keeps: its attributes, pickled; override where they do not pickle."""
+        return pickle.dumps(self.__dict__)
+
+    def set_state(self, state: bytes) -> None:
+        """Take up what :meth:`get_state` gave."""
+        self.__dict__.update(pickle.loads(state))
 
     def update(self, t: float, state: Any) -> ArrayLike:
         """Joint torques held until the next call.
