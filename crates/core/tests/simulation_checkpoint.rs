@@ -133,7 +133,7 @@ impl Controller for Summing {
     }
 
     fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError> {
-        self.sum += 1e-3 * (now.time.sin() - now.v[now.joints[0] + 6]);
+        self.sum += 1e-5 * (now.time.sin() - now.v[now.joints[0] + 6]);
         tau.fill(self.sum);
         Ok(())
     }
@@ -163,8 +163,8 @@ fn several_controls(integrator: Integrator, forgets: bool) -> Simulation {
     let law = Law::JointComputedTorque(JointComputedTorque::new(25.0, 10.0), hold(&START[..6]));
     let mut stay = Control::new("stay", arm, law);
     (stay.begin, stay.starts_at_present) = (Begin::After(0), true);
-    let mut law = JointPid::new(Interface::Position, 4.0, 3.0, 0.5);
-    law.i_limit = 0.2.into();
+    let mut law = JointPid::new(Interface::Position, 0.02, 0.05, 2e-3);
+    law.i_limit = 1e-3.into();
     let mut wrist = Control::new("wrist", vec![6], Law::Pid(law, hold(&[START[6] + 0.1])));
     wrist.end = 0.9013;
     let own = Law::User(Box::new(Summing { sum: 0.0, forgets }), None);
@@ -186,11 +186,11 @@ fn whole_and_continued(make: impl Fn() -> Simulation, stop: f64) -> (Trace, Trac
 #[test]
 fn controls_go_on_where_they_were() {
     for integrator in [Integrator::Rk4, Integrator::DormandPrince] {
-        for stop in [0.3, 0.85, 1.35] {
+        for stop in [0.1, 0.5, 1.35] {
             let (whole, rest) = whole_and_continued(|| several_controls(integrator, false), stop);
             assert_same_bits(&rest, &whole);
             let switched = whole.results[0].outcome.time().unwrap();
-            assert!((1.2..1.3).contains(&switched), "{:?}", whole.results);
+            assert!((0.2..0.3).contains(&switched), "{:?}", whole.results); // six joints alone miss
             let names: Vec<&str> = whole.tracking.iter().map(|tracking| tracking.name.as_str()).collect();
             assert_eq!(names, ["reach", "stay", "wrist"]);
             assert!(whole.tracking.iter().all(|tracking| tracking.error.iter().any(|e| *e != 0.0)));
@@ -213,7 +213,7 @@ fn a_users_controller_goes_on_if_it_saves_what_it_remembers() {
         whole_and_continued(|| several_controls(Integrator::Rk4, true), 1.35),
     ] {
         assert_eq!(whole.time, rest.time);
-        assert!(whole.tau.iter().zip(&rest.tau).any(|(a, b)| (a - b).abs() > 1e-2));
+        assert!(whole.tau.iter().zip(&rest.tau).any(|(a, b)| (a - b).abs() > 1e-5));
     }
 }
 
