@@ -250,8 +250,7 @@ impl<S: Scalar> Run<'_, S> {
         let reached = result?;
         recorder.trace.work_done += (state.work - stages.start_work()).value().abs();
         self.steps += 1;
-        let estimate = stepper.memory().map_or_else(|| probe.estimate(self.steps), |memory| memory.turn);
-        recorder.trace.attitude_step_doubling = Some(estimate);
+        self.estimate();
         if reached < interval.1 {
             self.schedule.cut(reached);
         }
@@ -261,6 +260,13 @@ impl<S: Scalar> Run<'_, S> {
             }
         }
         Ok(())
+    }
+
+    /// Says by how much the attitude may be wrong after the steps so far.
+    fn estimate(&mut self) {
+        let doubling = || self.probe.estimate(self.steps);
+        let estimate = self.stepper.memory().map_or_else(doubling, |memory| memory.turn);
+        self.recorder.trace.attitude_step_doubling = Some(estimate);
     }
 
     /// Shows the run to its monitor.
@@ -287,6 +293,7 @@ impl<S: Scalar> Run<'_, S> {
         self.stepper.go_on_from(from.memory, from.cuts);
         self.recorder.go_on_from(trace)?;
         self.recorder.trace.work_done = from.work_done;
+        self.estimate(); // no step may follow
         self.plant.command.iter_mut().zip(&from.command).for_each(|(to, from)| *to = S::of(*from));
         self.driver.load(&from.controls)
     }
