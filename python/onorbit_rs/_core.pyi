@@ -22,6 +22,13 @@ _CertificateRow = tuple[str, float | None, float, bool]
 class _Controller(Protocol):
     def update(self, t: float, state: State, /) -> ArrayLike: ...
 
+class _Result(TypedDict):
+    name: str
+    outcome: Literal["succeeded", "path_tolerance_violated", "goal_tolerance_violated", "unfinished"]
+    time: float | None
+    component: str | None
+    error: float | None
+
 class _BuildInfo(TypedDict):
     version: str
     instruction_set: str
@@ -32,16 +39,21 @@ __all__ = [
     "BodyWrench",
     "Checkpoint",
     "Circle",
+    "Compliance",
     "ComputedTorque",
+    "Control",
     "CustomPath",
     "Effect",
     "FixedFrame",
     "Frame",
     "FreeFloating",
+    "Goal",
     "GravityGradient",
     "Hold",
     "Joint",
+    "JointComputedTorque",
     "JointHold",
+    "JointPid",
     "JointReference",
     "JointSampled",
     "JointWaypoints",
@@ -405,11 +417,74 @@ class ComputedTorque:
     ) -> ComputedTorque: ...
 
 @final
+class JointComputedTorque:
+    def __new__(
+        cls,
+        *,
+        kp: ArrayLike | None = None,
+        kd: ArrayLike | None = None,
+        compensate_environment: bool = True,
+        compensate_friction: bool = True,
+    ) -> JointComputedTorque: ...
+
+@final
+class JointPid:
+    def __new__(
+        cls,
+        *,
+        interface: Literal["position", "velocity", "effort"] = "position",
+        p: ArrayLike | None = None,
+        i: ArrayLike | None = None,
+        d: ArrayLike | None = None,
+        i_limit: ArrayLike | None = None,
+        effort_limit: ArrayLike | None = None,
+    ) -> JointPid: ...
+
+@final
+class Compliance:
+    def __new__(
+        cls,
+        model: Model,
+        tool: str,
+        *,
+        stiffness: ArrayLike,
+        damping: ArrayLike,
+        null_space_damping: float = 0.0,
+    ) -> Compliance: ...
+
+@final
+class Goal:
+    def __new__(
+        cls, *, tolerance: ArrayLike, path_tolerance: ArrayLike | None = None, time: float | None = None
+    ) -> Goal: ...
+
+_Law = ComputedTorque | JointComputedTorque | JointPid | Compliance | _Controller
+
+@final
+class Control:
+    def __new__(
+        cls,
+        controller: _Law,
+        *,
+        reference: Reference | JointReference | None = None,
+        joints: Sequence[str] | None = None,
+        tool: str | None = None,
+        name: str | None = None,
+        start: float = 0.0,
+        end: float | None = None,
+        after: str | None = None,
+        goal: Goal | None = None,
+        starts_at_present: bool = False,
+    ) -> Control: ...
+
+@final
 class State:
     @property
     def q(self) -> _Array: ...
     @property
     def v(self) -> _Array: ...
+    @property
+    def joints(self) -> list[str]: ...
     @property
     def reference_pose(self) -> _Column: ...
     @property
@@ -576,8 +651,8 @@ class Simulation:
         orbit: Orbit | None = None,
         gravity_mode: _GravityMode = "true",
         environment: Sequence[Effect] | None = None,
-        controller: ComputedTorque | _Controller | None = None,
-        reference: Reference | None = None,
+        controller: _Law | Sequence[Control] | None = None,
+        reference: Reference | JointReference | None = None,
         tool: str | None = None,
         time_step: float = 0.001,
         control_period: float | None = None,
@@ -652,6 +727,10 @@ class Trace:
     def reference_residual(self) -> _Column: ...
     def columns(self) -> list[str]: ...
     def joint_limits_exceeded(self) -> list[str]: ...
+    @property
+    def tracking(self) -> dict[str, _Array]: ...
+    @property
+    def results(self) -> list[_Result]: ...
     def certificate(self) -> list[_CertificateRow]: ...
     def __len__(self) -> int: ...
 

@@ -3,8 +3,10 @@
 use crate::arrays::{Input, array_of};
 use crate::errors::{IntoPython, SimulationErrorExt};
 use onorbit_core::simulation::{self, Moment, SimulationError, Trace, Tracking};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::ffi::CString;
 use std::time::{Duration, Instant};
 
 /// Where a run stands between two steps: :meth:`Simulation.run` goes on from one with the same bits.
@@ -90,13 +92,24 @@ impl Keeper {
     /// Hands one out.
     pub(crate) fn keep(&mut self, py: Python<'_>, now: &Moment<'_>) -> PyResult<()> {
         let Some(to) = &self.to else { return Ok(()) };
+        let checkpoint = match now.checkpoint() {
+            Ok(checkpoint) => checkpoint,
+            Err(error) => {
+                self.to = None; // the run matters more than a way to go on with it
+                let message = format!(
+                    "no checkpoints of this run: its controller cannot be saved ({}); give it get_state() and set_state()",
+                    error.into_python(py)
+                );
+                return PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1);
+            }
+        };
         let (columns, rows) = (PyDict::new(py), now.trace.rows());
         for (name, column) in now.trace.columns().filter(|(_, column)| !column.is_empty()) {
             let width = column.len() / rows;
             let since = &column[self.rows * width..];
             columns.set_item(name, array_of(py, &[rows - self.rows, width], since))?;
         }
-        let state = now.checkpoint().map_err(|error| error.into_python(py))?.to_json();
+        let state = checkpoint.to_json();
         let checkpoint = PyCheckpoint { state, columns: columns.unbind(), wall_s: self.wall() };
         to.call1(py, (checkpoint,))?;
         (self.rows, self.last) = (rows, Instant::now());

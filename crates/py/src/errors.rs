@@ -318,6 +318,12 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
                 &message,
                 &fields!(py, "name": "reference", "got": (position, angle), "expected": tolerance.to_vec()),
             ),
+            SimulationError::JointsStartAway { offset, tolerance, .. } => raise(
+                py,
+                "ControlError",
+                &message,
+                &fields!(py, "name": "reference", "got": offset, "expected": tolerance),
+            ),
             SimulationError::UnknownFrame { .. } | SimulationError::TooManyRows { .. } => {
                 plain(py, "InputError", &message)
             }

@@ -62,8 +62,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<environment::PyEffect>()?;
     m.add_class::<environment::PyGravityGradient>()?;
     m.add_class::<environment::PyBodyWrench>()?;
-    m.add_class::<control::PyComputedTorque>()?;
-    m.add_class::<control::PyState>()?;
+    control::add_classes(m)?;
     reference::add_classes(m)?;
     m.add_class::<simulation::PySimulation>()?;
     m.add_class::<trace::PyTrace>()?;

@@ -2,7 +2,7 @@
 
 use crate::arrays::{Input, fixed, wrong_shape};
 use crate::checkpoint::{Keeper, PyCheckpoint};
-use crate::control::{PyComputedTorque, PythonController};
+use crate::control::{Robot, control_law};
 use crate::environment::PyEffect;
 use crate::errors::{SimulationErrorExt, fields, plain, raise};
 use crate::model::PyModel;
@@ -27,8 +27,8 @@ pub(crate) const PACE: Duration = Duration::from_millis(50);
 ///
 /// ``q`` (nq,), ``v`` (nv,); ``orbit`` brings gravity on every body: ``gravity_mode`` is
 /// ``true`` (the robot falls away from a reference that does not fall freely) or ``carried`` (tides only, the robot goes
-/// along; what is left out is ``trace.reference_residual``). ``environment`` lists effects; ``controller`` is
-/// a ``ComputedTorque`` or an object with ``update(t, state) -> tau (n,)``; ``reference`` is for the frame ``tool`` (by
+/// along; what is left out is ``trace.reference_residual``). ``environment`` lists effects; ``controller`` is a law such
+/// as ``ComputedTorque``, an object with ``update(t, state) -> tau (n,)``, or a list of ``Control``; ``reference`` is for the frame ``tool`` (by
 /// default the controller's) and may start ``reference_start_tolerance`` (m, rad) from it, (0.05, 0.1) by default; ``control_period`` s between calls of the controller (every step by default);
 /// ``integrator`` is ``rk4``, ``semi_implicit_euler`` or ``dormand_prince``, which takes steps as long as ``tolerance`` lets
 /// it (a share: of a radian, of the robot's size, of rates) and records its rows on the grid of ``time_step`` in between;
@@ -95,27 +95,25 @@ impl PySimulation {
             .iter()
             .map(|effect| effect.get().on(py, &core))
             .collect::<PyResult<_>>()?;
-        simulation.reference =
-            reference.map(|value| reference::extract(value, simulation.orbit.as_ref())).transpose()?;
         if let Some(tolerance) = reference_start_tolerance {
             simulation.reference_start_tolerance = fixed(tolerance, "reference_start_tolerance", &[2])?;
         }
         simulation.tool = tool.map(|tool| model.frame(tool)).transpose()?;
         if let Some(controller) = controller {
-            if let Ok(law) = controller.cast::<PyComputedTorque>() {
-                law.get().check_model(py, &core)?;
-                let law = law.get().law.clone();
-                simulation.tool.get_or_insert(law.frame);
-                simulation.control = ControlLaw::ComputedTorque(Box::new(law));
-            } else if controller.hasattr("update")? {
-                let object = controller.clone().unbind();
-                simulation.control = ControlLaw::User(Box::new(PythonController { object }));
-            } else {
-                return Err(plain(
-                    py,
-                    "ControlError",
-                    "controller has no method update(t, state); give a ComputedTorque or derive from Controller",
-                ));
+            let robot = Robot { model: &core, orbit: simulation.orbit.as_ref(), tool: simulation.tool };
+            simulation.control = control_law(controller, reference, &robot)?;
+        }
+        match (&simulation.control, reference) {
+            (ControlLaw::Stack(controls), _) => {
+                let first = controls.iter().find_map(|control| control.task());
+                simulation.tool = simulation.tool.or(first.map(|(frame, _)| frame));
+            }
+            (control, reference) => {
+                if let ControlLaw::ComputedTorque(law) = control {
+                    simulation.tool.get_or_insert(law.frame);
+                }
+                let bind = |value| reference::extract(value, simulation.orbit.as_ref());
+                simulation.reference = reference.map(bind).transpose()?;
             }
         }
         simulation.time_step = time_step;

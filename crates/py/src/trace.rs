@@ -5,6 +5,7 @@ use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods};
 use onorbit_core::model::Model;
 use onorbit_core::simulation::{Trace, certify};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// What a run leaves behind: one row per recorded step, first the initial state, last the end.
@@ -74,6 +75,34 @@ macro_rules! columns {
             /// Names of the joints that a row sees past their position limits, which nothing enforced then.
             fn joint_limits_exceeded(&self) -> Vec<&str> {
                 self.trace.limits_exceeded(&self.model)
+            }
+
+            /// Tracking errors of several controls by name, desired less actual: (T, 6) of a task, m and rad; (T, k) of k
+            /// joints; zeros while the control does not run.
+            #[getter]
+            fn tracking<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+                let all = PyDict::new(this.py());
+                for tracking in &this.get().trace.tracking {
+                    all.set_item(&tracking.name, view(this, &tracking.error, &[tracking.width])?)?;
+                }
+                Ok(all)
+            }
+
+            /// What came of the goals: dicts of ``name``, ``outcome`` (``succeeded``, ``path_tolerance_violated``,
+            /// ``goal_tolerance_violated``, ``unfinished``), ``time`` s, and the ``component`` (a joint, ``position`` or
+            /// ``attitude``) and ``error`` that were too large.
+            #[getter]
+            fn results<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+                let all = self.trace.results.iter().map(|result| {
+                    let dict = PyDict::new(py);
+                    dict.set_item("name", &result.name)?;
+                    dict.set_item("outcome", result.outcome.name())?;
+                    dict.set_item("time", result.outcome.time())?;
+                    dict.set_item("component", &result.component)?;
+                    dict.set_item("error", result.outcome.miss().map(|miss| miss.error))?;
+                    Ok(dict)
+                });
+                all.collect()
             }
 
             /// Number of rows.

@@ -76,6 +76,11 @@ impl Control {
         }
     }
 
+    /// Whether its joints are led to positions (and not to rates or efforts).
+    pub fn tracks_positions(&self) -> bool {
+        matches!(self.interface(), None | Some(Interface::Position))
+    }
+
     /// What its PID commands, if it is one.
     pub(super) fn interface(&self) -> Option<Interface> {
         if let Law::Pid(law, _) = &self.law { Some(law.interface) } else { None }

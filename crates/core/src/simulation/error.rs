@@ -55,6 +55,11 @@ pub enum SimulationError {
         tolerance_rad = tolerance[1]
     )]
     ReferenceStartsAway { position: f64, angle: f64, tolerance: [f64; 2] },
+    #[error(
+        "the reference of control '{control}' starts {offset} rad (m) from where the joints are, at most {tolerance} is accepted: \
+         start it there (starts_at_present), or raise reference_start_tolerance"
+    )]
+    JointsStartAway { control: String, offset: f64, tolerance: f64 },
     #[error("{rows} recorded rows do not fit in memory; record fewer with record_every")]
     TooManyRows { rows: usize },
     #[error(

@@ -3,7 +3,7 @@
 use super::contacts::AT_LIMIT;
 use super::error::SimulationError;
 use super::integrator::Integrator;
-use super::start::check_start;
+use super::start::{check_control_starts, check_start};
 use crate::control::{Control, ControlLaw, check_controls};
 use crate::environment::{Effect, ReferenceMotion};
 use crate::model::Model;
@@ -126,6 +126,8 @@ impl Simulation {
                 return Err(SimulationError::UnknownFrame { frame: frame.0, count });
             }
             check_controls(controls, &self.model)?;
+            let tolerance = self.reference_start_tolerance;
+            check_control_starts(&self.model, &self.q, controls, tolerance)?;
         }
         if self.reference.is_some() && self.tool.is_none() {
             return Err(SimulationError::NeedsTool);

@@ -120,12 +120,16 @@ pub(crate) fn extract(value: Any<'_, '_>, orbit: Option<&Arc<dyn Orbit>>) -> PyR
 }
 
 /// The reference of joints inside a Python object.
-#[allow(dead_code)] // for controllers of joints
 pub(crate) fn extract_joints(value: Any<'_, '_>) -> PyResult<JointReference> {
     match value.cast::<PyJointReference>() {
         Ok(reference) => Ok(Arc::clone(&reference.get().path)),
         Err(_) => Err(no_reference(value, "JointReference, such as JointHold or JointWaypoints")),
     }
+}
+
+/// Whether a Python object is the reference of joints.
+pub(crate) fn is_of_joints(value: Any<'_, '_>) -> bool {
+    value.is_instance_of::<PyJointReference>()
 }
 
 fn no_reference(value: Any<'_, '_>, expected: &str) -> PyErr {

@@ -1,0 +1,105 @@
+//! Controllers written in Python.
+
+use crate::arrays::{Input, array_of, wrong_shape};
+use onorbit_core::control::{ControlError, Controller, Observation};
+use pyo3::call::PyCallArgs;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+/// What a Python controller is given: fresh arrays, its own to keep.
+#[pyclass(name = "State", frozen, get_all, module = "onorbit_rs")]
+pub(crate) struct PyState {
+    /// Configuration, (nq,).
+    q: Py<PyAny>,
+    /// Velocity, (nv,).
+    v: Py<PyAny>,
+    /// Names of the joints to drive, in the order of the torques.
+    joints: Vec<String>,
+    /// Desired pose of the tool in W, (4, 4), or None without a reference.
+    reference_pose: Option<Py<PyAny>>,
+    /// Desired twist of the tool in W axes, (6,), or None.
+    reference_velocity: Option<Py<PyAny>>,
+    /// Desired acceleration of the tool in W axes, (6,), or None.
+    reference_acceleration: Option<Py<PyAny>>,
+}
+
+impl PyState {
+    fn new(py: Python<'_>, now: &Observation<'_>) -> Self {
+        let array = |shape: &[usize], data: &[f64]| array_of(py, shape, data).into_any().unbind();
+        let desired = now.desired.as_ref();
+        let pose = |d: &onorbit_core::reference::TaskSample<f64>| d.pose_rows();
+        let six = |m: &onorbit_core::spatial::Motion<f64>| {
+            let mut out = [0.0; 6];
+            m.write(&mut out);
+            out
+        };
+        Self {
+            q: array(&[now.q.len()], now.q),
+            v: array(&[now.v.len()], now.v),
+            joints: now.joints.iter().map(|&i| now.model.joints()[i].name.clone()).collect(),
+            reference_pose: desired.map(|d| array(&[4, 4], &pose(d))),
+            reference_velocity: desired.map(|d| array(&[6], &six(&d.velocity))),
+            reference_acceleration: desired.map(|d| array(&[6], &six(&d.acceleration))),
+        }
+    }
+}
+
+/// A Python object with ``update(t, state) -> tau``, in the native loop.
+pub(crate) struct PythonController {
+    pub(crate) object: Py<PyAny>,
+}
+
+impl Controller for PythonController {
+    fn reset(&mut self) -> Result<(), ControlError> {
+        Python::attach(|py| match self.object.bind(py).getattr_opt("reset") {
+            Ok(Some(reset)) => reset.call0().map(|_| ()),
+            Ok(None) => Ok(()),
+            Err(error) => Err(error),
+        })
+        .map_err(raised)
+    }
+
+    fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError> {
+        Python::attach(|py| {
+            let state = Bound::new(py, PyState::new(py, now))?;
+            let result = self.object.bind(py).call_method1("update", (now.time, state))?;
+            let torques = Input::new(&result, "the torque returned by update")?;
+            if torques.shape() != [tau.len()] {
+                let expected = format!("({},), one torque per joint", tau.len());
+                return Err(wrong_shape(py, "the torque returned by update", &expected, torques.shape()));
+            }
+            tau.copy_from_slice(torques.data());
+            Ok(())
+        })
+        .map_err(raised)
+    }
+
+    fn save(&self) -> Result<Vec<u8>, ControlError> {
+        Python::attach(|py| self.call(py, "get_state", ())?.extract(py)).map_err(raised)
+    }
+
+    fn load(&mut self, saved: &[u8]) -> Result<(), ControlError> {
+        Python::attach(|py| self.call(py, "set_state", (PyBytes::new(py, saved),)).map(|_| ()))
+            .map_err(raised)
+    }
+}
+
+impl PythonController {
+    /// Its own method, or that of the base class for an object that merely has `update`.
+    fn call<'py>(&self, py: Python<'py>, name: &str, arguments: impl PyCallArgs<'py>) -> PyResult<Py<PyAny>> {
+        let object = self.object.bind(py);
+        let method = match object.getattr_opt(name)? {
+            Some(method) => method,
+            None => {
+                let base = py.import("onorbit_rs.control")?.getattr("Controller")?.getattr(name)?;
+                base.call_method1("__get__", (object,))?
+            }
+        };
+        method.call1(arguments).map(Bound::unbind)
+    }
+}
+
+/// What Python raised, to be raised again as that very object.
+fn raised(error: PyErr) -> ControlError {
+    ControlError::User(Box::new(error))
+}
