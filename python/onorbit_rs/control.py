@@ -18,7 +18,26 @@ class Controller:
     Examples
     --------
     >>> class Brake(Controller):
-    ...     def update(self, t, state):
+    ...     def get_state(self) -> bytes:
+        """What a checkpoint keeps; all attributes, pickled, where you do not say otherwise.
+
+        Returns
+        -------
+        bytes
+        """
+        return pickle.dumps(self.__dict__)
+
+    def set_state(self, state: bytes) -> None:
+        """Go on from a checkpoint.
+
+        Parameters
+        ----------
+        state : bytes
+            What :meth:`get_state` gave; the checkpoint must be your own, as unpickling runs what it says.
+        """
+        self.__dict__.update(pickle.loads(state))
+
+    def update(self, t, state):
     ...         return -0.5 * state.v[6:]
     """
 
@@ -40,13 +59,14 @@ class Controller:
         ----------
         t : float
             Time of simulation, s.
-        state : object with ``q`` and ``v``
+        state : object with ``q``, ``v`` and ``joints``
             ``q`` (nq,): base position (m, W), base quaternion xyzw, joints (rad or m);
-            ``v`` (nv,): base twist (m/s and rad/s, body axes), joint rates.
+            ``v`` (nv,): base twist (m/s and rad/s, body axes), joint rates;
+            ``joints``: names of the joints it drives, all or those of its group.
 
         Returns
         -------
         (n,) array
-            N m (N on a prismatic joint).
+            One per name in ``state.joints``, N m (N on a prismatic joint).
         """
         raise NotImplementedError(f"{type(self).__name__} has no update(t, state)")

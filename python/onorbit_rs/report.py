@@ -109,7 +109,7 @@ def print_checked(built: Built) -> None:
         f"{model.name} ({len(model.joint_names)} joints, {model.mass:.4g} kg)",
         f"orbit {scenario.orbit.kind}" if scenario.orbit else "no orbit",
         *(effect.kind for effect in scenario.environment),
-        scenario.controller.kind if scenario.controller else "no controller",
+        ", ".join(law.kind for law in scenario.laws) or "no controller",
         f"{settings.duration:g} s at {settings.time_step:g} s with {settings.integrator}",
     ]
     typer.echo(f"ok: {scenario.name}: {', '.join(parts)}")

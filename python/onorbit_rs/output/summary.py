@@ -11,6 +11,7 @@ import numpy as np
 
 from onorbit_rs import _core
 from onorbit_rs.rotations import angle_between
+from onorbit_rs.scenario.control import JOINT_LAWS
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Orbit, Trace
@@ -60,6 +61,7 @@ def summarize(
     summary = (
         {"scenario": scenario.name, "status": status}
         | _tracking(trace)
+        | _controls(trace, scenario)
         | _motion(trace)
         | _losses(trace)
         | _certificate(trace)
@@ -96,6 +98,27 @@ def _tracking(trace: Trace) -> Summary:
         "tracking_attitude_error_max_rad": attitude.max(),
         "tracking_attitude_error_final_rad": attitude[-1],
     }
+
+
+def _controls(trace: Trace, scenario: Scenario) -> Summary:
+    """The largest errors of each of several controllers, and what came of their goals."""
+    if scenario.controllers is None:
+        return {}
+    summary: Summary = {}
+    for control in scenario.controllers:
+        errors = np.asarray(trace.tracking.get(control.name, np.empty((0, 0))))
+        if not errors.size:
+            continue
+        key = f"tracking_{control.name}"
+        if isinstance(control, JOINT_LAWS):
+            summary[f"{key}_joint_error_max_rad"] = np.abs(errors).max()
+        else:
+            summary[f"{key}_position_error_max_m"] = np.linalg.norm(errors[:, :3], axis=1).max()
+            summary[f"{key}_attitude_error_max_rad"] = np.linalg.norm(errors[:, 3:], axis=1).max()
+    with_goals = {control.name for control in scenario.controllers if control.goal is not None}
+    results = {f"control_{result['name']}_result": result["outcome"] for result in trace.results
+               if result["name"] in with_goals}  # fmt: skip
+    return summary | results
 
 
 def _motion(trace: Trace) -> Summary:

@@ -34,9 +34,10 @@ def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
 
 
 def write_trace(folder: OutputFolder, trace: Trace) -> None:
-    """``trace.npz``: the columns of the trace under their own names."""
+    """``trace.npz``: the columns of the trace under their own names, and the errors of each controller."""
     with folder.writing("trace.npz") as path, path.open("wb") as stream:
         columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
+        columns |= {f"tracking_{name}": np.asarray(errors) for name, errors in trace.tracking.items()}
         np.savez(stream, allow_pickle=False, **columns)
 
 
@@ -76,10 +77,13 @@ def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
         robot["urdf"] = str((beside / robot["urdf"]).resolve())
     if "package_paths" in robot:
         robot["package_paths"] = [str((beside / folder).resolve()) for folder in robot["package_paths"]]
-    orbit = data.get("orbit", {})
-    for name in ("file", "tle_file", "omm_file"):
-        if name in orbit:
-            orbit[name] = str((beside / orbit[name]).resolve())
+    parts = [data.get("orbit"), data.get("controller"), data.get("reference")]
+    for control in data.get("controllers", []):
+        parts += [control, control.get("reference")]
+    for part in filter(None, parts):
+        for name in ("file", "tle_file", "omm_file"):
+            if name in part:
+                part[name] = str((beside / part[name]).resolve())
     settings = data["simulation"]
     settings.setdefault("control_period", settings["time_step"])
     return data

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,9 +14,10 @@ from onorbit_rs import _core, robots
 from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.environment import BodyWrenchEffect
+from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
 from onorbit_rs.scenario.make_orbit import make_orbit
 from onorbit_rs.scenario.place import dotted, file_and_line
-from onorbit_rs.scenario.reference import Start, reference_of
+from onorbit_rs.scenario.reference import Start
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.start import initial_state
 
@@ -46,39 +47,65 @@ def build(scenario: Scenario) -> Built:
     OnOrbitError
         The fitting subclass, with file, line and place before the engine's own words.
     """
+    beside = scenario.file.parent if scenario.file else Path()
     with located(scenario, "robot"):
         model = _robot(scenario)
     with located(scenario, "orbit"):
-        beside = scenario.file.parent if scenario.file else Path()
         orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, beside)
     with located(scenario, "initial"):
         q, v = initial_state(scenario.initial, model, orbit)
+    tool = scenario.tracked_tool
     with located(scenario, "tool"):
-        tool_pose = None if scenario.tool is None else model.frame_pose(q, scenario.tool)
+        tool_pose = None if tool is None else model.frame_pose(q, tool)
     effects = []
     for index, effect in enumerate(scenario.environment):
         with located(scenario, "environment", index):
             effects.append(_effect(effect, model))
-    controller = reference = None
-    if scenario.controller is not None and scenario.tool is not None and tool_pose is not None:
+    start = Start(model, q, tool_pose, orbit, beside)
+    settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
+
+    def simulation() -> _core.Simulation:
+        controller, reference = _controlled(scenario, start)
+        with located(scenario, "simulation"), _about_controllers(scenario):
+            return _core.Simulation(
+                model, q, v, orbit=orbit, gravity_mode=scenario.gravity_mode, environment=effects,
+                controller=controller, reference=reference, tool=tool, **settings,
+            )  # fmt: skip
+
+    _try_one_step(scenario, simulation())  # a controller in Python may remember it: the run gets another
+    return Built(scenario, model, orbit, q, v, simulation())
+
+
+def _controlled(scenario: Scenario, start: Start) -> tuple[Any, Any]:
+    """The controllers, fresh, and what a single one tracks."""
+    model, folder, tool = start.model, start.folder, scenario.tool
+    if scenario.controller is not None:
         with located(scenario, "controller"):
-            gains = scenario.controller.model_dump(exclude_none=True, exclude={"kind"})
-            controller = _core.ComputedTorque(model, scenario.tool, **_as_arrays(gains))
+            law = law_of(scenario.controller, tool, model, folder)
         with located(scenario, "reference"):
-            folder = scenario.file.parent if scenario.file else Path()
-            tracked = reference_of(scenario.reference, Start(model, q, tool_pose, orbit, folder))
-            if not isinstance(tracked, _core.Reference):
-                raise ControlError(f"{scenario.controller.kind} tracks a frame, this reference is for joints")
-            reference = tracked
-    with located(scenario, "simulation"):
-        settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
-        simulation = _core.Simulation(
-            model, q, v, orbit=orbit, gravity_mode=scenario.gravity_mode, environment=effects,
-            controller=controller, reference=reference,
-            tool=scenario.tool, **settings,
-        )  # fmt: skip
-    _try_one_step(scenario, simulation)
-    return Built(scenario, model, orbit, q, v, simulation)
+            return law, tracked_by(scenario.controller, scenario.reference, tool, start)
+    controls = []
+    for index, part in enumerate(scenario.controllers or []):
+        at = ("controllers", index)
+        with located(scenario, *at):
+            joints = None if part.joints is None else group(part.joints, list(model.joint_names))
+            law = law_of(part, tool_of(part, tool), model, folder)
+        with located(scenario, *at, "reference"):
+            within = replace(start, joints=None if joints is None else tuple(joints))
+            tracked = tracked_by(part, part.reference, tool_of(part, tool), within)
+        with located(scenario, *at):
+            controls.append(control_of(part, law, tracked, joints))
+    return controls or None, None
+
+
+@contextmanager
+def _about_controllers(scenario: Scenario) -> Iterator[None]:
+    """What several controllers do to each other stands with them."""
+    try:
+        yield
+    except ControlError:
+        with located(scenario, "controller" if scenario.controllers is None else "controllers"):
+            raise
 
 
 def _try_one_step(scenario: Scenario, simulation: _core.Simulation) -> None:
@@ -132,7 +159,3 @@ def _effect(effect: Any, model: _core.Model) -> Any:
             effect.body, force=np.array(effect.force), torque=np.array(effect.torque), **times
         )
     return _core.GravityGradient()
-
-
-def _as_arrays(gains: dict[str, Any]) -> dict[str, Any]:
-    return {name: np.array(value) if isinstance(value, list) else value for name, value in gains.items()}

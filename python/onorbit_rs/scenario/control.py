@@ -1,16 +1,23 @@
-"""Controllers. A new kind is one class with its own ``kind``, added to its union."""
+"""Controllers. A new kind is one class with its own ``kind``, added to the unions here and in ``controls``."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.fields import (
+    DamperGain,
+    JointEffort,
+    JointNumber,
+    JointRateGain,
+    JointStiffnessGain,
     NotNegative,
     Number,
     Rate,
     RateGain,
+    SpringGain,
     StiffnessGain,
 )
 from onorbit_rs.scenario.part import Part, expand_kind
@@ -34,4 +41,77 @@ class ComputedTorqueController(Part):
     """Whether the controller knows the damping and friction of the joints."""
 
 
-Controller = Annotated[ComputedTorqueController, BeforeValidator(expand_kind)]
+class JointComputedTorqueController(Part):
+    """Computed torque on the joints themselves: exact whatever the base does."""
+
+    kind: Literal["joint_computed_torque"] = "joint_computed_torque"
+    kp: JointStiffnessGain = 100.0
+    """On the position errors, 1/s²: a number, or one for each joint."""
+    kd: JointRateGain = 20.0
+    """On the rate errors, 1/s."""
+    compensate_environment: bool = True
+    compensate_friction: bool = True
+
+
+class JointPidController(Part):
+    """A PID for each joint, after the interfaces of ROS Control. Gains are bare numbers, SI."""
+
+    kind: Literal["joint_pid"] = "joint_pid"
+    interface: Literal["position", "velocity", "effort"] = "position"
+    """What the reference says; of ``effort``, its positions are the efforts, N m (N)."""
+    p: JointNumber = 0.0
+    """N m per rad (per rad/s of ``velocity``)."""
+    i: JointNumber = 0.0
+    d: JointNumber = 0.0
+    i_limit: JointEffort | None = None
+    """Largest share of the integral, N m."""
+    effort_limit: JointEffort | None = None
+
+
+class ComplianceController(Part):
+    """The tool on a spring and a damper; nothing weighs anything, so nothing is compensated."""
+
+    kind: Literal["compliance"] = "compliance"
+    stiffness: SpringGain
+    """N/m, then N m/rad: a number, six, or 6 x 6."""
+    damping: DamperGain
+    """N s/m, then N m s/rad."""
+    null_space_damping: Annotated[Number, NotNegative] = 0.0
+    """N m s/rad."""
+
+
+class PythonController(Part):
+    """A class of yours with ``update(t, state)``; its file is run as Python."""
+
+    kind: Literal["python"] = "python"
+    file: str | None = None
+    """Beside the scenario."""
+    module: str | None = None
+    """Or one that can be imported."""
+    class_: str = Field(alias="class")
+    arguments: dict[str, Any] = Field(default_factory=dict)
+    """Of its constructor, by name."""
+
+    @model_validator(mode="after")
+    def _says_where(self) -> PythonController:
+        if (self.file is None) == (self.module is None):
+            raise PydanticCustomError(
+                "python_controller", "give exactly one of 'file' (beside the scenario) and 'module'"
+            )
+        return self
+
+
+TASK_LAWS = (ComputedTorqueController, ComplianceController)
+JOINT_LAWS = (JointComputedTorqueController, JointPidController)
+
+AnyController = (
+    ComputedTorqueController
+    | JointComputedTorqueController
+    | JointPidController
+    | ComplianceController
+    | PythonController
+)
+Controller = Annotated[
+    Annotated[AnyController, Field(discriminator="kind")],
+    BeforeValidator(expand_kind),
+]

@@ -19,7 +19,7 @@ class Part(BaseModel):
     @classmethod
     def _refuse_unknown_keys(cls, value: Any) -> Any:
         if isinstance(value, dict):
-            known = list(cls.model_fields)
+            known = [field.alias or name for name, field in cls.model_fields.items()]
             for key in value:
                 if key not in known:
                     hint = did_you_mean(str(key), known) or f", known are: {', '.join(known)}"

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
-from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.complaints import first_complaint
-from onorbit_rs.scenario.control import Controller
+from onorbit_rs.scenario.control import AnyController, Controller
+from onorbit_rs.scenario.controls import AnyControl
+from onorbit_rs.scenario.control_fit import check_control, wrong
 from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.path import Orbit
-from onorbit_rs.scenario.reference_parts import HoldReference, Reference
+from onorbit_rs.scenario.reference_parts import Reference
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import SimulationSettings
-from onorbit_rs.scenario.yaml_lines import Lines, Location
+from onorbit_rs.scenario.yaml_lines import Lines
 
 
 class Scenario(Part):
@@ -37,6 +38,8 @@ class Scenario(Part):
     environment: list[Effect] = Field(default_factory=list)
     controller: Controller | None = None
     """Joints are limp where not given."""
+    controllers: Annotated[list[AnyControl], Field(min_length=1)] | None = None
+    """Or several, each on joints of its own and with its own reference."""
     reference: Reference | None = None
     initial: InitialState = Field(default_factory=InitialState)
     simulation: SimulationSettings
@@ -68,6 +71,17 @@ class Scenario(Part):
         """``true``, or ``carried`` where the orbit says so; a Kepler orbit obeys its field, both are one."""
         return "carried" if getattr(self.orbit, "gravity_mode", None) == "carried" else "true"
 
+    @property
+    def laws(self) -> list[AnyController]:
+        """The controllers of the run, one or several."""
+        return [self.controller] if self.controller is not None else list(self.controllers or [])
+
+    @property
+    def tracked_tool(self) -> str | None:
+        """The frame that is recorded: the scenario's, else that of the first control that has one."""
+        tools = (getattr(control, "tool", None) for control in self.controllers or [])
+        return self.tool or next(filter(None, tools), None)
+
     def line_of(self, *at: str | int) -> int | None:
         """Line in the YAML of an entry, or of the nearest entry around it."""
         for end in range(len(at), 0, -1):
@@ -81,7 +95,7 @@ class Scenario(Part):
 
     def resolved(self) -> dict[str, Any]:
         """Plain data in SI with every default written out; reading it back gives the same scenario."""
-        return self.model_dump(mode="json", exclude_none=True, exclude=self._empty_parts())
+        return self.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=self._empty_parts())
 
     def _empty_parts(self) -> dict[str, Any]:
         return {
@@ -90,23 +104,11 @@ class Scenario(Part):
 
     @model_validator(mode="after")
     def _parts_fit(self) -> Scenario:
-        if self.controller is not None and self.tool is None:
-            raise _wrong("tool", "the controller tracks a frame: name it with 'tool'")
-        if self.reference is not None and self.controller is None:
-            raise _wrong("reference", "a reference needs a 'controller' that tracks it")
-        if self.controller is not None and self.reference is None:
-            self.reference = HoldReference()
+        check_control(self)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
                 if isinstance(effect, GravityGradientEffect):
-                    raise _wrong(("environment", index), "the gravity gradient needs an 'orbit'")
+                    raise wrong(("environment", index), "the gravity gradient needs an 'orbit'")
             if self.initial.frame != "world":
-                raise _wrong(("initial", "frame"), f"the frame {self.initial.frame} needs an 'orbit'")
-            if getattr(self.reference, "frame", None) == "lvlh":
-                raise _wrong(("reference", "frame"), "the frame lvlh needs an 'orbit'")
+                raise wrong(("initial", "frame"), f"the frame {self.initial.frame} needs an 'orbit'")
         return self
-
-
-def _wrong(at: str | Location, message: str) -> PydanticCustomError:
-    where = (at,) if isinstance(at, str) else at
-    return PydanticCustomError("parts", "{message}", {"message": message, "at": where})

@@ -1,0 +1,90 @@
+"""A controller of the user's, from a file or a module."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import inspect
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from onorbit_rs.exceptions import ControlError, NotFoundError
+from onorbit_rs.names import did_you_mean
+from onorbit_rs.scenario.control import PythonController
+
+
+def python_controller(part: PythonController, beside: Path) -> Any:
+    """The user's object, fresh.
+
+    Raises
+    ------
+    NotFoundError
+        No such file or module.
+    ControlError
+        Its file, its module or its constructor raises, or it has no such class, or that no ``update``.
+    """
+    source = str(beside / part.file) if part.file is not None else str(part.module)
+    module = _from_file(beside / part.file) if part.file is not None else _imported(source)
+    made = getattr(module, part.class_, None)
+    if not inspect.isclass(made):
+        classes = [
+            name
+            for name, value in vars(module).items()
+            if inspect.isclass(value) and value.__module__ == module.__name__
+        ]
+        hint = did_you_mean(part.class_, classes)
+        raise ControlError(
+            f"{source} has no class {part.class_!r}{hint}", name="class", got=part.class_, expected=classes
+        )
+    if not callable(getattr(made, "update", None)):
+        raise ControlError(
+            f"{part.class_} of {source} has no update(t, state): give it one that returns the efforts",
+            name="class",
+            got=part.class_,
+        )
+    try:
+        return made(**part.arguments)
+    except Exception as error:
+        message = f"the constructor of {part.class_} ({source}) raised {_told(error)}; it was given {part.arguments}"
+        raise ControlError(message, name="arguments", got=part.arguments) from error
+
+
+def _from_file(file: Path) -> ModuleType:
+    if not file.is_file():
+        raise NotFoundError(
+            f"no such file: {file}; a relative path starts at the scenario's folder",
+            path=str(file),
+            kind="controller",
+        )
+    name = f"onorbit_controller_{file.stem}"
+    spec = importlib.util.spec_from_file_location(name, file)
+    if spec is None or spec.loader is None:
+        raise ControlError(f"{file} is not a Python file: its name must end in .py", name="file", got=str(file))
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # dataclasses look themselves up there
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise ControlError(f"{file} raised {_told(error)}", name="file", got=str(file)) from error
+    return module
+
+
+def _imported(name: str) -> ModuleType:
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError as error:
+        if error.name and (name == error.name or name.startswith(f"{error.name}.")):
+            raise NotFoundError(
+                f"no module {name!r} can be imported: install it, or give a 'file' beside the scenario",
+                path=name,
+                kind="controller",
+            ) from error
+        raise ControlError(f"module {name} raised {_told(error)}", name="module", got=name) from error
+    except Exception as error:
+        raise ControlError(f"module {name} raised {_told(error)}", name="module", got=name) from error
+
+
+def _told(error: Exception) -> str:
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"
