@@ -18,7 +18,14 @@ class Controller:
     Examples
     --------
     >>> class Brake(Controller):
-    ...     def get_state(self) -> bytes:
+    ...     def update(self, t, state):
+    ...         return -0.5 * state.v[6:]
+    """
+
+    def reset(self) -> None:
+        """Called at the start of every run; forget what an earlier run left behind."""
+
+    def get_state(self) -> bytes:
         """What a checkpoint keeps; all attributes, pickled, where you do not say otherwise.
 
         Returns
@@ -35,21 +42,6 @@ class Controller:
         state : bytes
             What :meth:`get_state` gave; the checkpoint must be your own, as unpickling runs what it says.
         """
-        self.__dict__.update(pickle.loads(state))
-
-    def update(self, t, state):
-    ...         return -0.5 * state.v[6:]
-    """
-
-    def reset(self) -> None:
-        """Called at the start of every run; forget what an earlier run left behind."""
-
-    def get_state(self) -> bytes:
-        """What a checkpoint keeps: its attributes, pickled; override where they do not pickle."""
-        return pickle.dumps(self.__dict__)
-
-    def set_state(self, state: bytes) -> None:
-        """Take up what :meth:`get_state` gave."""
         self.__dict__.update(pickle.loads(state))
 
     def update(self, t: float, state: Any) -> ArrayLike:
