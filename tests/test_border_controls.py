@@ -78,7 +78,7 @@ def test_one_after_the_other(dual: oo.Model, q: Any) -> None:
 
 @pytest.mark.parametrize("interface", ["position", "velocity", "effort"])
 def test_the_interfaces_of_ros_control(dual: oo.Model, q: Any, interface: Any) -> None:
-    gains = {"position": {"p": 2.0, "d": 0.3}, "velocity": {"p": 3.0}, "effort": {}}[interface]
+    gains = {"position": {"p": 2.0, "d": 0.3}, "velocity": {"p": 30.0}, "effort": {}}[interface]
     efforts = np.array([0.01, -0.02])
     reference: Any = {
         "position": oo.JointHold(q[7:9] + 0.1),

@@ -61,7 +61,9 @@ def _from_file(file: Path) -> ModuleType:
     name = f"onorbit_controller_{file.stem}"
     spec = importlib.util.spec_from_file_location(name, file)
     if spec is None or spec.loader is None:
-        raise ControlError(f"{file} is not a Python file: its name must end in .py", name="file", got=str(file))
+        raise ControlError(
+            f"{file} is not a Python file: its name must end in .py", name="file", got=str(file)
+        )
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # dataclasses look themselves up there
     try:
