@@ -26,7 +26,7 @@ class Controller:
         """Called at the start of every run; forget what an earlier run left behind."""
 
     def get_state(self) -> bytes:
-        """What a checkpoint keeps; all attributes, pickled, where you do not say otherwise.
+        """What a checkpoint keeps: all attributes, pickled; override where they do not pickle.
 
         Returns
         -------
