@@ -39,6 +39,7 @@ fn spring(frame: ReferenceFrame, offset: Vector3<f64>, damping: f64) -> Simulati
     let v = vec![0.0; model.nv()];
     let mut simulation = Simulation::new(Arc::new(model), q, v);
     (simulation.tool, simulation.time_step) = (Some(tool), 2e-4);
+    simulation.reference_start_tolerance[0] = 0.1; // m: the spring starts stretched
     let law = Law::Compliance(Box::new(law), reference);
     simulation.control = ControlLaw::Stack(vec![Control::new("arm", (0..7).collect(), law)]);
     simulation

@@ -127,6 +127,11 @@ fn joint_computed_torque_leaves_a_linear_error_of_second_order() {
         let mut simulation = Simulation::new(Arc::new(model), q, v);
         simulation.time_step = h;
         simulation.control = ControlLaw::Stack(vec![Control::new("arm", (0..7).collect(), law)]);
+        let refused = simulation.check().unwrap_err();
+        assert!(
+            matches!(refused, SimulationError::JointsStartAway { offset, .. } if (offset - 0.3).abs() < 1e-12)
+        );
+        simulation.reference_start_tolerance[1] = 0.31; // rad
         let trace = simulation.run(1.0, &mut |_| ControlFlow::Continue(())).unwrap();
         let mut most = 0.0_f64;
         for (row, t) in trace.time.iter().enumerate() {
