@@ -18,8 +18,15 @@ class Controller:
     Examples
     --------
     >>> class Brake(Controller):
-    ...     def get_state(self) -> bytes:
-        """What a checkpoint keeps; all attributes, pickled, where you do not say otherwise.
+    ...     def update(self, t, state):
+    ...         return -0.5 * state.v[6:]
+    """
+
+    def reset(self) -> None:
+        """Called at the start of every run; forget what an earlier run left behind."""
+
+    def get_state(self) -> bytes:
+        """What a checkpoint keeps: all attributes, pickled, where you do not say otherwise.
 
         Returns
         -------
@@ -28,21 +35,14 @@ class Controller:
         return pickle.dumps(self.__dict__)
 
     def set_state(self, state: bytes) -> None:
-        """Go on from a checkpoint.
+        """Go on from a checkpoint of your own: unpickling runs what it says.
 
         Parameters
         ----------
         state : bytes
-            What :meth:`get_state` gave; the checkpoint must be your own, as unpickling runs what it says.
+            What :meth:`get_state` gave.
         """
         self.__dict__.update(pickle.loads(state))
-
-    def update(self, t, state):
-    ...         return -0.5 * state.v[6:]
-    """
-
-    def reset(self) -> None:
-        """Called at the start of every run; forget what an earlier run left behind."""
 
     def update(self, t: float, state: Any) -> ArrayLike:
         """Joint torques held until the next call.
@@ -54,11 +54,11 @@ class Controller:
         state : object with ``q``, ``v`` and ``joints``
             ``q`` (nq,): base position (m, W), base quaternion xyzw, joints (rad or m);
             ``v`` (nv,): base twist (m/s and rad/s, body axes), joint rates;
-            ``joints``: names of the joints it drives, all or those of its group.
+            ``joints``: names of the joints to drive, all or those of a group.
 
         Returns
         -------
-        (n,) array
-            One per name in ``state.joints``, N m (N on a prismatic joint).
+        (k,) array
+            One for each of ``state.joints``, N m (N on a prismatic joint).
         """
         raise NotImplementedError(f"{type(self).__name__} has no update(t, state)")

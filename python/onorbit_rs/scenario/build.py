@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core, robots
-from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError
+from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError, ShapeError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.environment import BodyWrenchEffect
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
@@ -103,7 +103,7 @@ def _about_controllers(scenario: Scenario) -> Iterator[None]:
     """What several controllers do to each other stands with them."""
     try:
         yield
-    except ControlError:
+    except (ControlError, ShapeError):
         with located(scenario, "controller" if scenario.controllers is None else "controllers"):
             raise
 

@@ -70,8 +70,7 @@ def _fitting(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
     if isinstance(law, laws.TASK_LAWS) and reference is None:
         reference = references.HoldReference()
     if reference is not None and tool is None:
-        where = "tool" if not at or isinstance(law, laws.PythonController) else (*at, "tool")
-        raise wrong(where, "the controller tracks a frame: name it with 'tool'")
+        raise wrong((*at, "tool"), "the controller tracks a frame: name it with 'tool'")
     if getattr(reference, "frame", None) == "lvlh" and scenario.orbit is None:
         raise wrong((*at, "reference", "frame"), "the frame lvlh needs an 'orbit'")
     return reference
