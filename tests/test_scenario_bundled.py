@@ -58,7 +58,7 @@ def test_two_arms_reach_at_once() -> None:
     np.testing.assert_allclose(moved[0][1] - moved[0][0], [0.4, 0.0, 0.0], atol=1e-6)
     np.testing.assert_allclose(moved[1][1] - moved[1][0], [0.3, 0.1, 0.1], atol=1e-6)
     assert result.summary["base_rotation_max_rad"] > 0.05  # and the torso does give way
-    # neither counts on the other's recoil where each arm is alone
+    # without its controller the left arm is limp
     data = load("dual_arm_reach").resolved()
     data["controllers"] = data["controllers"][:1]
     limp = oo.run(data, quiet=True).trace.q

@@ -11,7 +11,12 @@ import pytest
 import yaml
 
 import onorbit_rs as oo
-from onorbit_rs.exceptions import ControlError, FrameError, NotFoundError, OnOrbitError, ScenarioError, ShapeError
+from onorbit_rs.exceptions import (
+    ControlError,
+    NotFoundError,
+    OnOrbitError,
+    ShapeError,
+)
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
@@ -30,7 +35,8 @@ def one(**parts: Any) -> dict[str, Any]:
 
 def two(*controls: dict[str, Any], **parts: Any) -> dict[str, Any]:
     return one(
-        **{"robot": "humanoid_dual_arm", "initial": {"joints": REST + REST}, "controllers": list(controls)} | parts
+        **{"robot": "humanoid_dual_arm", "initial": {"joints": REST + REST}, "controllers": list(controls)}
+        | parts
     )
 
 
@@ -84,11 +90,14 @@ def test_compliance_keeps_a_tool_where_it_is() -> None:
         "damping": ["10 N s/m", 10, 10, 0.1, 0.1, 0.1],
         "null_space_damping": 0.02,
     }
-    assert load(one(tool="tool", controller=soft)).resolved()["controller"]["stiffness"] == [200] * 3 + [5] * 3
+    assert (
+        load(one(tool="tool", controller=soft)).resolved()["controller"]["stiffness"] == [200] * 3 + [5] * 3
+    )
     push = {"kind": "body_wrench", "body": "torso", "force": [50, 0, 0], "end": 0.1}
     settings = {"duration": 2, "time_step": 0.001}
     held, free = (
-        run(one(tool="tool", environment=[push], simulation=settings) | law) for law in ({"controller": soft}, {})
+        run(one(tool="tool", environment=[push], simulation=settings) | law)
+        for law in ({"controller": soft}, {})
     )
     moved = [np.linalg.norm(r.trace.tool_pose[-1, :3, 3] - r.trace.tool_pose[0, :3, 3]) for r in (held, free)]
     print(moved)
@@ -97,7 +106,9 @@ def test_compliance_keeps_a_tool_where_it_is() -> None:
 
 
 def test_groups_move_side_by_side_and_apart_in_the_summary(tmp_path: Path) -> None:
-    result = run(two(arm("right"), arm("left", goal={"tolerance": "0.1 deg", "time": 1})), out=tmp_path / "run")
+    result = run(
+        two(arm("right"), arm("left", goal={"tolerance": "0.1 deg", "time": 1})), out=tmp_path / "run"
+    )
     assert joint(result, "right_joint_1")[-1] == pytest.approx(0.6, abs=1e-4)
     assert joint(result, "left_joint_1")[-1] == pytest.approx(0.6, abs=1e-4)
     assert result.summary["tracking_left_joint_error_max_rad"] < 1e-3
@@ -117,22 +128,34 @@ def test_joints_that_no_controller_drives_are_free() -> None:
 def test_controllers_follow_each_other_by_time_and_by_goal() -> None:
     goal = {"tolerance": ["1 mm", "0.5 deg"], "time": 1}
     line = {"kind": "line", "goal": {"displacement": [0.05, 0, 0]}, "duration": 0.3}
-    reach = {"name": "reach", "kind": "computed_torque", "tool": "right_tool", "joints": "right_*"} | TASK_GAINS
+    reach = {
+        "name": "reach",
+        "kind": "computed_torque",
+        "tool": "right_tool",
+        "joints": "right_*",
+    } | TASK_GAINS
     first = reach | {"reference": line, "goal": goal}
     rest = {"name": "rest", "joints": "right_*", "after": "reach", "starts_at_present": True} | JOINT
-    result = run(two(first, rest, arm("left", start=0.1, end=0.2), simulation={"duration": 1, "time_step": 0.001}))
+    result = run(
+        two(first, rest, arm("left", start=0.1, end=0.2), simulation={"duration": 1, "time_step": 0.001})
+    )
     assert {r["name"]: r["outcome"] for r in result.trace.results}["reach"] == "succeeded"
     assert result.summary["tracking_reach_position_error_max_m"] < 1e-3
     left = [i for i, name in enumerate(result.model.joint_names) if name.startswith("left")]
     driven = result.trace.time[np.abs(result.trace.tau[:, left]).max(axis=1) > 0.0]
-    assert 0.1 - 1e-9 <= driven[0] and driven[-1] <= 0.2 + 1e-3 + 1e-9
+    assert driven[0] >= 0.1 - 1e-9 and driven[-1] <= 0.2 + 1e-3 + 1e-9
     later = result.trace.time > 0.5
     assert np.ptp(joint(result, "right_joint_1")[later]) < 1e-3  # held where the reach left it
 
 
 def test_a_path_tolerance_that_is_left_is_in_the_results() -> None:
     strict = {"tolerance": 1, "path_tolerance": 1e-9}
-    result = run(two(arm("right", kp=1, kd=1, goal=strict), initial={"joints": REST + REST, "joint_rates": {"right_joint_2": 0.1}}))
+    result = run(
+        two(
+            arm("right", kp=1, kd=1, goal=strict),
+            initial={"joints": REST + REST, "joint_rates": {"right_joint_2": 0.1}},
+        )
+    )
     assert result.summary["control_right_result"] == "path_tolerance_violated"
 
 
@@ -188,7 +211,13 @@ class Push:
 
 
 def test_a_controller_in_python_drives_its_group_beside_another(tmp_path: Path) -> None:
-    law = {"kind": "python", "file": str(tmp_path / "push.py"), "class": "Push", "joints": "left_*", "name": "left"}
+    law = {
+        "kind": "python",
+        "file": str(tmp_path / "push.py"),
+        "class": "Push",
+        "joints": "left_*",
+        "name": "left",
+    }
     (tmp_path / "push.py").write_text(BESIDE.replace("COUNT", "7"))
     result = run(two(arm("right"), law))
     left = [i for i, name in enumerate(result.model.joint_names) if name.startswith("left")]
@@ -221,88 +250,6 @@ def test_a_resolved_scenario_finds_its_python_file_from_anywhere(tmp_path: Path)
     assert np.array_equal(first.trace.q, again.trace.q)
 
 
-TASK = {"kind": "computed_torque"}
-LINE = {"kind": "line", "goal": {"displacement": [0.1, 0, 0]}, "duration": 1}
-HOLD = {"kind": "joint_hold"}
-REFUSED: dict[str, tuple[dict[str, Any], type[OnOrbitError], tuple[str, ...]]] = {
-    "both": (two(arm("right"), controller=JOINT), ScenarioError, ("controllers", "either one")),
-    "empty list": (two(), ScenarioError, ("controllers",)),
-    "reference of none": (two(arm("right"), reference=LINE, tool="right_tool"), ScenarioError, ("reference", "its own")),
-    "task for joints": (one(controller=JOINT, reference=LINE), ScenarioError, ("reference", "joint_waypoints")),
-    "joints for task": (
-        one(tool="tool", controller=TASK, reference=HOLD),
-        ScenarioError,
-        ("reference", "joint_computed_torque"),
-    ),
-    "no tool": (one(controller=TASK), ScenarioError, ("tool", "name it with 'tool'")),
-    "no tool in list": (two(TASK | {"name": "a"}), ScenarioError, ("controllers[0].tool",)),
-    "no orbit": (
-        two(TASK | {"name": "a", "tool": "right_tool", "joints": "right_*", "reference": LINE | {"frame": "lvlh"}}),
-        ScenarioError,
-        ("controllers[0].reference.frame", "needs an 'orbit'"),
-    ),
-    "one name twice": (two(arm("right"), arm("left", name="right")), ScenarioError, ("controllers[1].name", "two")),
-    "no such predecessor": (
-        two(arm("right"), arm("left", after="rihgt")),
-        ScenarioError,
-        ("controllers[1].after", "did you mean 'right'"),
-    ),
-    "time and predecessor": (
-        two(arm("right", end=0.1), arm("left", after="right", start=0.2)),
-        ScenarioError,
-        ("controllers[1].start", "either"),
-    ),
-    "misspelt joint": (
-        two(arm("right", joints=["right_jiont_1"], reference=HOLD)),
-        FrameError,
-        ("controllers[0]", "did you mean 'right_joint_1'"),
-    ),
-    "pattern of none": (two(arm("right", joints="rihgt_*", reference=HOLD)), FrameError, ("no joint fits 'rihgt_*'",)),
-    "overlap": (
-        two(arm("right"), arm("left", joints=["left_*", "right_joint_3"])),
-        ControlError,
-        ("controllers", "right_joint_3"),
-    ),
-    "efforts of nothing": (
-        one(controller={"kind": "joint_pid", "interface": "effort"}),
-        ScenarioError,
-        ("reference", "efforts"),
-    ),
-    "gains of another number": (one(controller=JOINT | {"kp": [1, 2]}), ShapeError, ("controller: kp has 2",)),
-    "unit of another kind": (one(controller=JOINT | {"kp": "3 N"}), ScenarioError, ("controller.kp", "1/s^2")),
-    "tolerance of a tool": (
-        two(TASK | {"name": "a", "tool": "right_tool", "goal": {"tolerance": 0.1}}),
-        ScenarioError,
-        ("controllers[0].goal.tolerance", "a distance and an angle"),
-    ),
-    "bad name": (two(arm("right", name="a b")), ScenarioError, ("controllers[0].name",)),
-    "misspelt kind": (one(controller={"kind": "joint_pidd"}), ScenarioError, ("did you mean 'joint_pid'",)),
-    "misspelt key": (two(arm("right", tol=1)), ScenarioError, ("controllers[0]", "unknown key")),
-    "python from two places": (
-        one(controller={"kind": "python", "file": "a.py", "module": "a", "class": "A"}),
-        ScenarioError,
-        ("exactly one of 'file'",),
-    ),
-    "python without class": (one(controller={"kind": "python", "file": "a.py"}), ScenarioError, ("controller.class",)),
-    "python and joints": (
-        one(controller={"kind": "python", "file": "a.py", "class": "A"}, reference=HOLD),
-        ScenarioError,
-        ("reference", "tracks a tool"),
-    ),
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_what_does_not_fit_is_refused_with_its_place(name: str) -> None:
-    data, kind, words = REFUSED[name]
-    with pytest.raises(OnOrbitError) as caught:
-        build(load(data))
-    message = str(caught.value)
-    assert type(caught.value) is kind, message
-    assert all(word in message for word in words), message
-    assert "\n" not in message and not message.endswith(".")
-
-
 @pytest.mark.parametrize(
     ("controller", "text", "kind", "words"),
     [
@@ -310,10 +257,15 @@ def test_what_does_not_fit_is_refused_with_its_place(name: str) -> None:
         ({"class": "Dmap"}, PYTHON, ControlError, ("no class 'Dmap'", "did you mean 'Damp'")),
         ({"class": "NoUpdate"}, PYTHON, ControlError, ("no update(t, state)",)),
         ({"arguments": {"gain": -1}}, PYTHON, ControlError, ("raised ValueError: gain -1 is negative",)),
-        ({"arguments": {"gian": 1}}, PYTHON, ControlError, ("constructor of Damp", "gian")),
+        ({"arguments": {"gian": 1}}, PYTHON, ControlError, ("Damp(...) of", "gian")),
         ({}, "import nothing_of_that_name", ControlError, ("mine.py", "ModuleNotFoundError")),
         ({}, "def broken(:", ControlError, ("mine.py", "SyntaxError")),
-        ({"file": None, "module": "no_such_module_here"}, PYTHON, NotFoundError, ("no_such_module_here", "install")),
+        (
+            {"file": None, "module": "no_such_module_here"},
+            PYTHON,
+            NotFoundError,
+            ("no_such_module_here", "install"),
+        ),
     ],
 )
 def test_what_is_wrong_with_a_controller_in_python_is_said(

@@ -1,7 +1,8 @@
-"""The base of ETS-VII from conservation of momentum alone: Pinocchio's mass matrix along the joints' recorded path.
+"""The base of ETS-VII from conservation of momentum alone: Pinocchio's mass matrix along the recorded joints.
 
 Nothing acts on the whole robot and it starts at rest, so its momentum stays zero and the base's twist is
-`v_b = -Mbb⁻¹ Mbm q̇`. That, integrated, is the whole motion of the base: no forces, no controller, no integrator of ours.
+`v_b = -Mbb⁻¹ Mbm q̇`. That, integrated, is the whole motion of the base: no forces, no
+controller and no integrator of ours.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ def run() -> oo.Run:
 
 
 def twists(run: oo.Run, *, carries_arm: bool = True) -> Any:
-    """(T, 6) of the base in its axes; an arm that is not carried reacts, but adds nothing to the base's inertia."""
+    """(T, 6) of the base in its axes; an arm that is not carried adds nothing to the inertia of the base."""
     text = oo.robots.path("ets_vii").read_text()
     robot = pin_robot.PinRobot(pin_robot.from_urdf(text), run.model.joint_names)
     q, v = np.asarray(run.trace.q), np.asarray(run.trace.v)

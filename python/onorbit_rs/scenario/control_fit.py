@@ -21,7 +21,9 @@ def check_control(scenario: Scenario) -> None:
         if scenario.controller is not None:
             raise wrong("controllers", "give either one 'controller' or a list of 'controllers'")
         if scenario.reference is not None:
-            raise wrong("reference", "with 'controllers' each has its own 'reference': move it into one of them")
+            raise wrong(
+                "reference", "with 'controllers' each has its own 'reference': move it into one of them"
+            )
         _check_names(scenario.controllers)
         for index, control in enumerate(scenario.controllers):
             tool = getattr(control, "tool", None) or scenario.tool
@@ -55,17 +57,20 @@ def _fitting(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
         if is_task:
             raise wrong(
                 (*at, "reference"),
-                f"{reference.kind} moves a tool, {law.kind} drives joints: take a reference of joints (joint_hold, "
-                "joint_waypoints, joint_ramps, joint_sampled), or the controller computed_torque",
+                f"{reference.kind} moves a tool, {law.kind} drives joints: take a reference of joints "
+                "(joint_hold, joint_waypoints, joint_ramps, joint_sampled), or computed_torque as controller",
             )
         if reference is None and getattr(law, "interface", None) == "effort":
-            raise wrong((*at, "reference"), "efforts are commanded as they are: say which, with joint_sampled or joint_hold")
+            raise wrong(
+                (*at, "reference"),
+                "efforts are commanded as they are: say which, with joint_sampled or joint_hold",
+            )
         return reference or references.JointHoldReference()
     if reference is not None and not is_task:
         raise wrong(
             (*at, "reference"),
-            f"{reference.kind} moves joints, {law.kind} tracks a tool: take a reference of a tool (hold, line, "
-            "waypoints, ...), or the controller joint_computed_torque",
+            f"{reference.kind} moves joints, {law.kind} tracks a tool: take a reference of a tool (hold, "
+            "line, waypoints, ...), or the controller joint_computed_torque",
         )
     if isinstance(law, laws.TASK_LAWS) and reference is None:
         reference = references.HoldReference()

@@ -47,8 +47,11 @@ def python_controller(part: PythonController, beside: Path) -> Any:
     try:
         return made(**part.arguments)
     except Exception as error:
-        message = f"the constructor of {part.class_} ({source}) raised {_told(error)}; it was given {part.arguments}"
-        raise ControlError(message, name="arguments", got=part.arguments) from error
+        raise ControlError(
+            f"{part.class_}(...) of {source} raised {_told(error)}; its arguments are {part.arguments}",
+            name="arguments",
+            got=part.arguments,
+        ) from error
 
 
 def _from_file(file: Path) -> ModuleType:
@@ -61,7 +64,9 @@ def _from_file(file: Path) -> ModuleType:
     name = f"onorbit_controller_{file.stem}"
     spec = importlib.util.spec_from_file_location(name, file)
     if spec is None or spec.loader is None:
-        raise ControlError(f"{file} is not a Python file: its name must end in .py", name="file", got=str(file))
+        raise ControlError(
+            f"{file} is not a Python file: its name must end in .py", name="file", got=str(file)
+        )
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # dataclasses look themselves up there
     try:

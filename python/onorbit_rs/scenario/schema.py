@@ -9,8 +9,8 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from onorbit_rs.scenario.complaints import first_complaint
 from onorbit_rs.scenario.control import AnyController, Controller
-from onorbit_rs.scenario.controls import AnyControl
 from onorbit_rs.scenario.control_fit import check_control, wrong
+from onorbit_rs.scenario.controls import AnyControl
 from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.part import Part
