@@ -26,7 +26,7 @@ class Controller:
         """Called at the start of every run; forget what an earlier run left behind."""
 
     def get_state(self) -> bytes:
-        """What a checkpoint keeps: all attributes, pickled, where you do not say otherwise.
+        """What a checkpoint keeps: all attributes, pickled; override where they do not pickle.
 
         Returns
         -------
@@ -35,12 +35,12 @@ class Controller:
         return pickle.dumps(self.__dict__)
 
     def set_state(self, state: bytes) -> None:
-        """Go on from a checkpoint of your own: unpickling runs what it says.
+        """Go on from a checkpoint.
 
         Parameters
         ----------
         state : bytes
-            What :meth:`get_state` gave.
+            What :meth:`get_state` gave; the checkpoint must be your own, as unpickling runs what it says.
         """
         self.__dict__.update(pickle.loads(state))
 
@@ -54,11 +54,11 @@ class Controller:
         state : object with ``q``, ``v`` and ``joints``
             ``q`` (nq,): base position (m, W), base quaternion xyzw, joints (rad or m);
             ``v`` (nv,): base twist (m/s and rad/s, body axes), joint rates;
-            ``joints``: names of the joints to drive, all or those of a group.
+            ``joints``: names of the joints it drives, all or those of its group.
 
         Returns
         -------
-        (k,) array
-            One for each of ``state.joints``, N m (N on a prismatic joint).
+        (n,) array
+            One per name in ``state.joints``, N m (N on a prismatic joint).
         """
         raise NotImplementedError(f"{type(self).__name__} has no update(t, state)")

@@ -4,12 +4,16 @@
 mod common;
 
 use common::humanoid::{START, humanoid, humanoid_with, start};
+use common::slider::{moving, slider};
 use nalgebra::Vector3;
-use onorbit_core::control::{ComputedTorque, ControlLaw};
+use onorbit_core::control::{
+    Begin, ComputedTorque, Control, ControlError, ControlLaw, Controller, Goal, Interface,
+    JointComputedTorque, JointPid, Law, Observation,
+};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::environment::{BodyWrench, GravityGradient};
 use onorbit_core::orbit::{Kepler, MU_EARTH};
-use onorbit_core::reference::LineParabola;
+use onorbit_core::reference::{JointHold, LineParabola};
 use onorbit_core::simulation::{
     Checkpoint, CheckpointError, Integrator, Simulation, SimulationError, Trace, certify,
 };
@@ -65,6 +69,7 @@ fn assert_same_bits(a: &Trace, b: &Trace) {
     }
     assert_eq!(a.work_done.to_bits(), b.work_done.to_bits());
     assert_eq!(a.attitude_step_doubling, b.attitude_step_doubling);
+    assert_eq!(a.results, b.results);
 }
 
 #[test]
@@ -113,6 +118,117 @@ fn modes_of_joints_and_the_pace_of_steps_are_continued_too() {
         let rest = second.resume(DURATION, (&read, rows), &mut |_| ControlFlow::Continue(())).unwrap();
         assert_same_bits(&rest, &whole);
     }
+}
+
+/// Pushes its joints by a sum over its calls; one that forgets saves nothing.
+struct Summing {
+    sum: f64,
+    forgets: bool,
+}
+
+impl Controller for Summing {
+    fn reset(&mut self) -> Result<(), ControlError> {
+        self.sum = 0.0;
+        Ok(())
+    }
+
+    fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError> {
+        self.sum += 1e-5 * (now.time.sin() - now.v[now.joints[0] + 6]);
+        tau.fill(self.sum);
+        Ok(())
+    }
+
+    fn save(&self) -> Result<Vec<u8>, ControlError> {
+        Ok(if self.forgets { Vec::new() } else { self.sum.to_le_bytes().to_vec() })
+    }
+
+    fn load(&mut self, saved: &[u8]) -> Result<(), ControlError> {
+        saved.try_into().into_iter().for_each(|bytes| self.sum = f64::from_le_bytes(bytes));
+        Ok(())
+    }
+}
+
+/// The reach with six joints, then those held; the seventh by a PID, then by a user's controller.
+fn several_controls(integrator: Integrator, forgets: bool) -> Simulation {
+    let mut simulation = simulation(integrator, 3);
+    let ControlLaw::ComputedTorque(law) = std::mem::take(&mut simulation.control) else { panic!() };
+    let hold = |q: &[f64]| Arc::new(JointHold::new(q.to_vec()).unwrap());
+    let arm: Vec<usize> = (0..6).collect();
+    let mut reach = Control::new(
+        "reach",
+        arm.clone(),
+        Law::TaskComputedTorque(law, simulation.reference.take().unwrap()),
+    );
+    reach.goal = Some(Goal { path: Some(0.01.into()), tolerance: 1e-3.into(), time: None });
+    let law = Law::JointComputedTorque(JointComputedTorque::new(25.0, 10.0), hold(&START[..6]));
+    let mut stay = Control::new("stay", arm, law);
+    (stay.begin, stay.starts_at_present) = (Begin::After(0), true);
+    let mut law = JointPid::new(Interface::Position, 0.02, 0.05, 2e-3);
+    law.i_limit = 1e-3.into();
+    let mut wrist = Control::new("wrist", vec![6], Law::Pid(law, hold(&[START[6] + 0.1])));
+    wrist.end = 0.9013;
+    let own = Law::User(Box::new(Summing { sum: 0.0, forgets }), None);
+    let mut own = Control::new("own", vec![6], own);
+    own.begin = Begin::At(0.9013);
+    simulation.control = ControlLaw::Stack(vec![reach, stay, wrist, own]);
+    simulation
+}
+
+/// The whole run, and one stopped and continued.
+fn whole_and_continued(make: impl Fn() -> Simulation, stop: f64) -> (Trace, Trace) {
+    let whole = make().run(DURATION, &mut |_| ControlFlow::Continue(())).unwrap();
+    let (checkpoint, rows) = stopped(&mut make(), stop);
+    let read = Checkpoint::from_json(&checkpoint.to_json()).unwrap();
+    let rest = make().resume(DURATION, (&read, rows), &mut |_| ControlFlow::Continue(())).unwrap();
+    (whole, rest)
+}
+
+#[test]
+fn controls_go_on_where_they_were() {
+    for integrator in [Integrator::Rk4, Integrator::DormandPrince] {
+        for stop in [0.1, 0.5, 1.35] {
+            let (whole, rest) = whole_and_continued(|| several_controls(integrator, false), stop);
+            assert_same_bits(&rest, &whole);
+            let switched = whole.results[0].outcome.time().unwrap();
+            assert!((0.2..0.3).contains(&switched), "{:?}", whole.results); // six joints alone miss
+            let names: Vec<&str> = whole.tracking.iter().map(|tracking| tracking.name.as_str()).collect();
+            assert_eq!(names, ["reach", "stay", "wrist"]);
+            assert!(whole.tracking.iter().all(|tracking| tracking.error.iter().any(|e| *e != 0.0)));
+        }
+    }
+}
+
+#[test]
+fn a_users_controller_goes_on_if_it_saves_what_it_remembers() {
+    let alone = |forgets| {
+        let mut simulation = simulation(Integrator::Rk4, 1);
+        simulation.control = ControlLaw::User(Box::new(Summing { sum: 0.0, forgets }));
+        simulation
+    };
+    let (whole, rest) = whole_and_continued(|| alone(false), 0.5);
+    assert_same_bits(&rest, &whole);
+    // negative control: without its memory the torques jump
+    for (whole, rest) in [
+        whole_and_continued(|| alone(true), 0.5),
+        whole_and_continued(|| several_controls(Integrator::Rk4, true), 1.35),
+    ] {
+        assert_eq!(whole.time, rest.time);
+        assert!(whole.tau.iter().zip(&rest.tau).any(|(a, b)| (a - b).abs() > 1e-5));
+    }
+}
+
+#[test]
+fn a_checkpoint_at_the_very_end_is_the_whole_run() {
+    let make = || moving(slider(0.0, 0.1, None, 0.3), 0.2, Integrator::Rk4, 1e-3);
+    let (mut kept, duration) = (None, 0.128);
+    let whole = make().run(duration, &mut |now| {
+        kept = Some((now.checkpoint().unwrap(), now.trace.clone()));
+        ControlFlow::Continue(())
+    });
+    let (checkpoint, rows) = kept.unwrap();
+    assert!(checkpoint.time() > duration - 1e-9);
+    let rest = make().resume(duration, (&checkpoint, rows), &mut |_| ControlFlow::Continue(()));
+    assert_same_bits(&rest.unwrap(), &whole.unwrap());
 }
 
 #[test]

@@ -16,8 +16,11 @@ use std::time::{Duration, Instant};
 /// the simulation loop has taken so far.
 #[pyclass(name = "Checkpoint", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyCheckpoint {
+    /// Everything of the run that its rows do not hold, as text (JSON).
     state: String,
+    /// Rows of each column of the trace by its name, each (k, width), in the column's unit.
     columns: Py<PyDict>,
+    /// Time that the simulation loop has taken so far, s.
     pub(crate) wall_s: f64,
 }
 

@@ -6,6 +6,7 @@ mod contacts;
 mod driver;
 mod error;
 mod integrator;
+mod launch;
 mod pair;
 mod plant;
 mod probe;

@@ -13,6 +13,7 @@ use crate::model::Model;
 use crate::orbit::OrbitState;
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
+use std::borrow::Cow;
 
 /// What a run has to record beside its state.
 #[derive(Clone, Copy)]
@@ -90,12 +91,13 @@ impl Recorder {
                 expected: own.len(),
             });
         }
-        for (((_, from), (_, to)), width) in
+        for (((name, from), (_, to)), width) in
             rows.columns_mut().zip(self.trace.columns_mut()).zip(&self.widths)
         {
             if from.len() != count * width {
+                let name = if let Cow::Borrowed(name) = name { name } else { "tracking errors" };
                 let (got, expected) = (from.len(), count * width);
-                return Err(CheckpointError::OtherSize { name: "recorded numbers", got, expected });
+                return Err(CheckpointError::OtherSize { name, got, expected });
             }
             to.append(from);
         }

@@ -97,6 +97,7 @@ columns!(
     velocity_eci,
     reference_residual,
 );
+
 /// How well one control followed its reference.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tracking {

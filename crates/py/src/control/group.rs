@@ -111,7 +111,7 @@ pub(crate) fn control_law(
         let message = "several controls have their own references: give each Control its 'reference'";
         return Err(plain(py, "ControlError", message));
     }
-    let items = items.map(|item| Ok(item?.cast_into::<PyControl>()?)).collect::<PyResult<Vec<_>>>()?;
+    let items = items.map(|item| one_control(item?)).collect::<PyResult<Vec<_>>>()?;
     let names: Vec<String> = items
         .iter()
         .enumerate()
@@ -119,6 +119,10 @@ pub(crate) fn control_law(
         .collect();
     let controls = items.iter().zip(&names).map(|(item, name)| item.get().bind(py, name, &names, robot));
     Ok(ControlLaw::Stack(controls.collect::<PyResult<_>>()?))
+}
+
+fn one_control(item: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyControl>> {
+    item.cast_into::<PyControl>().map_err(|error| no_controller(&error.into_inner()))
 }
 
 impl PyControl {
