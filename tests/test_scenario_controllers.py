@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import signal
 import sys
 from pathlib import Path
 from typing import Any
@@ -9,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from test_output_checkpoint import scenario_file, stopped_run
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import (
@@ -290,3 +293,29 @@ def test_a_check_names_every_controller(capsys: pytest.CaptureFixture[str]) -> N
 
     print_checked(build(load(two(arm("right"), {"name": "left", "kind": "joint_pid", "joints": "left_*"}))))
     assert "joint_computed_torque, joint_pid" in capsys.readouterr().out
+
+
+RAMP = """
+import onorbit_rs as oo
+
+class Ramp(oo.Controller):
+    def reset(self):
+        self.calls = 0
+
+    def update(self, t, state):
+        self.calls += 1
+        return [1e-6 * self.calls] * len(state.joints)
+"""
+
+
+def test_a_killed_run_of_several_goes_on_to_the_same_bits(tmp_path: Path) -> None:
+    (tmp_path / "ramp.py").write_text(RAMP)
+    ramp = {"name": "ramp", "joints": "left_*", "kind": "python", "file": "ramp.py", "class": "Ramp"}
+    pid = {"name": "right", "joints": "right_*", "kind": "joint_pid", "p": 0.5, "i": 0.5, "d": 0.002}
+    settings = {"duration": 4, "time_step": 1e-4, "control_period": 1e-3, "record_every": 10}
+    file = scenario_file(tmp_path, two(ramp, pid, simulation=settings))
+    out = stopped_run(tmp_path, json.loads(file.read_text()), signal.SIGKILL)
+    whole, again = oo.run(file, quiet=True).trace, oo.resume(out, quiet=True).trace
+    assert whole.tau[-1].max() > 3e-3  # the controller of ours counted on
+    assert np.array_equal(again.q, whole.q) and np.array_equal(again.tau, whole.tau)
+    assert np.array_equal(again.tracking["right"], whole.tracking["right"])

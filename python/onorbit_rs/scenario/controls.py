@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from onorbit_rs.scenario import control as laws
-from onorbit_rs.scenario.fields import JointTolerance, NotNegative, TaskTolerance, Time
+from onorbit_rs.scenario.fields import JointTolerance, NotNegative, Positive, TaskTolerance, Time
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.reference_parts import Reference
 
@@ -43,8 +43,8 @@ class Control(Part):
     joints: Annotated[list[str], Field(min_length=1), BeforeValidator(_as_list)] | None = None
     """Names, or patterns such as ``right_*``; all joints where not given."""
     reference: Reference | None = None
-    start: Time = 0.0
-    end: Time | None = None
+    start: Annotated[Time, NotNegative] = 0.0
+    end: Annotated[Time, Positive] | None = None
     after: str | None = None
     """Starts when the goal of this control is decided, or its time is over."""
     starts_at_present: bool = False
