@@ -227,7 +227,7 @@ def test_a_controller_in_python_drives_its_group_beside_another(tmp_path: Path) 
     assert (result.trace.tau[:-1, left] == 0.01).all()
     assert joint(result, "right_joint_1")[-1] == pytest.approx(0.6, abs=1e-4)
     (tmp_path / "push.py").write_text(BESIDE.replace("COUNT", "14"))
-    with pytest.raises(ShapeError, match="one torque per joint"):
+    with pytest.raises(ShapeError, match=r"controllers: .*one torque per joint"):
         run(two(arm("right"), law))
 
 

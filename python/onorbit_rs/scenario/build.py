@@ -100,7 +100,7 @@ def _controlled(scenario: Scenario, start: Start) -> tuple[Any, Any]:
 
 @contextmanager
 def _about_controllers(scenario: Scenario) -> Iterator[None]:
-    """What several controllers do to each other stands with them."""
+    """What is wrong with controllers that the engine puts together stands with them."""
     try:
         yield
     except (ControlError, ShapeError):
@@ -111,7 +111,8 @@ def _about_controllers(scenario: Scenario) -> Iterator[None]:
 def _try_one_step(scenario: Scenario, simulation: _core.Simulation) -> None:
     """One step, thrown away: what would stop the run at once is told before anything is written."""
     try:
-        simulation.run(scenario.simulation.time_step)
+        with _about_controllers(scenario):
+            simulation.run(scenario.simulation.time_step)
     except OnOrbitError as error:
         is_about_orbit = isinstance(error, (OrbitError, EffectError)) and scenario.orbit is not None
         with located(scenario, "orbit" if is_about_orbit else "simulation"):
