@@ -47,7 +47,7 @@ def _line_of(text: str, part: str) -> int:
             "did you mean 'gravity_gradient'?",
         ),
         ("kind: kepler", "kind: keplr", "orbit.kind", "'kepler'"),
-        ("kind: computed_torque", "kind: magic", "controller.kind", "known are: computed_torque, "),
+        ("kind: computed_torque", "kind: magic", "controller.kind", "computed_torque"),
         ("51.6 deg", "51.6 km", "orbit.inclination", "is not an angle"),
         ("duration: 6 s", "duration: 0 s", "simulation.duration", "not above zero"),
         ("time_step: 1 ms", "time_step: -1 ms", "simulation.time_step", "not above zero"),
