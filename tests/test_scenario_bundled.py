@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.rotations import attitude_in_orbit
 from onorbit_rs.scenario import load
+
+# ETS-VII's numbers are as published
+pytestmark = pytest.mark.filterwarnings("ignore:the inertia of link 'link_5'")
 
 CHECKS = {
     "linear_momentum_drift_rel",
@@ -40,6 +45,47 @@ def test_the_papers_reach_stays_within_its_numbers() -> None:
     np.testing.assert_allclose(moved, [0.5, 0.0, 0.0], atol=1e-9)
     assert summary["joint_rate_final_max_rad_s"] < 1e-4  # the null-space damping brings the arm to rest
     assert abs(trace.time[-1] - 6.0) < 1e-12
+
+
+def test_two_arms_reach_at_once() -> None:
+    result = oo.run("dual_arm_reach", quiet=True)
+    for side in ("right", "left"):
+        assert result.summary[f"tracking_{side}_position_error_max_m"] < 1e-5  # 4.0e-6 m and 1.1e-6 m
+        assert result.summary[f"tracking_{side}_attitude_error_max_rad"] < 2e-5  # 1.3e-5 rad and 5.8e-6 rad
+        assert result.summary[f"control_{side}_result"] == "succeeded"
+    q = result.trace.q
+    moved = [result.model.frame_pose(q, f"{side}_tool")[[0, -1], :3, 3] for side in ("right", "left")]
+    np.testing.assert_allclose(moved[0][1] - moved[0][0], [0.4, 0.0, 0.0], atol=1e-6)
+    np.testing.assert_allclose(moved[1][1] - moved[1][0], [0.3, 0.1, 0.1], atol=1e-6)
+    assert result.summary["base_rotation_max_rad"] > 0.05  # and the torso does give way
+    # without its controller the left arm is limp
+    data = load("dual_arm_reach").resolved()
+    data["controllers"] = data["controllers"][:1]
+    limp = oo.run(data, quiet=True).trace.q
+    assert np.linalg.norm(limp[-1, 14:] - q[-1, 14:]) > 0.1
+
+
+def test_a_controller_in_python_brings_the_arm_into_its_posture() -> None:
+    assert Path(oo.scenarios.path("python_controller")).with_suffix(".py").is_file()
+    result = oo.run("python_controller", quiet=True)
+    controller = result.scenario.resolved()["controller"]
+    np.testing.assert_allclose(result.trace.q[-1, 7:], controller["arguments"]["posture"], atol=0.02)
+    assert np.abs(result.trace.q[0, 7:] - controller["arguments"]["posture"]).max() > 0.3
+    assert result.summary["joint_rate_final_max_rad_s"] < 1e-3
+
+
+def test_a_long_arm_inspects_a_station_and_leaves_its_attitude_alone() -> None:
+    result = oo.run("iss_like_inspection", quiet=True)
+    trace, model = result.trace, result.model
+    assert result.summary["tracking_position_error_max_m"] < 1e-4  # 7.6e-6 m
+    assert not result.summary["joint_limits_exceeded"]
+    angles = np.degrees(attitude_in_orbit(trace.q[:, 3:7], trace.position_eci, trace.velocity_eci))
+    assert np.abs(angles - angles[0]).max() < 0.5  # stable, and 420 t against 1.1 t of arm
+    least = min(
+        np.linalg.svd(model.free_floating(trace.q[row], trace.v[row], "tool").jacobian, compute_uv=False)[-1]
+        for row in range(0, len(trace.time), 100)
+    )
+    assert least > 0.5  # never near a singularity
 
 
 def test_the_spacecraft_swings_about_the_local_vertical_and_comes_round_once() -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core, robots
-from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError
+from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError, ShapeError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.environment import BodyWrenchEffect
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
@@ -100,10 +100,10 @@ def _controlled(scenario: Scenario, start: Start) -> tuple[Any, Any]:
 
 @contextmanager
 def _about_controllers(scenario: Scenario) -> Iterator[None]:
-    """What several controllers do to each other stands with them."""
+    """What is wrong with controllers that the engine puts together stands with them."""
     try:
         yield
-    except ControlError:
+    except (ControlError, ShapeError):
         with located(scenario, "controller" if scenario.controllers is None else "controllers"):
             raise
 
@@ -111,7 +111,8 @@ def _about_controllers(scenario: Scenario) -> Iterator[None]:
 def _try_one_step(scenario: Scenario, simulation: _core.Simulation) -> None:
     """One step, thrown away: what would stop the run at once is told before anything is written."""
     try:
-        simulation.run(scenario.simulation.time_step)
+        with _about_controllers(scenario):
+            simulation.run(scenario.simulation.time_step)
     except OnOrbitError as error:
         is_about_orbit = isinstance(error, (OrbitError, EffectError)) and scenario.orbit is not None
         with located(scenario, "orbit" if is_about_orbit else "simulation"):

@@ -1,4 +1,4 @@
-"""Controllers. A new kind is one class with its own ``kind``, added to the unions here and in ``controls``."""
+"""Controllers. A new kind is one class with its own ``kind``, added to its union and to ``controls``."""
 
 from __future__ import annotations
 

@@ -57,8 +57,8 @@ def _fitting(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
         if is_task:
             raise wrong(
                 (*at, "reference"),
-                f"{reference.kind} moves a tool, {law.kind} drives joints: take a reference of joints (joint_hold, "
-                "joint_waypoints, joint_ramps, joint_sampled), or the controller computed_torque",
+                f"{reference.kind} moves a tool, {law.kind} drives joints: take a reference of joints "
+                "(joint_hold, joint_waypoints, joint_ramps, joint_sampled), or computed_torque as controller",
             )
         if reference is None and getattr(law, "interface", None) == "effort":
             raise wrong(
@@ -69,14 +69,13 @@ def _fitting(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
     if reference is not None and not is_task:
         raise wrong(
             (*at, "reference"),
-            f"{reference.kind} moves joints, {law.kind} tracks a tool: take a reference of a tool (hold, line, "
-            "waypoints, ...), or the controller joint_computed_torque",
+            f"{reference.kind} moves joints, {law.kind} tracks a tool: take a reference of a tool (hold, "
+            "line, waypoints, ...), or the controller joint_computed_torque",
         )
     if isinstance(law, laws.TASK_LAWS) and reference is None:
         reference = references.HoldReference()
     if reference is not None and tool is None:
-        where = "tool" if not at or isinstance(law, laws.PythonController) else (*at, "tool")
-        raise wrong(where, "the controller tracks a frame: name it with 'tool'")
+        raise wrong((*at, "tool"), "the controller tracks a frame: name it with 'tool'")
     if getattr(reference, "frame", None) == "lvlh" and scenario.orbit is None:
         raise wrong((*at, "reference", "frame"), "the frame lvlh needs an 'orbit'")
     return reference

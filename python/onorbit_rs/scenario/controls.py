@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from onorbit_rs.scenario import control as laws
-from onorbit_rs.scenario.fields import JointTolerance, NotNegative, TaskTolerance, Time
+from onorbit_rs.scenario.fields import JointTolerance, NotNegative, Positive, TaskTolerance, Time
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.reference_parts import Reference
 
@@ -15,7 +15,7 @@ from onorbit_rs.scenario.reference_parts import Reference
 class TaskGoal(Part):
     """Distance and angle within which the tool is to be."""
 
-    tolerance: TaskTolerance | None = None
+    tolerance: TaskTolerance
     """At the end of the reference."""
     path_tolerance: TaskTolerance | None = None
     """On the way; beyond it the control holds where it is."""
@@ -26,7 +26,7 @@ class TaskGoal(Part):
 class JointGoal(Part):
     """Errors within which the joints are to be: a number, or one for each."""
 
-    tolerance: JointTolerance | None = None
+    tolerance: JointTolerance
     path_tolerance: JointTolerance | None = None
     time: Annotated[Time, NotNegative] | None = None
 
@@ -43,8 +43,8 @@ class Control(Part):
     joints: Annotated[list[str], Field(min_length=1), BeforeValidator(_as_list)] | None = None
     """Names, or patterns such as ``right_*``; all joints where not given."""
     reference: Reference | None = None
-    start: Time = 0.0
-    end: Time | None = None
+    start: Annotated[Time, NotNegative] = 0.0
+    end: Annotated[Time, Positive] | None = None
     after: str | None = None
     """Starts when the goal of this control is decided, or its time is over."""
     starts_at_present: bool = False
@@ -81,10 +81,8 @@ class JointPidControl(laws.JointPidController, JointControl):
     """A PID for each joint of a group."""
 
 
-class PythonControl(laws.PythonController, Control):
-    """A controller of yours on a group; it returns one effort per joint of it, and may track the scenario's tool."""
-
-    goal: TaskGoal | None = None
+class PythonControl(laws.PythonController, TaskControl):
+    """A controller of yours on a group; it returns one effort per joint, and may track a tool."""
 
 
 AnyControl = Annotated[

@@ -17,17 +17,19 @@ from onorbit_rs.scenario.python_controller import python_controller
 from onorbit_rs.scenario.reference import Start, reference_of
 
 if TYPE_CHECKING:
-    from onorbit_rs.scenario.controls import Control, JointGoal, TaskGoal
+    from onorbit_rs.scenario.controls import JointControl, TaskControl
     from onorbit_rs.scenario.reference_parts import AnyReference
 
 
-def control_of(part: Control, law: Any, reference: Any, joints: list[str] | None) -> _core.Control:
+def control_of(
+    part: TaskControl | JointControl, law: Any, reference: Any, joints: list[str] | None
+) -> _core.Control:
     """One of several controllers, from its law and what it tracks."""
-    goal: TaskGoal | JointGoal | None = getattr(part, "goal", None)
+    goal = part.goal
     return _core.Control(
-        law, reference=reference, joints=joints, name=part.name, start=part.start, end=part.end,
-        after=part.after, goal=None if goal is None else _core.Goal(**_as_arrays(goal.model_dump())),
-        starts_at_present=part.starts_at_present,
+        law, reference=reference, joints=joints, tool=getattr(part, "tool", None), name=part.name,
+        start=part.start, end=part.end, after=part.after, starts_at_present=part.starts_at_present,
+        goal=None if goal is None else _core.Goal(**_as_arrays(goal.model_dump())),
     )  # fmt: skip
 
 

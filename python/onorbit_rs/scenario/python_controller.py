@@ -47,8 +47,11 @@ def python_controller(part: PythonController, beside: Path) -> Any:
     try:
         return made(**part.arguments)
     except Exception as error:
-        message = f"the constructor of {part.class_} ({source}) raised {_told(error)}; it was given {part.arguments}"
-        raise ControlError(message, name="arguments", got=part.arguments) from error
+        raise ControlError(
+            f"{part.class_}(...) of {source} raised {_told(error)}; its arguments are {part.arguments}",
+            name="arguments",
+            got=part.arguments,
+        ) from error
 
 
 def _from_file(file: Path) -> ModuleType:

@@ -6,9 +6,9 @@ import onorbit_rs as oo
 
 
 class Posture(oo.Controller):
-    """Springs and dampers, critical for what each joint carries, pull the joints into a posture."""
+    """Springs and dampers, nearly critical, pull the joints into a posture."""
 
-    inertia = np.array([1.2, 1.2, 0.4, 0.4, 0.05, 0.05, 0.02])  # about each joint, kg m², roughly
+    inertia = np.array([0.5, 0.4, 0.12, 0.12, 0.003, 0.001, 0.0004])  # that each joint feels, kg m²
 
     def __init__(self, posture, frequency):
         """Posture in rad, frequency of the springs in rad/s."""
