@@ -27,7 +27,7 @@ pub struct Moment<'a> {
 }
 
 impl Moment<'_> {
-    /// What the run can go on from, with the rows so far: see [`Simulation::resume`].
+    /// What the run can go on from, with the rows so far: see [`Simulation::resume`](super::Simulation::resume).
     ///
     /// # Errors
     /// What a user's controller raises when it is asked to save what it remembers.
