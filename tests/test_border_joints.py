@@ -68,3 +68,43 @@ def test_adaptive_steps_leave_rows_on_the_grid() -> None:
     assert np.allclose(trace.time, 0.1 * np.arange(21), rtol=0, atol=1e-12)
     assert trace.v[-1, 6] == 0.0  # sticks
     assert trace.q[-1, 7] == pytest.approx(0.5 * 0.5**2 * 4.0 / 2.0, rel=1e-12)  # μ u²/2f
+
+
+@pytest.mark.parametrize("time_step", [0.01, 5.0, 20.0])
+def test_rows_do_not_decide_what_stops_give_back(time_step: float) -> None:
+    """Once 32 bounces within one ``time_step`` made stops inelastic, and the grid of rows is that long."""
+    simulation = oo.Simulation(
+        slider(), slider().neutral(), V, enforce_limits=True, restitution=1.0,
+        integrator="dormand_prince", time_step=time_step,
+    )  # fmt: skip
+    trace = simulation.run(40.0)
+    assert trace.kinetic_energy[-1] == pytest.approx(trace.kinetic_energy[0], rel=1e-8)
+
+
+def test_bounces_without_end_come_to_an_end() -> None:
+    """Each takes nine tenths of the time of the one before: infinitely many in 0.04 s."""
+    builder = oo.ModelBuilder("pushed", base="base", mass=1e6, inertia=1e6 * np.eye(3))
+    builder.add_link(
+        "block", parent="base", joint="slide", kind="prismatic", axis=np.array([1.0, 0, 0]), mass=1.0,
+        inertia=np.eye(3), lower=-10.0, upper=0.1,
+    )  # fmt: skip
+    model = builder.build()
+
+    class Push(oo.Controller):
+        def update(self, t: float, state: oo.State) -> np.ndarray:
+            return np.array([50.0])
+
+    trace = oo.Simulation(
+        model, model.neutral(), np.array([0, 0, 0, 0, 0, 0, 0.1]), controller=Push(), enforce_limits=True,
+        restitution=0.9, time_step=0.01,
+    ).run(2.0)  # fmt: skip
+    assert trace.v[-1, 6] == 0.0 and trace.q[-1, 7] == pytest.approx(0.1, abs=1e-12)
+
+
+def test_a_body_that_only_drifts_is_certified() -> None:
+    model = oo.Model.rigid_body(50.0, np.diag([3.0, 4.0, 5.0]))
+    q = model.neutral()
+    q[:3] = [3.0, -2.0, 1.0]
+    orbit = oo.Kepler(semi_major_axis=7e6)
+    trace = oo.Simulation(model, q, np.array([0.1, 0.2, -0.1, 0, 0, 0]), orbit=orbit, time_step=0.1).run(20.0)
+    assert all(passed for *_, passed in trace.certificate())

@@ -276,3 +276,36 @@ def test_a_broken_csv_is_told(tmp_path: Path, text: str, words: str) -> None:
 def test_quaternions_of_the_csv_are_the_rotations() -> None:
     quat = quaternion_from_matrix(END[:3, :3])
     np.testing.assert_allclose(matrix_from_quaternion(quat), END[:3, :3], atol=1e-15)
+
+
+@pytest.mark.parametrize("ramp", [0.5, 0.01, 5e-4, 1e-4])
+def test_short_ramps_keep_the_limits(ramp: float) -> None:
+    pose = np.eye(4)
+    pose[0, 3] = 1.0
+    circle = oo.Circle(
+        pose, center=[0, 0, 0], axis=[0, 0, 1], angle=3.0, ramp=ramp, speed=1.0, acceleration=50.0,
+        angular_speed=100.0, angular_acceleration=1e4,
+    )  # fmt: skip
+    ends = np.linspace(0.0, ramp * circle.duration, 2001)
+    acceleration = np.linalg.norm(circle.sample(ends)[2][:, :3], axis=1).max()
+    speed = np.linalg.norm(circle.sample(0.5 * circle.duration)[1][:3])
+    assert acceleration <= 50.0 and speed <= 1.0
+    assert max(acceleration / 50.0, speed) > 0.99
+
+
+@pytest.mark.parametrize("span", [3.0, 1.5, 0.6])
+def test_the_local_frame_turns_as_it_says_on_a_short_path_too(span: float) -> None:
+    """Its plane turns with the jerk of the path; differences once reached beyond its ends."""
+    times = np.linspace(0.0, span, 31)
+    r, v = oo.Kepler(semi_major_axis=6.8e6).state(times)
+    a = -oo.MU_EARTH * r / np.linalg.norm(r, axis=1)[:, None] ** 3
+    r[:, 2], v[:, 2], a[:, 2] = 0.5 * times**3, 1.5 * times**2, 3.0 * times
+    path = oo.CustomPath(times, r, velocities=v, accelerations=a)
+    pose = np.eye(4)
+    pose[:3, 3] = [1.0, 2.0, 0.5]
+    hold = oo.Hold(pose, frame="lvlh")
+    for t in np.array([0.3, 0.5, 0.7, 0.95]) * span:
+        h = 1e-3 * span
+        before, after = (hold.in_world(t + d, orbit=path)[1][3:] for d in (-h, h))
+        found = hold.in_world(t, orbit=path)[2][3:]
+        np.testing.assert_allclose(found, (after - before) / (2 * h), atol=2e-6)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import traceback
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
@@ -97,6 +98,8 @@ def _report(job: Callable[[], Run], *, quiet: bool) -> None:
         result = job()
     except RunInterrupted as stop:  # caught here: typer would swallow a KeyboardInterrupt and its message
         _fail(str(stop), 130)
+    except KeyboardInterrupt:  # the simulation was over
+        _fail("stopped by Ctrl-C while the results were written; run it again with --force", 130)
     if not quiet:
         report.print_summary(result.summary, result.out)
 
@@ -204,7 +207,20 @@ def main(arguments: list[str] | None = None) -> None:
     except OSError as error:  # printing: the disk behind stdout is full
         _leave_stdout()
         _fail(f"cannot write: {error.strerror or error}", 2)
+    except Exception as error:
+        if not hasattr(error, "trace"):
+            raise
+        _fail(_of_controller(error), 2)
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def _of_controller(error: Exception) -> str:
+    """What a controller of the user's raised, and where."""
+    frames = traceback.extract_tb(error.__traceback__)
+    where = f" ({frames[-1].filename}:{frames[-1].lineno})" if frames else ""
+    return (
+        f"the controller raised {type(error).__name__}{where}: {error}; rows so far are in the --out folder"
+    )
 
 
 def _with_commands(message: str) -> str:

@@ -138,6 +138,9 @@ def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints
     except (SimulationError, RunInterrupted) as stop:
         _keep(stop, built, folder)
         raise
+    except Exception as error:  # a controller of the user's raised it
+        _keep_rows(getattr(error, "trace", None), built, folder)
+        raise
     summary = summarize(trace, scenario, built.orbit, warnings=built.model.warnings)
     if folder is not None:
         write_trace(folder, trace)
@@ -145,6 +148,16 @@ def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints
         write_pictures(folder, trace, summary, built)
         discard_checkpoint(folder)
     return Run(trace, summary, built.model, scenario, folder.path if folder else None)
+
+
+def _keep_rows(trace: Trace | None, built: Built, folder: OutputFolder | None) -> None:
+    """Write the rows there are of a run that a controller ended."""
+    if folder is None or trace is None or len(trace.time) == 0:
+        return
+    write_trace(folder, trace)
+    summary = summarize(trace, built.scenario, built.orbit, status="failed", warnings=built.model.warnings)
+    write_summary(folder, summary)
+    discard_checkpoint(folder)
 
 
 def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFolder | None) -> None:

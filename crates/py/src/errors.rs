@@ -344,6 +344,11 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::Reference { time, source } => {
                 with_trace(py, source.into_python(py), time, trace)
             }
+            SimulationError::Control(source @ ControlError::User(_)) => {
+                let raised = source.into_python(py);
+                let _ = raised.value(py).setattr("trace", trace); // an object without attributes goes without
+                raised
+            }
             SimulationError::Control(source) => source.into_python(py),
         }
     }

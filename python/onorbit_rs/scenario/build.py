@@ -52,6 +52,8 @@ def build(scenario: Scenario) -> Built:
         model = _robot(scenario)
     with located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, beside)
+        if orbit is not None:
+            orbit.state(scenario.simulation.duration)  # a path or a decaying orbit may end before the run
     with located(scenario, "initial"):
         q, v = initial_state(scenario.initial, model, orbit)
     tool = scenario.tracked_tool

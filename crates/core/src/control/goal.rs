@@ -6,7 +6,8 @@ use super::gains::{PerJoint, check_numbers};
 /// Tolerances of a tracked path, after the joint trajectory controller of ROS.
 ///
 /// The components are the joints of the group, rad or m; for a task the distance, m, and the angle, rad.
-/// While the path lasts, an error beyond `path` ends the goal and the control holds where it is. From the
+/// While the path lasts, an error beyond `path` ends the goal and the control holds where it is, in W (or
+/// relative to the base, where its reference is). From the
 /// end of the path on, the goal is reached once all errors are within `tolerance`, and missed where that
 /// takes longer than `time`.
 #[derive(Clone, Debug)]

@@ -152,11 +152,9 @@ impl Orbit for CustomPath {
         "derivative of the path's spline"
     }
 
+    /// Every point: the acceleration has a kink there, or jumps at the ends where it coasts.
     fn event_times(&self) -> Vec<f64> {
-        match self.ends {
-            Ends::Error => Vec::new(),
-            Ends::Coast => vec![self.span().0, self.span().1],
-        }
+        self.position.times().to_vec()
     }
 
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {

@@ -77,15 +77,7 @@ pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, 
     let z = lvlh.rot_il.column(2);
     let climb = r.dot(v) / radius;
     let along_z = z.dot(&r.cross(&state.acceleration)) / (radius * radius) - 2.0 * rate.z * climb / radius;
-    // the plane's turn has the jerk in its rate: differences over thousandths of a radian of orbit,
-    // one-sided at the ends of what is known, the error of second order extrapolated away
-    let step = 1e-3 / rate.norm();
-    let near = |dt: f64| orbit.lvlh(t + dt).map_or((0.0, rate.x), |there| (dt, there.rate_l.x));
-    let slope = |dt: f64| {
-        let ((t0, x0), (t1, x1)) = (near(-dt), near(dt));
-        if t1 > t0 { (x1 - x0) / (t1 - t0) } else { 0.0 }
-    };
-    let along_x = (4.0 * slope(step) - slope(2.0 * step)) / 3.0;
+    let along_x = turn_of_plane(orbit, t, rate);
     let rot = Mat3::from(lvlh.rot_il);
     let in_w = |x: Vector3<f64>| Motion::new(Vec3::zero(), rot * Vec3::from(x));
     Ok(TaskSample {
@@ -94,4 +86,17 @@ pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, 
         velocity: in_w(*rate),
         acceleration: in_w(Vector3::new(along_x, 0.0, along_z)),
     })
+}
+
+/// Rate of the component of L's rate along x: it holds the jerk of the orbit, so by differences over
+/// thousandths of a radian of it, or over less near the ends of what is known.
+///
+/// `ẋ = [8 (x₁ − x₋₁) − (x₂ − x₋₂)]/12h`; at an end `ẋ = ±(4 x₁ − x₂ − 3 x₀)/2h`.
+fn turn_of_plane(orbit: &dyn Orbit, t: f64, rate: &Vector3<f64>) -> f64 {
+    let x = |dt: f64| orbit.lvlh(t + dt).ok().map(|there| there.rate_l.x);
+    let steps = || (0..12).map(|halvings| 1e-3 / rate.norm() * 0.5_f64.powi(halvings));
+    let central = |h: f64| Some((8.0 * (x(h)? - x(-h)?) - (x(2.0 * h)? - x(-2.0 * h)?)) / (12.0 * h));
+    let one_sided = |h: f64| Some((4.0 * x(h)? - x(2.0 * h)? - 3.0 * rate.x) / (2.0 * h));
+    let at_end = || steps().find_map(|h| one_sided(h).or_else(|| one_sided(-h)));
+    steps().find_map(central).or_else(at_end).unwrap_or(0.0)
 }

@@ -50,7 +50,7 @@ impl JointSpline {
                 if stops {
                     return Ok(path);
                 }
-                let stretch = joint_stretch(limits, &path, times.len() - 1);
+                let stretch = joint_stretch(limits, &path, &times);
                 times.iter_mut().for_each(|t| *t *= stretch);
                 through(&times)
             }

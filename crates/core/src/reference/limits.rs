@@ -68,9 +68,9 @@ impl TaskLimits {
         self.angular.check()
     }
 
-    /// By how much `path`, of `pieces` pieces, must be slower to just keep to the limits.
-    pub fn stretch(&self, path: &dyn TaskPath, pieces: usize) -> f64 {
-        let peak = instants(path.duration(), pieces).map(|t| path.sample(t)).fold(0.0, |peak: f64, now| {
+    /// By how much `path`, smooth between neighbouring `times`, must be slower to just keep to the limits.
+    pub fn stretch(&self, path: &dyn TaskPath, times: &[f64]) -> f64 {
+        let peak = instants(times).map(|t| path.sample(t)).fold(0.0, |peak: f64, now| {
             let (v, a) = (now.velocity, now.acceleration);
             peak.max(self.linear.stretch(v.linear.norm(), a.linear.norm()))
                 .max(self.angular.stretch(v.angular.norm(), a.angular.norm()))
@@ -79,11 +79,12 @@ impl TaskLimits {
     }
 }
 
-/// By how much `path`, of `pieces` pieces, must be slower for every joint to just keep to its limit.
-pub(super) fn joint_stretch(limits: &[RateLimit], path: &dyn JointPath, pieces: usize) -> f64 {
+/// By how much `path`, smooth between neighbouring `times`, must be slower for every joint to just keep to
+/// its limit.
+pub(super) fn joint_stretch(limits: &[RateLimit], path: &dyn JointPath, times: &[f64]) -> f64 {
     let mut now = JointSample::new(path.count());
     let mut peak = 0.0_f64;
-    for t in instants(path.duration(), pieces) {
+    for t in instants(times) {
         path.sample(t, &mut now);
         for (limit, (v, a)) in limits.iter().zip(now.v.iter().zip(&now.a)) {
             peak = peak.max(limit.stretch(v.abs(), a.abs()));
@@ -92,9 +93,13 @@ pub(super) fn joint_stretch(limits: &[RateLimit], path: &dyn JointPath, pieces: 
     peak * (1.0 + MARGIN)
 }
 
-fn instants(duration: f64, pieces: usize) -> impl Iterator<Item = f64> {
-    let count = LOOKS * pieces;
-    (0..=count).map(move |i| duration * i as f64 / count as f64)
+/// Instants in every piece between neighbouring `times`.
+fn instants(times: &[f64]) -> impl Iterator<Item = f64> {
+    let piece = |ends: &[f64]| {
+        let (from, length) = (ends[0], ends[1] - ends[0]);
+        (0..=LOOKS).map(move |i| from + length * i as f64 / LOOKS as f64)
+    };
+    times.windows(2).flat_map(piece)
 }
 
 /// How a path's times come about.

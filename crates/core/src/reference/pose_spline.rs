@@ -45,7 +45,7 @@ impl PoseSpline {
                 if stops {
                     return Ok(path);
                 }
-                let stretch = limits.stretch(&path, times.len() - 1);
+                let stretch = limits.stretch(&path, &times);
                 times.iter_mut().for_each(|t| *t *= stretch);
                 through(&times)
             }

@@ -50,7 +50,8 @@ impl TimeLaw {
     ) -> Result<Self, ReferenceError> {
         limits.check()?;
         let law = ramp.map_or_else(|| Self::quintic(1.0), |ramp| Self::ramped(1.0, ramp))?;
-        let duration = limits.stretch(&path_with(law), 4);
+        let share = ramp.unwrap_or(0.25);
+        let duration = limits.stretch(&path_with(law), &[0.0, share, 0.5, 1.0 - share, 1.0]);
         if duration > 0.0 { Ok(Self { duration, ..law }) } else { Err(ReferenceError::NoLimit) }
     }
 

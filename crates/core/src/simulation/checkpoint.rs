@@ -27,8 +27,8 @@ pub struct Checkpoint {
     pub(super) command: Vec<f64>,
     /// What the control of an adaptive step remembers.
     pub(super) memory: Memory,
-    /// Cuts in a row, and when the first was.
-    pub(super) cuts: (usize, f64),
+    /// Cuts in a row that got nowhere.
+    pub(super) cuts: usize,
     /// What the step-doubling probe has: difference found last, the step it was found at, the sum.
     pub(super) probe: (f64, usize, f64),
     /// Work of every step so far, whatever its sign, J.
@@ -90,7 +90,7 @@ impl Checkpoint {
         command: &[S],
         schedule: &Schedule,
         (rows, steps): (usize, usize),
-        (memory, cuts): (Memory, (usize, f64)),
+        (memory, cuts): (Memory, usize),
         probe: (f64, usize, f64),
         work_done: f64,
         controls: ControlMemory,

@@ -70,7 +70,9 @@ impl Simulation {
         let fail = |error| RunFailure { error, trace: Box::default() };
         let model = Arc::clone(&self.model);
         let effects = self.all_effects();
-        let jumps = self.orbit.iter().flat_map(|orbit| orbit.event_times());
+        // one that carries the robot along is felt through its tides alone
+        let falls = self.reference_motion == ReferenceMotion::True;
+        let jumps = self.orbit.iter().filter(|_| falls).flat_map(|orbit| orbit.event_times());
         let events = effects.iter().flat_map(|effect| effect.event_times()).chain(jumps).collect();
         let schedule = self.schedule(duration, events);
         let surroundings = Surroundings::new(&model, effects, self.orbit.clone());

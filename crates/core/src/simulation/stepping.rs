@@ -9,9 +9,13 @@ use super::state::State;
 use crate::model::Model;
 use crate::spatial::Real;
 
-/// Cuts within the time of one regular step; beyond, friction stops joints at the ends of steps and
-/// stops give nothing back, so that a run comes to an end whatever the robot does.
+/// Cuts in a row that get nowhere; beyond, friction stops joints at the ends of steps and stops give
+/// nothing back, so that bounces without end come to an end.
 const MOST_CUTS: usize = 32;
+/// A cut gets nowhere within this share of a regular step,
+const IDLE: f64 = 1e-6;
+/// or where the joint that comes to its stop can have moved by less than this, rad or m, since the last.
+const STILL: f64 = 1e-9;
 /// Where within a step something happened is found to this share of it.
 const RESOLUTION: f64 = 1e-14;
 
@@ -34,8 +38,8 @@ pub(crate) struct Stepper<S> {
     seen: State<S>,
     /// Joints whose slip may turn within a step without a cut.
     is_forgiven: Vec<bool>,
-    /// Cuts within `time_step`, and when the first of them was, s.
-    pub(super) cuts: (usize, f64),
+    /// Cuts in a row that got nowhere.
+    pub(super) cuts: usize,
     time_step: f64,
 }
 
@@ -46,7 +50,7 @@ impl<S: Real> Stepper<S> {
             start: state.clone(),
             seen: state.clone(),
             is_forgiven: vec![false; model.joint_count()],
-            cuts: (0, 0.0),
+            cuts: 0,
             time_step: how.time_step,
         }
     }
@@ -57,7 +61,7 @@ impl<S: Real> Stepper<S> {
     }
 
     /// Goes on from what was kept.
-    pub(super) fn go_on_from(&mut self, memory: Memory, cuts: (usize, f64)) {
+    pub(super) fn go_on_from(&mut self, memory: Memory, cuts: usize) {
         self.cuts = cuts;
         if let Some(pair) = &mut self.stages.pair {
             pair.memory = memory;
@@ -67,7 +71,7 @@ impl<S: Real> Stepper<S> {
     /// Puts a settled state past impacts. Needs kinematics; leaves them, and wrenches are to follow.
     pub(crate) fn bounce(&self, plant: &mut Plant<'_, S, impl World<S>>, state: &mut State<S>) {
         if plant.contacts.is_active() {
-            let restitution = if self.cuts.0 > MOST_CUTS { 0.0 } else { plant.contacts.restitution };
+            let restitution = if self.cuts > MOST_CUTS { 0.0 } else { plant.contacts.restitution };
             plant.bounce(state, restitution);
         }
     }
@@ -88,17 +92,21 @@ impl<S: Real> Stepper<S> {
         if !state.is_finite() {
             return Ok(end);
         }
-        if interval.0 - self.cuts.1 > self.time_step {
-            self.cuts = (0, interval.0);
-        }
-        self.is_forgiven.fill(self.cuts.0 >= MOST_CUTS);
+        self.is_forgiven.fill(self.cuts >= MOST_CUTS);
         let share = self.locate(plant, state, (interval.0, end))?;
         let reached = if share < 1.0 { interval.0 + share * (end - interval.0) } else { end };
         self.snap(plant, state);
-        if share < 1.0 {
-            self.cuts.0 += 1;
-        }
+        self.cuts = if self.is_idle(plant, state, reached - interval.0) { self.cuts + 1 } else { 0 };
         Ok(reached)
+    }
+
+    /// Whether the step of `h` that ended in `state` got nowhere.
+    fn is_idle(&self, plant: &Plant<'_, S, impl World<S>>, state: &State<S>, h: f64) -> bool {
+        let rate = |state: &State<S>, j: usize| state.v[j + 6].lane(0).abs();
+        match plant.hits(state) {
+            Some(j) => rate(&self.start, j).max(rate(state, j)) * h < STILL,
+            None => h < IDLE * self.time_step,
+        }
     }
 
     /// The share of the step after which something happens, `state` moved there; 1 if nothing does.
@@ -179,7 +187,7 @@ impl<S: Real> Stepper<S> {
         interval: (f64, f64),
     ) -> Result<f64, SimulationError> {
         let mut least = self.room(plant, state);
-        if plant.contacts.locked().is_some() && self.cuts.0 < MOST_CUTS {
+        if plant.contacts.locked().is_some() && self.cuts < MOST_CUTS {
             self.seen.copy_from(state);
             plant.settle(&mut self.seen);
             plant.surround(interval.1, interval, &self.seen.q)?;

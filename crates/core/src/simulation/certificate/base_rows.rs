@@ -72,6 +72,8 @@ impl BaseRows {
                 body.velocity.cross_force(momentum),
                 momentum * (1e-9 / h),
             ];
+            // v × m v is nothing but rounding: moments below a billionth of |v| |m v| are
+            sum[1] += 1e-9 * body.velocity.linear.norm() * momentum.linear.norm();
             for term in terms {
                 sum[0] += term.linear.norm();
                 sum[1] += term.angular.norm();
