@@ -188,7 +188,8 @@ fn beyond_the_ends_there_is_nothing_or_a_straight_line() {
     }
     assert!(matches!(strict.state(f64::NAN), Err(OrbitError::NotFinite { .. })));
     let coasting = CustomPath::new(points, None, Ends::Coast).expect("a path");
-    assert_eq!(coasting.event_times(), [0.0, 2000.0]);
+    let knots = coasting.event_times();
+    assert!(knots.contains(&0.0) && knots.contains(&2000.0)); // and the points between, kinks all
     let (end, beyond) = (coasting.state(2000.0).expect("an end"), coasting.state(2010.0).expect("coasts"));
     assert_eq!(beyond.velocity, end.velocity);
     assert_eq!(beyond.acceleration, Vector3::zeros());

@@ -14,7 +14,7 @@ use crate::spatial::Real;
 const MOST_CUTS: usize = 32;
 /// A cut gets nowhere within this share of a regular step,
 const IDLE: f64 = 1e-6;
-/// or where the joint that comes to its stop can have moved by less than this, rad or m, since the last.
+/// or where the joint that comes to rest or to its stop moved by less than this, rad or m, since the last.
 const STILL: f64 = 1e-9;
 /// Where within a step something happened is found to this share of it.
 const RESOLUTION: f64 = 1e-14;
@@ -103,7 +103,8 @@ impl<S: Real> Stepper<S> {
     /// Whether the step of `h` that ended in `state` got nowhere.
     fn is_idle(&self, plant: &Plant<'_, S, impl World<S>>, state: &State<S>, h: f64) -> bool {
         let rate = |state: &State<S>, j: usize| state.v[j + 6].lane(0).abs();
-        match plant.hits(state) {
+        let came_to_rest = |j: &usize| rate(state, *j) == 0.0 && rate(&self.start, *j) > 0.0;
+        match plant.hits(state).or_else(|| (0..self.is_forgiven.len()).find(came_to_rest)) {
             Some(j) => rate(&self.start, j).max(rate(state, j)) * h < STILL,
             None => h < IDLE * self.time_step,
         }
