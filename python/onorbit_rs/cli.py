@@ -218,9 +218,8 @@ def _of_controller(error: Exception) -> str:
     """What a controller of the user's raised, and where."""
     frames = traceback.extract_tb(error.__traceback__)
     where = f" ({frames[-1].filename}:{frames[-1].lineno})" if frames else ""
-    return (
-        f"the controller raised {type(error).__name__}{where}: {error}; rows so far are in the --out folder"
-    )
+    notes = "".join(f"; {note}" for note in getattr(error, "__notes__", ()))
+    return f"the controller raised {type(error).__name__}{where}: {error}{notes}"
 
 
 def _with_commands(message: str) -> str:

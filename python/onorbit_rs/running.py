@@ -138,8 +138,8 @@ def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints
     except (SimulationError, RunInterrupted) as stop:
         _keep(stop, built, folder)
         raise
-    except Exception as error:  # a controller of the user's raised it
-        _keep_rows(getattr(error, "trace", None), built, folder)
+    except Exception as error:  # raised by a controller of the user's, or where orbit or environment end
+        _keep_rows(error, built, folder)
         raise
     summary = summarize(trace, scenario, built.orbit, warnings=built.model.warnings)
     if folder is not None:
@@ -150,14 +150,13 @@ def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints
     return Run(trace, summary, built.model, scenario, folder.path if folder else None)
 
 
-def _keep_rows(trace: Trace | None, built: Built, folder: OutputFolder | None) -> None:
-    """Write the rows there are of a run that a controller ended."""
-    if folder is None or trace is None or len(trace.time) == 0:
-        return
-    write_trace(folder, trace)
-    summary = summarize(trace, built.scenario, built.orbit, status="failed", warnings=built.model.warnings)
-    write_summary(folder, summary)
-    discard_checkpoint(folder)
+def _keep_rows(error: Exception, built: Built, folder: OutputFolder | None) -> None:
+    """Write the rows there are of a run that ended by an error other than its own divergence, and note it."""
+    trace = getattr(error, "trace", None)
+    if folder is not None and trace is not None and len(trace.time) > 0:
+        _write_rows(trace, "failed", built, folder)
+        discard_checkpoint(folder)
+        error.add_note(f"the rows so far are in {folder.path}")
 
 
 def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFolder | None) -> None:
@@ -171,16 +170,19 @@ def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFo
     if stop.trace is None or len(stop.trace.time) == 0:
         folder.discard()
         return
-    with np.errstate(all="ignore"):  # numbers near the end of the range of floats
-        status = "diverged" if diverged else "interrupted"
-        summary = summarize(
-            stop.trace, built.scenario, built.orbit, status=status, warnings=built.model.warnings
-        )
-    write_trace(folder, stop.trace)
-    write_summary(folder, summary)
+    summary = _write_rows(stop.trace, "diverged" if diverged else "interrupted", built, folder)
     stop.message += f"; the trace so far is in {folder.path}"
     if diverged:  # such numbers make no picture, and there is nothing to go on to
         discard_checkpoint(folder)
     else:
         stop.message += f"; go on with: onorbit resume {shlex.quote(str(folder.path))}"
         write_pictures(folder, stop.trace, summary, built)
+
+
+def _write_rows(trace: Trace, status: str, built: Built, folder: OutputFolder) -> dict[str, Any]:
+    """Trace and summary of a run, whole or not; returns the summary."""
+    with np.errstate(all="ignore"):  # of one that diverged: numbers near the end of the range of floats
+        summary = summarize(trace, built.scenario, built.orbit, status=status, warnings=built.model.warnings)
+    write_trace(folder, trace)
+    write_summary(folder, summary)
+    return summary

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.layouts.state import (
-    checked,
+    checked_pair,
     joined,
     names_in,
     no_floating_base,
     order_of,
     pair,
-    same_batch,
     to_body,
     to_world,
     unit,
@@ -44,8 +43,7 @@ def to_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> tu
 def from_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> tuple[Floats, Floats]:
     """Our `q` and `v` from positions and velocities."""
     order = _order(model, joints)
-    theirs_q, theirs_v = checked("q", q, model.nq), checked("v", v, model.nv)
-    same_batch(q=theirs_q[..., 0], v=theirs_v[..., 0])
+    theirs_q, theirs_v = checked_pair(q=(q, model.nq), v=(v, model.nv))
     quat = theirs_q[..., [1, 2, 3, 0]]
     unit("q", quat)
     linear, angular = to_body(quat, theirs_v[..., 3:6]), to_body(quat, theirs_v[..., :3])

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.layouts.state import (
-    checked,
+    checked_pair,
     joined,
     names_in,
     no_floating_base,
     order_of,
     pair,
-    same_batch,
     to_body,
     to_world,
     unit,
@@ -45,8 +44,7 @@ def to_mujoco(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> t
 def from_mujoco(model: Model, qpos: ArrayLike, qvel: ArrayLike, joints: Any = None) -> tuple[Floats, Floats]:
     """Our `q` and `v` from ``qpos`` and ``qvel``."""
     order = _order(model, joints)
-    theirs_q, theirs_v = checked("qpos", qpos, model.nq), checked("qvel", qvel, model.nv)
-    same_batch(qpos=theirs_q[..., 0], qvel=theirs_v[..., 0])
+    theirs_q, theirs_v = checked_pair(qpos=(qpos, model.nq), qvel=(qvel, model.nv))
     quat = theirs_q[..., [4, 5, 6, 3]]
     unit("qpos", quat)
     return (

@@ -9,13 +9,12 @@ import numpy as np
 
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.layouts.state import (
-    checked,
+    checked_pair,
     joined,
     names_in,
     no_floating_base,
     order_of,
     pair,
-    same_batch,
     unit,
     unshuffled,
 )
@@ -52,9 +51,7 @@ def from_pinocchio(
 ) -> tuple[Floats, Floats]:
     """Our `q` and `v`; an unbounded joint comes back between -π and π, whatever turns it had made."""
     order, is_unbounded = _layout(model, joints, unbounded)
-    theirs_q = checked("q", q, model.nq + sum(is_unbounded))
-    theirs_v = checked("v", v, model.nv)
-    same_batch(q=theirs_q[..., 0], v=theirs_v[..., 0])
+    theirs_q, theirs_v = checked_pair(q=(q, model.nq + sum(is_unbounded)), v=(v, model.nv))
     unit("q", theirs_q[..., 3:7])
     angles, at = [], 7
     for wraps in is_unbounded:

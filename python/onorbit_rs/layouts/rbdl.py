@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from onorbit_rs.layouts.state import (
-    checked,
+    checked_pair,
     joined,
     order_of,
     pair,
-    same_batch,
     to_body,
     to_world,
     unit,
@@ -46,8 +45,7 @@ def from_rbdl(
 ) -> tuple[Floats, Floats]:
     """Our `q` and `v` from ``Q`` and ``QDot``."""
     order = order_of(model, joints)
-    theirs_q, theirs_v = checked("q", q, model.nq), checked("v", v, model.nv)
-    same_batch(q=theirs_q[..., 0], v=theirs_v[..., 0])
+    theirs_q, theirs_v = checked_pair(q=(q, model.nq), v=(v, model.nv))
     quat = joined(theirs_q[..., 3:6], theirs_q[..., -1:])
     unit("q", quat)
     return (

@@ -44,10 +44,16 @@ def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
     return array
 
 
+def checked_pair(**given: tuple[ArrayLike, int]) -> list[Floats]:
+    """Vectors and their lengths by name, checked: each one, or batches of one length."""
+    arrays = {name: checked(name, value, length) for name, (value, length) in given.items()}
+    same_batch(**{name: array[..., 0] for name, array in arrays.items()})
+    return list(arrays.values())
+
+
 def pair(model: Model, q: ArrayLike, v: ArrayLike) -> tuple[Floats, Floats]:
     """Our own state, checked: one, or batches of one length."""
-    checked_q, checked_v = checked("q", q, model.nq), checked("v", v, model.nv)
-    same_batch(q=checked_q[..., 0], v=checked_v[..., 0])
+    checked_q, checked_v = checked_pair(q=(q, model.nq), v=(v, model.nv))
     unit("q", checked_q[..., 3:7])
     return checked_q, checked_v
 

@@ -11,7 +11,8 @@ use super::progress::{Phase, Progress};
 use super::pseudo_inverse::ROWS;
 use super::side_by_side::{Drive, SideBySide};
 use crate::dynamics::{
-    Data, FreeFloating, base_relative_frame, frame_pose, free_floating_frame, free_floating_recursion,
+    Data, FreeFloating, base_relative_frame, base_rotation, frame_pose, free_floating_frame,
+    free_floating_recursion,
 };
 use crate::model::Model;
 use crate::reference::TaskSample;
@@ -131,7 +132,7 @@ impl<'a, S: Scalar> Stack<'a, S> {
     ) -> Result<(), ControlError> {
         self.q.iter_mut().zip(q).for_each(|(to, from)| *to = from.value());
         self.v.iter_mut().zip(v).for_each(|(to, from)| *to = from.value());
-        let base = (Vec3::from_slice(&self.q), frame_base(&self.q));
+        let base = (Vec3::from_slice(&self.q), base_rotation(&self.q));
         for (control, progress) in self.controls.iter().zip(&mut self.progress) {
             if progress.phase == Phase::Over {
                 progress.error.fill(0.0);
@@ -378,10 +379,6 @@ fn look_at<S: Scalar>(
     } else {
         free_floating_frame(model, data, q, v, frame, out);
     }
-}
-
-fn frame_base(q: &[f64]) -> Mat3<f64> {
-    crate::dynamics::base_rotation(q)
 }
 
 fn value<S: Scalar>(v: Vec3<S>) -> Vec3<f64> {
