@@ -23,6 +23,8 @@ ORDER = (
     "spatial",
     "model",
     "dynamics",
+    "earth",
+    "gravity",
     "orbit",
     "environment",
     "reference",

@@ -9,8 +9,9 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::environment::{
-    BodyState, DifferentialGravity, Effect, GravityGradient, Reference, Scene, Wrench,
+    Anchor, BodyState, DifferentialGravity, Effect, GravityGradient, Reference, Scene, Wrench,
 };
+use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{Elements, Kepler, Orbit, Size, states};
 
 fn conics() -> [(&'static str, Kepler); 6] {
@@ -66,8 +67,16 @@ fn effects(c: &mut Criterion) {
     };
     let bodies = [body; 8];
     let mut wrenches = [Wrench::default(); 8];
-    let reference = Some(Reference { state, mu: orbit.mu() });
-    let scene = Scene { interval: (0.0, 1.0), time: 0.0, reference, bodies: &bodies };
+    let gravity = orbit.mu().map(Gravity::point_mass);
+    let reference = Some(Reference { state, gravity: gravity.as_ref() });
+    let scene = Scene {
+        interval: (0.0, 1.0),
+        time: 0.0,
+        reference,
+        earth: None,
+        anchor: Anchor::default(),
+        bodies: &bodies,
+    };
     c.bench_function("differential_gravity_8_bodies", |b| {
         b.iter(|| DifferentialGravity::default().add_wrenches(black_box(&scene), &mut wrenches));
     });

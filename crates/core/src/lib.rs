@@ -1,12 +1,14 @@
 //! Free-floating articulated dynamics for robots in orbit.
 //!
-//! Folders depend downwards only, in this order: `spatial`, `model`, `dynamics`, `orbit`,
-//! `environment`, `reference`, `control`, `simulation`, `batch`.
+//! Folders depend downwards only, in this order: `spatial`, `model`, `dynamics`, `earth`,
+//! `gravity`, `orbit`, `environment`, `reference`, `control`, `simulation`, `batch`.
 
 pub mod batch;
 pub mod control;
 pub mod dynamics;
+pub mod earth;
 pub mod environment;
+pub mod gravity;
 pub mod model;
 pub mod orbit;
 pub mod reference;

@@ -4,9 +4,10 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::environment::{
-    BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Place, Reference,
+    Anchor, BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Place, Reference,
     ReferenceMotion, Scene, Wrench,
 };
+use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{Kepler, MU_EARTH, Orbit, OrbitState};
 
 /// The reference's position, m: NASA's typical orbit.
@@ -49,20 +50,32 @@ fn body(com: Vector3<f64>) -> BodyState {
     }
 }
 
+/// Gravity that outlives every scene.
+fn point_mass(mu: f64) -> &'static Gravity {
+    Box::leak(Box::new(Gravity::point_mass(mu)))
+}
+
 /// A reference that does not accelerate, at `position`.
-fn reference(position: [f64; 3], mu: f64) -> Reference {
+fn reference(position: [f64; 3], mu: f64) -> Reference<'static> {
     let zero = Vector3::zeros();
     let state = OrbitState { position: position.into(), velocity: zero, acceleration: zero };
-    Reference { state, mu: Some(mu) }
+    Reference { state, gravity: Some(point_mass(mu)) }
 }
 
 fn wrench(
     effect: &dyn Effect,
-    reference: Option<Reference>,
+    reference: Option<Reference<'_>>,
     body: BodyState,
 ) -> Result<Wrench, EnvironmentError> {
     let mut wrenches = [Wrench::default()];
-    let scene = Scene { interval: (0.0, 1.0), time: 0.0, reference, bodies: &[body] };
+    let scene = Scene {
+        interval: (0.0, 1.0),
+        time: 0.0,
+        reference,
+        earth: None,
+        anchor: Anchor::default(),
+        bodies: &[body],
+    };
     effect.add_wrenches(&scene, &mut wrenches)?;
     Ok(wrenches[0])
 }
@@ -96,7 +109,8 @@ fn a_reference_that_obeys_gravity_leaves_the_tide_alone_bit_for_bit() {
     let v = Vector3::new(109.649663, -7527.726490, 1484.521489);
     let orbit = Kepler::from_state(ORIGIN.into(), v, MU_EARTH).expect("an ellipse");
     for t in [0.0, 1234.5, 86_400.0] {
-        let reference = Reference { state: orbit.state(t).expect("a valid time"), mu: orbit.mu() };
+        let reference =
+            Reference { state: orbit.state(t).expect("a valid time"), gravity: orbit.mu().map(point_mass) };
         assert_eq!(DifferentialGravity::residual(&reference), Some(Vector3::zeros()));
         let b = body(Vector3::new(0.3, -0.2, 0.1));
         assert_eq!(wrench(&TRUE, Some(reference), b), wrench(&CARRIED, Some(reference), b));
@@ -121,7 +135,14 @@ fn force_scales_with_mass_and_adds_to_what_is_there() {
     let there = Wrench { force: Vector3::new(1.0, 2.0, 3.0), torque: Vector3::y() };
     let mut wrenches = [Wrench::default(), there];
     let reference = Some(reference(ORIGIN, MU_EARTH));
-    let scene = Scene { interval: (0.0, 1.0), time: 0.0, reference, bodies: &bodies };
+    let scene = Scene {
+        interval: (0.0, 1.0),
+        time: 0.0,
+        reference,
+        earth: None,
+        anchor: Anchor::default(),
+        bodies: &bodies,
+    };
     CARRIED.add_wrenches(&scene, &mut wrenches).expect("outside");
     assert_eq!(wrenches[1].force, there.force + wrenches[0].force * 3.0);
     assert_eq!(wrenches[1].torque, there.torque);
@@ -204,7 +225,7 @@ fn torque_is_taken_at_the_body_and_not_at_the_reference() {
 #[test]
 fn gravity_is_refused_around_no_planet_and_inside_one() {
     let origin = reference(ORIGIN, MU_EARTH);
-    let no_planet = Reference { mu: None, ..origin };
+    let no_planet = Reference { gravity: None, ..origin };
     for effect in [&TRUE as &dyn Effect, &CARRIED, &GravityGradient] {
         assert!(effect.requires_orbit());
         for missing in [None, Some(no_planet)] {
@@ -231,6 +252,8 @@ fn one_wrench_per_body_is_needed() {
         interval: (0.0, 1.0),
         time: 0.0,
         reference: Some(reference(ORIGIN, MU_EARTH)),
+        earth: None,
+        anchor: Anchor::default(),
         bodies: &[body(Vector3::zeros())],
     };
     let mut two = [Wrench::default(); 2];

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::error::Place;
 use super::{Effect, EnvironmentError, Reference, Scene, Wrench};
-use crate::orbit::point_mass_gravity;
+use crate::gravity::point_mass;
 
 /// What happens where the reference does not itself fall freely in the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,9 +34,9 @@ impl DifferentialGravity {
     /// The part of gravity that the reference does not follow, `g(r_ref) - r̈_ref`, m/s², `W` axes.
     ///
     /// Zero on a Kepler orbit, bit for bit; `None` around no planet.
-    pub fn residual(reference: &Reference) -> Option<Vector3<f64>> {
+    pub fn residual(reference: &Reference<'_>) -> Option<Vector3<f64>> {
         let s = &reference.state;
-        Some(point_mass_gravity(reference.mu?, &s.position) - s.acceleration)
+        Some(point_mass(reference.gravity?.mu(), &s.position) - s.acceleration)
     }
 }
 
@@ -80,7 +80,7 @@ impl Effect for DifferentialGravity {
         let planet = scene.planet(NAME)?;
         let residual = match self.motion {
             ReferenceMotion::True => {
-                point_mass_gravity(planet.mu, &planet.reference.position) - planet.reference.acceleration
+                point_mass(planet.mu, &planet.reference.position) - planet.reference.acceleration
             }
             ReferenceMotion::Carried => Vector3::zeros(),
         };

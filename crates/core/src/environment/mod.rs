@@ -13,7 +13,7 @@ pub use body_wrench::BodyWrench;
 pub use differential_gravity::{DifferentialGravity, ReferenceMotion};
 pub use error::{EnvironmentError, Place};
 pub use gravity_gradient::GravityGradient;
-pub use scene::{BodyState, Reference, Scene, Wrench};
+pub use scene::{Anchor, BodyState, Reference, Scene, Wrench};
 
 /// Something that pulls, pushes or turns the bodies of a robot.
 ///

@@ -4,6 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::EnvironmentError;
 use super::error::Place;
+use crate::earth::Earth;
+use crate::gravity::Gravity;
 use crate::orbit::OrbitState;
 
 /// One body of the robot, in `W`.
@@ -26,12 +28,12 @@ pub struct BodyState {
 }
 
 /// The reference orbit at one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reference {
+#[derive(Clone, Copy, Debug)]
+pub struct Reference<'a> {
     /// Its state, axes of `I`; `W`'s origin is at its position.
     pub state: OrbitState,
-    /// Gravitational parameter of the planet, m³/s²; `None` around no planet.
-    pub mu: Option<f64>,
+    /// The gravity that acts on robot and reference; `None` around no planet.
+    pub gravity: Option<&'a Gravity>,
 }
 
 /// All that an effect may look at.
@@ -42,9 +44,24 @@ pub struct Scene<'a> {
     /// Instant of this evaluation, s of simulation.
     pub time: f64,
     /// The reference orbit now, where the run has one.
-    pub reference: Option<Reference>,
+    pub reference: Option<Reference<'a>>,
+    /// How the Earth turns, where the run says so.
+    pub earth: Option<&'a Earth>,
+    /// Where and when the step being integrated began: what is dear may be expanded about it.
+    pub anchor: Anchor,
     /// The robot's bodies now.
     pub bodies: &'a [BodyState],
+}
+
+/// The start of a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Anchor {
+    /// Its instant, s of simulation.
+    pub time: f64,
+    /// The robot's centre of mass in `W` then, m.
+    pub com: Vector3<f64>,
+    /// Position of `W`'s origin then, axes of `I`, m.
+    pub origin: Vector3<f64>,
 }
 
 /// Force through a body's centre of mass and torque about it.
@@ -79,7 +96,7 @@ impl<'a> Scene<'a> {
 
     /// State of the reference and parameter of its planet, the reference being outside it.
     pub(super) fn planet(&self, effect: &'static str) -> Result<Planet, EnvironmentError> {
-        let around = |r: Reference| Some((r.state, r.mu?));
+        let around = |r: Reference<'_>| Some((r.state, r.gravity?.mu()));
         let (reference, mu) = self.reference.and_then(around).ok_or(EnvironmentError::NoPlanet { effect })?;
         let planet = Planet { effect, mu, reference, minimum_cubed: smallest_radius_cubed(mu) };
         planet.outside(Place::Reference, reference.position.norm())?;

@@ -107,15 +107,6 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     }
 }
 
-/// Acceleration of a point mass's field, `g = -μ r / |r|³`, m/s², axes of `r`.
-///
-/// Every user of the field calls this one expression, so that a reference which obeys it
-/// differs from it by exactly zero.
-pub(crate) fn point_mass_gravity(mu: f64, r: &Vector3<f64>) -> Vector3<f64> {
-    let r2 = r.norm_squared();
-    r * (-mu / (r2 * r2.sqrt()))
-}
-
 /// Positions and velocities at many instants, axes of `I`.
 ///
 /// `times` (T,) s; `positions` and `velocities` hold T rows of three numbers, row after row,

@@ -16,6 +16,7 @@ use super::surroundings::Surroundings;
 use super::trace::{GoalResult, Trace};
 use crate::control::{ControlLaw, Stack};
 use crate::environment::{DifferentialGravity, Effect, ReferenceMotion};
+use crate::gravity::Gravity;
 use crate::model::Model;
 use crate::spatial::{Fused, InstructionSet, Scalar};
 use std::sync::Arc;
@@ -69,22 +70,22 @@ impl Simulation {
     ) -> Result<Trace, RunFailure> {
         let fail = |error| RunFailure { error, trace: Box::default() };
         let model = Arc::clone(&self.model);
-        let effects = self.all_effects();
+        let (effects, gravity) = (self.all_effects(), self.gravity());
         // one that carries the robot along is felt through its tides alone
         let falls = self.reference_motion == ReferenceMotion::True;
         let jumps = self.orbit.iter().filter(|_| falls).flat_map(|orbit| orbit.event_times());
         let events = effects.iter().flat_map(|effect| effect.event_times()).chain(jumps).collect();
         let schedule = self.schedule(duration, events);
-        let surroundings = Surroundings::new(&model, effects, self.orbit.clone());
+        let surroundings =
+            Surroundings::new(&model, effects, self.orbit.clone(), gravity.clone(), self.earth.clone());
         let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
         let mut plant = Plant::<S, _>::new(&model, surroundings, self.stops);
         let state = State::at(&model, &mut plant.data, numbers(&self.q), numbers(&self.v));
-        let planet = self.orbit.as_ref().and_then(|orbit| orbit.mu());
         let extras = Extras {
             tool: self.tool,
             has_reference: self.reference.is_some() || self.control.tracks(self.tool),
             has_orbit: self.orbit.is_some(),
-            carried_around: planet.filter(|_| self.reference_motion == ReferenceMotion::Carried),
+            carried_in: gravity.filter(|_| !falls),
         };
         let is_dense = self.record_every == 1 && !self.is_adaptive();
         let controls = self.control.controls();
@@ -118,6 +119,12 @@ impl Simulation {
             Ok(()) => Ok(trace),
             Err(error) => Err(RunFailure { error, trace: Box::new(trace) }),
         }
+    }
+
+    /// The field chosen, or that of a point mass, where there is a planet.
+    fn gravity(&self) -> Option<Arc<Gravity>> {
+        let mu = self.orbit.as_ref().and_then(|orbit| orbit.mu())?;
+        Some(self.gravity.clone().unwrap_or_else(|| Arc::new(Gravity::point_mass(mu))))
     }
 
     fn is_adaptive(&self) -> bool {

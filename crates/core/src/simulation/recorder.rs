@@ -9,14 +9,16 @@ use super::trace::{Trace, Tracking};
 use crate::control::{Control, Stack, task_error};
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
 use crate::environment::{DifferentialGravity, Reference};
+use crate::gravity::Gravity;
 use crate::model::Model;
 use crate::orbit::OrbitState;
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// What a run has to record beside its state.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct Extras {
     /// Index of the frame to record.
     pub(super) tool: Option<usize>,
@@ -24,8 +26,8 @@ pub(super) struct Extras {
     pub(super) has_reference: bool,
     /// Whether there is an orbit.
     pub(super) has_orbit: bool,
-    /// Parameter of the planet along whose gravity the robot is carried.
-    pub(super) carried_around: Option<f64>,
+    /// The gravity through which the robot is carried along.
+    pub(super) carried_in: Option<Arc<Gravity>>,
 }
 
 impl Extras {
@@ -42,7 +44,7 @@ impl Extras {
             "reference_pose" => given(self.has_reference, 16),
             "position_error" | "attitude_error" => given(self.has_reference, 3),
             "position_eci" | "velocity_eci" => given(self.has_orbit, 3),
-            "reference_residual" => given(self.carried_around.is_some(), 3),
+            "reference_residual" => given(self.carried_in.is_some(), 3),
             _ => 1,
         }
     }
@@ -169,7 +171,7 @@ impl Recorder {
             let velocity = orbit.velocity + (base_rotation(q) * Vec3::from_slice(v)).to_nalgebra();
             trace.position_eci.extend_from_slice(origin.as_slice());
             trace.velocity_eci.extend_from_slice(velocity.as_slice());
-            let reference = Reference { state: orbit, mu: self.extras.carried_around };
+            let reference = Reference { state: orbit, gravity: self.extras.carried_in.as_deref() };
             if let Some(residual) = DifferentialGravity::residual(&reference) {
                 trace.reference_residual.extend_from_slice(residual.as_slice());
             }

@@ -5,7 +5,9 @@ use super::error::SimulationError;
 use super::integrator::Integrator;
 use super::start::{check_control_starts, check_start};
 use crate::control::{Control, ControlLaw, check_controls};
+use crate::earth::Earth;
 use crate::environment::{Effect, ReferenceMotion};
+use crate::gravity::Gravity;
 use crate::model::Model;
 use crate::orbit::Orbit;
 use crate::reference::TaskReference;
@@ -26,6 +28,10 @@ pub struct Simulation {
     pub v: Vec<f64>,
     /// Reference orbit; W's origin rides on it.
     pub orbit: Option<Arc<dyn Orbit>>,
+    /// Gravity on robot and reference; the orbit's point mass if none.
+    pub gravity: Option<Arc<Gravity>>,
+    /// How the Earth turns; effects that need to know refuse to act if none.
+    pub earth: Option<Arc<Earth>>,
     /// Whether the robot falls away from a reference that does not fall freely, or is carried along.
     pub reference_motion: ReferenceMotion,
     /// Effects beside gravity.
@@ -62,6 +68,8 @@ impl Simulation {
             q,
             v,
             orbit: None,
+            gravity: None,
+            earth: None,
             reference_motion: ReferenceMotion::True,
             effects: Vec::new(),
             control: ControlLaw::None,

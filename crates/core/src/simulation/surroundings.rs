@@ -3,7 +3,9 @@
 use super::error::SimulationError;
 use super::plant::World;
 use crate::dynamics::{Data, base_rotation};
-use crate::environment::{BodyState, Effect, Reference, Scene, Wrench};
+use crate::earth::Earth;
+use crate::environment::{Anchor, BodyState, Effect, Reference, Scene, Wrench};
+use crate::gravity::Gravity;
 use crate::model::{Model, Node};
 use crate::orbit::{Orbit, OrbitState};
 use crate::spatial::{Force, Mat3, Scalar, Vec3};
@@ -16,6 +18,10 @@ pub(super) struct Surroundings {
     effects: Vec<Arc<dyn Effect>>,
     reads_velocities: bool,
     orbit: Option<Arc<dyn Orbit>>,
+    gravity: Option<Arc<Gravity>>,
+    earth: Option<Arc<Earth>>,
+    /// The step being integrated, and where it began.
+    step: ((f64, f64), Anchor),
     /// The last instants asked for: the stages of a step share them.
     known: [(f64, Option<OrbitState>); 3],
     bodies: Vec<BodyState>,
@@ -23,7 +29,13 @@ pub(super) struct Surroundings {
 }
 
 impl Surroundings {
-    pub(super) fn new(model: &Model, effects: Vec<Arc<dyn Effect>>, orbit: Option<Arc<dyn Orbit>>) -> Self {
+    pub(super) fn new(
+        model: &Model,
+        effects: Vec<Arc<dyn Effect>>,
+        orbit: Option<Arc<dyn Orbit>>,
+        gravity: Option<Arc<Gravity>>,
+        earth: Option<Arc<Earth>>,
+    ) -> Self {
         let at_rest = |node: &Node| BodyState {
             mass: node.mass,
             inertia: node.about_com.to_nalgebra(),
@@ -37,6 +49,9 @@ impl Surroundings {
             reads_velocities: effects.iter().any(|effect| effect.reads_velocities()),
             effects,
             orbit,
+            gravity,
+            earth,
+            step: ((f64::NAN, f64::NAN), Anchor::default()),
             known: [(f64::NAN, None); 3],
             bodies: model.nodes().iter().map(at_rest).collect(),
             wrenches: vec![Wrench::default(); model.nodes().len()],
@@ -53,6 +68,18 @@ impl Surroundings {
         self.known.rotate_right(1);
         self.known[0] = (t, Some(state));
         Ok(Some(state))
+    }
+
+    /// Where the step being integrated began: at the first look at it.
+    fn anchor(&mut self, t: f64, interval: (f64, f64), reference: Option<&OrbitState>) -> Anchor {
+        if self.step.0 != interval {
+            // c = Σ mₖ cₖ / Σ mₖ
+            let moment: Vector3<f64> = self.bodies.iter().map(|body| body.com * body.mass).sum();
+            let com = moment / self.bodies.iter().map(|body| body.mass).sum::<f64>();
+            let origin = reference.map_or_else(Vector3::zeros, |state| state.position);
+            self.step = (interval, Anchor { time: t, com, origin });
+        }
+        self.step.1
     }
 
     /// Fills in what the effects see; returns `R_wb`.
@@ -96,14 +123,15 @@ impl<S: Scalar> World<S> for Surroundings {
             return Ok(());
         }
         let reference = self.orbit_state(t)?;
-        let mu = self.orbit.as_ref().and_then(|orbit| orbit.mu());
         let rot_wb = S::enter(
             #[inline(always)]
             || self.look(data, q, carried),
         );
         self.wrenches.fill(Wrench::default());
-        let reference = reference.map(|state| Reference { state, mu });
-        let scene = Scene { interval, time: t, reference, bodies: &self.bodies };
+        let anchor = self.anchor(t, interval, reference.as_ref());
+        let reference = reference.map(|state| Reference { state, gravity: self.gravity.as_deref() });
+        let earth = self.earth.as_deref();
+        let scene = Scene { interval, time: t, reference, earth, anchor, bodies: &self.bodies };
         for effect in &self.effects {
             effect
                 .add_wrenches(&scene, &mut self.wrenches)

@@ -13,7 +13,8 @@ mod from_state;
 use nalgebra::Vector3;
 
 use super::error::finite;
-use super::{Orbit, OrbitError, OrbitState, point_mass_gravity};
+use super::{Orbit, OrbitError, OrbitState};
+use crate::gravity::point_mass;
 use conic::{Conic, Shape};
 pub use elements::{Elements, Phase, Size};
 
@@ -83,6 +84,6 @@ impl Orbit for Kepler {
         let s = self.conic.in_plane(&self.shape, self.conic.advance(self.phase, dt));
         let position = self.p_i * s.x + self.q_i * s.y;
         let velocity = self.p_i * s.vx + self.q_i * s.vy;
-        Ok(OrbitState { position, velocity, acceleration: point_mass_gravity(self.mu, &position) })
+        Ok(OrbitState { position, velocity, acceleration: point_mass(self.mu, &position) })
     }
 }
