@@ -83,7 +83,18 @@ macro_rules! columns {
             fn tracking<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let all = PyDict::new(this.py());
                 for tracking in &this.get().trace.tracking {
-                    all.set_item(&tracking.name, view(this, &tracking.error, &[tracking.width])?)?;
+                    all.set_item(&tracking.name, view(this, &tracking.values, &[tracking.width])?)?;
+                }
+                Ok(all)
+            }
+
+            /// Wrench of every effect on every body by the effect's name, (T, bodies, 6): force, N, through the body's centre of
+            /// mass and torque, N m, about it, W axes, bodies as in ``model.body_names``; with ``record_wrenches=True``.
+            #[getter]
+            fn wrenches<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+                let all = PyDict::new(this.py());
+                for column in &this.get().trace.wrenches {
+                    all.set_item(&column.name, view(this, &column.values, &[column.width / 6, 6])?)?;
                 }
                 Ok(all)
             }

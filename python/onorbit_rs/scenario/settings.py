@@ -33,6 +33,8 @@ class SimulationSettings(Part):
     """Share of its rate that a joint keeps when it hits a stop."""
     record_every: int = Field(default=1, ge=1, le=MAX_STEPS)
     """One row of the trace every so many steps."""
+    record_wrenches: bool = False
+    """Whether the trace holds the wrench of every effect on every body."""
     reference_start_tolerance: (
         Annotated[list[NotNegativeNumber], Field(min_length=2, max_length=2)] | None
     ) = None

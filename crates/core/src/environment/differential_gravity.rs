@@ -28,7 +28,7 @@ pub struct DifferentialGravity {
     pub motion: ReferenceMotion,
 }
 
-const NAME: &str = "differential gravity";
+const NAME: &str = "gravity";
 
 impl DifferentialGravity {
     /// The part of gravity that the reference does not follow, `g(r_ref) - r̈_ref`, m/s², `W` axes.

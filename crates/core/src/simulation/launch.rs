@@ -75,6 +75,7 @@ impl Simulation {
         let falls = self.reference_motion == ReferenceMotion::True;
         let jumps = self.orbit.iter().filter(|_| falls).flat_map(|orbit| orbit.event_times());
         let events = effects.iter().flat_map(|effect| effect.event_times()).chain(jumps).collect();
+        let names = if self.record_wrenches { column_names(&effects) } else { Vec::new() };
         let schedule = self.schedule(duration, events);
         let surroundings =
             Surroundings::new(&model, effects, self.orbit.clone(), gravity.clone(), self.earth.clone());
@@ -84,6 +85,7 @@ impl Simulation {
         let extras = Extras {
             tool: self.tool,
             has_reference: self.reference.is_some() || self.control.tracks(self.tool),
+            effects: names,
             has_orbit: self.orbit.is_some(),
             carried_in: gravity.filter(|_| !falls),
         };
@@ -148,6 +150,18 @@ impl Simulation {
         }
         effects
     }
+}
+
+/// A name for every effect's column: its own, with a number from the second of that name on.
+fn column_names(effects: &[Arc<dyn Effect>]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::with_capacity(effects.len());
+    for effect in effects {
+        let name = effect.name().replace(' ', "_");
+        let is_taken = |name: &String| names.contains(name);
+        let numbered = (2..).map(|k| format!("{name}_{k}")).find(|name| !is_taken(name));
+        names.push(if is_taken(&name) { numbered.unwrap_or_default() } else { name });
+    }
+    names
 }
 
 /// How many rows to make room for.

@@ -5,7 +5,7 @@ use super::error::SimulationError;
 use super::plant::Plant;
 use super::state::State;
 use super::surroundings::Surroundings;
-use super::trace::{Trace, Tracking};
+use super::trace::{NamedColumn, Trace};
 use crate::control::{Control, Stack, task_error};
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
 use crate::environment::{DifferentialGravity, Reference};
@@ -24,6 +24,8 @@ pub(super) struct Extras {
     pub(super) tool: Option<usize>,
     /// Whether something leads it.
     pub(super) has_reference: bool,
+    /// Names of the effects whose wrenches are recorded.
+    pub(super) effects: Vec<String>,
     /// Whether there is an orbit.
     pub(super) has_orbit: bool,
     /// The gravity through which the robot is carried along.
@@ -67,13 +69,15 @@ impl Recorder {
         has_every_step: bool,
     ) -> Result<Self, SimulationError> {
         let tracked = controls.iter().filter(|control| control.width() > 0);
-        let tracking: Vec<Tracking> = tracked
-            .map(|control| Tracking { name: control.name.clone(), width: control.width(), error: Vec::new() })
-            .collect();
+        let column = |name: &str, width| NamedColumn { name: name.to_owned(), width, values: Vec::new() };
+        let tracking: Vec<_> = tracked.map(|control| column(&control.name, control.width())).collect();
+        let wrenches: Vec<_> =
+            extras.effects.iter().map(|name| column(name, 6 * model.nodes().len())).collect();
         let bare = Trace::default();
         let widths = bare.columns().map(|(name, _)| extras.width(&name, model));
-        let widths: Vec<usize> = widths.chain(tracking.iter().map(|tracking| tracking.width)).collect();
-        let mut trace = Trace { has_every_step, tracking, ..Trace::default() };
+        let widths: Vec<usize> =
+            widths.chain(tracking.iter().chain(&wrenches).map(|column| column.width)).collect();
+        let mut trace = Trace { has_every_step, tracking, wrenches, ..Trace::default() };
         for ((_, column), width) in trace.columns_mut().zip(&widths) {
             let numbers = rows.checked_mul(*width).ok_or(SimulationError::TooManyRows { rows })?;
             column.try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })?;
@@ -97,7 +101,8 @@ impl Recorder {
             rows.columns_mut().zip(self.trace.columns_mut()).zip(&self.widths)
         {
             if from.len() != count * width {
-                let name = if let Cow::Borrowed(name) = name { name } else { "tracking errors" };
+                let name =
+                    if let Cow::Borrowed(name) = name { name } else { "rows of a control or an effect" };
                 let (got, expected) = (from.len(), count * width);
                 return Err(CheckpointError::OtherSize { name, got, expected });
             }
@@ -126,8 +131,18 @@ impl Recorder {
     pub(super) fn tracked<S: Scalar>(&mut self, stack: &Stack<'_, S>) {
         let tracked = (0..stack.controls().len()).filter(|&i| stack.controls()[i].width() > 0);
         for (column, control) in self.trace.tracking.iter_mut().zip(tracked) {
-            column.error.extend_from_slice(stack.error(control));
+            column.values.extend_from_slice(stack.error(control));
         }
+    }
+
+    /// Adds the wrench of every effect on every body to the row.
+    pub(super) fn felt(&mut self, surroundings: &mut Surroundings, t: f64) -> Result<(), SimulationError> {
+        for (effect, column) in self.trace.wrenches.iter_mut().enumerate() {
+            for wrench in surroundings.wrenches_of(effect, t)? {
+                column.values.extend(wrench.force.iter().chain(wrench.torque.iter()));
+            }
+        }
+        Ok(())
     }
 
     #[inline(always)]

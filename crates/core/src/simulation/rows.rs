@@ -11,7 +11,7 @@ impl<S: Scalar> Run<'_, S> {
         let orbit = plant.surroundings.orbit_state(t)?;
         recorder.row(t, state, plant, orbit, driver.desired(t, state, plant, *tracked)?);
         driver.stack().into_iter().for_each(|stack| recorder.tracked(stack));
-        Ok(())
+        recorder.felt(&mut plant.surroundings, t)
     }
 
     /// A row within the last step.
@@ -23,6 +23,7 @@ impl<S: Scalar> Run<'_, S> {
         let orbit = plant.surroundings.orbit_state(t)?;
         recorder.row(t, state, plant, orbit, driver.desired(t, state, plant, *tracked)?);
         driver.stack().into_iter().for_each(|stack| recorder.tracked(stack));
+        recorder.felt(&mut plant.surroundings, t)?;
         stages.accelerate(plant, state);
         recorder.accelerated(stages.first_acceleration());
         Ok(())

@@ -56,6 +56,8 @@ pub struct Simulation {
     /// Keeps the joints within their position limits by rigid stops, which give back this share of the
     /// rate; joints pass them if none.
     pub stops: Option<f64>,
+    /// Whether rows hold the wrench of every effect on every body.
+    pub record_wrenches: bool,
     /// Every how many steps a row is recorded.
     pub record_every: usize,
 }
@@ -81,6 +83,7 @@ impl Simulation {
             integrator: Integrator::Rk4,
             tolerance: 1e-9,
             stops: None,
+            record_wrenches: false,
             record_every: 1,
         }
     }

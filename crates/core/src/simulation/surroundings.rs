@@ -10,6 +10,7 @@ use crate::model::{Model, Node};
 use crate::orbit::{Orbit, OrbitState};
 use crate::spatial::{Force, Mat3, Scalar, Vec3};
 use nalgebra::{Matrix3, Vector3};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The effects of a run, its reference orbit, and room to evaluate them.
@@ -71,7 +72,7 @@ impl Surroundings {
     }
 
     /// Where the step being integrated began: at the first look at it.
-    fn anchor(&mut self, t: f64, interval: (f64, f64), reference: Option<&OrbitState>) -> Anchor {
+    fn begin_step(&mut self, t: f64, interval: (f64, f64), reference: Option<&OrbitState>) {
         if self.step.0 != interval {
             // c = Σ mₖ cₖ / Σ mₖ
             let moment: Vector3<f64> = self.bodies.iter().map(|body| body.com * body.mass).sum();
@@ -79,7 +80,32 @@ impl Surroundings {
             let origin = reference.map_or_else(Vector3::zeros, |state| state.position);
             self.step = (interval, Anchor { time: t, com, origin });
         }
-        self.step.1
+    }
+
+    /// Adds up what these effects do to the bodies that were looked at last.
+    fn feel(
+        &mut self,
+        t: f64,
+        reference: Option<OrbitState>,
+        effects: Range<usize>,
+    ) -> Result<(), SimulationError> {
+        self.wrenches.fill(Wrench::default());
+        let reference = reference.map(|state| Reference { state, gravity: self.gravity.as_deref() });
+        let (earth, (interval, anchor)) = (self.earth.as_deref(), self.step);
+        let scene = Scene { interval, time: t, reference, earth, anchor, bodies: &self.bodies };
+        for effect in &self.effects[effects] {
+            effect
+                .add_wrenches(&scene, &mut self.wrenches)
+                .map_err(|source| SimulationError::Environment { time: t, source })?;
+        }
+        Ok(())
+    }
+
+    /// The wrench of one effect on each body, as they were looked at last, at `t`.
+    pub(super) fn wrenches_of(&mut self, effect: usize, t: f64) -> Result<&[Wrench], SimulationError> {
+        let reference = self.orbit_state(t)?;
+        self.feel(t, reference, effect..effect + 1)?;
+        Ok(&self.wrenches)
     }
 
     /// Fills in what the effects see; returns `R_wb`.
@@ -127,16 +153,8 @@ impl<S: Scalar> World<S> for Surroundings {
             #[inline(always)]
             || self.look(data, q, carried),
         );
-        self.wrenches.fill(Wrench::default());
-        let anchor = self.anchor(t, interval, reference.as_ref());
-        let reference = reference.map(|state| Reference { state, gravity: self.gravity.as_deref() });
-        let earth = self.earth.as_deref();
-        let scene = Scene { interval, time: t, reference, earth, anchor, bodies: &self.bodies };
-        for effect in &self.effects {
-            effect
-                .add_wrenches(&scene, &mut self.wrenches)
-                .map_err(|source| SimulationError::Environment { time: t, source })?;
-        }
+        self.begin_step(t, interval, reference.as_ref());
+        self.feel(t, reference, 0..self.effects.len())?;
         S::enter(
             #[inline(always)]
             || self.hand_over(data, &rot_wb),
