@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::error::Place;
 use super::{Effect, EnvironmentError, Reference, Scene, Wrench};
-use crate::gravity::point_mass;
+use crate::gravity::{point_mass, tide};
 
 /// What happens where the reference does not itself fall freely in the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,26 +38,6 @@ impl DifferentialGravity {
         let s = &reference.state;
         Some(point_mass(reference.gravity?.mu(), &s.position) - s.acceleration)
     }
-}
-
-/// Tide `g(R + ρ) - g(R)` of a point mass, m/s², to full relative accuracy for any `ρ`.
-///
-/// `-(μ/r³) (ρ - f R)`, `f = q (3 + 3q + q²)/(1 + (1 + q)^{3/2})`, `q = ρ·(ρ + 2R)/R²`, `r² = R² (1 + q)`;
-/// `origin` is `R`, `offset` is `ρ`, m. Returns the tide and the distance `r = |R + ρ|`.
-///
-/// Source: Battin, AIAA 1999, chapter 8, the disturbing function (Encke's form).
-fn tide(mu: f64, origin: &Vector3<f64>, offset: &Vector3<f64>) -> (Vector3<f64>, f64) {
-    // q = ρ·(ρ + 2R)/R²,  s = √(1 + q),  r = R s
-    let r2 = origin.norm_squared();
-    let q = offset.dot(&(offset + origin * 2.0)) / r2;
-    let square = (1.0 + q).max(0.0);
-    let root = square.sqrt();
-    let distance = r2.sqrt() * root;
-    // f = n/a,  n = q (3 + 3q + q²),  a = 1 + s³;  both divisions in one
-    let (n, a, cube) = (q * (3.0 + q * (3.0 + q)), 1.0 + square * root, r2 * square * distance);
-    let inverse = 1.0 / (a * cube);
-    let f = n * cube * inverse;
-    ((offset - origin * f) * (-mu * a * inverse), distance)
 }
 
 impl Effect for DifferentialGravity {
