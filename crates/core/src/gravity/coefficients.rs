@@ -121,7 +121,6 @@ fn fall_of_unnormalised(series: &Series) -> Option<String> {
     let over_degrees = 0.5 * (((2 * high + 1) as f64 / 9.0).ln() - factorial(9));
     let over_orders = 0.5 * (2.0_f64.ln() - factorial(1));
     let shows = (fallen / low).ln() < 0.5 * over_degrees && (fallen / zonal).ln() < 0.5 * over_orders;
-    shows.then(|| {
-        format!("those of order n fall from {low:.1e} at degree 4 to {fallen:.1e} at degree {high}")
-    })
+    shows
+        .then(|| format!("those of order n fall from {low:.1e} at degree 4 to {fallen:.1e} at degree {high}"))
 }
