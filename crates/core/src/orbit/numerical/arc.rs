@@ -98,6 +98,9 @@ impl Arcs {
         loop {
             // as the clock has it: the sum of lengths is the time
             length = (time + length) - time;
+            if length.abs() <= shortest {
+                return Err(OrbitError::StepTooShort { time, length });
+            }
             let shorter = match start.step(length, half.steps.last(), &mut outside) {
                 Ok(Outcome::Done(step, error)) => {
                     let share = (TOLERANCE * distance / error).powf(1.0 / (NODES + 1) as f64);
@@ -111,12 +114,9 @@ impl Arcs {
                 }
                 Ok(Outcome::Unsettled) => 0.5,
                 // a guess may lie where the orbit does not go
-                Err(error) if length.abs() <= shortest => return Err(error),
+                Err(error) if 0.25 * length.abs() <= shortest => return Err(error),
                 Err(_) => 0.25,
             };
-            if length.abs() <= shortest {
-                return Err(OrbitError::StepTooShort { time, length });
-            }
             length *= shorter;
         }
     }
