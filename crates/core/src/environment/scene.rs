@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::EnvironmentError;
 use super::error::Place;
 use crate::earth::Earth;
-use crate::gravity::Gravity;
+use crate::gravity::{Gravity, smallest_radius_cubed};
 use crate::orbit::OrbitState;
 
 /// One body of the robot, in `W`.
@@ -121,14 +121,4 @@ impl Planet {
         let (effect, minimum) = (self.effect, self.minimum_cubed.cbrt());
         Err(EnvironmentError::InsidePlanet { effect, what, distance, minimum })
     }
-}
-
-/// Cube of the radius below which no solid body of this `μ = G m` can have its surface, m³.
-///
-/// `R³ = 3 μ/(4π G ρ)` with osmium's `ρ = 22 600 kg/m³`: `R` = 3980 km for the Earth's mass. The
-/// true surface lies higher and is not ours to know; far below it the field of a point mass
-/// means nothing and grows without bound.
-fn smallest_radius_cubed(mu: f64) -> f64 {
-    const G_RHO: f64 = 6.674e-11 * 22_600.0;
-    3.0 * mu / (4.0 * std::f64::consts::PI * G_RHO)
 }

@@ -36,3 +36,13 @@ pub(crate) fn point_mass(mu: f64, r: &Vector3<f64>) -> Vector3<f64> {
     let r2 = r.norm_squared();
     r * (-mu / (r2 * r2.sqrt()))
 }
+
+/// Cube of the radius below which no solid body of this `μ = G m` can have its surface, m³.
+///
+/// `R³ = 3 μ/(4π G ρ)` with osmium's `ρ = 22 600 kg/m³`: `R` = 3980 km for the Earth's mass. The
+/// true surface lies higher and is not ours to know; far below it the field of a point mass
+/// means nothing and grows without bound.
+pub(crate) fn smallest_radius_cubed(mu: f64) -> f64 {
+    const G_RHO: f64 = 6.674e-11 * 22_600.0;
+    3.0 * mu / (4.0 * std::f64::consts::PI * G_RHO)
+}
