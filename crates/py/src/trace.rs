@@ -1,7 +1,7 @@
 //! The columns of a run, as read-only views.
 
 use numpy::ndarray::ArrayView;
-use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods};
+use numpy::{IxDyn, PyArray, PyArray1, PyArrayDyn, PyArrayMethods};
 use onorbit_core::model::Model;
 use onorbit_core::simulation::{Trace, certify};
 use pyo3::prelude::*;
@@ -97,6 +97,12 @@ macro_rules! columns {
                     all.set_item(&column.name, view(this, &column.values, &[column.width / 6, 6])?)?;
                 }
                 Ok(all)
+            }
+
+            /// When the robot had drifted so far from the reference that it was integrated about one of its own, (K,), s.
+            #[getter]
+            fn rereferenced<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+                PyArray1::from_slice(py, &self.trace.rereferenced)
             }
 
             /// What came of the goals: dicts of ``name``, ``outcome`` (``succeeded``, ``path_tolerance_violated``,

@@ -24,6 +24,8 @@ pub enum SimulationError {
     QuaternionNorm { norm: f64 },
     #[error("tolerance is {value}, it must be in 1e-13..0.1")]
     Tolerance { value: f64 },
+    #[error("rereference_beyond is {value} m, it must be at least 1 m; infinity for never")]
+    RereferenceBeyond { value: f64 },
     #[error("restitution is {value}, it must be in 0..1")]
     Restitution { value: f64 },
     #[error(

@@ -14,7 +14,7 @@ use super::state::State;
 use super::stepping::{Stepper, Stepping};
 use super::surroundings::Surroundings;
 use super::trace::{GoalResult, Trace};
-use crate::control::{ControlLaw, Stack};
+use crate::control::{Control, ControlLaw, Stack};
 use crate::environment::{DifferentialGravity, Effect, ReferenceMotion};
 use crate::gravity::Gravity;
 use crate::model::Model;
@@ -76,6 +76,8 @@ impl Simulation {
         let jumps = self.orbit.iter().filter(|_| falls).flat_map(|orbit| orbit.event_times());
         let events = effects.iter().flat_map(|effect| effect.event_times()).chain(jumps).collect();
         let names = if self.record_wrenches { column_names(&effects) } else { Vec::new() };
+        let may_rereference = falls && gravity.is_some() && !self.looks_at_world();
+        let rereference_beyond = if may_rereference { self.rereference_beyond } else { f64::INFINITY };
         let schedule = self.schedule(duration, events);
         let surroundings =
             Surroundings::new(&model, effects, self.orbit.clone(), gravity.clone(), self.earth.clone());
@@ -109,6 +111,7 @@ impl Simulation {
             recorder: recorder.map_err(fail)?,
             schedule,
             steps: 0,
+            rereference_beyond,
         };
         match from {
             None => run.plant.settle(&mut run.state),
@@ -116,10 +119,21 @@ impl Simulation {
         }
         let outcome = run.all(self.record_every, monitor);
         let mut trace = run.recorder.trace;
+        trace.rereferenced = run.plant.surroundings.own().map_or_else(Vec::new, |own| own.times.clone());
         trace.results = run.driver.stack().map_or_else(Vec::new, |stack| goal_results(stack, &model));
         match outcome {
             Ok(()) => Ok(trace),
             Err(error) => Err(RunFailure { error, trace: Box::new(trace) }),
+        }
+    }
+
+    /// Whether a control knows where in W the robot is: then it must stay there.
+    fn looks_at_world(&self) -> bool {
+        let joints_alone = |control: &Control| control.joint_reference().is_some();
+        match &self.control {
+            ControlLaw::None => self.reference.is_some(),
+            ControlLaw::Stack(controls) => !controls.iter().all(joints_alone),
+            ControlLaw::ComputedTorque(_) | ControlLaw::User(_) => true,
         }
     }
 

@@ -11,6 +11,7 @@ mod pair;
 mod plant;
 mod probe;
 mod recorder;
+mod rereference;
 mod rows;
 mod run;
 mod schedule;

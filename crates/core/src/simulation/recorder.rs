@@ -3,6 +3,7 @@
 use super::checkpoint::CheckpointError;
 use super::error::SimulationError;
 use super::plant::Plant;
+use super::rereference::Shift;
 use super::state::State;
 use super::surroundings::Surroundings;
 use super::trace::{NamedColumn, Trace};
@@ -14,6 +15,7 @@ use crate::model::Model;
 use crate::orbit::OrbitState;
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
+use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -56,6 +58,8 @@ impl Extras {
 pub(super) struct Recorder {
     pub(super) trace: Trace,
     extras: Extras,
+    /// What takes the last row to W, where it was integrated elsewhere.
+    shift: Option<Shift>,
     /// Numbers per row of each column.
     widths: Vec<usize>,
 }
@@ -82,7 +86,7 @@ impl Recorder {
             let numbers = rows.checked_mul(*width).ok_or(SimulationError::TooManyRows { rows })?;
             column.try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })?;
         }
-        Ok(Self { trace, extras, widths })
+        Ok(Self { trace, extras, shift: None, widths })
     }
 
     /// Goes on after the rows of an earlier part of the run.
@@ -135,11 +139,24 @@ impl Recorder {
         }
     }
 
-    /// Adds the wrench of every effect on every body to the row.
-    pub(super) fn felt(&mut self, surroundings: &mut Surroundings, t: f64) -> Result<(), SimulationError> {
-        for (effect, column) in self.trace.wrenches.iter_mut().enumerate() {
-            for wrench in surroundings.wrenches_of(effect, t)? {
-                column.values.extend(wrench.force.iter().chain(wrench.torque.iter()));
+    /// Adds the wrench of every effect on every body to the row, and puts the row in W.
+    pub(super) fn felt<S: Scalar>(
+        &mut self,
+        plant: &mut Plant<'_, S, Surroundings>,
+        t: f64,
+    ) -> Result<(), SimulationError> {
+        let (model, surroundings) = (plant.model, &mut plant.surroundings);
+        self.shift = surroundings.shift(t, model.mass())?;
+        let trace = &mut self.trace;
+        if let Some(shift) = &self.shift {
+            shift.row(trace, model);
+        }
+        let gravity = trace.wrenches.len().wrapping_sub(1); // the last of the effects
+        for (effect, column) in trace.wrenches.iter_mut().enumerate() {
+            let shift = self.shift.as_ref().filter(|_| effect == gravity);
+            for (wrench, node) in surroundings.wrenches_of(effect, t)?.iter().zip(model.nodes()) {
+                let force = wrench.force + shift.map_or_else(Vector3::zeros, |shift| shift.pull(node.mass));
+                column.values.extend(force.iter().chain(wrench.torque.iter()));
             }
         }
         Ok(())
@@ -194,8 +211,11 @@ impl Recorder {
     }
 
     /// Completes the last row.
-    pub(super) fn accelerated<S: Scalar>(&mut self, a: &[S]) {
+    pub(super) fn accelerated<S: Scalar>(&mut self, model: &Model, a: &[S]) {
         push(&mut self.trace.acceleration, a);
+        if let Some(shift) = &self.shift {
+            shift.acceleration(&mut self.trace, model);
+        }
     }
 }
 

@@ -2,12 +2,13 @@
 
 use super::error::SimulationError;
 use super::plant::World;
+use super::rereference::{OwnReference, Shift};
 use crate::dynamics::{Data, base_rotation};
 use crate::earth::Earth;
 use crate::environment::{Anchor, BodyState, Effect, Reference, Scene, Wrench};
 use crate::gravity::Gravity;
 use crate::model::{Model, Node};
-use crate::orbit::{Orbit, OrbitState};
+use crate::orbit::{Numerical, Orbit, OrbitState};
 use crate::spatial::{Force, Mat3, Scalar, Vec3};
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
@@ -18,7 +19,11 @@ use std::sync::Arc;
 pub(super) struct Surroundings {
     effects: Vec<Arc<dyn Effect>>,
     reads_velocities: bool,
+    /// What W's origin rides on.
+    home: Option<Arc<dyn Orbit>>,
+    /// What the robot is integrated about: `home`, or its own.
     orbit: Option<Arc<dyn Orbit>>,
+    own: Option<OwnReference>,
     gravity: Option<Arc<Gravity>>,
     earth: Option<Arc<Earth>>,
     /// The step being integrated, and where it began.
@@ -49,7 +54,9 @@ impl Surroundings {
         Self {
             reads_velocities: effects.iter().any(|effect| effect.reads_velocities()),
             effects,
+            home: orbit.clone(),
             orbit,
+            own: None,
             gravity,
             earth,
             step: ((f64::NAN, f64::NAN), Anchor::default()),
@@ -57,6 +64,33 @@ impl Surroundings {
             bodies: model.nodes().iter().map(at_rest).collect(),
             wrenches: vec![Wrench::default(); model.nodes().len()],
         }
+    }
+
+    /// The reference of the robot's own, if it has one.
+    pub(super) fn own(&self) -> Option<&OwnReference> {
+        self.own.as_ref()
+    }
+
+    /// Follows a reference of the robot's own, which falls freely.
+    pub(super) fn follow(&mut self, own: OwnReference) -> Result<(), SimulationError> {
+        let (Some(gravity), Some(&time)) = (&self.gravity, own.times.last()) else { return Ok(()) };
+        let orbit = Numerical::new(own.position.into(), own.velocity.into(), time, Arc::clone(gravity));
+        self.orbit = Some(Arc::new(orbit.map_err(|source| SimulationError::Orbit { time, source })?));
+        self.known.fill((f64::NAN, None));
+        self.step.0 = (f64::NAN, f64::NAN);
+        self.own = Some(own);
+        Ok(())
+    }
+
+    /// The way to W from where the robot is integrated, if that is elsewhere.
+    pub(super) fn shift(&mut self, t: f64, mass: f64) -> Result<Option<Shift>, SimulationError> {
+        if self.own.is_none() {
+            return Ok(None);
+        }
+        let Some(state) = self.orbit_state(t)? else { return Ok(None) };
+        let (Some(home), Some(own)) = (&self.home, &self.own) else { return Ok(None) };
+        let home = home.state(t).map_err(|source| SimulationError::Orbit { time: t, source })?;
+        Ok(Some(Shift::between(own, &state, &home, mass)))
     }
 
     /// State of the reference at `t`, if the run has one.

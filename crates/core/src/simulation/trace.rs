@@ -54,6 +54,9 @@ pub struct Trace {
     pub wrenches: Vec<NamedColumn>,
     /// What came of the goals of several controls.
     pub results: Vec<GoalResult>,
+    /// When the robot had drifted so far that it was given a reference of its own to be integrated about, s, `(K,)`;
+    /// its rows stay in W.
+    pub rereferenced: Vec<f64>,
     /// Sum of the work of every step, whatever its sign, J: what rows far apart would miss.
     pub work_done: f64,
     /// Sum of what steps and halved steps differ by in attitude, rad (of an embedded pair: its two
