@@ -16,6 +16,7 @@ use nalgebra::Vector3;
 use std::sync::Arc;
 
 pub use crate::earth::Axes;
+use crate::earth::Epoch;
 pub use custom_path::{CustomPath, Ends, PathError, PathPoints};
 pub use error::OrbitError;
 pub use fixed_frame::FixedFrame;
@@ -67,6 +68,11 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Axes of `I` in this run.
     fn axes(&self) -> Axes {
         Axes::default()
+    }
+
+    /// Instant of time zero, where the orbit says.
+    fn epoch(&self) -> Option<Epoch> {
+        None
     }
 
     /// Where [`OrbitState::velocity`] comes from, in words.
