@@ -12,6 +12,7 @@ pub mod sgp4;
 
 use nalgebra::Vector3;
 
+pub use crate::earth::Axes;
 pub use custom_path::{CustomPath, Ends, PathError, PathPoints};
 pub use error::OrbitError;
 pub use fixed_frame::FixedFrame;
@@ -33,26 +34,6 @@ pub struct OrbitState {
     pub velocity: Vector3<f64>,
     /// Acceleration, m/s²: the true one, whatever field the reference obeys.
     pub acceleration: Vector3<f64>,
-}
-
-/// Inertial axes that an orbit is given in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Axes {
-    /// Geocentric celestial reference frame; for other planets any axes that do not turn.
-    #[default]
-    Gcrf,
-    /// True equator, mean equinox of date: SGP4's; a third of a degree from GCRF in 2024, and growing.
-    Teme,
-}
-
-impl Axes {
-    /// `GCRF` or `TEME`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Gcrf => "GCRF",
-            Self::Teme => "TEME",
-        }
-    }
 }
 
 /// A reference orbit as a function of time.
