@@ -5,6 +5,7 @@ use super::trace::Trace;
 use crate::control::ControlError;
 use crate::earth::EarthError;
 use crate::environment::EnvironmentError;
+use crate::gravity::GravityError;
 use crate::orbit::OrbitError;
 use crate::reference::ReferenceError;
 use thiserror::Error;
@@ -80,6 +81,8 @@ pub enum SimulationError {
     Environment { time: f64, source: EnvironmentError },
     #[error("at t = {time} s: {source}")]
     Reference { time: f64, source: ReferenceError },
+    #[error(transparent)]
+    Gravity(#[from] GravityError),
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
     #[error(transparent)]

@@ -92,7 +92,7 @@ impl Simulation {
             has_reference: self.reference.is_some() || self.control.tracks(self.tool),
             effects: names,
             has_orbit: self.orbit.is_some(),
-            carried_in: gravity.filter(|_| !falls),
+            is_carried: gravity.is_some() && !falls,
         };
         let is_dense = self.record_every == 1 && !self.is_adaptive();
         let controls = self.control.controls();
@@ -140,10 +140,12 @@ impl Simulation {
         }
     }
 
-    /// The field chosen, or that of a point mass, where there is a planet.
+    /// The field chosen, else the one that the orbit obeys, else that of a point mass, where there is a planet.
     fn gravity(&self) -> Option<Arc<Gravity>> {
-        let mu = self.orbit.as_ref().and_then(|orbit| orbit.mu())?;
-        Some(self.gravity.clone().unwrap_or_else(|| Arc::new(Gravity::point_mass(mu))))
+        let orbit = self.orbit.as_ref()?;
+        let mu = orbit.mu()?;
+        let given = self.gravity.as_ref().or(orbit.gravity());
+        Some(given.cloned().unwrap_or_else(|| Arc::new(Gravity::point_mass(mu))))
     }
 
     fn is_adaptive(&self) -> bool {

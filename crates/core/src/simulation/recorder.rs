@@ -9,15 +9,12 @@ use super::surroundings::Surroundings;
 use super::trace::{NamedColumn, Trace};
 use crate::control::{Control, Stack, task_error};
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
-use crate::environment::{DifferentialGravity, Reference};
-use crate::gravity::Gravity;
 use crate::model::Model;
 use crate::orbit::OrbitState;
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
 use nalgebra::Vector3;
 use std::borrow::Cow;
-use std::sync::Arc;
 
 /// What a run has to record beside its state.
 #[derive(Clone)]
@@ -30,8 +27,8 @@ pub(super) struct Extras {
     pub(super) effects: Vec<String>,
     /// Whether there is an orbit.
     pub(super) has_orbit: bool,
-    /// The gravity through which the robot is carried along.
-    pub(super) carried_in: Option<Arc<Gravity>>,
+    /// Whether the reference carries the robot along, through a field that it may not obey.
+    pub(super) is_carried: bool,
 }
 
 impl Extras {
@@ -48,7 +45,7 @@ impl Extras {
             "reference_pose" => given(self.has_reference, 16),
             "position_error" | "attitude_error" => given(self.has_reference, 3),
             "position_eci" | "velocity_eci" => given(self.has_orbit, 3),
-            "reference_residual" => given(self.carried_in.is_some(), 3),
+            "reference_residual" => given(self.is_carried, 3),
             _ => 1,
         }
     }
@@ -148,6 +145,10 @@ impl Recorder {
         let (model, surroundings) = (plant.model, &mut plant.surroundings);
         self.shift = surroundings.shift(t, model.mass())?;
         let trace = &mut self.trace;
+        if self.extras.is_carried {
+            let residual = surroundings.residual(t)?;
+            trace.reference_residual.extend(residual.iter().flat_map(|residual| residual.iter()));
+        }
         if let Some(shift) = &self.shift {
             shift.row(trace, model);
         }
@@ -203,10 +204,6 @@ impl Recorder {
             let velocity = orbit.velocity + (base_rotation(q) * Vec3::from_slice(v)).to_nalgebra();
             trace.position_eci.extend_from_slice(origin.as_slice());
             trace.velocity_eci.extend_from_slice(velocity.as_slice());
-            let reference = Reference { state: orbit, gravity: self.extras.carried_in.as_deref() };
-            if let Some(residual) = DifferentialGravity::residual(&reference) {
-                trace.reference_residual.extend_from_slice(residual.as_slice());
-            }
         }
     }
 

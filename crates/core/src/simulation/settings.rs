@@ -117,7 +117,12 @@ impl Simulation {
         if self.record_every == 0 {
             return Err(SimulationError::RecordEvery);
         }
-        let has_planet = self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some());
+        let mu = self.orbit.as_ref().and_then(|orbit| orbit.mu());
+        let has_planet = mu.is_some();
+        if let Some(gravity) = &self.gravity {
+            let missing = || SimulationError::NeedsOrbit { effect: "a gravity field".to_owned() };
+            gravity.check_orbit(mu.ok_or_else(missing)?)?;
+        }
         if let Some(effect) = self.effects.iter().find(|effect| effect.requires_orbit() && !has_planet) {
             return Err(SimulationError::NeedsOrbit { effect: effect.name().to_owned() });
         }

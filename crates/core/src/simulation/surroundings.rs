@@ -5,7 +5,7 @@ use super::plant::World;
 use super::rereference::{OwnReference, Shift};
 use crate::dynamics::{Data, base_rotation};
 use crate::earth::Earth;
-use crate::environment::{Anchor, BodyState, Effect, Reference, Scene, Wrench};
+use crate::environment::{Anchor, BodyState, DifferentialGravity, Effect, Reference, Scene, Wrench};
 use crate::gravity::Gravity;
 use crate::model::{Model, Node};
 use crate::orbit::{Numerical, Orbit, OrbitState};
@@ -116,6 +116,21 @@ impl Surroundings {
         }
     }
 
+    /// Whether the reference obeys the very gravity of the run.
+    fn falls_freely(&self) -> bool {
+        let obeyed = self.orbit.as_ref().and_then(|orbit| orbit.gravity());
+        obeyed.zip(self.gravity.as_ref()).is_some_and(|(own, all)| Arc::ptr_eq(own, all))
+    }
+
+    /// What of gravity the reference does not follow, m/s², where there is a planet.
+    pub(super) fn residual(&mut self, t: f64) -> Result<Option<Vector3<f64>>, SimulationError> {
+        let Some(state) = self.orbit_state(t)? else { return Ok(None) };
+        let falls_freely = self.falls_freely();
+        let reference = Reference { state, gravity: self.gravity.as_deref(), falls_freely };
+        DifferentialGravity::residual(t, &reference)
+            .map_err(|source| SimulationError::Environment { time: t, source })
+    }
+
     /// Adds up what these effects do to the bodies that were looked at last.
     fn feel(
         &mut self,
@@ -124,7 +139,9 @@ impl Surroundings {
         effects: Range<usize>,
     ) -> Result<(), SimulationError> {
         self.wrenches.fill(Wrench::default());
-        let reference = reference.map(|state| Reference { state, gravity: self.gravity.as_deref() });
+        let falls_freely = self.falls_freely();
+        let reference =
+            reference.map(|state| Reference { state, gravity: self.gravity.as_deref(), falls_freely });
         let (earth, (interval, anchor)) = (self.earth.as_deref(), self.step);
         let scene = Scene { interval, time: t, reference, earth, anchor, bodies: &self.bodies };
         for effect in &self.effects[effects] {

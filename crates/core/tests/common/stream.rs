@@ -3,9 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::surfaces::{Covering, Surface, Surfaces};
-use onorbit_core::environment::{
-    Anchor, BodyState, Effect, EnvironmentError, Reference, Scene, Wrench,
-};
+use onorbit_core::environment::{Anchor, BodyState, Effect, EnvironmentError, Reference, Scene, Wrench};
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{MU_EARTH, OrbitState};
 
@@ -43,7 +41,7 @@ pub fn wrenches(
     let scene = Scene {
         interval: (0.0, 1.0),
         time: 0.0,
-        reference: Some(Reference { state, gravity: Some(&gravity) }),
+        reference: Some(Reference { state, gravity: Some(&gravity), falls_freely: true }),
         earth,
         anchor: Anchor { time: 0.0, com: Vector3::zeros(), origin: r },
         bodies,
