@@ -7,7 +7,8 @@ use common::stream::{alone, attitudes, ball, body, strips, summed, wrenches};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use onorbit_core::earth::{Earth, Geodetic, WGS84};
 use onorbit_core::environment::atmosphere::{
-    AirPlace, Atmosphere, AtmosphereError, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer, LocalAir,
+    AirPlace, Atmosphere, AtmosphereError, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer,
+    LocalAir,
 };
 use onorbit_core::environment::surfaces::{Covering, Optics, Surface, SurfaceError, Surfaces};
 use onorbit_core::environment::{BodyState, Drag, EnvironmentError, Wrench};
@@ -69,7 +70,8 @@ fn a_cannonball_feels_half_rho_cd_a_v_squared_against_its_motion() {
 fn a_plate_at_an_angle_has_its_closed_form_and_no_back() {
     // 2 m² at 60° to the wind, on an arm of 3 m along x: F = -A cos 60° |v|² v̂, T = c × F
     let (s, c) = (PI / 3.0).sin_cos();
-    let panel = |sign: f64| plates(&[2.0], &[[s * sign, c * sign, 0.0]], &[[3.0, 0.0, 0.0]]).expect("a plate");
+    let panel =
+        |sign: f64| plates(&[2.0], &[[s * sign, c * sign, 0.0]], &[[3.0, 0.0, 0.0]]).expect("a plate");
     let v = Vector3::new(0.0, 7000.0, 0.0);
     let force = Vector3::new(0.0, -2.0 * 0.5 * 7000.0 * 7000.0, 0.0);
     // the wind comes from +y: a panel on +x is pushed towards -y, which turns the body by -z
@@ -89,7 +91,8 @@ fn a_box_shows_its_shadow_and_no_torque_about_its_middle() {
         let u = rot.transpose() * v;
         let shadow = y * z * u.x.abs() + z * x * u.y.abs() + x * y * u.z.abs();
         // faces that look into the wind are centred off the middle, and their torques do not cancel
-        let sums = [(y * z, x, u.x, Vector3::x()), (z * x, y, u.y, Vector3::y()), (x * y, z, u.z, Vector3::z())];
+        let sums =
+            [(y * z, x, u.x, Vector3::x()), (z * x, y, u.y, Vector3::y()), (x * y, z, u.z, Vector3::z())];
         let torque: Vector3<f64> =
             sums.iter().map(|(area, edge, w, n)| (n * (0.5 * edge * w)).cross(&(u * -*area))).sum();
         assert_close(&got, (-v * shadow, rot * torque), 1e-14);
@@ -183,11 +186,17 @@ fn surfaces_that_cannot_be_are_refused() {
     assert!(matches!(Optics::new(-0.1, 0.4), Err(SurfaceError::Value { name: "specular", .. })));
     assert!(matches!(plates(&[1.0], &[[0.0; 3]], &[[0.0; 3]]), Err(SurfaceError::Normal { plate: 0 })));
     assert!(matches!(plates(&[1.0], &[], &[[0.0; 3]]), Err(SurfaceError::WrongLength { normals: 0, .. })));
-    assert!(matches!(plates(&[-1.0], &[[1.0; 3]], &[[0.0; 3]]), Err(SurfaceError::Value { name: "area", .. })));
+    assert!(matches!(
+        plates(&[-1.0], &[[1.0; 3]], &[[0.0; 3]]),
+        Err(SurfaceError::Value { name: "area", .. })
+    ));
     let mesh = Geometry::Mesh { filename: "arm.stl".to_owned(), scale: [1.0; 3] };
     let error = Surfaces::from_shapes(&robot(&[(mesh, Isometry3::identity())]), 2.2, Optics::default());
     assert!(matches!(error, Err(SurfaceError::Mesh { link, .. }) if link == "hull"));
-    assert!(matches!(Surfaces::from_shapes(&robot(&[]), 2.2, Optics::default()), Err(SurfaceError::NoShape { .. })));
+    assert!(matches!(
+        Surfaces::from_shapes(&robot(&[]), 2.2, Optics::default()),
+        Err(SurfaceError::NoShape { .. })
+    ));
     let covering = || Covering { body: 1, surface: Surface::cannonball(1.0, 2.2, 1.0).expect("positive") };
     let unknown = Surfaces::new(vec![covering()], 1);
     assert!(matches!(unknown, Err(SurfaceError::UnknownBody { body: 1, count: 1 })));
@@ -242,7 +251,8 @@ fn layers_are_exponential_and_in_order() {
 fn around_the_start_of_a_step_the_air_is_what_the_model_says_to_its_stated_error() {
     let earth = Earth::about_z(0.3, 7.3e-5);
     let air = ExponentialAtmosphere::table();
-    let exact = |r: &Vector3<f64>| air.density(&AirPlace::new(&earth, 5.0, r).expect("outside")).expect("air");
+    let exact =
+        |r: &Vector3<f64>| air.density(&AirPlace::new(&earth, 5.0, r).expect("outside")).expect("air");
     let mut worst = 0.0_f64;
     for latitude in [-1.5, -0.7, 0.0, 0.9] {
         for altitude in [160e3, 410e3, 720e3] {

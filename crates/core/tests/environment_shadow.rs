@@ -92,7 +92,10 @@ fn light_fades_without_a_jump() {
     for k in 1..=steps {
         let now = at(from + 2.0 * width * f64::from(k) / f64::from(steps));
         // nowhere faster than at the disc's middle: 4/π of its mean
-        assert!((-1e-9..=1.5 * 2.0 / f64::from(steps)).contains(&(now - before)), "step {k}: {before} to {now}");
+        assert!(
+            (-1e-9..=1.5 * 2.0 / f64::from(steps)).contains(&(now - before)),
+            "step {k}: {before} to {now}"
+        );
         before = now;
     }
     assert_eq!(before, 1.0);

@@ -1,6 +1,6 @@
 //! Drag of the air that turns with the Earth.
 
-use super::atmosphere::{Atmosphere, AtmosphereError, AirPlace, LocalAir};
+use super::atmosphere::{AirPlace, Atmosphere, AtmosphereError, LocalAir};
 use super::surfaces::Surfaces;
 use super::{Effect, EnvironmentError, Scene, Wrench};
 use crate::earth::Earth;

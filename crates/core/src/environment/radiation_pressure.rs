@@ -1,7 +1,7 @@
 //! The push of sunlight.
 
 use super::shadow::sunlit;
-use super::surfaces::{Surfaces, SurfaceError};
+use super::surfaces::{SurfaceError, Surfaces};
 use super::{Effect, EnvironmentError, Scene, Wrench};
 
 /// Radiation pressure on every covered body, with its torque, and the Earth's shadow.

@@ -3,9 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::surfaces::{Covering, Surface, Surfaces};
-use onorbit_core::environment::{
-    Anchor, BodyState, Effect, EnvironmentError, Reference, Scene, Wrench,
-};
+use onorbit_core::environment::{Anchor, BodyState, Effect, EnvironmentError, Reference, Scene, Wrench};
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{MU_EARTH, OrbitState};
 

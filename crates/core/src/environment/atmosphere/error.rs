@@ -61,7 +61,9 @@ pub enum AtmosphereError {
         date: String,
     },
     /// A run takes place on a day that a table of space weather does not have.
-    #[error("space weather: {date} is outside of the table, which runs from {first} to {last}: give constants there")]
+    #[error(
+        "space weather: {date} is outside of the table, which runs from {first} to {last}: give constants there"
+    )]
     OutsideTable {
         /// The day asked for.
         date: String,

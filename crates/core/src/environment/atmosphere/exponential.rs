@@ -36,7 +36,8 @@ impl ExponentialAtmosphere {
         for (index, layer) in layers.iter().enumerate() {
             positive("density", layer.density)?;
             positive("scale_height", layer.scale_height)?;
-            let (altitude, previous) = (layer.base, index.checked_sub(1).map_or(f64::MIN, |k| layers[k].base));
+            let (altitude, previous) =
+                (layer.base, index.checked_sub(1).map_or(f64::MIN, |k| layers[k].base));
             if !(altitude.is_finite() && altitude > previous) {
                 return Err(AtmosphereError::LayerOrder { index, altitude, previous });
             }

@@ -3,19 +3,8 @@
 use super::{AtmosphereError, MagneticActivity, SpaceIndices};
 
 /// Columns of a day, as CelesTrak names them; the eight `AP` of three hours each come after.
-const COLUMNS: [&str; 11] = [
-    "F10.7_OBS",
-    "F10.7_OBS_CENTER81",
-    "AP_AVG",
-    "AP1",
-    "AP2",
-    "AP3",
-    "AP4",
-    "AP5",
-    "AP6",
-    "AP7",
-    "AP8",
-];
+const COLUMNS: [&str; 11] =
+    ["F10.7_OBS", "F10.7_OBS_CENTER81", "AP_AVG", "AP1", "AP2", "AP3", "AP4", "AP5", "AP6", "AP7", "AP8"];
 const FLUX: usize = 0;
 const MEAN_FLUX: usize = 1;
 const DAILY: usize = 2;

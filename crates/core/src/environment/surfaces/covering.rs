@@ -169,9 +169,8 @@ impl Surfaces {
     /// # Errors
     /// As [`Surface::from_shapes`]; [`SurfaceError::NoShape`] where no body has a shape.
     pub fn from_shapes(model: &Model, drag_coefficient: f64, optics: Optics) -> Result<Self, SurfaceError> {
-        let has_shape = |body: &usize| {
-            model.visuals().iter().any(|(frame, _)| model.frames()[*frame].body == *body)
-        };
+        let has_shape =
+            |body: &usize| model.visuals().iter().any(|(frame, _)| model.frames()[*frame].body == *body);
         let cover = |body: usize| {
             let surface = Surface::from_shapes(model, body, drag_coefficient, optics)?;
             Ok(Covering { body, surface })

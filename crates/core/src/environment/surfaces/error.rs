@@ -29,7 +29,9 @@ pub enum SurfaceError {
         plate: usize,
     },
     /// Normals, areas and centroids do not come in equal numbers.
-    #[error("{areas} areas, {normals} normals and {centroids} centroids are given, one of each per plate is needed")]
+    #[error(
+        "{areas} areas, {normals} normals and {centroids} centroids are given, one of each per plate is needed"
+    )]
     WrongLength {
         /// Number of areas.
         areas: usize,
@@ -39,7 +41,9 @@ pub enum SurfaceError {
         centroids: usize,
     },
     /// A body has no shape from which faces could be taken.
-    #[error("{body} has no visual geometry to take faces from: give it plates or a cannonball, or leave it out")]
+    #[error(
+        "{body} has no visual geometry to take faces from: give it plates or a cannonball, or leave it out"
+    )]
     NoShape {
         /// Name of the body, or `the robot`.
         body: String,
