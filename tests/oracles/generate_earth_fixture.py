@@ -88,8 +88,7 @@ def sky() -> list[dict[str, Any]]:
 def main() -> None:
     table = {
         "generator": "tests/oracles/generate_earth_fixture.py",
-        "engines": f"pyerfa {erfa.__version__}, skyfield {skyfield.__version__}, "
-        "jplephem with DE421",
+        "engines": f"pyerfa {erfa.__version__}, skyfield {skyfield.__version__}, jplephem with DE421",
         "date": datetime.now(UTC).date().isoformat(),
         "orientation": [orientation(*case) for case in ORIENTATIONS],
         "sky": sky(),

@@ -125,8 +125,10 @@ def written(number: float) -> str:
     """With underscores between groups of three digits, as rustfmt's lints want them."""
     text = f"{number:.3f}".rstrip("0")
     whole, _, part = text.partition(".")
-    return f"{int(whole):_}" if not part else (
-        ("-" if whole.startswith("-") else "") + f"{abs(int(whole)):_}.{part}"
+    return (
+        f"{int(whole):_}"
+        if not part
+        else (("-" if whole.startswith("-") else "") + f"{abs(int(whole)):_}.{part}")
     )
 
 
@@ -154,7 +156,9 @@ def write(file: str, head: str, tables: list[str]) -> None:
 
 def write_nutation() -> None:
     data = np.load(Path(skyfield.__file__).parent / "data" / "nutation.npz")
-    amplitudes = np.hstack([data["lunisolar_longitude_coefficients"], data["lunisolar_obliquity_coefficients"]])
+    amplitudes = np.hstack(
+        [data["lunisolar_longitude_coefficients"], data["lunisolar_obliquity_coefficients"]]
+    )
     kept = np.abs(amplitudes).max(axis=1) >= SMALLEST_NUTATION
     rows = "".join(
         f"    ({k.tolist()}, [{', '.join(rust_number(x / 10) for x in a)}]),\n"

@@ -5,8 +5,8 @@ use crate::earth::PyEarth;
 use crate::errors::{IntoPython, fields, plain, raise};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::atmosphere::{
-    Atmosphere, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer, MagneticActivity, Nrlmsise00,
-    SpaceIndices, SpaceWeather, SpaceWeatherTable, densities_at, densities_over,
+    Atmosphere, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer, MagneticActivity,
+    Nrlmsise00, SpaceIndices, SpaceWeather, SpaceWeatherTable, densities_at, densities_over,
 };
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -100,9 +100,9 @@ fn broadcast<'py, const N: usize>(
     <[PyResult<()>; N] as IntoIterator>::into_iter(inputs).collect::<PyResult<()>>()?;
     let numpy = py.import("numpy")?;
     let together = numpy.call_method1("broadcast_arrays", pyo3::types::PyTuple::new(py, values)?);
-    let together: Vec<Bound<'py, PyAny>> = together
-        .and_then(|arrays| arrays.extract())
-        .map_err(|_| plain(py, "ShapeError", &format!("{} do not broadcast to one shape", names.join(", "))))?;
+    let together: Vec<Bound<'py, PyAny>> = together.and_then(|arrays| arrays.extract()).map_err(|_| {
+        plain(py, "ShapeError", &format!("{} do not broadcast to one shape", names.join(", ")))
+    })?;
     let shape: Vec<usize> = together[0].getattr("shape")?.extract()?;
     let mut inputs = Vec::with_capacity(N);
     for (array, name) in together.iter().zip(names) {
@@ -154,7 +154,12 @@ impl PyExponentialAtmosphere {
             }
             _ => {
                 let message = "density, altitude and scale_height belong together: give all three, or none for the table";
-                return Err(raise(py, "EffectError", message, &fields!(py, "name": "density, altitude, scale_height")));
+                return Err(raise(
+                    py,
+                    "EffectError",
+                    message,
+                    &fields!(py, "name": "density, altitude, scale_height"),
+                ));
             }
         };
         Ok(PyAtmosphere::of(air.map_err(|error| error.into_python(py))?).add_subclass(Self))
@@ -207,10 +212,14 @@ impl PyNrlmsise00 {
             }
             (f107, f107a, ap, table) => {
                 let missing = [("f107", f107.is_none()), ("f107a", f107a.is_none()), ("ap", ap.is_none())];
-                let missing: Vec<_> = missing.iter().filter(|(_, missing)| *missing).map(|(name, _)| *name).collect();
+                let missing: Vec<_> =
+                    missing.iter().filter(|(_, missing)| *missing).map(|(name, _)| *name).collect();
                 let message = match table {
                     Some(_) => "space weather is given twice: by numbers and by a table; give one".to_owned(),
-                    None => format!("space weather is missing {}: give f107, f107a and ap, or a table", missing.join(", ")),
+                    None => format!(
+                        "space weather is missing {}: give f107, f107a and ap, or a table",
+                        missing.join(", ")
+                    ),
                 };
                 return Err(raise(py, "EffectError", &message, &fields!(py, "name": "f107, f107a, ap")));
             }

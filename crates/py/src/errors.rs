@@ -3,7 +3,10 @@
 use crate::trace::PyTrace;
 use onorbit_core::batch::InputError;
 use onorbit_core::control::ControlError;
+use onorbit_core::earth::EarthError;
 use onorbit_core::environment::EnvironmentError;
+use onorbit_core::environment::atmosphere::AtmosphereError;
+use onorbit_core::environment::surfaces::SurfaceError;
 use onorbit_core::model::ModelError;
 use onorbit_core::model::urdf::{UrdfError, UrdfProblem};
 use onorbit_core::orbit::sgp4::{ElementSetError, Sgp4Error};
@@ -196,6 +199,34 @@ fn sgp4_error(py: Python<'_>, error: &Sgp4Error, message: &str) -> PyErr {
     raise(py, "Sgp4Error", message, &fields)
 }
 
+impl IntoPython for EarthError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        let fields = match &self {
+            Self::Epoch { text } | Self::BeforeUtc { text } => fields!(py, "name": "epoch", "got": text),
+            Self::NeedsEpoch { what } => fields!(py, "name": what),
+            Self::OutsideSpan { what, time, from, to, .. } => {
+                fields!(py, "name": what, "got": time, "expected": (from, to))
+            }
+            Self::NotFinite { name, value } => fields!(py, "name": name, "got": value),
+            Self::Parameter { name, value, expected, .. } => {
+                fields!(py, "name": name, "got": value, "expected": expected)
+            }
+            Self::Table { line, .. } => fields!(py, "name": "eop", "got": line),
+            Self::NearCentre { distance, minimum } => {
+                fields!(py, "name": "r", "got": distance, "expected": minimum)
+            }
+            Self::OtherEpoch { orbit, run } => fields!(py, "name": "epoch", "got": run, "expected": orbit),
+            Self::OtherAxes { orbit, run } => fields!(py, "name": "axes", "got": run, "expected": orbit),
+            Self::WrongLength { name, expected, got } => {
+                fields!(py, "name": name, "got": got, "expected": expected)
+            }
+            _ => fields!(py,),
+        };
+        raise(py, "EarthError", &message, &fields)
+    }
+}
+
 impl IntoPython for EnvironmentError {
     fn into_python(self, py: Python<'_>) -> PyErr {
         let message = self.to_string();
@@ -206,8 +237,51 @@ impl IntoPython for EnvironmentError {
             Self::EmptyInterval { start, end } => {
                 raise(py, "EffectError", &message, &fields!(py, "name": "start, end", "got": (*start, *end)))
             }
+            Self::Atmosphere(source) => source.into_python(py),
+            Self::Surface(source) => source.into_python(py),
+            Self::Earth(source) => source.into_python(py),
             _ => plain(py, "EffectError", &message),
         }
+    }
+}
+
+impl IntoPython for AtmosphereError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        let fields = match &self {
+            Self::Earth(source) => return source.clone().into_python(py),
+            Self::BelowSurface { altitude } => {
+                fields!(py, "name": "altitude", "got": altitude, "expected": "at least 0 m")
+            }
+            Self::OutsideLayers { altitude, lowest, highest, .. } => {
+                fields!(py, "name": "altitude", "got": altitude, "expected": (lowest, highest))
+            }
+            Self::Value { name, value, expected } => {
+                fields!(py, "name": name, "got": value, "expected": expected)
+            }
+            Self::MissingSpaceWeather { name, date } => fields!(py, "name": name, "got": date),
+            Self::OutsideTable { date, first, last } => {
+                fields!(py, "name": "date", "got": date, "expected": (first, last))
+            }
+            _ => fields!(py,),
+        };
+        raise(py, "EffectError", &message, &fields)
+    }
+}
+
+impl IntoPython for SurfaceError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        let fields = match &self {
+            Self::Value { name, value, expected } => {
+                fields!(py, "name": name, "got": value, "expected": expected)
+            }
+            Self::Reflection { specular, diffuse } => {
+                fields!(py, "name": "specular, diffuse", "got": (*specular, *diffuse))
+            }
+            _ => fields!(py, "name": "surfaces"),
+        };
+        raise(py, "EffectError", &message, &fields)
     }
 }
 
@@ -307,6 +381,7 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
                 &message,
                 &fields!(py, "time": time, "step": step, "trace": trace),
             ),
+            SimulationError::Earth(source) => source.into_python(py),
             SimulationError::RecordEvery => plain(py, "InputError", &message),
             SimulationError::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
             SimulationError::NeedsReference

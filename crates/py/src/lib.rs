@@ -1,9 +1,11 @@
 //! Python bindings of `onorbit-core`: this crate translates, it never computes.
 
+mod air;
 mod arrays;
 mod builder;
 mod checkpoint;
 mod control;
+mod earth;
 mod environment;
 mod errors;
 mod kernels;
@@ -13,6 +15,7 @@ mod records;
 mod reference;
 mod rollout;
 mod simulation;
+mod surfaces;
 mod trace;
 mod xacro;
 
@@ -59,9 +62,14 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<orbit::PySgp4>()?;
     m.add_class::<orbit::PyCustomPath>()?;
     m.add_class::<orbit::PyFixedFrame>()?;
+    m.add_class::<earth::PyEarth>()?;
     m.add_class::<environment::PyEffect>()?;
     m.add_class::<environment::PyGravityGradient>()?;
     m.add_class::<environment::PyBodyWrench>()?;
+    m.add_class::<environment::PyDrag>()?;
+    m.add_class::<environment::PyRadiationPressure>()?;
+    air::add_classes(m)?;
+    surfaces::add_classes(m)?;
     control::add_classes(m)?;
     reference::add_classes(m)?;
     m.add_class::<simulation::PySimulation>()?;

@@ -3,6 +3,7 @@
 use crate::arrays::{Input, fixed, wrong_shape};
 use crate::checkpoint::{Keeper, PyCheckpoint};
 use crate::control::{Robot, control_law};
+use crate::earth::PyEarth;
 use crate::environment::PyEffect;
 use crate::errors::{SimulationErrorExt, fields, plain, raise};
 use crate::model::PyModel;
@@ -27,7 +28,7 @@ pub(crate) const PACE: Duration = Duration::from_millis(50);
 ///
 /// ``q`` (nq,), ``v`` (nv,); ``orbit`` brings gravity on every body: ``gravity_mode`` is
 /// ``true`` (the robot falls away from a reference that does not fall freely) or ``carried`` (tides only, the robot goes
-/// along; what is left out is ``trace.reference_residual``). ``environment`` lists effects; ``controller`` is a law such
+/// along; what is left out is ``trace.reference_residual``); ``earth`` says when that is and how the Earth turns. ``environment`` lists effects; ``controller`` is a law such
 /// as ``ComputedTorque``, an object with ``update(t, state) -> tau (n,)``, or a list of ``Control``; ``reference`` is for the frame ``tool`` (by
 /// default the controller's) and may start ``reference_start_tolerance`` (m, rad) from it, (0.05, 0.1) by default; ``control_period`` s between calls of the controller (every step by default);
 /// ``integrator`` is ``rk4``, ``semi_implicit_euler`` or ``dormand_prince``, which takes steps as long as ``tolerance`` lets
@@ -43,7 +44,7 @@ pub(crate) struct PySimulation {
 impl PySimulation {
     #[new]
     #[pyo3(signature = (
-        model, q, v, *, orbit=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
+        model, q, v, *, orbit=None, earth=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
         time_step=1e-3, control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
         tolerance=1e-9, enforce_limits=false, restitution=0.0,
     ))]
@@ -53,6 +54,7 @@ impl PySimulation {
         q: Any<'_, '_>,
         v: Any<'_, '_>,
         orbit: Option<&Bound<'_, PyOrbit>>,
+        earth: Option<&Bound<'_, PyEarth>>,
         gravity_mode: &str,
         environment: Option<Vec<Bound<'_, PyEffect>>>,
         controller: Option<Any<'_, '_>>,
@@ -81,6 +83,7 @@ impl PySimulation {
         };
         let mut simulation = Simulation::new(Arc::clone(&core), q.data().to_vec(), v.data().to_vec());
         simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
+        simulation.earth = earth.map(|earth| earth.get().beneath(simulation.orbit.as_deref()));
         simulation.reference_motion = match gravity_mode {
             "true" => ReferenceMotion::True,
             "carried" => ReferenceMotion::Carried,

@@ -17,9 +17,22 @@ pub(crate) struct PySurface {
 
 #[derive(Clone)]
 enum Kind {
-    Cannonball { area: f64, drag_coefficient: f64, reflectivity: f64 },
-    Faces { drag_coefficient: f64, optics: Optics },
-    Plates { areas: Vec<f64>, normals: Vec<[f64; 3]>, centroids: Vec<[f64; 3]>, drag_coefficient: f64, optics: Optics },
+    Cannonball {
+        area: f64,
+        drag_coefficient: f64,
+        reflectivity: f64,
+    },
+    Faces {
+        drag_coefficient: f64,
+        optics: Optics,
+    },
+    Plates {
+        areas: Vec<f64>,
+        normals: Vec<[f64; 3]>,
+        centroids: Vec<[f64; 3]>,
+        drag_coefficient: f64,
+        optics: Optics,
+    },
 }
 
 impl Kind {
@@ -56,19 +69,31 @@ impl Spread {
     /// From ``None``, one surface, or a mapping from names to surfaces.
     pub(crate) fn new(surfaces: Option<Any<'_, '_>>) -> PyResult<Self> {
         let Some(surfaces) = surfaces else {
-            return Ok(Self::All(PySurfaceKind(Kind::Faces { drag_coefficient: 2.2, optics: Optics::default() })));
+            return Ok(Self::All(PySurfaceKind(Kind::Faces {
+                drag_coefficient: 2.2,
+                optics: Optics::default(),
+            })));
         };
         let kind = |value: Any<'_, '_>| match value.cast::<PySurface>() {
             Ok(surface) => Ok(PySurfaceKind(surface.get().kind.clone())),
             Err(_) => {
                 let got = value.get_type().name()?.to_string();
-                let message = format!("surfaces holds {got}; Faces, Plates or Cannonball is needed, or a dict of them by body");
-                Err(raise(value.py(), "DtypeError", &message, &fields!(value.py(), "name": "surfaces", "got": got)))
+                let message = format!(
+                    "surfaces holds {got}; Faces, Plates or Cannonball is needed, or a dict of them by body"
+                );
+                Err(raise(
+                    value.py(),
+                    "DtypeError",
+                    &message,
+                    &fields!(value.py(), "name": "surfaces", "got": got),
+                ))
             }
         };
         match surfaces.cast::<PyDict>() {
             Ok(named) => {
-                let entry = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| Ok((name.extract()?, kind(&value)?));
+                let entry = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+                    Ok((name.extract()?, kind(&value)?))
+                };
                 Ok(Self::Named(named.iter().map(entry).collect::<PyResult<_>>()?))
             }
             Err(_) => kind(surfaces).map(Self::All),
@@ -178,7 +203,8 @@ impl PyPlates {
         let (normals, centroids) = (rows(normals, "normals")?, rows(centroids, "centroids")?);
         let (areas, optics) = (areas.data().to_vec(), optics(py, specular, diffuse)?);
         // plates are wrong or right on any robot
-        let model = Model::rigid_body(1.0, nalgebra::Matrix3::identity()).map_err(|error| error.into_python(py))?;
+        let model =
+            Model::rigid_body(1.0, nalgebra::Matrix3::identity()).map_err(|error| error.into_python(py))?;
         let kind = Kind::Plates { areas, normals, centroids, drag_coefficient, optics };
         kind.on(py, &model, 0)?;
         Ok(PyClassInitializer::from(PySurface { kind }).add_subclass(Self))

@@ -7,6 +7,11 @@ use super::EarthError;
 /// Seconds of a day.
 pub(super) const DAY: f64 = 86_400.0;
 
+const DAY_NS: i64 = 86_400_000_000_000;
+
+/// Modified Julian date of 2000-01-01.
+const MJD_2000: i64 = 51_544;
+
 /// Terrestrial Time less TAI, s.
 const TT_MINUS_TAI: f64 = 32.184;
 
@@ -73,7 +78,7 @@ impl Epoch {
 
     /// Modified Julian date of UTC.
     pub(super) fn of_mjd_utc(mjd: f64) -> Self {
-        Self::of_utc(mjd.floor() as i64 - 51_544, (mjd - mjd.floor()) * DAY)
+        Self::of_utc(mjd.floor() as i64 - MJD_2000, (mjd - mjd.floor()) * DAY)
     }
 
     /// The instant `seconds` later.
@@ -88,7 +93,6 @@ impl Epoch {
 
     /// Days of TAI from 2000-01-01T12:00:00 TAI: whole ones, and the part of the next.
     pub(super) fn tai_days(self) -> (f64, f64) {
-        const DAY_NS: i64 = 86_400_000_000_000;
         (self.tai.div_euclid(DAY_NS) as f64, self.tai.rem_euclid(DAY_NS) as f64 / DAY_NS as f64)
     }
 
@@ -102,13 +106,10 @@ impl Epoch {
         -f64::from(self.instant().leap_seconds_iers())
     }
 
-    /// Modified Julian date of the day of UTC, and the seconds since it began; of TAI before 1972.
+    /// Modified Julian date of UTC, and seconds since its midnight.
     pub(super) fn utc(self) -> (i64, f64) {
-        const SECOND: i64 = 1_000_000_000;
-        // from midnight of 2000-01-01, a day without a leap second behind it
-        let since = self.tai + (43_200 + self.utc_minus_tai() as i64) * SECOND;
-        let (day, rest) = (since.div_euclid(86_400 * SECOND), since.rem_euclid(86_400 * SECOND));
-        (51_544 + day, rest as f64 / SECOND as f64)
+        let since_midnight = self.tai + DAY_NS / 2 + (self.utc_minus_tai() as i64) * 1_000_000_000;
+        (MJD_2000 + since_midnight.div_euclid(DAY_NS), since_midnight.rem_euclid(DAY_NS) as f64 * 1e-9)
     }
 
     fn instant(self) -> Instant {

@@ -5,10 +5,12 @@
 mod epoch;
 mod error;
 mod geodetic;
+mod many;
 mod moon_table;
 mod nutation_table;
 mod orientation;
 mod parameters;
+mod parameters_file;
 mod pieces;
 mod precession;
 mod rotation;
@@ -131,6 +133,22 @@ impl Earth {
         table.map_or(Ok(()), |span| within("the Earth-orientation table", t, epoch, span))
     }
 
+    /// Whether an orbit in `axes`, whose time zero is `epoch`, is one around this Earth.
+    ///
+    /// # Errors
+    /// [`EarthError::OtherAxes`], and [`EarthError::OtherEpoch`] for epochs more than a millisecond apart.
+    pub fn fits(&self, axes: Axes, epoch: Option<Epoch>) -> Result<(), EarthError> {
+        if let Some(own) = self.axes().filter(|own| *own != axes) {
+            return Err(EarthError::OtherAxes { orbit: axes.name(), run: own.name() });
+        }
+        match (epoch, self.epoch()) {
+            (Some(orbit), Some(run)) if orbit.since(run).abs() > 1e-3 => {
+                Err(EarthError::OtherEpoch { orbit: orbit.to_string(), run: run.to_string() })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Takes `I` components to `F` components, at `t` seconds of simulation.
     ///
     /// Where the Earth does not [cover](Self::covers) `t`, parameters and pole are those of the nearest time it does.
@@ -171,13 +189,13 @@ impl Earth {
         Ok(sky.moon(t, |t| self.rot_ig(t)))
     }
 
-    /// Day of UTC at `t`, as a modified Julian date, and the seconds since it began.
+    /// Modified Julian date of UTC, and seconds since its midnight; with the leap seconds of the epoch.
     ///
     /// # Errors
     /// [`EarthError::NeedsEpoch`].
     pub fn utc(&self, t: f64) -> Result<(i64, f64), EarthError> {
-        let epoch = self.epoch().ok_or(EarthError::NeedsEpoch { what: "the time of day" })?;
-        Ok(epoch.after(t).utc())
+        let (_, sky) = self.sky.as_ref().ok_or(EarthError::NeedsEpoch { what: "UTC" })?;
+        Ok(sky.utc(t))
     }
 
     fn sky_at(&self, what: &'static str, t: f64) -> Result<&Sky, EarthError> {

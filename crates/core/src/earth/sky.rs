@@ -12,6 +12,8 @@ use super::series;
 #[derive(Clone, Debug)]
 pub(super) struct Sky {
     epoch: Epoch,
+    /// Modified Julian date of UTC and its seconds, at the epoch.
+    utc: (i64, f64),
     sun: Pieces<10>,
     moon: Pieces<12>,
 }
@@ -19,7 +21,15 @@ pub(super) struct Sky {
 impl Sky {
     pub(super) fn new(epoch: Epoch, span: (f64, f64)) -> Self {
         let (from, to) = span;
-        Self { epoch, sun: Pieces::new(from, to, 8.0 * DAY), moon: Pieces::new(from, to, 4.0 * DAY) }
+        let (sun, moon) = (Pieces::new(from, to, 8.0 * DAY), Pieces::new(from, to, 4.0 * DAY));
+        Self { epoch, utc: epoch.utc(), sun, moon }
+    }
+
+    /// Modified Julian date of UTC and its seconds, at `t`.
+    pub(super) fn utc(&self, t: f64) -> (i64, f64) {
+        let seconds = self.utc.1 + t;
+        let days = (seconds / DAY).floor();
+        (self.utc.0 + days as i64, seconds - days * DAY)
     }
 
     /// Position of the Sun at `t`; `rot_ig` takes GCRF components to `I`.

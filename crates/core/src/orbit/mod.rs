@@ -13,6 +13,7 @@ pub mod sgp4;
 use nalgebra::Vector3;
 
 pub use crate::earth::Axes;
+use crate::earth::Epoch;
 pub use custom_path::{CustomPath, Ends, PathError, PathPoints};
 pub use error::OrbitError;
 pub use fixed_frame::FixedFrame;
@@ -58,6 +59,11 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Axes of `I` in this run.
     fn axes(&self) -> Axes {
         Axes::default()
+    }
+
+    /// Instant of time zero, where the orbit says.
+    fn epoch(&self) -> Option<Epoch> {
+        None
     }
 
     /// Where [`OrbitState::velocity`] comes from, in words.

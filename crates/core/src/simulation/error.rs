@@ -3,6 +3,7 @@
 use super::checkpoint::CheckpointError;
 use super::trace::Trace;
 use crate::control::ControlError;
+use crate::earth::EarthError;
 use crate::environment::EnvironmentError;
 use crate::orbit::OrbitError;
 use crate::reference::ReferenceError;
@@ -34,6 +35,8 @@ pub enum SimulationError {
         "at t = {time} s no step keeps the tolerance, not even one of {step} s: loosen tolerance, or soften what acts there"
     )]
     StepTooSmall { time: f64, step: f64 },
+    #[error(transparent)]
+    Earth(#[from] EarthError),
     #[error("record_every is 0, it must be at least 1 step")]
     RecordEvery,
     #[error("{effect} needs an orbit around a planet: give the simulation one, or give the path its mu")]

@@ -56,6 +56,9 @@ impl Simulation {
         if !(duration.is_finite() && duration > 0.0) {
             return Err(fail(SimulationError::NotPositive { name: "duration", value: duration }));
         }
+        if let Some(earth) = &self.earth {
+            earth.covers(0.0).and_then(|()| earth.covers(duration)).map_err(|error| fail(error.into()))?;
+        }
         match InstructionSet::current() {
             InstructionSet::Baseline => self.go_with::<f64>(duration, from, monitor),
             InstructionSet::Fused | InstructionSet::Wide => self.go_with::<Fused>(duration, from, monitor),

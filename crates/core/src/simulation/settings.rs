@@ -90,7 +90,8 @@ impl Simulation {
     /// # Errors
     /// Wrong lengths, numbers that are not finite, a quaternion off unit norm, steps that are not
     /// positive, an effect without its orbit, a controller without its reference, a frame that the
-    /// robot does not have, a reference that starts away from its tool.
+    /// robot does not have, a reference that starts away from its tool, an Earth of another epoch or in
+    /// other axes than the orbit's.
     pub fn check(&self) -> Result<(), SimulationError> {
         check_state(&self.model, &self.q, &self.v)?;
         let periods = [("time_step", Some(self.time_step)), ("control_period", self.control_period)];
@@ -109,6 +110,9 @@ impl Simulation {
         let has_planet = self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some());
         if let Some(effect) = self.effects.iter().find(|effect| effect.requires_orbit() && !has_planet) {
             return Err(SimulationError::NeedsOrbit { effect: effect.name().to_owned() });
+        }
+        if let (Some(orbit), Some(earth)) = (&self.orbit, &self.earth) {
+            earth.fits(orbit.axes(), orbit.epoch())?;
         }
         let tracked = match &self.control {
             ControlLaw::ComputedTorque(law) => Some(law.frame),
