@@ -80,7 +80,8 @@ impl PyAtmosphere {
             return Err(wrong_shape(py, "t", "that of the positions or a number", &both));
         }
         let (to, earth) = (fresh(&out), Arc::clone(&earth.get().earth));
-        py.detach(|| densities_at(&*self.air, &earth, r.data(), t.data(), to))
+        let (positions, times) = (r.data(), t.data());
+        py.detach(|| densities_at(&*self.air, &earth, positions, times, to))
             .map_err(|error| error.into_python(py))?;
         scalar_or_array(out.into_any(), &shape)
     }

@@ -237,9 +237,9 @@ impl IntoPython for EnvironmentError {
             Self::EmptyInterval { start, end } => {
                 raise(py, "EffectError", &message, &fields!(py, "name": "start, end", "got": (*start, *end)))
             }
-            Self::Atmosphere(source) => source.into_python(py),
-            Self::Surface(source) => source.into_python(py),
-            Self::Earth(source) => source.into_python(py),
+            Self::Atmosphere(source) => source.clone().into_python(py),
+            Self::Surface(source) => source.clone().into_python(py),
+            Self::Earth(source) => source.clone().into_python(py),
             _ => plain(py, "EffectError", &message),
         }
     }
