@@ -1,5 +1,6 @@
 //! Python bindings of `onorbit-core`: this crate translates, it never computes.
 
+mod air;
 mod arrays;
 mod builder;
 mod checkpoint;
@@ -15,6 +16,7 @@ mod records;
 mod reference;
 mod rollout;
 mod simulation;
+mod surfaces;
 mod trace;
 mod xacro;
 
@@ -66,6 +68,10 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<environment::PyGravityGradient>()?;
     m.add_class::<environment::PyBodyWrench>()?;
     m.add_class::<gravity::PyGravityField>()?;
+    m.add_class::<environment::PyDrag>()?;
+    m.add_class::<environment::PyRadiationPressure>()?;
+    air::add_classes(m)?;
+    surfaces::add_classes(m)?;
     control::add_classes(m)?;
     reference::add_classes(m)?;
     m.add_class::<simulation::PySimulation>()?;

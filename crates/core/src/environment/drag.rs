@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// turns with the Earth. No part shadows another.
 ///
 /// The density is computed once per step at the robot's centre of mass and follows the scale height from
-/// there, within 100 m: wrong by at most 5e-5 of itself. Farther away it is computed for each body afresh.
+/// there, within 100 m: wrong by at most 1e-4 of itself. Farther away it is computed for each body afresh.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.
 #[derive(Debug)]
