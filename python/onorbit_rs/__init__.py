@@ -11,7 +11,7 @@ SI and radians everywhere; frames and layouts are those of ``docs/``: ``q = [p(3
 
 from __future__ import annotations
 
-from onorbit_rs import exceptions, layouts, robots, scenarios
+from onorbit_rs import exceptions, layouts, relative, robots, scenarios
 from onorbit_rs._core import (
     MU_EARTH,
     BodyWrench,
@@ -37,6 +37,7 @@ from onorbit_rs._core import (
     LineParabola,
     Model,
     ModelBuilder,
+    Numerical,
     Orbit,
     Reference,
     Sampled,
@@ -48,6 +49,7 @@ from onorbit_rs._core import (
     Trace,
     Waypoints,
     build_info,
+    propagate,
     rollout,
 )
 from onorbit_rs.control import Controller
@@ -81,6 +83,7 @@ __all__ = [
     "LineParabola",
     "Model",
     "ModelBuilder",
+    "Numerical",
     "OnOrbitError",
     "Orbit",
     "Reference",
@@ -97,6 +100,8 @@ __all__ = [
     "build_info",
     "exceptions",
     "layouts",
+    "propagate",
+    "relative",
     "resume",
     "robots",
     "rollout",

@@ -1,6 +1,7 @@
 //! Earth models, and the units that SGP4 counts in: Earth radii, minutes, radians.
 
 use crate::spatial::Real;
+use std::f64::consts::TAU;
 
 /// Earth model of an element set; published sets are fitted with [`EarthModel::Wgs72`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -82,13 +83,17 @@ pub(super) struct Mean<S = f64> {
     pub(super) anomaly: S,
 }
 
-/// `angle` less whole turns, exactly; what is left lies within ±π. Up to 2²⁶ turns.
+/// `angle % 2π`: with the angle's own sign, which Lyddane's variables ask for. Up to 2²⁶ turns.
 #[inline(always)]
 pub(super) fn turns_off<S: Real>(angle: S) -> S {
     const ROUND: f64 = 6_755_399_441_055_744.0; // adding 1.5 × 2⁵² rounds to a whole number
     // 2π in two pieces of 26 bits and fewer: multiples of each are exact
-    const HEAD: f64 = f64::from_bits(std::f64::consts::TAU.to_bits() & !((1 << 27) - 1));
-    const TAIL: f64 = std::f64::consts::TAU - HEAD;
-    let k = (angle * S::of(1.0 / std::f64::consts::TAU) + S::of(ROUND)) - S::of(ROUND);
-    (angle - k * S::of(HEAD)) - k * S::of(TAIL)
+    const HEAD: f64 = f64::from_bits(TAU.to_bits() & !((1 << 27) - 1));
+    const TAIL: f64 = TAU - HEAD;
+    let (zero, turn) = (S::of(0.0), S::of(TAU));
+    let k = (angle * S::of(1.0 / TAU) + S::of(ROUND)) - S::of(ROUND);
+    let rest = (angle - k * S::of(HEAD)) - k * S::of(TAIL);
+    let up = S::select(S::less(rest, zero), rest + turn, rest);
+    let down = S::select(S::less(zero, rest), rest - turn, rest);
+    S::select(S::less(angle, zero), down, up)
 }
