@@ -1,6 +1,7 @@
 """Types of the engine's module; what things mean stands in their docstrings."""
 
 from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime
 from os import PathLike
 from typing import Any, Literal, Protocol, TypedDict, final, overload
 
@@ -288,6 +289,32 @@ class ModelBuilder:
         self, name: str, link: str, *, xyz: ArrayLike | None = None, rpy: ArrayLike | None = None
     ) -> None: ...
     def build(self) -> Model: ...
+
+@final
+class Earth:
+    def __new__(
+        cls,
+        epoch: str | datetime | None = None,
+        *,
+        rotation: Literal["iau2006", "about_z"] = "iau2006",
+        ut1_minus_utc: float | None = None,
+        polar_motion: ArrayLike | None = None,
+        eop: _Path | ArrayLike | None = None,
+        angle: float | None = None,
+        rate: float | None = None,
+        axes: Literal["GCRF", "TEME"] = "GCRF",
+    ) -> Earth: ...
+    @property
+    def epoch(self) -> str | None: ...
+    @property
+    def axes(self) -> str | None: ...
+    def rotation(self, t: ArrayLike) -> _Array: ...
+    def angular_velocity(self, t: ArrayLike) -> _Array: ...
+    def sun(self, t: ArrayLike) -> _Array: ...
+    def moon(self, t: ArrayLike) -> _Array: ...
+    def to_fixed(self, t: ArrayLike, r: ArrayLike) -> _Array: ...
+    def geodetic(self, t: ArrayLike, r: ArrayLike) -> tuple[_Array, _Array, _Array]: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @disjoint_base
 class Orbit:
@@ -698,6 +725,7 @@ class Simulation:
         v: ArrayLike,
         *,
         orbit: Orbit | None = None,
+        earth: Earth | None = None,
         gravity_mode: _GravityMode = "true",
         environment: Sequence[Effect] | None = None,
         controller: _Law | Sequence[Control] | None = None,
@@ -711,6 +739,8 @@ class Simulation:
         tolerance: float = 1e-9,
         enforce_limits: bool = False,
         restitution: float = 0.0,
+        record_wrenches: bool = False,
+        rereference_beyond: float = 1e5,
     ) -> Simulation: ...
     def run(
         self,
@@ -778,6 +808,10 @@ class Trace:
     def joint_limits_exceeded(self) -> list[str]: ...
     @property
     def tracking(self) -> dict[str, _Array]: ...
+    @property
+    def wrenches(self) -> dict[str, _Array]: ...
+    @property
+    def rereferenced(self) -> _Array: ...
     @property
     def results(self) -> list[_Result]: ...
     def certificate(self) -> list[_CertificateRow]: ...

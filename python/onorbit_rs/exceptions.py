@@ -15,6 +15,7 @@ class                       built-in               fields
 ``ElementSetError``         ``OrbitError``         ``line, column, name``: a TLE or OMM that cannot be read
 ``Sgp4Error``               ``OrbitError``         ``code, time, got``: what SGP4 refuses, decay included
 ``PathError``               ``OrbitError``         ``time, start, end``: no path, or none at that time
+``EarthError``              ``ValueError``         ``name, got, expected``: epochs, Earth orientation, Sun and Moon
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
@@ -42,6 +43,7 @@ __all__ = [
     "ControlError",
     "ConvergenceError",
     "DtypeError",
+    "EarthError",
     "EffectError",
     "ElementSetError",
     "FrameError",
@@ -171,6 +173,14 @@ class PathError(OrbitError):
     time: Any = None
     start: Any = None
     end: Any = None
+
+
+class EarthError(OnOrbitError, ValueError):
+    """An epoch, a time or parameters for which nobody knows how the Earth is turned or where Sun and Moon are."""
+
+    name: Any = None
+    got: Any = None
+    expected: Any = None
 
 
 class EffectError(OnOrbitError, ValueError):

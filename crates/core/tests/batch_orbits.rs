@@ -2,8 +2,9 @@
 
 use onorbit_core::batch::{InputError, Times, kepler_states, propagate};
 use onorbit_core::orbit::{
-    Elements, FixedFrame, Kepler, MeanElements, Orbit, OrbitError, Phase, Sgp4, Sgp4Error, Size,
+    Elements, FixedFrame, Kepler, MeanElements, Orbit, OrbitError, Phase, Sgp4, Size,
 };
+use onorbit_core::orbit::sgp4::Sgp4Error;
 use std::sync::Arc;
 
 fn tle(line1: &str, line2: &str) -> Sgp4 {

@@ -3,6 +3,7 @@
 use crate::trace::PyTrace;
 use onorbit_core::batch::InputError;
 use onorbit_core::control::ControlError;
+use onorbit_core::earth::EarthError;
 use onorbit_core::environment::EnvironmentError;
 use onorbit_core::model::ModelError;
 use onorbit_core::model::urdf::{UrdfError, UrdfProblem};
@@ -219,6 +220,34 @@ fn sgp4_error(py: Python<'_>, error: &Sgp4Error, message: &str) -> PyErr {
     raise(py, "Sgp4Error", message, &fields)
 }
 
+impl IntoPython for EarthError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        let fields = match &self {
+            Self::Epoch { text } | Self::BeforeUtc { text } => fields!(py, "name": "epoch", "got": text),
+            Self::NeedsEpoch { what } => fields!(py, "name": what),
+            Self::OutsideSpan { what, time, from, to, .. } => {
+                fields!(py, "name": what, "got": time, "expected": (from, to))
+            }
+            Self::NotFinite { name, value } => fields!(py, "name": name, "got": value),
+            Self::Parameter { name, value, expected, .. } => {
+                fields!(py, "name": name, "got": value, "expected": expected)
+            }
+            Self::Table { line, .. } => fields!(py, "name": "eop", "got": line),
+            Self::NearCentre { distance, minimum } => {
+                fields!(py, "name": "r", "got": distance, "expected": minimum)
+            }
+            Self::OtherEpoch { orbit, run } => fields!(py, "name": "epoch", "got": run, "expected": orbit),
+            Self::OtherAxes { orbit, run } => fields!(py, "name": "axes", "got": run, "expected": orbit),
+            Self::WrongLength { name, expected, got } => {
+                fields!(py, "name": name, "got": got, "expected": expected)
+            }
+            _ => fields!(py,),
+        };
+        raise(py, "EarthError", &message, &fields)
+    }
+}
+
 impl IntoPython for EnvironmentError {
     fn into_python(self, py: Python<'_>) -> PyErr {
         let message = self.to_string();
@@ -315,6 +344,9 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::Tolerance { value } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "tolerance", "got": value))
             }
+            SimulationError::RereferenceBeyond { value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "rereference_beyond", "got": value))
+            }
             SimulationError::Restitution { value } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "restitution", "got": value))
             }
@@ -330,6 +362,7 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
                 &message,
                 &fields!(py, "time": time, "step": step, "trace": trace),
             ),
+            SimulationError::Earth(source) => source.into_python(py),
             SimulationError::RecordEvery => plain(py, "InputError", &message),
             SimulationError::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
             SimulationError::NeedsReference

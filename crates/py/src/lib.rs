@@ -4,6 +4,7 @@ mod arrays;
 mod builder;
 mod checkpoint;
 mod control;
+mod earth;
 mod environment;
 mod errors;
 mod kernels;
@@ -62,6 +63,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<orbit::PyCustomPath>()?;
     m.add_class::<orbit::PyFixedFrame>()?;
     m.add_class::<orbit::PyNumerical>()?;
+    m.add_class::<earth::PyEarth>()?;
     m.add_class::<environment::PyEffect>()?;
     m.add_class::<environment::PyGravityGradient>()?;
     m.add_class::<environment::PyBodyWrench>()?;

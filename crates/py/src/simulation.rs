@@ -3,6 +3,7 @@
 use crate::arrays::{Input, fixed, wrong_shape};
 use crate::checkpoint::{Keeper, PyCheckpoint};
 use crate::control::{Robot, control_law};
+use crate::earth::PyEarth;
 use crate::environment::PyEffect;
 use crate::errors::{SimulationErrorExt, fields, plain, raise};
 use crate::model::PyModel;
@@ -27,12 +28,15 @@ pub(crate) const PACE: Duration = Duration::from_millis(50);
 ///
 /// ``q`` (nq,), ``v`` (nv,); ``orbit`` brings gravity on every body: ``gravity_mode`` is
 /// ``true`` (the robot falls away from a reference that does not fall freely) or ``carried`` (tides only, the robot goes
-/// along; what is left out is ``trace.reference_residual``). ``environment`` lists effects; ``controller`` is a law such
+/// along; what is left out is ``trace.reference_residual``); ``earth`` says when that is and how the Earth turns. ``environment`` lists effects; ``controller`` is a law such
 /// as ``ComputedTorque``, an object with ``update(t, state) -> tau (n,)``, or a list of ``Control``; ``reference`` is for the frame ``tool`` (by
 /// default the controller's) and may start ``reference_start_tolerance`` (m, rad) from it, (0.05, 0.1) by default; ``control_period`` s between calls of the controller (every step by default);
 /// ``integrator`` is ``rk4``, ``semi_implicit_euler`` or ``dormand_prince``, which takes steps as long as ``tolerance`` lets
 /// it (a share: of a radian, of the robot's size, of rates) and records its rows on the grid of ``time_step`` in between;
-/// ``enforce_limits`` puts rigid stops at the joints' position limits, which give back ``restitution`` (0 to 1) of the rate.
+/// ``enforce_limits`` puts rigid stops at the joints' position limits, which give back ``restitution`` (0 to 1) of the rate;
+/// ``record_wrenches`` keeps the wrench of every effect on every body in ``trace.wrenches``;
+/// a robot that nothing leads through W and whose base drifts more than ``rereference_beyond`` m from the reference is integrated about
+/// one of its own from there (``trace.rereferenced`` says when; its rows stay in W).
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     simulation: Mutex<Simulation>,
@@ -43,9 +47,10 @@ pub(crate) struct PySimulation {
 impl PySimulation {
     #[new]
     #[pyo3(signature = (
-        model, q, v, *, orbit=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
+        model, q, v, *, orbit=None, earth=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
         time_step=1e-3, control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
-        tolerance=1e-9, enforce_limits=false, restitution=0.0,
+        tolerance=1e-9, enforce_limits=false, restitution=0.0, record_wrenches=false,
+        rereference_beyond=1e5,
     ))]
     fn new(
         py: Python<'_>,
@@ -53,6 +58,7 @@ impl PySimulation {
         q: Any<'_, '_>,
         v: Any<'_, '_>,
         orbit: Option<&Bound<'_, PyOrbit>>,
+        earth: Option<&Bound<'_, PyEarth>>,
         gravity_mode: &str,
         environment: Option<Vec<Bound<'_, PyEffect>>>,
         controller: Option<Any<'_, '_>>,
@@ -66,6 +72,8 @@ impl PySimulation {
         tolerance: f64,
         enforce_limits: bool,
         restitution: f64,
+        record_wrenches: bool,
+        rereference_beyond: f64,
     ) -> PyResult<Self> {
         let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
         let core = Arc::clone(&model.model);
@@ -81,6 +89,7 @@ impl PySimulation {
         };
         let mut simulation = Simulation::new(Arc::clone(&core), q.data().to_vec(), v.data().to_vec());
         simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
+        simulation.earth = earth.map(|earth| earth.get().beneath(simulation.orbit.as_deref()));
         simulation.reference_motion = match gravity_mode {
             "true" => ReferenceMotion::True,
             "carried" => ReferenceMotion::Carried,
@@ -121,6 +130,8 @@ impl PySimulation {
         simulation.integrator = integrator_named(py, integrator)?;
         simulation.record_every = record_every;
         simulation.tolerance = tolerance;
+        simulation.record_wrenches = record_wrenches;
+        simulation.rereference_beyond = rereference_beyond;
         simulation.stops = enforce_limits.then_some(restitution);
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         Ok(Self { simulation: Mutex::new(simulation), model: core })

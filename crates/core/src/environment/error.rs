@@ -1,9 +1,14 @@
 //! What can be wrong with an effect or with the place it is asked to act in.
 
+use crate::gravity::GravityError;
+
 /// Refusals of the `environment` module; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnvironmentError {
+    /// The gravity of planet and third bodies has no answer.
+    #[error(transparent)]
+    Gravity(#[from] GravityError),
     /// An effect of the planet is on where there is no planet.
     #[error(
         "{effect} needs an orbit around a planet, this run has none: give an orbit or leave the effect out"

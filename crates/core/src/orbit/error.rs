@@ -2,11 +2,15 @@
 
 use super::custom_path::PathError;
 use super::sgp4::{ElementSetError, Sgp4Error};
+use crate::gravity::GravityError;
 
 /// Refusals of the `orbit` module; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OrbitError {
+    /// The field that the orbit obeys has no answer.
+    #[error(transparent)]
+    Gravity(#[from] GravityError),
     /// An input is infinite or not a number.
     #[error("{name} is {value}, a finite number is needed")]
     NotFinite {

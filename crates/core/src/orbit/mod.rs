@@ -17,6 +17,8 @@ use crate::gravity::Gravity;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
+pub use crate::earth::Axes;
+use crate::earth::Epoch;
 pub use custom_path::{CustomPath, Ends, PathError, PathPoints};
 pub use error::OrbitError;
 pub use fixed_frame::FixedFrame;
@@ -40,26 +42,6 @@ pub struct OrbitState {
     pub velocity: Vector3<f64>,
     /// Acceleration, m/s²: the true one, whatever field the reference obeys.
     pub acceleration: Vector3<f64>,
-}
-
-/// Inertial axes that an orbit is given in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Axes {
-    /// Geocentric celestial reference frame; for other planets any axes that do not turn.
-    #[default]
-    Gcrf,
-    /// True equator, mean equinox of date: SGP4's; a third of a degree from GCRF in 2024, and growing.
-    Teme,
-}
-
-impl Axes {
-    /// `GCRF` or `TEME`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Gcrf => "GCRF",
-            Self::Teme => "TEME",
-        }
-    }
 }
 
 /// A reference orbit as a function of time.
@@ -100,6 +82,11 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Axes of `I` in this run.
     fn axes(&self) -> Axes {
         Axes::default()
+    }
+
+    /// Instant of time zero, where the orbit says.
+    fn epoch(&self) -> Option<Epoch> {
+        None
     }
 
     /// Where [`OrbitState::velocity`] comes from, in words.

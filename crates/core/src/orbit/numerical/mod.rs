@@ -61,6 +61,6 @@ impl Orbit for Numerical {
     /// [`OrbitError::BelowSurface`] from the time on at which the orbit enters the planet,
     /// [`OrbitError::TooManySteps`] too far from `t₀`, and those of the field.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
-        self.arcs.state(finite("time", t)?, |t, r| Ok(self.gravity.acceleration(t, r)))
+        self.arcs.state(finite("time", t)?, |t, r| Ok(self.gravity.acceleration(t, r)?))
     }
 }

@@ -62,6 +62,11 @@ impl Epoch {
         (seconds * (PI / 180.0) / 240.0).rem_euclid(TAU)
     }
 
+    /// The instant, leap seconds counted from 1972 on.
+    pub(super) fn instant(&self) -> crate::earth::Epoch {
+        crate::earth::Epoch::of_utc(self.day, self.seconds)
+    }
+
     /// Julian date of the epoch's midnight, and the part of the day since.
     pub fn julian_date(&self) -> (f64, f64) {
         (2_451_544.5 + self.day as f64, self.seconds / 86_400.0)

@@ -124,6 +124,10 @@ impl Orbit for Sgp4 {
         Axes::Teme
     }
 
+    fn epoch(&self) -> Option<crate::earth::Epoch> {
+        Some(self.elements.epoch.instant())
+    }
+
     fn velocity_source(&self) -> &'static str {
         "SGP4's own velocity (not exactly the derivative of its position)"
     }

@@ -1,0 +1,167 @@
+//! When a run takes place.
+
+use hifitime::{Duration, Epoch as Instant, TimeScale, Unit};
+
+use super::EarthError;
+
+/// Seconds of a day.
+pub(super) const DAY: f64 = 86_400.0;
+
+const DAY_NS: i64 = 86_400_000_000_000;
+
+/// Modified Julian date of 2000-01-01.
+const MJD_2000: i64 = 51_544;
+
+/// Terrestrial Time less TAI, s.
+const TT_MINUS_TAI: f64 = 32.184;
+
+/// From here on UTC has whole leap seconds.
+const UTC_YEAR: i32 = 1972;
+
+/// Years accepted: what nutation, Sun and Moon are made for.
+const YEARS: std::ops::Range<i32> = 1900..2100;
+
+/// Time zero of a run, to the nanosecond (by default noon TAI of 2000-01-01); seconds of simulation are those of TAI and TT from there on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Epoch {
+    /// Nanoseconds of TAI from 2000-01-01T12:00:00 TAI.
+    tai: i64,
+}
+
+impl Epoch {
+    /// `2024-03-01T12:00:00 UTC`: a date, a time and its scale, which is UTC (or `Z`), TAI, TT or TDB.
+    ///
+    /// A leap second is written as the 60th.
+    ///
+    /// # Errors
+    /// [`EarthError::Epoch`] for anything else and for years outside of 1900 to 2099;
+    /// [`EarthError::BeforeUtc`] for UTC before 1972.
+    pub fn parse(text: &str) -> Result<Self, EarthError> {
+        let refused = || EarthError::Epoch { text: text.to_owned() };
+        let (fields, scale) = split_scale(text.trim()).ok_or_else(refused)?;
+        let ([year, month, day, hour, minute, second], nanoseconds) = numbers(fields).ok_or_else(refused)?;
+        let year = i32::from(year);
+        if scale == TimeScale::UTC && YEARS.contains(&year) && year < UTC_YEAR {
+            return Err(EarthError::BeforeUtc { text: text.to_owned() });
+        }
+        let is_leap = second == 60;
+        let byte = |x: u16| u8::try_from(x).unwrap_or(u8::MAX); // no month and no hour
+        let (month, day, hour, minute) = (byte(month), byte(day), byte(hour), byte(minute));
+        let second = if is_leap { 59 } else { byte(second) };
+        if !YEARS.contains(&year) || second > 59 {
+            return Err(refused());
+        }
+        let instant =
+            Instant::maybe_from_gregorian(year, month, day, hour, minute, second, nanoseconds, scale)
+                .map_err(|_| refused())?
+                .to_time_scale(TimeScale::TAI);
+        let after = instant + Unit::Second * 2;
+        match is_leap {
+            false => Ok(Self::of(instant)),
+            true if scale == TimeScale::UTC && after.leap_seconds_iers() > instant.leap_seconds_iers() => {
+                Ok(Self::of(instant + Unit::Second * 1))
+            }
+            true => Err(refused()),
+        }
+    }
+
+    fn of(instant: Instant) -> Self {
+        let nanoseconds = (instant.to_time_scale(TimeScale::TAI) - noon_of_2000()).total_nanoseconds();
+        Self { tai: nanoseconds as i64 } // years are those of this century and the last
+    }
+
+    /// Days from 2000-01-01 and seconds of UTC, as element sets give them; leap seconds from 1972 on.
+    pub(crate) fn of_utc(day: i64, seconds: f64) -> Self {
+        let midnight = Instant::from_gregorian_utc_at_midnight(2000, 1, 1);
+        Self::of(midnight + Unit::Day * day + Unit::Second * seconds)
+    }
+
+    /// Modified Julian date of UTC.
+    pub(super) fn of_mjd_utc(mjd: f64) -> Self {
+        Self::of_utc(mjd.floor() as i64 - MJD_2000, (mjd - mjd.floor()) * DAY)
+    }
+
+    /// The instant `seconds` later.
+    pub(super) fn after(self, seconds: f64) -> Self {
+        Self { tai: self.tai.saturating_add((seconds * 1e9).round() as i64) }
+    }
+
+    /// Seconds from `earlier` until here.
+    pub(crate) fn since(self, earlier: Self) -> f64 {
+        (self.tai as i128 - earlier.tai as i128) as f64 * 1e-9
+    }
+
+    /// Days of TAI from 2000-01-01T12:00:00 TAI: whole ones, and the part of the next.
+    pub(super) fn tai_days(self) -> (f64, f64) {
+        (self.tai.div_euclid(DAY_NS) as f64, self.tai.rem_euclid(DAY_NS) as f64 / DAY_NS as f64)
+    }
+
+    /// Julian centuries of TT from J2000.0, `t` seconds later.
+    pub(super) fn centuries(self, t: f64) -> f64 {
+        (self.tai as f64 * 1e-9 + TT_MINUS_TAI + t) / (36_525.0 * DAY)
+    }
+
+    /// UTC less TAI, s: a whole number, zero before 1972.
+    pub fn utc_minus_tai(self) -> f64 {
+        -f64::from(self.instant().leap_seconds_iers())
+    }
+
+    /// Modified Julian date of UTC, and seconds since its midnight.
+    pub(super) fn utc(self) -> (i64, f64) {
+        let since_midnight = self.tai + DAY_NS / 2 + (self.utc_minus_tai() as i64) * 1_000_000_000;
+        (MJD_2000 + since_midnight.div_euclid(DAY_NS), since_midnight.rem_euclid(DAY_NS) as f64 * 1e-9)
+    }
+
+    fn instant(self) -> Instant {
+        noon_of_2000() + Duration::from_truncated_nanoseconds(self.tai)
+    }
+}
+
+impl std::fmt::Display for Epoch {
+    /// `2024-03-01T12:00:00.000000 UTC`, to the microsecond; in TAI before 1972.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let instant = self.instant() + Unit::Nanosecond * 500; // rounds
+        let leap = instant.leap_seconds_iers();
+        let scale = if leap > 0 { TimeScale::UTC } else { TimeScale::TAI };
+        let (year, month, day, hour, minute, second, ns) = instant.to_gregorian(scale);
+        // the calendar does not know 23:59:60, where the count of leap seconds has not stepped yet
+        let micros = ns / 1000;
+        write!(f, "{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{micros:06} {scale}")
+    }
+}
+
+fn noon_of_2000() -> Instant {
+    Instant::from_gregorian_tai_at_noon(2000, 1, 1)
+}
+
+/// The text before its time scale, and the scale.
+fn split_scale(text: &str) -> Option<(&str, TimeScale)> {
+    let scales = [
+        ("Z", TimeScale::UTC),
+        ("UTC", TimeScale::UTC),
+        ("TAI", TimeScale::TAI),
+        ("TT", TimeScale::TT),
+        ("TDB", TimeScale::TDB),
+    ];
+    scales.iter().find_map(|(name, scale)| Some((text.strip_suffix(name)?.trim_end(), *scale)))
+}
+
+/// Year, month, day, hour, minute and second of `2024-03-01T12:00:00`, and nanoseconds.
+fn numbers(text: &str) -> Option<([u16; 6], u32)> {
+    let (whole, fraction) = text.split_once('.').unwrap_or((text, "0"));
+    let (date, time) = whole.split_once(['T', ' '])?;
+    let mut fields = [0; 6];
+    let mut parts = date.split('-').chain(time.split(':'));
+    if date.split('-').count() != 3 || !(2..=3).contains(&time.split(':').count()) {
+        return None;
+    }
+    for (field, part) in fields.iter_mut().zip(&mut parts) {
+        *field = is_number(part, 4).then(|| part.parse().ok())??;
+    }
+    let nanoseconds = is_number(fraction, 9).then(|| format!("{fraction:0<9}").parse().ok())??;
+    Some((fields, nanoseconds))
+}
+
+fn is_number(text: &str, longest: usize) -> bool {
+    (1..=longest).contains(&text.len()) && text.bytes().all(|c| c.is_ascii_digit())
+}

@@ -1,0 +1,89 @@
+//! Latitude, longitude and altitude.
+
+use nalgebra::Vector3;
+
+use super::EarthError;
+
+/// An oblate ellipsoid of revolution about the Earth's axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipsoid {
+    /// Radius of the equator, m.
+    pub radius: f64,
+    /// Flattening.
+    pub flattening: f64,
+}
+
+/// World Geodetic System 1984.
+///
+/// Source: NGA.STND.0036, version 1.0.0, 2014, table 3.1.
+pub const WGS84: Ellipsoid = Ellipsoid { radius: 6_378_137.0, flattening: 1.0 / 298.257_223_563 };
+
+/// A place by its latitude, longitude and altitude above an ellipsoid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Geodetic {
+    /// Angle between the ellipsoid's normal and the equator, north positive, rad.
+    pub latitude: f64,
+    /// East of the zero meridian, from -π to π, rad; zero on the axis.
+    pub longitude: f64,
+    /// Height along the normal, m.
+    pub altitude: f64,
+}
+
+/// Nearer to the centre than this latitudes are not unique (the ellipsoid's normals meet within `a e²` = 43 km), m.
+const NEAREST: f64 = 50e3;
+
+impl Geodetic {
+    /// Of a position from the Earth's centre, Earth-fixed axes, m.
+    ///
+    /// # Errors
+    /// [`EarthError::NearCentre`] within 50 km of the centre, [`EarthError::NotFinite`].
+    ///
+    /// Source: Bowring, Survey Review 23(181), 1976, iterated: to rounding, at every altitude.
+    pub fn of(position_f: &Vector3<f64>, ellipsoid: &Ellipsoid) -> Result<Self, EarthError> {
+        let distance = position_f.norm();
+        if !distance.is_finite() {
+            return Err(EarthError::NotFinite { name: "position", value: distance });
+        }
+        if distance < NEAREST {
+            return Err(EarthError::NearCentre { distance, minimum: NEAREST });
+        }
+        let Ellipsoid { radius: a, flattening: f } = *ellipsoid;
+        let (b, e2) = (a * (1.0 - f), f * (2.0 - f));
+        let (p, z) = (position_f.x.hypot(position_f.y), position_f.z);
+        // tan β = (1 - f) tan φ,  tan φ = (z + e² a²/b sin³ β)/(p - e² a cos³ β), from tan β₀ = z/((1 - f) p)
+        let (mut sin, mut cos) = unit(a * z, b * p);
+        for _ in 0..20 {
+            let (sin_phi, cos_phi) = unit(z + e2 * a * a / b * sin * sin * sin, p - e2 * a * cos * cos * cos);
+            let (s, c) = unit((1.0 - f) * sin_phi, cos_phi);
+            let change = (s * cos - c * sin).abs();
+            (sin, cos) = (s, c);
+            if change < 1e-16 {
+                break;
+            }
+        }
+        // h = p cos φ + z sin φ - a √(1 - e² sin² φ)
+        let (sin_phi, cos_phi) = unit(a * sin, b * cos);
+        let altitude = p * cos_phi + z * sin_phi - a * (1.0 - e2 * sin_phi * sin_phi).sqrt();
+        let latitude = sin_phi.atan2(cos_phi);
+        let longitude = if p > 0.0 { position_f.y.atan2(position_f.x) } else { 0.0 };
+        Ok(Self { latitude, longitude, altitude })
+    }
+
+    /// Position from the Earth's centre, Earth-fixed axes, m.
+    pub fn position(&self, ellipsoid: &Ellipsoid) -> Vector3<f64> {
+        let Ellipsoid { radius: a, flattening: f } = *ellipsoid;
+        let e2 = f * (2.0 - f);
+        let (sin, cos) = self.latitude.sin_cos();
+        // N = a/√(1 - e² sin² φ),  x, y = (N + h) cos φ,  z = ((1 - e²) N + h) sin φ
+        let n = a / (1.0 - e2 * sin * sin).sqrt();
+        let p = (n + self.altitude) * cos;
+        let (s, c) = self.longitude.sin_cos();
+        Vector3::new(p * c, p * s, ((1.0 - e2) * n + self.altitude) * sin)
+    }
+}
+
+/// Sine and cosine of the angle whose tangent is `y/x`.
+fn unit(y: f64, x: f64) -> (f64, f64) {
+    let r = y.hypot(x);
+    (y / r, x / r)
+}

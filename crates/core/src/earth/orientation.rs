@@ -1,0 +1,143 @@
+//! How the Earth is turned in inertial axes: Earth rotation angle, the pole of date, polar motion.
+
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::TAU;
+
+use super::epoch::{DAY, Epoch};
+use super::parameters::{EarthParameters, Parameters};
+use super::pieces::Pieces;
+use super::precession::{pole, polynomial};
+use super::rotation::{r1, r2, r3};
+use super::{Axes, EarthError, ROTATION_RATE};
+
+/// Length of the pieces over which the pole is kept, s.
+const PIECE: f64 = 4.0 * DAY;
+
+/// The Earth of IAU 2006 (precession) and 2000A (nutation), turned by UT1.
+#[derive(Clone, Debug)]
+pub(super) struct Orientation {
+    epoch: Epoch,
+    axes: Axes,
+    /// Earth rotation angle at time zero if UT1 were TAI, rad.
+    angle: f64,
+    parameters: Parameters,
+    poles: Pieces<10>,
+}
+
+impl Orientation {
+    /// For a run from `epoch`, asked for within `span`, s of simulation.
+    pub(super) fn new(
+        epoch: Epoch,
+        axes: Axes,
+        parameters: &EarthParameters,
+        span: (f64, f64),
+    ) -> Result<Self, EarthError> {
+        let parameters = Parameters::new(parameters, epoch)?;
+        // θ = 2π (0.779 057 273 264 0 + 1.002 737 811 911 354 48 Tu), Tu in days of UT1 from J2000.0
+        // (IERS Conventions 2010, eq. 5.15), whole turns left out
+        let (days, part) = epoch.tai_days();
+        let turns = 0.779_057_273_264 + part + 0.002_737_811_911_354_48 * (days + part);
+        let angle = turns.fract() * TAU;
+        Ok(Self { epoch, axes, angle, parameters, poles: Pieces::new(span.0, span.1, PIECE) })
+    }
+
+    /// The same Earth in other axes.
+    pub(super) fn in_axes(&self, axes: Axes) -> Self {
+        Self { axes, ..self.clone() }
+    }
+
+    pub(super) fn axes(&self) -> Axes {
+        self.axes
+    }
+
+    pub(super) fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// `X, Y, s` at `t`, as precession and nutation have them.
+    fn pole_at(&self, t: f64) -> Vector3<f64> {
+        pole(self.epoch.centuries(t))
+    }
+
+    /// Earth rotation angle, rad, and its rate, rad/s.
+    fn rotation_angle(&self, t: f64) -> (f64, f64) {
+        let (ut1_minus_tai, rate) = self.parameters.ut1_minus_tai(t);
+        (self.angle + ROTATION_RATE * (t + ut1_minus_tai), ROTATION_RATE * (1.0 + rate))
+    }
+
+    /// Takes `I` components to those of the Earth: `W R₃(θ - s) Mᵀ` from GCRF, `W R₃(θ₈₂)` from TEME.
+    ///
+    /// `Mᵀ R₃(s)` are the celestial intermediate axes, of pole `X, Y`; `θ₈₂` is the mean sidereal time of 1982.
+    ///
+    /// Source: IERS Conventions (2010), eq. 5.1 and 5.10; Vallado and others, AIAA 2006-6753, for TEME.
+    pub(super) fn rot_fi(&self, t: f64) -> Matrix3<f64> {
+        let (angle, _) = self.rotation_angle(t);
+        let wobble = self.wobble(t);
+        match self.axes {
+            Axes::Teme => wobble * r3(angle + self.sidereal_excess(t)),
+            Axes::Gcrf => {
+                let p = self.poles.value(t, |t| self.pole_at(t));
+                wobble * r3(angle - p.z) * equator(p.x, p.y)
+            }
+        }
+    }
+
+    /// Polar motion, `R₁(-y_p) R₂(-x_p)`; the 0.05 mas of `s'` are left out.
+    fn wobble(&self, t: f64) -> Matrix3<f64> {
+        let [x, y] = self.parameters.polar_motion(t);
+        r1(-y) * r2(-x)
+    }
+
+    /// Mean sidereal time of 1982 less the Earth rotation angle, rad.
+    ///
+    /// Source: Aoki and others, Astronomy and Astrophysics 105, 1982, eq. 14.
+    fn sidereal_excess(&self, t: f64) -> f64 {
+        // θ₈₂ = 67 310.548 41 s + (876 600 h + 8 640 184.812 866 s) T + 0.093 104 s T² - 6.2e-6 s T³, T of UT1
+        const TURNS: [f64; 4] = [
+            67_310.548_41 / DAY - 0.779_057_273_264,
+            8_640_184.812_866 / DAY - 0.002_737_811_911_354_48 * 36_525.0,
+            0.093_104 / DAY,
+            -6.2e-6 / DAY,
+        ];
+        let (days, part) = self.epoch.tai_days();
+        let ut1 = days + part + (t + self.parameters.ut1_minus_tai(t).0) / DAY;
+        polynomial(&TURNS, ut1 / 36_525.0) * TAU
+    }
+
+    /// Takes GCRF components to those of `I`.
+    pub(super) fn rot_ig(&self, t: f64) -> Matrix3<f64> {
+        match self.axes {
+            Axes::Gcrf => Matrix3::identity(),
+            Axes::Teme => {
+                // R₃(θ₈₂) r_TEME = R₃(θ - s) Mᵀ r_GCRF
+                let p = self.poles.value(t, |t| self.pole_at(t));
+                r3(-p.z - self.sidereal_excess(t)) * equator(p.x, p.y)
+            }
+        }
+    }
+
+    /// Angular velocity of the Earth in `I`, axes of `I`, rad/s.
+    ///
+    /// `ω = θ̇ p + p × ṗ`: the origin on the equator has no part along the pole `p`. What the wobble adds is
+    /// below 1e-12 rad/s.
+    pub(super) fn angular_velocity(&self, t: f64) -> Vector3<f64> {
+        let (_, rate) = self.rotation_angle(t);
+        match self.axes {
+            Axes::Teme => Vector3::z() * rate, // θ₈₂ runs ahead of θ by 7e-12 rad/s
+            Axes::Gcrf => {
+                let (p, dp) = self.poles.with_rate(t, |t| self.pole_at(t));
+                let z = (1.0 - p.x * p.x - p.y * p.y).sqrt();
+                let pole = Vector3::new(p.x, p.y, z);
+                let slope = Vector3::new(dp.x, dp.y, -(p.x * dp.x + p.y * dp.y) / z);
+                pole * rate + pole.cross(&slope)
+            }
+        }
+    }
+}
+
+/// Takes GCRF components to the equator of the pole `X, Y`: `Mᵀ` of eq. 5.10 with `a = 1/(1 + Z)`.
+fn equator(x: f64, y: f64) -> Matrix3<f64> {
+    let z = (1.0 - x * x - y * y).sqrt();
+    let a = 1.0 / (1.0 + z);
+    Matrix3::new(1.0 - a * x * x, -a * x * y, -x, -a * x * y, 1.0 - a * y * y, -y, x, y, z)
+}

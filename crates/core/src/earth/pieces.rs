@@ -1,0 +1,82 @@
+//! A dear function of time, kept as Chebyshev series over pieces of it.
+
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// Pieces that are kept together.
+const BLOCK: usize = 32;
+
+type Piece<const N: usize> = [Vector3<f64>; N];
+
+/// A vector function of time by Chebyshev series of `N` coefficients, each made when it is first asked for.
+///
+/// A piece depends on nothing but its place, so every answer is the same whatever was asked before.
+#[derive(Clone, Debug)]
+pub(super) struct Pieces<const N: usize> {
+    start: f64,
+    length: f64,
+    blocks: Box<[OnceLock<Box<[OnceLock<Piece<N>>; BLOCK]>>]>,
+}
+
+impl<const N: usize> Pieces<N> {
+    /// Pieces of `length` from `start` until at least `end`, s.
+    pub(super) fn new(start: f64, end: f64, length: f64) -> Self {
+        let blocks = ((end - start) / (length * BLOCK as f64)).ceil().max(1.0) as usize;
+        Self { start, length, blocks: vec![OnceLock::new(); blocks].into() }
+    }
+
+    /// The series around `t` and where `t` lies in it, from -1 to 1; beyond the ends that of the end.
+    fn piece(&self, t: f64, function: impl Fn(f64) -> Vector3<f64>) -> (&Piece<N>, f64) {
+        let place = (t - self.start) / self.length;
+        let last = self.blocks.len() * BLOCK - 1;
+        let index = (place as usize).min(last); // below zero and NaN become zero
+        let block = self.blocks[index / BLOCK].get_or_init(|| Box::new([const { OnceLock::new() }; BLOCK]));
+        let piece = block[index % BLOCK].get_or_init(|| {
+            let middle = self.start + (index as f64 + 0.5) * self.length;
+            series(|x| function(middle + 0.5 * self.length * x))
+        });
+        (piece, (2.0 * (place - index as f64) - 1.0).clamp(-1.0, 1.0))
+    }
+
+    /// The function at `t`.
+    pub(super) fn value(&self, t: f64, function: impl Fn(f64) -> Vector3<f64>) -> Vector3<f64> {
+        let (piece, x) = self.piece(t, function);
+        // Clenshaw: b_k = c_k + 2x b_{k+1} - b_{k+2},  f = c_0 + x b_1 - b_2
+        let (mut b1, mut b2) = (Vector3::zeros(), Vector3::zeros());
+        for c in piece[1..].iter().rev() {
+            (b1, b2) = (c + b1 * (2.0 * x) - b2, b1);
+        }
+        piece[0] + b1 * x - b2
+    }
+
+    /// The function at `t` and its derivative.
+    pub(super) fn with_rate(
+        &self,
+        t: f64,
+        function: impl Fn(f64) -> Vector3<f64>,
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        let (piece, x) = self.piece(t, function);
+        // T_{k+1} = 2x T_k - T_{k-1},  T'_{k+1} = 2 T_k + 2x T'_k - T'_{k-1}
+        let (mut polynomial, mut slope) = ((1.0, x), (0.0, 1.0));
+        let (mut value, mut rate) = (piece[0], Vector3::zeros());
+        for c in &piece[1..] {
+            value += c * polynomial.1;
+            rate += c * slope.1;
+            slope = (slope.1, 2.0 * polynomial.1 + 2.0 * x * slope.1 - slope.0);
+            polynomial = (polynomial.1, 2.0 * x * polynomial.1 - polynomial.0);
+        }
+        (value, rate * (2.0 / self.length))
+    }
+}
+
+/// Chebyshev coefficients of a function on [-1, 1], by its values at the zeros of `T_N`.
+fn series<const N: usize>(function: impl Fn(f64) -> Vector3<f64>) -> Piece<N> {
+    let angle = |j: usize| PI * (j as f64 + 0.5) / N as f64;
+    let values: [Vector3<f64>; N] = std::array::from_fn(|j| function(angle(j).cos()));
+    std::array::from_fn(|k| {
+        // c_k = (2 - δ_k0)/N Σ f(cos θ_j) cos k θ_j
+        let weight = if k == 0 { 1.0 } else { 2.0 } / N as f64;
+        values.iter().enumerate().map(|(j, f)| f * (weight * (k as f64 * angle(j)).cos())).sum()
+    })
+}
