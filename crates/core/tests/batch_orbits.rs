@@ -1,10 +1,8 @@
 //! Many orbits at once agree with one at a time, whatever the threads; refusals name the orbit.
 
 use onorbit_core::batch::{InputError, Times, kepler_states, propagate};
-use onorbit_core::orbit::{
-    Elements, FixedFrame, Kepler, MeanElements, Orbit, OrbitError, Phase, Sgp4, Size,
-};
 use onorbit_core::orbit::sgp4::Sgp4Error;
+use onorbit_core::orbit::{Elements, FixedFrame, Kepler, MeanElements, Orbit, OrbitError, Phase, Sgp4, Size};
 use std::sync::Arc;
 
 fn tle(line1: &str, line2: &str) -> Sgp4 {

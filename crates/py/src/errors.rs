@@ -112,7 +112,8 @@ impl IntoPython for InputError {
             Self::NeedsOrbit => plain(py, "ControlError", &message),
             Self::Orbit { orbit, source } => {
                 let error = source.clone().into_python(py);
-                for (name, value) in [("index", orbit.into_py_any(py)), ("message", message.into_py_any(py))] {
+                for (name, value) in [("index", orbit.into_py_any(py)), ("message", message.into_py_any(py))]
+                {
                     let _ = value.and_then(|value| error.value(py).setattr(name, value));
                 }
                 error

@@ -37,7 +37,8 @@ pub(crate) fn propagate<'py>(
     let orbits: Vec<Arc<dyn Orbit>> = orbits.iter().map(|orbit| Arc::clone(&orbit.orbit)).collect();
     let (shape, threads) = ([count, each, 3], threads.map(|count| count.0));
     let run = |r: &mut [f64], v: &mut [f64]| {
-        py.detach(|| batch::propagate(&orbits, instants, r, v, threads)).map_err(|error| error.into_python(py))
+        py.detach(|| batch::propagate(&orbits, instants, r, v, threads))
+            .map_err(|error| error.into_python(py))
     };
     match out {
         None => {
@@ -54,7 +55,11 @@ pub(crate) fn propagate<'py>(
 }
 
 /// A caller's array, to be written.
-fn writable<'py>(value: Any<'_, 'py>, name: &str, shape: &[usize]) -> PyResult<PyReadwriteArrayDyn<'py, f64>> {
+fn writable<'py>(
+    value: Any<'_, 'py>,
+    name: &str,
+    shape: &[usize],
+) -> PyResult<PyReadwriteArrayDyn<'py, f64>> {
     let refuse = |got: String| {
         let message = format!(
             "{name} is {got}, a writable contiguous float64 array of shape {} of its own is needed",

@@ -78,8 +78,7 @@ pub(crate) fn from_lvlh<'py>(
 }
 
 /// One of the two conversions of the core.
-type Convert =
-    fn(&dyn Orbit, LocalFrame, &[f64], [&[f64]; 2], [&mut [f64]; 2]) -> Result<(), OrbitError>;
+type Convert = fn(&dyn Orbit, LocalFrame, &[f64], [&[f64]; 2], [&mut [f64]; 2]) -> Result<(), OrbitError>;
 
 fn converted<'py>(
     py: Python<'py>,
@@ -143,8 +142,7 @@ pub(crate) fn relative_elements<'py>(
     let (r, batch) = states_of(r, "r", 3)?;
     let shape: Vec<usize> = batch.iter().copied().chain([3]).collect();
     let v = shaped(v, "v", &shape)?;
-    let (deputy_r, deputy_v) =
-        (shaped(deputy_r, "deputy_r", &shape)?, shaped(deputy_v, "deputy_v", &shape)?);
+    let (deputy_r, deputy_v) = (shaped(deputy_r, "deputy_r", &shape)?, shaped(deputy_v, "deputy_v", &shape)?);
     let out = zeros(py, &batch.into_iter().chain([6]).collect::<Vec<_>>())?;
     let (chief, deputy, to) = ([r.data(), v.data()], [deputy_r.data(), deputy_v.data()], fresh(&out));
     py.detach(|| relative::relative_elements_rows(chief, deputy, mu, to))

@@ -91,8 +91,7 @@ fn made(
         .and_then(|gravity| Numerical::new(r, v, t0, Arc::new(gravity)))
         .map_err(|error| error.into_python(py))?;
     let numerical = Arc::new(numerical.with_axes(axes)) as Arc<dyn Orbit>;
-    let arguments =
-        (array_of(py, &[3], r.as_slice()), array_of(py, &[3], v.as_slice())).into_pyobject(py)?;
+    let arguments = (array_of(py, &[3], r.as_slice()), array_of(py, &[3], v.as_slice())).into_pyobject(py)?;
     let keywords = fields!(
         py, "t0": t0, "environment": PyList::new(py, environment)?, "earth": earth, "mu": mu, "axes": axes.name(),
     );
