@@ -15,6 +15,7 @@ use onorbit_core::orbit::{OrbitError, PathError};
 use onorbit_core::reference::ReferenceError;
 use onorbit_core::simulation::SimulationError;
 use onorbit_core::spatial::SplineError;
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -112,6 +113,18 @@ impl IntoPython for InputError {
             }
             Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
             Self::NeedsOrbit => plain(py, "ControlError", &message),
+            Self::Orbit { orbit, source } => {
+                let error = source.clone().into_python(py);
+                for (name, value) in [("index", orbit.into_py_any(py)), ("message", message.into_py_any(py))]
+                {
+                    let _ = value.and_then(|value| error.value(py).setattr(name, value));
+                }
+                error
+            }
+            Self::NoEllipse { name, value, expected, .. } => {
+                let fields = fields!(py, "name": name, "got": value, "expected": expected);
+                raise(py, "InputError", &message, &fields)
+            }
             Self::Diverged { .. } => plain(py, "SimulationError", &message),
             Self::QuaternionNorm { norm, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
@@ -142,6 +155,17 @@ impl IntoPython for OrbitError {
             }
             Self::BeyondAsymptote { value, .. } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": "true_anomaly", "got": value))
+            }
+            Self::NotClosed { eccentricity } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "eccentricity", "got": eccentricity))
+            }
+            Self::BelowSurface { time, distance, smallest_radius } => {
+                let fields =
+                    fields!(py, "name": "t", "time": time, "got": distance, "expected": smallest_radius);
+                raise(py, "OrbitError", &message, &fields)
+            }
+            Self::TooManySteps { time, .. } | Self::StepTooShort { time, .. } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "t", "time": time))
             }
             Self::Path(error) => path_error(py, error, &message),
             Self::Gravity(error) => error.clone().into_python(py),
