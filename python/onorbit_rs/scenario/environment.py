@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffect
 from onorbit_rs.scenario.fields import Force3, Time, Torque3
 from onorbit_rs.scenario.part import Part, expand_kind
 
@@ -40,6 +41,9 @@ class BodyWrenchEffect(Part):
 
 
 Effect = Annotated[
-    Annotated[GravityGradientEffect | BodyWrenchEffect, Field(discriminator="kind")],
+    Annotated[
+        GravityGradientEffect | BodyWrenchEffect | DragEffect | RadiationPressureEffect,
+        Field(discriminator="kind"),
+    ],
     BeforeValidator(expand_kind),
 ]

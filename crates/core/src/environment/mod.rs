@@ -3,17 +3,25 @@
 //! [`Effect`] is the one trait; a new kind of effect is one file and one line here.
 //! `W` has inertial axes and its origin on the reference orbit.
 
+pub mod atmosphere;
 mod body_wrench;
 mod differential_gravity;
+mod drag;
 mod error;
 mod gravity_gradient;
+mod radiation_pressure;
 mod scene;
+mod shadow;
+pub mod surfaces;
 
 pub use body_wrench::BodyWrench;
 pub use differential_gravity::{DifferentialGravity, ReferenceMotion};
+pub use drag::Drag;
 pub use error::{EnvironmentError, Place};
 pub use gravity_gradient::GravityGradient;
+pub use radiation_pressure::{RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX};
 pub use scene::{Anchor, BodyState, Reference, Scene, Wrench};
+pub use shadow::sunlit;
 
 /// Something that pulls, pushes or turns the bodies of a robot.
 ///
