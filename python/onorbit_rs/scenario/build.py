@@ -13,6 +13,7 @@ import numpy as np
 from onorbit_rs import _core, robots
 from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError, ShapeError
 from onorbit_rs.names import did_you_mean, nearest
+from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.environment import BodyWrenchEffect
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
 from onorbit_rs.scenario.make_orbit import integrated, make_orbit
@@ -52,12 +53,14 @@ def build(scenario: Scenario) -> Built:
         model = _robot(scenario)
     with located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, beside)
+    with located(scenario, "epoch" if scenario.earth is None else "earth"):
+        earth = make_earth(scenario, orbit, beside)
     effects = []
     for index, effect in enumerate(scenario.environment):
         with located(scenario, "environment", index):
             effects.append(_effect(effect, model))
     with located(scenario, "orbit"):
-        orbit = integrated(scenario.orbit, orbit, effects, None)
+        orbit = integrated(scenario.orbit, orbit, effects, earth)
         if orbit is not None:
             orbit.state(scenario.simulation.duration)  # a path or a falling orbit may end before the run
     with located(scenario, "initial"):
@@ -72,7 +75,7 @@ def build(scenario: Scenario) -> Built:
         controller, reference = _controlled(scenario, start)
         with located(scenario, "simulation"), _about_controllers(scenario):
             return _core.Simulation(
-                model, q, v, orbit=orbit, gravity_mode=scenario.gravity_mode, environment=effects,
+                model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode, environment=effects,
                 controller=controller, reference=reference, tool=tool, **settings,
             )  # fmt: skip
 
