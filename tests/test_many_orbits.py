@@ -18,7 +18,7 @@ DEEP = (
     "1 11801U          80230.29629788  .01431103  00000-0  14311-1      13",
     "2 11801  46.7916 230.4354 7318036  47.4722  10.4117  2.28537848    13",
 )
-DECAYS = (
+SHORT_LIVED = (
     "1 28350U 04020A   06167.21788666  .16154492  76267-5  18678-3 0  8894",
     "2 28350  64.9977 345.6130 0024870 260.7578  99.9590 16.47856722116490",
 )
@@ -82,11 +82,11 @@ def test_writes_where_it_is_told_to() -> None:
 
 
 def test_an_orbit_that_is_refused_is_named() -> None:
-    orbits = [oo.Sgp4(*LOW), oo.Sgp4(*DECAYS), oo.Sgp4(*DECAYS)]
-    with pytest.raises(Sgp4Error, match=r"^orbit 1: SGP4 error 6 at t = ") as caught:
+    orbits = [oo.Sgp4(*LOW), oo.Sgp4(*SHORT_LIVED), oo.Sgp4(*SHORT_LIVED)]
+    with pytest.raises(Sgp4Error, match=r"^orbit 1: SGP4 error 1 at t = ") as caught:
         oo.propagate(orbits, np.arange(0.0, 1e5, 600.0))
     assert caught.value.index == 1
-    assert caught.value.code == 6
+    assert caught.value.code == 1
     assert pickle.loads(pickle.dumps(caught.value)).index == 1
     with pytest.raises(OrbitError, match="orbit 0"):
         oo.propagate(mixed(), [np.nan])
