@@ -56,7 +56,13 @@ fn body(com: Vector3<f64>) -> BodyState {
 }
 
 /// Force on one body of 1 kg, the step having begun at `anchor`.
-fn force(gravity: &Gravity, motion: ReferenceMotion, at: (f64, Vector3<f64>), b: BodyState, anchor: Anchor) -> Vector3<f64> {
+fn force(
+    gravity: &Gravity,
+    motion: ReferenceMotion,
+    at: (f64, Vector3<f64>),
+    b: BodyState,
+    anchor: Anchor,
+) -> Vector3<f64> {
     let zero = Vector3::zeros();
     let state = OrbitState { position: at.1, velocity: zero, acceleration: zero };
     let reference = Some(Reference { state, gravity: Some(gravity), falls_freely: false });
@@ -76,14 +82,18 @@ fn tides_of_the_full_field_keep_their_digits_from_a_millimetre_to_ten_kilometres
         let anchor = Anchor { time: 0.0, com: offset, origin };
         let got = force(&gravity, ReferenceMotion::Carried, (0.0, origin), body(offset), anchor);
         let error = (got - expected).norm() / expected.norm();
-        let plain = gravity.acceleration(0.0, &(origin + offset)).unwrap() - gravity.acceleration(0.0, &origin).unwrap();
+        let plain = gravity.acceleration(0.0, &(origin + offset)).unwrap()
+            - gravity.acceleration(0.0, &origin).unwrap();
         let cancelled = (plain - expected).norm() / expected.norm();
         println!("{:8.1e} m: {error:.1e}, subtracting {cancelled:.1e}", offset.norm());
         // The tensor at the robot instead of half way: 5 d/r of a thousandth of the tide, at most 20 m; beyond it
         // differences of a hundredth of a pull in its 16th digit.
         let tolerance = if offset.norm() < 20.0 { 4e-8 * offset.norm() / 20.0 + 1e-13 } else { 1e-13 };
         assert!(error < tolerance, "{offset}: {error:e}");
-        assert!(offset.norm() > 2.0 || cancelled > 1e-10, "plain subtraction must lose digits: {cancelled:e}");
+        assert!(
+            offset.norm() > 2.0 || cancelled > 1e-10,
+            "plain subtraction must lose digits: {cancelled:e}"
+        );
     }
 }
 

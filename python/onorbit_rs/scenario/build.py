@@ -60,7 +60,7 @@ def build(scenario: Scenario) -> Built:
     effects = []
     for index, effect in enumerate(scenario.environment):
         with located(scenario, "environment", index):
-            effects.append(_effect(effect, model))
+            effects.append(_effect(effect, model, beside))
     with located(scenario, "orbit"):
         orbit = integrated(scenario.orbit, orbit, effects, earth)
         if orbit is not None:

@@ -163,7 +163,9 @@ mod tests {
         assert!(read("tiny.gfc", &cut(16), Some(2)).is_ok());
         let broken = GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7");
         assert!(matches!(refused(&broken, None), GravityError::Row { line: 19, .. }));
-        for (from, to) in [("2D-10", "2DD10"), ("gfc 2 1", "gfc 2 5"), ("2.4e-6", "nan"), ("gfc 3 0", "foo 3 0")] {
+        for (from, to) in
+            [("2D-10", "2DD10"), ("gfc 2 1", "gfc 2 5"), ("2.4e-6", "nan"), ("gfc 3 0", "foo 3 0")]
+        {
             assert!(matches!(refused(&GOOD.replace(from, to), None), GravityError::Row { .. }), "{to}");
         }
         let twice = GOOD.replace("gfc 2 2", "gfc 2 1");
@@ -202,7 +204,8 @@ mod tests {
                 (c[n * 21 + m], s[n * 21 + m]) = (a * norm, b * norm);
             }
         }
-        let error = Coefficients::new("raw", model.mu, model.radius, degree, &c, &s).expect_err("not normalised");
+        let error =
+            Coefficients::new("raw", model.mu, model.radius, degree, &c, &s).expect_err("not normalised");
         assert!(matches!(error, GravityError::NotNormalised { .. }), "{error}");
     }
 
