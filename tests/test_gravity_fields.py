@@ -53,7 +53,12 @@ def test_a_field_comes_back_from_a_pickle() -> None:
 
 def test_a_gfc_file_is_read_and_a_broken_one_refused(tmp_path: Path) -> None:
     rows = ["gfc 0 0 1 0", "gfc 2 0 -4.84D-04 0", "gfc 2 1 0 0", "gfc 2 2 2.4D-06 -1.4D-06"]
-    head = ["product_type gravity_field", "modelname tiny", f"earth_gravity_constant {MU}", "radius 6378136.3"]
+    head = [
+        "product_type gravity_field",
+        "modelname tiny",
+        f"earth_gravity_constant {MU}",
+        "radius 6378136.3",
+    ]
     file = tmp_path / "tiny.gfc"
 
     def write(rows: list[str]) -> Path:
@@ -65,9 +70,9 @@ def test_a_gfc_file_is_read_and_a_broken_one_refused(tmp_path: Path) -> None:
     with pytest.raises(GravityError, match="cut short") as cut:
         oo.GravityField.from_gfc(write(rows[:3]))
     assert cut.value.path == str(file)
-    with pytest.raises(GravityError, match=r"tiny.gfc:9: 'gfc 2 1 0' is no row") as row:
+    with pytest.raises(GravityError, match=r"tiny.gfc:10: 'gfc 2 1 0' is no row") as row:
         oo.GravityField.from_gfc(write([*rows[:2], "gfc 2 1 0", rows[3]]))
-    assert row.value.line == 9
+    assert row.value.line == 10
     with pytest.raises(GravityError, match="cannot read"):
         oo.GravityField.from_gfc(tmp_path / "none.gfc")
 
@@ -112,7 +117,7 @@ def test_a_field_needs_its_planet_and_to_know_how_it_turns() -> None:
 
 
 def ggm02c() -> oo.GravityField:
-    """GGM02C to degree and order 4, zero-tide, as typed in ``../shared/validation/nasa_orbital/ggm02c_8x8.csv``."""
+    """GGM02C to degree and order 4, zero-tide; typed from ``validation/nasa_orbital/ggm02c_8x8.csv``."""
     # fmt: off
     rows = [
         (2, 0, -4.8416938905481e-04, 0.0), (2, 1, -2.0458338184745e-10, 1.3968195379551e-09),
@@ -246,15 +251,19 @@ def test_what_j3_adds_in_ten_days(inclination: float, di: float, de: float) -> N
 
 @pytest.mark.parametrize(("axis", "period"), [(2, 3259.797), (1, 2808.169)])
 def test_small_librations_have_their_periods(axis: int, period: float) -> None:
-    """The cylinder of NASA's run 10A on a circle of that semi-major axis: 2 pi/(n sqrt(3k)), 2 pi/(n sqrt(1 + 3k))."""
+    """NASA's cylinder of 10A on a circle of that semi-major axis: 2 pi/(n sqrt(3k)), 2 pi/(n sqrt(1 + 3k))."""
     cylinder = oo.Model.rigid_body(1000.0, np.diag([500.0, 12250.0, 12250.0]))
     a = oo.Kepler.from_state(*TYPICAL, mu=MU).semi_major_axis
     orbit = oo.Kepler(semi_major_axis=a, inclination=0.9, raan=0.3, mu=MU)
     rot_il, w = orbit.lvlh(0.0)
-    # the long axis a milliradian off the vertical, at rest in the local orbital frame: ¼ of its square is lost
+    # the long axis a milliradian off the vertical, at rest in the local orbital frame
     angle = 1e-3
     c, s = np.cos(angle), np.sin(angle)
-    tilt = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) if axis == 2 else np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    tilt = (
+        np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+        if axis == 2
+        else np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    )
     rot_ib = rot_il @ tilt
     q = np.concatenate([np.zeros(3), quaternion_from_matrix(rot_ib)])
     v = np.concatenate([np.zeros(3), tilt.T @ w])
