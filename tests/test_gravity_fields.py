@@ -161,35 +161,50 @@ def test_nasa_run_3a() -> None:
     assert np.linalg.norm(end(c20)[0]) > 100.0
 
 
-# GMAT and MONTE, one day from 2000-01-01T12:00:00 TAI, as nyx's tests quote them; km, km/s
+# GMAT and MONTE, one day from 2000-01-01T12:00:00 TAI, as nyx's tests quote them; UT1 and pole: IERS EOP C04
 LEO = (np.array([-2436.45, -2436.45, 6891.037]) * 1e3, np.array([5.088611, -5.088611, 0.0]) * 1e3)
 GMAT_12 = np.array([-5751.935197673059, 4719.330857046409, 2048.776230999391]) * 1e3
 GMAT_J2 = np.array([-5751.473991327555, 4721.214035135832, 2045.947768608806]) * 1e3
 MONTE_J2 = np.array([-5751.472565170783, 4721.183256208691, 2046.020865167045]) * 1e3
+ARCSECOND = np.pi / 648_000.0
+EARTH_2000 = oo.Earth(
+    "2000-01-01T12:00:00 TAI", ut1_minus_utc=0.3554, polar_motion=(0.0433 * ARCSECOND, 0.3778 * ARCSECOND)
+)
+MODELS = Path(__file__).parents[1] / "crates" / "core" / "src" / "gravity" / "models"
 
 
-def one_day(field: oo.GravityField, mu: float = MU) -> Any:
-    earth = oo.Earth("2000-01-01T12:00:00 TAI", ut1_minus_utc=0.3554)
-    r, _ = oo.Numerical(*LEO, environment=[field], earth=earth, mu=mu).state(86_400.0)
-    return r
+def one_day(field: oo.GravityField, earth: oo.Earth = EARTH_2000, mu: float = MU) -> Any:
+    return oo.Numerical(*LEO, environment=[field], earth=earth, mu=mu).state(86_400.0)[0]
 
 
-def test_gmat_jgm3_12_by_12() -> None:
-    error = np.linalg.norm(one_day(oo.GravityField("jgm3", degree=12)) - GMAT_12)
-    print(f"JGM-3 12 x 12: {error:.3f} m from GMAT")
-    assert error < 4.0  # what nyx accepts
-    # negative control: the other model's coefficients
-    assert np.linalg.norm(one_day(oo.GravityField("jgm3", degree=8)) - GMAT_12) > 4.0
+def test_gmat_jgm3(tmp_path: Path) -> None:
+    """GMAT's JGM-3 is free of the permanent tide, ICGEM's (bundled) has it: C20 differs by 4.17e-9.
+
+    nyx accepts 4 m from GMAT at 12 x 12; what is left here, 0.2 m, is the nutation of 1980.
+    """
+    tide_free = tmp_path / "jgm3.gfc"
+    text = (MODELS / "jgm3.gfc").read_text()
+    assert "gfc 2 0 -4.84169548456e-4 0" in text
+    tide_free.write_text(text.replace("-4.84169548456e-4", "-4.8416537488647e-4"))
+    for expected, cut in ((GMAT_12, {"degree": 12}), (GMAT_J2, {"degree": 2, "order": 0})):
+        error = np.linalg.norm(one_day(oo.GravityField.from_gfc(tide_free, **cut)) - expected)
+        print(f"JGM-3 {cut}: {error:.3f} m from GMAT")
+        assert error < 0.5
+        # negative controls: with the tide, without the pole's motion, about the pole of J2000
+        still = oo.Earth("2000-01-01T12:00:00 TAI", ut1_minus_utc=0.3554)
+        assert np.linalg.norm(one_day(oo.GravityField("jgm3", **cut)) - expected) > 10.0
+        field = oo.GravityField.from_gfc(tide_free, **cut)
+        assert np.linalg.norm(one_day(field, still) - expected) > 1.5
+        assert np.linalg.norm(one_day(field, oo.Earth(rotation="about_z")) - expected) > 80.0
 
 
-def test_gmat_and_monte_j2() -> None:
-    gmat = np.linalg.norm(one_day(oo.GravityField("jgm3", degree=2, order=0)) - GMAT_J2)
-    j2 = 0.000484169325971 * np.sqrt(5.0)
+def test_monte_j2() -> None:
+    """About the pole of J2000; nyx accepts 20 m (the radius is not stated)."""
     mu = 3.986004328969392e14
-    monte_field = oo.GravityField.zonal(j=[j2], mu=mu, radius=6378136.3)
-    monte = np.linalg.norm(one_day(monte_field, mu) - MONTE_J2)
-    print(f"J2: {gmat:.3f} m from GMAT, {monte:.3f} m from MONTE")
-    assert gmat < 20.0 and monte < 20.0
+    field = oo.GravityField.zonal(j=[0.000484169325971 * np.sqrt(5.0)], mu=mu, radius=6378136.3)
+    error = np.linalg.norm(one_day(field, oo.Earth(rotation="about_z"), mu) - MONTE_J2)
+    print(f"J2: {error:.3f} m from MONTE")
+    assert error < 20.0
 
 
 def elements(r: Any, v: Any, mu: float) -> Any:
@@ -251,7 +266,7 @@ def test_what_j3_adds_in_ten_days(inclination: float, di: float, de: float) -> N
 
 @pytest.mark.parametrize(("axis", "period"), [(2, 3259.797), (1, 2808.169)])
 def test_small_librations_have_their_periods(axis: int, period: float) -> None:
-    """NASA's cylinder of 10A on a circle of that semi-major axis: 2 pi/(n sqrt(3k)), 2 pi/(n sqrt(1 + 3k))."""
+    """10A's cylinder on a circle of that semi-major axis: 2 pi/(n sqrt(3k)), 2 pi/(n sqrt(1 + 3k))."""
     cylinder = oo.Model.rigid_body(1000.0, np.diag([500.0, 12250.0, 12250.0]))
     a = oo.Kepler.from_state(*TYPICAL, mu=MU).semi_major_axis
     orbit = oo.Kepler(semi_major_axis=a, inclination=0.9, raan=0.3, mu=MU)

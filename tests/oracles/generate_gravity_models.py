@@ -93,7 +93,7 @@ def main() -> None:
     write(egm, "EGM2008", about, brahe, "tide_free")
     jgm = text_of(satkit, "JGM3.gfc", "Tapley B.", "JGM3")
     about = "JGM-3: Tapley et al., J. Geophysical Research 101(B12), 28029-28049, 1996"
-    write(jgm, "JGM3", f"{about}; its file states no tide system.", satkit, "unknown")
+    write(jgm, "JGM3", f"{about}; its C20 has the permanent tide.", satkit, "zero_tide")
 
 
 if __name__ == "__main__":
