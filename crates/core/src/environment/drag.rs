@@ -57,7 +57,6 @@ impl Effect for Drag {
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], what the atmosphere refuses.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
-        let spin = earth.angular_velocity(scene.time);
         let air = self.local(earth, scene.anchor.time, &(scene.anchor.origin + scene.anchor.com))?;
         for covering in self.surfaces.coverings() {
             let (body, wrench) = scene.pair(wrenches, covering.body)?;
@@ -67,8 +66,8 @@ impl Effect for Drag {
                 None => self.atmosphere.density(&AirPlace::new(earth, scene.time, &r)?)?,
             };
             // v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
-            let v = reference.velocity + body.velocity - spin.cross(&r);
-            let w = body.angular_velocity - spin;
+            let v = reference.velocity + body.velocity - air.spin.cross(&r);
+            let w = body.angular_velocity - air.spin;
             let (force, torque) = covering.blow(&body.rot_wk, &v, &w);
             wrench.force += force * density;
             wrench.torque += torque * density;

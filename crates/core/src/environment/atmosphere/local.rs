@@ -22,6 +22,8 @@ pub struct LocalAir {
     density: f64,
     /// One by the scale height, 1/m.
     decay: f64,
+    /// Angular velocity of the air, axes of `I`, rad/s: changes by 1e-7 of itself a day.
+    pub(in crate::environment) spin: Vector3<f64>,
 }
 
 impl LocalAir {
@@ -40,15 +42,18 @@ impl LocalAir {
         let above = atmosphere.density(&place.raised(RISE))?;
         // κ = ln(ρ/ρ⁺)/Δh
         let decay = if above > 0.0 && density > 0.0 { (density / above).ln() / RISE } else { 0.0 };
-        Ok(Self { time, centre: *centre, up: place.up, density, decay })
+        let spin = earth.angular_velocity(time);
+        Ok(Self { time, centre: *centre, up: place.up, density, decay, spin })
     }
 
     /// Density at `r`, axes of `I`, m, at `time`: kg/m³; none beyond 100 m from the centre.
     #[inline(always)]
     pub fn density(&self, r: &Vector3<f64>) -> Option<f64> {
         let offset = r - self.centre;
+        // e⁻ˣ to third order: x is at most 100 m by the scale height, 0.02 near the ground
+        let x = self.decay * self.up.dot(&offset);
         let is_near = offset.norm_squared() <= TRUST * TRUST;
-        is_near.then(|| self.density * (-self.decay * self.up.dot(&offset)).exp())
+        is_near.then_some(self.density * (1.0 - x * (1.0 - x * (0.5 - x / 6.0))))
     }
 
     /// Whether this is the air about `centre` at `time`.
