@@ -74,8 +74,11 @@ def lunar(odd: int) -> list[Multiples]:
         )
         if k != 0 and (planet == 0 or abs(k) <= 4)
     ]
-    slow = [with_sun([i, 0, odd, 0, 0, 18, 0, 0], -16) for i in (-1, 0)]  # 273 years, 14 arc seconds
-    return main + flat + planets + slow
+    return main + flat + planets
+
+
+SLOW = tuple(-x for x in with_sun([-1, 0, 0, 0, 0, 18, 0, 0], -16))
+"""Venus' term of 273 years in the Moon's longitude, 14 arc seconds: half a cycle of it, which no search tells from a trend."""
 
 
 def solar() -> list[Multiples]:
@@ -97,8 +100,11 @@ def distinct(multiples: list[Multiples]) -> Any:
     return np.array(sorted({k if first(k) > 0 else tuple(-x for x in k) for k in multiples if first(k)}))
 
 
-def fit(name: str, y: Any, t: Any, library: Any, terms: int, degree: int) -> tuple[Any, Any, Any]:
-    """Polynomial and multiples with their amplitudes that explain ``y``."""
+def fit(
+    name: str, y: Any, t: Any, library: Any, terms: int, degree: int, given: Multiples | None = None
+) -> tuple[Any, Any, Any]:
+    """Polynomial and multiples with their amplitudes that explain ``y``, one being ``given``."""
+    library = library if given is None else np.vstack([given, library])
     # terms with l' fade as the eccentricity of the Earth's orbit does
     fading = (1 - 0.002516 * t) ** np.abs(library[:, 1:2])
     angles = library @ arguments(t)
@@ -109,7 +115,7 @@ def fit(name: str, y: Any, t: Any, library: Any, terms: int, degree: int) -> tup
     for _ in range(terms):
         rest = y - np.array(columns).T @ solve()
         explained = np.abs(waves.conj() @ rest.astype(np.complex64))
-        for k in np.argsort(-explained):
+        for k in np.argsort(-explained) if chosen or given is None else [0]:
             # what differs too little from a chosen one over these years cannot be told from it
             if not chosen or np.abs(waves[chosen].conj() @ waves[k]).max() < 0.6 * t.size:
                 break
@@ -194,9 +200,9 @@ def main() -> None:
     sun = np.array(ephemeris.position("sun", jd)) * 1e3 - earth
     t = (jd - J2000) / 36_525
     _, _, f, d, omega = arguments(t)[:5]
-    for body, position, mean, sizes, libraries in (
-        ("Sun", sun, f - d + omega, (30, 8, 30), (solar(), solar())),
-        ("Moon", moon, f + omega, (90, 60, 50), (lunar(0), lunar(1))),
+    for body, position, mean, sizes, libraries, slow in (
+        ("Sun", sun, f - d + omega, (30, 8, 30), (solar(), solar()), None),
+        ("Moon", moon, f + omega, (90, 60, 50), (lunar(0), lunar(1)), SLOW),
     ):
         longitude, latitude, distance = spherical(jd, position)
         even, odd = (distinct(library) for library in libraries)
@@ -204,7 +210,7 @@ def main() -> None:
         of = "F - D + Ω" if body == "Sun" else "F + Ω"
         write(f"{body.lower()}_table.rs", HEAD.format(body=body), [
             rust_series("LONGITUDE", f"Longitude beyond `{of}`, arc seconds.",
-                        fit(f"{body}: longitude, arc seconds", beyond / ARC_SECOND, t, even, sizes[0], 1)),
+                        fit(f"{body}: longitude, arc seconds", beyond / ARC_SECOND, t, even, sizes[0], 1, slow)),
             rust_series("LATITUDE", "Latitude, arc seconds.",
                         fit(f"{body}: latitude, arc seconds", latitude / ARC_SECOND, t, odd, sizes[1], 0)),
             rust_series("DISTANCE", "Distance, km.",

@@ -68,7 +68,7 @@ fn effects(c: &mut Criterion) {
     let bodies = [body; 8];
     let mut wrenches = [Wrench::default(); 8];
     let gravity = orbit.mu().map(Gravity::point_mass);
-    let reference = Some(Reference { state, gravity: gravity.as_ref() });
+    let reference = Some(Reference { state, gravity: gravity.as_ref(), falls_freely: false });
     let scene = Scene {
         interval: (0.0, 1.0),
         time: 0.0,

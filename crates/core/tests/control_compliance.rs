@@ -52,7 +52,7 @@ fn run(mut simulation: Simulation, duration: f64) -> Trace {
 /// `T + ½ eᵀ K e` at every row, J.
 fn energy(trace: &Trace) -> Vec<f64> {
     let spring = |row: usize| {
-        let e = &trace.tracking[0].error[6 * row..6 * row + 6];
+        let e = &trace.tracking[0].values[6 * row..6 * row + 6];
         let part = |e: &[f64]| e.iter().map(|x| x * x).sum::<f64>();
         0.5 * (LINEAR * part(&e[..3]) + ANGULAR * part(&e[3..]))
     };
@@ -126,7 +126,7 @@ fn at_rest_the_spring_gives_way_by_the_load_over_its_stiffness() {
     let force = turn * force;
     let origin = turn * (pose.pos_w.to_nalgebra() - Vector3::new(q[0], q[1], q[2]));
     let moment = (data.bodies[body].com_b.to_nalgebra() - origin).cross(&force);
-    let e = &trace.tracking[0].error[trace.tracking[0].error.len() - 6..];
+    let e = &trace.tracking[0].values[trace.tracking[0].values.len() - 6..];
     for (i, load) in force.iter().chain(moment.iter()).enumerate() {
         let stiffness = if i < 3 { LINEAR } else { ANGULAR };
         // what is left of the motion after 20 s

@@ -171,7 +171,7 @@ fn one_task_law_in_a_stack_is_the_law_alone() {
         // the same products in another order, through a second of motion
         assert!(difference(&stacked.tau, &alone.tau) < 1e-9);
         assert!(difference(&stacked.reference_pose, &alone.reference_pose) < 1e-12);
-        let errors = &stacked.tracking[0].error;
+        let errors = &stacked.tracking[0].values;
         for row in 0..stacked.rows() {
             let norm = |e: &[f64]| e.iter().map(|x| x * x).sum::<f64>().sqrt();
             let (own, run) =
@@ -259,7 +259,7 @@ fn two_arms_track_at_once_and_not_when_each_ignores_the_other() {
     };
     let trace = run(ControlLaw::Stack(vec![control(0), control(1)]));
     for tracking in &trace.tracking {
-        let most = tracking.error.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+        let most = tracking.values.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
         assert!(most < 1e-4, "{}: {most}", tracking.name);
     }
     let alone = |i| Stack::new(Box::leak(Box::new([control(i)])), &model, 1e-12).unwrap();

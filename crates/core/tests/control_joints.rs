@@ -212,10 +212,10 @@ fn a_control_starts_when_the_goal_of_another_is_decided_from_where_the_joint_is(
     let times: Vec<f64> = trace.results.iter().map(|result| result.outcome.time().unwrap()).collect();
     assert!(times[1] > times[0] + 0.5 - 1e-9);
     let row = trace.time.iter().position(|t| (t - times[0]).abs() < 1e-9).unwrap();
-    assert!(trace.tracking[1].error[row].abs() < 1e-15, "its reference begins where the joint is");
+    assert!(trace.tracking[1].values[row].abs() < 1e-15, "its reference begins where the joint is");
     let moved = joint(&trace, trace.rows() - 1).0 - joint(&trace, row).0;
     assert!((moved - 0.1).abs() < 1e-5, "{moved}");
-    assert!(trace.tracking[0].error[row..].iter().all(|e| *e == 0.0), "the first has stopped");
+    assert!(trace.tracking[0].values[row..].iter().all(|e| *e == 0.0), "the first has stopped");
 }
 
 #[test]

@@ -193,7 +193,7 @@ fn controls_go_on_where_they_were() {
             assert!((0.2..0.3).contains(&switched), "{:?}", whole.results); // six joints alone miss
             let names: Vec<&str> = whole.tracking.iter().map(|tracking| tracking.name.as_str()).collect();
             assert_eq!(names, ["reach", "stay", "wrist"]);
-            assert!(whole.tracking.iter().all(|tracking| tracking.error.iter().any(|e| *e != 0.0)));
+            assert!(whole.tracking.iter().all(|tracking| tracking.values.iter().any(|e| *e != 0.0)));
         }
     }
 }

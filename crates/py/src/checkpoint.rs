@@ -2,7 +2,7 @@
 
 use crate::arrays::{Input, array_of};
 use crate::errors::{IntoPython, SimulationErrorExt};
-use onorbit_core::simulation::{self, Moment, SimulationError, Trace, Tracking};
+use onorbit_core::simulation::{self, Moment, NamedColumn, SimulationError, Trace};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -51,9 +51,11 @@ impl PyCheckpoint {
         let (mut rows, columns) = (Trace::default(), self.columns.bind(py));
         for (name, values) in columns {
             let name: String = name.extract()?;
-            if let Some(name) = name.strip_prefix("tracking_") {
-                let width = Input::new(&values, name)?.shape().get(1).copied().unwrap_or(1);
-                rows.tracking.push(Tracking { name: name.to_owned(), width, error: Vec::new() });
+            for (kind, named) in [("tracking_", &mut rows.tracking), ("wrench_", &mut rows.wrenches)] {
+                if let Some(name) = name.strip_prefix(kind) {
+                    let width = Input::new(&values, name)?.shape().get(1).copied().unwrap_or(1);
+                    named.push(NamedColumn { name: name.to_owned(), width, values: Vec::new() });
+                }
             }
         }
         for (name, column) in rows.columns_mut() {

@@ -366,6 +366,9 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::Tolerance { value } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "tolerance", "got": value))
             }
+            SimulationError::RereferenceBeyond { value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "rereference_beyond", "got": value))
+            }
             SimulationError::Restitution { value } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "restitution", "got": value))
             }

@@ -33,7 +33,10 @@ pub(crate) const PACE: Duration = Duration::from_millis(50);
 /// default the controller's) and may start ``reference_start_tolerance`` (m, rad) from it, (0.05, 0.1) by default; ``control_period`` s between calls of the controller (every step by default);
 /// ``integrator`` is ``rk4``, ``semi_implicit_euler`` or ``dormand_prince``, which takes steps as long as ``tolerance`` lets
 /// it (a share: of a radian, of the robot's size, of rates) and records its rows on the grid of ``time_step`` in between;
-/// ``enforce_limits`` puts rigid stops at the joints' position limits, which give back ``restitution`` (0 to 1) of the rate.
+/// ``enforce_limits`` puts rigid stops at the joints' position limits, which give back ``restitution`` (0 to 1) of the rate;
+/// ``record_wrenches`` keeps the wrench of every effect on every body in ``trace.wrenches``;
+/// a robot that nothing leads through W and whose base drifts more than ``rereference_beyond`` m from the reference is integrated about
+/// one of its own from there (``trace.rereferenced`` says when; its rows stay in W).
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     simulation: Mutex<Simulation>,
@@ -46,7 +49,8 @@ impl PySimulation {
     #[pyo3(signature = (
         model, q, v, *, orbit=None, earth=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
         time_step=1e-3, control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
-        tolerance=1e-9, enforce_limits=false, restitution=0.0,
+        tolerance=1e-9, enforce_limits=false, restitution=0.0, record_wrenches=false,
+        rereference_beyond=1e5,
     ))]
     fn new(
         py: Python<'_>,
@@ -68,6 +72,8 @@ impl PySimulation {
         tolerance: f64,
         enforce_limits: bool,
         restitution: f64,
+        record_wrenches: bool,
+        rereference_beyond: f64,
     ) -> PyResult<Self> {
         let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
         let core = Arc::clone(&model.model);
@@ -124,6 +130,8 @@ impl PySimulation {
         simulation.integrator = integrator_named(py, integrator)?;
         simulation.record_every = record_every;
         simulation.tolerance = tolerance;
+        simulation.record_wrenches = record_wrenches;
+        simulation.rereference_beyond = rereference_beyond;
         simulation.stops = enforce_limits.then_some(restitution);
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         Ok(Self { simulation: Mutex::new(simulation), model: core })

@@ -1,7 +1,7 @@
 //! The columns of a run, as read-only views.
 
 use numpy::ndarray::ArrayView;
-use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods};
+use numpy::{IxDyn, PyArray, PyArray1, PyArrayDyn, PyArrayMethods};
 use onorbit_core::model::Model;
 use onorbit_core::simulation::{Trace, certify};
 use pyo3::prelude::*;
@@ -83,9 +83,26 @@ macro_rules! columns {
             fn tracking<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let all = PyDict::new(this.py());
                 for tracking in &this.get().trace.tracking {
-                    all.set_item(&tracking.name, view(this, &tracking.error, &[tracking.width])?)?;
+                    all.set_item(&tracking.name, view(this, &tracking.values, &[tracking.width])?)?;
                 }
                 Ok(all)
+            }
+
+            /// Wrench of every effect on every body by the effect's name, (T, bodies, 6): force, N, through the body's centre of
+            /// mass and torque, N m, about it, W axes, bodies as in ``model.body_names``; with ``record_wrenches=True``.
+            #[getter]
+            fn wrenches<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+                let all = PyDict::new(this.py());
+                for column in &this.get().trace.wrenches {
+                    all.set_item(&column.name, view(this, &column.values, &[column.width / 6, 6])?)?;
+                }
+                Ok(all)
+            }
+
+            /// When the robot had drifted so far from the reference that it was integrated about one of its own, (K,), s.
+            #[getter]
+            fn rereferenced<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+                PyArray1::from_slice(py, &self.trace.rereferenced)
             }
 
             /// What came of the goals: dicts of ``name``, ``outcome`` (``succeeded``, ``path_tolerance_violated``,

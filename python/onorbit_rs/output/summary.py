@@ -65,6 +65,7 @@ def summarize(
         | _motion(trace)
         | _losses(trace)
         | _certificate(trace)
+        | {"rereferenced": len(trace.rereferenced)}
         | {"simulated_s": simulated_s, "wall_s": trace.wall_s}
         | {"real_time_factor": simulated_s / max(trace.wall_s, 1e-9), "rows": len(trace.time)}
         | _settings(scenario)

@@ -38,6 +38,8 @@ def write_trace(folder: OutputFolder, trace: Trace) -> None:
     with folder.writing("trace.npz") as path, path.open("wb") as stream:
         columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
         columns |= {f"tracking_{name}": np.asarray(errors) for name, errors in trace.tracking.items()}
+        columns |= {f"wrench_{name}": np.asarray(rows) for name, rows in trace.wrenches.items()}
+        columns["rereferenced"] = np.asarray(trace.rereferenced)
         np.savez(stream, allow_pickle=False, **columns)
 
 

@@ -14,6 +14,7 @@ from onorbit_rs import _core, robots
 from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError, ShapeError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffect
+from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.environment import BodyWrenchEffect
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
 from onorbit_rs.scenario.make_orbit import make_orbit
@@ -55,6 +56,8 @@ def build(scenario: Scenario) -> Built:
         orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, beside)
         if orbit is not None:
             orbit.state(scenario.simulation.duration)  # a path or a decaying orbit may end before the run
+    with located(scenario, "epoch" if scenario.earth is None else "earth"):
+        earth = make_earth(scenario, orbit, beside)
     with located(scenario, "initial"):
         q, v = initial_state(scenario.initial, model, orbit)
     tool = scenario.tracked_tool
@@ -71,7 +74,7 @@ def build(scenario: Scenario) -> Built:
         controller, reference = _controlled(scenario, start)
         with located(scenario, "simulation"), _about_controllers(scenario):
             return _core.Simulation(
-                model, q, v, orbit=orbit, gravity_mode=scenario.gravity_mode, environment=effects,
+                model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode, environment=effects,
                 controller=controller, reference=reference, tool=tool, **settings,
             )  # fmt: skip
 

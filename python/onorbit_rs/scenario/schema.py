@@ -11,6 +11,7 @@ from onorbit_rs.scenario.complaints import first_complaint
 from onorbit_rs.scenario.control import AnyController, Controller
 from onorbit_rs.scenario.control_fit import check_control, wrong
 from onorbit_rs.scenario.controls import AnyControl
+from onorbit_rs.scenario.earth import EarthPart, Epoch
 from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.part import Part
@@ -33,6 +34,10 @@ class Scenario(Part):
     robot: Robot
     tool: str | None = None
     """The frame that is tracked and recorded."""
+    epoch: Epoch | None = None
+    """Time zero, with its time scale: ``2024-03-01T12:00:00 UTC``; an element set's own where not given."""
+    earth: EarthPart | None = None
+    """How the Earth turns, by IAU 2006 where there is an epoch."""
     orbit: Orbit | None = None
     """An orbit always brings gravity; without one nothing pulls."""
     environment: list[Effect] = Field(default_factory=list)

@@ -55,12 +55,10 @@ impl Epoch {
             Instant::maybe_from_gregorian(year, month, day, hour, minute, second, nanoseconds, scale)
                 .map_err(|_| refused())?
                 .to_time_scale(TimeScale::TAI);
-        let after = instant + Unit::Second * 2;
+        let epoch = Self::of(instant);
         match is_leap {
-            false => Ok(Self::of(instant)),
-            true if scale == TimeScale::UTC && after.leap_seconds_iers() > instant.leap_seconds_iers() => {
-                Ok(Self::of(instant + Unit::Second * 1))
-            }
+            false => Ok(epoch),
+            true if scale == TimeScale::UTC && epoch.after(1.0).is_leap_second() => Ok(epoch.after(1.0)),
             true => Err(refused()),
         }
     }
@@ -96,14 +94,31 @@ impl Epoch {
         (self.tai.div_euclid(DAY_NS) as f64, self.tai.rem_euclid(DAY_NS) as f64 / DAY_NS as f64)
     }
 
-    /// Julian centuries of TT from J2000.0, `t` seconds later.
+    /// Seconds of TT from J2000.0 (2000-01-01T12:00:00 TT), `t` seconds later.
+    pub(super) fn seconds_tt(self, t: f64) -> f64 {
+        self.tai as f64 * 1e-9 + TT_MINUS_TAI + t
+    }
+
+    /// Julian centuries of TT from J2000.0, likewise.
     pub(super) fn centuries(self, t: f64) -> f64 {
-        (self.tai as f64 * 1e-9 + TT_MINUS_TAI + t) / (36_525.0 * DAY)
+        self.seconds_tt(t) / (36_525.0 * DAY)
     }
 
     /// UTC less TAI, s: a whole number, zero before 1972.
     pub fn utc_minus_tai(self) -> f64 {
-        -f64::from(self.instant().leap_seconds_iers())
+        -f64::from(self.leap_seconds())
+    }
+
+    /// TAI less UTC, s.
+    fn leap_seconds(self) -> i32 {
+        // hifitime compares a count of TAI with instants of UTC, and steps as many seconds too early
+        let early = self.instant().leap_seconds_iers();
+        (self.instant() - Unit::Second * i64::from(early)).leap_seconds_iers()
+    }
+
+    /// Whether this is within a 60th second.
+    fn is_leap_second(self) -> bool {
+        (1..self.after(1.0).leap_seconds()).contains(&self.leap_seconds())
     }
 
     /// Modified Julian date of UTC, and seconds since its midnight.
@@ -120,12 +135,12 @@ impl Epoch {
 impl std::fmt::Display for Epoch {
     /// `2024-03-01T12:00:00.000000 UTC`, to the microsecond; in TAI before 1972.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let instant = self.instant() + Unit::Nanosecond * 500; // rounds
-        let leap = instant.leap_seconds_iers();
-        let scale = if leap > 0 { TimeScale::UTC } else { TimeScale::TAI };
-        let (year, month, day, hour, minute, second, ns) = instant.to_gregorian(scale);
-        // the calendar does not know 23:59:60, where the count of leap seconds has not stepped yet
-        let micros = ns / 1000;
+        let rounded = Self { tai: self.tai.saturating_add(500) };
+        let (leap, is_leap_second) = (rounded.leap_seconds(), rounded.is_leap_second());
+        let scale = if leap > 0 { "UTC" } else { "TAI" };
+        let counted = rounded.instant() - Unit::Second * i64::from(leap + i32::from(is_leap_second));
+        let (year, month, day, hour, minute, second, ns) = counted.to_gregorian_tai();
+        let (second, micros) = (u32::from(second) + u32::from(is_leap_second), ns / 1000);
         write!(f, "{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{micros:06} {scale}")
     }
 }

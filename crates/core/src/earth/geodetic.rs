@@ -57,7 +57,7 @@ impl Geodetic {
             let (s, c) = unit((1.0 - f) * sin_phi, cos_phi);
             let change = (s * cos - c * sin).abs();
             (sin, cos) = (s, c);
-            if change < 1e-16 {
+            if change < 1e-15 {
                 break;
             }
         }
@@ -84,6 +84,6 @@ impl Geodetic {
 
 /// Sine and cosine of the angle whose tangent is `y/x`.
 fn unit(y: f64, x: f64) -> (f64, f64) {
-    let r = y.hypot(x);
+    let r = (x * x + y * y).sqrt();
     (y / r, x / r)
 }

@@ -5,6 +5,7 @@
 mod epoch;
 mod error;
 mod geodetic;
+mod kernel;
 mod many;
 mod moon_table;
 mod nutation_table;
@@ -19,10 +20,12 @@ mod sky;
 mod sun_table;
 
 use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
 
 pub use epoch::Epoch;
 pub use error::EarthError;
 pub use geodetic::{Ellipsoid, Geodetic, WGS84};
+pub use kernel::{Kernel, KernelSegment};
 use orientation::Orientation;
 pub use parameters::{EarthParameterRow, EarthParameters};
 use sky::Sky;
@@ -56,7 +59,7 @@ impl Axes {
 #[derive(Clone, Debug)]
 pub struct Earth {
     turning: Turning,
-    sky: Option<(Epoch, Sky)>,
+    sky: Option<Sky>,
 }
 
 #[derive(Clone, Debug)]
@@ -80,17 +83,27 @@ impl Earth {
     /// their table does not hold the epoch.
     pub fn new(epoch: Epoch, parameters: &EarthParameters) -> Result<Self, EarthError> {
         let orientation = Orientation::new(epoch, Axes::Gcrf, parameters, years(epoch))?;
-        let earth = Self {
-            turning: Turning::Iau2006(Box::new(orientation)),
-            sky: Some((epoch, Sky::new(epoch, years(epoch)))),
-        };
+        let earth =
+            Self { turning: Turning::Iau2006(Box::new(orientation)), sky: Some(Sky::new(epoch, None)) };
         earth.covers(0.0)?;
         Ok(earth)
     }
 
     /// The same Earth with time zero at `epoch`: one that turns about z gets a Sun and a Moon.
     pub fn with_epoch(self, epoch: Epoch) -> Self {
-        Self { sky: Some((epoch, Sky::new(epoch, years(epoch)))), ..self }
+        Self { sky: Some(Sky::new(epoch, None)), ..self }
+    }
+
+    /// The same Earth with Sun and Moon as a kernel has them.
+    ///
+    /// # Errors
+    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] where the kernel does not hold it, with eight days at least.
+    pub fn with_kernel(self, kernel: Kernel) -> Result<Self, EarthError> {
+        let what = "a kernel of Sun and Moon";
+        let epoch = self.epoch().ok_or(EarthError::NeedsEpoch { what })?;
+        let sky = Sky::new(epoch, Some(Arc::new(kernel)));
+        within(what, 0.0, epoch, sky.span)?;
+        Ok(Self { sky: Some(sky), ..self })
     }
 
     /// The same Earth seen in other axes.
@@ -99,8 +112,7 @@ impl Earth {
             Turning::AboutZ { .. } => self.turning.clone(),
             Turning::Iau2006(orientation) => Turning::Iau2006(Box::new(orientation.in_axes(axes))),
         };
-        let sky = self.sky.as_ref().map(|(epoch, _)| (*epoch, Sky::new(*epoch, years(*epoch))));
-        Self { turning, sky }
+        Self { turning, sky: self.sky.as_ref().map(Sky::anew) }
     }
 
     /// Axes of `I`; none for an Earth that turns about z, whatever they are.
@@ -113,7 +125,7 @@ impl Earth {
 
     /// Time zero of the run.
     pub fn epoch(&self) -> Option<Epoch> {
-        self.sky.as_ref().map(|(epoch, _)| *epoch)
+        self.sky.as_ref().map(|sky| sky.epoch)
     }
 
     /// Whether all that turns the Earth is known at `t` seconds of simulation; asked once before a run.
@@ -169,7 +181,7 @@ impl Earth {
 
     /// Position of the Sun's centre from the Earth's, axes of `I`, m: where it is at `t`, without light time.
     ///
-    /// Within 2″ and 3e-9 of its distance of JPL's DE421, 1900 to 2050.
+    /// Within 2″ and 4e-6 of its distance of JPL's DE421, 1900 to 2050, where no kernel is given.
     ///
     /// # Errors
     /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] outside of 1900 to 2100.
@@ -180,7 +192,7 @@ impl Earth {
 
     /// Position of the Moon's centre from the Earth's, axes of `I`, m; likewise.
     ///
-    /// Within 10″ and 3e-5 of its distance of JPL's DE421, 1900 to 2050.
+    /// Within 10″ and 3e-5 of its distance of JPL's DE421, 1900 to 2050, where no kernel is given.
     ///
     /// # Errors
     /// As [`Earth::sun`].
@@ -194,13 +206,12 @@ impl Earth {
     /// # Errors
     /// [`EarthError::NeedsEpoch`].
     pub fn utc(&self, t: f64) -> Result<(i64, f64), EarthError> {
-        let (_, sky) = self.sky.as_ref().ok_or(EarthError::NeedsEpoch { what: "UTC" })?;
-        Ok(sky.utc(t))
+        self.sky.as_ref().map(|sky| sky.utc(t)).ok_or(EarthError::NeedsEpoch { what: "UTC" })
     }
 
     fn sky_at(&self, what: &'static str, t: f64) -> Result<&Sky, EarthError> {
-        let (epoch, sky) = self.sky.as_ref().ok_or(EarthError::NeedsEpoch { what })?;
-        within(what, t, *epoch, years(*epoch)).map(|()| sky)
+        let sky = self.sky.as_ref().ok_or(EarthError::NeedsEpoch { what })?;
+        within(what, t, sky.epoch, sky.span).map(|()| sky)
     }
 
     /// Takes GCRF components to those of `I`.

@@ -7,7 +7,7 @@ use super::epoch::{DAY, Epoch};
 use super::parameters::{EarthParameters, Parameters};
 use super::pieces::Pieces;
 use super::precession::{pole, polynomial};
-use super::rotation::{r1, r2, r3};
+use super::rotation::r3;
 use super::{Axes, EarthError, ROTATION_RATE};
 
 /// Length of the pieces over which the pole is kept, s.
@@ -82,10 +82,11 @@ impl Orientation {
         }
     }
 
-    /// Polar motion, `R₁(-y_p) R₂(-x_p)`; the 0.05 mas of `s'` are left out.
+    /// Polar motion, `R₁(-y_p) R₂(-x_p)`, of angles so small that their cubes vanish; the 0.05 mas of `s'` are left out.
     fn wobble(&self, t: f64) -> Matrix3<f64> {
         let [x, y] = self.parameters.polar_motion(t);
-        r1(-y) * r2(-x)
+        let (cx, cy) = (1.0 - 0.5 * x * x, 1.0 - 0.5 * y * y);
+        Matrix3::new(cx, 0.0, x, x * y, cy, -cx * y, -cy * x, y, cx * cy)
     }
 
     /// Mean sidereal time of 1982 less the Earth rotation angle, rad.

@@ -8,12 +8,6 @@ pub(super) fn r1(angle: f64) -> Matrix3<f64> {
     Matrix3::new(1.0, 0.0, 0.0, 0.0, c, s, 0.0, -s, c)
 }
 
-/// Components after the axes turned by `angle` about y.
-pub(super) fn r2(angle: f64) -> Matrix3<f64> {
-    let (s, c) = angle.sin_cos();
-    Matrix3::new(c, 0.0, -s, 0.0, 1.0, 0.0, s, 0.0, c)
-}
-
 /// Components after the axes turned by `angle` about z.
 pub(super) fn r3(angle: f64) -> Matrix3<f64> {
     let (s, c) = angle.sin_cos();

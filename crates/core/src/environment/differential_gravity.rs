@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::error::Place;
 use super::{Effect, EnvironmentError, Reference, Scene, Wrench};
-use crate::gravity::point_mass;
+use crate::gravity::{point_mass, tide};
 
 /// What happens where the reference does not itself fall freely in the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,48 +16,35 @@ pub enum ReferenceMotion {
     Carried,
 }
 
-/// The planet's pull on every body, less the acceleration of `W`'s origin.
+/// The pull of planet and third bodies on every body, less the acceleration of `W`'s origin.
 ///
-/// `F_k = m_k [g(r_k) - r̈_ref]`, `g(r) = -μ r/|r|³`, `r_k = r_ref + c_k`, with `c_k` the centre of
-/// mass of body k in `W`. Where the reference obeys `g` this is the tide, formed without
-/// subtracting two nearly equal pulls. A body is taken as a point: the second-order force on
-/// an extended one is left out.
+/// `F_k = m_k [g(r_k) - r̈_ref]`, `g` the full field, `r_k = r_ref + c_k`, with `c_k` the centre of
+/// mass of body k in `W`. Where the reference obeys `g`, or carries the robot along, this is the
+/// tide `g(r_k) - g(r_ref)`, formed without subtracting two nearly equal pulls. A body is taken as a
+/// point: the second-order force on an extended one is left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DifferentialGravity {
     /// What to do with the part of `r̈_ref` that is not gravity.
     pub motion: ReferenceMotion,
 }
 
-const NAME: &str = "differential gravity";
+const NAME: &str = "gravity";
 
 impl DifferentialGravity {
-    /// The part of gravity that the reference does not follow, `g(r_ref) - r̈_ref`, m/s², `W` axes.
+    /// The part of gravity that the reference does not follow, `g(r_ref) - r̈_ref`, m/s², `W` axes, at `t` seconds.
     ///
-    /// Zero on a Kepler orbit, bit for bit; `None` around no planet.
-    pub fn residual(reference: &Reference<'_>) -> Option<Vector3<f64>> {
-        let s = &reference.state;
-        Some(point_mass(reference.gravity?.mu(), &s.position) - s.acceleration)
+    /// Zero for a reference that falls freely, bit for bit; `None` around no planet.
+    ///
+    /// # Errors
+    /// What the field says of the reference's place.
+    pub fn residual(t: f64, reference: &Reference<'_>) -> Result<Option<Vector3<f64>>, EnvironmentError> {
+        let Some(gravity) = reference.gravity else { return Ok(None) };
+        if reference.falls_freely {
+            return Ok(Some(Vector3::zeros()));
+        }
+        let state = &reference.state;
+        Ok(Some(gravity.acceleration(t, &state.position)? - state.acceleration))
     }
-}
-
-/// Tide `g(R + ρ) - g(R)` of a point mass, m/s², to full relative accuracy for any `ρ`.
-///
-/// `-(μ/r³) (ρ - f R)`, `f = q (3 + 3q + q²)/(1 + (1 + q)^{3/2})`, `q = ρ·(ρ + 2R)/R²`, `r² = R² (1 + q)`;
-/// `origin` is `R`, `offset` is `ρ`, m. Returns the tide and the distance `r = |R + ρ|`.
-///
-/// Source: Battin, AIAA 1999, chapter 8, the disturbing function (Encke's form).
-fn tide(mu: f64, origin: &Vector3<f64>, offset: &Vector3<f64>) -> (Vector3<f64>, f64) {
-    // q = ρ·(ρ + 2R)/R²,  s = √(1 + q),  r = R s
-    let r2 = origin.norm_squared();
-    let q = offset.dot(&(offset + origin * 2.0)) / r2;
-    let square = (1.0 + q).max(0.0);
-    let root = square.sqrt();
-    let distance = r2.sqrt() * root;
-    // f = n/a,  n = q (3 + 3q + q²),  a = 1 + s³;  both divisions in one
-    let (n, a, cube) = (q * (3.0 + q * (3.0 + q)), 1.0 + square * root, r2 * square * distance);
-    let inverse = 1.0 / (a * cube);
-    let f = n * cube * inverse;
-    ((offset - origin * f) * (-mu * a * inverse), distance)
 }
 
 impl Effect for DifferentialGravity {
@@ -74,21 +61,41 @@ impl Effect for DifferentialGravity {
     }
 
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`], and [`EnvironmentError::InsidePlanet`] where the
-    /// reference or a body comes nearer to the centre than any planet of that mass allows.
+    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::InsidePlanet`] where the
+    /// reference or a body comes nearer to the centre than any planet of that mass allows, and
+    /// [`EnvironmentError::Gravity`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         let planet = scene.planet(NAME)?;
-        let residual = match self.motion {
-            ReferenceMotion::True => {
-                point_mass(planet.mu, &planet.reference.position) - planet.reference.acceleration
-            }
-            ReferenceMotion::Carried => Vector3::zeros(),
+        let state = &planet.reference;
+        let differs = planet.falls_freely || self.motion == ReferenceMotion::Carried;
+        let residual = if differs {
+            Vector3::zeros()
+        } else {
+            point_mass(planet.mu, &state.position) - state.acceleration
         };
         for (k, (body, wrench)) in scene.paired(wrenches)?.enumerate() {
-            let (tide, distance) = tide(planet.mu, &planet.reference.position, &body.com);
+            let (tide, distance) = tide(planet.mu, &state.position, &body.com);
             planet.outside(Place::Body(k), distance)?;
-            // F = m [(g(r) - g(R)) + (g(R) - r̈_ref)]
+            // F = m [(g(r) - g(R)) + (g(R) - r̈_ref)], g here that of the point mass
             wrench.force += (tide + residual) * body.mass;
+        }
+        if let Some(field) = scene.nearby(&planet, differs)? {
+            for (body, wrench) in scene.paired(wrenches)? {
+                let g = if differs { field.difference(&body.com)? } else { field.acceleration(&body.com)? };
+                wrench.force += g * body.mass;
+            }
+        }
+        for third in planet.gravity.third_bodies() {
+            let place = third.position(scene.time)?;
+            for (body, wrench) in scene.paired(wrenches)? {
+                // a third body at s pulls on the planet's centre too: [g(r - s) - g(-s)] - [g(R - s) - g(-s)], or the first alone
+                let (from, offset) = if differs {
+                    (state.position, body.com)
+                } else {
+                    (Vector3::zeros(), state.position + body.com)
+                };
+                wrench.force += tide(third.mu(), &(from - place), &offset).0 * body.mass;
+            }
         }
         Ok(())
     }

@@ -3,11 +3,15 @@
 use super::atmosphere::AtmosphereError;
 use super::surfaces::SurfaceError;
 use crate::earth::EarthError;
+use crate::gravity::GravityError;
 
 /// Refusals of the `environment` module; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnvironmentError {
+    /// The gravity of planet and third bodies has no answer.
+    #[error(transparent)]
+    Gravity(#[from] GravityError),
     /// An effect of the planet is on where there is no planet.
     #[error(
         "{effect} needs an orbit around a planet, this run has none: give an orbit or leave the effect out"

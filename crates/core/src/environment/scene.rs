@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::EnvironmentError;
 use super::error::Place;
 use crate::earth::Earth;
-use crate::gravity::Gravity;
+use crate::gravity::{Gravity, Nearby, Station, smallest_radius_cubed};
 use crate::orbit::OrbitState;
 
 /// One body of the robot, in `W`.
@@ -34,6 +34,8 @@ pub struct Reference<'a> {
     pub state: OrbitState,
     /// The gravity that acts on robot and reference; `None` around no planet.
     pub gravity: Option<&'a Gravity>,
+    /// Whether the reference obeys just that gravity: what then remains of it are differences.
+    pub falls_freely: bool,
 }
 
 /// All that an effect may look at.
@@ -120,25 +122,45 @@ impl<'a> Scene<'a> {
         Ok((reference, self.earth.ok_or(EnvironmentError::NoEarth { effect })?))
     }
 
-    /// State of the reference and parameter of its planet, the reference being outside it.
-    pub(super) fn planet(&self, effect: &'static str) -> Result<Planet, EnvironmentError> {
-        let around = |r: Reference<'_>| Some((r.state, r.gravity?.mu()));
-        let (reference, mu) = self.reference.and_then(around).ok_or(EnvironmentError::NoPlanet { effect })?;
-        let planet = Planet { effect, mu, reference, minimum_cubed: smallest_radius_cubed(mu) };
+    /// State of the reference and gravity of its planet, the reference being outside it.
+    pub(super) fn planet(&self, effect: &'static str) -> Result<Planet<'a>, EnvironmentError> {
+        let around = |r: Reference<'a>| Some((r.state, r.gravity?, r.falls_freely));
+        let found = self.reference.and_then(around);
+        let (reference, gravity, falls_freely) = found.ok_or(EnvironmentError::NoPlanet { effect })?;
+        let minimum_cubed = smallest_radius_cubed(gravity.mu());
+        let planet = Planet { effect, mu: gravity.mu(), gravity, reference, falls_freely, minimum_cubed };
         planet.outside(Place::Reference, reference.position.norm())?;
         Ok(planet)
+    }
+
+    /// The planet's field without its point mass, around the robot; none where that is all there is.
+    pub(super) fn nearby(
+        &self,
+        planet: &Planet<'a>,
+        differs: bool,
+    ) -> Result<Option<Nearby<'a>>, EnvironmentError> {
+        if planet.gravity.field().is_none() {
+            return Ok(None);
+        }
+        let moment: Vector3<f64> = self.bodies.iter().map(|body| body.com * body.mass).sum();
+        let com = moment / self.bodies.iter().map(|body| body.mass).sum::<f64>();
+        let now = Station { time: self.time, origin: planet.reference.position, com };
+        let Anchor { time, com, origin } = self.anchor;
+        Ok(planet.gravity.nearby(&now, &Station { time, origin, com }, differs)?)
     }
 }
 
 /// The planet of a scene, as one effect sees it.
-pub(super) struct Planet {
+pub(super) struct Planet<'a> {
     effect: &'static str,
     pub(super) mu: f64,
+    pub(super) gravity: &'a Gravity,
     pub(super) reference: OrbitState,
+    pub(super) falls_freely: bool,
     minimum_cubed: f64,
 }
 
-impl Planet {
+impl Planet<'_> {
     /// `distance` from the planet's centre, m, if it lies outside the planet.
     pub(super) fn outside(&self, what: Place, distance: f64) -> Result<f64, EnvironmentError> {
         if distance * distance * distance >= self.minimum_cubed {
@@ -147,14 +169,4 @@ impl Planet {
         let (effect, minimum) = (self.effect, self.minimum_cubed.cbrt());
         Err(EnvironmentError::InsidePlanet { effect, what, distance, minimum })
     }
-}
-
-/// Cube of the radius below which no solid body of this `μ = G m` can have its surface, m³.
-///
-/// `R³ = 3 μ/(4π G ρ)` with osmium's `ρ = 22 600 kg/m³`: `R` = 3980 km for the Earth's mass. The
-/// true surface lies higher and is not ours to know; far below it the field of a point mass
-/// means nothing and grows without bound.
-fn smallest_radius_cubed(mu: f64) -> f64 {
-    const G_RHO: f64 = 6.674e-11 * 22_600.0;
-    3.0 * mu / (4.0 * std::f64::consts::PI * G_RHO)
 }

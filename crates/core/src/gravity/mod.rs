@@ -3,18 +3,66 @@
 //! [`Gravity`] is the full field chosen: a point mass at the planet's centre and all that disturbs it.
 //! Robot and reference feel the same one.
 
-use nalgebra::Vector3;
+mod coefficients;
+mod error;
+mod field;
+mod gfc;
+mod harmonics;
+mod nearby;
+mod point_mass;
+mod series;
+mod third_body;
+mod zonal;
+
+pub use coefficients::Coefficients;
+pub use error::GravityError;
+pub use field::GravityField;
+pub use nearby::{Nearby, Station};
+pub(crate) use point_mass::{point_mass, point_mass_gradient, smallest_radius_cubed, tide};
+pub use third_body::ThirdBody;
+
+use crate::earth::Earth;
+use nalgebra::{Matrix3, Vector3};
+use nearby::Memo;
+use std::sync::Arc;
 
 /// The full field chosen for a run.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// `g(t, r) = -μ r/|r|³ + rot_if g_F(rot_fi r) + Σ [g_b(r - s_b) - g_b(-s_b)]`: the point mass, the planet's field fixed
+/// in the turning planet, and the pull of every third body at `s_b` less what it does to the planet's centre.
+#[derive(Clone, Debug)]
 pub struct Gravity {
     mu: f64,
+    field: Option<Arc<GravityField>>,
+    earth: Option<Arc<Earth>>,
+    third_bodies: Vec<Arc<dyn ThirdBody>>,
+    memo: Memo,
 }
 
 impl Gravity {
     /// The field of a point mass with `mu`, m³/s².
     pub fn point_mass(mu: f64) -> Self {
-        Self { mu }
+        Self { mu, field: None, earth: None, third_bodies: Vec::new(), memo: Memo::default() }
+    }
+
+    /// A planet's field, its point mass (the model's `mu`) included, in a planet that turns as `earth` says.
+    ///
+    /// A field of order 0 may do without an `earth`: its axis is then z of `I`.
+    ///
+    /// # Errors
+    /// [`GravityError::NeedsEarth`] for a field that is not symmetric about its axis.
+    pub fn of_field(field: Arc<GravityField>, earth: Option<Arc<Earth>>) -> Result<Self, GravityError> {
+        if earth.is_none() && field.order() > 0 {
+            return Err(GravityError::NeedsEarth { field: field.name().to_owned() });
+        }
+        Ok(Self { field: Some(Arc::clone(&field)), earth, ..Self::point_mass(field.mu()) })
+    }
+
+    /// With one more third body.
+    #[must_use]
+    pub fn and(mut self, body: Arc<dyn ThirdBody>) -> Self {
+        self.third_bodies.push(body);
+        self
     }
 
     /// Gravitational parameter of the planet, m³/s².
@@ -22,17 +70,67 @@ impl Gravity {
         self.mu
     }
 
-    /// Acceleration at `r` from the planet's centre, m, axes of `I`, at `t` seconds of simulation: m/s².
-    pub fn acceleration(&self, _t: f64, r: &Vector3<f64>) -> Vector3<f64> {
-        point_mass(self.mu, r)
+    /// The part that is not that of the point mass, where there is one.
+    pub fn field(&self) -> Option<&Arc<GravityField>> {
+        self.field.as_ref()
     }
-}
 
-/// Acceleration of a point mass's field, `g = -μ r / |r|³`, m/s², axes of `r`.
-///
-/// Every user of the field calls this one expression, so that a reference which obeys it
-/// differs from it by exactly zero.
-pub(crate) fn point_mass(mu: f64, r: &Vector3<f64>) -> Vector3<f64> {
-    let r2 = r.norm_squared();
-    r * (-mu / (r2 * r2.sqrt()))
+    /// The bodies beyond the planet.
+    pub fn third_bodies(&self) -> &[Arc<dyn ThirdBody>] {
+        &self.third_bodies
+    }
+
+    /// Whether an orbit around `mu`, m³/s², is one around this planet: values in use for one differ by parts in a million.
+    ///
+    /// # Errors
+    /// [`GravityError::OtherPlanet`] where they differ by more than 1e-5.
+    pub fn check_orbit(&self, mu: f64) -> Result<(), GravityError> {
+        if (mu - self.mu).abs() <= 1e-5 * self.mu {
+            return Ok(());
+        }
+        Err(GravityError::OtherPlanet { field: self.mu, orbit: mu })
+    }
+
+    /// Acceleration at `r` from the planet's centre, m, axes of `I`, at `t` seconds of simulation: m/s².
+    ///
+    /// # Errors
+    /// [`GravityError`] below the surface of a planet with a field, and what a third body says.
+    #[inline]
+    pub fn acceleration(&self, t: f64, r: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
+        let mut g = point_mass(self.mu, r);
+        if let Some(field) = &self.field {
+            g += match self.rot_fi(t) {
+                None => field.acceleration(r)?,
+                Some(rot_fi) => rot_fi.tr_mul(&field.acceleration(&(rot_fi * r))?),
+            };
+        }
+        for body in &self.third_bodies {
+            g += tide(body.mu(), &-body.position(t)?, r).0;
+        }
+        Ok(g)
+    }
+
+    /// Its gradient `∂g/∂r`, symmetric and without trace, axes of `I`, 1/s².
+    ///
+    /// # Errors
+    /// As [`Gravity::acceleration`].
+    pub fn gradient(&self, t: f64, r: &Vector3<f64>) -> Result<Matrix3<f64>, GravityError> {
+        let mut tensor = point_mass_gradient(self.mu, r);
+        if let Some(field) = &self.field {
+            tensor += match self.rot_fi(t) {
+                None => field.gradient(r)?.1,
+                Some(rot_fi) => rot_fi.tr_mul(&field.gradient(&(rot_fi * r))?.1) * rot_fi,
+            };
+        }
+        for body in &self.third_bodies {
+            tensor += point_mass_gradient(body.mu(), &(r - body.position(t)?));
+        }
+        Ok(tensor)
+    }
+
+    /// How the planet stands, where it is known.
+    #[inline]
+    fn rot_fi(&self, t: f64) -> Option<Matrix3<f64>> {
+        self.earth.as_ref().map(|earth| earth.rot_fi(t))
+    }
 }

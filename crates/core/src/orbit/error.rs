@@ -2,11 +2,15 @@
 
 use super::custom_path::PathError;
 use super::sgp4::{ElementSetError, Sgp4Error};
+use crate::gravity::GravityError;
 
 /// Refusals of the `orbit` module; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OrbitError {
+    /// The field that the orbit obeys has no answer.
+    #[error(transparent)]
+    Gravity(#[from] GravityError),
     /// An input is infinite or not a number.
     #[error("{name} is {value}, a finite number is needed")]
     NotFinite {
@@ -124,6 +128,43 @@ pub enum OrbitError {
         expected: usize,
         /// Length given.
         got: usize,
+    },
+    /// The orbit lies inside the planet.
+    #[error(
+        "the orbit is inside the planet at t = {time} s: {distance} m from its centre, \
+         at least {smallest_radius} m are accepted: end the run earlier"
+    )]
+    BelowSurface {
+        /// When, s.
+        time: f64,
+        /// Distance from the planet's centre, m.
+        distance: f64,
+        /// Smallest distance at which there is a field, m.
+        smallest_radius: f64,
+    },
+    /// The time is more steps away than are kept.
+    #[error(
+        "integrating from {epoch} s took {steps} steps to {time} s, no more are kept: \
+         give an initial state nearer to the times asked for"
+    )]
+    TooManySteps {
+        /// Where the steps end, s.
+        time: f64,
+        /// Time of the initial state, s.
+        epoch: f64,
+        /// How many there are.
+        steps: usize,
+    },
+    /// No step is short enough for the field.
+    #[error(
+        "the orbit cannot be integrated beyond t = {time} s: a step of {length} s is still too long \
+         (does the field jump there?)"
+    )]
+    StepTooShort {
+        /// When, s.
+        time: f64,
+        /// Length of the step, s.
+        length: f64,
     },
     /// An element set cannot be read.
     #[error(transparent)]

@@ -8,9 +8,12 @@ mod error;
 mod fixed_frame;
 mod frames;
 pub mod kepler;
+mod numerical;
 pub mod sgp4;
 
+use crate::gravity::Gravity;
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 pub use crate::earth::Axes;
 use crate::earth::Epoch;
@@ -19,6 +22,7 @@ pub use error::OrbitError;
 pub use fixed_frame::FixedFrame;
 pub use frames::{Lvlh, Nadir, PathFrame};
 pub use kepler::{Elements, Kepler, Phase, Size};
+pub use numerical::Numerical;
 pub use sgp4::{EarthModel, MeanElements, Sgp4};
 
 /// Gravitational parameter of the Earth, `3.986004418e14 m³/s²`, atmosphere included.
@@ -41,6 +45,11 @@ pub struct OrbitState {
 pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Gravitational parameter of the planet, m³/s²; `None` around no planet.
     fn mu(&self) -> Option<f64>;
+
+    /// The gravity field that it obeys, and nothing else; `None` where it follows another law.
+    fn gravity(&self) -> Option<&Arc<Gravity>> {
+        None
+    }
 
     /// State at `t` seconds of simulation, axes of `I`.
     ///

@@ -1,6 +1,7 @@
 //! Where a run stands between two steps, kept so that it goes on with the same bits.
 
 use super::pair::Memory;
+use super::rereference::OwnReference;
 use super::schedule::Schedule;
 use super::state::State;
 use crate::dynamics::Momentum;
@@ -33,6 +34,8 @@ pub struct Checkpoint {
     pub(super) probe: (f64, usize, f64),
     /// Work of every step so far, whatever its sign, J.
     pub(super) work_done: f64,
+    /// What the robot is integrated about, where it drifted far.
+    pub(super) own_reference: Option<OwnReference>,
     pub(super) controls: ControlMemory,
 }
 
@@ -93,6 +96,7 @@ impl Checkpoint {
         (memory, cuts): (Memory, usize),
         probe: (f64, usize, f64),
         work_done: f64,
+        own_reference: Option<&OwnReference>,
         controls: ControlMemory,
     ) -> Self {
         let numbers = |x: &[S]| x.iter().map(|x| x.value()).collect();
@@ -120,6 +124,7 @@ impl Checkpoint {
             cuts,
             probe,
             work_done,
+            own_reference: own_reference.cloned(),
             controls,
         }
     }

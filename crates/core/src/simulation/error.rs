@@ -5,6 +5,7 @@ use super::trace::Trace;
 use crate::control::ControlError;
 use crate::earth::EarthError;
 use crate::environment::EnvironmentError;
+use crate::gravity::GravityError;
 use crate::orbit::OrbitError;
 use crate::reference::ReferenceError;
 use thiserror::Error;
@@ -25,6 +26,8 @@ pub enum SimulationError {
     QuaternionNorm { norm: f64 },
     #[error("tolerance is {value}, it must be in 1e-13..0.1")]
     Tolerance { value: f64 },
+    #[error("rereference_beyond is {value} m, it must be at least 1 m; infinity for never")]
+    RereferenceBeyond { value: f64 },
     #[error("restitution is {value}, it must be in 0..1")]
     Restitution { value: f64 },
     #[error(
@@ -78,6 +81,8 @@ pub enum SimulationError {
     Environment { time: f64, source: EnvironmentError },
     #[error("at t = {time} s: {source}")]
     Reference { time: f64, source: ReferenceError },
+    #[error(transparent)]
+    Gravity(#[from] GravityError),
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
     #[error(transparent)]

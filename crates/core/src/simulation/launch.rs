@@ -14,7 +14,7 @@ use super::state::State;
 use super::stepping::{Stepper, Stepping};
 use super::surroundings::Surroundings;
 use super::trace::{GoalResult, Trace};
-use crate::control::{ControlLaw, Stack};
+use crate::control::{Control, ControlLaw, Stack};
 use crate::environment::{DifferentialGravity, Effect, ReferenceMotion};
 use crate::gravity::Gravity;
 use crate::model::Model;
@@ -78,6 +78,9 @@ impl Simulation {
         let falls = self.reference_motion == ReferenceMotion::True;
         let jumps = self.orbit.iter().filter(|_| falls).flat_map(|orbit| orbit.event_times());
         let events = effects.iter().flat_map(|effect| effect.event_times()).chain(jumps).collect();
+        let names = if self.record_wrenches { column_names(&effects) } else { Vec::new() };
+        let may_rereference = falls && gravity.is_some() && !self.looks_at_world();
+        let rereference_beyond = if may_rereference { self.rereference_beyond } else { f64::INFINITY };
         let schedule = self.schedule(duration, events);
         let surroundings =
             Surroundings::new(&model, effects, self.orbit.clone(), gravity.clone(), self.earth.clone());
@@ -87,8 +90,9 @@ impl Simulation {
         let extras = Extras {
             tool: self.tool,
             has_reference: self.reference.is_some() || self.control.tracks(self.tool),
+            effects: names,
             has_orbit: self.orbit.is_some(),
-            carried_in: gravity.filter(|_| !falls),
+            is_carried: gravity.is_some() && !falls,
         };
         let is_dense = self.record_every == 1 && !self.is_adaptive();
         let controls = self.control.controls();
@@ -110,6 +114,7 @@ impl Simulation {
             recorder: recorder.map_err(fail)?,
             schedule,
             steps: 0,
+            rereference_beyond,
         };
         match from {
             None => run.plant.settle(&mut run.state),
@@ -117,6 +122,7 @@ impl Simulation {
         }
         let outcome = run.all(self.record_every, monitor);
         let mut trace = run.recorder.trace;
+        trace.rereferenced = run.plant.surroundings.own().map_or_else(Vec::new, |own| own.times.clone());
         trace.results = run.driver.stack().map_or_else(Vec::new, |stack| goal_results(stack, &model));
         match outcome {
             Ok(()) => Ok(trace),
@@ -124,10 +130,22 @@ impl Simulation {
         }
     }
 
-    /// The field chosen, or that of a point mass, where there is a planet.
+    /// Whether a control knows where in W the robot is: then it must stay there.
+    fn looks_at_world(&self) -> bool {
+        let joints_alone = |control: &Control| control.joint_reference().is_some();
+        match &self.control {
+            ControlLaw::None => self.reference.is_some(),
+            ControlLaw::Stack(controls) => !controls.iter().all(joints_alone),
+            ControlLaw::ComputedTorque(_) | ControlLaw::User(_) => true,
+        }
+    }
+
+    /// The field chosen, else the one that the orbit obeys, else that of a point mass, where there is a planet.
     fn gravity(&self) -> Option<Arc<Gravity>> {
-        let mu = self.orbit.as_ref().and_then(|orbit| orbit.mu())?;
-        Some(self.gravity.clone().unwrap_or_else(|| Arc::new(Gravity::point_mass(mu))))
+        let orbit = self.orbit.as_ref()?;
+        let mu = orbit.mu()?;
+        let given = self.gravity.as_ref().or(orbit.gravity());
+        Some(given.cloned().unwrap_or_else(|| Arc::new(Gravity::point_mass(mu))))
     }
 
     fn is_adaptive(&self) -> bool {
@@ -151,6 +169,18 @@ impl Simulation {
         }
         effects
     }
+}
+
+/// A name for every effect's column: its own, with a number from the second of that name on.
+fn column_names(effects: &[Arc<dyn Effect>]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::with_capacity(effects.len());
+    for effect in effects {
+        let name = effect.name().replace(' ', "_");
+        let is_taken = |name: &String| names.contains(name);
+        let numbered = (2..).map(|k| format!("{name}_{k}")).find(|name| !is_taken(name));
+        names.push(if is_taken(&name) { numbered.unwrap_or_default() } else { name });
+    }
+    names
 }
 
 /// How many rows to make room for.

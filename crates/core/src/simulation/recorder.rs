@@ -3,19 +3,18 @@
 use super::checkpoint::CheckpointError;
 use super::error::SimulationError;
 use super::plant::Plant;
+use super::rereference::Shift;
 use super::state::State;
 use super::surroundings::Surroundings;
-use super::trace::{Trace, Tracking};
+use super::trace::{NamedColumn, Trace};
 use crate::control::{Control, Stack, task_error};
 use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
-use crate::environment::{DifferentialGravity, Reference};
-use crate::gravity::Gravity;
 use crate::model::Model;
 use crate::orbit::OrbitState;
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
+use nalgebra::Vector3;
 use std::borrow::Cow;
-use std::sync::Arc;
 
 /// What a run has to record beside its state.
 #[derive(Clone)]
@@ -24,10 +23,12 @@ pub(super) struct Extras {
     pub(super) tool: Option<usize>,
     /// Whether something leads it.
     pub(super) has_reference: bool,
+    /// Names of the effects whose wrenches are recorded.
+    pub(super) effects: Vec<String>,
     /// Whether there is an orbit.
     pub(super) has_orbit: bool,
-    /// The gravity through which the robot is carried along.
-    pub(super) carried_in: Option<Arc<Gravity>>,
+    /// Whether the reference carries the robot along, through a field that it may not obey.
+    pub(super) is_carried: bool,
 }
 
 impl Extras {
@@ -44,7 +45,7 @@ impl Extras {
             "reference_pose" => given(self.has_reference, 16),
             "position_error" | "attitude_error" => given(self.has_reference, 3),
             "position_eci" | "velocity_eci" => given(self.has_orbit, 3),
-            "reference_residual" => given(self.carried_in.is_some(), 3),
+            "reference_residual" => given(self.is_carried, 3),
             _ => 1,
         }
     }
@@ -54,6 +55,8 @@ impl Extras {
 pub(super) struct Recorder {
     pub(super) trace: Trace,
     extras: Extras,
+    /// What takes the last row to W, where it was integrated elsewhere.
+    shift: Option<Shift>,
     /// Numbers per row of each column.
     widths: Vec<usize>,
 }
@@ -67,18 +70,20 @@ impl Recorder {
         has_every_step: bool,
     ) -> Result<Self, SimulationError> {
         let tracked = controls.iter().filter(|control| control.width() > 0);
-        let tracking: Vec<Tracking> = tracked
-            .map(|control| Tracking { name: control.name.clone(), width: control.width(), error: Vec::new() })
-            .collect();
+        let column = |name: &str, width| NamedColumn { name: name.to_owned(), width, values: Vec::new() };
+        let tracking: Vec<_> = tracked.map(|control| column(&control.name, control.width())).collect();
+        let wrenches: Vec<_> =
+            extras.effects.iter().map(|name| column(name, 6 * model.nodes().len())).collect();
         let bare = Trace::default();
         let widths = bare.columns().map(|(name, _)| extras.width(&name, model));
-        let widths: Vec<usize> = widths.chain(tracking.iter().map(|tracking| tracking.width)).collect();
-        let mut trace = Trace { has_every_step, tracking, ..Trace::default() };
+        let widths: Vec<usize> =
+            widths.chain(tracking.iter().chain(&wrenches).map(|column| column.width)).collect();
+        let mut trace = Trace { has_every_step, tracking, wrenches, ..Trace::default() };
         for ((_, column), width) in trace.columns_mut().zip(&widths) {
             let numbers = rows.checked_mul(*width).ok_or(SimulationError::TooManyRows { rows })?;
             column.try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })?;
         }
-        Ok(Self { trace, extras, widths })
+        Ok(Self { trace, extras, shift: None, widths })
     }
 
     /// Goes on after the rows of an earlier part of the run.
@@ -97,7 +102,8 @@ impl Recorder {
             rows.columns_mut().zip(self.trace.columns_mut()).zip(&self.widths)
         {
             if from.len() != count * width {
-                let name = if let Cow::Borrowed(name) = name { name } else { "tracking errors" };
+                let name =
+                    if let Cow::Borrowed(name) = name { name } else { "rows of a control or an effect" };
                 let (got, expected) = (from.len(), count * width);
                 return Err(CheckpointError::OtherSize { name, got, expected });
             }
@@ -126,8 +132,35 @@ impl Recorder {
     pub(super) fn tracked<S: Scalar>(&mut self, stack: &Stack<'_, S>) {
         let tracked = (0..stack.controls().len()).filter(|&i| stack.controls()[i].width() > 0);
         for (column, control) in self.trace.tracking.iter_mut().zip(tracked) {
-            column.error.extend_from_slice(stack.error(control));
+            column.values.extend_from_slice(stack.error(control));
         }
+    }
+
+    /// Adds the wrench of every effect on every body to the row, and puts the row in W.
+    pub(super) fn felt<S: Scalar>(
+        &mut self,
+        plant: &mut Plant<'_, S, Surroundings>,
+        t: f64,
+    ) -> Result<(), SimulationError> {
+        let (model, surroundings) = (plant.model, &mut plant.surroundings);
+        self.shift = surroundings.shift(t, model.mass())?;
+        let trace = &mut self.trace;
+        if self.extras.is_carried {
+            let residual = surroundings.residual(t)?;
+            trace.reference_residual.extend(residual.iter().flat_map(|residual| residual.iter()));
+        }
+        if let Some(shift) = &self.shift {
+            shift.row(trace, model);
+        }
+        let gravity = trace.wrenches.len().wrapping_sub(1); // the last of the effects
+        for (effect, column) in trace.wrenches.iter_mut().enumerate() {
+            let shift = self.shift.as_ref().filter(|_| effect == gravity);
+            for (wrench, node) in surroundings.wrenches_of(effect, t)?.iter().zip(model.nodes()) {
+                let force = wrench.force + shift.map_or_else(Vector3::zeros, |shift| shift.pull(node.mass));
+                column.values.extend(force.iter().chain(wrench.torque.iter()));
+            }
+        }
+        Ok(())
     }
 
     #[inline(always)]
@@ -171,16 +204,15 @@ impl Recorder {
             let velocity = orbit.velocity + (base_rotation(q) * Vec3::from_slice(v)).to_nalgebra();
             trace.position_eci.extend_from_slice(origin.as_slice());
             trace.velocity_eci.extend_from_slice(velocity.as_slice());
-            let reference = Reference { state: orbit, gravity: self.extras.carried_in.as_deref() };
-            if let Some(residual) = DifferentialGravity::residual(&reference) {
-                trace.reference_residual.extend_from_slice(residual.as_slice());
-            }
         }
     }
 
     /// Completes the last row.
-    pub(super) fn accelerated<S: Scalar>(&mut self, a: &[S]) {
+    pub(super) fn accelerated<S: Scalar>(&mut self, model: &Model, a: &[S]) {
         push(&mut self.trace.acceleration, a);
+        if let Some(shift) = &self.shift {
+            shift.acceleration(&mut self.trace, model);
+        }
     }
 }
 

@@ -11,7 +11,7 @@ impl<S: Scalar> Run<'_, S> {
         let orbit = plant.surroundings.orbit_state(t)?;
         recorder.row(t, state, plant, orbit, driver.desired(t, state, plant, *tracked)?);
         driver.stack().into_iter().for_each(|stack| recorder.tracked(stack));
-        Ok(())
+        recorder.felt(plant, t)
     }
 
     /// A row within the last step.
@@ -23,8 +23,9 @@ impl<S: Scalar> Run<'_, S> {
         let orbit = plant.surroundings.orbit_state(t)?;
         recorder.row(t, state, plant, orbit, driver.desired(t, state, plant, *tracked)?);
         driver.stack().into_iter().for_each(|stack| recorder.tracked(stack));
+        recorder.felt(plant, t)?;
         stages.accelerate(plant, state);
-        recorder.accelerated(stages.first_acceleration());
+        recorder.accelerated(plant.model, stages.first_acceleration());
         Ok(())
     }
 
@@ -39,7 +40,7 @@ impl<S: Scalar> Run<'_, S> {
             self.record(t)?;
             let Self { state, plant, between: (_, stages), recorder, .. } = self;
             stages.accelerate(plant, state);
-            recorder.accelerated(stages.first_acceleration());
+            recorder.accelerated(plant.model, stages.first_acceleration());
             plant.settle(state);
         }
         self.stepper.bounce(&mut self.plant, &mut self.state);
@@ -53,7 +54,7 @@ impl<S: Scalar> Run<'_, S> {
         self.record(t)?;
         let (_, stages) = &mut self.between;
         stages.accelerate(&mut self.plant, &self.state);
-        self.recorder.accelerated(stages.first_acceleration());
+        self.recorder.accelerated(self.plant.model, stages.first_acceleration());
         Ok(())
     }
 }

@@ -14,7 +14,7 @@ use super::surroundings::Surroundings;
 use super::trace::Trace;
 use crate::control::ControlError;
 use crate::reference::TaskReference;
-use crate::spatial::Scalar;
+use crate::spatial::{Scalar, Vec3};
 use std::ops::ControlFlow;
 
 /// A run between two steps.
@@ -56,12 +56,17 @@ pub(super) struct Run<'a, S> {
     pub(super) probe: Probe<S>,
     pub(super) schedule: Schedule,
     pub(super) steps: usize,
+    /// Distance of the base from W's origin at which the robot gets a reference of its own, m.
+    pub(super) rereference_beyond: f64,
 }
 
 impl<S: Scalar> Run<'_, S> {
     pub(super) fn all(&mut self, record_every: usize, monitor: Monitor<'_>) -> Result<(), SimulationError> {
         while let Some(stretch) = self.schedule.next() {
             let interval = (stretch.start, stretch.end);
+            if self.is_far() {
+                self.plant.rereference(stretch.start, &mut self.state)?;
+            }
             let begun = self.begin(stretch.start, interval, stretch.is_control_tick);
             begun.map_err(|error| self.name_divergence(error, stretch.start))?;
             // a step cut short by an event is a step: with all of them recorded, jumps lie at rows
@@ -84,6 +89,11 @@ impl<S: Scalar> Run<'_, S> {
         self.end(self.schedule.now())
     }
 
+    /// Whether the robot should have a reference of its own.
+    fn is_far(&self) -> bool {
+        Vec3::from_slice(&self.state.q).norm().value() > self.rereference_beyond
+    }
+
     /// One step from a state that [`Run::begin`] prepared, and the rows within it.
     fn step(
         &mut self,
@@ -99,7 +109,7 @@ impl<S: Scalar> Run<'_, S> {
         let result = stepper.advance(plant, state, interval);
         let stages = &stepper.stages;
         if is_row {
-            recorder.accelerated(stages.first_acceleration());
+            recorder.accelerated(plant.model, stages.first_acceleration());
         }
         let reached = result?;
         recorder.trace.work_done += (state.work - stages.start_work()).value().abs();
@@ -131,8 +141,8 @@ impl<S: Scalar> Run<'_, S> {
             let (command, memory) = (&self.plant.command, self.stepper.memory().unwrap_or_default());
             let stepper = (memory, self.stepper.cuts);
             let (schedule, controls) = (&self.schedule, self.driver.save()?);
-            let done = trace.work_done;
-            Ok(Checkpoint::new(&self.state, command, schedule, counts, stepper, probe, done, controls))
+            let (done, own) = (trace.work_done, self.plant.surroundings.own());
+            Ok(Checkpoint::new(&self.state, command, schedule, counts, stepper, probe, done, own, controls))
         };
         monitor(&Moment { time, trace, checkpoint: &checkpoint })
     }
@@ -147,6 +157,9 @@ impl<S: Scalar> Run<'_, S> {
         self.stepper.go_on_from(from.memory, from.cuts);
         self.recorder.go_on_from(trace)?;
         self.recorder.trace.work_done = from.work_done;
+        if let Some(own) = &from.own_reference {
+            self.plant.surroundings.follow(own.clone())?;
+        }
         self.estimate(); // no step may follow
         self.plant.command.iter_mut().zip(&from.command).for_each(|(to, from)| *to = S::of(*from));
         self.driver.load(&from.controls)

@@ -56,6 +56,11 @@ pub struct Simulation {
     /// Keeps the joints within their position limits by rigid stops, which give back this share of the
     /// rate; joints pass them if none.
     pub stops: Option<f64>,
+    /// How far the base may drift from the reference before it gets one of its own, m: where gravity pulls, nothing
+    /// carries the robot and no control looks at W.
+    pub rereference_beyond: f64,
+    /// Whether rows hold the wrench of every effect on every body.
+    pub record_wrenches: bool,
     /// Every how many steps a row is recorded.
     pub record_every: usize,
 }
@@ -81,6 +86,8 @@ impl Simulation {
             integrator: Integrator::Rk4,
             tolerance: 1e-9,
             stops: None,
+            rereference_beyond: 1e5,
+            record_wrenches: false,
             record_every: 1,
         }
     }
@@ -103,11 +110,19 @@ impl Simulation {
         if !(1e-13..=0.1).contains(&self.tolerance) {
             return Err(SimulationError::Tolerance { value: self.tolerance });
         }
+        if self.rereference_beyond.is_nan() || self.rereference_beyond < 1.0 {
+            return Err(SimulationError::RereferenceBeyond { value: self.rereference_beyond });
+        }
         self.check_stops()?;
         if self.record_every == 0 {
             return Err(SimulationError::RecordEvery);
         }
-        let has_planet = self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some());
+        let mu = self.orbit.as_ref().and_then(|orbit| orbit.mu());
+        let has_planet = mu.is_some();
+        if let Some(gravity) = &self.gravity {
+            let missing = || SimulationError::NeedsOrbit { effect: "a gravity field".to_owned() };
+            gravity.check_orbit(mu.ok_or_else(missing)?)?;
+        }
         if let Some(effect) = self.effects.iter().find(|effect| effect.requires_orbit() && !has_planet) {
             return Err(SimulationError::NeedsOrbit { effect: effect.name().to_owned() });
         }

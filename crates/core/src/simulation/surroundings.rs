@@ -2,14 +2,16 @@
 
 use super::error::SimulationError;
 use super::plant::World;
+use super::rereference::{OwnReference, Shift};
 use crate::dynamics::{Data, base_rotation};
 use crate::earth::Earth;
-use crate::environment::{Anchor, BodyState, Effect, Reference, Scene, Wrench};
+use crate::environment::{Anchor, BodyState, DifferentialGravity, Effect, Reference, Scene, Wrench};
 use crate::gravity::Gravity;
 use crate::model::{Model, Node};
-use crate::orbit::{Orbit, OrbitState};
+use crate::orbit::{Numerical, Orbit, OrbitState};
 use crate::spatial::{Force, Mat3, Scalar, Vec3};
 use nalgebra::{Matrix3, Vector3};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The effects of a run, its reference orbit, and room to evaluate them.
@@ -17,7 +19,11 @@ use std::sync::Arc;
 pub(super) struct Surroundings {
     effects: Vec<Arc<dyn Effect>>,
     reads_velocities: bool,
+    /// What W's origin rides on.
+    home: Option<Arc<dyn Orbit>>,
+    /// What the robot is integrated about: `home`, or its own.
     orbit: Option<Arc<dyn Orbit>>,
+    own: Option<OwnReference>,
     gravity: Option<Arc<Gravity>>,
     earth: Option<Arc<Earth>>,
     /// The step being integrated, and where it began.
@@ -48,7 +54,9 @@ impl Surroundings {
         Self {
             reads_velocities: effects.iter().any(|effect| effect.reads_velocities()),
             effects,
+            home: orbit.clone(),
             orbit,
+            own: None,
             gravity,
             earth,
             step: ((f64::NAN, f64::NAN), Anchor::default()),
@@ -56,6 +64,33 @@ impl Surroundings {
             bodies: model.nodes().iter().map(at_rest).collect(),
             wrenches: vec![Wrench::default(); model.nodes().len()],
         }
+    }
+
+    /// The reference of the robot's own, if it has one.
+    pub(super) fn own(&self) -> Option<&OwnReference> {
+        self.own.as_ref()
+    }
+
+    /// Follows a reference of the robot's own, which falls freely.
+    pub(super) fn follow(&mut self, own: OwnReference) -> Result<(), SimulationError> {
+        let (Some(gravity), Some(&time)) = (&self.gravity, own.times.last()) else { return Ok(()) };
+        let orbit = Numerical::new(own.position.into(), own.velocity.into(), time, Arc::clone(gravity));
+        self.orbit = Some(Arc::new(orbit.map_err(|source| SimulationError::Orbit { time, source })?));
+        self.known.fill((f64::NAN, None));
+        self.step.0 = (f64::NAN, f64::NAN);
+        self.own = Some(own);
+        Ok(())
+    }
+
+    /// The way to W from where the robot is integrated, if that is elsewhere.
+    pub(super) fn shift(&mut self, t: f64, mass: f64) -> Result<Option<Shift>, SimulationError> {
+        if self.own.is_none() {
+            return Ok(None);
+        }
+        let Some(state) = self.orbit_state(t)? else { return Ok(None) };
+        let (Some(home), Some(own)) = (&self.home, &self.own) else { return Ok(None) };
+        let home = home.state(t).map_err(|source| SimulationError::Orbit { time: t, source })?;
+        Ok(Some(Shift::between(own, &state, &home, mass)))
     }
 
     /// State of the reference at `t`, if the run has one.
@@ -71,7 +106,7 @@ impl Surroundings {
     }
 
     /// Where the step being integrated began: at the first look at it.
-    fn anchor(&mut self, t: f64, interval: (f64, f64), reference: Option<&OrbitState>) -> Anchor {
+    fn begin_step(&mut self, t: f64, interval: (f64, f64), reference: Option<&OrbitState>) {
         if self.step.0 != interval {
             // c = Σ mₖ cₖ / Σ mₖ
             let moment: Vector3<f64> = self.bodies.iter().map(|body| body.com * body.mass).sum();
@@ -79,7 +114,49 @@ impl Surroundings {
             let origin = reference.map_or_else(Vector3::zeros, |state| state.position);
             self.step = (interval, Anchor { time: t, com, origin });
         }
-        self.step.1
+    }
+
+    /// Whether the reference obeys the very gravity of the run.
+    fn falls_freely(&self) -> bool {
+        let obeyed = self.orbit.as_ref().and_then(|orbit| orbit.gravity());
+        obeyed.zip(self.gravity.as_ref()).is_some_and(|(own, all)| Arc::ptr_eq(own, all))
+    }
+
+    /// What of gravity the reference does not follow, m/s², where there is a planet.
+    pub(super) fn residual(&mut self, t: f64) -> Result<Option<Vector3<f64>>, SimulationError> {
+        let Some(state) = self.orbit_state(t)? else { return Ok(None) };
+        let falls_freely = self.falls_freely();
+        let reference = Reference { state, gravity: self.gravity.as_deref(), falls_freely };
+        DifferentialGravity::residual(t, &reference)
+            .map_err(|source| SimulationError::Environment { time: t, source })
+    }
+
+    /// Adds up what these effects do to the bodies that were looked at last.
+    fn feel(
+        &mut self,
+        t: f64,
+        reference: Option<OrbitState>,
+        effects: Range<usize>,
+    ) -> Result<(), SimulationError> {
+        self.wrenches.fill(Wrench::default());
+        let falls_freely = self.falls_freely();
+        let reference =
+            reference.map(|state| Reference { state, gravity: self.gravity.as_deref(), falls_freely });
+        let (earth, (interval, anchor)) = (self.earth.as_deref(), self.step);
+        let scene = Scene { interval, time: t, reference, earth, anchor, bodies: &self.bodies };
+        for effect in &self.effects[effects] {
+            effect
+                .add_wrenches(&scene, &mut self.wrenches)
+                .map_err(|source| SimulationError::Environment { time: t, source })?;
+        }
+        Ok(())
+    }
+
+    /// The wrench of one effect on each body, as they were looked at last, at `t`.
+    pub(super) fn wrenches_of(&mut self, effect: usize, t: f64) -> Result<&[Wrench], SimulationError> {
+        let reference = self.orbit_state(t)?;
+        self.feel(t, reference, effect..effect + 1)?;
+        Ok(&self.wrenches)
     }
 
     /// Fills in what the effects see; returns `R_wb`.
@@ -127,16 +204,8 @@ impl<S: Scalar> World<S> for Surroundings {
             #[inline(always)]
             || self.look(data, q, carried),
         );
-        self.wrenches.fill(Wrench::default());
-        let anchor = self.anchor(t, interval, reference.as_ref());
-        let reference = reference.map(|state| Reference { state, gravity: self.gravity.as_deref() });
-        let earth = self.earth.as_deref();
-        let scene = Scene { interval, time: t, reference, earth, anchor, bodies: &self.bodies };
-        for effect in &self.effects {
-            effect
-                .add_wrenches(&scene, &mut self.wrenches)
-                .map_err(|source| SimulationError::Environment { time: t, source })?;
-        }
+        self.begin_step(t, interval, reference.as_ref());
+        self.feel(t, reference, 0..self.effects.len())?;
         S::enter(
             #[inline(always)]
             || self.hand_over(data, &rot_wb),

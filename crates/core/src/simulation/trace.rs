@@ -45,10 +45,18 @@ pub struct Trace {
     /// Gravity that the reference does not follow and that was left out, `g - r̈_ref`, axes of I, m/s²,
     /// `(T, 3)`; only around a planet with the robot carried along.
     pub reference_residual: Vec<f64>,
-    /// Tracking errors of several controls, each on its own.
-    pub tracking: Vec<Tracking>,
+    /// Tracking errors of several controls, each on its own: desired less actual, of a task 6 numbers (m and rad, in the
+    /// axes of W, or of B where its reference is relative to the base), else one per joint of the group; zeros while the
+    /// control does not run.
+    pub tracking: Vec<NamedColumn>,
+    /// Wrench of every effect on every body: force, N, and torque about the body's centre of mass, N m, `(T, bodies, 6)`;
+    /// only on request.
+    pub wrenches: Vec<NamedColumn>,
     /// What came of the goals of several controls.
     pub results: Vec<GoalResult>,
+    /// When the robot had drifted so far that it was given a reference of its own to be integrated about, s, `(K,)`;
+    /// its rows stay in W.
+    pub rereferenced: Vec<f64>,
     /// Sum of the work of every step, whatever its sign, J: what rows far apart would miss.
     pub work_done: f64,
     /// Sum of what steps and halved steps differ by in attitude, rad (of an embedded pair: its two
@@ -61,17 +69,27 @@ pub struct Trace {
 macro_rules! columns {
     ($($name:ident),* $(,)?) => {
         impl Trace {
-            /// Every column with its name, empty ones too, then `tracking_<name>` of every control; row major.
+            /// Every column with its name, empty ones too, then `tracking_<name>` of every control and
+            /// `wrench_<name>` of every effect; row major.
             pub fn columns(&self) -> impl Iterator<Item = (Cow<'static, str>, &Vec<f64>)> {
-                let tracking = self.tracking.iter().map(|tracking| (tracking.column(), &tracking.error));
-                [$((Cow::Borrowed(stringify!($name)), &self.$name)),*].into_iter().chain(tracking)
+                let tracking = self.tracking.iter().map(|column| (column.named("tracking"), &column.values));
+                let wrenches = self.wrenches.iter().map(|column| (column.named("wrench"), &column.values));
+                [$((Cow::Borrowed(stringify!($name)), &self.$name)),*]
+                    .into_iter()
+                    .chain(tracking)
+                    .chain(wrenches)
             }
 
             /// As [`Trace::columns`], to fill.
             pub fn columns_mut(&mut self) -> impl Iterator<Item = (Cow<'static, str>, &mut Vec<f64>)> {
                 let tracking =
-                    self.tracking.iter_mut().map(|tracking| (tracking.column(), &mut tracking.error));
-                [$((Cow::Borrowed(stringify!($name)), &mut self.$name)),*].into_iter().chain(tracking)
+                    self.tracking.iter_mut().map(|column| (column.named("tracking"), &mut column.values));
+                let wrenches =
+                    self.wrenches.iter_mut().map(|column| (column.named("wrench"), &mut column.values));
+                [$((Cow::Borrowed(stringify!($name)), &mut self.$name)),*]
+                    .into_iter()
+                    .chain(tracking)
+                    .chain(wrenches)
             }
         }
     };
@@ -98,22 +116,21 @@ columns!(
     reference_residual,
 );
 
-/// How well one control followed its reference.
+/// A column that belongs to a control or to an effect.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tracking {
-    /// The control's name.
+pub struct NamedColumn {
+    /// Whose it is.
     pub name: String,
-    /// Numbers per row: 6 for a task (m and rad, in the axes of W, or of B where its reference is relative to
-    /// the base), one per joint of the group otherwise.
+    /// Numbers per row.
     pub width: usize,
-    /// Desired less actual, `(T, width)`; zeros while the control does not run.
-    pub error: Vec<f64>,
+    /// The rows, `(T, width)`.
+    pub values: Vec<f64>,
 }
 
-impl Tracking {
-    /// Name of its column.
-    fn column(&self) -> Cow<'static, str> {
-        Cow::Owned(format!("tracking_{}", self.name))
+impl NamedColumn {
+    /// Name among all columns.
+    fn named(&self, kind: &str) -> Cow<'static, str> {
+        Cow::Owned(format!("{kind}_{}", self.name))
     }
 }
 

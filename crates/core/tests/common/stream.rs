@@ -41,7 +41,7 @@ pub fn wrenches(
     let scene = Scene {
         interval: (0.0, 1.0),
         time: 0.0,
-        reference: Some(Reference { state, gravity: Some(&gravity) }),
+        reference: Some(Reference { state, gravity: Some(&gravity), falls_freely: true }),
         earth,
         anchor: Anchor { time: 0.0, com: Vector3::zeros(), origin: r },
         bodies,

@@ -1,0 +1,184 @@
+//! The part of a planet's gravity that is not that of a point mass.
+
+use super::GravityError;
+use super::coefficients::Coefficients;
+use super::gfc;
+use super::harmonics::Harmonics;
+use super::zonal::{self, Zonal};
+use nalgebra::{Matrix3, Vector3};
+use std::path::Path;
+
+/// Models that come with the engine, to degree and order 70.
+const BUNDLED: [(&str, &str); 2] =
+    [("egm2008", include_str!("models/egm2008.gfc")), ("jgm3", include_str!("models/jgm3.gfc"))];
+
+/// Share of the reference radius from which on a field holds: the Earth's poles lie at 0.9966 of it.
+const SURFACE: f64 = 0.996;
+
+/// A planet's field without that of its point mass, in axes `F` fixed in the planet, z along its axis.
+#[derive(Clone, Debug)]
+pub struct GravityField {
+    name: String,
+    mu: f64,
+    radius: f64,
+    degree: usize,
+    order: usize,
+    kind: Kind,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    Zonal(Zonal),
+    Harmonics(Harmonics),
+}
+
+impl GravityField {
+    /// `J2` to `Jdegree` of the Earth (EGM2008), for degrees 2 to 6.
+    ///
+    /// # Errors
+    /// [`GravityError::ZonalDegree`].
+    pub fn zonal(degree: usize) -> Result<Self, GravityError> {
+        let count = degree.checked_sub(1).filter(|count| (1..=zonal::EARTH.len()).contains(count));
+        let j = &zonal::EARTH[..count.ok_or(GravityError::ZonalDegree { degree })?];
+        Self::zonals(3.986_004_415e14, 6_378_136.3, j)
+    }
+
+    /// A planet with `mu`, m³/s², and `J2`, `J3`, … `J6` (as many as are given, not normalised) for the
+    /// reference radius `R`, m.
+    ///
+    /// # Errors
+    /// [`GravityError`]: none or more than five, numbers that are not finite, `mu` or `radius` not positive.
+    pub fn zonals(mu: f64, radius: f64, j: &[f64]) -> Result<Self, GravityError> {
+        let degree = j.len() + 1;
+        if j.is_empty() || degree > zonal::HIGHEST {
+            return Err(GravityError::ZonalDegree { degree });
+        }
+        for (name, value) in [("mu", mu), ("radius", radius)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(GravityError::NotPositive { name, value });
+            }
+        }
+        if let Some(&value) = j.iter().find(|j| !j.is_finite()) {
+            return Err(GravityError::NotFinite { name: "j", value });
+        }
+        let mut all = [0.0; 5];
+        all[..j.len()].copy_from_slice(j);
+        let kind = Kind::Zonal(Zonal { mu, radius, j: all });
+        Ok(Self { name: "zonal".to_owned(), mu, radius, degree, order: 0, kind })
+    }
+
+    /// A model that comes with the engine: `egm2008` or `jgm3`, both to degree and order 70.
+    ///
+    /// # Errors
+    /// [`GravityError::UnknownModel`], [`GravityError::BeyondModel`], [`GravityError::OrderAboveDegree`].
+    pub fn bundled(name: &str, degree: usize, order: usize) -> Result<Self, GravityError> {
+        let Some((name, text)) = BUNDLED.iter().find(|(known, _)| *known == name) else {
+            let known = BUNDLED.iter().map(|(known, _)| *known).chain(["zonal"]).collect();
+            return Err(GravityError::UnknownModel { name: name.to_owned(), known });
+        };
+        let mut coefficients = gfc::read(name, text, Some(degree))?;
+        coefficients.model = (*name).to_owned();
+        Self::new(&coefficients, degree, order)
+    }
+
+    /// A model in a `.gfc` file; to the degree of the file, and to the order of its degree, where none is given.
+    ///
+    /// # Errors
+    /// [`GravityError`]: a file that cannot be read, is cut short, not normalised or varies with time, with the
+    /// line where there is one; and what [`GravityField::new`] says.
+    pub fn from_gfc(path: &Path, degree: Option<usize>, order: Option<usize>) -> Result<Self, GravityError> {
+        let file = path.display().to_string();
+        let read = std::fs::read_to_string(path);
+        let text =
+            read.map_err(|error| GravityError::Unreadable { file: file.clone(), reason: error.to_string() })?;
+        let coefficients = gfc::read(&file, &text, degree)?;
+        let degree = degree.unwrap_or(coefficients.degree());
+        Self::new(&coefficients, degree, order.unwrap_or(degree))
+    }
+
+    /// The part of a model up to `degree` and `order`; zonals up to degree 6 take their closed form.
+    ///
+    /// # Errors
+    /// [`GravityError::BeyondModel`], [`GravityError::OrderAboveDegree`], [`GravityError::Degree`].
+    pub fn new(coefficients: &Coefficients, degree: usize, order: usize) -> Result<Self, GravityError> {
+        let series = coefficients.cut(degree, order)?;
+        let Coefficients { model, mu, radius, .. } = coefficients;
+        let (name, mu, radius) = (model.clone(), *mu, *radius);
+        let is_closed = order == 0 && degree <= zonal::HIGHEST && series.get(1, 0) == [0.0; 2];
+        let kind = if is_closed {
+            // Jn = -√(2n + 1) C̄n0
+            let j = [2, 3, 4, 5, 6].map(|n: usize| -((2 * n + 1) as f64).sqrt() * series.get(n, 0)[0]);
+            Kind::Zonal(Zonal { mu, radius, j })
+        } else {
+            Kind::Harmonics(Harmonics::new(mu, radius, &series))
+        };
+        Ok(Self { name, mu, radius, degree, order, kind })
+    }
+
+    /// Name of the model.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Gravitational parameter that the coefficients belong to, m³/s².
+    pub fn mu(&self) -> f64 {
+        self.mu
+    }
+
+    /// Reference radius `R`, m.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Highest degree.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Highest order; with 0 the field is symmetric about z of `F`.
+    pub fn order(&self) -> usize {
+        self.order
+    }
+
+    /// Whether a value costs so little that none needs to be expanded from.
+    pub(super) fn is_closed(&self) -> bool {
+        matches!(self.kind, Kind::Zonal(_))
+    }
+
+    /// Acceleration at `r` from the planet's centre, m, axes of `F`: m/s².
+    ///
+    /// # Errors
+    /// [`GravityError::BelowSurface`] below 0.996 `R`, where no series is to be trusted; [`GravityError::NotFinite`].
+    #[inline]
+    pub fn acceleration(&self, r: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
+        self.check(r)?;
+        Ok(match &self.kind {
+            Kind::Zonal(zonal) => zonal.acceleration(r),
+            Kind::Harmonics(harmonics) => harmonics.acceleration(r),
+        })
+    }
+
+    /// Acceleration as above, and its gradient `∂g/∂r`, symmetric and without trace, 1/s².
+    ///
+    /// # Errors
+    /// As [`GravityField::acceleration`].
+    pub fn gradient(&self, r: &Vector3<f64>) -> Result<(Vector3<f64>, Matrix3<f64>), GravityError> {
+        self.check(r)?;
+        Ok(match &self.kind {
+            Kind::Zonal(zonal) => zonal.gradient(r),
+            Kind::Harmonics(harmonics) => harmonics.gradient(r),
+        })
+    }
+
+    #[inline]
+    fn check(&self, r: &Vector3<f64>) -> Result<(), GravityError> {
+        let (minimum, square) = (SURFACE * self.radius, r.norm_squared());
+        if square >= minimum * minimum && square < f64::INFINITY {
+            Ok(())
+        } else if square.is_finite() {
+            Err(GravityError::BelowSurface { distance: square.sqrt(), minimum })
+        } else {
+            Err(GravityError::NotFinite { name: "position", value: square.sqrt() })
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! The field of a point mass: its pull, the gradient of it, and the tide between two places.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// Acceleration of a point mass's field, `g = -μ r / |r|³`, m/s², axes of `r`.
+///
+/// Every user of the field calls this one expression, so that a reference which obeys it
+/// differs from it by exactly zero.
+pub(crate) fn point_mass(mu: f64, r: &Vector3<f64>) -> Vector3<f64> {
+    let r2 = r.norm_squared();
+    r * (-mu / (r2 * r2.sqrt()))
+}
+
+/// Its gradient `∂g/∂r = μ/|r|³ (3 r̂ r̂ᵀ - 1)`, 1/s².
+pub(crate) fn point_mass_gradient(mu: f64, r: &Vector3<f64>) -> Matrix3<f64> {
+    let r2 = r.norm_squared();
+    (r * r.transpose() * (3.0 / r2) - Matrix3::identity()) * (mu / (r2 * r2.sqrt()))
+}
+
+/// Tide `g(R + ρ) - g(R)` of a point mass, m/s², to full relative accuracy for any `ρ`.
+///
+/// `-(μ/r³) (ρ - f R)`, `f = q (3 + 3q + q²)/(1 + (1 + q)^{3/2})`, `q = ρ·(ρ + 2R)/R²`, `r² = R² (1 + q)`;
+/// `origin` is `R`, `offset` is `ρ`, m. Returns the tide and the distance `r = |R + ρ|`.
+///
+/// Source: Battin, AIAA 1999, chapter 8, the disturbing function (Encke's form).
+pub(crate) fn tide(mu: f64, origin: &Vector3<f64>, offset: &Vector3<f64>) -> (Vector3<f64>, f64) {
+    // q = ρ·(ρ + 2R)/R²,  s = √(1 + q),  r = R s
+    let r2 = origin.norm_squared();
+    let q = offset.dot(&(offset + origin * 2.0)) / r2;
+    let square = (1.0 + q).max(0.0);
+    let root = square.sqrt();
+    let distance = r2.sqrt() * root;
+    // f = n/a,  n = q (3 + 3q + q²),  a = 1 + s³;  both divisions in one
+    let (n, a, cube) = (q * (3.0 + q * (3.0 + q)), 1.0 + square * root, r2 * square * distance);
+    let inverse = 1.0 / (a * cube);
+    let f = n * cube * inverse;
+    ((offset - origin * f) * (-mu * a * inverse), distance)
+}
+
+/// Cube of the radius below which no solid body of this `μ = G m` can have its surface, m³.
+///
+/// `R³ = 3 μ/(4π G ρ)` with osmium's `ρ = 22 600 kg/m³`: `R` = 3980 km for the Earth's mass. The
+/// true surface lies higher and is not ours to know; far below it the field of a point mass
+/// means nothing and grows without bound.
+pub(crate) fn smallest_radius_cubed(mu: f64) -> f64 {
+    const G_RHO: f64 = 6.674e-11 * 22_600.0;
+    3.0 * mu / (4.0 * std::f64::consts::PI * G_RHO)
+}

@@ -1,0 +1,122 @@
+//! A robot far from its reference is integrated about one of its own; its rows stay in W.
+#![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
+
+mod common;
+
+use common::humanoid::humanoid;
+use nalgebra::{Matrix3, Vector3};
+use onorbit_core::environment::{BodyWrench, GravityGradient, ReferenceMotion};
+use onorbit_core::model::Model;
+use onorbit_core::orbit::{Kepler, MU_EARTH, Orbit};
+use onorbit_core::simulation::{Checkpoint, Moment, Simulation, Trace, certify};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Where W flies, and how fast the robot leaves it at the start, m/s.
+const PLACE: [f64; 6] = [6.778e6, 0.0, 0.0, 0.0, 4.76e3, 6.0e3];
+const LEAVING: [f64; 3] = [3.0, 40.0, -10.0];
+
+fn coasting(model: &Arc<Model>, time_step: f64, beyond: f64) -> Simulation {
+    let mut q = vec![0.0; model.nq()];
+    q[6] = 1.0;
+    q[7..].iter_mut().enumerate().for_each(|(j, q)| *q = 0.2 * (j as f64 - 3.0));
+    let mut v = vec![0.0; model.nv()];
+    v[..3].copy_from_slice(&LEAVING);
+    v[3..6].copy_from_slice(&[1e-3, -2e-3, 1e-3]);
+    let mut simulation = Simulation::new(Arc::clone(model), q, v);
+    let [x, y, z, vx, vy, vz] = PLACE;
+    let orbit = Kepler::from_state(Vector3::new(x, y, z), Vector3::new(vx, vy, vz), MU_EARTH).unwrap();
+    simulation.orbit = Some(Arc::new(orbit));
+    simulation.effects = vec![Arc::new(GravityGradient)];
+    simulation.time_step = time_step;
+    simulation.rereference_beyond = beyond;
+    simulation
+}
+
+/// A thruster that drives it away again and again.
+fn thrusting() -> Simulation {
+    let mut simulation = coasting(&rigid(), 10.0, 2e4);
+    let push = BodyWrench::new(0, Vector3::y() * 4.0, Vector3::zeros()).unwrap();
+    simulation.effects.push(Arc::new(push));
+    simulation
+}
+
+fn rigid() -> Arc<Model> {
+    Arc::new(Model::rigid_body(400.0, Matrix3::from_diagonal(&Vector3::new(30.0, 40.0, 50.0))).unwrap())
+}
+
+fn go(simulation: &mut Simulation, duration: f64) -> Trace {
+    simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+/// Distance of the base from where a Kepler orbit from the same start has it, m.
+fn missed(trace: &Trace) -> f64 {
+    let [x, y, z, vx, vy, vz] = PLACE;
+    let velocity = Vector3::new(vx, vy, vz) + Vector3::from(LEAVING);
+    let true_orbit = Kepler::from_state(Vector3::new(x, y, z), velocity, MU_EARTH).unwrap();
+    let end = true_orbit.state(*trace.time.last().unwrap()).unwrap().position;
+    let n = trace.position_eci.len();
+    (Vector3::from_column_slice(&trace.position_eci[n - 3..]) - end).norm()
+}
+
+#[test]
+fn days_of_drifting_cost_no_accuracy() {
+    let day = 86_400.0;
+    let [with, without] = [1e4, f64::INFINITY].map(|beyond| go(&mut coasting(&rigid(), 20.0, beyond), day));
+    println!("after a day, steps of 20 s: {:.1e} m with, {:.1e} m without", missed(&with), missed(&without));
+    println!("{} new references, the first at {} s", with.rereferenced.len(), with.rereferenced[0]);
+    // what is left was made before: the error of a step grows with the distance
+    assert!(missed(&with) < 1e-3 && missed(&with) < missed(&without) / 1000.0);
+    assert!(without.rereferenced.is_empty());
+}
+
+#[test]
+fn rows_stay_in_w() {
+    let model = Arc::new(humanoid());
+    let [with, without] = [2e4, f64::INFINITY].map(|beyond| {
+        let mut simulation = coasting(&model, 0.5, beyond);
+        simulation.record_wrenches = true;
+        go(&mut simulation, 1500.0)
+    });
+    println!("{} new references", with.rereferenced.len());
+    assert!(!with.rereferenced.is_empty());
+    for ((name, a), (_, b)) in with.columns().zip(without.columns()) {
+        let peak = b.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+        let worst = a.iter().zip(b).fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
+        println!("{name}: {worst:.1e} of {peak:.1e}");
+        assert_eq!(a.len(), b.len());
+        assert!(worst <= 2e-9 * peak, "{name}: {worst} of {peak}");
+    }
+    let certificate = certify(&model, &with);
+    assert!(certificate.passed(), "{:?}", certificate.checks());
+}
+
+#[test]
+fn a_continued_run_keeps_the_reference_of_its_own() {
+    let whole = go(&mut thrusting(), 6000.0);
+    let mut kept: Option<(Checkpoint, Trace)> = None;
+    let mut stop = |now: &Moment<'_>| {
+        if now.time < 3000.0 {
+            return ControlFlow::Continue(());
+        }
+        kept = Some((now.checkpoint().unwrap(), now.trace.clone()));
+        ControlFlow::Break(())
+    };
+    thrusting().run(6000.0, &mut stop).unwrap_err();
+    let (checkpoint, mut rows) = kept.unwrap();
+    let checkpoint = Checkpoint::from_json(&checkpoint.to_json()).unwrap();
+    rows.rereferenced.clear(); // the checkpoint knows
+    assert!(whole.rereferenced.iter().any(|t| *t < 3000.0) && whole.rereferenced.iter().any(|t| *t > 3000.0));
+    let mut go_on = |_: &Moment<'_>| ControlFlow::Continue(());
+    let resumed = thrusting().resume(6000.0, (&checkpoint, rows), &mut go_on).unwrap();
+    assert_eq!(resumed.q, whole.q);
+    assert_eq!(resumed.work, whole.work);
+    assert_eq!(resumed.rereferenced, whole.rereferenced);
+}
+
+#[test]
+fn a_robot_that_is_carried_or_led_stays_with_its_reference() {
+    let mut carried = coasting(&rigid(), 10.0, 2e4);
+    carried.reference_motion = ReferenceMotion::Carried;
+    assert!(go(&mut carried, 6000.0).rereferenced.is_empty());
+}

@@ -1,0 +1,89 @@
+"""Sun and Moon from a SPICE kernel (``.bsp``) of the user's, read by PyPI's ``jplephem``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.exceptions import EarthError, NotFoundError, ReadError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+BODIES = {"sun": 10, "moon": 301, "earth": 399}
+SOLAR_SYSTEM = 0
+"""Number of the solar system's barycentre, where the chains of segments end."""
+
+Segment = tuple[float, float, float, "NDArray[np.float64]"]
+"""Sign, start (s of TDB from J2000.0), length of a piece (s), coefficients (3, pieces, count), km."""
+
+
+def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
+    """What leads from the Earth to the Sun, and to the Moon.
+
+    Raises
+    ------
+    NotFoundError, ReadError
+        No such file; no kernel of positions.
+    EarthError
+        Without ``jplephem``; a kernel without Sun, Moon or Earth, or with series of another type.
+    """
+    try:
+        from jplephem.spk import SPK
+    except ImportError:
+        message = "a SPICE kernel is read by jplephem, which is not installed: pip install 'onorbit-rs[spice]'"
+        raise EarthError(message, name="ephemeris", got=str(path)) from None
+    try:
+        kernel = SPK.open(path)
+    except FileNotFoundError:
+        raise NotFoundError(f"no SPICE kernel is at {path}", path=str(path), kind="SPICE kernel") from None
+    except (OSError, ValueError) as error:
+        raise ReadError(f"{path} is no SPICE kernel: {error}", path=str(path), kind="SPICE kernel") from None
+    try:
+        sun, moon, earth = (_chain(kernel, name, path) for name in ("sun", "moon", "earth"))
+        return _between(kernel, sun, earth, path), _between(kernel, moon, earth, path)
+    finally:
+        kernel.close()
+
+
+def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
+    """Pairs of centre and target that lead to a body."""
+    centres = {target: center for center, target in kernel.pairs}
+    body, chain = BODIES[name], []
+    while body in centres and body != SOLAR_SYSTEM:
+        chain.append((centres[body], body))
+        body = centres[body]
+    if not chain:
+        known = ", ".join(str(target) for target in sorted(centres))
+        message = f"{path} does not hold the {name.title()} ({BODIES[name]}); it holds {known or 'nothing'}"
+        raise EarthError(message, name="ephemeris", got=str(path), expected=name)
+    return chain
+
+
+def _between(
+    kernel: Any, there: list[tuple[int, int]], earth: list[tuple[int, int]], path: str | Path
+) -> list[Segment]:
+    """The body less the Earth, what both share left out."""
+    ends = {(there or earth)[-1][0], earth[-1][0]}
+    if len(ends) > 1:
+        message = f"{path} does not lead from the Earth to the body {there[0][1]}"
+        raise EarthError(message, name="ephemeris", got=str(path))
+    wanted = [(pair, 1.0) for pair in there if pair not in earth]
+    wanted += [(pair, -1.0) for pair in earth if pair not in there]
+    return [(sign, *_series(kernel.pairs[pair], path)) for pair, sign in wanted]
+
+
+def _series(segment: Any, path: str | Path) -> tuple[float, float, NDArray[np.float64]]:
+    try:
+        start, length, coefficients = segment.load_array()  # days, lowest degree first
+    except (AttributeError, ValueError):
+        kind = getattr(segment, "data_type", "?")
+        message = f"{path}: the segment of body {segment.target} is of type {kind}, 2 and 3 can be read"
+        raise EarthError(message, name="ephemeris", got=kind, expected=(2, 3)) from None
+    return (
+        (start - 2_451_545.0) * 86_400.0,
+        length * 86_400.0,
+        np.array(coefficients[:3], dtype=float, order="C"),
+    )
