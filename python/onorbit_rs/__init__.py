@@ -11,7 +11,7 @@ SI and radians everywhere; frames and layouts are those of ``docs/``: ``q = [p(3
 
 from __future__ import annotations
 
-from onorbit_rs import exceptions, layouts, robots, scenarios
+from onorbit_rs import exceptions, layouts, relative, robots, scenarios
 from onorbit_rs._core import (
     MU_EARTH,
     Atmosphere,
@@ -31,6 +31,7 @@ from onorbit_rs._core import (
     FixedFrame,
     FreeFloating,
     Goal,
+    GravityField,
     GravityGradient,
     HarrisPriester,
     Hold,
@@ -46,6 +47,7 @@ from onorbit_rs._core import (
     Model,
     ModelBuilder,
     Nrlmsise00,
+    Numerical,
     Orbit,
     Plates,
     RadiationPressure,
@@ -60,6 +62,7 @@ from onorbit_rs._core import (
     Trace,
     Waypoints,
     build_info,
+    propagate,
     rollout,
 )
 from onorbit_rs.control import Controller
@@ -87,6 +90,7 @@ __all__ = [
     "FixedFrame",
     "FreeFloating",
     "Goal",
+    "GravityField",
     "GravityGradient",
     "HarrisPriester",
     "Hold",
@@ -102,6 +106,7 @@ __all__ = [
     "Model",
     "ModelBuilder",
     "Nrlmsise00",
+    "Numerical",
     "OnOrbitError",
     "Orbit",
     "Plates",
@@ -121,6 +126,8 @@ __all__ = [
     "build_info",
     "exceptions",
     "layouts",
+    "propagate",
+    "relative",
     "resume",
     "robots",
     "rollout",

@@ -55,6 +55,7 @@ __all__ = [
     "Frame",
     "FreeFloating",
     "Goal",
+    "GravityField",
     "GravityGradient",
     "HarrisPriester",
     "Hold",
@@ -356,9 +357,35 @@ class Kepler(Orbit):
         periapsis_time: float | None = None,
         epoch: float = 0.0,
         mu: float = ...,
+        secular_j2: bool = False,
+        j2: float = ...,
+        radius: float = ...,
     ) -> Kepler: ...
     @staticmethod
-    def from_state(r: ArrayLike, v: ArrayLike, *, mu: float = ...) -> Kepler: ...
+    def from_state(
+        r: ArrayLike,
+        v: ArrayLike,
+        *,
+        mu: float = ...,
+        secular_j2: bool = False,
+        j2: float = ...,
+        radius: float = ...,
+    ) -> Kepler: ...
+    @staticmethod
+    def states(
+        t: ArrayLike,
+        *,
+        semi_major_axis: ArrayLike,
+        eccentricity: ArrayLike,
+        inclination: ArrayLike,
+        raan: ArrayLike,
+        argument_of_periapsis: ArrayLike,
+        mean_anomaly: ArrayLike,
+        mu: float = ...,
+        threads: int | None = None,
+    ) -> tuple[_Array, _Array]: ...
+    @property
+    def secular_j2(self) -> bool: ...
     @property
     def semi_major_axis(self) -> float: ...
     @property
@@ -391,6 +418,29 @@ class Sgp4(Orbit):
     def julian_date(self) -> tuple[float, float]: ...
     @property
     def period(self) -> float: ...
+
+@final
+class Numerical(Orbit):
+    def __new__(
+        cls,
+        r: ArrayLike,
+        v: ArrayLike,
+        *,
+        t0: float = 0.0,
+        environment: Sequence[Effect] | None = None,
+        earth: Earth | None = None,
+        mu: float | None = None,
+        axes: Literal["GCRF", "TEME"] = "GCRF",
+    ) -> Numerical: ...
+    @staticmethod
+    def from_orbit(
+        orbit: Orbit,
+        *,
+        t0: float = 0.0,
+        environment: Sequence[Effect] | None = None,
+        earth: Earth | None = None,
+        mu: float | None = None,
+    ) -> Numerical: ...
 
 @final
 class CustomPath(Orbit):
@@ -510,6 +560,44 @@ class RadiationPressure(Effect):
         shadow: bool = True,
         earth_radius: float = ...,
     ) -> RadiationPressure: ...
+
+@final
+class GravityField(Effect):
+    def __new__(cls, model: str, *, degree: int = 36, order: int | None = None) -> GravityField: ...
+    @staticmethod
+    def zonal(
+        degree: int | None = None,
+        *,
+        j: ArrayLike | None = None,
+        mu: float | None = None,
+        radius: float | None = None,
+    ) -> GravityField: ...
+    @staticmethod
+    def from_gfc(
+        path: _Path, *, degree: int | None = None, order: int | None = None
+    ) -> GravityField: ...
+    @staticmethod
+    def from_coefficients(
+        c: ArrayLike,
+        s: ArrayLike,
+        *,
+        mu: float,
+        radius: float,
+        degree: int | None = None,
+        order: int | None = None,
+    ) -> GravityField: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def mu(self) -> float: ...
+    @property
+    def radius(self) -> float: ...
+    @property
+    def degree(self) -> int: ...
+    @property
+    def order(self) -> int: ...
+    def acceleration(self, r: ArrayLike) -> Floats: ...
+    def gradient(self, r: ArrayLike) -> Floats: ...
 
 @final
 class BodyWrench(Effect):
@@ -876,4 +964,26 @@ def rollout(
     integrator: _Integrator = "rk4",
     record_every: int | None = None,
     threads: int | None = None,
+) -> tuple[_Array, _Array]: ...
+
+def propagate(
+    orbits: Sequence[Orbit],
+    times: ArrayLike,
+    *,
+    threads: int | None = None,
+    out: tuple[_Array, _Array] | None = None,
+) -> tuple[_Array, _Array]: ...
+def hill_transition(mean_motion: float, t: ArrayLike) -> _Array: ...
+def intercept_velocity(mean_motion: float, r: ArrayLike, t: float) -> _Array: ...
+def to_lvlh(
+    orbit: Orbit, t: ArrayLike, r: ArrayLike, v: ArrayLike, *, frame: Literal["lvlh", "nadir"] = "lvlh"
+) -> tuple[_Array, _Array]: ...
+def from_lvlh(
+    orbit: Orbit, t: ArrayLike, r: ArrayLike, v: ArrayLike, *, frame: Literal["lvlh", "nadir"] = "lvlh"
+) -> tuple[_Array, _Array]: ...
+def relative_elements(
+    r: ArrayLike, v: ArrayLike, deputy_r: ArrayLike, deputy_v: ArrayLike, *, mu: float = ...
+) -> _Array: ...
+def deputy_state(
+    r: ArrayLike, v: ArrayLike, elements: ArrayLike, *, mu: float = ...
 ) -> tuple[_Array, _Array]: ...

@@ -9,6 +9,7 @@ use onorbit_core::environment::atmosphere::Atmosphere;
 use onorbit_core::environment::{
     BodyWrench, Drag, Effect, GravityGradient, RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX,
 };
+use onorbit_core::gravity::GravityField;
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -23,15 +24,44 @@ pub(crate) struct PyEffect {
 
 enum Kind {
     GravityGradient,
-    BodyWrench { frame: String, force: Vector3<f64>, torque: Vector3<f64>, start: f64, end: f64 },
-    Drag { atmosphere: Arc<dyn Atmosphere>, surfaces: Spread },
-    RadiationPressure { surfaces: Spread, flux: f64, earth_radius: Option<f64> },
+    /// Part of the gravity of the run: see [`crate::gravity::gravity_of`].
+    GravityField(Arc<GravityField>),
+    BodyWrench {
+        frame: String,
+        force: Vector3<f64>,
+        torque: Vector3<f64>,
+        start: f64,
+        end: f64,
+    },
+    Drag {
+        atmosphere: Arc<dyn Atmosphere>,
+        surfaces: Spread,
+    },
+    RadiationPressure {
+        surfaces: Spread,
+        flux: f64,
+        earth_radius: Option<f64>,
+    },
 }
 
 impl PyEffect {
-    /// The effect on a given robot.
-    pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Arc<dyn Effect>> {
-        Ok(match &self.kind {
+    /// The field of a planet as one of the effects.
+    pub(crate) fn of_field(field: Arc<GravityField>) -> Self {
+        Self { kind: Kind::GravityField(field) }
+    }
+
+    /// The field, if it is one.
+    pub(crate) fn field(&self) -> Option<&Arc<GravityField>> {
+        match &self.kind {
+            Kind::GravityField(field) => Some(field),
+            _ => None,
+        }
+    }
+
+    /// The effect on a given robot; none where it is part of gravity.
+    pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Option<Arc<dyn Effect>>> {
+        Ok(Some(match &self.kind {
+            Kind::GravityField(_) => return Ok(None),
             Kind::GravityGradient => Arc::new(GravityGradient),
             Kind::BodyWrench { frame, force, torque, start, end } => {
                 let frame = model.frame(frame).map_err(|error| error.into_python(py))?;
@@ -50,7 +80,7 @@ impl PyEffect {
                     .map_err(|error| error.into_python(py))?;
                 Arc::new(light)
             }
-        })
+        }))
     }
 }
 

@@ -7,6 +7,7 @@ use onorbit_core::earth::EarthError;
 use onorbit_core::environment::EnvironmentError;
 use onorbit_core::environment::atmosphere::AtmosphereError;
 use onorbit_core::environment::surfaces::SurfaceError;
+use onorbit_core::gravity::GravityError;
 use onorbit_core::model::ModelError;
 use onorbit_core::model::urdf::{UrdfError, UrdfProblem};
 use onorbit_core::orbit::sgp4::{ElementSetError, Sgp4Error};
@@ -14,6 +15,7 @@ use onorbit_core::orbit::{OrbitError, PathError};
 use onorbit_core::reference::ReferenceError;
 use onorbit_core::simulation::SimulationError;
 use onorbit_core::spatial::SplineError;
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -111,6 +113,18 @@ impl IntoPython for InputError {
             }
             Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
             Self::NeedsOrbit => plain(py, "ControlError", &message),
+            Self::Orbit { orbit, source } => {
+                let error = source.clone().into_python(py);
+                for (name, value) in [("index", orbit.into_py_any(py)), ("message", message.into_py_any(py))]
+                {
+                    let _ = value.and_then(|value| error.value(py).setattr(name, value));
+                }
+                error
+            }
+            Self::NoEllipse { name, value, expected, .. } => {
+                let fields = fields!(py, "name": name, "got": value, "expected": expected);
+                raise(py, "InputError", &message, &fields)
+            }
             Self::Diverged { .. } => plain(py, "SimulationError", &message),
             Self::QuaternionNorm { norm, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
@@ -142,7 +156,19 @@ impl IntoPython for OrbitError {
             Self::BeyondAsymptote { value, .. } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": "true_anomaly", "got": value))
             }
+            Self::NotClosed { eccentricity } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "eccentricity", "got": eccentricity))
+            }
+            Self::BelowSurface { time, distance, smallest_radius } => {
+                let fields =
+                    fields!(py, "name": "t", "time": time, "got": distance, "expected": smallest_radius);
+                raise(py, "OrbitError", &message, &fields)
+            }
+            Self::TooManySteps { time, .. } | Self::StepTooShort { time, .. } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "t", "time": time))
+            }
             Self::Path(error) => path_error(py, error, &message),
+            Self::Gravity(error) => error.clone().into_python(py),
             Self::ElementSet(error) => element_set_error(py, error, &message),
             Self::Sgp4(error) => sgp4_error(py, error, &message),
             _ => plain(py, "OrbitError", &message),
@@ -227,10 +253,49 @@ impl IntoPython for EarthError {
     }
 }
 
+impl IntoPython for GravityError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let fields = match &self {
+            Self::NotFinite { name, value } | Self::NotPositive { name, value } => {
+                fields!(py, "name": name, "got": value)
+            }
+            Self::Degree { degree } | Self::ZonalDegree { degree } => {
+                fields!(py, "name": "degree", "got": degree)
+            }
+            Self::BeyondModel { degree, highest, .. } => {
+                fields!(py, "name": "degree", "got": degree, "expected": highest)
+            }
+            Self::OrderAboveDegree { degree, order } => {
+                fields!(py, "name": "order", "got": order, "expected": degree)
+            }
+            Self::UnknownModel { name, known } => {
+                fields!(py, "name": "model", "got": name, "expected": known)
+            }
+            Self::WrongLength { name, expected, got } => {
+                fields!(py, "name": name, "got": got, "expected": expected)
+            }
+            Self::Unreadable { file, .. } | Self::Truncated { file, .. } => fields!(py, "path": file),
+            Self::Header { file, key, .. } => fields!(py, "path": file, "name": key),
+            Self::Row { file, line, .. }
+            | Self::Twice { file, line, .. }
+            | Self::VariesWithTime { file, line, .. } => fields!(py, "path": file, "line": line),
+            Self::BelowSurface { distance, minimum } => {
+                fields!(py, "name": "r", "got": distance, "expected": minimum)
+            }
+            Self::OtherPlanet { field, orbit } => {
+                fields!(py, "name": "mu", "got": orbit, "expected": field)
+            }
+            _ => fields!(py,),
+        };
+        raise(py, "GravityError", &self.to_string(), &fields)
+    }
+}
+
 impl IntoPython for EnvironmentError {
     fn into_python(self, py: Python<'_>) -> PyErr {
         let message = self.to_string();
         match &self {
+            Self::Gravity(error) => error.clone().into_python(py),
             Self::NotFinite { name, value } => {
                 raise(py, "EffectError", &message, &fields!(py, "name": name, "got": value))
             }
@@ -418,6 +483,7 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::Environment { time, source } => {
                 with_trace(py, source.into_python(py), time, trace)
             }
+            SimulationError::Gravity(source) => source.into_python(py),
             SimulationError::Checkpoint(_) => plain(py, "CheckpointError", &message),
             SimulationError::Reference { time, source } => {
                 with_trace(py, source.into_python(py), time, trace)

@@ -8,11 +8,14 @@ mod control;
 mod earth;
 mod environment;
 mod errors;
+mod gravity;
 mod kernels;
 mod model;
 mod orbit;
+mod propagate;
 mod records;
 mod reference;
+mod relative;
 mod rollout;
 mod simulation;
 mod surfaces;
@@ -62,10 +65,12 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<orbit::PySgp4>()?;
     m.add_class::<orbit::PyCustomPath>()?;
     m.add_class::<orbit::PyFixedFrame>()?;
+    m.add_class::<orbit::PyNumerical>()?;
     m.add_class::<earth::PyEarth>()?;
     m.add_class::<environment::PyEffect>()?;
     m.add_class::<environment::PyGravityGradient>()?;
     m.add_class::<environment::PyBodyWrench>()?;
+    m.add_class::<gravity::PyGravityField>()?;
     m.add_class::<environment::PyDrag>()?;
     m.add_class::<environment::PyRadiationPressure>()?;
     air::add_classes(m)?;
@@ -77,5 +82,12 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<checkpoint::PyCheckpoint>()?;
     m.add_function(wrap_pyfunction!(build_info, m)?)?;
     m.add_function(wrap_pyfunction!(rollout::rollout, m)?)?;
+    m.add_function(wrap_pyfunction!(propagate::propagate, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::hill_transition, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::intercept_velocity, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::to_lvlh, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::from_lvlh, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::relative_elements, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::deputy_state, m)?)?;
     Ok(())
 }

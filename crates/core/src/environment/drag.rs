@@ -53,6 +53,10 @@ impl Effect for Drag {
         true
     }
 
+    fn acts_on_reference(&self) -> bool {
+        true
+    }
+
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], what the atmosphere refuses.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {

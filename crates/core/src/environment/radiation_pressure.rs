@@ -81,6 +81,10 @@ impl Effect for RadiationPressure {
         true
     }
 
+    fn acts_on_reference(&self) -> bool {
+        true
+    }
+
     fn reads_velocities(&self) -> bool {
         false
     }
