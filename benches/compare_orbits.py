@@ -1,11 +1,11 @@
 """Orbits against their peers on PyPI, alternated in one run.
 
-``pip install sgp4 scipy brahe``, then ``python benches/compare_orbits.py [ROUNDS] [JOB ...]``, jobs ``sgp4``, ``kepler`` and
-``day``. Each round times ours and the peer's one after the other, best of three; printed are the median ratio and its
-spread, with the accuracy beside it. ``sgp4``: 1000 satellites at 1440 epochs against ``SatrecArray``. ``kepler``: a million
-pairs of elements and time against the same equations vectorised in numpy. ``day``: one LEO day under J2 against SciPy's
-DOP853 at rtol 1e-12 and brahe's RKN1210 with its trajectory off and simple Earth rotation; errors are those against x87
-extended precision.
+``pip install sgp4 scipy brahe``, then ``python benches/compare_orbits.py [ROUNDS] [JOB ...]``, jobs ``sgp4``,
+``kepler`` and ``day``. Each round times ours and the peer's one after the other, best of three; printed are
+the median ratio and its spread, with the accuracy beside it. ``sgp4``: 1000 satellites at 1440 epochs against
+``SatrecArray``. ``kepler``: a million pairs of elements and time against the same equations vectorised in
+numpy. ``day``: one LEO day under J2 against SciPy's DOP853 at rtol 1e-12 and brahe's RKN1210 with its
+trajectory off and simple Earth rotation; errors are those against x87 extended precision.
 """
 
 from __future__ import annotations
@@ -127,7 +127,14 @@ def kepler(rounds: int) -> None:
     for most in (0.05, 0.9):
         e = draw.uniform(0, most, count)
         elements = (a, e, inclination, *angles)
-        names = ("semi_major_axis", "eccentricity", "inclination", "raan", "argument_of_periapsis", "mean_anomaly")
+        names = (
+            "semi_major_axis",
+            "eccentricity",
+            "inclination",
+            "raan",
+            "argument_of_periapsis",
+            "mean_anomaly",
+        )
         given = dict(zip(names, elements, strict=True))
         r, _ = numpy_kepler(*elements, t, MU)
         far = np.abs(oo.Kepler.states(t, **given, mu=MU)[0] - r).max()
@@ -145,7 +152,7 @@ def kepler(rounds: int) -> None:
 
 
 def extended_day(r: Any, v: Any, mu: float, radius: float, j2: float) -> Any:
-    """The day's end in numpy's longdouble: Stoermer's Gauss-Jackson would do; here classical extrapolation (Gragg)."""
+    """The day's end in numpy's longdouble, by extrapolation of Stoermer's rule in steps of a minute."""
     wide = np.longdouble
     mu, radius, j2 = wide(mu), wide(radius), wide(j2)
 

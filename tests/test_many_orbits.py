@@ -18,7 +18,7 @@ DEEP = (
     "1 11801U          80230.29629788  .01431103  00000-0  14311-1      13",
     "2 11801  46.7916 230.4354 7318036  47.4722  10.4117  2.28537848    13",
 )
-DECAYS = (
+SHORT_LIVED = (
     "1 28350U 04020A   06167.21788666  .16154492  76267-5  18678-3 0  8894",
     "2 28350  64.9977 345.6130 0024870 260.7578  99.9590 16.47856722116490",
 )
@@ -71,7 +71,11 @@ def test_writes_where_it_is_told_to() -> None:
     assert r is out[0]
     assert v is out[1]
     assert np.array_equal(r, oo.propagate(orbits, times)[0])
-    for wrong in (np.empty((len(orbits), 5, 2)), np.empty((len(orbits), 5, 3), np.float32), out[0][:, :, ::-1]):
+    for wrong in (
+        np.empty((len(orbits), 5, 2)),
+        np.empty((len(orbits), 5, 3), np.float32),
+        out[0][:, :, ::-1],
+    ):
         with pytest.raises(ShapeError, match="out"):
             oo.propagate(orbits, times, out=(wrong, out[1]))
     out[0].flags.writeable = False
@@ -82,11 +86,11 @@ def test_writes_where_it_is_told_to() -> None:
 
 
 def test_an_orbit_that_is_refused_is_named() -> None:
-    orbits = [oo.Sgp4(*LOW), oo.Sgp4(*DECAYS), oo.Sgp4(*DECAYS)]
-    with pytest.raises(Sgp4Error, match=r"^orbit 1: SGP4 error 6 at t = ") as caught:
+    orbits = [oo.Sgp4(*LOW), oo.Sgp4(*SHORT_LIVED), oo.Sgp4(*SHORT_LIVED)]
+    with pytest.raises(Sgp4Error, match=r"^orbit 1: SGP4 error 1 at t = ") as caught:
         oo.propagate(orbits, np.arange(0.0, 1e5, 600.0))
     assert caught.value.index == 1
-    assert caught.value.code == 6
+    assert caught.value.code == 1
     assert pickle.loads(pickle.dumps(caught.value)).index == 1
     with pytest.raises(OrbitError, match="orbit 0"):
         oo.propagate(mixed(), [np.nan])
@@ -116,7 +120,7 @@ def test_ellipses_by_their_elements() -> None:
         assert np.allclose(v[k], velocity, rtol=0, atol=1e-8)
     alike = oo.Kepler.states(t, **{name: values[0] for name, values in given.items()})[0]
     assert np.allclose(alike[0], r[0], rtol=0, atol=1e-9)
-    with pytest.raises(InputError, match="eccentricity is 1.5 in state 0"):
+    with pytest.raises(InputError, match=r"eccentricity is 1\.5 in state 0"):
         oo.Kepler.states(t, **(given | {"eccentricity": 1.5}))
     with pytest.raises(ShapeError, match="raan"):
         oo.Kepler.states(t, **(given | {"raan": np.zeros(3)}))

@@ -32,7 +32,9 @@ def test_it_leaves_from_any_orbit() -> None:
     kepler = oo.Kepler.from_state(R0, V0, mu=MU)
     orbit = oo.Numerical.from_orbit(kepler)
     assert np.allclose(orbit.state(5e4)[0], kepler.state(5e4)[0], rtol=0, atol=1e-5)
-    later = oo.Numerical.from_orbit(oo.Numerical(R0, V0, environment=[flattened()]), t0=4e4, environment=[flattened()])
+    later = oo.Numerical.from_orbit(
+        oo.Numerical(R0, V0, environment=[flattened()]), t0=4e4, environment=[flattened()]
+    )
     assert np.linalg.norm(later.state(86400.0)[0] - END) < 1e-5
     line1 = "1 06251U 62025E   06176.82412014  .00008885  00000-0  12808-3 0  3985"
     line2 = "2 06251  58.0579  54.0425 0030035 139.1568 221.1854 15.56387291  6774"

@@ -10,7 +10,9 @@ from onorbit_rs import relative
 from onorbit_rs.exceptions import InputError, OrbitError, ShapeError
 
 CHIEF = oo.Kepler(semi_major_axis=7e6, eccentricity=0.01, inclination=0.9, raan=0.2, mean_anomaly=0.4)
-DEPUTY = oo.Kepler(semi_major_axis=7e6, eccentricity=0.0101, inclination=0.9001, raan=0.2, mean_anomaly=0.4001)
+DEPUTY = oo.Kepler(
+    semi_major_axis=7e6, eccentricity=0.0101, inclination=0.9001, raan=0.2, mean_anomaly=0.4001
+)
 
 
 def test_transitions_are_vallados() -> None:

@@ -573,9 +573,7 @@ class GravityField(Effect):
         radius: float | None = None,
     ) -> GravityField: ...
     @staticmethod
-    def from_gfc(
-        path: _Path, *, degree: int | None = None, order: int | None = None
-    ) -> GravityField: ...
+    def from_gfc(path: _Path, *, degree: int | None = None, order: int | None = None) -> GravityField: ...
     @staticmethod
     def from_coefficients(
         c: ArrayLike,
@@ -965,7 +963,6 @@ def rollout(
     record_every: int | None = None,
     threads: int | None = None,
 ) -> tuple[_Array, _Array]: ...
-
 def propagate(
     orbits: Sequence[Orbit],
     times: ArrayLike,

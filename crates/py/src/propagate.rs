@@ -25,7 +25,7 @@ pub(crate) fn propagate<'py>(
     orbits: Vec<PyRef<'py, PyOrbit>>,
     times: Any<'_, 'py>,
     threads: Option<Count>,
-    out: Option<(Any<'_, 'py>, Any<'_, 'py>)>,
+    out: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let input = Input::new(times, "times")?;
     let count = orbits.len();
@@ -47,9 +47,10 @@ pub(crate) fn propagate<'py>(
             Ok((r.into_any(), v.into_any()))
         }
         Some((r, v)) => {
-            let (mut to_r, mut to_v) = (writable(r, "out[0]", &shape)?, writable(v, "out[1]", &shape)?);
+            let (mut to_r, mut to_v) = (writable(&r, "out[0]", &shape)?, writable(&v, "out[1]", &shape)?);
             run(slice(&mut to_r), slice(&mut to_v))?;
-            Ok((r.clone(), v.clone()))
+            drop((to_r, to_v));
+            Ok((r, v))
         }
     }
 }

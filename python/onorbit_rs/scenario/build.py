@@ -17,7 +17,7 @@ from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffec
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.environment import BodyWrenchEffect
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
-from onorbit_rs.scenario.make_orbit import make_orbit
+from onorbit_rs.scenario.make_orbit import integrated, make_orbit
 from onorbit_rs.scenario.place import dotted, file_and_line
 from onorbit_rs.scenario.reference import Start
 from onorbit_rs.scenario.schema import Scenario
@@ -54,19 +54,21 @@ def build(scenario: Scenario) -> Built:
         model = _robot(scenario)
     with located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, beside)
-        if orbit is not None:
-            orbit.state(scenario.simulation.duration)  # a path or a decaying orbit may end before the run
     with located(scenario, "epoch" if scenario.earth is None else "earth"):
         earth = make_earth(scenario, orbit, beside)
+    effects = []
+    for index, effect in enumerate(scenario.environment):
+        with located(scenario, "environment", index):
+            effects.append(_effect(effect, model, beside))
+    with located(scenario, "orbit"):
+        orbit = integrated(scenario.orbit, orbit, effects, earth)
+        if orbit is not None:
+            orbit.state(scenario.simulation.duration)  # a path or a falling orbit may end before the run
     with located(scenario, "initial"):
         q, v = initial_state(scenario.initial, model, orbit)
     tool = scenario.tracked_tool
     with located(scenario, "tool"):
         tool_pose = None if tool is None else model.frame_pose(q, tool)
-    effects = []
-    for index, effect in enumerate(scenario.environment):
-        with located(scenario, "environment", index):
-            effects.append(_effect(effect, model, beside))
     start = Start(model, q, tool_pose, orbit, beside)
     settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
 

@@ -99,7 +99,7 @@ class ConicOrbit(Part):
 
 
 class KeplerOrbit(ConicOrbit):
-    """Two-body motion; with ``secular_j2`` node, periapsis and mean anomaly drift as flattening makes them."""
+    """Two-body motion; with ``secular_j2`` node, periapsis and mean anomaly drift as in flattened gravity."""
 
     kind: Literal["kepler"] = "kepler"
     secular_j2: bool | None = None

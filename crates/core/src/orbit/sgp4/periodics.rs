@@ -93,10 +93,12 @@ fn kepler<S: Real>(u: S, ax: S, ay: S) -> (S, S) {
         let step = (u - ay * cos + ax * sin - eo) / (S::of(1.0) - cos * ax - sin * ay);
         let (low, high) = (S::of(-longest), S::of(longest));
         let step = S::select(S::less(step, low), low, S::select(S::less(high, step), high, step));
-        eo += step;
-        if left == 0 || !S::any(S::less(S::of(enough), step.abs())) {
+        // a lane that has got there stays as it is, whatever its neighbours need
+        let is_under_way = S::less(S::of(enough), step.abs());
+        if left == 0 || !S::any(is_under_way) {
             break;
         }
+        eo += S::select(is_under_way, step, S::of(0.0));
         sin_cos = eo.sin_cos();
     }
     sin_cos
