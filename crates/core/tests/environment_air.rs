@@ -183,3 +183,19 @@ fn around_the_start_of_a_step_every_model_keeps_its_stated_error() {
         assert!(worst < 1e-4);
     }
 }
+
+#[test]
+fn the_air_is_known_up_to_the_last_metre_of_a_model() {
+    let earth = earth("2014-03-01T06:00:00 UTC");
+    let at = |altitude: f64| {
+        let place = Geodetic { latitude: 0.3, longitude: 0.2, altitude };
+        let centre = earth.rot_fi(0.0).tr_mul(&place.position(&WGS84));
+        LocalAir::new(&HarrisPriester::default(), &earth, 0.0, &centre).map(|air| (air, centre))
+    };
+    for altitude in [100_001.0, 999_999.0] {
+        let (air, centre) = at(altitude).expect("within");
+        let below = centre * (1.0 - 50.0 / centre.norm());
+        assert!(air.density(&below).expect("near") > air.density(&centre).expect("near"));
+    }
+    assert!(matches!(at(1_000_001.0), Err(AtmosphereError::OutsideLayers { .. })));
+}

@@ -30,7 +30,7 @@ impl LocalAir {
     /// About `centre`, axes of `I`, m.
     ///
     /// # Errors
-    /// What the model refuses at the centre or 100 m above.
+    /// What the model refuses at the centre.
     pub fn new(
         atmosphere: &dyn Atmosphere,
         earth: &Earth,
@@ -39,9 +39,9 @@ impl LocalAir {
     ) -> Result<Self, AtmosphereError> {
         let place = AirPlace::new(earth, time, centre)?;
         let density = atmosphere.density(&place)?;
-        let above = atmosphere.density(&place.raised(RISE))?;
-        // κ = ln(ρ/ρ⁺)/Δh
-        let decay = if above > 0.0 && density > 0.0 { (density / above).ln() / RISE } else { 0.0 };
+        // κ = ln(ρ/ρ⁺)/Δh, downwards where the model ends
+        let slope = |rise: f64| Ok((density / atmosphere.density(&place.raised(rise))?).ln() / rise);
+        let decay = if density > 0.0 { slope(RISE).or_else(|_: AtmosphereError| slope(-RISE))? } else { 0.0 };
         let spin = earth.angular_velocity(time);
         Ok(Self { time, centre: *centre, up: place.up, density, decay, spin })
     }
