@@ -16,6 +16,7 @@ from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffect
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.environment import BodyWrenchEffect
+from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
 from onorbit_rs.scenario.make_orbit import integrated, make_orbit
 from onorbit_rs.scenario.place import dotted, file_and_line
@@ -156,7 +157,7 @@ def _robot(scenario: Scenario) -> _core.Model:
 
 
 def _effect(effect: Any, model: _core.Model, beside: Path) -> Any:
-    if isinstance(effect, (DragEffect, RadiationPressureEffect)):
+    if isinstance(effect, (DragEffect, GravityFieldEffect, RadiationPressureEffect)):
         return effect.make(beside)
     if isinstance(effect, BodyWrenchEffect):
         bodies = list(model.body_names)

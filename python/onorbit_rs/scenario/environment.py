@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffect
 from onorbit_rs.scenario.fields import Force3, Time, Torque3
+from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.part import Part, expand_kind
 
 
@@ -42,7 +43,7 @@ class BodyWrenchEffect(Part):
 
 Effect = Annotated[
     Annotated[
-        GravityGradientEffect | BodyWrenchEffect | DragEffect | RadiationPressureEffect,
+        GravityFieldEffect | GravityGradientEffect | BodyWrenchEffect | DragEffect | RadiationPressureEffect,
         Field(discriminator="kind"),
     ],
     BeforeValidator(expand_kind),

@@ -13,6 +13,7 @@ from onorbit_rs.scenario.control_fit import check_control, wrong
 from onorbit_rs.scenario.controls import AnyControl
 from onorbit_rs.scenario.earth import EarthPart, Epoch
 from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
+from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.path import Orbit
@@ -112,8 +113,9 @@ class Scenario(Part):
         check_control(self)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
-                if isinstance(effect, GravityGradientEffect):
-                    raise wrong(("environment", index), "the gravity gradient needs an 'orbit'")
+                if isinstance(effect, GravityGradientEffect | GravityFieldEffect):
+                    what = effect.kind.replace("_", " ")
+                    raise wrong(("environment", index), f"the {what} needs an 'orbit'")
             if self.initial.frame != "world":
                 raise wrong(("initial", "frame"), f"the frame {self.initial.frame} needs an 'orbit'")
         return self
