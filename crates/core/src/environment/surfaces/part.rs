@@ -84,8 +84,8 @@ impl Push {
 
     #[inline(always)]
     fn add(&mut self, force: Vec3<f64>, torque: Vec3<f64>) {
-        self.force = self.force + force;
-        self.torque = self.torque + torque;
+        self.force += force;
+        self.torque += torque;
     }
 }
 
