@@ -49,6 +49,7 @@ __all__ = [
     "Frame",
     "FreeFloating",
     "Goal",
+    "GravityField",
     "GravityGradient",
     "Hold",
     "Joint",
@@ -302,6 +303,7 @@ class Earth:
         eop: _Path | ArrayLike | None = None,
         angle: float | None = None,
         rate: float | None = None,
+        ephemeris: _Path | None = None,
         axes: Literal["GCRF", "TEME"] = "GCRF",
     ) -> Earth: ...
     @property
@@ -413,8 +415,54 @@ class FixedFrame(Orbit):
 class Effect: ...
 
 @final
+class GravityField(Effect):
+    def __new__(cls, model: str, *, degree: int = 36, order: int | None = None) -> GravityField: ...
+    @staticmethod
+    def zonal(
+        degree: int | None = None,
+        *,
+        j: ArrayLike | None = None,
+        mu: float | None = None,
+        radius: float | None = None,
+    ) -> GravityField: ...
+    @staticmethod
+    def from_gfc(
+        path: _Path, *, degree: int | None = None, order: int | None = None
+    ) -> GravityField: ...
+    @staticmethod
+    def from_coefficients(
+        c: ArrayLike,
+        s: ArrayLike,
+        *,
+        mu: float,
+        radius: float,
+        degree: int | None = None,
+        order: int | None = None,
+    ) -> GravityField: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def mu(self) -> float: ...
+    @property
+    def radius(self) -> float: ...
+    @property
+    def degree(self) -> int: ...
+    @property
+    def order(self) -> int: ...
+    def acceleration(self, r: ArrayLike) -> Floats: ...
+    def gradient(self, r: ArrayLike) -> Floats: ...
+
+@final
 class GravityGradient(Effect):
     def __new__(cls) -> GravityGradient: ...
+
+@final
+class ThirdBody(Effect):
+    def __new__(cls, body: Literal["sun", "moon"]) -> ThirdBody: ...
+    @property
+    def body(self) -> str: ...
+    @property
+    def mu(self) -> float: ...
 
 @final
 class BodyWrench(Effect):

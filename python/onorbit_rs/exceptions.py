@@ -17,6 +17,7 @@ class                       built-in               fields
 ``PathError``               ``OrbitError``         ``time, start, end``: no path, or none at that time
 ``EarthError``              ``ValueError``         ``name, got, expected``: epochs, Earth orientation, Sun and Moon
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
+``GravityError``            ``ValueError``         ``name, got, expected, path, line``: a gravity field, its file
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
 ``CheckpointError``         ``ValueError``         ``path``: broken, or of another run: no going on from it
@@ -47,6 +48,7 @@ __all__ = [
     "EffectError",
     "ElementSetError",
     "FrameError",
+    "GravityError",
     "InputError",
     "ModelError",
     "NotFoundError",
@@ -184,6 +186,16 @@ class EffectError(OnOrbitError, ValueError):
     name: Any = None
     got: Any = None
     expected: Any = None
+
+
+class GravityError(OnOrbitError, ValueError):
+    """A gravity field that cannot be, or a place where it does not hold; ``path`` and ``line`` of a file."""
+
+    name: Any = None
+    got: Any = None
+    expected: Any = None
+    path: Any = None
+    line: Any = None
 
 
 class ControlError(OnOrbitError, ValueError):

@@ -5,6 +5,7 @@ use onorbit_core::batch::InputError;
 use onorbit_core::control::ControlError;
 use onorbit_core::earth::EarthError;
 use onorbit_core::environment::EnvironmentError;
+use onorbit_core::gravity::GravityError;
 use onorbit_core::model::ModelError;
 use onorbit_core::model::urdf::{UrdfError, UrdfProblem};
 use onorbit_core::orbit::sgp4::{ElementSetError, Sgp4Error};
@@ -141,6 +142,7 @@ impl IntoPython for OrbitError {
                 raise(py, "OrbitError", &message, &fields!(py, "name": "true_anomaly", "got": value))
             }
             Self::Path(error) => path_error(py, error, &message),
+            Self::Gravity(error) => error.clone().into_python(py),
             Self::ElementSet(error) => element_set_error(py, error, &message),
             Self::Sgp4(error) => sgp4_error(py, error, &message),
             _ => plain(py, "OrbitError", &message),
@@ -225,10 +227,50 @@ impl IntoPython for EarthError {
     }
 }
 
+impl IntoPython for GravityError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let fields = match &self {
+            Self::Earth(error) => return error.clone().into_python(py),
+            Self::NotFinite { name, value } | Self::NotPositive { name, value } => {
+                fields!(py, "name": name, "got": value)
+            }
+            Self::Degree { degree } | Self::ZonalDegree { degree } => {
+                fields!(py, "name": "degree", "got": degree)
+            }
+            Self::BeyondModel { degree, highest, .. } => {
+                fields!(py, "name": "degree", "got": degree, "expected": highest)
+            }
+            Self::OrderAboveDegree { degree, order } => {
+                fields!(py, "name": "order", "got": order, "expected": degree)
+            }
+            Self::UnknownModel { name, known } => {
+                fields!(py, "name": "model", "got": name, "expected": known)
+            }
+            Self::WrongLength { name, expected, got } => {
+                fields!(py, "name": name, "got": got, "expected": expected)
+            }
+            Self::Unreadable { file, .. } | Self::Truncated { file, .. } => fields!(py, "path": file),
+            Self::Header { file, key, .. } => fields!(py, "path": file, "name": key),
+            Self::Row { file, line, .. }
+            | Self::Twice { file, line, .. }
+            | Self::VariesWithTime { file, line, .. } => fields!(py, "path": file, "line": line),
+            Self::BelowSurface { distance, minimum } => {
+                fields!(py, "name": "r", "got": distance, "expected": minimum)
+            }
+            Self::OtherPlanet { field, orbit } => {
+                fields!(py, "name": "mu", "got": orbit, "expected": field)
+            }
+            _ => fields!(py,),
+        };
+        raise(py, "GravityError", &self.to_string(), &fields)
+    }
+}
+
 impl IntoPython for EnvironmentError {
     fn into_python(self, py: Python<'_>) -> PyErr {
         let message = self.to_string();
         match &self {
+            Self::Gravity(error) => error.clone().into_python(py),
             Self::NotFinite { name, value } => {
                 raise(py, "EffectError", &message, &fields!(py, "name": name, "got": value))
             }
@@ -373,6 +415,7 @@ pub(crate) trait SimulationErrorExt: Sized + Into<SimulationError> {
             SimulationError::Environment { time, source } => {
                 with_trace(py, source.into_python(py), time, trace)
             }
+            SimulationError::Gravity(source) => source.into_python(py),
             SimulationError::Checkpoint(_) => plain(py, "CheckpointError", &message),
             SimulationError::Reference { time, source } => {
                 with_trace(py, source.into_python(py), time, trace)

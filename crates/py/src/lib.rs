@@ -7,6 +7,7 @@ mod control;
 mod earth;
 mod environment;
 mod errors;
+mod gravity;
 mod kernels;
 mod model;
 mod orbit;
@@ -63,7 +64,9 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<earth::PyEarth>()?;
     m.add_class::<environment::PyEffect>()?;
     m.add_class::<environment::PyGravityGradient>()?;
+    m.add_class::<environment::PyThirdBody>()?;
     m.add_class::<environment::PyBodyWrench>()?;
+    m.add_class::<gravity::PyGravityField>()?;
     control::add_classes(m)?;
     reference::add_classes(m)?;
     m.add_class::<simulation::PySimulation>()?;

@@ -6,6 +6,7 @@ use crate::control::{Robot, control_law};
 use crate::earth::PyEarth;
 use crate::environment::PyEffect;
 use crate::errors::{SimulationErrorExt, fields, plain, raise};
+use crate::gravity::gravity_of;
 use crate::model::PyModel;
 use crate::orbit::PyOrbit;
 use crate::reference;
@@ -99,11 +100,11 @@ impl PySimulation {
                 return Err(raise(py, "InputError", &message, &fields));
             }
         };
-        simulation.effects = environment
-            .unwrap_or_default()
-            .iter()
-            .map(|effect| effect.get().on(py, &core))
-            .collect::<PyResult<_>>()?;
+        let environment = environment.unwrap_or_default();
+        let effects = environment.iter().filter_map(|effect| effect.get().on(py, &core).transpose());
+        simulation.effects = effects.collect::<PyResult<_>>()?;
+        let mu = simulation.orbit.as_ref().and_then(|orbit| orbit.mu());
+        simulation.gravity = gravity_of(py, &environment, mu, simulation.earth.as_ref())?.map(Arc::new);
         if let Some(tolerance) = reference_start_tolerance {
             simulation.reference_start_tolerance = fixed(tolerance, "reference_start_tolerance", &[2])?;
         }

@@ -21,6 +21,7 @@ from onorbit_rs.scenario.place import dotted, file_and_line
 from onorbit_rs.scenario.reference import Start
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.start import initial_state
+from onorbit_rs.scenario.third_body import ThirdBodyEffect
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -164,4 +165,6 @@ def _effect(effect: Any, model: _core.Model) -> Any:
         return _core.BodyWrench(
             effect.body, force=np.array(effect.force), torque=np.array(effect.torque), **times
         )
+    if isinstance(effect, ThirdBodyEffect):
+        return _core.ThirdBody(effect.body)
     return _core.GravityGradient()

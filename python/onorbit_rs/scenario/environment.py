@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.fields import Force3, Time, Torque3
 from onorbit_rs.scenario.part import Part, expand_kind
+from onorbit_rs.scenario.third_body import ThirdBodyEffect
 
 
 class GravityGradientEffect(Part):
@@ -40,6 +41,6 @@ class BodyWrenchEffect(Part):
 
 
 Effect = Annotated[
-    Annotated[GravityGradientEffect | BodyWrenchEffect, Field(discriminator="kind")],
+    Annotated[GravityGradientEffect | BodyWrenchEffect | ThirdBodyEffect, Field(discriminator="kind")],
     BeforeValidator(expand_kind),
 ]

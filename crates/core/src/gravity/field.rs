@@ -170,6 +170,45 @@ impl GravityField {
         })
     }
 
+    /// Accelerations at many places: rows of three numbers, `F` axes, m and m/s².
+    ///
+    /// # Errors
+    /// [`GravityError::WrongLength`]; otherwise the first error of [`GravityField::acceleration`], rows before it being written.
+    pub fn accelerations(&self, positions: &[f64], out: &mut [f64]) -> Result<(), GravityError> {
+        self.at_each(positions, out, 3, |r, row| {
+            row.copy_from_slice(self.acceleration(r)?.as_slice());
+            Ok(())
+        })
+    }
+
+    /// Gradients at many places: rows of nine numbers, 1/s²; as [`GravityField::accelerations`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn gradients(&self, positions: &[f64], out: &mut [f64]) -> Result<(), GravityError> {
+        self.at_each(positions, out, 9, |r, row| {
+            row.copy_from_slice(self.gradient(r)?.1.as_slice());
+            Ok(())
+        })
+    }
+
+    fn at_each(
+        &self,
+        positions: &[f64],
+        out: &mut [f64],
+        width: usize,
+        mut write: impl FnMut(&Vector3<f64>, &mut [f64]) -> Result<(), GravityError>,
+    ) -> Result<(), GravityError> {
+        let expected = positions.len() / 3 * width;
+        if out.len() != expected {
+            return Err(GravityError::WrongLength { name: "out", expected, got: out.len() });
+        }
+        for (r, row) in positions.chunks_exact(3).zip(out.chunks_exact_mut(width)) {
+            write(&Vector3::from_column_slice(r), row)?;
+        }
+        Ok(())
+    }
+
     #[inline]
     fn check(&self, r: &Vector3<f64>) -> Result<(), GravityError> {
         let (minimum, square) = (SURFACE * self.radius, r.norm_squared());
