@@ -36,21 +36,28 @@ class _BuildInfo(TypedDict):
 
 __all__ = [
     "MU_EARTH",
+    "Atmosphere",
     "Body",
     "BodyWrench",
+    "Cannonball",
     "Checkpoint",
     "Circle",
     "Compliance",
     "ComputedTorque",
+    "ConstantAtmosphere",
     "Control",
     "CustomPath",
+    "Drag",
     "Effect",
+    "ExponentialAtmosphere",
+    "Faces",
     "FixedFrame",
     "Frame",
     "FreeFloating",
     "Goal",
     "GravityField",
     "GravityGradient",
+    "HarrisPriester",
     "Hold",
     "Joint",
     "JointComputedTorque",
@@ -64,13 +71,17 @@ __all__ = [
     "LineParabola",
     "Model",
     "ModelBuilder",
+    "Nrlmsise00",
     "Orbit",
+    "Plates",
+    "RadiationPressure",
     "Reference",
     "Sampled",
     "Screw",
     "Sgp4",
     "Simulation",
     "State",
+    "Surface",
     "Target",
     "Trace",
     "Visual",
@@ -347,9 +358,35 @@ class Kepler(Orbit):
         periapsis_time: float | None = None,
         epoch: float = 0.0,
         mu: float = ...,
+        secular_j2: bool = False,
+        j2: float = ...,
+        radius: float = ...,
     ) -> Kepler: ...
     @staticmethod
-    def from_state(r: ArrayLike, v: ArrayLike, *, mu: float = ...) -> Kepler: ...
+    def from_state(
+        r: ArrayLike,
+        v: ArrayLike,
+        *,
+        mu: float = ...,
+        secular_j2: bool = False,
+        j2: float = ...,
+        radius: float = ...,
+    ) -> Kepler: ...
+    @staticmethod
+    def states(
+        t: ArrayLike,
+        *,
+        semi_major_axis: ArrayLike,
+        eccentricity: ArrayLike,
+        inclination: ArrayLike,
+        raan: ArrayLike,
+        argument_of_periapsis: ArrayLike,
+        mean_anomaly: ArrayLike,
+        mu: float = ...,
+        threads: int | None = None,
+    ) -> tuple[_Array, _Array]: ...
+    @property
+    def secular_j2(self) -> bool: ...
     @property
     def semi_major_axis(self) -> float: ...
     @property
@@ -382,6 +419,29 @@ class Sgp4(Orbit):
     def julian_date(self) -> tuple[float, float]: ...
     @property
     def period(self) -> float: ...
+
+@final
+class Numerical(Orbit):
+    def __new__(
+        cls,
+        r: ArrayLike,
+        v: ArrayLike,
+        *,
+        t0: float = 0.0,
+        environment: Sequence[Effect] | None = None,
+        earth: Earth | None = None,
+        mu: float | None = None,
+        axes: Literal["GCRF", "TEME"] = "GCRF",
+    ) -> Numerical: ...
+    @staticmethod
+    def from_orbit(
+        orbit: Orbit,
+        *,
+        t0: float = 0.0,
+        environment: Sequence[Effect] | None = None,
+        earth: Earth | None = None,
+        mu: float | None = None,
+    ) -> Numerical: ...
 
 @final
 class CustomPath(Orbit):
@@ -455,6 +515,126 @@ class GravityField(Effect):
 @final
 class GravityGradient(Effect):
     def __new__(cls) -> GravityGradient: ...
+
+@disjoint_base
+class Atmosphere:
+    def density(
+        self,
+        altitude: ArrayLike,
+        latitude: ArrayLike | None = None,
+        longitude: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        earth: Earth | None = None,
+    ) -> Any: ...
+    def density_at(self, r: ArrayLike, t: ArrayLike | None = None, *, earth: Earth) -> Any: ...
+
+@final
+class ConstantAtmosphere(Atmosphere):
+    def __new__(cls, density: float) -> ConstantAtmosphere: ...
+
+@final
+class ExponentialAtmosphere(Atmosphere):
+    def __new__(
+        cls, *, density: float | None = None, altitude: float | None = None, scale_height: float | None = None
+    ) -> ExponentialAtmosphere: ...
+
+@final
+class HarrisPriester(Atmosphere):
+    def __new__(cls, *, exponent: float = 4.0, lag: float = ...) -> HarrisPriester: ...
+
+@final
+class Nrlmsise00(Atmosphere):
+    def __new__(
+        cls,
+        *,
+        f107: float | None = None,
+        f107a: float | None = None,
+        ap: ArrayLike | None = None,
+        table: _Path | None = None,
+        three_hourly: bool = True,
+    ) -> Nrlmsise00: ...
+
+@disjoint_base
+class Surface: ...
+
+@final
+class Cannonball(Surface):
+    def __new__(
+        cls, area: float, *, drag_coefficient: float = 2.2, reflectivity: float = 1.0
+    ) -> Cannonball: ...
+
+@final
+class Faces(Surface):
+    def __new__(
+        cls, *, drag_coefficient: float = 2.2, specular: float = 0.0, diffuse: float = 0.0
+    ) -> Faces: ...
+
+@final
+class Plates(Surface):
+    def __new__(
+        cls,
+        areas: ArrayLike,
+        normals: ArrayLike,
+        centroids: ArrayLike,
+        *,
+        drag_coefficient: float = 2.2,
+        specular: float = 0.0,
+        diffuse: float = 0.0,
+    ) -> Plates: ...
+
+@final
+class Drag(Effect):
+    def __new__(
+        cls, atmosphere: Atmosphere, *, surfaces: Surface | Mapping[str, Surface] | None = None
+    ) -> Drag: ...
+
+@final
+class RadiationPressure(Effect):
+    def __new__(
+        cls,
+        *,
+        surfaces: Surface | Mapping[str, Surface] | None = None,
+        flux: float = ...,
+        shadow: bool = True,
+        earth_radius: float = ...,
+    ) -> RadiationPressure: ...
+
+@final
+class GravityField(Effect):
+    def __new__(cls, model: str, *, degree: int = 36, order: int | None = None) -> GravityField: ...
+    @staticmethod
+    def zonal(
+        degree: int | None = None,
+        *,
+        j: ArrayLike | None = None,
+        mu: float | None = None,
+        radius: float | None = None,
+    ) -> GravityField: ...
+    @staticmethod
+    def from_gfc(path: _Path, *, degree: int | None = None, order: int | None = None) -> GravityField: ...
+    @staticmethod
+    def from_coefficients(
+        c: ArrayLike,
+        s: ArrayLike,
+        *,
+        mu: float,
+        radius: float,
+        degree: int | None = None,
+        order: int | None = None,
+    ) -> GravityField: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def mu(self) -> float: ...
+    @property
+    def radius(self) -> float: ...
+    @property
+    def degree(self) -> int: ...
+    @property
+    def order(self) -> int: ...
+    def acceleration(self, r: ArrayLike) -> _Array: ...
+    def gradient(self, r: ArrayLike) -> _Array: ...
 
 @final
 class ThirdBody(Effect):
@@ -829,4 +1009,25 @@ def rollout(
     integrator: _Integrator = "rk4",
     record_every: int | None = None,
     threads: int | None = None,
+) -> tuple[_Array, _Array]: ...
+def propagate(
+    orbits: Sequence[Orbit],
+    times: ArrayLike,
+    *,
+    threads: int | None = None,
+    out: tuple[_Array, _Array] | None = None,
+) -> tuple[_Array, _Array]: ...
+def hill_transition(mean_motion: float, t: ArrayLike) -> _Array: ...
+def intercept_velocity(mean_motion: float, r: ArrayLike, t: float) -> _Array: ...
+def to_lvlh(
+    orbit: Orbit, t: ArrayLike, r: ArrayLike, v: ArrayLike, *, frame: Literal["lvlh", "nadir"] = "lvlh"
+) -> tuple[_Array, _Array]: ...
+def from_lvlh(
+    orbit: Orbit, t: ArrayLike, r: ArrayLike, v: ArrayLike, *, frame: Literal["lvlh", "nadir"] = "lvlh"
+) -> tuple[_Array, _Array]: ...
+def relative_elements(
+    r: ArrayLike, v: ArrayLike, deputy_r: ArrayLike, deputy_v: ArrayLike, *, mu: float = ...
+) -> _Array: ...
+def deputy_state(
+    r: ArrayLike, v: ArrayLike, elements: ArrayLike, *, mu: float = ...
 ) -> tuple[_Array, _Array]: ...

@@ -139,11 +139,16 @@ class FrameError(OnOrbitError, KeyError):
 
 
 class OrbitError(OnOrbitError, ValueError):
-    """Elements that describe no orbit, or an orbit that cannot be used so."""
+    """Elements that describe no orbit, or an orbit that cannot be used so.
+
+    ``time`` where there is one, s; ``index`` of the orbit among many.
+    """
 
     name: Any = None
     got: Any = None
     expected: Any = None
+    time: Any = None
+    index: Any = None
 
 
 class ElementSetError(OrbitError):

@@ -1,9 +1,14 @@
 //! Effects of the environment; a body's name is looked up when the simulation is made.
 
+use crate::air::PyAtmosphere;
 use crate::arrays::fixed;
 use crate::errors::{IntoPython, fields, raise};
+use crate::surfaces::Spread;
 use nalgebra::Vector3;
-use onorbit_core::environment::{BodyWrench, Effect, GravityGradient};
+use onorbit_core::environment::atmosphere::Atmosphere;
+use onorbit_core::environment::{
+    BodyWrench, Drag, Effect, GravityGradient, RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX,
+};
 use onorbit_core::gravity::{GravityField, Luminary};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
@@ -29,6 +34,15 @@ enum Kind {
         torque: Vector3<f64>,
         start: f64,
         end: f64,
+    },
+    Drag {
+        atmosphere: Arc<dyn Atmosphere>,
+        surfaces: Spread,
+    },
+    RadiationPressure {
+        surfaces: Spread,
+        flux: f64,
+        earth_radius: Option<f64>,
     },
 }
 
@@ -65,6 +79,16 @@ impl PyEffect {
                     .and_then(|wrench| wrench.during(*start, *end))
                     .map_err(|error| error.into_python(py))?;
                 Arc::new(wrench)
+            }
+            Kind::Drag { atmosphere, surfaces } => {
+                Arc::new(Drag::new(Arc::clone(atmosphere), surfaces.on(py, model)?))
+            }
+            Kind::RadiationPressure { surfaces, flux, earth_radius } => {
+                let light = RadiationPressure::new(surfaces.on(py, model)?)
+                    .with_flux(*flux)
+                    .and_then(|light| light.with_shadow(*earth_radius))
+                    .map_err(|error| error.into_python(py))?;
+                Arc::new(light)
             }
         }))
     }
@@ -151,6 +175,54 @@ impl PyBodyWrench {
             .and_then(|wrench| wrench.during(start, end))
             .map_err(|error| error.into_python(py))?;
         let kind = Kind::BodyWrench { frame: body, force, torque, start, end };
+        Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
+    }
+}
+
+/// Drag of air that turns with the Earth, ``-½ ρ C_D A (n·u)₊ u`` on every face, with its torque; needs an orbit and an earth.
+///
+/// ``u`` is the velocity of the face's centroid in the air, a cannonball's that of the centre of mass. ``surfaces`` is ``Faces`` (the default,
+/// with C_D 2.2: those of the robot's visual geometry), one surface for a robot of one body, or a dict of them by link; links left out
+/// feel nothing. The density is computed once a step and follows the scale height from there: within 100 m wrong by at most 1e-4.
+#[pyclass(name = "Drag", extends = PyEffect, frozen, module = "onorbit_rs")]
+pub(crate) struct PyDrag;
+
+#[pymethods]
+impl PyDrag {
+    #[new]
+    #[pyo3(signature = (atmosphere, *, surfaces=None))]
+    fn new(
+        atmosphere: &Bound<'_, PyAtmosphere>,
+        surfaces: Option<Any<'_, '_>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let atmosphere = Arc::clone(&atmosphere.get().air);
+        let kind = Kind::Drag { atmosphere, surfaces: Spread::new(surfaces)? };
+        Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
+    }
+}
+
+/// The push of sunlight on every face, with its torque, and the Earth's shadow; needs an orbit and an earth with an epoch.
+///
+/// ``F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]``, a cannonball's ``-P C_R A ŝ``; ``P = ν (flux/c) (1 au/d)²``. ``flux`` is W/m² at
+/// 1 au, ``surfaces`` as for ``Drag``. ``ν`` is the free share of the Sun's disc behind an Earth of ``earth_radius`` m: umbra, penumbra
+/// and full light; ``shadow=False`` leaves it out. Light from the Earth is left out.
+#[pyclass(name = "RadiationPressure", extends = PyEffect, frozen, module = "onorbit_rs")]
+pub(crate) struct PyRadiationPressure;
+
+#[pymethods]
+impl PyRadiationPressure {
+    #[new]
+    #[pyo3(signature = (*, surfaces=None, flux=SOLAR_FLUX, shadow=true, earth_radius=SHADOW_RADIUS))]
+    fn new(
+        py: Python<'_>,
+        surfaces: Option<Any<'_, '_>>,
+        flux: f64,
+        shadow: bool,
+        earth_radius: f64,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        RadiationPressure::check(flux, earth_radius).map_err(|error| error.into_python(py))?;
+        let earth_radius = shadow.then_some(earth_radius);
+        let kind = Kind::RadiationPressure { surfaces: Spread::new(surfaces)?, flux, earth_radius };
         Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
     }
 }

@@ -5,6 +5,8 @@ use onorbit_core::batch::InputError;
 use onorbit_core::control::ControlError;
 use onorbit_core::earth::EarthError;
 use onorbit_core::environment::EnvironmentError;
+use onorbit_core::environment::atmosphere::AtmosphereError;
+use onorbit_core::environment::surfaces::SurfaceError;
 use onorbit_core::gravity::GravityError;
 use onorbit_core::model::ModelError;
 use onorbit_core::model::urdf::{UrdfError, UrdfProblem};
@@ -13,6 +15,7 @@ use onorbit_core::orbit::{OrbitError, PathError};
 use onorbit_core::reference::ReferenceError;
 use onorbit_core::simulation::SimulationError;
 use onorbit_core::spatial::SplineError;
+use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -110,6 +113,18 @@ impl IntoPython for InputError {
             }
             Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
             Self::NeedsOrbit => plain(py, "ControlError", &message),
+            Self::Orbit { orbit, source } => {
+                let error = source.clone().into_python(py);
+                for (name, value) in [("index", orbit.into_py_any(py)), ("message", message.into_py_any(py))]
+                {
+                    let _ = value.and_then(|value| error.value(py).setattr(name, value));
+                }
+                error
+            }
+            Self::NoEllipse { name, value, expected, .. } => {
+                let fields = fields!(py, "name": name, "got": value, "expected": expected);
+                raise(py, "InputError", &message, &fields)
+            }
             Self::Diverged { .. } => plain(py, "SimulationError", &message),
             Self::QuaternionNorm { norm, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
@@ -140,6 +155,17 @@ impl IntoPython for OrbitError {
             }
             Self::BeyondAsymptote { value, .. } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": "true_anomaly", "got": value))
+            }
+            Self::NotClosed { eccentricity } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "eccentricity", "got": eccentricity))
+            }
+            Self::BelowSurface { time, distance, smallest_radius } => {
+                let fields =
+                    fields!(py, "name": "t", "time": time, "got": distance, "expected": smallest_radius);
+                raise(py, "OrbitError", &message, &fields)
+            }
+            Self::TooManySteps { time, .. } | Self::StepTooShort { time, .. } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "t", "time": time))
             }
             Self::Path(error) => path_error(py, error, &message),
             Self::Gravity(error) => error.clone().into_python(py),
@@ -277,8 +303,51 @@ impl IntoPython for EnvironmentError {
             Self::EmptyInterval { start, end } => {
                 raise(py, "EffectError", &message, &fields!(py, "name": "start, end", "got": (*start, *end)))
             }
+            Self::Atmosphere(source) => source.clone().into_python(py),
+            Self::Surface(source) => source.clone().into_python(py),
+            Self::Earth(source) => source.clone().into_python(py),
             _ => plain(py, "EffectError", &message),
         }
+    }
+}
+
+impl IntoPython for AtmosphereError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        let fields = match &self {
+            Self::Earth(source) => return source.clone().into_python(py),
+            Self::BelowSurface { altitude } => {
+                fields!(py, "name": "altitude", "got": altitude, "expected": "at least 0 m")
+            }
+            Self::OutsideLayers { altitude, lowest, highest, .. } => {
+                fields!(py, "name": "altitude", "got": altitude, "expected": (lowest, highest))
+            }
+            Self::Value { name, value, expected } => {
+                fields!(py, "name": name, "got": value, "expected": expected)
+            }
+            Self::MissingSpaceWeather { name, date } => fields!(py, "name": name, "got": date),
+            Self::OutsideTable { date, first, last } => {
+                fields!(py, "name": "date", "got": date, "expected": (first, last))
+            }
+            _ => fields!(py,),
+        };
+        raise(py, "EffectError", &message, &fields)
+    }
+}
+
+impl IntoPython for SurfaceError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        let fields = match &self {
+            Self::Value { name, value, expected } => {
+                fields!(py, "name": name, "got": value, "expected": expected)
+            }
+            Self::Reflection { specular, diffuse } => {
+                fields!(py, "name": "specular, diffuse", "got": (*specular, *diffuse))
+            }
+            _ => fields!(py, "name": "surfaces"),
+        };
+        raise(py, "EffectError", &message, &fields)
     }
 }
 

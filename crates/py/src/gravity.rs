@@ -50,7 +50,7 @@ pub(crate) fn gravity_of(
 
 /// A planet's gravity field: all of it but the point mass, whose ``mu`` it brings along.
 ///
-/// ``model`` is ``egm2008`` (tide-free) or ``jgm3``, both to degree and order 70; ``order`` is ``degree`` where not given. As one of
+/// ``model`` is ``egm2008`` (tide-free) or ``jgm3`` (with the permanent tide), both to degree and order 70; ``order`` is ``degree`` where not given. As one of
 /// the effects of a simulation it acts on every body; the planet turns as the simulation's ``earth`` says. A field of
 /// order 0 may do without, its axis is then z. Positions are from the planet's centre in axes fixed in the planet.
 #[pyclass(name = "GravityField", extends = PyEffect, frozen, module = "onorbit_rs")]

@@ -1,5 +1,6 @@
 //! Python bindings of `onorbit-core`: this crate translates, it never computes.
 
+mod air;
 mod arrays;
 mod builder;
 mod checkpoint;
@@ -11,10 +12,13 @@ mod gravity;
 mod kernels;
 mod model;
 mod orbit;
+mod propagate;
 mod records;
 mod reference;
+mod relative;
 mod rollout;
 mod simulation;
+mod surfaces;
 mod trace;
 mod xacro;
 
@@ -61,12 +65,17 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<orbit::PySgp4>()?;
     m.add_class::<orbit::PyCustomPath>()?;
     m.add_class::<orbit::PyFixedFrame>()?;
+    m.add_class::<orbit::PyNumerical>()?;
     m.add_class::<earth::PyEarth>()?;
     m.add_class::<environment::PyEffect>()?;
     m.add_class::<environment::PyGravityGradient>()?;
     m.add_class::<environment::PyThirdBody>()?;
     m.add_class::<environment::PyBodyWrench>()?;
     m.add_class::<gravity::PyGravityField>()?;
+    m.add_class::<environment::PyDrag>()?;
+    m.add_class::<environment::PyRadiationPressure>()?;
+    air::add_classes(m)?;
+    surfaces::add_classes(m)?;
     control::add_classes(m)?;
     reference::add_classes(m)?;
     m.add_class::<simulation::PySimulation>()?;
@@ -74,5 +83,12 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<checkpoint::PyCheckpoint>()?;
     m.add_function(wrap_pyfunction!(build_info, m)?)?;
     m.add_function(wrap_pyfunction!(rollout::rollout, m)?)?;
+    m.add_function(wrap_pyfunction!(propagate::propagate, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::hill_transition, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::intercept_velocity, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::to_lvlh, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::from_lvlh, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::relative_elements, m)?)?;
+    m.add_function(wrap_pyfunction!(relative::deputy_state, m)?)?;
     Ok(())
 }

@@ -2,13 +2,15 @@
 
 mod custom_path;
 mod fixed_frame;
+mod numerical;
 mod sgp4;
 
 pub(crate) use custom_path::PyCustomPath;
 pub(crate) use fixed_frame::PyFixedFrame;
+pub(crate) use numerical::PyNumerical;
 pub(crate) use sgp4::PySgp4;
 
-use crate::arrays::{Input, array_of, fixed, fresh, wrong_shape, zeros};
+use crate::arrays::{Count, Input, array_of, fixed, fresh, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use nalgebra::Vector3;
 use onorbit_core::orbit::{
@@ -118,6 +120,11 @@ impl PyOrbit {
     }
 }
 
+/// Three finite numbers.
+fn vector(value: Any<'_, '_>, name: &str) -> PyResult<Vector3<f64>> {
+    Ok(Vector3::from(fixed::<3>(value, name, &[3])?))
+}
+
 /// One instant (shape ``()``) or many (shape ``(T,)``).
 pub(crate) fn times(t: Any<'_, '_>) -> PyResult<(Vec<f64>, Vec<usize>)> {
     if let Ok(one) = t.extract::<f64>() {
@@ -133,20 +140,35 @@ pub(crate) fn times(t: Any<'_, '_>) -> PyResult<(Vec<f64>, Vec<usize>)> {
 /// Two-body motion: ellipse, parabola (by its semi-latus rectum) or hyperbola (negative semi-major axis).
 ///
 /// Lengths in m, angles in rad, ``mu`` in m³/s². One phase: mean or true anomaly at ``epoch``, or the time of a
-/// periapsis passage, s of simulation. Raises ``OrbitError``, such as for a semi-major axis whose sign contradicts
+/// periapsis passage, s of simulation. With ``secular_j2`` the elements are mean ones, and node, periapsis and mean
+/// anomaly drift as a planet's flattening ``j2`` (reference radius ``radius``, m) makes them on average; such an
+/// orbit no longer falls freely. Raises ``OrbitError``, such as for a semi-major axis whose sign contradicts
 /// the eccentricity.
 #[pyclass(name = "Kepler", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(crate) struct PyKepler {
-    kepler: Arc<Kepler>,
+    kepler: Kepler,
+    flattening: Flattening,
 }
 
+/// Whether the planet's flattening turns the ellipse: its `j2` and reference radius, m.
+type Flattening = Option<(f64, f64)>;
+
 fn wrap(
-    kepler: Kepler,
+    py: Python<'_>,
+    kepler: Result<Kepler, OrbitError>,
+    flattening: Flattening,
     made: impl FnOnce(Arc<dyn Orbit>) -> PyResult<PyOrbit>,
 ) -> PyResult<PyClassInitializer<PyKepler>> {
-    let kepler = Arc::new(kepler);
-    let orbit = made(Arc::clone(&kepler) as Arc<dyn Orbit>)?;
-    Ok(PyClassInitializer::from(orbit).add_subclass(PyKepler { kepler }))
+    let make = || -> Result<(Kepler, Arc<dyn Orbit>), OrbitError> {
+        let kepler = kepler?;
+        let orbit: Arc<dyn Orbit> = match flattening {
+            None => Arc::new(kepler),
+            Some((j2, radius)) => Arc::new(kepler.with_secular_j2(j2, radius)?),
+        };
+        Ok((kepler, orbit))
+    };
+    let (kepler, orbit) = make().map_err(|error| error.into_python(py))?;
+    Ok(PyClassInitializer::from(made(orbit)?).add_subclass(PyKepler { kepler, flattening }))
 }
 
 #[pymethods]
@@ -155,6 +177,7 @@ impl PyKepler {
     #[pyo3(signature = (
         *, semi_major_axis=None, semi_latus_rectum=None, eccentricity=0.0, inclination=0.0, raan=0.0,
         argument_of_periapsis=0.0, mean_anomaly=None, true_anomaly=None, periapsis_time=None, epoch=0.0, mu=3.986004418e14,
+        secular_j2=false, j2=1.08262617e-3, radius=6378136.3,
     ))]
     fn new(
         py: Python<'_>,
@@ -169,6 +192,9 @@ impl PyKepler {
         periapsis_time: Option<f64>,
         epoch: f64,
         mu: f64,
+        secular_j2: bool,
+        j2: f64,
+        radius: f64,
     ) -> PyResult<PyClassInitializer<Self>> {
         let refuse = |message: &str| raise(py, "OrbitError", message, &fields!(py,));
         let size = match (semi_major_axis, semi_latus_rectum) {
@@ -190,27 +216,72 @@ impl PyKepler {
             "eccentricity": eccentricity, "inclination": inclination, "raan": raan,
             "argument_of_periapsis": argument_of_periapsis, "mean_anomaly": mean_anomaly,
             "true_anomaly": true_anomaly, "periapsis_time": periapsis_time, "epoch": epoch, "mu": mu,
+            "secular_j2": secular_j2, "j2": j2, "radius": radius,
         );
-        let kepler = Kepler::new(&elements).map_err(|error| error.into_python(py))?;
-        wrap(kepler, |orbit| base(orbit, "Kepler", &PyTuple::empty(py), &keywords))
+        let flattening = secular_j2.then_some((j2, radius));
+        let made = |orbit| base(orbit, "Kepler", &PyTuple::empty(py), &keywords);
+        wrap(py, Kepler::new(&elements), flattening, made)
     }
 
     /// The orbit through position ``r`` (3,) m with velocity ``v`` (3,) m/s at time zero, inertial axes.
     #[staticmethod]
-    #[pyo3(signature = (r, v, *, mu=3.986004418e14))]
+    #[pyo3(signature = (r, v, *, mu=3.986004418e14, secular_j2=false, j2=1.08262617e-3, radius=6378136.3))]
     fn from_state<'py>(
         py: Python<'py>,
         r: Any<'_, 'py>,
         v: Any<'_, 'py>,
         mu: f64,
+        secular_j2: bool,
+        j2: f64,
+        radius: f64,
     ) -> PyResult<Bound<'py, Self>> {
-        let vector = |value, name| Ok::<_, PyErr>(Vector3::from(fixed::<3>(value, name, &[3])?));
         let (r, v) = (vector(r, "r")?, vector(v, "v")?);
-        let kepler = Kepler::from_state(r, v, mu).map_err(|error| error.into_python(py))?;
         let arguments =
             (array_of(py, &[3], r.as_slice()), array_of(py, &[3], v.as_slice())).into_pyobject(py)?;
-        let keywords = fields!(py, "mu": mu);
-        Bound::new(py, wrap(kepler, |orbit| base(orbit, "Kepler.from_state", &arguments, &keywords))?)
+        let keywords = fields!(py, "mu": mu, "secular_j2": secular_j2, "j2": j2, "radius": radius);
+        let flattening = secular_j2.then_some((j2, radius));
+        let made = |orbit| base(orbit, "Kepler.from_state", &arguments, &keywords);
+        Bound::new(py, wrap(py, Kepler::from_state(r, v, mu), flattening, made)?)
+    }
+
+    /// States on many ellipses at once, without an object for each: ``r``, ``v`` (N, 3), m and m/s, at ``t`` s.
+    ///
+    /// Each argument is a number or (N,); angles in rad, ``mean_anomaly`` that at time zero. The same as
+    /// ``Kepler(...).state(t)`` up to the rounding of ``n t``. Raises ``InputError`` for what is no ellipse.
+    #[staticmethod]
+    #[pyo3(signature = (
+        t, *, semi_major_axis, eccentricity, inclination, raan, argument_of_periapsis, mean_anomaly,
+        mu=3.986004418e14, threads=None,
+    ))]
+    fn states<'py>(
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+        semi_major_axis: Any<'_, 'py>,
+        eccentricity: Any<'_, 'py>,
+        inclination: Any<'_, 'py>,
+        raan: Any<'_, 'py>,
+        argument_of_periapsis: Any<'_, 'py>,
+        mean_anomaly: Any<'_, 'py>,
+        mu: f64,
+        threads: Option<Count>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let given = [
+            ("semi_major_axis", semi_major_axis),
+            ("eccentricity", eccentricity),
+            ("inclination", inclination),
+            ("raan", raan),
+            ("argument_of_periapsis", argument_of_periapsis),
+            ("mean_anomaly", mean_anomaly),
+            ("t", t),
+        ];
+        let (r, v) = crate::propagate::kepler_states(py, given, mu, threads)?;
+        Ok((r.into_any(), v.into_any()))
+    }
+
+    /// Whether node, periapsis and mean anomaly drift as the planet's flattening makes them.
+    #[getter]
+    fn secular_j2(&self) -> bool {
+        self.flattening.is_some()
     }
 
     /// Semi-major axis, m; negative for a hyperbola, infinite for a parabola.

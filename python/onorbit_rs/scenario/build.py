@@ -13,10 +13,12 @@ import numpy as np
 from onorbit_rs import _core, robots
 from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError, ShapeError
 from onorbit_rs.names import did_you_mean, nearest
+from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffect
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.environment import BodyWrenchEffect
+from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
-from onorbit_rs.scenario.make_orbit import make_orbit
+from onorbit_rs.scenario.make_orbit import integrated, make_orbit
 from onorbit_rs.scenario.place import dotted, file_and_line
 from onorbit_rs.scenario.reference import Start
 from onorbit_rs.scenario.schema import Scenario
@@ -54,19 +56,21 @@ def build(scenario: Scenario) -> Built:
         model = _robot(scenario)
     with located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, beside)
-        if orbit is not None:
-            orbit.state(scenario.simulation.duration)  # a path or a decaying orbit may end before the run
     with located(scenario, "epoch" if scenario.earth is None else "earth"):
         earth = make_earth(scenario, orbit, beside)
+    effects = []
+    for index, effect in enumerate(scenario.environment):
+        with located(scenario, "environment", index):
+            effects.append(_effect(effect, model, beside))
+    with located(scenario, "orbit"):
+        orbit = integrated(scenario.orbit, orbit, effects, earth)
+        if orbit is not None:
+            orbit.state(scenario.simulation.duration)  # a path or a falling orbit may end before the run
     with located(scenario, "initial"):
         q, v = initial_state(scenario.initial, model, orbit)
     tool = scenario.tracked_tool
     with located(scenario, "tool"):
         tool_pose = None if tool is None else model.frame_pose(q, tool)
-    effects = []
-    for index, effect in enumerate(scenario.environment):
-        with located(scenario, "environment", index):
-            effects.append(_effect(effect, model))
     start = Start(model, q, tool_pose, orbit, beside)
     settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
 
@@ -153,7 +157,9 @@ def _robot(scenario: Scenario) -> _core.Model:
     )
 
 
-def _effect(effect: Any, model: _core.Model) -> Any:
+def _effect(effect: Any, model: _core.Model, beside: Path) -> Any:
+    if isinstance(effect, (DragEffect, GravityFieldEffect, RadiationPressureEffect, ThirdBodyEffect)):
+        return effect.make(beside)
     if isinstance(effect, BodyWrenchEffect):
         bodies = list(model.body_names)
         if effect.body not in bodies:
@@ -165,6 +171,4 @@ def _effect(effect: Any, model: _core.Model) -> Any:
         return _core.BodyWrench(
             effect.body, force=np.array(effect.force), torque=np.array(effect.torque), **times
         )
-    if isinstance(effect, ThirdBodyEffect):
-        return _core.ThirdBody(effect.body)
     return _core.GravityGradient()

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from onorbit_rs import _core
-from onorbit_rs.scenario.orbit import KeplerOrbit
+from onorbit_rs.scenario.orbit import ConicOrbit, NumericalOrbit
 from onorbit_rs.scenario.path import CustomPathOrbit, FixedFrameOrbit, Sgp4Orbit
 from onorbit_rs.scenario.path_file import GROUPS, read_points, two_lines
 from onorbit_rs.scenario.start import quaternion_of
@@ -15,9 +16,12 @@ from onorbit_rs.scenario.table import read_text
 
 
 def make_orbit(
-    orbit: KeplerOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit, beside: Path
+    orbit: ConicOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit, beside: Path
 ) -> _core.Orbit:
-    """The orbit; its files lie ``beside`` the scenario unless their paths are absolute."""
+    """The orbit; its files lie ``beside`` the scenario unless their paths are absolute.
+
+    Of a numerical one the conic that it leaves from: see :func:`integrated`.
+    """
     if isinstance(orbit, Sgp4Orbit):
         return _sgp4(orbit, beside)
     if isinstance(orbit, CustomPathOrbit):
@@ -36,6 +40,15 @@ def make_orbit(
         position, velocity = given.pop("position"), given.pop("velocity")
         return _core.Kepler.from_state(np.array(position), np.array(velocity), **given)
     return _core.Kepler(**given)
+
+
+def integrated(
+    part: Any, orbit: _core.Orbit | None, effects: list[_core.Effect], earth: _core.Earth | None
+) -> _core.Orbit | None:
+    """The orbit itself, or where it is a numerical one its integral in the gravity among the effects."""
+    if not isinstance(part, NumericalOrbit) or orbit is None:
+        return orbit
+    return _core.Numerical.from_orbit(orbit, environment=effects, earth=earth)
 
 
 def _sgp4(orbit: Sgp4Orbit, beside: Path) -> _core.Sgp4:

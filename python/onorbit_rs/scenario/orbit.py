@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import model_validator
 from pydantic_core import PydanticCustomError
@@ -22,18 +22,18 @@ from onorbit_rs.scenario.fields import (
 from onorbit_rs.scenario.part import Part
 
 SIZES = ("semi_major_axis", "semi_latus_rectum")
+SECULAR = ("secular_j2", "j2", "radius")
 PHASES = ("mean_anomaly", "true_anomaly", "periapsis_time")
 
 
-class KeplerOrbit(Part):
-    """Two-body motion: from elements, or from one state.
+class ConicOrbit(Part):
+    """What starts as two-body motion: from elements, or from one state.
 
     Elements: a size (``semi_major_axis``, negative for a hyperbola, or ``semi_latus_rectum``, needed for a
     parabola), ``eccentricity``, three angles, and one phase. State: ``position`` and ``velocity`` at the
     start, inertial axes.
     """
 
-    kind: Literal["kepler"] = "kepler"
     semi_major_axis: Length | None = None
     semi_latus_rectum: Annotated[Length, Positive] | None = None
     eccentricity: Annotated[Number, NotNegative] | None = None
@@ -58,8 +58,8 @@ class KeplerOrbit(Part):
         return self.model_dump(exclude_none=True, exclude={"kind"})
 
     @model_validator(mode="after")
-    def _is_one_orbit(self) -> KeplerOrbit:
-        given = [name for name in self.given() if name != "mu"]
+    def _is_one_orbit(self) -> Self:
+        given = [name for name in self.given() if name not in ("mu", *SECULAR)]
         if self.is_from_state:
             others = [name for name in given if name not in ("position", "velocity")]
             if self.position is None or self.velocity is None:
@@ -96,6 +96,29 @@ class KeplerOrbit(Part):
                 "positive below eccentricity 1" if e < 1.0 else "negative above eccentricity 1 (a hyperbola)"
             )
             raise _wrong(f"semi_major_axis {a:g} m contradicts eccentricity {e:g}: it is {right}")
+
+
+class KeplerOrbit(ConicOrbit):
+    """Two-body motion; with ``secular_j2`` node, periapsis and mean anomaly drift as in flattened gravity."""
+
+    kind: Literal["kepler"] = "kepler"
+    secular_j2: bool | None = None
+    j2: Number | None = None
+    radius: Annotated[Length, Positive] | None = None
+    """Reference radius that goes with ``j2``; both the Earth's where not given."""
+
+    @model_validator(mode="after")
+    def _is_flattened(self) -> KeplerOrbit:
+        given = [name for name in SECULAR[1:] if getattr(self, name) is not None]
+        if given and not self.secular_j2:
+            raise _wrong(f"{_listed(tuple(given))} does nothing without 'secular_j2: true'")
+        return self
+
+
+class NumericalOrbit(ConicOrbit):
+    """Free fall in the gravity of the scenario's environment, integrated from this state at the start."""
+
+    kind: Literal["numerical"] = "numerical"
 
 
 def _listed(names: tuple[str, ...]) -> str:

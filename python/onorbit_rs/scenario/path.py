@@ -18,7 +18,7 @@ from onorbit_rs.scenario.fields import (
     Time,
 )
 from onorbit_rs.scenario.initial import Attitude
-from onorbit_rs.scenario.orbit import KeplerOrbit
+from onorbit_rs.scenario.orbit import KeplerOrbit, NumericalOrbit
 from onorbit_rs.scenario.part import Part, expand_kind
 
 Mu = Annotated[GravitationalParameter, Positive]
@@ -106,6 +106,9 @@ def _with_kind(value: Any) -> Any:
 
 
 Orbit = Annotated[
-    Annotated[KeplerOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit, Field(discriminator="kind")],
+    Annotated[
+        KeplerOrbit | NumericalOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit,
+        Field(discriminator="kind"),
+    ],
     BeforeValidator(_with_kind),
 ]

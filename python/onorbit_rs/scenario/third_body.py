@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Literal
 
+from onorbit_rs import _core
 from onorbit_rs.scenario.part import Part
 
 
@@ -12,3 +14,7 @@ class ThirdBodyEffect(Part):
 
     kind: Literal["third_body"] = "third_body"
     body: Literal["sun", "moon"]
+
+    def make(self, _beside: Path) -> _core.ThirdBody:
+        """The effect of the engine."""
+        return _core.ThirdBody(self.body)

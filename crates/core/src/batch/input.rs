@@ -1,5 +1,6 @@
 //! What is checked before a kernel runs.
 
+use crate::orbit::OrbitError;
 use thiserror::Error;
 
 /// Numbers that no kernel can take.
@@ -34,6 +35,10 @@ pub enum InputError {
         "state {state} diverged: it is no longer finite; shorten time_step, or soften gains and joint damping"
     )]
     Diverged { state: usize },
+    #[error("orbit {orbit}: {source}")]
+    Orbit { orbit: usize, source: OrbitError },
+    #[error("{name} is {value} in state {state}, it must be {expected}")]
+    NoEllipse { name: &'static str, state: usize, value: f64, expected: &'static str },
 }
 
 /// Largest deviation of a quaternion from unit norm.

@@ -1,5 +1,8 @@
 //! What can be wrong with an effect or with the place it is asked to act in.
 
+use super::atmosphere::AtmosphereError;
+use super::surfaces::SurfaceError;
+use crate::earth::EarthError;
 use crate::gravity::GravityError;
 
 /// Refusals of the `environment` module; each carries the offending numbers.
@@ -14,6 +17,12 @@ pub enum EnvironmentError {
         "{effect} needs an orbit around a planet, this run has none: give an orbit or leave the effect out"
     )]
     NoPlanet {
+        /// Name of the effect.
+        effect: &'static str,
+    },
+    /// An effect of the turning Earth is on where nobody said how it turns.
+    #[error("{effect} needs to know how the Earth turns: give the run an earth (in YAML an epoch)")]
+    NoEarth {
         /// Name of the effect.
         effect: &'static str,
     },
@@ -56,6 +65,15 @@ pub enum EnvironmentError {
         /// Number of bodies.
         count: usize,
     },
+    /// The air cannot be told.
+    #[error(transparent)]
+    Atmosphere(#[from] AtmosphereError),
+    /// A surface makes no sense.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
+    /// The Earth cannot say where the Sun is, or what time it is.
+    #[error(transparent)]
+    Earth(#[from] EarthError),
     /// Bodies and wrenches do not pair up.
     #[error("{got} wrenches are given for {expected} bodies, one per body is needed")]
     WrongLength {

@@ -3,17 +3,25 @@
 //! [`Effect`] is the one trait; a new kind of effect is one file and one line here.
 //! `W` has inertial axes and its origin on the reference orbit.
 
+pub mod atmosphere;
 mod body_wrench;
 mod differential_gravity;
+mod drag;
 mod error;
 mod gravity_gradient;
+mod radiation_pressure;
 mod scene;
+mod shadow;
+pub mod surfaces;
 
 pub use body_wrench::BodyWrench;
 pub use differential_gravity::{DifferentialGravity, ReferenceMotion};
+pub use drag::Drag;
 pub use error::{EnvironmentError, Place};
 pub use gravity_gradient::GravityGradient;
+pub use radiation_pressure::{RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX};
 pub use scene::{Anchor, BodyState, Reference, Scene, Wrench};
+pub use shadow::sunlit;
 
 /// Something that pulls, pushes or turns the bodies of a robot.
 ///
@@ -54,6 +62,12 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
     /// Whether the effect reads how the bodies move; where none does, the scene leaves that out.
     fn reads_velocities(&self) -> bool {
         true
+    }
+
+    /// Whether a reference that carries the robot along has it in its own motion: the share that moves all bodies alike
+    /// is then left out.
+    fn acts_on_reference(&self) -> bool {
+        false
     }
 
     /// Add this effect's wrench on each body to what `wrenches` holds, one per body; allocates nothing.

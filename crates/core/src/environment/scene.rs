@@ -96,6 +96,32 @@ impl<'a> Scene<'a> {
         Ok(self.bodies.iter().zip(wrenches.iter_mut()))
     }
 
+    /// The body with this index and its wrench.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::WrongLength`] and [`EnvironmentError::UnknownBody`].
+    pub(super) fn pair<'w>(
+        &self,
+        wrenches: &'w mut [Wrench],
+        body: usize,
+    ) -> Result<(&'a BodyState, &'w mut Wrench), EnvironmentError> {
+        let (expected, got) = (self.bodies.len(), wrenches.len());
+        if expected != got {
+            return Err(EnvironmentError::WrongLength { expected, got });
+        }
+        let unknown = EnvironmentError::UnknownBody { body, count: expected };
+        self.bodies.get(body).zip(wrenches.get_mut(body)).ok_or(unknown)
+    }
+
+    /// State of the reference around its planet, and how the Earth turns.
+    pub(super) fn reference_and_earth(
+        &self,
+        effect: &'static str,
+    ) -> Result<(OrbitState, &'a Earth), EnvironmentError> {
+        let reference = self.planet(effect)?.reference;
+        Ok((reference, self.earth.ok_or(EnvironmentError::NoEarth { effect })?))
+    }
+
     /// State of the reference and gravity of its planet, the reference being outside it.
     pub(super) fn planet(&self, effect: &'static str) -> Result<Planet<'a>, EnvironmentError> {
         let around = |r: Reference<'a>| Some((r.state, r.gravity?, r.falls_freely));

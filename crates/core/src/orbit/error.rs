@@ -62,6 +62,32 @@ pub enum OrbitError {
         /// What was given, rad.
         value: f64,
     },
+    /// Secular rates and relative elements belong to ellipses.
+    #[error("eccentricity is {eccentricity}, it must be below 1: this is for ellipses alone")]
+    NotClosed {
+        /// Eccentricity.
+        eccentricity: f64,
+    },
+    /// The chief flies in the equator's plane.
+    #[error(
+        "the chief's inclination is {inclination} rad: in the equator's plane it has no node and no relative \
+         elements; use local coordinates instead"
+    )]
+    Equatorial {
+        /// Inclination of the chief, rad.
+        inclination: f64,
+    },
+    /// No velocity leads to the origin in this time.
+    #[error(
+        "no impulse leads to the origin in {time} s at a mean motion of {mean_motion} rad/s: \
+         x or z return at that time whatever the velocity; choose another"
+    )]
+    NoIntercept {
+        /// Time to the origin, s.
+        time: f64,
+        /// Mean motion, rad/s.
+        mean_motion: f64,
+    },
     /// The inclination lies outside [0, π].
     #[error("inclination is {value} rad, it must lie between 0 and π (are these degrees?)")]
     Inclination {

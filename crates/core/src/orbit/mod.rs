@@ -9,6 +9,8 @@ mod fixed_frame;
 mod frames;
 pub mod kepler;
 mod numerical;
+pub mod relative;
+mod rows;
 pub mod sgp4;
 
 use crate::gravity::Gravity;
@@ -21,8 +23,9 @@ pub use custom_path::{CustomPath, Ends, PathError, PathPoints};
 pub use error::OrbitError;
 pub use fixed_frame::FixedFrame;
 pub use frames::{Lvlh, Nadir, PathFrame};
-pub use kepler::{Elements, Kepler, Phase, Size};
+pub use kepler::{Elements, Kepler, Phase, SecularJ2, Size};
 pub use numerical::Numerical;
+pub use rows::Rows;
 pub use sgp4::{EarthModel, MeanElements, Sgp4};
 
 /// Gravitational parameter of the Earth, `3.986004418e14 m³/s²`, atmosphere included.
@@ -63,6 +66,17 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// As [`Orbit::state`], but for those of the acceleration.
     fn position_velocity(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
         self.state(t).map(|state| (state.position, state.velocity))
+    }
+
+    /// Positions and velocities at many instants; rows before the first that is refused are written.
+    ///
+    /// The same states as those of [`Orbit::position_velocity`], up to rounding: kinds that can work out several
+    /// at once on SIMD lanes.
+    ///
+    /// # Errors
+    /// As [`Orbit::position_velocity`], at the first instant that is refused.
+    fn fill(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
+        rows::one_by_one(self, times, rows)
     }
 
     /// Axes of `I` in this run.
@@ -117,19 +131,7 @@ pub fn states(
     positions: &mut [f64],
     velocities: &mut [f64],
 ) -> Result<(), OrbitError> {
-    let expected = 3 * times.len();
-    for (name, got) in [("positions", positions.len()), ("velocities", velocities.len())] {
-        if got != expected {
-            return Err(OrbitError::WrongLength { name, expected, got });
-        }
-    }
-    let rows = positions.chunks_exact_mut(3).zip(velocities.chunks_exact_mut(3));
-    for (&t, (r, v)) in times.iter().zip(rows) {
-        let (position, velocity) = orbit.position_velocity(t)?;
-        r.copy_from_slice(position.as_slice());
-        v.copy_from_slice(velocity.as_slice());
-    }
-    Ok(())
+    orbit.fill(times, Rows::new(times.len(), positions, velocities)?)
 }
 
 /// Local orbital frames (Hill) at many instants.

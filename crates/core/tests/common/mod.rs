@@ -5,6 +5,7 @@ pub mod humanoid;
 pub mod slider;
 pub mod spacecraft;
 pub mod stepper;
+pub mod stream;
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};

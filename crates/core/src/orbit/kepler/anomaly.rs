@@ -3,26 +3,46 @@
 //! Each is written with `|1 - e|` as a datum of its own and with `E - sin E` free of
 //! cancellation, so that relative accuracy holds as `e → 1` and `M → 0` together.
 
+use crate::spatial::Real;
 use std::f64::consts::PI;
 
 /// Half the eccentric (or hyperbolic) anomaly, by its sine and cosine.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Half {
-    pub(super) sin: f64,
-    pub(super) cos: f64,
+pub(super) struct Half<S = f64> {
+    pub(super) sin: S,
+    pub(super) cos: S,
 }
 
 /// `Σ xᵏ⁺³ (±1)ᵏ/(2k+3)!` factored: `x - sin x` for `sign = 1`, `sinh x - x` for `sign = -1`; `|x| < 1`.
-fn cubic_tail(x: f64, sign: f64) -> f64 {
-    let y = sign * x * x;
-    let tail = 1.0 - y / 210.0 * (1.0 - y / 272.0);
-    let tail = 1.0 - y / 72.0 * (1.0 - y / 110.0 * (1.0 - y / 156.0 * tail));
-    x * x * x / 6.0 * (1.0 - y / 20.0 * (1.0 - y / 42.0 * tail))
+#[inline(always)]
+fn cubic_tail<S: Real>(x: S, sign: f64) -> S {
+    // one minus y/d times what follows
+    let fold = |y: S, d: f64, tail: S| S::of(1.0) - y * S::of(1.0 / d) * tail;
+    let y = S::of(sign) * x * x;
+    let tail = fold(y, 210.0, fold(y, 272.0, S::of(1.0)));
+    let tail = fold(y, 72.0, fold(y, 110.0, fold(y, 156.0, tail)));
+    x * x * x * S::of(1.0 / 6.0) * fold(y, 20.0, fold(y, 42.0, tail))
 }
 
 /// `x - sin x` without cancellation, given `sin x`.
-fn minus_sine(x: f64, sin: f64) -> f64 {
-    if x.abs() < 1.0 { cubic_tail(x, 1.0) } else { x - sin }
+#[inline(always)]
+fn minus_sine<S: Real>(x: S, sin: S) -> S {
+    S::select(S::less(x.abs(), S::of(1.0)), cubic_tail(x, 1.0), x - sin)
+}
+
+/// `∛x` to 1e-9 for `x > 0`: a third of the exponent, then Halley's steps, each of which triples the digits.
+#[inline(always)]
+fn cube_root<S: Real>(x: S) -> S {
+    const THIRD_OF_BIAS: u64 = 0x2a9f_7893_0000_0000; // two thirds of the exponent's bias, balanced over an octave
+    let mut root = S::from_lanes(
+        #[inline(always)]
+        |lane| f64::from_bits(x.lane(lane).to_bits() / 3 + THIRD_OF_BIAS),
+    );
+    for _ in 0..2 {
+        let cube = root * root * root;
+        root = root * (cube + x + x) / (cube + cube + x);
+    }
+    root
 }
 
 /// `sinh x - x` without cancellation, given `sinh x`.
@@ -45,32 +65,35 @@ pub(super) fn mean_from_hyperbolic(e: f64, e_minus_one: f64, hyperbolic: f64) ->
 /// A cubic start, in error by less than 1e-3 rad, and one correction of fifth order.
 ///
 /// Source: Markley, Celestial Mechanics and Dynamical Astronomy 63, 1995, eqs. (5)-(24).
-pub(super) fn solve_ellipse(e: f64, one_minus_e: f64, mean: f64) -> Half {
-    let m = mean.abs();
+#[inline(always)]
+pub(super) fn solve_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> Half<S> {
+    let (of, one, m) = (S::of, S::of(1.0), mean.abs());
     // Eqs. (20), (5), (9), (10), (14), (15): the cubic from a Padé form of sin E
-    let alpha = (3.0 * PI * PI + 1.6 * PI * (PI - m) / (1.0 + e)) / (PI * PI - 6.0);
-    let d = 3.0 * one_minus_e + alpha * e;
-    let q = 2.0 * alpha * d * one_minus_e - m * m;
-    let r = (3.0 * alpha * d * (d - one_minus_e) + m * m) * m;
-    let root = (r + (q * q * q + r * r).sqrt()).cbrt();
+    let alpha = (of(3.0 * PI * PI) + of(1.6 * PI) * (of(PI) - m) / (one + e)) * of(1.0 / (PI * PI - 6.0));
+    let d = of(3.0) * one_minus_e + alpha * e;
+    let q = of(2.0) * alpha * d * one_minus_e - m * m;
+    let r = (of(3.0) * alpha * d * (d - one_minus_e) + m * m) * m;
+    let root = cube_root(r + (q * q * q + r * r).sqrt());
     let w = root * root;
-    let start = (2.0 * r * w / (w * w + w * q + q * q) + m) / d;
+    let start = (of(2.0) * r * w / (w * w + w * q + q * q) + m) / d;
     // Eqs. (21)-(24): f and its derivatives
-    let (sin, cos) = (0.5 * start).sin_cos();
-    let sin_e = 2.0 * sin * cos;
+    let (sin, cos) = (of(0.5) * start).sin_cos();
+    let sin_e = of(2.0) * sin * cos;
     let f = one_minus_e * start + e * minus_sine(start, sin_e) - m;
-    let f1 = one_minus_e + 2.0 * e * sin * sin;
+    let f1 = one_minus_e + of(2.0) * e * sin * sin;
     let f2 = e * sin_e;
-    let f3 = e * (1.0 - 2.0 * sin * sin);
-    let d3 = -f * f1 / (f1 * f1 - 0.5 * f * f2);
-    let d4 = -f / (f1 + d3 * (0.5 * f2 + d3 * f3 / 6.0));
-    let d5 = -f / (f1 + d4 * (0.5 * f2 + d4 * (f3 / 6.0 - d4 * f2 / 24.0)));
+    let f3 = e * (one - of(2.0) * sin * sin);
+    let (half, sixth) = (of(0.5), of(1.0 / 6.0));
+    let d3 = -f * f1 / (f1 * f1 - half * f * f2);
+    let d4 = -f / (f1 + d3 * (half * f2 + d3 * f3 * sixth));
+    let d5 = -f / (f1 + d4 * (half * f2 + d4 * (f3 * sixth - d4 * f2 * of(1.0 / 24.0))));
     // sin and cos of (start + d5)/2, the correction being small
-    let h = 0.5 * d5;
+    let h = half * d5;
     let h2 = h * h;
-    let sin_h = h * (1.0 - h2 / 6.0 * (1.0 - h2 / 20.0));
-    let cos_h = 1.0 - 0.5 * h2 * (1.0 - h2 / 12.0);
-    Half { sin: (sin * cos_h + cos * sin_h).copysign(mean), cos: cos * cos_h - sin * sin_h }
+    let sin_h = h * (one - h2 * sixth * (one - h2 * of(0.05)));
+    let cos_h = one - half * h2 * (one - h2 * of(1.0 / 12.0));
+    let up = sin * cos_h + cos * sin_h;
+    Half { sin: S::select(S::less(mean, of(0.0)), -up, up), cos: cos * cos_h - sin * sin_h }
 }
 
 /// Solve `M = e sinh H - H` for any `M` and `e > 1`.

@@ -8,6 +8,7 @@ use super::anomaly;
 use super::double::{self, Double};
 use crate::orbit::OrbitError;
 use crate::orbit::error::positive;
+use crate::spatial::Real;
 
 /// Size and shape, each to full relative accuracy: `1 - e` is not formed from `e`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,11 +28,43 @@ pub(super) const PARABOLIC: f64 = 1e-30;
 
 /// Position and velocity in perifocal axes, m and m/s.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct InPlane {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) vx: f64,
-    pub(super) vy: f64,
+pub(super) struct InPlane<S = f64> {
+    pub(super) x: S,
+    pub(super) y: S,
+    pub(super) vx: S,
+    pub(super) vy: S,
+}
+
+/// An ellipse's semi-axes, `√(μ a)` and `√(μ p)`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ellipse<S> {
+    pub(super) e: S,
+    pub(super) one_minus_e: S,
+    pub(super) periapsis: S,
+    pub(super) a: S,
+    pub(super) b: S,
+    pub(super) flow: [S; 2],
+}
+
+impl<S: Real> Ellipse<S> {
+    /// State at a mean anomaly in [-π, π].
+    #[inline(always)]
+    pub(super) fn at(&self, mean: S) -> InPlane<S> {
+        let Self { e, one_minus_e, periapsis: q, a, b, flow } = *self;
+        let half = anomaly::solve_ellipse(e, one_minus_e, mean);
+        let (s, c) = (half.sin, half.cos);
+        // r = a (1 - e cos E) = q + 2 a e sin²(E/2)
+        let versed = S::of(2.0) * s * s;
+        let sin = S::of(2.0) * s * c;
+        let over_r = S::of(1.0) / (q + a * e * versed);
+        // x = a (cos E - e), y = b sin E, ẋ = -√(μ a) sin E / r, ẏ = √(μ p) cos E / r
+        InPlane {
+            x: q - a * versed,
+            y: b * sin,
+            vx: -flow[0] * sin * over_r,
+            vy: flow[1] * (S::of(1.0) - versed) * over_r,
+        }
+    }
 }
 
 /// A period in three pieces, the first two of 26 bits: whole multiples up to 2²⁶ are exact.
@@ -59,11 +92,13 @@ impl Period {
     }
 
     /// `dt` less the nearest whole number of periods.
-    fn reduce(&self, dt: f64) -> f64 {
+    #[inline(always)]
+    fn reduce<S: Real>(&self, dt: S) -> S {
         // Adding 1.5 × 2⁵² rounds to a whole number without a library call.
         const ROUND: f64 = 6_755_399_441_055_744.0;
-        let k = (dt * self.per_second + ROUND) - ROUND;
-        ((dt - k * self.pieces[0]) - k * self.pieces[1]) - k * self.pieces[2]
+        let k = (dt * S::of(self.per_second) + S::of(ROUND)) - S::of(ROUND);
+        let [first, second, third] = self.pieces.map(|piece| k * S::of(piece));
+        ((dt - first) - second) - third
     }
 }
 
@@ -131,24 +166,27 @@ impl Conic {
         }
     }
 
+    /// States in the plane of an ellipse, `dt` s after `phase`; `None` of an open orbit.
+    #[inline(always)]
+    pub(super) fn several<S: Real>(&self, shape: &Shape, phase: f64, dt: S) -> Option<InPlane<S>> {
+        let Self::Ellipse { a, b, n, period, flow } = self else { return None };
+        let ellipse = Ellipse {
+            e: S::of(shape.e),
+            one_minus_e: S::of(shape.one_minus_e),
+            periapsis: S::of(shape.periapsis),
+            a: S::of(*a),
+            b: S::of(*b),
+            flow: flow.map(S::of),
+        };
+        Some(ellipse.at(wrap(S::of(phase) + S::of(*n) * period.reduce(dt))))
+    }
+
     /// State in the plane at a phase.
     pub(super) fn in_plane(&self, shape: &Shape, phase: f64) -> InPlane {
         let (e, q) = (shape.e, shape.periapsis);
         match *self {
             Self::Ellipse { a, b, flow, .. } => {
-                let half = anomaly::solve_ellipse(e, shape.one_minus_e, phase);
-                let (s, c) = (half.sin, half.cos);
-                // r = a (1 - e cos E) = q + 2 a e sin²(E/2)
-                let versed = 2.0 * s * s;
-                let sin = 2.0 * s * c;
-                let over_r = 1.0 / (q + a * e * versed);
-                // x = a (cos E - e), y = b sin E, ẋ = -√(μ a) sin E / r, ẏ = √(μ p) cos E / r
-                InPlane {
-                    x: q - a * versed,
-                    y: b * sin,
-                    vx: -flow[0] * sin * over_r,
-                    vy: flow[1] * (1.0 - versed) * over_r,
-                }
+                Ellipse { e, one_minus_e: shape.one_minus_e, periapsis: q, a, b, flow }.at(phase)
             }
             Self::Hyperbola { a, b, n, flow } => {
                 let half = anomaly::solve_hyperbola(e, -shape.one_minus_e, n * phase);
@@ -176,14 +214,11 @@ impl Conic {
 }
 
 /// Angle in [-π, π], for `|angle| ≤ 3π`.
-fn wrap(angle: f64) -> f64 {
-    if angle > PI {
-        angle - TAU
-    } else if angle < -PI {
-        angle + TAU
-    } else {
-        angle
-    }
+#[inline(always)]
+pub(super) fn wrap<S: Real>(angle: S) -> S {
+    let (pi, turn) = (S::of(PI), S::of(TAU));
+    let angle = S::select(S::less(pi, angle), angle - turn, angle);
+    S::select(S::less(angle, -pi), angle + turn, angle)
 }
 
 /// Any finite angle, less the nearest whole number of turns.

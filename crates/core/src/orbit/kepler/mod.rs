@@ -9,14 +9,20 @@ mod conic;
 mod double;
 mod elements;
 mod from_state;
+mod secular;
+mod side_by_side;
 
 use nalgebra::Vector3;
 
 use super::error::finite;
-use super::{Orbit, OrbitError, OrbitState};
+use super::rows::{in_lanes, one_by_one};
+use super::{Orbit, OrbitError, OrbitState, Rows};
 use crate::gravity::point_mass;
+use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real, Vec3};
 use conic::{Conic, Shape};
 pub use elements::{Elements, Phase, Size};
+pub use secular::SecularJ2;
+pub(crate) use side_by_side::ellipse_state;
 
 /// An unperturbed orbit around a point mass.
 ///
@@ -60,6 +66,11 @@ impl Kepler {
         self.shape.periapsis * (1.0 + self.shape.e)
     }
 
+    /// Mean anomaly at the epoch, rad; `None` on an open orbit.
+    pub fn mean_anomaly(&self) -> Option<f64> {
+        matches!(self.conic, Conic::Ellipse { .. }).then_some(self.phase)
+    }
+
     /// Period of revolution, s; `None` on an open orbit.
     pub fn period(&self) -> Option<f64> {
         match self.conic {
@@ -85,5 +96,35 @@ impl Orbit for Kepler {
         let position = self.p_i * s.x + self.q_i * s.y;
         let velocity = self.p_i * s.vx + self.q_i * s.vy;
         Ok(OrbitState { position, velocity, acceleration: point_mass(self.mu, &position) })
+    }
+
+    fn fill(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
+        match (InstructionSet::current(), self.conic) {
+            (InstructionSet::Fused, Conic::Ellipse { .. }) => self.side_by_side::<Lanes4>(times, rows),
+            (InstructionSet::Wide, Conic::Ellipse { .. }) => self.side_by_side::<Lanes8>(times, rows),
+            _ => one_by_one(self, times, rows),
+        }
+    }
+}
+
+impl Kepler {
+    /// As many times at once as `S` has lanes; one by one where one of them is refused.
+    fn side_by_side<S: Real>(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
+        let (p, q, longest) = (self.p_i.into(), self.q_i.into(), self.conic.longest_time());
+        let (p, q) = (Vec3::<S>::of(&p), Vec3::<S>::of(&q));
+        in_lanes::<S>(
+            self,
+            times,
+            rows,
+            #[inline(always)]
+            |t| {
+                let dt = t - S::of(self.epoch);
+                if !(0..S::LANES).all(|lane| dt.lane(lane).abs() <= longest) {
+                    return None;
+                }
+                let s = self.conic.several(&self.shape, self.phase, dt)?;
+                Some((p * s.x + q * s.y, p * s.vx + q * s.vy))
+            },
+        )
     }
 }

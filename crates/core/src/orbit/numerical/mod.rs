@@ -5,7 +5,7 @@ mod collocation;
 mod step;
 
 use super::error::finite;
-use super::{Orbit, OrbitError, OrbitState};
+use super::{Axes, Orbit, OrbitError, OrbitState};
 use crate::gravity::Gravity;
 use arc::Arcs;
 use nalgebra::Vector3;
@@ -19,6 +19,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Numerical {
     gravity: Arc<Gravity>,
+    axes: Axes,
     arcs: Arcs,
 }
 
@@ -33,7 +34,13 @@ impl Numerical {
         }
         finite("time of the initial state", t0)?;
         let arcs = Arcs::new(t0, r, v, gravity.mu())?;
-        Ok(Self { gravity, arcs })
+        Ok(Self { gravity, axes: Axes::default(), arcs })
+    }
+
+    /// The same orbit, its state and its gravity having been given in these axes.
+    #[must_use]
+    pub fn with_axes(self, axes: Axes) -> Self {
+        Self { axes, ..self }
     }
 }
 
@@ -44,6 +51,10 @@ impl Orbit for Numerical {
 
     fn gravity(&self) -> Option<&Arc<Gravity>> {
         Some(&self.gravity)
+    }
+
+    fn axes(&self) -> Axes {
+        self.axes
     }
 
     /// # Errors

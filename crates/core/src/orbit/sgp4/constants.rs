@@ -1,5 +1,8 @@
 //! Earth models, and the units that SGP4 counts in: Earth radii, minutes, radians.
 
+use crate::spatial::Real;
+use std::f64::consts::TAU;
+
 /// Earth model of an element set; published sets are fitted with [`EarthModel::Wgs72`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EarthModel {
@@ -67,15 +70,30 @@ impl Earth {
 
 /// Mean elements of one instant, rad and rad/min.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Mean {
+pub(super) struct Mean<S = f64> {
     /// Brouwer's mean motion `n″`.
-    pub(super) n: f64,
-    pub(super) e: f64,
-    pub(super) i: f64,
+    pub(super) n: S,
+    pub(super) e: S,
+    pub(super) i: S,
     /// Right ascension of the ascending node, `Ω`.
-    pub(super) node: f64,
+    pub(super) node: S,
     /// Argument of perigee, `ω`.
-    pub(super) perigee: f64,
+    pub(super) perigee: S,
     /// Mean anomaly, `M`.
-    pub(super) anomaly: f64,
+    pub(super) anomaly: S,
+}
+
+/// `angle % 2π`: with the angle's own sign, which Lyddane's variables ask for. Up to 2²⁶ turns.
+#[inline(always)]
+pub(super) fn turns_off<S: Real>(angle: S) -> S {
+    const ROUND: f64 = 6_755_399_441_055_744.0; // adding 1.5 × 2⁵² rounds to a whole number
+    // 2π in two pieces of 26 bits and fewer: multiples of each are exact
+    const HEAD: f64 = f64::from_bits(TAU.to_bits() & !((1 << 27) - 1));
+    const TAIL: f64 = TAU - HEAD;
+    let (zero, turn) = (S::of(0.0), S::of(TAU));
+    let k = (angle * S::of(1.0 / TAU) + S::of(ROUND)) - S::of(ROUND);
+    let rest = (angle - k * S::of(HEAD)) - k * S::of(TAIL);
+    let up = S::select(S::less(rest, zero), rest + turn, rest);
+    let down = S::select(S::less(zero, rest), rest - turn, rest);
+    S::select(S::less(angle, zero), down, up)
 }

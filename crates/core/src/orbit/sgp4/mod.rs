@@ -19,7 +19,9 @@ mod tle;
 use nalgebra::Vector3;
 
 use super::error::finite;
+use super::rows::{Rows, in_lanes, one_by_one};
 use super::{Axes, Orbit, OrbitError, OrbitState};
+use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real};
 pub use constants::EarthModel;
 pub use elements::MeanElements;
 pub use epoch::Epoch;
@@ -80,7 +82,24 @@ impl Sgp4 {
             let radius = self.propagator.earth.radius_km * 1e3;
             return Err(Sgp4Error::Decayed { time: t, distance: at.distance * radius, radius }.into());
         }
-        Ok((at.position * 1e3, at.velocity * 1e3))
+        Ok((at.position.to_nalgebra() * 1e3, at.velocity.to_nalgebra() * 1e3))
+    }
+
+    /// As many times at once as `S` has lanes; one by one where one of them is refused.
+    fn side_by_side<S: Real>(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
+        in_lanes::<S>(
+            self,
+            times,
+            rows,
+            #[inline(always)]
+            |t| {
+                if !(0..S::LANES).all(|lane| t.lane(lane).abs() <= LONGEST_TIME) {
+                    return None;
+                }
+                let at = self.propagator.several(t)?;
+                Some((at.position * S::of(1e3), at.velocity * S::of(1e3)))
+            },
+        )
     }
 
     /// Second derivative of the position over steps of `h`, m/s².
@@ -90,7 +109,7 @@ impl Sgp4 {
         for (k, weight) in WEIGHTS.iter().enumerate().skip(1) {
             let away = k as f64 * h;
             let (after, before) = (self.propagator.at(t + away)?, self.propagator.at(t - away)?);
-            sum += (after.position + before.position) * (1e3 * weight);
+            sum += (after.position + before.position).to_nalgebra() * (1e3 * weight);
         }
         Ok(sum / (180.0 * h * h))
     }
@@ -123,7 +142,19 @@ impl Orbit for Sgp4 {
             .or_else(|_| self.acceleration(t, &position, STEP / 16.0))?;
         Ok(OrbitState { position, velocity, acceleration })
     }
+
     fn position_velocity(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
         self.flight(t)
+    }
+
+    fn fill(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
+        if !self.propagator.goes_side_by_side() {
+            return one_by_one(self, times, rows);
+        }
+        match InstructionSet::current() {
+            InstructionSet::Baseline => one_by_one(self, times, rows),
+            InstructionSet::Fused => self.side_by_side::<Lanes4>(times, rows),
+            InstructionSet::Wide => self.side_by_side::<Lanes8>(times, rows),
+        }
     }
 }

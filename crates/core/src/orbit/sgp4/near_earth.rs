@@ -5,6 +5,7 @@
 
 use super::constants::{Earth, Mean};
 use super::elements::MeanElements;
+use crate::spatial::Real;
 use std::f64::consts::TAU;
 
 /// Lowest perigee, km of height, at which the drag's finer terms are kept.
@@ -42,14 +43,14 @@ struct Fine {
 }
 
 /// The drifting elements at one time, and what drag takes off them later on.
-pub(super) struct Drifted {
-    pub(super) mean: Mean,
+pub(super) struct Drifted<S = f64> {
+    pub(super) mean: Mean<S>,
     /// Factor of `√a`.
-    pub(super) shrink: f64,
+    pub(super) shrink: S,
     /// Loss of eccentricity.
-    pub(super) rounding: f64,
+    pub(super) rounding: S,
     /// Gain of mean longitude over `n″₀`, min.
-    pub(super) lead: f64,
+    pub(super) lead: S,
 }
 
 /// Brouwer's mean elements from the published ones.
@@ -153,26 +154,31 @@ impl NearEarth {
     }
 
     /// Elements `t` minutes from the epoch.
-    pub(super) fn at(&self, t: f64) -> Drifted {
-        let t2 = t * t;
-        let mut mean = self.epoch;
-        mean.anomaly += self.anomaly_rate * t;
-        mean.perigee += self.perigee_rate * t;
-        mean.node = mean.node + self.node_rate * t + self.node_drag * t2;
-        let mut shrink = 1.0 - self.c1 * t;
-        let mut rounding = self.b_star * self.c4 * t;
-        let mut lead = 1.5 * self.c1 * t2;
+    #[inline(always)]
+    pub(super) fn at<S: Real>(&self, t: S) -> Drifted<S> {
+        let (of, t2, epoch) = (S::of, t * t, &self.epoch);
+        let mut mean = Mean {
+            n: of(epoch.n),
+            e: of(epoch.e),
+            i: of(epoch.i),
+            node: of(epoch.node) + of(self.node_rate) * t + of(self.node_drag) * t2,
+            perigee: of(epoch.perigee) + of(self.perigee_rate) * t,
+            anomaly: of(epoch.anomaly) + of(self.anomaly_rate) * t,
+        };
+        let mut shrink = of(1.0) - of(self.c1) * t;
+        let mut rounding = of(self.b_star * self.c4) * t;
+        let mut lead = of(1.5 * self.c1) * t2;
         if let Some(fine) = &self.fine {
             // δω = B* C₃ cos ω₀ t,  δM = -⅔ (q₀ - s)⁴ B* ξ⁴/(e η) [(1 + η cos M)³ - (1 + η cos M₀)³]
-            let swing =
-                fine.perigee * t + fine.anomaly * (cube(1.0 + fine.eta * mean.anomaly.cos()) - fine.cube0);
+            let here = of(1.0) + of(fine.eta) * mean.anomaly.sin_cos().1;
+            let swing = of(fine.perigee) * t + of(fine.anomaly) * (here * here * here - of(fine.cube0));
             mean.anomaly += swing;
             mean.perigee -= swing;
             let (t3, [d2, d3, d4], [l3, l4, l5]) = (t2 * t, fine.d, fine.t);
             let t4 = t3 * t;
-            shrink = shrink - d2 * t2 - d3 * t3 - d4 * t4;
-            rounding += self.b_star * fine.c5 * (mean.anomaly.sin() - fine.sin0);
-            lead = lead + l3 * t3 + t4 * (l4 + t * l5);
+            shrink = shrink - of(d2) * t2 - of(d3) * t3 - of(d4) * t4;
+            rounding += of(self.b_star * fine.c5) * (mean.anomaly.sin_cos().0 - of(fine.sin0));
+            lead = lead + of(l3) * t3 + t4 * (of(l4) + t * of(l5));
         }
         Drifted { mean, shrink, rounding, lead }
     }

@@ -2,9 +2,8 @@
 //!
 //! Source: Spacetrack Report #3, section 6, from the long-period terms on.
 
-use super::constants::{Earth, Mean};
-use nalgebra::Vector3;
-use std::f64::consts::TAU;
+use super::constants::{Earth, Mean, turns_off};
+use crate::spatial::{Real, Vec3};
 
 /// Least `1 + cos i`: at `i = π` the report's quotient has no value.
 const RETROGRADE: f64 = 1.5e-12;
@@ -12,79 +11,95 @@ const RETROGRADE: f64 = 1.5e-12;
 const KEPLER: (f64, usize, f64) = (1e-12, 10, 0.95);
 
 /// Where the satellite is.
-pub(super) struct Flight {
+pub(super) struct Flight<S> {
+    /// Semi-latus rectum, Earth radii; where it is negative the rest means nothing.
+    pub(super) p: S,
     /// Distance from the Earth's centre, Earth radii.
-    pub(super) distance: f64,
+    pub(super) distance: S,
     /// km.
-    pub(super) position: Vector3<f64>,
+    pub(super) position: Vec3<S>,
     /// km/s.
-    pub(super) velocity: Vector3<f64>,
+    pub(super) velocity: Vec3<S>,
 }
 
-/// Position and velocity of `mean` with semi-major axis `a` (Earth radii), else the negative semi-latus
-/// rectum, Earth radii.
-pub(super) fn flight(mean: &Mean, a: f64, earth: &Earth) -> Result<Flight, f64> {
-    let Mean { n, e, i, node, perigee, anomaly } = *mean;
-    let ((sin_i, cos_i), (sin_w, cos_w)) = (i.sin_cos(), perigee.sin_cos());
+/// Position and velocity of `mean` with semi-major axis `a`, Earth radii; `tilt` is sine and cosine of its inclination.
+#[inline(always)]
+pub(super) fn flight<S: Real>(mean: &Mean<S>, a: S, tilt: (S, S), earth: &Earth) -> Flight<S> {
+    let (Mean { n, e, node, perigee, anomaly, .. }, of, one) = (*mean, S::of, S::of(1.0));
+    let ((sin_i, cos_i), (sin_w, cos_w)) = (tilt, perigee.sin_cos());
     // long periods: axN = e cos ω,  ayN = e sin ω - J₃ sin i/(2 J₂ p),  Lᴛ = L - J₃ sin i (3 + 5θ)/(4 J₂ p (1 + θ)) axN
-    let up = if (cos_i + 1.0).abs() > RETROGRADE { 1.0 + cos_i } else { RETROGRADE };
-    let pinv = 1.0 / (a * (1.0 - e * e));
+    let up = cos_i + one;
+    let up = S::select(S::less(of(RETROGRADE), up.abs()), up, of(RETROGRADE));
+    let pinv = one / (a * (one - e * e));
     let ax = e * cos_w;
-    let ay = e * sin_w + pinv * (-0.5 * earth.j3_j2 * sin_i);
-    let l = anomaly + perigee + node + pinv * (-0.25 * earth.j3_j2 * sin_i * (3.0 + 5.0 * cos_i) / up) * ax;
+    let ay = e * sin_w + pinv * (of(-0.5 * earth.j3_j2) * sin_i);
+    let l = anomaly
+        + perigee
+        + node
+        + pinv * (of(-0.25 * earth.j3_j2) * sin_i * (of(3.0) + of(5.0) * cos_i) / up) * ax;
 
-    let (sin_eo, cos_eo) = kepler((l - node) % TAU, ax, ay);
+    let (sin_eo, cos_eo) = kepler(turns_off(l - node), ax, ay);
     let (e_cos, e_sin) = (ax * cos_eo + ay * sin_eo, ax * sin_eo - ay * cos_eo);
     let el2 = ax * ax + ay * ay;
-    let p = a * (1.0 - el2);
-    if p.is_nan() || p < 0.0 {
-        return Err(p);
-    }
-    let r = a * (1.0 - e_cos);
+    let p = a * (one - el2);
+    let r = a * (one - e_cos);
     let (r_dot, rf_dot) = (a.sqrt() * e_sin / r, p.sqrt() / r); // over kₑ
-    let beta = (1.0 - el2).sqrt();
-    let q = e_sin / (1.0 + beta);
+    let beta = (one - el2).sqrt();
+    let q = e_sin / (one + beta);
     let (sin_u, cos_u) = (a / r * (sin_eo - ay - ax * q), a / r * (cos_eo - ax + ay * q));
-    let u = sin_u.atan2(cos_u);
-    let (sin_2u, cos_2u) = ((cos_u + cos_u) * sin_u, 1.0 - 2.0 * sin_u * sin_u);
+    let (sin_2u, cos_2u) = ((cos_u + cos_u) * sin_u, one - of(2.0) * sin_u * sin_u);
 
     // short periods
-    let k1 = 0.5 * earth.j2 / p;
+    let k1 = of(0.5 * earth.j2) / p;
     let k2 = k1 / p;
     let c2 = cos_i * cos_i;
-    let (x3, x1, x7) = (3.0 * c2 - 1.0, 1.0 - c2, 7.0 * c2 - 1.0);
-    let rk = r * (1.0 - 1.5 * k2 * beta * x3) + 0.5 * k1 * x1 * cos_2u;
-    let uk = u - 0.25 * k2 * x7 * sin_2u;
-    let node_k = node + 1.5 * k2 * cos_i * sin_2u;
-    let ik = i + 1.5 * k2 * cos_i * sin_i * cos_2u;
-    let rk_dot = r_dot - n * k1 * x1 * sin_2u / earth.ke;
-    let rf_dot_k = rf_dot + n * k1 * (x1 * cos_2u + 1.5 * x3) / earth.ke;
+    let (x3, x1, x7) = (of(3.0) * c2 - one, one - c2, of(7.0) * c2 - one);
+    let rk = r * (one - of(1.5) * k2 * beta * x3) + of(0.5) * k1 * x1 * cos_2u;
+    let du = of(-0.25) * k2 * x7 * sin_2u;
+    let node_k = node + of(1.5) * k2 * cos_i * sin_2u;
+    let di = of(1.5) * k2 * cos_i * sin_i * cos_2u;
+    let rk_dot = r_dot - n * k1 * x1 * sin_2u / of(earth.ke);
+    let rf_dot_k = rf_dot + n * k1 * (x1 * cos_2u + of(1.5) * x3) / of(earth.ke);
 
     // axes along the radius and across it
-    let ((su, cu), (sn, cn), (si, ci)) = (uk.sin_cos(), node_k.sin_cos(), ik.sin_cos());
-    let m = Vector3::new(-sn * ci, cn * ci, si);
-    let k = Vector3::new(cn, sn, 0.0);
+    let ((su, cu), (si, ci)) = (turned((sin_u, cos_u), du), turned(tilt, di));
+    let (sn, cn) = node_k.sin_cos();
+    let m = Vec3::new(-sn * ci, cn * ci, si);
+    let k = Vec3::new(cn, sn, of(0.0));
     let (out, along) = (m * su + k * cu, m * cu - k * su);
-    Ok(Flight {
+    Flight {
+        p,
         distance: rk,
-        position: out * (rk * earth.radius_km),
-        velocity: (out * rk_dot + along * rf_dot_k) * (earth.radius_km * earth.ke / 60.0),
-    })
+        position: out * (rk * of(earth.radius_km)),
+        velocity: (out * rk_dot + along * rf_dot_k) * of(earth.radius_km * earth.ke / 60.0),
+    }
+}
+
+/// Sine and cosine of an angle turned on by `d`.
+#[inline(always)]
+fn turned<S: Real>((sin, cos): (S, S), d: S) -> (S, S) {
+    let (sin_d, cos_d) = d.sin_cos();
+    (sin * cos_d + cos * sin_d, cos * cos_d - sin * sin_d)
 }
 
 /// Sine and cosine of `E + ω`, where `u = E + ω - axN sin(E + ω) + ayN cos(E + ω)`, by Newton's steps.
-fn kepler(u: f64, ax: f64, ay: f64) -> (f64, f64) {
+#[inline(always)]
+fn kepler<S: Real>(u: S, ax: S, ay: S) -> (S, S) {
     let (enough, steps, longest) = KEPLER;
     let mut eo = u;
     let mut sin_cos = eo.sin_cos();
-    for _ in 0..steps {
-        sin_cos = eo.sin_cos();
+    for left in (0..steps).rev() {
         let (sin, cos) = sin_cos;
-        let step = (u - ay * cos + ax * sin - eo) / (1.0 - cos * ax - sin * ay);
-        eo += step.clamp(-longest, longest);
-        if step.abs() < enough {
+        let step = (u - ay * cos + ax * sin - eo) / (S::of(1.0) - cos * ax - sin * ay);
+        let (low, high) = (S::of(-longest), S::of(longest));
+        let step = S::select(S::less(step, low), low, S::select(S::less(high, step), high, step));
+        // a lane that has got there stays as it is, whatever its neighbours need
+        let is_under_way = S::less(S::of(enough), step.abs());
+        if left == 0 || !S::any(is_under_way) {
             break;
         }
+        eo += S::select(is_under_way, step, S::of(0.0));
+        sin_cos = eo.sin_cos();
     }
     sin_cos
 }

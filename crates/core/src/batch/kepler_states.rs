@@ -1,0 +1,114 @@
+//! Ellipses by their elements, each at a time of its own.
+
+use super::input::{InputError, check_finite};
+use super::threads::for_each;
+use crate::orbit::kepler::ellipse_state;
+use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real};
+
+/// States that one task takes.
+const CHUNK: usize = 4096;
+
+/// Positions and velocities (N, 3) on ellipses, m and m/s.
+///
+/// `elements` holds seven numbers each of which is one for all or one per state: semi-major axis (m), eccentricity,
+/// inclination, right ascension of the node, argument of periapsis, mean anomaly at time zero (rad), time (s).
+///
+/// # Errors
+/// [`InputError`]: lengths, numbers that are not finite, an ellipse that is none, no threads.
+pub fn kepler_states(
+    elements: [&[f64]; 7],
+    mu: f64,
+    positions: &mut [f64],
+    velocities: &mut [f64],
+    threads: Option<usize>,
+) -> Result<(), InputError> {
+    let count = positions.len() / 3;
+    check(&elements, mu, count)?;
+    if velocities.len() != positions.len() {
+        let (expected, got) = (positions.len(), velocities.len());
+        return Err(InputError::WrongLength { name: "velocities", expected, got });
+    }
+    match InstructionSet::current() {
+        InstructionSet::Baseline => all::<f64>(elements, mu, positions, velocities, threads),
+        InstructionSet::Fused => all::<Lanes4>(elements, mu, positions, velocities, threads),
+        InstructionSet::Wide => all::<Lanes8>(elements, mu, positions, velocities, threads),
+    }
+}
+
+const NAMES: [&str; 7] =
+    ["semi_major_axis", "eccentricity", "inclination", "raan", "argument_of_periapsis", "mean_anomaly", "t"];
+
+fn check(elements: &[&[f64]; 7], mu: f64, count: usize) -> Result<(), InputError> {
+    for (name, values) in NAMES.into_iter().zip(elements) {
+        if values.len() != count && values.len() != 1 {
+            return Err(InputError::WrongLength { name, expected: count, got: values.len() });
+        }
+        check_finite(name, values, 1)?;
+    }
+    let refuse = |name, values: &[f64], is_one: fn(f64) -> bool, expected| match values
+        .iter()
+        .position(|&value| !is_one(value))
+    {
+        Some(state) => Err(InputError::NoEllipse { name, state, value: values[state], expected }),
+        None => Ok(()),
+    };
+    refuse("mu", &[mu], |mu| mu > 0.0 && mu.is_finite(), "positive and finite")?;
+    refuse(NAMES[0], elements[0], |a| a > 0.0, "positive: hyperbolas go one by one")?;
+    refuse(NAMES[1], elements[1], |e| (0.0..1.0).contains(&e), "in [0, 1): open orbits go one by one")
+}
+
+fn all<S: Real>(
+    elements: [&[f64]; 7],
+    mu: f64,
+    positions: &mut [f64],
+    velocities: &mut [f64],
+    threads: Option<usize>,
+) -> Result<(), InputError> {
+    let rows = positions.chunks_mut(3 * CHUNK).zip(velocities.chunks_mut(3 * CHUNK));
+    for_each(
+        threads,
+        rows.enumerate().collect(),
+        || (),
+        |(), (chunk, (positions, velocities))| {
+            S::enter(
+                #[inline(always)]
+                || chunk_of::<S>(&elements, mu, chunk * CHUNK, positions, velocities),
+            );
+        },
+    )
+}
+
+#[inline(always)]
+fn chunk_of<S: Real>(
+    elements: &[&[f64]; 7],
+    mu: f64,
+    first: usize,
+    positions: &mut [f64],
+    velocities: &mut [f64],
+) {
+    let width = 3 * S::LANES;
+    for (group, (r, v)) in positions.chunks_mut(width).zip(velocities.chunks_mut(width)).enumerate() {
+        // lanes beyond the end repeat the last state
+        let (from, last) = (first + group * S::LANES, r.len() / 3 - 1);
+        let pick = |k: usize| {
+            let values = elements[k];
+            match values {
+                [one] => S::of(*one),
+                _ if last + 1 == S::LANES => {
+                    let values = &values[from..][..S::LANES];
+                    S::from_lanes(
+                        #[inline(always)]
+                        |lane| values[lane],
+                    )
+                }
+                _ => S::from_lanes(|lane| values[from + lane.min(last)]),
+            }
+        };
+        let (position, velocity) =
+            ellipse_state([pick(0), pick(1), pick(2), pick(3), pick(4), pick(5)], S::of(mu), pick(6));
+        for (lane, (r, v)) in r.chunks_exact_mut(3).zip(v.chunks_exact_mut(3)).enumerate() {
+            r.copy_from_slice(&[position.x.lane(lane), position.y.lane(lane), position.z.lane(lane)]);
+            v.copy_from_slice(&[velocity.x.lane(lane), velocity.y.lane(lane), velocity.z.lane(lane)]);
+        }
+    }
+}

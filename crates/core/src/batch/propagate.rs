@@ -1,0 +1,69 @@
+//! Many orbits at many times.
+
+use super::input::InputError;
+use super::threads::for_each;
+use crate::orbit::{Orbit, OrbitError, Rows};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Instants at which to look, s of simulation.
+#[derive(Clone, Copy, Debug)]
+pub enum Times<'a> {
+    /// The same for all orbits, (T,).
+    Common(&'a [f64]),
+    /// Each its own, (N, T) row after row.
+    Each(&'a [f64]),
+}
+
+/// Positions and velocities of `orbits`, (N, T, 3) row after row, m and m/s, each in the axes of its orbit.
+///
+/// On `threads` threads (all cores if `None`); the bits do not depend on their number.
+///
+/// # Errors
+/// [`InputError::NoThreads`], [`InputError::WrongLength`], and [`InputError::Orbit`] for the first orbit that is
+/// refused.
+pub fn propagate(
+    orbits: &[Arc<dyn Orbit>],
+    times: Times<'_>,
+    positions: &mut [f64],
+    velocities: &mut [f64],
+    threads: Option<usize>,
+) -> Result<(), InputError> {
+    let count = match times {
+        Times::Common(times) => times.len(),
+        Times::Each(times) => times.len() / orbits.len().max(1),
+    };
+    let expected = 3 * orbits.len() * count;
+    for (name, got) in [("positions", positions.len()), ("velocities", velocities.len())] {
+        if got != expected {
+            return Err(InputError::WrongLength { name, expected, got });
+        }
+    }
+    if expected == 0 {
+        return for_each(threads, Vec::<()>::new(), || (), |(), ()| ());
+    }
+    let rows = positions.chunks_mut(3 * count).zip(velocities.chunks_mut(3 * count));
+    let tasks = orbits.iter().zip(rows).enumerate().collect();
+    let first: Mutex<Option<(usize, OrbitError)>> = Mutex::new(None);
+    for_each(
+        threads,
+        tasks,
+        || (),
+        |(), (index, (orbit, (positions, velocities)))| {
+            let instants = match times {
+                Times::Common(times) => times,
+                Times::Each(times) => &times[index * count..][..count],
+            };
+            let filled = Rows::new(count, positions, velocities).and_then(|rows| orbit.fill(instants, rows));
+            if let Err(error) = filled {
+                let mut first = first.lock().unwrap_or_else(PoisonError::into_inner);
+                if first.as_ref().is_none_or(|(known, _)| index < *known) {
+                    *first = Some((index, error));
+                }
+            }
+        },
+    )?;
+    match first.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        Some((orbit, source)) => Err(InputError::Orbit { orbit, source }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,33 @@
+//! Air of one density everywhere.
+
+use super::{AirPlace, Atmosphere, AtmosphereError};
+
+/// The same density at every altitude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConstantAtmosphere {
+    density: f64,
+}
+
+impl ConstantAtmosphere {
+    /// `density` in kg/m³.
+    ///
+    /// # Errors
+    /// [`AtmosphereError::Value`] where it is negative or not finite.
+    pub fn new(density: f64) -> Result<Self, AtmosphereError> {
+        if density.is_finite() && density >= 0.0 {
+            return Ok(Self { density });
+        }
+        let (name, expected) = ("density", "a finite number of at least 0");
+        Err(AtmosphereError::Value { name, value: density, expected })
+    }
+}
+
+impl Atmosphere for ConstantAtmosphere {
+    fn name(&self) -> &'static str {
+        "constant density"
+    }
+
+    fn density(&self, _place: &AirPlace<'_>) -> Result<f64, AtmosphereError> {
+        Ok(self.density)
+    }
+}

@@ -1,0 +1,59 @@
+//! Where and when the air is asked about.
+
+use super::AtmosphereError;
+use crate::earth::{Earth, Geodetic, WGS84};
+use nalgebra::Vector3;
+
+/// A place outside the Earth at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct AirPlace<'a> {
+    /// The turning Earth.
+    pub earth: &'a Earth,
+    /// Instant, s of simulation.
+    pub time: f64,
+    /// Latitude, longitude (rad) and altitude (m) on WGS84.
+    pub geodetic: Geodetic,
+    /// Position from the Earth's centre, axes of `I`, m.
+    pub position: Vector3<f64>,
+    /// Unit vector away from the ellipsoid, axes of `I`.
+    pub up: Vector3<f64>,
+}
+
+impl<'a> AirPlace<'a> {
+    /// The place at `position`, axes of `I`, m.
+    ///
+    /// # Errors
+    /// [`AtmosphereError::BelowSurface`]; what the Earth refuses.
+    pub fn new(earth: &'a Earth, time: f64, position: &Vector3<f64>) -> Result<Self, AtmosphereError> {
+        let rot_fi = earth.rot_fi(time);
+        let geodetic = Geodetic::of(&(rot_fi * position), &WGS84)?;
+        Self { earth, time, geodetic, position: *position, up: rot_fi.tr_mul(&up(&geodetic)) }.outside()
+    }
+
+    /// The place at these coordinates.
+    ///
+    /// # Errors
+    /// As [`AirPlace::new`].
+    pub fn at(earth: &'a Earth, time: f64, geodetic: Geodetic) -> Result<Self, AtmosphereError> {
+        let rot_fi = earth.rot_fi(time);
+        let (position, up) = (rot_fi.tr_mul(&geodetic.position(&WGS84)), rot_fi.tr_mul(&up(&geodetic)));
+        Self { earth, time, geodetic, position, up }.outside()
+    }
+
+    /// The place `height` metres above this one.
+    pub(super) fn raised(&self, height: f64) -> Self {
+        let geodetic = Geodetic { altitude: self.geodetic.altitude + height, ..self.geodetic };
+        Self { geodetic, position: self.position + self.up * height, ..*self }
+    }
+
+    fn outside(self) -> Result<Self, AtmosphereError> {
+        let altitude = self.geodetic.altitude;
+        if altitude >= 0.0 { Ok(self) } else { Err(AtmosphereError::BelowSurface { altitude }) }
+    }
+}
+
+/// `(cos φ cos λ, cos φ sin λ, sin φ)`, axes of `F`.
+fn up(geodetic: &Geodetic) -> Vector3<f64> {
+    let ((slat, clat), (slon, clon)) = (geodetic.latitude.sin_cos(), geodetic.longitude.sin_cos());
+    Vector3::new(clat * clon, clat * slon, slat)
+}

@@ -1,0 +1,162 @@
+//! Space weather day by day.
+
+use super::{AtmosphereError, MagneticActivity, SpaceIndices};
+
+/// Columns of a day, as CelesTrak names them; the eight `AP` of three hours each come after.
+const COLUMNS: [&str; 11] =
+    ["F10.7_OBS", "F10.7_OBS_CENTER81", "AP_AVG", "AP1", "AP2", "AP3", "AP4", "AP5", "AP6", "AP7", "AP8"];
+const FLUX: usize = 0;
+const MEAN_FLUX: usize = 1;
+const DAILY: usize = 2;
+const THREE_HOURS: usize = 3;
+
+/// One day: a number per column, none where the table has a gap.
+type Day = [Option<f64>; COLUMNS.len()];
+
+/// Observed solar flux and geomagnetic activity of every day from the first on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpaceWeatherTable {
+    /// Modified Julian date of the first row.
+    first: i64,
+    days: Vec<Day>,
+    has_history: bool,
+}
+
+impl SpaceWeatherTable {
+    /// Reads CSV text with a header line that names `DATE` (`2024-03-01`), `F10.7_OBS`, `F10.7_OBS_CENTER81`,
+    /// `AP_AVG` and, where the three-hourly history is wanted, `AP1` to `AP8`; other columns are left alone.
+    /// CelesTrak's `SW-All.csv` is such a text. Rows are consecutive days; an empty field is a gap, refused
+    /// when a run needs it.
+    ///
+    /// # Errors
+    /// [`AtmosphereError::Table`] with the line.
+    pub fn from_csv(text: &str) -> Result<Self, AtmosphereError> {
+        let wrong = |line: usize, problem: String| AtmosphereError::Table { line: line + 1, problem };
+        let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+        let (_, header) = lines.next().ok_or_else(|| wrong(0, "the table is empty".to_owned()))?;
+        let names: Vec<&str> = header.split(',').map(str::trim).collect();
+        let place = |name: &str| names.iter().position(|n| *n == name);
+        let missing = |name: &str| wrong(0, format!("the header has no column {name}"));
+        let date = place("DATE").ok_or_else(|| missing("DATE"))?;
+        let has_history = place("AP1").is_some();
+        let needed = if has_history { COLUMNS.len() } else { THREE_HOURS };
+        let places: Vec<usize> = COLUMNS[..needed]
+            .iter()
+            .map(|name| place(name).ok_or_else(|| missing(name)))
+            .collect::<Result<_, _>>()?;
+        let (mut first, mut days) = (0, Vec::new());
+        for (line, row) in lines {
+            let fields: Vec<&str> = row.split(',').map(str::trim).collect();
+            let field = |k: usize| fields.get(k).copied().unwrap_or("");
+            let day = day_of(field(date))
+                .ok_or_else(|| wrong(line, format!("'{}' is no date like 2024-03-01", field(date))))?;
+            if days.is_empty() {
+                first = day;
+            } else if day != first + days.len() as i64 {
+                let before = date_of(first + days.len() as i64 - 1);
+                return Err(wrong(line, format!("{} does not follow {before}", date_of(day))));
+            }
+            let mut numbers: Day = [None; COLUMNS.len()];
+            for (k, &place) in places.iter().enumerate() {
+                let text = field(place);
+                if text.is_empty() {
+                    continue;
+                }
+                let number = text.parse::<f64>().ok().filter(|x| x.is_finite() && *x >= 0.0);
+                let wrong = || wrong(line, format!("{} is '{text}', no number of at least 0", COLUMNS[k]));
+                numbers[k] = Some(number.ok_or_else(wrong)?);
+            }
+            days.push(numbers);
+        }
+        if days.is_empty() {
+            return Err(wrong(1, "the table has no rows".to_owned()));
+        }
+        Ok(Self { first, days, has_history })
+    }
+
+    /// The same without the three-hourly history: the mean of the day alone.
+    pub fn daily(self) -> Self {
+        Self { has_history: false, ..self }
+    }
+
+    /// Indices at `seconds` of the UTC day with this modified Julian date.
+    ///
+    /// # Errors
+    /// [`AtmosphereError::OutsideTable`] and [`AtmosphereError::MissingSpaceWeather`].
+    pub fn at(&self, day: i64, seconds: f64) -> Result<SpaceIndices, AtmosphereError> {
+        let daily = self.number(day, DAILY)?;
+        let activity = if self.has_history {
+            // intervals of three hours, from now back
+            let now = 8 * day + ((seconds / 10_800.0).floor() as i64).clamp(0, 7);
+            let back = |k: i64| {
+                let interval = now - k;
+                self.number(interval.div_euclid(8), THREE_HOURS + interval.rem_euclid(8) as usize)
+            };
+            let mean = |from: i64| (from..from + 8).map(back).sum::<Result<f64, _>>().map(|sum| sum / 8.0);
+            MagneticActivity::History([daily, back(0)?, back(1)?, back(2)?, back(3)?, mean(4)?, mean(12)?])
+        } else {
+            MagneticActivity::Daily(daily)
+        };
+        SpaceIndices::new(self.number(day - 1, FLUX)?, self.number(day, MEAN_FLUX)?, activity)
+    }
+
+    fn number(&self, day: i64, column: usize) -> Result<f64, AtmosphereError> {
+        let row = usize::try_from(day - self.first).ok().and_then(|k| self.days.get(k));
+        let outside = || AtmosphereError::OutsideTable {
+            date: date_of(day),
+            first: date_of(self.first),
+            last: date_of(self.first + self.days.len() as i64 - 1),
+        };
+        let missing = || AtmosphereError::MissingSpaceWeather { name: COLUMNS[column], date: date_of(day) };
+        row.ok_or_else(outside)?[column].ok_or_else(missing)
+    }
+}
+
+/// Modified Julian date of 1 March 2000, from which days are counted: leap days end the years then.
+const MARCH_2000: i64 = 51_604;
+
+/// Year, month and day of a modified Julian date (Gregorian).
+fn calendar(day: i64) -> (i64, i64, i64) {
+    let since = day - MARCH_2000;
+    let (cycle, in_cycle) = (since.div_euclid(146_097), since.rem_euclid(146_097));
+    let century = (in_cycle / 36_524).min(3);
+    let in_century = in_cycle - century * 36_524;
+    let four = in_century / 1461;
+    let in_four = in_century - four * 1461;
+    let year = (in_four / 365).min(3);
+    let in_year = in_four - year * 365;
+    let month = (5 * in_year + 2) / 153; // from March
+    let day = in_year - (153 * month + 2) / 5 + 1;
+    let year = 2000 + 400 * cycle + 100 * century + 4 * four + year;
+    if month < 10 { (year, month + 3, day) } else { (year + 1, month - 9, day) }
+}
+
+/// Modified Julian date of `2024-03-01`.
+fn day_of(text: &str) -> Option<i64> {
+    let mut parts = text.split('-').map(|part| part.parse::<i64>().ok());
+    let (year, month, day) = (parts.next()??, parts.next()??, parts.next()??);
+    if parts.next().is_some() || !(1..=12).contains(&month) {
+        return None;
+    }
+    let date = julian(year, month, day);
+    (calendar(date) == (year, month, day)).then_some(date)
+}
+
+/// Modified Julian date of a date of the calendar.
+fn julian(year: i64, month: i64, day: i64) -> i64 {
+    let (year_of_march, from_march) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
+    let years = year_of_march - 2000;
+    let leaps = years.div_euclid(4) - years.div_euclid(100) + years.div_euclid(400);
+    MARCH_2000 + 365 * years + leaps + (153 * from_march + 2) / 5 + day - 1
+}
+
+fn date_of(day: i64) -> String {
+    let (year, month, day) = calendar(day);
+    format!("{year:04}-{month:02}-{day:02}")
+}
+
+/// Day of the year, from 1, of a modified Julian date.
+pub(super) fn day_of_year(day: i64) -> i32 {
+    let (year, ..) = calendar(day);
+    (day - julian(year, 1, 1) + 1) as i32 // at most 366
+}

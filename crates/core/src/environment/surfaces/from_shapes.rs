@@ -1,0 +1,103 @@
+//! Faces from the visual geometry of links.
+
+use super::error::SurfaceError;
+use super::part::Part;
+use crate::model::{Frame, Geometry, Model, Visual};
+use crate::spatial::{Mat3, Vec3};
+use std::f64::consts::PI;
+
+/// The parts of every shape fixed to a body, from its centre of mass.
+pub(super) fn parts_of_body(model: &Model, body: usize) -> Result<Vec<Part>, SurfaceError> {
+    let mut parts = Vec::new();
+    for (frame, visual) in model.visuals() {
+        let frame = &model.frames()[*frame];
+        if frame.body == body {
+            let place = Place::of(frame, visual, model.nodes()[body].com);
+            place.add(frame, &visual.geometry, &mut parts)?;
+        }
+    }
+    Ok(parts)
+}
+
+/// Where a shape is: takes its components to the body's; its origin from the body's centre of mass.
+struct Place {
+    rot: Mat3<f64>,
+    pos: Vec3<f64>,
+}
+
+impl Place {
+    fn of(frame: &Frame, visual: &Visual, com: Vec3<f64>) -> Self {
+        let rot: Mat3<f64> = visual.pose.rotation.to_rotation_matrix().into_inner().into();
+        let pos: Vec3<f64> = visual.pose.translation.vector.into();
+        Self { rot: frame.rot_kf * rot, pos: frame.rot_kf * pos + frame.pos_kf - com }
+    }
+
+    fn axis(&self, k: usize) -> Vec3<f64> {
+        let unit = |i: usize| if i == k { 1.0 } else { 0.0 };
+        self.rot * Vec3::new(unit(0), unit(1), unit(2))
+    }
+
+    fn add(&self, frame: &Frame, geometry: &Geometry, parts: &mut Vec<Part>) -> Result<(), SurfaceError> {
+        match geometry {
+            Geometry::Box([x, y, z]) => {
+                self.pair(0, y * z, *x, parts);
+                self.pair(1, z * x, *y, parts);
+                self.pair(2, x * y, *z, parts);
+            }
+            Geometry::Cylinder { radius, length } => {
+                parts.push(self.tube(*radius, *length));
+                self.pair(2, PI * radius * radius, *length, parts);
+            }
+            Geometry::Capsule { radius, length } => {
+                parts.push(self.tube(*radius, *length));
+                for end in [-1.0, 1.0] {
+                    self.dome(*radius, 0.5 * end * length, end, parts);
+                }
+            }
+            Geometry::Sphere { radius } => {
+                parts.push(Part::Ball { area: PI * radius * radius, centre: self.pos });
+            }
+            Geometry::Mesh { filename, .. } => {
+                let (link, filename) = (frame.name.clone(), filename.clone());
+                return Err(SurfaceError::Mesh { link, filename });
+            }
+        }
+        Ok(())
+    }
+
+    /// The two plates across axis `k`, `distance` apart.
+    fn pair(&self, k: usize, area: f64, distance: f64, parts: &mut Vec<Part>) {
+        for side in [-1.0, 1.0] {
+            let normal = self.axis(k) * side;
+            parts.push(Part::Plate { area, normal, centroid: self.pos + normal * (0.5 * distance) });
+        }
+    }
+
+    fn tube(&self, radius: f64, length: f64) -> Part {
+        Part::Tube { radius, length, axis: self.axis(2), centre: self.pos }
+    }
+
+    /// Half a ball about `height` on z, as plates: right along z, to 2 % from elsewhere.
+    fn dome(&self, radius: f64, height: f64, end: f64, parts: &mut Vec<Part>) {
+        const RINGS: usize = 4;
+        const SECTORS: usize = 12;
+        for ring in 0..RINGS {
+            // latitudes b to c: area r² Δλ (sin c - sin b), shadow on the equator ½ r² Δλ (cos² b - cos² c)
+            let latitude = |ring: usize| ring as f64 / RINGS as f64 * 0.5 * PI;
+            let (b, c, sector) = (latitude(ring), latitude(ring + 1), 2.0 * PI / SECTORS as f64);
+            let shadow = 0.5 * (b.cos().powi(2) - c.cos().powi(2));
+            let side = 0.5 * (c - b + c.sin() * c.cos() - b.sin() * b.cos());
+            for k in 0..SECTORS {
+                // the vector area of the patch is exact: ∫ n dA
+                let longitude = (k as f64 + 0.5) * sector;
+                let wide = 2.0 * (0.5 * sector).sin() * side;
+                let vector = Vec3::new(wide * longitude.cos(), wide * longitude.sin(), end * sector * shadow);
+                let size = vector.norm();
+                let normal = self.rot * (vector * (1.0 / size));
+                let centre = self.pos + self.axis(2) * height;
+                let area = size * radius * radius;
+                parts.push(Part::Plate { area, normal, centroid: centre + normal * radius });
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Parts of a surface, and what a stream of air or light does to each.
+
+use super::error::{SurfaceError, not_negative};
+use crate::spatial::Vec3;
+use std::f64::consts::PI;
+
+/// A part of a body's outside; axes of the body, positions from its centre of mass, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    /// Flat, seen from the side of its normal.
+    Plate {
+        /// Area, m².
+        area: f64,
+        /// Unit normal, outward.
+        normal: Vec3<f64>,
+        /// Where its area is centred.
+        centroid: Vec3<f64>,
+    },
+    /// The curved side of a cylinder.
+    Tube {
+        /// Radius, m.
+        radius: f64,
+        /// Length, m.
+        length: f64,
+        /// Unit vector along it.
+        axis: Vec3<f64>,
+        /// Its middle.
+        centre: Vec3<f64>,
+    },
+    /// A whole ball.
+    Ball {
+        /// Area of its disc, m².
+        area: f64,
+        /// Its middle.
+        centre: Vec3<f64>,
+    },
+}
+
+/// Shares of the light that a surface sends back; the rest is absorbed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Optics {
+    specular: f64,
+    diffuse: f64,
+}
+
+impl Optics {
+    /// `specular` as a mirror does, `diffuse` as a matt wall does (Lambert); 0 to 1.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Value`] and [`SurfaceError::Reflection`].
+    pub fn new(specular: f64, diffuse: f64) -> Result<Self, SurfaceError> {
+        not_negative("specular", specular)?;
+        not_negative("diffuse", diffuse)?;
+        if specular + diffuse > 1.0 {
+            return Err(SurfaceError::Reflection { specular, diffuse });
+        }
+        Ok(Self { specular, diffuse })
+    }
+}
+
+/// A force through the centre of mass and a torque about it, axes of the body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Push {
+    pub(super) force: Vec3<f64>,
+    pub(super) torque: Vec3<f64>,
+}
+
+impl Push {
+    #[inline(always)]
+    pub(super) fn none() -> Self {
+        Self { force: Vec3::zero(), torque: Vec3::zero() }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, force: Vec3<f64>, torque: Vec3<f64>) {
+        self.force = self.force + force;
+        self.torque = self.torque + torque;
+    }
+}
+
+impl Part {
+    /// `-Σ A (n·u)₊ u` and its torque: drag but for `½ ρ C_D`.
+    ///
+    /// `u = v + w × c` is the velocity of the part's middle in the air, `v` that of the centre of mass and `w` the
+    /// turn relative to the air, body axes. Since `|u|² (n·û) û = (n·u) u`, no root is needed for a plate.
+    #[inline(always)]
+    pub(super) fn blow(&self, v: Vec3<f64>, w: Vec3<f64>, push: &mut Push) {
+        match *self {
+            Self::Plate { area, normal, centroid } => {
+                let u = v + w.cross(centroid);
+                // F = -A (n·u)₊ u,  T = c × F
+                let force = u * (-area * normal.dot(u).max(0.0));
+                push.add(force, centroid.cross(force));
+            }
+            Self::Tube { radius, length, axis, centre } => {
+                // over the half in the wind: Σ A (n·u)₊ = 2 r L |u⊥|, its centroid is π/4 r û⊥ off the axis
+                let u = v + w.cross(centre);
+                let across = u - axis * axis.dot(u);
+                let speed = across.norm();
+                let side = u * (-2.0 * radius * length);
+                push.add(side * speed, (centre * speed + across * (PI / 4.0 * radius)).cross(side));
+            }
+            Self::Ball { area, centre } => {
+                let u = v + w.cross(centre);
+                let force = u * (-area * u.norm());
+                push.add(force, centre.cross(force));
+            }
+        }
+    }
+
+    /// `-Σ A (n·s)₊ [(1 - ρs) s + 2 (ρs n·s + ρd/3) n]` and its torque: light's push but for its pressure.
+    ///
+    /// `s` points to the Sun, body axes. Of a ball a mirror's push is that of a black one, of a matt one 4/9
+    /// more; a tube is the integral of the same over its lit half.
+    ///
+    /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.4; Wertz, Spacecraft Attitude
+    /// Determination and Control, 1978, section 17.2.
+    #[inline(always)]
+    pub(super) fn shine(&self, s: Vec3<f64>, optics: &Optics, push: &mut Push) {
+        let Optics { specular, diffuse } = *optics;
+        match *self {
+            Self::Plate { area, normal, centroid } => {
+                let cosine = normal.dot(s).max(0.0);
+                let along_normal = 2.0 * (specular * cosine + diffuse / 3.0);
+                let force = (s * (1.0 - specular) + normal * along_normal) * (-area * cosine);
+                push.add(force, centroid.cross(force));
+            }
+            Self::Tube { radius, length, axis, centre } => {
+                // n = cos φ ŝ⊥ + sin φ …,  n·s = σ cos φ,  dA = r L dφ over |φ| < π/2
+                let across = s - axis * axis.dot(s);
+                let sigma = across.norm();
+                let area = radius * length;
+                let absorbed = s * (-2.0 * area * (1.0 - specular));
+                let reflected = across * (-area * (8.0 / 3.0 * specular * sigma + PI / 3.0 * diffuse));
+                let force = absorbed * sigma + reflected;
+                let torque = (across * (PI / 4.0 * radius)).cross(absorbed);
+                push.add(force, centre.cross(force) + torque);
+            }
+            Self::Ball { area, centre } => {
+                let force = s * (-area * (1.0 + 4.0 / 9.0 * diffuse));
+                push.add(force, centre.cross(force));
+            }
+        }
+    }
+}

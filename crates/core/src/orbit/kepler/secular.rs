@@ -1,0 +1,85 @@
+//! A Kepler ellipse that the planet's flattening turns and hurries, on average.
+
+use super::Kepler;
+use super::conic::Conic;
+use crate::orbit::error::{finite, positive};
+use crate::orbit::{Orbit, OrbitError, OrbitState};
+use nalgebra::{Rotation3, Unit, Vector3};
+
+/// A Kepler ellipse with the secular rates of first order in J₂; its elements are mean ones.
+///
+/// `Ω̇ = -3/2 n J₂ (R/p)² cos i`, `ω̇ = 3/4 n J₂ (R/p)² (4 - 5 sin²i)`,
+/// `Ṁ - n = 3/4 n J₂ (R/p)² √(1 - e²) (2 - 3 sin²i)`. Node and periapsis are those given at the epoch (with a time of
+/// periapsis: there). Velocity and acceleration are the derivatives of this position; since it swings about the true
+/// motion by kilometres, they are not those of a body that falls in the field.
+///
+/// Source: Vallado, Fundamentals of Astrodynamics and Applications, 4th ed., eqs. 9-38, 9-40 and 9-41.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SecularJ2 {
+    kepler: Kepler,
+    /// `Ω̇` and `ω̇`, rad/s.
+    node_rate: f64,
+    periapsis_rate: f64,
+    /// `Ṁ/n`.
+    pace: f64,
+    /// Along the angular momentum at the epoch.
+    normal: Unit<Vector3<f64>>,
+}
+
+impl Kepler {
+    /// This ellipse with the secular rates of a planet flattened by `j2` about z, with reference radius `radius` (m).
+    ///
+    /// # Errors
+    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `radius`, [`OrbitError::NotClosed`] for an open orbit.
+    pub fn with_secular_j2(self, j2: f64, radius: f64) -> Result<SecularJ2, OrbitError> {
+        finite("j2", j2)?;
+        positive("radius", radius)?;
+        let Conic::Ellipse { n, .. } = self.conic else {
+            return Err(OrbitError::NotClosed { eccentricity: self.eccentricity() });
+        };
+        let normal = Unit::new_normalize(self.p_i.cross(&self.q_i));
+        let (cos, sin2) = (normal.z, normal.x * normal.x + normal.y * normal.y);
+        let beta = (self.shape.one_minus_e * (1.0 + self.shape.e)).sqrt();
+        let k = 0.75 * j2 * (radius / self.semi_latus_rectum()).powi(2);
+        Ok(SecularJ2 {
+            kepler: self,
+            node_rate: -2.0 * n * k * cos,
+            periapsis_rate: n * k * (4.0 - 5.0 * sin2),
+            pace: 1.0 + k * beta * (2.0 - 3.0 * sin2),
+            normal,
+        })
+    }
+}
+
+impl SecularJ2 {
+    /// Rates of node and periapsis, rad/s.
+    pub fn rates(&self) -> (f64, f64) {
+        (self.node_rate, self.periapsis_rate)
+    }
+}
+
+impl Orbit for SecularJ2 {
+    fn mu(&self) -> Option<f64> {
+        self.kepler.mu()
+    }
+
+    fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
+        let dt = finite("time", t)? - self.kepler.epoch;
+        let s = self.kepler.state(self.kepler.epoch + self.pace * dt)?;
+        // turned about the orbit's own normal by ω̇ t, then about z by Ω̇ t
+        let node = Rotation3::from_axis_angle(&Vector3::z_axis(), self.node_rate * dt);
+        let turn = node * Rotation3::from_axis_angle(&self.normal, self.periapsis_rate * dt);
+        let (r, v) = (turn * s.position, turn * s.velocity * self.pace);
+        let a = turn * s.acceleration * (self.pace * self.pace);
+        // w = Ω̇ ẑ + ω̇ n̂, which turns with the node: ẇ = Ω̇ ẑ × ω̇ n̂
+        let (about_z, about_n) = (Vector3::z() * self.node_rate, node * *self.normal * self.periapsis_rate);
+        let (w, w_dot) = (about_z + about_n, about_z.cross(&about_n));
+        let carried = w.cross(&r);
+        Ok(OrbitState {
+            position: r,
+            velocity: v + carried,
+            // r̈ = a + 2 w × v + ẇ × r + w × (w × r)
+            acceleration: a + w.cross(&v) * 2.0 + w_dot.cross(&r) + w.cross(&carried),
+        })
+    }
+}

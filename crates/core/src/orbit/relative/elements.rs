@@ -1,0 +1,148 @@
+//! Relative orbital elements of a deputy about a chief.
+//!
+//! `δa = (a_d - a)/a`, `δλ = (u_d - u) + (Ω_d - Ω) cos i`, `δe = e_d (cos ω_d, sin ω_d) - e (cos ω, sin ω)`,
+//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`: circles are nothing special, a chief in the equator is.
+//!
+//! Source: D'Amico and Montenbruck, J. Guidance, Control and Dynamics 29(3), 2006; D'Amico, Ph.D. thesis, TU Delft 2010.
+
+use crate::orbit::kepler::{Elements, Kepler, Phase, Size};
+use crate::orbit::{Orbit, OrbitError};
+use nalgebra::{Vector3, Vector6};
+use std::f64::consts::{PI, TAU};
+
+/// Below this `sin i` of the chief its node means nothing.
+const EQUATORIAL: f64 = 1e-6;
+
+/// Elements that stay regular on circles.
+struct Regular {
+    a: f64,
+    /// `M + ω`, rad.
+    u: f64,
+    e: [f64; 2],
+    i: f64,
+    node: f64,
+}
+
+impl Regular {
+    fn of(r: &Vector3<f64>, v: &Vector3<f64>, mu: f64) -> Result<Self, OrbitError> {
+        let kepler = Kepler::from_state(*r, *v, mu)?;
+        let (elements, e) = (kepler.elements(), kepler.eccentricity());
+        let (Some(anomaly), a) = (kepler.mean_anomaly(), kepler.semi_major_axis()) else {
+            return Err(OrbitError::NotClosed { eccentricity: e });
+        };
+        let (sin, cos) = elements.argument_of_periapsis.sin_cos();
+        let u = anomaly + elements.argument_of_periapsis;
+        Ok(Self { a, u, e: [e * cos, e * sin], i: elements.inclination, node: elements.raan })
+    }
+
+    /// Refused in the equator.
+    fn inclined(self) -> Result<Self, OrbitError> {
+        if self.i.sin() > EQUATORIAL { Ok(self) } else { Err(OrbitError::Equatorial { inclination: self.i }) }
+    }
+}
+
+/// `(δa, δλ, δex, δey, δix, δiy)` of a deputy at `deputy` about a chief at `chief`: positions (m) and velocities (m/s)
+/// in `I` at one instant; no unit, or rad. Times `a` they are lengths.
+///
+/// # Errors
+/// [`OrbitError::NotClosed`], [`OrbitError::Equatorial`], and those of [`Kepler::from_state`].
+pub fn relative_elements(
+    chief: [&Vector3<f64>; 2],
+    deputy: [&Vector3<f64>; 2],
+    mu: f64,
+) -> Result<Vector6<f64>, OrbitError> {
+    let c = Regular::of(chief[0], chief[1], mu)?.inclined()?;
+    let d = Regular::of(deputy[0], deputy[1], mu)?;
+    let (sin, cos) = c.i.sin_cos();
+    let node = nearest(d.node - c.node);
+    // δλ is small though u and Ω may each be a turn off
+    let along = nearest(nearest(d.u - c.u) + node * cos);
+    Ok(Vector6::new((d.a - c.a) / c.a, along, d.e[0] - c.e[0], d.e[1] - c.e[1], d.i - c.i, node * sin))
+}
+
+/// Position (m) and velocity (m/s) of a deputy with these relative elements: undoes [`relative_elements`].
+///
+/// # Errors
+/// As [`relative_elements`], and those of [`Kepler::new`] for elements that are no ellipse.
+pub fn deputy_state(
+    chief: [&Vector3<f64>; 2],
+    elements: &Vector6<f64>,
+    mu: f64,
+) -> Result<[Vector3<f64>; 2], OrbitError> {
+    let c = Regular::of(chief[0], chief[1], mu)?.inclined()?;
+    let (sin, cos) = c.i.sin_cos();
+    let node = elements[5] / sin;
+    let e = [c.e[0] + elements[2], c.e[1] + elements[3]];
+    let argument = e[1].atan2(e[0]);
+    let u = c.u + elements[1] - node * cos;
+    let deputy = Elements {
+        size: Size::SemiMajorAxis(c.a * (1.0 + elements[0])),
+        eccentricity: e[0].hypot(e[1]),
+        inclination: c.i + elements[4],
+        raan: c.node + node,
+        argument_of_periapsis: argument,
+        phase: Phase::MeanAnomaly(u - argument),
+        mu,
+        epoch: 0.0,
+    };
+    let (r, v) = Kepler::new(&deputy)?.position_velocity(0.0)?;
+    Ok([r, v])
+}
+
+/// [`relative_elements`] of many pairs: states (B, 3) each, `out` (B, 6).
+///
+/// # Errors
+/// As [`relative_elements`]; [`OrbitError::WrongLength`].
+pub fn relative_elements_rows(
+    chief: [&[f64]; 2],
+    deputy: [&[f64]; 2],
+    mu: f64,
+    out: &mut [f64],
+) -> Result<(), OrbitError> {
+    let expected = out.len() / 2;
+    super::check(&[
+        ("chief positions", expected, chief[0].len()),
+        ("chief velocities", expected, chief[1].len()),
+        ("deputy positions", expected, deputy[0].len()),
+        ("deputy velocities", expected, deputy[1].len()),
+    ])?;
+    for (index, to) in out.chunks_exact_mut(6).enumerate() {
+        let [c, d] = [chief, deputy].map(|state| state.map(|rows| super::row(rows, index)));
+        to.copy_from_slice(relative_elements([&c[0], &c[1]], [&d[0], &d[1]], mu)?.as_slice());
+    }
+    Ok(())
+}
+
+/// [`deputy_state`] of many: chiefs (B, 3) each, `elements` (B, 6), `out` (B, 3) each.
+///
+/// # Errors
+/// As [`deputy_state`]; [`OrbitError::WrongLength`].
+pub fn deputy_states(
+    chief: [&[f64]; 2],
+    elements: &[f64],
+    mu: f64,
+    out: [&mut [f64]; 2],
+) -> Result<(), OrbitError> {
+    let (expected, [to_r, to_v]) = (elements.len() / 2, out);
+    super::check(&[
+        ("chief positions", expected, chief[0].len()),
+        ("chief velocities", expected, chief[1].len()),
+        ("positions out", expected, to_r.len()),
+        ("velocities out", expected, to_v.len()),
+    ])?;
+    let to = to_r.chunks_exact_mut(3).zip(to_v.chunks_exact_mut(3));
+    for (index, (elements, (to_r, to_v))) in elements.chunks_exact(6).zip(to).enumerate() {
+        let c = chief.map(|rows| super::row(rows, index));
+        let [r, v] = deputy_state([&c[0], &c[1]], &Vector6::from_column_slice(elements), mu)?;
+        to_r.copy_from_slice(r.as_slice());
+        to_v.copy_from_slice(v.as_slice());
+    }
+    Ok(())
+}
+
+/// The same angle within ±π.
+fn nearest(angle: f64) -> f64 {
+    let turns = (angle / TAU).round();
+    let angle = angle - turns * TAU;
+    if angle > PI { angle - TAU } else { angle }
+}

@@ -1,0 +1,65 @@
+//! Linear motion near a circular orbit.
+
+use crate::orbit::OrbitError;
+use crate::orbit::error::{finite, positive};
+use nalgebra::{Matrix3, Matrix6, Vector3};
+
+/// What `t` s make of relative position and velocity, on a circle of mean motion `n`, rad/s.
+///
+/// `ẍ = 3n² x + 2n ẏ`, `ÿ = -2n ẋ`, `z̈ = -n² z` in Hill's axes `L` (x outward, y along track, z normal), whose rotation
+/// the velocities are relative to; rows and columns `(x, y, z, ẋ, ẏ, ż)`. Wrong by `3/2 ρ²/R` or so a radian of orbit.
+///
+/// # Errors
+/// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`].
+///
+/// Source: Clohessy and Wiltshire, J. Aerospace Sciences 27(9), 1960.
+pub fn hill_transition(n: f64, t: f64) -> Result<Matrix6<f64>, OrbitError> {
+    positive("mean motion", n)?;
+    let nt = finite("time", t)? * n;
+    let (s, c) = nt.sin_cos();
+    let half = (0.5 * nt).sin();
+    let v = 2.0 * half * half; // 1 - cos nt without cancellation
+    #[rustfmt::skip]
+    let transition = Matrix6::new(
+        4.0 - 3.0 * c,      0.0, 0.0,    s / n,              2.0 * v / n,                0.0,
+        6.0 * (s - nt),     1.0, 0.0,    -2.0 * v / n,       (4.0 * s - 3.0 * nt) / n,   0.0,
+        0.0,                0.0, c,      0.0,                0.0,                        s / n,
+        3.0 * n * s,        0.0, 0.0,    c,                  2.0 * s,                    0.0,
+        -6.0 * n * v,       0.0, 0.0,    -2.0 * s,           4.0 * c - 3.0,              0.0,
+        0.0,                0.0, -n * s, 0.0,                0.0,                        c,
+    );
+    Ok(transition)
+}
+
+/// Transitions over many times: `out` holds (T, 6, 6), row-major.
+///
+/// # Errors
+/// As [`hill_transition`], and [`OrbitError::WrongLength`].
+pub fn hill_transitions(n: f64, times: &[f64], out: &mut [f64]) -> Result<(), OrbitError> {
+    super::check(&[("transitions", 36 * times.len(), out.len())])?;
+    for (&t, to) in times.iter().zip(out.chunks_exact_mut(36)) {
+        to.copy_from_slice(hill_transition(n, t)?.transpose().as_slice()); // column major, transposed
+    }
+    Ok(())
+}
+
+/// Smallest determinant of `n Φ_rv`: nearer to none, no impulse reaches the origin at that time.
+const SINGULAR: f64 = 1e-9;
+
+/// Velocity at `r` (m, `L`) that leads to the origin in `t` s, m/s: the first impulse of a rendezvous by two.
+///
+/// `v = -Φ_rv⁻¹ Φ_rr r`; the second impulse takes away what velocity [`hill_transition`] leaves.
+///
+/// # Errors
+/// As [`hill_transition`]; [`OrbitError::NoIntercept`] at times when every start comes back to its x or z, such as half
+/// a period.
+pub fn intercept_velocity(n: f64, r: &Vector3<f64>, t: f64) -> Result<Vector3<f64>, OrbitError> {
+    r.iter().try_for_each(|&x| finite("position", x).map(drop))?;
+    let transition = hill_transition(n, t)?;
+    let from_r: Matrix3<f64> = transition.fixed_view::<3, 3>(0, 0).into();
+    let from_v: Matrix3<f64> = transition.fixed_view::<3, 3>(0, 3).into_owned() * n;
+    match from_v.try_inverse() {
+        Some(inverse) if from_v.determinant().abs() > SINGULAR => Ok(inverse * (from_r * r) * -n),
+        _ => Err(OrbitError::NoIntercept { time: t, mean_motion: n }),
+    }
+}

@@ -1,0 +1,116 @@
+//! Exact coordinates in the frames that ride on a reference.
+
+use crate::orbit::{Lvlh, Nadir, Orbit, OrbitError, OrbitState};
+use nalgebra::{Matrix3, Vector3};
+
+/// Which local orbital frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LocalFrame {
+    /// [`Lvlh`]: x outward, y along track, z along the angular momentum.
+    #[default]
+    Lvlh,
+    /// [`Nadir`]: x along track, z down.
+    Nadir,
+}
+
+impl LocalFrame {
+    /// Both with their names.
+    pub const ALL: [(&'static str, Self); 2] = [("lvlh", Self::Lvlh), ("nadir", Self::Nadir)];
+
+    /// Turns local components to `I`; rate of the frame in its own axes.
+    fn of(self, reference: &OrbitState) -> Result<(Matrix3<f64>, Vector3<f64>), OrbitError> {
+        match self {
+            Self::Lvlh => Lvlh::of(reference).map(|frame| (frame.rot_il, frame.rate_l)),
+            Self::Nadir => Nadir::of(reference).map(|frame| (frame.rot_in, frame.rate_n)),
+        }
+    }
+}
+
+/// Position and velocity relative to `reference`, as seen in its turning frame: m and m/s, local axes.
+///
+/// `ρ = R_liᵀ (r - R)`, `ρ̇ = R_liᵀ (v - V) - ω × ρ`; `r` and `v` in `I`.
+///
+/// # Errors
+/// [`OrbitError::UndefinedFrame`].
+pub fn to_local(
+    reference: &OrbitState,
+    frame: LocalFrame,
+    r: &Vector3<f64>,
+    v: &Vector3<f64>,
+) -> Result<[Vector3<f64>; 2], OrbitError> {
+    let (rot_il, rate_l) = frame.of(reference)?;
+    let rho = rot_il.tr_mul(&(r - reference.position));
+    Ok([rho, rot_il.tr_mul(&(v - reference.velocity)) - rate_l.cross(&rho)])
+}
+
+/// Position and velocity in `I` of what is at `rho` (m) with `rho_dot` (m/s) in the local frame: undoes [`to_local`].
+///
+/// # Errors
+/// [`OrbitError::UndefinedFrame`].
+pub fn from_local(
+    reference: &OrbitState,
+    frame: LocalFrame,
+    rho: &Vector3<f64>,
+    rho_dot: &Vector3<f64>,
+) -> Result<[Vector3<f64>; 2], OrbitError> {
+    let (rot_il, rate_l) = frame.of(reference)?;
+    let velocity = reference.velocity + rot_il * (rho_dot + rate_l.cross(rho));
+    Ok([reference.position + rot_il * rho, velocity])
+}
+
+/// One of the two above.
+type Convert =
+    fn(&OrbitState, LocalFrame, &Vector3<f64>, &Vector3<f64>) -> Result<[Vector3<f64>; 2], OrbitError>;
+
+/// [`to_local`] at each of `times` (T,): `given` and `out` are positions and velocities, (T, 3) each.
+///
+/// # Errors
+/// As [`to_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
+pub fn to_local_rows(
+    orbit: &dyn Orbit,
+    frame: LocalFrame,
+    times: &[f64],
+    given: [&[f64]; 2],
+    out: [&mut [f64]; 2],
+) -> Result<(), OrbitError> {
+    rows(orbit, frame, times, given, out, to_local)
+}
+
+/// [`from_local`] at each of `times`; shapes as those of [`to_local_rows`].
+///
+/// # Errors
+/// As [`from_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
+pub fn from_local_rows(
+    orbit: &dyn Orbit,
+    frame: LocalFrame,
+    times: &[f64],
+    given: [&[f64]; 2],
+    out: [&mut [f64]; 2],
+) -> Result<(), OrbitError> {
+    rows(orbit, frame, times, given, out, from_local)
+}
+
+fn rows(
+    orbit: &dyn Orbit,
+    frame: LocalFrame,
+    times: &[f64],
+    given: [&[f64]; 2],
+    out: [&mut [f64]; 2],
+    convert: Convert,
+) -> Result<(), OrbitError> {
+    let ([r, v], [to_r, to_v], expected) = (given, out, 3 * times.len());
+    super::check(&[
+        ("positions", expected, r.len()),
+        ("velocities", expected, v.len()),
+        ("positions out", expected, to_r.len()),
+        ("velocities out", expected, to_v.len()),
+    ])?;
+    let to = to_r.chunks_exact_mut(3).zip(to_v.chunks_exact_mut(3));
+    for (index, (&t, (to_r, to_v))) in times.iter().zip(to).enumerate() {
+        let state = orbit.state(t)?;
+        let [position, velocity] = convert(&state, frame, &super::row(r, index), &super::row(v, index))?;
+        to_r.copy_from_slice(position.as_slice());
+        to_v.copy_from_slice(velocity.as_slice());
+    }
+    Ok(())
+}

@@ -1,0 +1,25 @@
+//! How one satellite moves as seen from another: linear motion, exact coordinates, relative elements.
+
+mod elements;
+mod hill;
+mod local;
+
+pub use elements::{deputy_state, deputy_states, relative_elements, relative_elements_rows};
+pub use hill::{hill_transition, hill_transitions, intercept_velocity};
+pub use local::{LocalFrame, from_local, from_local_rows, to_local, to_local_rows};
+
+use super::OrbitError;
+use nalgebra::Vector3;
+
+/// Refuses arrays of the wrong length.
+fn check(arrays: &[(&'static str, usize, usize)]) -> Result<(), OrbitError> {
+    match arrays.iter().find(|(_, expected, got)| expected != got) {
+        Some(&(name, expected, got)) => Err(OrbitError::WrongLength { name, expected, got }),
+        None => Ok(()),
+    }
+}
+
+/// Vector `index` of rows of three.
+fn row(rows: &[f64], index: usize) -> Vector3<f64> {
+    Vector3::from_column_slice(&rows[3 * index..][..3])
+}

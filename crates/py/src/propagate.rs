@@ -1,0 +1,108 @@
+//! Many orbits at once.
+
+use crate::arrays::{Count, Input, fresh, shape_text, wrong_shape, zeros};
+use crate::errors::{IntoPython, fields, raise};
+use crate::orbit::PyOrbit;
+use numpy::{PyArrayDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use onorbit_core::batch::{self, Times};
+use onorbit_core::orbit::Orbit;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// Positions and velocities of many orbits of any kinds: ``r``, ``v`` (N, T, 3), m and m/s, each in the axes of its orbit.
+///
+/// ``times`` (T,) s for all, or (N, T); ``out`` a pair of such arrays to write into, which is then what returns (nobody
+/// may look at them meanwhile). On all cores unless ``threads`` says otherwise; the bits do not depend on it. The states
+/// are those of ``orbit.state`` up to rounding. An orbit that is refused raises ``OrbitError`` (``Sgp4Error``, ``PathError``)
+/// with its ``index``.
+#[pyfunction]
+#[pyo3(signature = (orbits, times, *, threads=None, out=None))]
+pub(crate) fn propagate<'py>(
+    py: Python<'py>,
+    orbits: Vec<PyRef<'py, PyOrbit>>,
+    times: Any<'_, 'py>,
+    threads: Option<Count>,
+    out: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    let input = Input::new(times, "times")?;
+    let count = orbits.len();
+    let (instants, each) = match input.shape() {
+        [each] => (Times::Common(input.data()), *each),
+        [n, each] if *n == count => (Times::Each(input.data()), *each),
+        other => return Err(wrong_shape(py, "times", &format!("(T,) or ({count}, T)"), other)),
+    };
+    let orbits: Vec<Arc<dyn Orbit>> = orbits.iter().map(|orbit| Arc::clone(&orbit.orbit)).collect();
+    let (shape, threads) = ([count, each, 3], threads.map(|count| count.0));
+    let run = |r: &mut [f64], v: &mut [f64]| {
+        py.detach(|| batch::propagate(&orbits, instants, r, v, threads))
+            .map_err(|error| error.into_python(py))
+    };
+    match out {
+        None => {
+            let (r, v) = (zeros(py, &shape)?, zeros(py, &shape)?);
+            run(fresh(&r), fresh(&v))?;
+            Ok((r.into_any(), v.into_any()))
+        }
+        Some((r, v)) => {
+            let (mut to_r, mut to_v) = (writable(&r, "out[0]", &shape)?, writable(&v, "out[1]", &shape)?);
+            run(slice(&mut to_r), slice(&mut to_v))?;
+            drop((to_r, to_v));
+            Ok((r, v))
+        }
+    }
+}
+
+/// A caller's array, to be written.
+fn writable<'py>(
+    value: Any<'_, 'py>,
+    name: &str,
+    shape: &[usize],
+) -> PyResult<PyReadwriteArrayDyn<'py, f64>> {
+    let refuse = |got: String| {
+        let message = format!(
+            "{name} is {got}, a writable contiguous float64 array of shape {} of its own is needed",
+            shape_text(shape)
+        );
+        let fields = fields!(value.py(), "name": name, "expected": shape.to_vec(), "got": got);
+        raise(value.py(), "ShapeError", &message, &fields)
+    };
+    let Ok(array) = value.cast::<PyArrayDyn<f64>>() else {
+        return Err(refuse("no float64 array".to_owned()));
+    };
+    if array.shape() != shape {
+        return Err(refuse(format!("of shape {}", shape_text(array.shape()))));
+    }
+    if !array.is_c_contiguous() {
+        return Err(refuse("not contiguous".to_owned()));
+    }
+    array.try_readwrite().map_err(|_| refuse("read-only or in use".to_owned()))
+}
+
+fn slice<'a>(array: &'a mut PyReadwriteArrayDyn<'_, f64>) -> &'a mut [f64] {
+    array.as_slice_mut().unwrap_or(&mut []) // contiguity was checked when it was borrowed
+}
+
+/// Elements and time of [`crate::orbit::PyKepler`]'s `states`, each a number or (N,).
+pub(crate) fn kepler_states<'py>(
+    py: Python<'py>,
+    given: [(&str, Any<'_, 'py>); 7],
+    mu: f64,
+    threads: Option<Count>,
+) -> PyResult<(Array<'py>, Array<'py>)> {
+    let inputs = given.iter().map(|(name, value)| Input::new(value, name)).collect::<PyResult<Vec<_>>>()?;
+    let count = inputs.iter().map(|input| input.data().len()).find(|count| *count != 1).unwrap_or(1);
+    for ((name, _), input) in given.iter().zip(&inputs) {
+        if input.shape().len() > 1 || ![1, count].contains(&input.data().len()) {
+            return Err(wrong_shape(py, name, &format!("a number or ({count},)"), input.shape()));
+        }
+    }
+    let (r, v) = (zeros(py, &[count, 3])?, zeros(py, &[count, 3])?);
+    let (to_r, to_v, threads) = (fresh(&r), fresh(&v), threads.map(|count| count.0));
+    let elements: [&[f64]; 7] = std::array::from_fn(|k| inputs[k].data());
+    py.detach(|| batch::kepler_states(elements, mu, to_r, to_v, threads))
+        .map_err(|error| error.into_python(py))?;
+    Ok((r, v))
+}

@@ -1,0 +1,66 @@
+"""Relative motion at the border; its physics is tested in Rust."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs import relative
+from onorbit_rs.exceptions import InputError, OrbitError, ShapeError
+
+CHIEF = oo.Kepler(semi_major_axis=7e6, eccentricity=0.01, inclination=0.9, raan=0.2, mean_anomaly=0.4)
+DEPUTY = oo.Kepler(
+    semi_major_axis=7e6, eccentricity=0.0101, inclination=0.9001, raan=0.2, mean_anomaly=0.4001
+)
+
+
+def test_transitions_are_vallados() -> None:
+    n = np.sqrt(398600.4415e9 / 6968136.3**3)
+    end = relative.hill_transition(n, 300.0) @ [0, 0, 0, -0.1, -0.04, -0.02]
+    assert np.allclose(end[:3], [-33.345724432188, -1.473560307487, -5.894530311608], rtol=0, atol=1e-11)
+    assert relative.hill_transition(n, [0.0, 300.0]).shape == (2, 6, 6)
+    v = relative.intercept_velocity(n, [-70.933, 20.357, -11.17], 300.0)
+    assert np.allclose(v, [0.274190838333, 0.013466718841, 0.035907981315], rtol=0, atol=1e-10)
+    with pytest.raises(OrbitError, match="no impulse"):
+        relative.intercept_velocity(n, [1.0, 0, 0], np.pi / n)
+
+
+@pytest.mark.parametrize("frame", ["lvlh", "nadir"])
+def test_local_coordinates_come_back(frame: str) -> None:
+    t = np.linspace(0.0, 6000.0, 11)
+    r, v = DEPUTY.state(t)
+    local = relative.to_lvlh(CHIEF, t, r, v, frame=frame)
+    back = relative.from_lvlh(CHIEF, t, *local, frame=frame)
+    assert np.allclose(back[0], r, rtol=1e-12, atol=1e-5)
+    assert np.allclose(back[1], v, rtol=1e-12, atol=1e-8)
+    one = relative.to_lvlh(CHIEF, t[3], r[3], v[3], frame=frame)
+    assert np.array_equal(one[0], local[0][3])
+    # the frame of the orbit itself
+    rotation, _ = CHIEF.lvlh(t[3])
+    across = 2 if frame == "lvlh" else 1
+    expected = rotation.T @ (r[3] - CHIEF.state(t[3])[0])
+    assert abs(one[0][across]) == pytest.approx(abs(expected[2]))
+
+
+def test_relative_elements_come_back() -> None:
+    t = np.linspace(0.0, 6000.0, 11)
+    chief, deputy = CHIEF.state(t), DEPUTY.state(t)
+    elements = relative.relative_elements(*chief, *deputy)
+    assert elements.shape == (11, 6)
+    # they stay on two Kepler orbits of one period
+    assert np.ptp(elements, axis=0).max() < 1e-12
+    r, v = relative.deputy_state(*chief, elements)
+    assert np.allclose(r, deputy[0], rtol=0, atol=1e-5)
+    assert np.allclose(v, deputy[1], rtol=0, atol=1e-8)
+    assert relative.relative_elements(chief[0][0], chief[1][0], deputy[0][0], deputy[1][0]).shape == (6,)
+
+
+def test_what_makes_no_sense_is_refused() -> None:
+    with pytest.raises(InputError, match="'lvlh' and 'nadir'"):
+        relative.to_lvlh(CHIEF, 0.0, [0, 0, 0], [0, 0, 0], frame="rsw")
+    with pytest.raises(ShapeError, match="r has shape"):
+        relative.to_lvlh(CHIEF, [0.0, 1.0], [0.0, 0, 0], [0.0, 0, 0])
+    flat = oo.Kepler(semi_major_axis=7e6).state(0.0)
+    with pytest.raises(OrbitError, match="equator"):
+        relative.relative_elements(*flat, *flat)
