@@ -486,9 +486,7 @@ class GravityField(Effect):
         radius: float | None = None,
     ) -> GravityField: ...
     @staticmethod
-    def from_gfc(
-        path: _Path, *, degree: int | None = None, order: int | None = None
-    ) -> GravityField: ...
+    def from_gfc(path: _Path, *, degree: int | None = None, order: int | None = None) -> GravityField: ...
     @staticmethod
     def from_coefficients(
         c: ArrayLike,
