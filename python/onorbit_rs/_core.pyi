@@ -314,6 +314,7 @@ class Earth:
         eop: _Path | ArrayLike | None = None,
         angle: float | None = None,
         rate: float | None = None,
+        ephemeris: _Path | None = None,
         axes: Literal["GCRF", "TEME"] = "GCRF",
     ) -> Earth: ...
     @property
@@ -383,6 +384,7 @@ class Kepler(Orbit):
         mean_anomaly: ArrayLike,
         mu: float = ...,
         threads: int | None = None,
+        out: tuple[_Array, _Array] | None = None,
     ) -> tuple[_Array, _Array]: ...
     @property
     def secular_j2(self) -> bool: ...
@@ -472,6 +474,42 @@ class FixedFrame(Orbit):
 
 @disjoint_base
 class Effect: ...
+
+@final
+class GravityField(Effect):
+    def __new__(cls, model: str, *, degree: int = 36, order: int | None = None) -> GravityField: ...
+    @staticmethod
+    def zonal(
+        degree: int | None = None,
+        *,
+        j: ArrayLike | None = None,
+        mu: float | None = None,
+        radius: float | None = None,
+    ) -> GravityField: ...
+    @staticmethod
+    def from_gfc(path: _Path, *, degree: int | None = None, order: int | None = None) -> GravityField: ...
+    @staticmethod
+    def from_coefficients(
+        c: ArrayLike,
+        s: ArrayLike,
+        *,
+        mu: float,
+        radius: float,
+        degree: int | None = None,
+        order: int | None = None,
+    ) -> GravityField: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def mu(self) -> float: ...
+    @property
+    def radius(self) -> float: ...
+    @property
+    def degree(self) -> int: ...
+    @property
+    def order(self) -> int: ...
+    def acceleration(self, r: ArrayLike) -> Floats: ...
+    def gradient(self, r: ArrayLike) -> Floats: ...
 
 @final
 class GravityGradient(Effect):
@@ -596,6 +634,14 @@ class GravityField(Effect):
     def order(self) -> int: ...
     def acceleration(self, r: ArrayLike) -> _Array: ...
     def gradient(self, r: ArrayLike) -> _Array: ...
+
+@final
+class ThirdBody(Effect):
+    def __new__(cls, body: Literal["sun", "moon"]) -> ThirdBody: ...
+    @property
+    def body(self) -> str: ...
+    @property
+    def mu(self) -> float: ...
 
 @final
 class BodyWrench(Effect):
