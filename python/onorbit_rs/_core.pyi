@@ -36,21 +36,28 @@ class _BuildInfo(TypedDict):
 
 __all__ = [
     "MU_EARTH",
+    "Atmosphere",
     "Body",
     "BodyWrench",
+    "Cannonball",
     "Checkpoint",
     "Circle",
     "Compliance",
     "ComputedTorque",
+    "ConstantAtmosphere",
     "Control",
     "CustomPath",
+    "Drag",
     "Effect",
+    "ExponentialAtmosphere",
+    "Faces",
     "FixedFrame",
     "Frame",
     "FreeFloating",
     "Goal",
     "GravityField",
     "GravityGradient",
+    "HarrisPriester",
     "Hold",
     "Joint",
     "JointComputedTorque",
@@ -64,13 +71,17 @@ __all__ = [
     "LineParabola",
     "Model",
     "ModelBuilder",
+    "Nrlmsise00",
     "Orbit",
+    "Plates",
+    "RadiationPressure",
     "Reference",
     "Sampled",
     "Screw",
     "Sgp4",
     "Simulation",
     "State",
+    "Surface",
     "Target",
     "Trace",
     "Visual",
@@ -303,6 +314,7 @@ class Earth:
         eop: _Path | ArrayLike | None = None,
         angle: float | None = None,
         rate: float | None = None,
+        ephemeris: _Path | None = None,
         axes: Literal["GCRF", "TEME"] = "GCRF",
     ) -> Earth: ...
     @property
@@ -464,8 +476,128 @@ class FixedFrame(Orbit):
 class Effect: ...
 
 @final
+class GravityField(Effect):
+    def __new__(cls, model: str, *, degree: int = 36, order: int | None = None) -> GravityField: ...
+    @staticmethod
+    def zonal(
+        degree: int | None = None,
+        *,
+        j: ArrayLike | None = None,
+        mu: float | None = None,
+        radius: float | None = None,
+    ) -> GravityField: ...
+    @staticmethod
+    def from_gfc(path: _Path, *, degree: int | None = None, order: int | None = None) -> GravityField: ...
+    @staticmethod
+    def from_coefficients(
+        c: ArrayLike,
+        s: ArrayLike,
+        *,
+        mu: float,
+        radius: float,
+        degree: int | None = None,
+        order: int | None = None,
+    ) -> GravityField: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def mu(self) -> float: ...
+    @property
+    def radius(self) -> float: ...
+    @property
+    def degree(self) -> int: ...
+    @property
+    def order(self) -> int: ...
+    def acceleration(self, r: ArrayLike) -> _Array: ...
+    def gradient(self, r: ArrayLike) -> _Array: ...
+
+@final
 class GravityGradient(Effect):
     def __new__(cls) -> GravityGradient: ...
+
+@disjoint_base
+class Atmosphere:
+    def density(
+        self,
+        altitude: ArrayLike,
+        latitude: ArrayLike | None = None,
+        longitude: ArrayLike | None = None,
+        t: ArrayLike | None = None,
+        *,
+        earth: Earth | None = None,
+    ) -> Any: ...
+    def density_at(self, r: ArrayLike, t: ArrayLike | None = None, *, earth: Earth) -> Any: ...
+
+@final
+class ConstantAtmosphere(Atmosphere):
+    def __new__(cls, density: float) -> ConstantAtmosphere: ...
+
+@final
+class ExponentialAtmosphere(Atmosphere):
+    def __new__(
+        cls, *, density: float | None = None, altitude: float | None = None, scale_height: float | None = None
+    ) -> ExponentialAtmosphere: ...
+
+@final
+class HarrisPriester(Atmosphere):
+    def __new__(cls, *, exponent: float = 4.0, lag: float = ...) -> HarrisPriester: ...
+
+@final
+class Nrlmsise00(Atmosphere):
+    def __new__(
+        cls,
+        *,
+        f107: float | None = None,
+        f107a: float | None = None,
+        ap: ArrayLike | None = None,
+        table: _Path | None = None,
+        three_hourly: bool = True,
+    ) -> Nrlmsise00: ...
+
+@disjoint_base
+class Surface: ...
+
+@final
+class Cannonball(Surface):
+    def __new__(
+        cls, area: float, *, drag_coefficient: float = 2.2, reflectivity: float = 1.0
+    ) -> Cannonball: ...
+
+@final
+class Faces(Surface):
+    def __new__(
+        cls, *, drag_coefficient: float = 2.2, specular: float = 0.0, diffuse: float = 0.0
+    ) -> Faces: ...
+
+@final
+class Plates(Surface):
+    def __new__(
+        cls,
+        areas: ArrayLike,
+        normals: ArrayLike,
+        centroids: ArrayLike,
+        *,
+        drag_coefficient: float = 2.2,
+        specular: float = 0.0,
+        diffuse: float = 0.0,
+    ) -> Plates: ...
+
+@final
+class Drag(Effect):
+    def __new__(
+        cls, atmosphere: Atmosphere, *, surfaces: Surface | Mapping[str, Surface] | None = None
+    ) -> Drag: ...
+
+@final
+class RadiationPressure(Effect):
+    def __new__(
+        cls,
+        *,
+        surfaces: Surface | Mapping[str, Surface] | None = None,
+        flux: float = ...,
+        shadow: bool = True,
+        earth_radius: float = ...,
+    ) -> RadiationPressure: ...
 
 @final
 class GravityField(Effect):
@@ -502,6 +634,14 @@ class GravityField(Effect):
     def order(self) -> int: ...
     def acceleration(self, r: ArrayLike) -> _Array: ...
     def gradient(self, r: ArrayLike) -> _Array: ...
+
+@final
+class ThirdBody(Effect):
+    def __new__(cls, body: Literal["sun", "moon"]) -> ThirdBody: ...
+    @property
+    def body(self) -> str: ...
+    @property
+    def mu(self) -> float: ...
 
 @final
 class BodyWrench(Effect):

@@ -1,10 +1,15 @@
 //! Effects of the environment; a body's name is looked up when the simulation is made.
 
+use crate::air::PyAtmosphere;
 use crate::arrays::fixed;
-use crate::errors::IntoPython;
+use crate::errors::{IntoPython, fields, raise};
+use crate::surfaces::Spread;
 use nalgebra::Vector3;
-use onorbit_core::environment::{BodyWrench, Effect, GravityGradient};
-use onorbit_core::gravity::GravityField;
+use onorbit_core::environment::atmosphere::Atmosphere;
+use onorbit_core::environment::{
+    BodyWrench, Drag, Effect, GravityGradient, RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX,
+};
+use onorbit_core::gravity::{GravityField, Luminary};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -21,12 +26,23 @@ enum Kind {
     GravityGradient,
     /// Part of the gravity of the run: see [`crate::gravity::gravity_of`].
     GravityField(Arc<GravityField>),
+    /// Likewise.
+    ThirdBody(Luminary),
     BodyWrench {
         frame: String,
         force: Vector3<f64>,
         torque: Vector3<f64>,
         start: f64,
         end: f64,
+    },
+    Drag {
+        atmosphere: Arc<dyn Atmosphere>,
+        surfaces: Spread,
+    },
+    RadiationPressure {
+        surfaces: Spread,
+        flux: f64,
+        earth_radius: Option<f64>,
     },
 }
 
@@ -44,10 +60,18 @@ impl PyEffect {
         }
     }
 
+    /// The Sun or the Moon, if it is the pull of one.
+    pub(crate) fn luminary(&self) -> Option<Luminary> {
+        match &self.kind {
+            Kind::ThirdBody(body) => Some(*body),
+            _ => None,
+        }
+    }
+
     /// The effect on a given robot; none where it is part of gravity.
     pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Option<Arc<dyn Effect>>> {
         Ok(Some(match &self.kind {
-            Kind::GravityField(_) => return Ok(None),
+            Kind::GravityField(_) | Kind::ThirdBody(_) => return Ok(None),
             Kind::GravityGradient => Arc::new(GravityGradient),
             Kind::BodyWrench { frame, force, torque, start, end } => {
                 let frame = model.frame(frame).map_err(|error| error.into_python(py))?;
@@ -55,6 +79,16 @@ impl PyEffect {
                     .and_then(|wrench| wrench.during(*start, *end))
                     .map_err(|error| error.into_python(py))?;
                 Arc::new(wrench)
+            }
+            Kind::Drag { atmosphere, surfaces } => {
+                Arc::new(Drag::new(Arc::clone(atmosphere), surfaces.on(py, model)?))
+            }
+            Kind::RadiationPressure { surfaces, flux, earth_radius } => {
+                let light = RadiationPressure::new(surfaces.on(py, model)?)
+                    .with_flux(*flux)
+                    .and_then(|light| light.with_shadow(*earth_radius))
+                    .map_err(|error| error.into_python(py))?;
+                Arc::new(light)
             }
         }))
     }
@@ -73,6 +107,42 @@ impl PyGravityGradient {
 
     fn __repr__(&self) -> &'static str {
         "GravityGradient()"
+    }
+}
+
+/// The pull of the ``sun`` or the ``moon``, on robot and reference alike: ``μ [(s - r)/|s - r|³ - s/|s|³]``.
+///
+/// Needs an orbit around the Earth, and an ``earth`` with an epoch.
+#[pyclass(name = "ThirdBody", extends = PyEffect, frozen, module = "onorbit_rs")]
+pub(crate) struct PyThirdBody {
+    body: Luminary,
+}
+
+#[pymethods]
+impl PyThirdBody {
+    #[new]
+    fn new(py: Python<'_>, body: &str) -> PyResult<PyClassInitializer<Self>> {
+        let Some(body) = Luminary::ALL.into_iter().find(|known| known.name() == body) else {
+            let message = format!("third body is '{body}'; there are 'sun' and 'moon'");
+            return Err(raise(py, "EffectError", &message, &fields!(py, "name": "body", "got": body)));
+        };
+        Ok(PyClassInitializer::from(PyEffect { kind: Kind::ThirdBody(body) }).add_subclass(Self { body }))
+    }
+
+    /// ``sun`` or ``moon``.
+    #[getter]
+    fn body(&self) -> &'static str {
+        self.body.name()
+    }
+
+    /// Its gravitational parameter, m³/s².
+    #[getter]
+    fn mu(&self) -> f64 {
+        self.body.mu()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("ThirdBody('{}')", self.body.name())
     }
 }
 
@@ -105,6 +175,54 @@ impl PyBodyWrench {
             .and_then(|wrench| wrench.during(start, end))
             .map_err(|error| error.into_python(py))?;
         let kind = Kind::BodyWrench { frame: body, force, torque, start, end };
+        Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
+    }
+}
+
+/// Drag of air that turns with the Earth, ``-½ ρ C_D A (n·u)₊ u`` on every face, with its torque; needs an orbit and an earth.
+///
+/// ``u`` is the velocity of the face's centroid in the air, a cannonball's that of the centre of mass. ``surfaces`` is ``Faces`` (the default,
+/// with C_D 2.2: those of the robot's visual geometry), one surface for a robot of one body, or a dict of them by link; links left out
+/// feel nothing. The density is computed on a grid of 64 m and follows the scale height from there: within 160 m wrong by at most 1e-4.
+#[pyclass(name = "Drag", extends = PyEffect, frozen, module = "onorbit_rs")]
+pub(crate) struct PyDrag;
+
+#[pymethods]
+impl PyDrag {
+    #[new]
+    #[pyo3(signature = (atmosphere, *, surfaces=None))]
+    fn new(
+        atmosphere: &Bound<'_, PyAtmosphere>,
+        surfaces: Option<Any<'_, '_>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let atmosphere = Arc::clone(&atmosphere.get().air);
+        let kind = Kind::Drag { atmosphere, surfaces: Spread::new(surfaces)? };
+        Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
+    }
+}
+
+/// The push of sunlight on every face, with its torque, and the Earth's shadow; needs an orbit and an earth with an epoch.
+///
+/// ``F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]``, a cannonball's ``-P C_R A ŝ``; ``P = ν (flux/c) (1 au/d)²``. ``flux`` is W/m² at
+/// 1 au, ``surfaces`` as for ``Drag``. ``ν`` is the free share of the Sun's disc behind an Earth of ``earth_radius`` m: umbra, penumbra
+/// and full light; ``shadow=False`` leaves it out. Light from the Earth is left out.
+#[pyclass(name = "RadiationPressure", extends = PyEffect, frozen, module = "onorbit_rs")]
+pub(crate) struct PyRadiationPressure;
+
+#[pymethods]
+impl PyRadiationPressure {
+    #[new]
+    #[pyo3(signature = (*, surfaces=None, flux=SOLAR_FLUX, shadow=true, earth_radius=SHADOW_RADIUS))]
+    fn new(
+        py: Python<'_>,
+        surfaces: Option<Any<'_, '_>>,
+        flux: f64,
+        shadow: bool,
+        earth_radius: f64,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        RadiationPressure::check(flux, earth_radius).map_err(|error| error.into_python(py))?;
+        let earth_radius = shadow.then_some(earth_radius);
+        let kind = Kind::RadiationPressure { surfaces: Spread::new(surfaces)?, flux, earth_radius };
         Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
     }
 }

@@ -5,6 +5,8 @@ use onorbit_core::batch::InputError;
 use onorbit_core::control::ControlError;
 use onorbit_core::earth::EarthError;
 use onorbit_core::environment::EnvironmentError;
+use onorbit_core::environment::atmosphere::AtmosphereError;
+use onorbit_core::environment::surfaces::SurfaceError;
 use onorbit_core::gravity::GravityError;
 use onorbit_core::model::ModelError;
 use onorbit_core::model::urdf::{UrdfError, UrdfProblem};
@@ -254,6 +256,7 @@ impl IntoPython for EarthError {
 impl IntoPython for GravityError {
     fn into_python(self, py: Python<'_>) -> PyErr {
         let fields = match &self {
+            Self::Earth(error) => return error.clone().into_python(py),
             Self::NotFinite { name, value } | Self::NotPositive { name, value } => {
                 fields!(py, "name": name, "got": value)
             }
@@ -300,8 +303,51 @@ impl IntoPython for EnvironmentError {
             Self::EmptyInterval { start, end } => {
                 raise(py, "EffectError", &message, &fields!(py, "name": "start, end", "got": (*start, *end)))
             }
+            Self::Atmosphere(source) => source.clone().into_python(py),
+            Self::Surface(source) => source.clone().into_python(py),
+            Self::Earth(source) => source.clone().into_python(py),
             _ => plain(py, "EffectError", &message),
         }
+    }
+}
+
+impl IntoPython for AtmosphereError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        let fields = match &self {
+            Self::Earth(source) => return source.clone().into_python(py),
+            Self::BelowSurface { altitude } => {
+                fields!(py, "name": "altitude", "got": altitude, "expected": "at least 0 m")
+            }
+            Self::OutsideLayers { altitude, lowest, highest, .. } => {
+                fields!(py, "name": "altitude", "got": altitude, "expected": (lowest, highest))
+            }
+            Self::Value { name, value, expected } => {
+                fields!(py, "name": name, "got": value, "expected": expected)
+            }
+            Self::MissingSpaceWeather { name, date } => fields!(py, "name": name, "got": date),
+            Self::OutsideTable { date, first, last } => {
+                fields!(py, "name": "date", "got": date, "expected": (first, last))
+            }
+            _ => fields!(py,),
+        };
+        raise(py, "EffectError", &message, &fields)
+    }
+}
+
+impl IntoPython for SurfaceError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        let fields = match &self {
+            Self::Value { name, value, expected } => {
+                fields!(py, "name": name, "got": value, "expected": expected)
+            }
+            Self::Reflection { specular, diffuse } => {
+                fields!(py, "name": "specular, diffuse", "got": (*specular, *diffuse))
+            }
+            _ => fields!(py, "name": "surfaces"),
+        };
+        raise(py, "EffectError", &message, &fields)
     }
 }
 

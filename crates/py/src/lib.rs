@@ -1,5 +1,6 @@
 //! Python bindings of `onorbit-core`: this crate translates, it never computes.
 
+mod air;
 mod arrays;
 mod builder;
 mod checkpoint;
@@ -17,6 +18,7 @@ mod reference;
 mod relative;
 mod rollout;
 mod simulation;
+mod surfaces;
 mod trace;
 mod xacro;
 
@@ -67,8 +69,13 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<earth::PyEarth>()?;
     m.add_class::<environment::PyEffect>()?;
     m.add_class::<environment::PyGravityGradient>()?;
+    m.add_class::<environment::PyThirdBody>()?;
     m.add_class::<environment::PyBodyWrench>()?;
     m.add_class::<gravity::PyGravityField>()?;
+    m.add_class::<environment::PyDrag>()?;
+    m.add_class::<environment::PyRadiationPressure>()?;
+    air::add_classes(m)?;
+    surfaces::add_classes(m)?;
     control::add_classes(m)?;
     reference::add_classes(m)?;
     m.add_class::<simulation::PySimulation>()?;

@@ -13,14 +13,17 @@ import numpy as np
 from onorbit_rs import _core, robots
 from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError, ShapeError
 from onorbit_rs.names import did_you_mean, nearest
+from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffect
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.environment import BodyWrenchEffect
+from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
 from onorbit_rs.scenario.make_orbit import integrated, make_orbit
 from onorbit_rs.scenario.place import dotted, file_and_line
 from onorbit_rs.scenario.reference import Start
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.start import initial_state
+from onorbit_rs.scenario.third_body import ThirdBodyEffect
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -58,7 +61,7 @@ def build(scenario: Scenario) -> Built:
     effects = []
     for index, effect in enumerate(scenario.environment):
         with located(scenario, "environment", index):
-            effects.append(_effect(effect, model))
+            effects.append(_effect(effect, model, beside))
     with located(scenario, "orbit"):
         orbit = integrated(scenario.orbit, orbit, effects, earth)
         if orbit is not None:
@@ -154,7 +157,9 @@ def _robot(scenario: Scenario) -> _core.Model:
     )
 
 
-def _effect(effect: Any, model: _core.Model) -> Any:
+def _effect(effect: Any, model: _core.Model, beside: Path) -> Any:
+    if isinstance(effect, (DragEffect, GravityFieldEffect, RadiationPressureEffect, ThirdBodyEffect)):
+        return effect.make(beside)
     if isinstance(effect, BodyWrenchEffect):
         bodies = list(model.body_names)
         if effect.body not in bodies:

@@ -7,8 +7,11 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffect
 from onorbit_rs.scenario.fields import Force3, Time, Torque3
+from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.part import Part, expand_kind
+from onorbit_rs.scenario.third_body import ThirdBodyEffect
 
 
 class GravityGradientEffect(Part):
@@ -40,6 +43,14 @@ class BodyWrenchEffect(Part):
 
 
 Effect = Annotated[
-    Annotated[GravityGradientEffect | BodyWrenchEffect, Field(discriminator="kind")],
+    Annotated[
+        GravityFieldEffect
+        | GravityGradientEffect
+        | ThirdBodyEffect
+        | BodyWrenchEffect
+        | DragEffect
+        | RadiationPressureEffect,
+        Field(discriminator="kind"),
+    ],
     BeforeValidator(expand_kind),
 ]

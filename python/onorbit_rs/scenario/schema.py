@@ -13,12 +13,14 @@ from onorbit_rs.scenario.control_fit import check_control, wrong
 from onorbit_rs.scenario.controls import AnyControl
 from onorbit_rs.scenario.earth import EarthPart, Epoch
 from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
+from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.path import Orbit
 from onorbit_rs.scenario.reference_parts import Reference
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import SimulationSettings
+from onorbit_rs.scenario.third_body import ThirdBodyEffect
 from onorbit_rs.scenario.yaml_lines import Lines
 
 
@@ -112,8 +114,9 @@ class Scenario(Part):
         check_control(self)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
-                if isinstance(effect, GravityGradientEffect):
-                    raise wrong(("environment", index), "the gravity gradient needs an 'orbit'")
+                if isinstance(effect, GravityGradientEffect | GravityFieldEffect | ThirdBodyEffect):
+                    what = effect.kind.replace("_", " ")
+                    raise wrong(("environment", index), f"the {what} needs an 'orbit'")
             if self.initial.frame != "world":
                 raise wrong(("initial", "frame"), f"the frame {self.initial.frame} needs an 'orbit'")
         return self

@@ -29,6 +29,8 @@ class Dimension:
 NUMBER = Dimension("a plain number", (0, 0, 0, 0), "")
 MASS = Dimension("a mass", (1, 0, 0, 0), "kg")
 LENGTH = Dimension("a length", (0, 1, 0, 0), "m")
+AREA = Dimension("an area", (0, 2, 0, 0), "m^2")
+DENSITY = Dimension("a density", (1, -3, 0, 0), "kg/m^3")
 TIME = Dimension("a time", (0, 0, 1, 0), "s")
 ANGLE = Dimension("an angle", (0, 0, 0, 1), "rad")
 SPEED = Dimension("a speed", (0, 1, -1, 0), "m/s")

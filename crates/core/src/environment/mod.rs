@@ -64,6 +64,12 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
         true
     }
 
+    /// Whether a reference that carries the robot along has it in its own motion: the share that moves all bodies alike
+    /// is then left out.
+    fn acts_on_reference(&self) -> bool {
+        false
+    }
+
     /// Add this effect's wrench on each body to what `wrenches` holds, one per body; allocates nothing.
     ///
     /// # Errors

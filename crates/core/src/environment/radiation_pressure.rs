@@ -39,6 +39,14 @@ impl RadiationPressure {
         Self { surfaces, flux: SOLAR_FLUX, earth_radius: Some(SHADOW_RADIUS) }
     }
 
+    /// Whether a flux, W/m², and an Earth's radius, m, make sense.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Value`] where one is negative or not finite.
+    pub fn check(flux: f64, earth_radius: f64) -> Result<(), SurfaceError> {
+        at_least_zero("flux", flux).and(at_least_zero("earth_radius", earth_radius)).map(drop)
+    }
+
     /// The same with another flux at 1 au, W/m².
     ///
     /// # Errors
@@ -70,6 +78,10 @@ impl Effect for RadiationPressure {
     }
 
     fn requires_orbit(&self) -> bool {
+        true
+    }
+
+    fn acts_on_reference(&self) -> bool {
         true
     }
 

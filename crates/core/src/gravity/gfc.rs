@@ -125,3 +125,108 @@ fn index_of(word: Option<&&str>) -> Option<usize> {
 fn number(word: &str) -> Option<f64> {
     word.replace(['d', 'D'], "e").parse().ok().filter(|x: &f64| x.is_finite())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gravity::GravityField;
+
+    const GOOD: &str = "a comment\nproduct_type gravity_field\nmodelname tiny\nearth_gravity_constant 0.3986004415D+15\n\
+        radius 0.63781363E+07\nmax_degree 3\nerrors formal\nnorm fully_normalized\n\nkey L M C S sigma sigma\nend_of_head ==\n\
+        gfc 0 0 1.0d0 0 0 0\ngfc 2 0 -0.4841D-03 0.0 1e-10 0\ngfc 2 1 -2D-10 1.4d-9 0 0\ngfc 2 2 2.4e-6 -1.4e-6 0 0\n\
+        gfc 3 0 9.57e-7 0 0 0\ngfc 3 1 2e-6 2e-7 0 0\ngfc 3 2 9e-7 -6e-7 0 0\ngfc 3 3 7e-7 1.4e-6 0 0\n";
+
+    fn refused(text: &str, degree: Option<usize>) -> GravityError {
+        let error = read("tiny.gfc", text, degree).expect_err("something is wrong");
+        assert!(!error.to_string().is_empty());
+        error
+    }
+
+    #[test]
+    fn exponents_of_fortran_and_comments_are_read() {
+        let read = read("tiny.gfc", GOOD, None).expect("a good file");
+        assert_eq!((read.mu, read.radius, read.degree()), (3.986_004_415e14, 6_378_136.3, 3));
+        assert_eq!(read.series.get(2, 0), [-0.4841e-3, 0.0]);
+        assert_eq!(read.series.get(3, 3), [7e-7, 1.4e-6]);
+        // what stands at degree 0 belongs to the point mass
+        let doubled = GOOD.replace("gfc 0 0 1.0d0", "gfc 0 0 2.0d0");
+        let doubled = super::read("tiny.gfc", &doubled, Some(2)).expect("a good file");
+        assert_eq!((doubled.mu, doubled.series.get(2, 0)[0]), (2.0 * read.mu, -0.24205e-3));
+    }
+
+    #[test]
+    fn broken_files_are_refused_with_the_line() {
+        let cut = |count: usize| GOOD.lines().take(count).map(|line| format!("{line}\n")).collect::<String>();
+        // rows are missing, or the last one breaks off
+        assert!(matches!(refused(&cut(18), None), GravityError::Truncated { degree: 3, order: 3, .. }));
+        assert!(matches!(refused(&cut(11), None), GravityError::Truncated { degree: 2, order: 0, .. }));
+        assert!(read("tiny.gfc", &cut(16), Some(2)).is_ok());
+        let broken = GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7");
+        assert!(matches!(refused(&broken, None), GravityError::Row { line: 19, .. }));
+        for (from, to) in
+            [("2D-10", "2DD10"), ("gfc 2 1", "gfc 2 5"), ("2.4e-6", "nan"), ("gfc 3 0", "foo 3 0")]
+        {
+            assert!(matches!(refused(&GOOD.replace(from, to), None), GravityError::Row { .. }), "{to}");
+        }
+        let twice = GOOD.replace("gfc 2 2", "gfc 2 1");
+        assert!(matches!(refused(&twice, None), GravityError::Twice { line: 15, degree: 2, order: 1, .. }));
+        let varies = GOOD.replace("gfc 3 1", "gfct 3 1");
+        assert!(matches!(refused(&varies, None), GravityError::VariesWithTime { line: 17, .. }));
+        assert!(read("tiny.gfc", &varies, Some(2)).is_ok());
+    }
+
+    #[test]
+    fn headers_that_cannot_be_are_refused() {
+        for (from, to, key) in [
+            ("0.3986004415D+15", "-1", "earth_gravity_constant"),
+            ("0.63781363E+07", "0", "radius"),
+            ("max_degree 3", "max_degree x", "max_degree"),
+            ("end_of_head", "body", "end_of_head"),
+            ("gravity_field", "topography", "product_type"),
+        ] {
+            let error = refused(&GOOD.replace(from, to), None);
+            assert!(matches!(&error, GravityError::Header { key: got, .. } if *got == key), "{error}");
+        }
+        let error = refused(&GOOD.replace("fully_normalized", "unnormalized"), None);
+        assert!(matches!(error, GravityError::NotNormalised { .. }));
+    }
+
+    #[test]
+    fn coefficients_that_are_not_normalised_show() {
+        let degree = 20;
+        let model = read("egm2008", include_str!("models/egm2008.gfc"), Some(degree)).expect("ours");
+        let (mut c, mut s) = (vec![0.0; 441], vec![0.0; 441]);
+        for n in 2..=degree {
+            for m in 0..=n {
+                let factorial: f64 = (n - m + 1..=n + m).map(|k| k as f64).product();
+                let norm = (f64::from(1 + u8::from(m > 0)) * (2 * n + 1) as f64 / factorial).sqrt();
+                let [a, b] = model.series.get(n, m);
+                (c[n * 21 + m], s[n * 21 + m]) = (a * norm, b * norm);
+            }
+        }
+        let error =
+            Coefficients::new("raw", model.mu, model.radius, degree, &c, &s).expect_err("not normalised");
+        assert!(matches!(error, GravityError::NotNormalised { .. }), "{error}");
+    }
+
+    #[test]
+    fn more_than_a_model_has_is_refused() {
+        let ask = |degree, order| GravityField::bundled("egm2008", degree, order).expect_err("too much");
+        assert!(matches!(ask(71, 71), GravityError::BeyondModel { highest: 70, .. }));
+        assert!(matches!(ask(8, 9), GravityError::OrderAboveDegree { degree: 8, order: 9 }));
+        assert!(matches!(ask(1, 0), GravityError::Degree { degree: 1 }));
+        let unknown = GravityField::bundled("egm08", 8, 8).expect_err("no such model");
+        assert!(unknown.to_string().contains("egm2008, jgm3, zonal"), "{unknown}");
+        assert!(matches!(GravityField::zonal(7), Err(GravityError::ZonalDegree { degree: 7 })));
+        for (mu, radius, j) in [(-1.0, 1.0, 1e-3), (1.0, f64::NAN, 1e-3), (1.0, 1.0, f64::INFINITY)] {
+            assert!(GravityField::zonals(mu, radius, &[j]).is_err());
+        }
+        let field = GravityField::zonal(2).expect("J2");
+        let below = field.acceleration(&nalgebra::Vector3::x().scale(6.3e6));
+        assert!(matches!(below, Err(GravityError::BelowSurface { .. })));
+        for x in [f64::NAN, f64::INFINITY] {
+            let nowhere = field.acceleration(&nalgebra::Vector3::new(7e6, x, 0.0));
+            assert!(matches!(nowhere, Err(GravityError::NotFinite { .. })));
+        }
+    }
+}

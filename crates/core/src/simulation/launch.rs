@@ -82,8 +82,14 @@ impl Simulation {
         let may_rereference = falls && gravity.is_some() && !self.looks_at_world();
         let rereference_beyond = if may_rereference { self.rereference_beyond } else { f64::INFINITY };
         let schedule = self.schedule(duration, events);
-        let surroundings =
-            Surroundings::new(&model, effects, self.orbit.clone(), gravity.clone(), self.earth.clone());
+        let surroundings = Surroundings::new(
+            &model,
+            effects,
+            self.orbit.clone(),
+            gravity.clone(),
+            self.earth.clone(),
+            !falls,
+        );
         let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
         let mut plant = Plant::<S, _>::new(&model, surroundings, self.stops);
         let state = State::at(&model, &mut plant.data, numbers(&self.q), numbers(&self.v));

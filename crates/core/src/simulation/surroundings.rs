@@ -32,6 +32,9 @@ pub(super) struct Surroundings {
     known: [(f64, Option<OrbitState>); 3],
     bodies: Vec<BodyState>,
     wrenches: Vec<Wrench>,
+    /// Of effects that a reference which carries the robot along has in its own motion.
+    shared: Vec<Wrench>,
+    is_carried: bool,
 }
 
 impl Surroundings {
@@ -41,6 +44,7 @@ impl Surroundings {
         orbit: Option<Arc<dyn Orbit>>,
         gravity: Option<Arc<Gravity>>,
         earth: Option<Arc<Earth>>,
+        is_carried: bool,
     ) -> Self {
         let at_rest = |node: &Node| BodyState {
             mass: node.mass,
@@ -63,6 +67,8 @@ impl Surroundings {
             known: [(f64::NAN, None); 3],
             bodies: model.nodes().iter().map(at_rest).collect(),
             wrenches: vec![Wrench::default(); model.nodes().len()],
+            shared: vec![Wrench::default(); model.nodes().len()],
+            is_carried,
         }
     }
 
@@ -139,17 +145,33 @@ impl Surroundings {
         effects: Range<usize>,
     ) -> Result<(), SimulationError> {
         self.wrenches.fill(Wrench::default());
+        self.shared.fill(Wrench::default());
         let falls_freely = self.falls_freely();
         let reference =
             reference.map(|state| Reference { state, gravity: self.gravity.as_deref(), falls_freely });
         let (earth, (interval, anchor)) = (self.earth.as_deref(), self.step);
         let scene = Scene { interval, time: t, reference, earth, anchor, bodies: &self.bodies };
         for effect in &self.effects[effects] {
+            let is_shared = self.is_carried && effect.acts_on_reference();
+            let wrenches = if is_shared { &mut self.shared } else { &mut self.wrenches };
             effect
-                .add_wrenches(&scene, &mut self.wrenches)
+                .add_wrenches(&scene, wrenches)
                 .map_err(|source| SimulationError::Environment { time: t, source })?;
         }
+        if self.is_carried {
+            self.leave_out_what_is_shared();
+        }
         Ok(())
+    }
+
+    /// Adds the shared wrenches less the acceleration they give the whole robot: `Fₖ − mₖ ΣF/Σm`.
+    fn leave_out_what_is_shared(&mut self) {
+        let total: Vector3<f64> = self.shared.iter().map(|wrench| wrench.force).sum();
+        let acceleration = total / self.bodies.iter().map(|body| body.mass).sum::<f64>();
+        for ((to, from), body) in self.wrenches.iter_mut().zip(&self.shared).zip(&self.bodies) {
+            to.force += from.force - acceleration * body.mass;
+            to.torque += from.torque;
+        }
     }
 
     /// The wrench of one effect on each body, as they were looked at last, at `t`.

@@ -1,0 +1,143 @@
+//! The field against 100 digits (`tests/oracles/generate_gravity_fixture.py`), and its expansion to the bodies of a robot.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use nalgebra::{Matrix3, Vector3};
+use onorbit_core::earth::Earth;
+use onorbit_core::environment::{
+    Anchor, BodyState, DifferentialGravity, Effect, Reference, ReferenceMotion, Scene, Wrench,
+};
+use onorbit_core::gravity::{Gravity, GravityField};
+use onorbit_core::orbit::OrbitState;
+use serde_json::Value;
+use std::sync::Arc;
+
+fn fixture() -> Value {
+    serde_json::from_str(include_str!("../../../tests/fixtures/gravity.json")).unwrap()
+}
+
+fn vector(value: &Value) -> Vector3<f64> {
+    Vector3::from_fn(|i, _| value[i].as_f64().unwrap())
+}
+
+fn egm2008() -> Arc<GravityField> {
+    Arc::new(GravityField::bundled("egm2008", 36, 36).unwrap())
+}
+
+/// EGM2008 36 × 36 in an Earth that turns at `rate`.
+fn gravity(rate: f64) -> Gravity {
+    Gravity::of_field(egm2008(), Some(Arc::new(Earth::about_z(0.0, rate)))).unwrap()
+}
+
+#[test]
+fn value_and_gradient_agree_with_a_hundred_digits_poles_included() {
+    let field = egm2008();
+    let mut worst = (0.0_f64, 0.0_f64);
+    for case in fixture()["values"].as_array().unwrap() {
+        let (g, tensor) = field.gradient(&vector(&case["r"])).unwrap();
+        let expected = vector(&case["acceleration"]);
+        let gradient = Matrix3::from_fn(|i, j| case["gradient"][i][j].as_f64().unwrap());
+        worst.0 = worst.0.max((g - expected).norm() / expected.norm());
+        worst.1 = worst.1.max((tensor - gradient).norm() / gradient.norm());
+    }
+    println!("{:.1e} {:.1e}", worst.0, worst.1);
+    assert!(worst.0 < 1e-14 && worst.1 < 1e-14, "{worst:?}");
+}
+
+fn body(com: Vector3<f64>) -> BodyState {
+    BodyState {
+        mass: 1.0,
+        inertia: Matrix3::identity(),
+        com,
+        rot_wk: Matrix3::identity(),
+        origin: com,
+        velocity: Vector3::zeros(),
+        angular_velocity: Vector3::zeros(),
+    }
+}
+
+/// Force on one body of 1 kg, the step having begun at `anchor`.
+fn force(
+    gravity: &Gravity,
+    motion: ReferenceMotion,
+    at: (f64, Vector3<f64>),
+    b: BodyState,
+    anchor: Anchor,
+) -> Vector3<f64> {
+    let zero = Vector3::zeros();
+    let state = OrbitState { position: at.1, velocity: zero, acceleration: zero };
+    let reference = Some(Reference { state, gravity: Some(gravity), falls_freely: false });
+    let bodies = [b];
+    let scene = Scene { interval: (0.0, 1.0), time: at.0, reference, earth: None, anchor, bodies: &bodies };
+    let mut wrenches = [Wrench::default()];
+    DifferentialGravity { motion }.add_wrenches(&scene, &mut wrenches).unwrap();
+    wrenches[0].force
+}
+
+#[test]
+fn tides_of_the_full_field_keep_their_digits_from_a_millimetre_to_ten_kilometres() {
+    let (table, gravity) = (fixture(), gravity(0.0));
+    let origin = vector(&table["origin"]);
+    for case in table["tides"].as_array().unwrap() {
+        let (offset, expected) = (vector(&case["offset"]), vector(&case["tide"]));
+        let anchor = Anchor { time: 0.0, com: offset, origin };
+        let got = force(&gravity, ReferenceMotion::Carried, (0.0, origin), body(offset), anchor);
+        let error = (got - expected).norm() / expected.norm();
+        let plain = gravity.acceleration(0.0, &(origin + offset)).unwrap()
+            - gravity.acceleration(0.0, &origin).unwrap();
+        let cancelled = (plain - expected).norm() / expected.norm();
+        println!("{:8.1e} m: {error:.1e}, subtracting {cancelled:.1e}", offset.norm());
+        // The tensor at the robot instead of half way: 5 d/r of a thousandth of the tide, at most 20 m; beyond it
+        // differences of a hundredth of a pull in its 16th digit.
+        let tolerance = if offset.norm() < 20.0 { 4e-8 * offset.norm() / 20.0 + 1e-13 } else { 1e-13 };
+        assert!(error < tolerance, "{offset}: {error:e}");
+        assert!(
+            offset.norm() > 2.0 || cancelled > 1e-10,
+            "plain subtraction must lose digits: {cancelled:e}"
+        );
+    }
+}
+
+#[test]
+fn what_the_expansion_costs_over_a_step_of_a_millisecond() {
+    // A step begins at the anchor; 1 ms later robot and Earth have moved on by 7.6 m and 0.5 m.
+    let gravity = gravity(7.29e-5);
+    let r = vector(&fixture()["origin"]);
+    let v = Vector3::new(109.649663, -7527.726490, 1484.521489);
+    let offset = Vector3::new(1.5, -2.0, 0.5);
+    let mut worst = (0.0_f64, 0.0_f64);
+    for step in [1e-3, 2e-3] {
+        for start in [0.0, 1e4] {
+            let anchor = Anchor { time: start, com: Vector3::zeros(), origin: r };
+            let (t, now) = (start + step, r + v * step);
+            let got = force(&gravity, ReferenceMotion::True, (t, now), body(offset), anchor);
+            let exact = gravity.acceleration(t, &(now + offset)).unwrap();
+            worst.0 = worst.0.max((got - exact).norm());
+            // anchored where the robot is: the tide exactly
+            let here = Anchor { time: t, com: offset * 0.5, origin: now };
+            let tide = |anchor| force(&gravity, ReferenceMotion::Carried, (t, now), body(offset), anchor);
+            worst.1 = worst.1.max((tide(anchor) - tide(here)).norm() / tide(here).norm());
+        }
+    }
+    println!("acceleration {:.1e} m/s², tide {:.1e} of itself", worst.0, worst.1);
+    assert!(worst.0 < 4e-12 && worst.1 < 1e-7, "{worst:?}");
+    // A step of 1 s takes the robot far beyond: the field is evaluated anew, to rounding.
+    let anchor = Anchor { time: 0.0, com: Vector3::zeros(), origin: r };
+    let got = force(&gravity, ReferenceMotion::True, (1.0, r + v), body(offset), anchor);
+    let exact = gravity.acceleration(1.0, &(r + v + offset)).unwrap();
+    assert!((got - exact).norm() < 2e-13, "{:e}", (got - exact).norm());
+}
+
+#[test]
+fn an_expansion_does_not_depend_on_what_was_asked_before() {
+    let (fresh, used) = (gravity(7.29e-5), gravity(7.29e-5));
+    let r = vector(&fixture()["origin"]);
+    let at = |gravity: &Gravity, k: f64| {
+        let anchor = Anchor { time: k, com: Vector3::zeros(), origin: r + Vector3::x() * k };
+        let now = (k + 1e-3, r + Vector3::new(k + 3.0, 1.0, 2.0));
+        force(gravity, ReferenceMotion::True, now, body(Vector3::y()), anchor)
+    };
+    for k in 0..9 {
+        let _ = at(&used, f64::from(k) * 0.7);
+    }
+    assert_eq!(at(&used, 1.4), at(&fresh, 1.4));
+}

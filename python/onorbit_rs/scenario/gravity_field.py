@@ -1,0 +1,31 @@
+"""The planet's gravity field beside that of its point mass."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.part import Part
+
+
+class GravityFieldEffect(Part):
+    """``egm2008``, ``jgm3``, ``zonal``, or a ``.gfc`` file beside the scenario; turns as ``earth`` says."""
+
+    kind: Literal["gravity_field"] = "gravity_field"
+    model: str = "egm2008"
+    degree: Annotated[int, Field(ge=2)] | None = None
+    """36 for a bundled model, 6 for ``zonal``, the file's own for a file, where not given."""
+    order: Annotated[int, Field(ge=0)] | None = None
+    """That of the degree where not given."""
+
+    def make(self, beside: Path) -> _core.GravityField:
+        """The engine's."""
+        degree = {} if self.degree is None else {"degree": self.degree}
+        if self.model.endswith(".gfc"):
+            return _core.GravityField.from_gfc(beside / self.model, order=self.order, **degree)
+        if self.model == "zonal" and not self.order:
+            return _core.GravityField.zonal(**degree)
+        return _core.GravityField(self.model, order=self.order, **degree)
