@@ -33,7 +33,9 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
     try:
         from jplephem.spk import SPK
     except ImportError:
-        message = "a SPICE kernel is read by jplephem, which is not installed: pip install 'onorbit-rs[spice]'"
+        message = (
+            "a SPICE kernel is read by jplephem, which is not installed: pip install 'onorbit-rs[spice]'"
+        )
         raise EarthError(message, name="ephemeris", got=str(path)) from None
     try:
         kernel = SPK.open(path)

@@ -1,15 +1,16 @@
 """Writes ``tests/fixtures/earth.json``: how the Earth is turned and where Sun and Moon are, as others compute it.
 
-    pip install de421 jplephem pyerfa skyfield
+    pip install de421 jplephem mpmath pyerfa skyfield
     python tests/oracles/generate_earth_fixture.py
 
-Orientation from pyerfa (IAU 2006/2000A in full), TEME from skyfield, Sun and Moon from JPL's DE421.
+Orientation from pyerfa (IAU 2006/2000A in full), TEME from skyfield, Sun and Moon from JPL's DE421, the rest from closed forms by mpmath.
 """
 
 from __future__ import annotations
 
 import json
 from datetime import UTC, datetime
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ import erfa  # type: ignore[import-untyped]
 import numpy as np
 import skyfield  # type: ignore[import-untyped]
 from jplephem.ephem import Ephemeris  # type: ignore[import-untyped]
+from mpmath import cos, mp, mpf, sin, sqrt  # type: ignore[import-untyped]
 from skyfield.api import load  # type: ignore[import-untyped]
 from skyfield.sgp4lib import TEME  # type: ignore[import-untyped]
 
@@ -85,6 +87,42 @@ def sky() -> list[dict[str, Any]]:
     return rows
 
 
+def places() -> list[dict[str, float]]:
+    """Places on and off WGS84, and where they are, to fifty digits."""
+    mp.dps = 50
+    a, f = mpf(6_378_137), 1 / mpf("298.257223563")
+    e2, rows = f * (2 - f), []
+    for latitude, longitude, altitude in product(
+        (-1.5707963267948966, -1.5707, -0.9, 0.0, 1e-9, 0.52, 1.2, 1.5707963267),
+        (-3.0, 0.0, 1.7),
+        (-6.2e6, -1000.0, 0.0, 4.1e5, 3.6e7, 3.8e8),
+    ):
+        if altitude < -1e6 and abs(latitude) > 1.4:
+            continue  # through the centre and out on the other side
+        n = a / sqrt(1 - e2 * sin(mpf(latitude)) ** 2)
+        p = (n + mpf(altitude)) * cos(mpf(latitude))
+        x, y = p * cos(mpf(longitude)), p * sin(mpf(longitude))
+        z = ((1 - e2) * n + mpf(altitude)) * sin(mpf(latitude))
+        rows.append({
+            "latitude": latitude, "longitude": longitude, "altitude": altitude,
+            "position": [float(x), float(y), float(z)],
+        })  # fmt: skip
+    return rows
+
+
+def tides() -> list[dict[str, Any]]:
+    """What third bodies do to a satellite of the Earth, to fifty digits: ``μ [(s - r)/|s - r|³ - s/|s|³]``."""
+    mp.dps = 50
+    rows = []
+    for mu, body in ((1.3271244e20, [-2.65e10, 1.327e11, 5.75e10]), (4.9028e12, [-2.9e8, -2.7e8, -9.3e7])):
+        for r in ([6.7e6, 1.2e6, -9e5], [-1e3, 2e2, 7e6], [4.2e7, -1e6, 3e5], [1.0, 2.0, -0.5]):
+            away = [mpf(s) - mpf(x) for s, x in zip(body, r, strict=True)]
+            near, far = (sqrt(sum(mpf(x) ** 2 for x in v)) ** 3 for v in (away, body))
+            tide = [float(mpf(mu) * (d / near - mpf(s) / far)) for d, s in zip(away, body, strict=True)]
+            rows.append({"mu": mu, "body": body, "r": r, "tide": tide})
+    return rows
+
+
 def main() -> None:
     table = {
         "generator": "tests/oracles/generate_earth_fixture.py",
@@ -92,6 +130,8 @@ def main() -> None:
         "date": datetime.now(UTC).date().isoformat(),
         "orientation": [orientation(*case) for case in ORIENTATIONS],
         "sky": sky(),
+        "places": places(),
+        "tides": tides(),
     }
     FILE.write_text(json.dumps(table, separators=(",", ":")) + "\n")
     print(f"{FILE}: {FILE.stat().st_size} bytes")

@@ -33,7 +33,7 @@ Multiples = tuple[int, ...]
 
 
 def arguments(t: Any) -> Any:
-    """``l, l', F, D, Ω`` (IERS 2010, eq. 5.43) and the longitudes of Venus, Mars and Jupiter (eq. 5.44), rad."""
+    """``l, l', F, D, Ω`` (IERS 2010, eq. 5.43) and longitudes of Venus, Mars and Jupiter (eq. 5.44), rad."""
     return np.array([
         erfa.fal03(t), erfa.falp03(t), erfa.faf03(t), erfa.fad03(t), erfa.faom03(t),
         erfa.fave03(t), erfa.fama03(t), erfa.faju03(t),
@@ -78,7 +78,7 @@ def lunar(odd: int) -> list[Multiples]:
 
 
 SLOW = tuple(-x for x in with_sun([-1, 0, 0, 0, 0, 18, 0, 0], -16))
-"""Venus' term of 273 years in the Moon's longitude, 14 arc seconds: half a cycle of it, which no search tells from a trend."""
+"""Venus' term of 273 years in the Moon's longitude, 14 arc seconds: no search tells half a cycle from a trend."""
 
 
 def solar() -> list[Multiples]:
@@ -185,7 +185,8 @@ def write_nutation() -> None:
 
 HEAD = """//! Series of the {body}; written by `tests/oracles/generate_earth_tables.py`.
 //!
-//! Fitted to JPL's DE421 over 1900-2050; mean ecliptic and equinox of date; terms in the order of what they explain.
+//! Fitted to JPL's DE421 over 1900-2050; mean ecliptic and equinox of date; terms in the order of what they
+//! explain.
 
 use super::series::Series;
 """
@@ -210,9 +211,9 @@ def main() -> None:
         of = "F - D + Ω" if body == "Sun" else "F + Ω"
         write(f"{body.lower()}_table.rs", HEAD.format(body=body), [
             rust_series("LONGITUDE", f"Longitude beyond `{of}`, arc seconds.",
-                        fit(f"{body}: longitude, arc seconds", beyond / ARC_SECOND, t, even, sizes[0], 1, slow)),
+                        fit(f"{body}: longitude, arcsec", beyond / ARC_SECOND, t, even, sizes[0], 1, slow)),
             rust_series("LATITUDE", "Latitude, arc seconds.",
-                        fit(f"{body}: latitude, arc seconds", latitude / ARC_SECOND, t, odd, sizes[1], 0)),
+                        fit(f"{body}: latitude, arcsec", latitude / ARC_SECOND, t, odd, sizes[1], 0)),
             rust_series("DISTANCE", "Distance, km.",
                         fit(f"{body}: distance, km", distance / 1e3, t, even, sizes[2], 0)),
         ])  # fmt: skip

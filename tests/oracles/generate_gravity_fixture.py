@@ -3,8 +3,9 @@
     python -m pip install mpmath
     python tests/oracles/generate_gravity_fixture.py
 
-``U = (mu/r) sum (R/r)^n N_nm Q_nm(z/r) Re[(C - iS) ((x + iy)/r)^m]`` with ``Q_nm`` the m-th derivative of Legendre's polynomial,
-written out by its binomials: no recursion, no pole. Derivatives are central differences with a step of 1e-25 R.
+``U = (mu/r) sum (R/r)^n N_nm Q_nm(z/r) Re[(C - iS) ((x + iy)/r)^m]`` with ``Q_nm`` the m-th derivative of
+Legendre's polynomial, written out by its binomials: no recursion, no pole. Derivatives are central
+differences with a step of 1e-25 R.
 """
 
 from __future__ import annotations
@@ -27,7 +28,9 @@ mp.mp.dps = 100
 def coefficients() -> dict[tuple[int, int], tuple[mp.mpf, mp.mpf]]:
     rows = re.findall(r"^gfc (\d+) (\d+) (\S+) (\S+)$", MODEL.read_text(), re.MULTILINE)
     # as doubles, which is what the engine holds
-    return {(int(n), int(m)): (mp.mpf(float(c)), mp.mpf(float(s))) for n, m, c, s in rows if 2 <= int(n) <= DEGREE}
+    return {
+        (int(n), int(m)): (mp.mpf(float(c)), mp.mpf(float(s))) for n, m, c, s in rows if 2 <= int(n) <= DEGREE
+    }
 
 
 def polynomial(n: int, m: int) -> list[tuple[int, mp.mpf]]:
@@ -78,7 +81,10 @@ def acceleration(x: list[mp.mpf], centre: bool = False) -> list[mp.mpf]:
 def gradient(x: list[mp.mpf]) -> list[list[mp.mpf]]:
     at = lambda i, a, j, b: potential(moved(x, (i, a), (j, b)))  # noqa: E731
     return [
-        [(at(i, 1, j, 1) - at(i, 1, j, -1) - at(i, -1, j, 1) + at(i, -1, j, -1)) / (4 * STEP**2) for j in range(3)]
+        [
+            (at(i, 1, j, 1) - at(i, 1, j, -1) - at(i, -1, j, 1) + at(i, -1, j, -1)) / (4 * STEP**2)
+            for j in range(3)
+        ]
         for i in range(3)
     ]
 
@@ -106,7 +112,8 @@ def plain(value: object) -> object:
 
 def main() -> None:
     values = [
-        {"r": r, "acceleration": plain(acceleration(exact(r))), "gradient": plain(gradient(exact(r)))} for r in POINTS
+        {"r": r, "acceleration": plain(acceleration(exact(r))), "gradient": plain(gradient(exact(r)))}
+        for r in POINTS
     ]
     origin, differences = exact(ORIGIN), []
     there = acceleration(origin, centre=True)
@@ -121,7 +128,7 @@ def main() -> None:
         "generator": "tests/oracles/generate_gravity_fixture.py",
         "engine": f"mpmath {mp.__version__}, {mp.mp.dps} digits",
         "model": "EGM2008, 36 x 36, coefficients as doubles",
-        "units": "m, m/s2, 1/s2; axes fixed in the planet; acceleration and gradient without the point mass, tides with it",
+        "units": "m, m/s2, 1/s2; axes fixed in the planet; the point mass is in the tides alone",
         "values": values,
         "origin": ORIGIN,
         "tides": differences,

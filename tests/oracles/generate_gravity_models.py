@@ -1,10 +1,10 @@
-"""Writes ``crates/core/src/gravity/models/*.gfc``: published coefficients, cut to degree 70, without their errors.
+"""Writes ``crates/core/src/gravity/models/*.gfc``: published coefficients to degree 70, without their errors.
 
     python -m pip download --no-deps brahe==1.8.0 satkit-data==0.9.0 -d wheels
     python tests/oracles/generate_gravity_models.py wheels
 
-Both wheels carry files of the International Centre for Global Earth Models (ICGEM): brahe's binary embeds EGM2008
-to degree 120, satkit-data has JGM3.gfc. Numbers are copied digit by digit.
+Both wheels carry files of the International Centre for Global Earth Models (ICGEM): brahe's binary embeds
+EGM2008 to degree 120, satkit-data has JGM3.gfc. Numbers are copied digit by digit.
 """
 
 from __future__ import annotations
@@ -92,8 +92,8 @@ def main() -> None:
     about = "EGM2008: Pavlis, Holmes, Kenyon and Factor, J. Geophysical Research 117, B04406, 2012."
     write(egm, "EGM2008", about, brahe, "tide_free")
     jgm = text_of(satkit, "JGM3.gfc", "Tapley B.", "JGM3")
-    about = "JGM-3: Tapley et al., J. Geophysical Research 101(B12), 28029-28049, 1996; its file states no tide system."
-    write(jgm, "JGM3", about, satkit, "unknown")
+    about = "JGM-3: Tapley et al., J. Geophysical Research 101(B12), 28029-28049, 1996"
+    write(jgm, "JGM3", f"{about}; its C20 has the permanent tide.", satkit, "zero_tide")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,9 @@
 use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use crate::orbit::times;
-use onorbit_core::earth::{Axes, Earth, EarthError, EarthParameters, Epoch, ROTATION_RATE};
+use onorbit_core::earth::{
+    Axes, Earth, EarthError, EarthParameters, Epoch, Kernel, KernelSegment, ROTATION_RATE,
+};
 use onorbit_core::orbit::Orbit;
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
@@ -19,7 +21,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// about z by ``angle``, rad, at time zero and ``rate``, rad/s; without an epoch it has no Sun and no Moon. UT1 and the pole
 /// are measured, so they come from you: ``ut1_minus_utc``, s, and ``polar_motion`` (2,), rad, constant through the run; or
 /// ``eop``, a file (the IERS' ``finals2000A`` or ``eopc04``, or lines below ``mjd,x_arcsec,y_arcsec,ut1_minus_utc_s``) or
-/// rows (N, 4) of MJD (UTC), the pole, rad, and UT1-UTC, s. ``axes`` of what is asked here: ``GCRF`` or ``TEME``; a run takes
+/// rows (N, 4) of MJD (UTC), the pole, rad, and UT1-UTC, s. Sun and Moon are those of a short analytic series (2″ and 10″ of
+/// JPL's DE421 over 1900-2050), or of a SPICE kernel, ``ephemeris`` (``de440s.bsp``), read by PyPI's jplephem. ``axes`` of what is asked here: ``GCRF`` or ``TEME``; a run takes
 /// its orbit's.
 #[pyclass(name = "Earth", frozen, module = "onorbit_rs")]
 pub(crate) struct PyEarth {
@@ -33,7 +36,7 @@ impl PyEarth {
     #[new]
     #[pyo3(signature = (
         epoch=None, *, rotation="iau2006", ut1_minus_utc=None, polar_motion=None, eop=None, angle=None, rate=None,
-        axes="GCRF",
+        ephemeris=None, axes="GCRF",
     ))]
     fn new(
         py: Python<'_>,
@@ -44,11 +47,13 @@ impl PyEarth {
         eop: Option<Any<'_, '_>>,
         angle: Option<f64>,
         rate: Option<f64>,
+        ephemeris: Option<PathBuf>,
         axes: &str,
     ) -> PyResult<Self> {
         let keywords = fields!(
             py, "epoch": epoch, "rotation": rotation, "ut1_minus_utc": ut1_minus_utc, "polar_motion": polar_motion,
-            "eop": eop, "angle": angle, "rate": rate, "axes": axes,
+            "eop": eop, "angle": angle, "rate": rate,
+            "ephemeris": &ephemeris, "axes": axes,
         );
         let refuse = |message: &str| raise(py, "EarthError", message, &fields!(py,));
         let epoch = epoch.map(instant).transpose()?;
@@ -99,6 +104,10 @@ impl PyEarth {
                     &fields!(py, "name": "rotation", "got": other),
                 ));
             }
+        };
+        let earth = match ephemeris {
+            Some(path) => earth.with_kernel(kernel_of(py, path)?).map_err(|error| error.into_python(py))?,
+            None => earth,
         };
         let earth = match axes {
             "GCRF" => earth,
@@ -265,4 +274,20 @@ fn table_of(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
     let rows = Input::new(eop, "eop")?;
     let [_, 4] = rows.shape() else { return Err(wrong_shape(py, "eop", "(N, 4)", rows.shape())) };
     Ok(EarthParameters::rows(rows.data()))
+}
+
+/// Sun and Moon of a SPICE kernel; Python's `jplephem` reads it.
+fn kernel_of(py: Python<'_>, path: PathBuf) -> PyResult<Kernel> {
+    type Parts<'py> = Vec<(f64, f64, f64, Bound<'py, PyAny>)>;
+    let read = py.import("onorbit_rs.kernel")?.getattr("segments")?;
+    let (sun, moon): (Parts<'_>, Parts<'_>) = read.call1((path,))?.extract()?;
+    let segments = |parts: Parts<'_>| {
+        let segment = |(sign, start, length, array): (f64, f64, f64, Bound<'_, PyAny>)| {
+            let array = Input::new(&array, "coefficients")?;
+            let count = array.shape().last().copied().unwrap_or(0);
+            Ok(KernelSegment { sign, start, length, count, coefficients: array.data().to_vec() })
+        };
+        parts.into_iter().map(segment).collect::<PyResult<Vec<_>>>()
+    };
+    Kernel::new(segments(sun)?, segments(moon)?).map_err(|error| error.into_python(py))
 }

@@ -2,14 +2,14 @@
 
 use crate::air::PyAtmosphere;
 use crate::arrays::fixed;
-use crate::errors::IntoPython;
+use crate::errors::{IntoPython, fields, raise};
 use crate::surfaces::Spread;
 use nalgebra::Vector3;
 use onorbit_core::environment::atmosphere::Atmosphere;
 use onorbit_core::environment::{
     BodyWrench, Drag, Effect, GravityGradient, RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX,
 };
-use onorbit_core::gravity::GravityField;
+use onorbit_core::gravity::{GravityField, Luminary};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -26,6 +26,8 @@ enum Kind {
     GravityGradient,
     /// Part of the gravity of the run: see [`crate::gravity::gravity_of`].
     GravityField(Arc<GravityField>),
+    /// Likewise.
+    ThirdBody(Luminary),
     BodyWrench {
         frame: String,
         force: Vector3<f64>,
@@ -58,10 +60,18 @@ impl PyEffect {
         }
     }
 
+    /// The Sun or the Moon, if it is the pull of one.
+    pub(crate) fn luminary(&self) -> Option<Luminary> {
+        match &self.kind {
+            Kind::ThirdBody(body) => Some(*body),
+            _ => None,
+        }
+    }
+
     /// The effect on a given robot; none where it is part of gravity.
     pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Option<Arc<dyn Effect>>> {
         Ok(Some(match &self.kind {
-            Kind::GravityField(_) => return Ok(None),
+            Kind::GravityField(_) | Kind::ThirdBody(_) => return Ok(None),
             Kind::GravityGradient => Arc::new(GravityGradient),
             Kind::BodyWrench { frame, force, torque, start, end } => {
                 let frame = model.frame(frame).map_err(|error| error.into_python(py))?;
@@ -97,6 +107,42 @@ impl PyGravityGradient {
 
     fn __repr__(&self) -> &'static str {
         "GravityGradient()"
+    }
+}
+
+/// The pull of the ``sun`` or the ``moon``, on robot and reference alike: ``μ [(s - r)/|s - r|³ - s/|s|³]``.
+///
+/// Needs an orbit around the Earth, and an ``earth`` with an epoch.
+#[pyclass(name = "ThirdBody", extends = PyEffect, frozen, module = "onorbit_rs")]
+pub(crate) struct PyThirdBody {
+    body: Luminary,
+}
+
+#[pymethods]
+impl PyThirdBody {
+    #[new]
+    fn new(py: Python<'_>, body: &str) -> PyResult<PyClassInitializer<Self>> {
+        let Some(body) = Luminary::ALL.into_iter().find(|known| known.name() == body) else {
+            let message = format!("third body is '{body}'; there are 'sun' and 'moon'");
+            return Err(raise(py, "EffectError", &message, &fields!(py, "name": "body", "got": body)));
+        };
+        Ok(PyClassInitializer::from(PyEffect { kind: Kind::ThirdBody(body) }).add_subclass(Self { body }))
+    }
+
+    /// ``sun`` or ``moon``.
+    #[getter]
+    fn body(&self) -> &'static str {
+        self.body.name()
+    }
+
+    /// Its gravitational parameter, m³/s².
+    #[getter]
+    fn mu(&self) -> f64 {
+        self.body.mu()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("ThirdBody('{}')", self.body.name())
     }
 }
 

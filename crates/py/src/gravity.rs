@@ -3,7 +3,7 @@
 use crate::arrays::{Input, fresh, shape_text, wrong_shape, zeros};
 use crate::environment::PyEffect;
 use crate::errors::{IntoPython, fields, plain, raise};
-use onorbit_core::earth::Earth;
+use onorbit_core::earth::{Earth, EarthError};
 use onorbit_core::gravity::{Coefficients, Gravity, GravityError, GravityField};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -20,21 +20,37 @@ pub(crate) fn gravity_of(
     earth: Option<&Arc<Earth>>,
 ) -> PyResult<Option<Gravity>> {
     let mut fields = effects.iter().filter_map(|effect| effect.get().field());
-    let Some(field) = fields.next() else { return Ok(None) };
-    if let Some(other) = fields.next() {
+    let field = fields.next();
+    if let (Some(field), Some(other)) = (field, fields.next()) {
         let message =
             format!("two gravity fields are given, {} and {}: a planet has one", field.name(), other.name());
         return Err(plain(py, "GravityError", &message));
     }
-    let gravity = Gravity::of_field(Arc::clone(field), earth.cloned());
-    let checked =
-        gravity.and_then(|gravity| mu.map_or(Ok(()), |mu| gravity.check_orbit(mu)).map(|()| gravity));
-    checked.map(Some).map_err(|error| error.into_python(py))
+    let bodies: Vec<_> = effects.iter().filter_map(|effect| effect.get().luminary()).collect();
+    let gravity = match (field, mu) {
+        (Some(field), mu) => {
+            let gravity = Gravity::of_field(Arc::clone(field), earth.cloned());
+            gravity.and_then(|gravity| mu.map_or(Ok(()), |mu| gravity.check_orbit(mu)).map(|()| gravity))
+        }
+        (None, _) if bodies.is_empty() => return Ok(None),
+        (None, Some(mu)) => Ok(Gravity::point_mass(mu)),
+        (None, None) => {
+            let message = "a third body needs an orbit around a planet: give one, or give the path its mu";
+            return Err(plain(py, "OrbitError", message));
+        }
+    };
+    let with_bodies = gravity.and_then(|gravity| {
+        bodies.iter().try_fold(gravity, |gravity, body| {
+            let earth = earth.ok_or(EarthError::NeedsEpoch { what: "the pull of a third body" })?;
+            gravity.with(*body, earth)
+        })
+    });
+    with_bodies.map(Some).map_err(|error| error.into_python(py))
 }
 
 /// A planet's gravity field: all of it but the point mass, whose ``mu`` it brings along.
 ///
-/// ``model`` is ``egm2008`` (tide-free) or ``jgm3``, both to degree and order 70; ``order`` is ``degree`` where not given. As one of
+/// ``model`` is ``egm2008`` (tide-free) or ``jgm3`` (with the permanent tide), both to degree and order 70; ``order`` is ``degree`` where not given. As one of
 /// the effects of a simulation it acts on every body; the planet turns as the simulation's ``earth`` says. A field of
 /// order 0 may do without, its axis is then z. Positions are from the planet's centre in axes fixed in the planet.
 #[pyclass(name = "GravityField", extends = PyEffect, frozen, module = "onorbit_rs")]

@@ -69,6 +69,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<earth::PyEarth>()?;
     m.add_class::<environment::PyEffect>()?;
     m.add_class::<environment::PyGravityGradient>()?;
+    m.add_class::<environment::PyThirdBody>()?;
     m.add_class::<environment::PyBodyWrench>()?;
     m.add_class::<gravity::PyGravityField>()?;
     m.add_class::<environment::PyDrag>()?;

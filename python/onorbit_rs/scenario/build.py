@@ -23,6 +23,7 @@ from onorbit_rs.scenario.place import dotted, file_and_line
 from onorbit_rs.scenario.reference import Start
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.start import initial_state
+from onorbit_rs.scenario.third_body import ThirdBodyEffect
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -157,7 +158,7 @@ def _robot(scenario: Scenario) -> _core.Model:
 
 
 def _effect(effect: Any, model: _core.Model, beside: Path) -> Any:
-    if isinstance(effect, (DragEffect, GravityFieldEffect, RadiationPressureEffect)):
+    if isinstance(effect, (DragEffect, GravityFieldEffect, RadiationPressureEffect, ThirdBodyEffect)):
         return effect.make(beside)
     if isinstance(effect, BodyWrenchEffect):
         bodies = list(model.body_names)

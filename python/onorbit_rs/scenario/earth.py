@@ -40,6 +40,8 @@ class EarthPart(Part):
     """A file of Earth-orientation parameters, beside the scenario unless its path is absolute."""
     angle: Angle | None = None
     rate: AngularRate | None = None
+    ephemeris: str | None = None
+    """A SPICE kernel with Sun and Moon, beside the scenario unless its path is absolute."""
 
     @model_validator(mode="after")
     def _is_one_rotation(self) -> EarthPart:
@@ -63,8 +65,9 @@ def make_earth(scenario: Scenario, orbit: _core.Orbit | None, beside: Path) -> _
     given: dict[str, Any] = scenario.earth.model_dump(exclude_none=True)
     if scenario.earth.polar_motion is not None:
         given["polar_motion"] = np.array(scenario.earth.polar_motion)
-    if scenario.earth.eop is not None:
-        given["eop"] = beside / scenario.earth.eop
+    for name in ("eop", "ephemeris"):
+        if name in given:
+            given[name] = beside / given[name]
     return _core.Earth(epoch, **given)
 
 

@@ -11,6 +11,7 @@ from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffec
 from onorbit_rs.scenario.fields import Force3, Time, Torque3
 from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.part import Part, expand_kind
+from onorbit_rs.scenario.third_body import ThirdBodyEffect
 
 
 class GravityGradientEffect(Part):
@@ -43,7 +44,12 @@ class BodyWrenchEffect(Part):
 
 Effect = Annotated[
     Annotated[
-        GravityFieldEffect | GravityGradientEffect | BodyWrenchEffect | DragEffect | RadiationPressureEffect,
+        GravityFieldEffect
+        | GravityGradientEffect
+        | ThirdBodyEffect
+        | BodyWrenchEffect
+        | DragEffect
+        | RadiationPressureEffect,
         Field(discriminator="kind"),
     ],
     BeforeValidator(expand_kind),

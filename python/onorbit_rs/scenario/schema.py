@@ -20,6 +20,7 @@ from onorbit_rs.scenario.path import Orbit
 from onorbit_rs.scenario.reference_parts import Reference
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import SimulationSettings
+from onorbit_rs.scenario.third_body import ThirdBodyEffect
 from onorbit_rs.scenario.yaml_lines import Lines
 
 
@@ -113,7 +114,7 @@ class Scenario(Part):
         check_control(self)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
-                if isinstance(effect, GravityGradientEffect | GravityFieldEffect):
+                if isinstance(effect, GravityGradientEffect | GravityFieldEffect | ThirdBodyEffect):
                     what = effect.kind.replace("_", " ")
                     raise wrong(("environment", index), f"the {what} needs an 'orbit'")
             if self.initial.frame != "world":

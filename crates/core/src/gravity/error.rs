@@ -1,5 +1,7 @@
 //! What can be wrong with a gravity field or with the place where it is asked for.
 
+use crate::earth::EarthError;
+
 /// Refusals of the `gravity` module; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -63,4 +65,8 @@ pub enum GravityError {
          field's mu, or take the field of its planet"
     )]
     OtherPlanet { field: f64, orbit: f64 },
+    #[error("the {name} is given twice as a third body")]
+    BodyTwice { name: &'static str },
+    #[error(transparent)]
+    Earth(#[from] EarthError),
 }

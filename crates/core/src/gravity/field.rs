@@ -67,7 +67,7 @@ impl GravityField {
         Ok(Self { name: "zonal".to_owned(), mu, radius, degree, order: 0, kind })
     }
 
-    /// A model that comes with the engine: `egm2008` or `jgm3`, both to degree and order 70.
+    /// A model that comes with the engine: `egm2008` (tide-free) or `jgm3` (`C̄20` with the permanent tide), both to degree and order 70.
     ///
     /// # Errors
     /// [`GravityError::UnknownModel`], [`GravityError::BeyondModel`], [`GravityError::OrderAboveDegree`].

@@ -9,6 +9,7 @@ mod field;
 mod gfc;
 mod harmonics;
 mod nearby;
+mod perturber;
 mod point_mass;
 mod series;
 mod third_body;
@@ -18,6 +19,7 @@ pub use coefficients::Coefficients;
 pub use error::GravityError;
 pub use field::GravityField;
 pub use nearby::{Nearby, Station};
+pub use perturber::{Luminary, Perturber};
 pub(crate) use point_mass::{point_mass, point_mass_gradient, smallest_radius_cubed, tide};
 pub use third_body::ThirdBody;
 
@@ -63,6 +65,18 @@ impl Gravity {
     pub fn and(mut self, body: Arc<dyn ThirdBody>) -> Self {
         self.third_bodies.push(body);
         self
+    }
+
+    /// With the Sun or the Moon of this Earth.
+    ///
+    /// # Errors
+    /// [`GravityError::Earth`] where it has no epoch, [`GravityError::BodyTwice`].
+    pub fn with(self, body: Luminary, earth: &Arc<Earth>) -> Result<Self, GravityError> {
+        let name = body.name();
+        if self.third_bodies.iter().any(|known| known.name() == name) {
+            return Err(GravityError::BodyTwice { name });
+        }
+        Ok(self.and(Arc::new(Perturber::new(body, Arc::clone(earth))?)))
     }
 
     /// Gravitational parameter of the planet, m³/s².

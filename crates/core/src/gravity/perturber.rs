@@ -1,0 +1,75 @@
+//! Sun and Moon as bodies that pull from afar.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::{GravityError, ThirdBody};
+use crate::earth::Earth;
+
+/// A body of the sky that pulls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Luminary {
+    /// The Sun.
+    Sun,
+    /// The Moon.
+    Moon,
+}
+
+impl Luminary {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Sun, Self::Moon];
+
+    /// `sun` or `moon`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sun => "sun",
+            Self::Moon => "moon",
+        }
+    }
+
+    /// Its gravitational parameter, m³/s².
+    ///
+    /// Source: DE440; Park, Folkner, Williams and Boggs, Astronomical Journal 161:105, 2021, table 2.
+    pub fn mu(self) -> f64 {
+        match self {
+            Self::Sun => 1.327_124_400_412_794_2e20,
+            Self::Moon => 4.902_800_118e12,
+        }
+    }
+}
+
+/// The Sun or the Moon of an Earth: what it does to a robot is its pull there less its pull on the Earth.
+#[derive(Clone, Debug)]
+pub struct Perturber {
+    body: Luminary,
+    earth: Arc<Earth>,
+}
+
+impl Perturber {
+    /// The body above this Earth.
+    ///
+    /// # Errors
+    /// [`GravityError::Earth`] where the Earth has no epoch.
+    pub fn new(body: Luminary, earth: Arc<Earth>) -> Result<Self, GravityError> {
+        let perturber = Self { body, earth };
+        perturber.position(0.0).map(|_| perturber)
+    }
+}
+
+impl ThirdBody for Perturber {
+    fn name(&self) -> &str {
+        self.body.name()
+    }
+
+    fn mu(&self) -> f64 {
+        self.body.mu()
+    }
+
+    fn position(&self, t: f64) -> Result<Vector3<f64>, GravityError> {
+        Ok(match self.body {
+            Luminary::Sun => self.earth.sun(t),
+            Luminary::Moon => self.earth.moon(t),
+        }?)
+    }
+}
