@@ -231,3 +231,25 @@ def test_nrlmsise_wants_its_space_weather(tmp_path: Any) -> None:
     with pytest.raises(EffectError, match="outside of the table") as caught:
         read.density(400e3, t=86_400.0, earth=earth)
     assert caught.value.expected == ("2024-02-29", "2024-03-01")
+
+
+def test_the_trace_says_what_air_and_light_did() -> None:
+    orbit = oo.Kepler.from_state(*ELLIPTICAL, mu=MU)
+    earth = oo.Earth("2024-03-01T12:00:00 UTC")
+    effects = [oo.Drag(AIR, surfaces=BALL), oo.RadiationPressure(surfaces=BALL, shadow=False)]
+    sim = oo.Simulation(
+        SPHERE, SPHERE.neutral(), np.zeros(6), orbit=orbit, earth=earth, environment=effects, time_step=1.0,
+        record_wrenches=True,
+    )  # fmt: skip
+    trace = sim.run(2.0)
+    assert set(trace.wrenches) >= {"drag", "radiation_pressure"}
+    r, v = np.array(trace.position_eci[0]), np.array(trace.velocity_eci[0])
+    u = v - np.cross(earth.angular_velocity(0.0), r)
+    drag = np.array(trace.wrenches["drag"])[0, 0]
+    assert drag[:3] == pytest.approx(-0.5 * 1.4e-12 * 0.02 * np.linalg.norm(u) * u, rel=1e-12)
+    to_sun = earth.sun(0.0) - r
+    distance = np.linalg.norm(to_sun)
+    light = np.array(trace.wrenches["radiation_pressure"])[0, 0]
+    pressure = 1361.0 / 299_792_458.0 * (149_597_870_700.0 / distance) ** 2
+    assert light[:3] == pytest.approx(-pressure * to_sun / distance, rel=1e-12)
+    assert not np.any(drag[3:]) and not np.any(light[3:])
