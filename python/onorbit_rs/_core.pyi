@@ -48,6 +48,7 @@ __all__ = [
     "Control",
     "CustomPath",
     "Drag",
+    "Earth",
     "Effect",
     "ExponentialAtmosphere",
     "Faces",
@@ -72,6 +73,7 @@ __all__ = [
     "Model",
     "ModelBuilder",
     "Nrlmsise00",
+    "Numerical",
     "Orbit",
     "Plates",
     "RadiationPressure",
@@ -83,12 +85,20 @@ __all__ = [
     "State",
     "Surface",
     "Target",
+    "ThirdBody",
     "Trace",
     "Visual",
     "Waypoints",
     "__version__",
     "build_info",
+    "deputy_state",
+    "from_lvlh",
+    "hill_transition",
+    "intercept_velocity",
+    "propagate",
+    "relative_elements",
     "rollout",
+    "to_lvlh",
 ]
 
 __version__: str
@@ -474,42 +484,6 @@ class FixedFrame(Orbit):
 
 @disjoint_base
 class Effect: ...
-
-@final
-class GravityField(Effect):
-    def __new__(cls, model: str, *, degree: int = 36, order: int | None = None) -> GravityField: ...
-    @staticmethod
-    def zonal(
-        degree: int | None = None,
-        *,
-        j: ArrayLike | None = None,
-        mu: float | None = None,
-        radius: float | None = None,
-    ) -> GravityField: ...
-    @staticmethod
-    def from_gfc(path: _Path, *, degree: int | None = None, order: int | None = None) -> GravityField: ...
-    @staticmethod
-    def from_coefficients(
-        c: ArrayLike,
-        s: ArrayLike,
-        *,
-        mu: float,
-        radius: float,
-        degree: int | None = None,
-        order: int | None = None,
-    ) -> GravityField: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def mu(self) -> float: ...
-    @property
-    def radius(self) -> float: ...
-    @property
-    def degree(self) -> int: ...
-    @property
-    def order(self) -> int: ...
-    def acceleration(self, r: ArrayLike) -> Floats: ...
-    def gradient(self, r: ArrayLike) -> Floats: ...
 
 @final
 class GravityGradient(Effect):
