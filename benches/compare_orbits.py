@@ -124,6 +124,7 @@ def kepler(rounds: int) -> None:
     angles = draw.uniform(0, 2 * np.pi, (3, count))
     inclination, t = draw.uniform(0, np.pi, count), draw.uniform(-DAY, DAY, count)
     a = draw.uniform(6.7e6, 4.2e7, count)
+    out = (np.empty((count, 3)), np.empty((count, 3)))
     for most in (0.05, 0.9):
         e = draw.uniform(0, most, count)
         elements = (a, e, inclination, *angles)
@@ -146,7 +147,7 @@ def kepler(rounds: int) -> None:
         for threads, name in ((1, "one core"), (None, "all cores")):
 
             def many(given: Any = given, threads: int | None = threads) -> None:
-                oo.Kepler.states(t, **given, mu=MU, threads=threads)
+                oo.Kepler.states(t, **given, mu=MU, threads=threads, out=out)
 
             compare(f"Kepler, a million pairs, e below {most}, {name}", peer, many, rounds)
 

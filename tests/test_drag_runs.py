@@ -75,12 +75,15 @@ def test_a_circle_decays_as_the_closed_form_says() -> None:
     lost = np.linalg.norm(trace.position_eci[-1]) - radius
     expected = -2.2 * ratio * density * np.sqrt(oo.MU_EARTH * radius) * 1e5
     assert lost == pytest.approx(expected, rel=0.01)
-    sma = 1.0 / (2.0 / np.linalg.norm(trace.position_eci[-1]) - np.sum(np.square(trace.velocity_eci[-1])) / oo.MU_EARTH)
+    sma = 1.0 / (
+        2.0 / np.linalg.norm(trace.position_eci[-1]) - np.sum(np.square(trace.velocity_eci[-1])) / oo.MU_EARTH
+    )
     assert sma - radius == pytest.approx(expected, rel=0.003)
 
 
 def test_the_energy_that_goes_is_what_the_air_took() -> None:
-    # a box that tumbles: ∫ (F·v + T·ω) dt from the formula, summed here, against the orbit's and the spin's energy
+    # a box that tumbles: ∫ (F·v + T·ω) dt from the formula, summed here, against the orbit's and the
+    # spin's energy
     model = oo.Model.rigid_body(2.0, np.diag([0.3, 0.4, 0.5]))
     areas = [0.5, 0.5, 0.2, 0.2]
     normals = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
@@ -91,7 +94,8 @@ def test_the_energy_that_goes_is_what_the_air_took() -> None:
     sim = oo.Simulation(
         model, model.neutral(), v, orbit=orbit, earth=oo.Earth(rotation="about_z", rate=0.0),
         environment=[oo.Drag(
-            oo.ConstantAtmosphere(density), surfaces=oo.Plates(areas, normals, centroids, drag_coefficient=2.0)
+            oo.ConstantAtmosphere(density),
+            surfaces=oo.Plates(areas, normals, centroids, drag_coefficient=2.0),
         )],
         time_step=0.05,
     )  # fmt: skip
@@ -111,7 +115,8 @@ def test_the_energy_that_goes_is_what_the_air_took() -> None:
         power += np.einsum("ti,ti->t", force, u)  # F·v + (c × F)·ω
     taken = np.sum(0.5 * (power[1:] + power[:-1])) * 0.05
     energy = [
-        0.5 * 2.0 * np.sum(np.square(trace.velocity_eci[k])) - 2.0 * MU / np.linalg.norm(trace.position_eci[k])
+        0.5 * 2.0 * np.sum(np.square(trace.velocity_eci[k]))
+        - 2.0 * MU / np.linalg.norm(trace.position_eci[k])
         + 0.5 * spin[k] @ np.diag([0.3, 0.4, 0.5]) @ spin[k]
         for k in (0, -1)
     ]  # fmt: skip
@@ -124,14 +129,18 @@ def test_default_surfaces_are_the_faces_of_the_robot() -> None:
     orbit = oo.Kepler.from_state(*ELLIPTICAL, mu=MU)
     earth = oo.Earth("2024-03-01T12:00:00 UTC")
     effects = [oo.Drag(oo.ExponentialAtmosphere()), oo.RadiationPressure()]
-    sim = oo.Simulation(robot, robot.neutral(), np.zeros(robot.nv), orbit=orbit, earth=earth, environment=effects)
+    sim = oo.Simulation(
+        robot, robot.neutral(), np.zeros(robot.nv), orbit=orbit, earth=earth, environment=effects
+    )
     trace = sim.run(0.01)
     momentum = np.array(trace.momentum[-1])
     assert 0.0 < np.linalg.norm(momentum[:3]) < 1e-3
     assert np.linalg.norm(momentum[3:]) > 0.0  # no symmetric robot: the air turns it
     # one link alone feels less
     part = oo.Drag(oo.ExponentialAtmosphere(), surfaces={robot.body_names[1]: oo.Faces()})
-    sim = oo.Simulation(robot, robot.neutral(), np.zeros(robot.nv), orbit=orbit, earth=earth, environment=[part])
+    sim = oo.Simulation(
+        robot, robot.neutral(), np.zeros(robot.nv), orbit=orbit, earth=earth, environment=[part]
+    )
     assert np.linalg.norm(sim.run(0.01).momentum[-1][:3]) < 0.5 * np.linalg.norm(momentum[:3])
 
 
@@ -139,7 +148,9 @@ def test_what_cannot_be_is_refused_with_the_way_out() -> None:
     orbit = oo.Kepler.from_state(*ELLIPTICAL, mu=MU)
     robot = oo.robots.load("humanoid_torso")
 
-    def simulate(effect: oo.Effect, earth: Any = None, model: oo.Model = SPHERE, orbit: Any = orbit) -> oo.Trace:
+    def simulate(
+        effect: oo.Effect, earth: Any = None, model: oo.Model = SPHERE, orbit: Any = orbit
+    ) -> oo.Trace:
         sim = oo.Simulation(
             model, model.neutral(), np.zeros(model.nv), orbit=orbit, earth=earth, environment=[effect]
         )
@@ -159,7 +170,7 @@ def test_what_cannot_be_is_refused_with_the_way_out() -> None:
         oo.ConstantAtmosphere(-1.0)
     with pytest.raises(EffectError, match="flux is -1"):
         oo.RadiationPressure(flux=-1.0)
-    with pytest.raises(EffectError, match="give an earth|needs to know how the Earth turns"):
+    with pytest.raises(EffectError, match="needs to know how the Earth turns"):
         simulate(oo.Drag(AIR, surfaces=BALL))
     with pytest.raises(EarthError, match="epoch"):
         simulate(oo.RadiationPressure(surfaces=BALL), still)
@@ -186,11 +197,13 @@ def test_the_air_can_be_asked_directly() -> None:
     low, high = air.density_at(r, 10.0, earth=earth)
     assert high < low  # the pole is 21 km nearer to the centre
     latitude, longitude, altitude = earth.geodetic(10.0, r[0])
-    assert air.density_at(r[0], 10.0, earth=earth) == pytest.approx(air.density(altitude, latitude, longitude))
+    assert air.density_at(r[0], 10.0, earth=earth) == pytest.approx(
+        air.density(altitude, latitude, longitude)
+    )
     with pytest.raises(EffectError, match="below the surface") as caught:
         air.density(-1.0)
     assert caught.value.got == -1.0
-    with pytest.raises(EffectError, match="an exponential atmosphere or NRLMSISE-00 goes on"):
+    with pytest.raises(EffectError, match="exponential atmosphere or NRLMSISE-00 goes on"):
         oo.HarrisPriester().density(1001e3, earth=earth)
     with pytest.raises(EarthError, match="needs an epoch"):
         oo.HarrisPriester().density(400e3)
@@ -218,3 +231,25 @@ def test_nrlmsise_wants_its_space_weather(tmp_path: Any) -> None:
     with pytest.raises(EffectError, match="outside of the table") as caught:
         read.density(400e3, t=86_400.0, earth=earth)
     assert caught.value.expected == ("2024-02-29", "2024-03-01")
+
+
+def test_the_trace_says_what_air_and_light_did() -> None:
+    orbit = oo.Kepler.from_state(*ELLIPTICAL, mu=MU)
+    earth = oo.Earth("2024-03-01T12:00:00 UTC")
+    effects = [oo.Drag(AIR, surfaces=BALL), oo.RadiationPressure(surfaces=BALL, shadow=False)]
+    sim = oo.Simulation(
+        SPHERE, SPHERE.neutral(), np.zeros(6), orbit=orbit, earth=earth, environment=effects, time_step=1.0,
+        record_wrenches=True,
+    )  # fmt: skip
+    trace = sim.run(2.0)
+    assert set(trace.wrenches) >= {"drag", "radiation_pressure"}
+    r, v = np.array(trace.position_eci[0]), np.array(trace.velocity_eci[0])
+    u = v - np.cross(earth.angular_velocity(0.0), r)
+    drag = np.array(trace.wrenches["drag"])[0, 0]
+    assert drag[:3] == pytest.approx(-0.5 * 1.4e-12 * 0.02 * np.linalg.norm(u) * u, rel=1e-12)
+    to_sun = earth.sun(0.0) - r
+    distance = np.linalg.norm(to_sun)
+    light = np.array(trace.wrenches["radiation_pressure"])[0, 0]
+    pressure = 1361.0 / 299_792_458.0 * (149_597_870_700.0 / distance) ** 2
+    assert light[:3] == pytest.approx(-pressure * to_sun / distance, rel=1e-12)
+    assert not np.any(drag[3:]) and not np.any(light[3:])

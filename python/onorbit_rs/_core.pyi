@@ -384,6 +384,7 @@ class Kepler(Orbit):
         mean_anomaly: ArrayLike,
         mu: float = ...,
         threads: int | None = None,
+        out: tuple[_Array, _Array] | None = None,
     ) -> tuple[_Array, _Array]: ...
     @property
     def secular_j2(self) -> bool: ...

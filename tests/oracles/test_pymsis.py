@@ -1,7 +1,8 @@
 """NRLMSISE-00 against pymsis, the Naval Research Laboratory's own Fortran.
 
-Its Fortran is in single precision: it differs from the C translation in double precision (PyPI's ``nrlmsise00``), which ours
-follows to 2e-15, by up to 9e-5 in density too. So what can be asked is agreement to that, and to 2e-6 in the middle.
+Its Fortran is in single precision: it differs from the C translation in double precision (PyPI's
+``nrlmsise00``), which ours follows to 2e-15, by up to 9e-5 in density too. So what can be asked is
+agreement to that, and to 2e-6 in the middle.
 """
 
 from __future__ import annotations
@@ -28,7 +29,11 @@ def test_density_over_heights_places_times_and_space_weather(history: bool) -> N
         earth = oo.Earth(f"{text} UTC")
         for f107, f107a, ap in INDICES:
             # nine of ten of the storm is over, or still to come
-            aps = np.array([ap, 0.9 * ap, ap, 0.5 * ap, 0.4 * ap, 0.3 * ap, 0.2 * ap]) if history else np.full(7, ap)
+            aps = (
+                np.array([ap, 0.9 * ap, ap, 0.5 * ap, 0.4 * ap, 0.3 * ap, 0.2 * ap])
+                if history
+                else np.full(7, ap)
+            )
             air = oo.Nrlmsise00(f107=f107, f107a=f107a, ap=aps if history else ap)
             ours = air.density(altitude[:, None] * 1e3, latitude, longitude, earth=earth)
             grid = [np.broadcast_to(x, ours.shape).ravel() for x in (altitude[:, None], latitude, longitude)]

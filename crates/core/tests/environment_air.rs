@@ -172,7 +172,7 @@ fn around_the_start_of_a_step_every_model_keeps_its_stated_error() {
             let place = Geodetic { latitude: 1.5 * angle.sin(), longitude: angle, altitude };
             let centre = earth.rot_fi(5.0).tr_mul(&place.position(&WGS84));
             let local = LocalAir::new(air, &earth, 5.0, &centre).expect("outside");
-            for side in [-99.0, 99.0] {
+            for side in [-159.0, 159.0] {
                 let (s, c) = (2.0 * angle).sin_cos();
                 let r = centre + nalgebra::Vector3::new(c * s, s * s, c) * side;
                 let exact = air.density(&AirPlace::new(&earth, 5.0, &r).expect("outside")).expect("air");
@@ -182,4 +182,20 @@ fn around_the_start_of_a_step_every_model_keeps_its_stated_error() {
         println!("{}: {worst:.1e}", air.name());
         assert!(worst < 1e-4);
     }
+}
+
+#[test]
+fn the_air_is_known_up_to_the_last_metre_of_a_model() {
+    let earth = earth("2014-03-01T06:00:00 UTC");
+    let at = |altitude: f64| {
+        let place = Geodetic { latitude: 0.3, longitude: 0.2, altitude };
+        let centre = earth.rot_fi(0.0).tr_mul(&place.position(&WGS84));
+        LocalAir::new(&HarrisPriester::default(), &earth, 0.0, &centre).map(|air| (air, centre))
+    };
+    for altitude in [100_001.0, 999_999.0] {
+        let (air, centre) = at(altitude).expect("within");
+        let below = centre * (1.0 - 50.0 / centre.norm());
+        assert!(air.density(&below).expect("near") > air.density(&centre).expect("near"));
+    }
+    assert!(matches!(at(1_000_001.0), Err(AtmosphereError::OutsideLayers { .. })));
 }

@@ -97,8 +97,9 @@ fn broadcast<'py, const N: usize>(
     values: [Any<'_, 'py>; N],
 ) -> PyResult<([Input<'py>; N], Vec<usize>)> {
     let py = values[0].py();
-    let inputs = std::array::from_fn(|k| Input::new(values[k], names[k]).map(|_| ()));
-    <[PyResult<()>; N] as IntoIterator>::into_iter(inputs).collect::<PyResult<()>>()?;
+    for (value, name) in values.iter().zip(names) {
+        Input::new(value, name)?; // refuses by name what is no number
+    }
     let numpy = py.import("numpy")?;
     let together = numpy.call_method1("broadcast_arrays", pyo3::types::PyTuple::new(py, values)?);
     let together: Vec<Bound<'py, PyAny>> = together.and_then(|arrays| arrays.extract()).map_err(|_| {

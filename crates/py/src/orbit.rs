@@ -247,11 +247,11 @@ impl PyKepler {
     /// States on many ellipses at once, without an object for each: ``r``, ``v`` (N, 3), m and m/s, at ``t`` s.
     ///
     /// Each argument is a number or (N,); angles in rad, ``mean_anomaly`` that at time zero. The same as
-    /// ``Kepler(...).state(t)`` up to the rounding of ``n t``. Raises ``InputError`` for what is no ellipse.
+    /// ``Kepler(...).state(t)`` up to the rounding of ``n t``; ``out`` and ``threads`` as those of ``propagate``. Raises ``InputError`` for what is no ellipse.
     #[staticmethod]
     #[pyo3(signature = (
         t, *, semi_major_axis, eccentricity, inclination, raan, argument_of_periapsis, mean_anomaly,
-        mu=3.986004418e14, threads=None,
+        mu=3.986004418e14, threads=None, out=None,
     ))]
     fn states<'py>(
         py: Python<'py>,
@@ -264,6 +264,7 @@ impl PyKepler {
         mean_anomaly: Any<'_, 'py>,
         mu: f64,
         threads: Option<Count>,
+        out: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let given = [
             ("semi_major_axis", semi_major_axis),
@@ -274,8 +275,7 @@ impl PyKepler {
             ("mean_anomaly", mean_anomaly),
             ("t", t),
         ];
-        let (r, v) = crate::propagate::kepler_states(py, given, mu, threads)?;
-        Ok((r.into_any(), v.into_any()))
+        crate::propagate::kepler_states(py, given, mu, threads, out)
     }
 
     /// Whether node, periapsis and mean anomaly drift as the planet's flattening makes them.

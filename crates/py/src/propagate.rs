@@ -10,7 +10,8 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
-type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+type Pair<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
+type Out<'py> = Option<Pair<'py>>;
 
 /// Positions and velocities of many orbits of any kinds: ``r``, ``v`` (N, T, 3), m and m/s, each in the axes of its orbit.
 ///
@@ -40,19 +41,25 @@ pub(crate) fn propagate<'py>(
         py.detach(|| batch::propagate(&orbits, instants, r, v, threads))
             .map_err(|error| error.into_python(py))
     };
-    match out {
-        None => {
-            let (r, v) = (zeros(py, &shape)?, zeros(py, &shape)?);
-            run(fresh(&r), fresh(&v))?;
-            Ok((r.into_any(), v.into_any()))
-        }
-        Some((r, v)) => {
-            let (mut to_r, mut to_v) = (writable(&r, "out[0]", &shape)?, writable(&v, "out[1]", &shape)?);
-            run(slice(&mut to_r), slice(&mut to_v))?;
-            drop((to_r, to_v));
-            Ok((r, v))
-        }
-    }
+    written(py, &shape, out, run)
+}
+
+/// What `write` leaves in two arrays of this shape: the caller's, or fresh ones.
+fn written<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    out: Out<'py>,
+    write: impl FnOnce(&mut [f64], &mut [f64]) -> PyResult<()>,
+) -> PyResult<Pair<'py>> {
+    let Some((r, v)) = out else {
+        let (r, v) = (zeros(py, shape)?, zeros(py, shape)?);
+        write(fresh(&r), fresh(&v))?;
+        return Ok((r.into_any(), v.into_any()));
+    };
+    let (mut to_r, mut to_v) = (writable(&r, "out[0]", shape)?, writable(&v, "out[1]", shape)?);
+    write(slice(&mut to_r), slice(&mut to_v))?;
+    drop((to_r, to_v));
+    Ok((r, v))
 }
 
 /// A caller's array, to be written.
@@ -91,7 +98,8 @@ pub(crate) fn kepler_states<'py>(
     given: [(&str, Any<'_, 'py>); 7],
     mu: f64,
     threads: Option<Count>,
-) -> PyResult<(Array<'py>, Array<'py>)> {
+    out: Out<'py>,
+) -> PyResult<Pair<'py>> {
     let inputs = given.iter().map(|(name, value)| Input::new(value, name)).collect::<PyResult<Vec<_>>>()?;
     let count = inputs.iter().map(|input| input.data().len()).find(|count| *count != 1).unwrap_or(1);
     for ((name, _), input) in given.iter().zip(&inputs) {
@@ -99,10 +107,9 @@ pub(crate) fn kepler_states<'py>(
             return Err(wrong_shape(py, name, &format!("a number or ({count},)"), input.shape()));
         }
     }
-    let (r, v) = (zeros(py, &[count, 3])?, zeros(py, &[count, 3])?);
-    let (to_r, to_v, threads) = (fresh(&r), fresh(&v), threads.map(|count| count.0));
     let elements: [&[f64]; 7] = std::array::from_fn(|k| inputs[k].data());
-    py.detach(|| batch::kepler_states(elements, mu, to_r, to_v, threads))
-        .map_err(|error| error.into_python(py))?;
-    Ok((r, v))
+    let threads = threads.map(|count| count.0);
+    written(py, &[count, 3], out, |r, v| {
+        py.detach(|| batch::kepler_states(elements, mu, r, v, threads)).map_err(|error| error.into_python(py))
+    })
 }

@@ -5,18 +5,19 @@ use crate::errors::{IntoPython, fields, raise};
 use onorbit_core::environment::surfaces::{Covering, Optics, Surface, Surfaces};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::PyMapping;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// What a body shows to wind and light; given to ``Drag`` and ``RadiationPressure``.
 #[pyclass(name = "Surface", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PySurface {
-    kind: Kind,
+    kind: SurfaceKind,
 }
 
+/// A surface before it is on a robot.
 #[derive(Clone)]
-enum Kind {
+pub(crate) enum SurfaceKind {
     Cannonball {
         area: f64,
         drag_coefficient: f64,
@@ -35,7 +36,7 @@ enum Kind {
     },
 }
 
-impl Kind {
+impl SurfaceKind {
     /// The surface of the body that `frame` is fixed to.
     fn on(&self, py: Python<'_>, model: &Model, frame: usize) -> PyResult<Covering> {
         let frame = &model.frames()[frame];
@@ -55,27 +56,20 @@ impl Kind {
 }
 
 /// Which body shows what.
-#[derive(Clone)]
 pub(crate) enum Spread {
-    All(PySurfaceKind),
-    Named(Vec<(String, PySurfaceKind)>),
+    All(SurfaceKind),
+    Named(Vec<(String, SurfaceKind)>),
 }
-
-/// A surface before it is on a robot.
-#[derive(Clone)]
-pub(crate) struct PySurfaceKind(Kind);
 
 impl Spread {
     /// From ``None``, one surface, or a mapping from names to surfaces.
     pub(crate) fn new(surfaces: Option<Any<'_, '_>>) -> PyResult<Self> {
         let Some(surfaces) = surfaces else {
-            return Ok(Self::All(PySurfaceKind(Kind::Faces {
-                drag_coefficient: 2.2,
-                optics: Optics::default(),
-            })));
+            let optics = Optics::default();
+            return Ok(Self::All(SurfaceKind::Faces { drag_coefficient: 2.2, optics }));
         };
         let kind = |value: Any<'_, '_>| match value.cast::<PySurface>() {
-            Ok(surface) => Ok(PySurfaceKind(surface.get().kind.clone())),
+            Ok(surface) => Ok(surface.get().kind.clone()),
             Err(_) => {
                 let got = value.get_type().name()?.to_string();
                 let message = format!(
@@ -89,12 +83,13 @@ impl Spread {
                 ))
             }
         };
-        match surfaces.cast::<PyDict>() {
+        match surfaces.cast::<PyMapping>() {
             Ok(named) => {
-                let entry = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
-                    Ok((name.extract()?, kind(&value)?))
+                let entry = |item: Bound<'_, PyAny>| {
+                    let (name, value): (String, Bound<'_, PyAny>) = item.extract()?;
+                    Ok((name, kind(&value)?))
                 };
-                Ok(Self::Named(named.iter().map(entry).collect::<PyResult<_>>()?))
+                Ok(Self::Named(named.items()?.iter().map(entry).collect::<PyResult<_>>()?))
             }
             Err(_) => kind(surfaces).map(Self::All),
         }
@@ -103,11 +98,11 @@ impl Spread {
     pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Surfaces> {
         let count = model.nodes().len();
         let coverings = match self {
-            Self::All(PySurfaceKind(Kind::Faces { drag_coefficient, optics })) => {
+            Self::All(SurfaceKind::Faces { drag_coefficient, optics }) => {
                 let surfaces = Surfaces::from_shapes(model, *drag_coefficient, *optics);
                 return surfaces.map_err(|error| error.into_python(py));
             }
-            Self::All(PySurfaceKind(kind)) if count == 1 => {
+            Self::All(kind) if count == 1 => {
                 let base = model.frame(&model.body_frame(0).name).map_err(|error| error.into_python(py))?;
                 vec![kind.on(py, model, base)?]
             }
@@ -120,7 +115,7 @@ impl Spread {
             }
             Self::Named(named) => named
                 .iter()
-                .map(|(name, PySurfaceKind(kind))| {
+                .map(|(name, kind)| {
                     let frame = model.frame(name).map_err(|error| error.into_python(py))?;
                     kind.on(py, model, frame)
                 })
@@ -150,7 +145,7 @@ impl PyCannonball {
         reflectivity: f64,
     ) -> PyResult<PyClassInitializer<Self>> {
         Surface::cannonball(area, drag_coefficient, reflectivity).map_err(|error| error.into_python(py))?;
-        let kind = Kind::Cannonball { area, drag_coefficient, reflectivity };
+        let kind = SurfaceKind::Cannonball { area, drag_coefficient, reflectivity };
         Ok(PyClassInitializer::from(PySurface { kind }).add_subclass(Self))
     }
 }
@@ -173,7 +168,7 @@ impl PyFaces {
         diffuse: f64,
     ) -> PyResult<PyClassInitializer<Self>> {
         Surface::cannonball(0.0, drag_coefficient, 0.0).map_err(|error| error.into_python(py))?;
-        let kind = Kind::Faces { drag_coefficient, optics: optics(py, specular, diffuse)? };
+        let kind = SurfaceKind::Faces { drag_coefficient, optics: optics(py, specular, diffuse)? };
         Ok(PyClassInitializer::from(PySurface { kind }).add_subclass(Self))
     }
 }
@@ -205,7 +200,7 @@ impl PyPlates {
         // plates are wrong or right on any robot
         let model =
             Model::rigid_body(1.0, nalgebra::Matrix3::identity()).map_err(|error| error.into_python(py))?;
-        let kind = Kind::Plates { areas, normals, centroids, drag_coefficient, optics };
+        let kind = SurfaceKind::Plates { areas, normals, centroids, drag_coefficient, optics };
         kind.on(py, &model, 0)?;
         Ok(PyClassInitializer::from(PySurface { kind }).add_subclass(Self))
     }

@@ -90,25 +90,34 @@ fn chunk_of<S: Real>(
     for (group, (r, v)) in positions.chunks_mut(width).zip(velocities.chunks_mut(width)).enumerate() {
         // lanes beyond the end repeat the last state
         let (from, last) = (first + group * S::LANES, r.len() / 3 - 1);
-        let pick = |k: usize| {
-            let values = elements[k];
-            match values {
-                [one] => S::of(*one),
-                _ if last + 1 == S::LANES => {
-                    let values = &values[from..][..S::LANES];
-                    S::from_lanes(
-                        #[inline(always)]
-                        |lane| values[lane],
-                    )
-                }
-                _ => S::from_lanes(|lane| values[from + lane.min(last)]),
-            }
-        };
-        let (position, velocity) =
-            ellipse_state([pick(0), pick(1), pick(2), pick(3), pick(4), pick(5)], S::of(mu), pick(6));
+        let pick = [0, 1, 2, 3, 4, 5, 6].map(
+            #[inline(always)]
+            |k: usize| pick::<S>(elements[k], from, last),
+        );
+        let [a, e, inclination, raan, argument, anomaly, t] = pick;
+        let (position, velocity) = ellipse_state([a, e, inclination, raan, argument, anomaly], S::of(mu), t);
         for (lane, (r, v)) in r.chunks_exact_mut(3).zip(v.chunks_exact_mut(3)).enumerate() {
             r.copy_from_slice(&[position.x.lane(lane), position.y.lane(lane), position.z.lane(lane)]);
             v.copy_from_slice(&[velocity.x.lane(lane), velocity.y.lane(lane), velocity.z.lane(lane)]);
         }
     }
+}
+
+/// One number for all, or those from `from` on; beyond lane `last` that of it.
+#[inline(always)]
+fn pick<S: Real>(values: &[f64], from: usize, last: usize) -> S {
+    if let [one] = values {
+        return S::of(*one);
+    }
+    let values = &values[from..=from + last];
+    if last + 1 == S::LANES {
+        return S::from_lanes(
+            #[inline(always)]
+            |lane| values[lane],
+        );
+    }
+    S::from_lanes(
+        #[inline(always)]
+        |lane| values[lane.min(last)],
+    )
 }

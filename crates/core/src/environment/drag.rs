@@ -13,8 +13,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// `F = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the velocity of that point in air that
 /// turns with the Earth. No part shadows another.
 ///
-/// The density is computed once per step at the robot's centre of mass and follows the scale height from
-/// there, within 100 m: wrong by at most 1e-4 of itself. Farther away it is computed for each body afresh.
+/// The density is computed at points of a grid of 64 m and 1/8 s, at the one next to the robot where the step begins,
+/// and follows the scale height from there, within 160 m: wrong by at most 1e-4 of itself. Farther away it is
+/// computed for each body afresh. Which point it is follows from place and time alone.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.
 #[derive(Debug)]
@@ -33,12 +34,15 @@ impl Drag {
         Self { atmosphere, surfaces, known: Mutex::new(None) }
     }
 
-    fn local(&self, earth: &Earth, time: f64, centre: &Vector3<f64>) -> Result<LocalAir, AtmosphereError> {
+    /// The air about the point of the grid next to `r`, or about `r` itself at the edge of a model.
+    fn local(&self, earth: &Earth, t: f64, r: &Vector3<f64>) -> Result<LocalAir, AtmosphereError> {
+        let (time, centre) = LocalAir::grid_point(t, r);
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(air) = known.filter(|air| air.is_about(time, centre)) {
+        if let Some(air) = known.filter(|air| air.is_about(time, &centre)) {
             return Ok(air);
         }
-        let air = LocalAir::new(&*self.atmosphere, earth, time, centre)?;
+        let made = |time: f64, r: &Vector3<f64>| LocalAir::new(&*self.atmosphere, earth, time, r);
+        let air = made(time, &centre).or_else(|_| made(t, r))?;
         *known = Some(air);
         Ok(air)
     }
@@ -61,7 +65,6 @@ impl Effect for Drag {
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], what the atmosphere refuses.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
-        let spin = earth.angular_velocity(scene.time);
         let air = self.local(earth, scene.anchor.time, &(scene.anchor.origin + scene.anchor.com))?;
         for covering in self.surfaces.coverings() {
             let (body, wrench) = scene.pair(wrenches, covering.body)?;
@@ -71,8 +74,8 @@ impl Effect for Drag {
                 None => self.atmosphere.density(&AirPlace::new(earth, scene.time, &r)?)?,
             };
             // v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
-            let v = reference.velocity + body.velocity - spin.cross(&r);
-            let w = body.angular_velocity - spin;
+            let v = reference.velocity + body.velocity - air.spin.cross(&r);
+            let w = body.angular_velocity - air.spin;
             let (force, torque) = covering.blow(&body.rot_wk, &v, &w);
             wrench.force += force * density;
             wrench.torque += torque * density;

@@ -42,7 +42,7 @@ impl Effect for GravityGradient {
             let distance = planet.outside(Place::Body(k), r.norm())?;
             wrench.torque += towards(planet.mu, body, &r, distance);
         }
-        if let Some(field) = scene.nearby(&planet, false)? {
+        if let Some(field) = scene.nearby(&planet, planet.falls_freely)? {
             for (body, wrench) in scene.paired(wrenches)? {
                 wrench.torque += torque(&field.gradient(&body.com)?, body);
             }

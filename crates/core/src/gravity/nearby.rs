@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Distance over which a field is taken for linear, m.
 ///
-/// What that leaves out is `½ |∂²g| d²`: 2e-12 m/s² over 20 m in a low orbit (J2, measured with EGM2008 36 × 36 in
-/// `tests/gravity_nearby.rs`), a ten-billionth of the field without its point mass. A step of 1 ms takes a low orbit 7.6 m.
+/// What that leaves out is `½ |∂²g| d²`: 1.5e-13 m/s² over 15 m in a low orbit (EGM2008 36 × 36, measured in
+/// `tests/gravity_nearby.rs`), a hundred-billionth of the field without its point mass. A step of 1 ms takes 7.6 m there.
 const REACH: f64 = 20.0;
 
 /// Where and when: a robot beside its reference.
@@ -21,22 +21,21 @@ pub struct Station {
     pub com: Vector3<f64>,
 }
 
-/// The field without its point mass, around the bodies of a robot at one instant.
+/// The field without its point mass, around the bodies of a robot at one instant, axes of `I`.
 ///
-/// Fields that are cheap are evaluated at every body. Others are expanded about the robot as it stood when the step
-/// began, in axes fixed in the planet, and where that is too far, about the robot as it stands:
+/// A cheap field is expanded about the robot as it stands. Others are expanded about it as it stood when the step
+/// began, in axes fixed in the planet, and where that is too far, as it stands:
 /// a function of the two stations alone, so that a run that goes on from a checkpoint finds the same bits.
 #[derive(Clone, Debug)]
 pub struct Nearby<'a> {
     field: &'a GravityField,
     rot_fi: Matrix3<f64>,
-    /// The reference, `F` axes, m.
     origin: Vector3<f64>,
     /// The field about the robot, and about the reference where that lies elsewhere and is asked for.
     places: [Option<Expansion>; 2],
 }
 
-/// `g(x) = g₀ + G₀ (x - x₀)`, `F` axes.
+/// `g(x) = g₀ + G₀ (x - x₀)`
 #[derive(Clone, Copy, Debug)]
 struct Expansion {
     at: Vector3<f64>,
@@ -44,9 +43,28 @@ struct Expansion {
     gradient: Matrix3<f64>,
 }
 
-/// The last expansions: of functions of the place alone, so that it does not matter who asked for them.
+impl Expansion {
+    fn of(field: &GravityField, at: Vector3<f64>) -> Result<Self, GravityError> {
+        let (value, gradient) = field.gradient(&at)?;
+        Ok(Self { at, value, gradient })
+    }
+
+    /// In the axes that `rot` takes to those of this one.
+    fn turned_back(&self, rot: &Matrix3<f64>) -> Self {
+        Self {
+            at: rot.tr_mul(&self.at),
+            value: rot.tr_mul(&self.value),
+            gradient: rot.tr_mul(&self.gradient) * rot,
+        }
+    }
+}
+
+/// When and where, axes of `I`.
+type Place = (f64, Vector3<f64>);
+
+/// The last expansions, `F` axes: of functions of the place alone, so that it does not matter who asked for them.
 #[derive(Debug, Default)]
-pub(super) struct Memo(Mutex<[Option<Expansion>; 4]>);
+pub(super) struct Memo(Mutex<[Option<(Place, Expansion)>; 4]>);
 
 impl Clone for Memo {
     fn clone(&self) -> Self {
@@ -55,23 +73,23 @@ impl Clone for Memo {
 }
 
 impl Memo {
-    fn about(&self, field: &GravityField, at: Vector3<f64>) -> Result<Expansion, GravityError> {
+    fn find(&self, place: &Place) -> Option<Expansion> {
+        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        known.iter().flatten().find(|(known, _)| known == place).map(|(_, expansion)| *expansion)
+    }
+
+    fn keep(&self, place: Place, expansion: Expansion) {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(expansion) = known.iter().flatten().find(|expansion| expansion.at == at) {
-            return Ok(*expansion);
-        }
-        let (value, gradient) = field.gradient(&at)?;
-        let expansion = Expansion { at, value, gradient };
         known.rotate_right(1);
-        known[0] = Some(expansion);
-        Ok(expansion)
+        known[0] = Some((place, expansion));
     }
 }
 
 impl Gravity {
     /// The planet's field around a robot that is at `now` and was at `start` when its step began; none for a point mass.
     ///
-    /// `differs` says whether [`Nearby::difference`] will be asked for.
+    /// `differs` says whether [`Nearby::difference`] will be asked for: the field is then expanded half way to a
+    /// reference that is near, which makes the mean difference right to second order.
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`].
@@ -82,72 +100,95 @@ impl Gravity {
         differs: bool,
     ) -> Result<Option<Nearby<'_>>, GravityError> {
         let Some(field) = self.field.as_ref().map(Arc::as_ref) else { return Ok(None) };
-        let turned = |t: f64| self.rot_fi(t).unwrap_or_else(Matrix3::identity);
-        let rot_fi = turned(now.time);
-        let mut nearby = Nearby { field, rot_fi, origin: rot_fi * now.origin, places: [None; 2] };
-        if field.is_closed() {
-            return Ok(Some(nearby));
-        }
-        let rot_then = turned(start.time);
-        let about = |now: Vector3<f64>, then: Vector3<f64>| {
-            let (now, then) = (rot_fi * now, rot_then * then);
-            self.memo.about(field, if is_near(&now, &then, 0.5) { then } else { now })
+        let rot_fi = self.rot_fi(now.time).unwrap_or_else(Matrix3::identity);
+        let mut nearby = Nearby { field, rot_fi, origin: now.origin, places: [None; 2] };
+        let share = if differs && now.com.norm_squared() <= REACH * REACH { 0.5 } else { 1.0 };
+        let about = |share: f64| {
+            let [now, start] = [now, start].map(|s| (s.time, s.origin + s.com * share));
+            self.about(field, &rot_fi, now, start)
         };
-        nearby.places[0] = Some(about(now.origin + now.com, start.origin + start.com)?);
+        nearby.places[0] = Some(about(share)?);
         if differs && nearby.expansion(&nearby.origin).is_none() {
-            nearby.places[1] = Some(about(now.origin, start.origin)?);
+            nearby.places[1] = Some(about(0.0)?);
         }
         Ok(Some(nearby))
+    }
+
+    /// The field about `start` if that is near `now`, seen from the turned planet, else about `now`; axes of `I`.
+    fn about(
+        &self,
+        field: &GravityField,
+        rot_fi: &Matrix3<f64>,
+        now: Place,
+        start: Place,
+    ) -> Result<Expansion, GravityError> {
+        let here = rot_fi * now.1;
+        if field.is_closed() {
+            return Ok(Expansion::of(field, here)?.turned_back(rot_fi));
+        }
+        let begun = self.memo.find(&start);
+        let at = begun.map_or_else(
+            || self.rot_fi(start.0).unwrap_or_else(Matrix3::identity) * start.1,
+            |expansion| expansion.at,
+        );
+        let (place, at, known) =
+            if is_near(&at, &here, 0.5) { (start, at, begun) } else { (now, here, self.memo.find(&now)) };
+        let expansion = match known {
+            Some(expansion) => expansion,
+            None => {
+                let expansion = Expansion::of(field, at)?;
+                self.memo.keep(place, expansion);
+                expansion
+            }
+        };
+        Ok(expansion.turned_back(rot_fi))
     }
 }
 
 impl Nearby<'_> {
-    /// `g(R + ρ)`, axes of `I`, m/s²; `offset` is `ρ`, from the reference.
+    /// `g(R + ρ)`, m/s²; `offset` is `ρ`, from the reference.
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`].
     pub fn acceleration(&self, offset: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
-        let g = self.value(&(self.origin + self.rot_fi * offset))?;
-        Ok(self.rot_fi.tr_mul(&g))
+        self.value(&(self.origin + offset))
     }
 
-    /// `g(R + ρ) - g(R)`, axes of `I`, m/s², without cancellation for near bodies: `G ρ`, with `G` from the expansion
-    /// or half way.
+    /// `g(R + ρ) - g(R)`, m/s², without cancellation for near bodies: `G ρ`, with `G` from the expansion or half way.
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`].
     pub fn difference(&self, offset: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
-        let step = self.rot_fi * offset;
-        let there = self.origin + step;
+        let there = self.origin + offset;
         let shared = self.expansion(&self.origin).filter(|expansion| is_near(&expansion.at, &there, 1.0));
-        let g = match shared {
-            Some(expansion) => expansion.gradient * step,
+        match shared {
+            Some(expansion) => Ok(expansion.gradient * offset),
             None if is_near(&self.origin, &there, 1.0) => {
-                self.field.gradient(&(self.origin + step * 0.5))?.1 * step
+                Ok(self.exact(&(self.origin + offset * 0.5))?.gradient * offset)
             }
-            None => self.value(&there)? - self.value(&self.origin)?,
-        };
-        Ok(self.rot_fi.tr_mul(&g))
+            None => Ok(self.value(&there)? - self.value(&self.origin)?),
+        }
     }
 
-    /// `∂g/∂r` at `R + ρ`, axes of `I`, 1/s².
+    /// `∂g/∂r` at `R + ρ`, 1/s².
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`].
     pub fn gradient(&self, offset: &Vector3<f64>) -> Result<Matrix3<f64>, GravityError> {
-        let there = self.origin + self.rot_fi * offset;
-        let tensor = match self.expansion(&there) {
-            Some(expansion) => expansion.gradient,
-            None => self.field.gradient(&there)?.1,
-        };
-        Ok(self.rot_fi.tr_mul(&tensor) * self.rot_fi)
+        let there = self.origin + offset;
+        self.expansion(&there)
+            .map_or_else(|| self.exact(&there).map(|exact| exact.gradient), |near| Ok(near.gradient))
     }
 
     fn value(&self, at: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
         match self.expansion(at) {
             Some(expansion) => Ok(expansion.value + expansion.gradient * (at - expansion.at)),
-            None => self.field.acceleration(at),
+            None => Ok(self.rot_fi.tr_mul(&self.field.acceleration(&(self.rot_fi * at))?)),
         }
+    }
+
+    fn exact(&self, at: &Vector3<f64>) -> Result<Expansion, GravityError> {
+        Ok(Expansion::of(self.field, self.rot_fi * at)?.turned_back(&self.rot_fi))
     }
 
     /// The expansion that reaches a place.

@@ -7,8 +7,13 @@ use nalgebra::Vector3;
 /// How far from its centre a local density is trusted, m.
 ///
 /// Sideways the density of no model changes faster than by e within a third of the Earth's radius, so the
-/// density is wrong by at most 5e-5 of itself there; upwards the change of the scale height over 100 m is less.
-const TRUST: f64 = 100.0;
+/// density is wrong by at most 8e-5 of itself there; upwards the change of the scale height over that is less. Where the layers of a table do not meet, the place of
+/// the jump is off by that much.
+const TRUST: f64 = 160.0;
+
+/// Pitch of the points about which local air is made, m and s: robots near each other, and in steps that follow
+/// each other, share one.
+const PITCH: (f64, f64) = (64.0, 0.125);
 
 /// Rise over which the scale height is taken, m.
 const RISE: f64 = 100.0;
@@ -22,13 +27,15 @@ pub struct LocalAir {
     density: f64,
     /// One by the scale height, 1/m.
     decay: f64,
+    /// Angular velocity of the air, axes of `I`, rad/s: changes by 1e-7 of itself a day.
+    pub(in crate::environment) spin: Vector3<f64>,
 }
 
 impl LocalAir {
     /// About `centre`, axes of `I`, m.
     ///
     /// # Errors
-    /// What the model refuses at the centre or 100 m above.
+    /// What the model refuses at the centre.
     pub fn new(
         atmosphere: &dyn Atmosphere,
         earth: &Earth,
@@ -37,22 +44,31 @@ impl LocalAir {
     ) -> Result<Self, AtmosphereError> {
         let place = AirPlace::new(earth, time, centre)?;
         let density = atmosphere.density(&place)?;
-        let above = atmosphere.density(&place.raised(RISE))?;
-        // κ = ln(ρ/ρ⁺)/Δh
-        let decay = if above > 0.0 && density > 0.0 { (density / above).ln() / RISE } else { 0.0 };
-        Ok(Self { time, centre: *centre, up: place.up, density, decay })
+        // κ = ln(ρ/ρ⁺)/Δh, downwards where the model ends
+        let slope = |rise: f64| Ok((density / atmosphere.density(&place.raised(rise))?).ln() / rise);
+        let decay = if density > 0.0 { slope(RISE).or_else(|_: AtmosphereError| slope(-RISE))? } else { 0.0 };
+        let spin = earth.angular_velocity(time);
+        Ok(Self { time, centre: *centre, up: place.up, density, decay, spin })
     }
 
-    /// Density at `r`, axes of `I`, m, at `time`: kg/m³; none beyond 100 m from the centre.
+    /// Density at `r`, axes of `I`, m, kg/m³; none beyond 160 m from the centre.
     #[inline(always)]
     pub fn density(&self, r: &Vector3<f64>) -> Option<f64> {
         let offset = r - self.centre;
+        // e⁻ˣ to third order: x is at most 100 m by the scale height, 0.02 near the ground
+        let x = self.decay * self.up.dot(&offset);
         let is_near = offset.norm_squared() <= TRUST * TRUST;
-        is_near.then(|| self.density * (-self.decay * self.up.dot(&offset)).exp())
+        is_near.then_some(self.density * (1.0 - x * (1.0 - x * (0.5 - x / 6.0))))
     }
 
     /// Whether this is the air about `centre` at `time`.
     pub(in crate::environment) fn is_about(&self, time: f64, centre: &Vector3<f64>) -> bool {
         self.time == time && self.centre == *centre
+    }
+
+    /// The point of the grid near a place, at most 56 m and 1/8 s away, about which its local air is made.
+    pub(in crate::environment) fn grid_point(time: f64, r: &Vector3<f64>) -> (f64, Vector3<f64>) {
+        let (pitch, tick) = PITCH;
+        ((time / tick).floor() * tick, r.map(|x| (x / pitch).round() * pitch))
     }
 }

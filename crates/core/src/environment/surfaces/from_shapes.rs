@@ -65,12 +65,9 @@ impl Place {
         Ok(())
     }
 
-    /// The two plates across axis `k`, `distance` apart.
+    /// The two faces across axis `k`, `distance` apart.
     fn pair(&self, k: usize, area: f64, distance: f64, parts: &mut Vec<Part>) {
-        for side in [-1.0, 1.0] {
-            let normal = self.axis(k) * side;
-            parts.push(Part::Plate { area, normal, centroid: self.pos + normal * (0.5 * distance) });
-        }
+        parts.push(Part::Slab { area, normal: self.axis(k), centre: self.pos, half: 0.5 * distance });
     }
 
     fn tube(&self, radius: f64, length: f64) -> Part {

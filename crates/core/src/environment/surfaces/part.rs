@@ -16,6 +16,17 @@ pub enum Part {
         /// Where its area is centred.
         centroid: Vec3<f64>,
     },
+    /// Two opposite faces, of which a stream meets one.
+    Slab {
+        /// Area of each, m².
+        area: f64,
+        /// Unit normal of one; the other's is opposite.
+        normal: Vec3<f64>,
+        /// The middle between them.
+        centre: Vec3<f64>,
+        /// Half the distance between them, m.
+        half: f64,
+    },
     /// The curved side of a cylinder.
     Tube {
         /// Radius, m.
@@ -73,8 +84,8 @@ impl Push {
 
     #[inline(always)]
     fn add(&mut self, force: Vec3<f64>, torque: Vec3<f64>) {
-        self.force = self.force + force;
-        self.torque = self.torque + torque;
+        self.force += force;
+        self.torque += torque;
     }
 }
 
@@ -90,6 +101,14 @@ impl Part {
                 let u = v + w.cross(centroid);
                 // F = -A (n·u)₊ u,  T = c × F
                 let force = u * (-area * normal.dot(u).max(0.0));
+                push.add(force, centroid.cross(force));
+            }
+            Self::Slab { area, normal, centre, half } => {
+                // the turn moves neither face along its normal: n·u is that of the middle
+                let side = normal * half.copysign(normal.dot(v + w.cross(centre)));
+                let centroid = centre + side;
+                let u = v + w.cross(centroid);
+                let force = u * (-area * normal.dot(u).abs());
                 push.add(force, centroid.cross(force));
             }
             Self::Tube { radius, length, axis, centre } => {
@@ -120,10 +139,14 @@ impl Part {
         let Optics { specular, diffuse } = *optics;
         match *self {
             Self::Plate { area, normal, centroid } => {
-                let cosine = normal.dot(s).max(0.0);
-                let along_normal = 2.0 * (specular * cosine + diffuse / 3.0);
-                let force = (s * (1.0 - specular) + normal * along_normal) * (-area * cosine);
+                let force = lit(s, normal, normal.dot(s).max(0.0), optics) * area;
                 push.add(force, centroid.cross(force));
+            }
+            Self::Slab { area, normal, centre, half } => {
+                let cosine = normal.dot(s);
+                let facing = normal * 1.0_f64.copysign(cosine);
+                let force = lit(s, facing, cosine.abs(), optics) * area;
+                push.add(force, (centre + facing * half).cross(force));
             }
             Self::Tube { radius, length, axis, centre } => {
                 // n = cos φ ŝ⊥ + sin φ …,  n·s = σ cos φ,  dA = r L dφ over |φ| < π/2
@@ -142,4 +165,11 @@ impl Part {
             }
         }
     }
+}
+
+/// `-cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]`.
+#[inline(always)]
+fn lit(s: Vec3<f64>, normal: Vec3<f64>, cosine: f64, optics: &Optics) -> Vec3<f64> {
+    let along_normal = 2.0 * (optics.specular * cosine + optics.diffuse / 3.0);
+    (s * (1.0 - optics.specular) + normal * along_normal) * -cosine
 }
