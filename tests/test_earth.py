@@ -58,9 +58,9 @@ def test_one_time_or_many() -> None:
     )
     with pytest.raises(oo.exceptions.ShapeError):
         earth.geodetic(times, r[0])
-    with pytest.raises(EarthError, match="needs at least"):
+    with pytest.raises(EarthError, match="need at least"):
         earth.geodetic(0.0, np.zeros(3))
-    with pytest.raises(EarthError, match="1900"):
+    with pytest.raises(EarthError, match="2100"):
         earth.sun(1e10)
 
 

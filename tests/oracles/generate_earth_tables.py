@@ -78,7 +78,7 @@ def lunar(odd: int) -> list[Multiples]:
 
 
 SLOW = tuple(-x for x in with_sun([-1, 0, 0, 0, 0, 18, 0, 0], -16))
-"""Venus' term of 273 years in the Moon's longitude, 14 arc seconds: no search tells half a cycle from a trend."""
+"""Venus' term of 273 years in the Moon's longitude, 14": no search tells half a cycle from a trend."""
 
 
 def solar() -> list[Multiples]:

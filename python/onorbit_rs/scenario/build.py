@@ -58,6 +58,8 @@ def build(scenario: Scenario) -> Built:
         orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, beside)
     with located(scenario, "epoch" if scenario.earth is None else "earth"):
         earth = make_earth(scenario, orbit, beside)
+        if earth is not None:
+            earth.rotation(scenario.simulation.duration)  # its table may end before the run
     effects = []
     for index, effect in enumerate(scenario.environment):
         with located(scenario, "environment", index):
