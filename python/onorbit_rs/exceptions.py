@@ -17,7 +17,7 @@ class                       built-in               fields
 ``PathError``               ``OrbitError``         ``time, start, end``: no path, or none at that time
 ``EarthError``              ``ValueError``         ``name, got, expected``: epochs, the Earth's turn, sky
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
-``GravityError``            ``ValueError``         ``name, got, expected, path, line``: a gravity field, its file
+``GravityError``            ``ValueError``         ``name, got, expected, path, line``: a field, a file
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
 ``CheckpointError``         ``ValueError``         ``path``: broken, or of another run: no going on from it

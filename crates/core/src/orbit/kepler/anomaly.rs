@@ -44,7 +44,7 @@ fn cube_root<S: Real>(x: S) -> S {
     for _ in 0..3 {
         // y ← y (4 - x y³)/3, from 3 % over 1e-5 to 2e-10
         let cube = inverse * inverse * inverse;
-        inverse = inverse * (S::of(4.0 / 3.0) - x * cube * S::of(1.0 / 3.0));
+        inverse *= S::of(4.0 / 3.0) - x * cube * S::of(1.0 / 3.0);
     }
     x * inverse * inverse
 }

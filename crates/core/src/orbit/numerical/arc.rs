@@ -1,7 +1,7 @@
 //! Steps kept, from the initial state outwards.
 
 use super::collocation::NODES;
-use super::step::{Outcome, Start, Step};
+use super::step::{Start, Step};
 use crate::orbit::{OrbitError, OrbitState};
 use nalgebra::Vector3;
 use std::sync::{PoisonError, RwLock};
@@ -11,7 +11,7 @@ const TOLERANCE: f64 = 1e-14;
 /// First step, and least one, as shares of `√(r³/μ)`.
 const FIRST: f64 = 0.1;
 const SHORTEST: f64 = 1e-9;
-/// Steps of a step's error that are aimed at, and how fast lengths may change.
+/// Share of the longest step allowed that the next one takes, and how fast lengths may change.
 const SAFETY: f64 = 0.9;
 const CHANGE: (f64, f64) = (0.25, 2.0);
 /// Steps on either side of the initial state: years of a low orbit, 150 MB.
@@ -102,7 +102,7 @@ impl Arcs {
                 return Err(OrbitError::StepTooShort { time, length });
             }
             let shorter = match start.step(length, half.steps.last(), &mut outside) {
-                Ok(Outcome::Done(step, error)) => {
+                Ok(Some((step, error))) => {
                     let share = (TOLERANCE * distance / error).powf(1.0 / (NODES + 1) as f64);
                     let factor = (SAFETY * share).clamp(CHANGE.0, CHANGE.1);
                     if share >= 1.0 {
@@ -112,7 +112,7 @@ impl Arcs {
                     }
                     factor
                 }
-                Ok(Outcome::Unsettled) => 0.5,
+                Ok(None) => 0.5,
                 // a guess may lie where the orbit does not go
                 Err(error) if 0.25 * length.abs() <= shortest => return Err(error),
                 Err(_) => 0.25,

@@ -26,26 +26,19 @@ pub(super) struct Step {
     spectrum: Samples,
 }
 
-/// What came of an attempt.
-pub(super) enum Outcome {
-    /// The step, and by how much its interior may be wrong, m.
-    Done(Step, f64),
-    /// The sweeps did not settle: the step is too long.
-    Unsettled,
-}
-
 impl Start {
     pub(super) fn new(time: f64, position: Vector3<f64>, velocity: Vector3<f64>) -> Self {
         Self { time, position: [position, Vector3::zeros()], velocity: [velocity, Vector3::zeros()] }
     }
 
-    /// The collocated motion `length` s on from here; `before` is the step that ended here.
+    /// The collocated motion `length` s on from here, and by how much its interior may be wrong, m; `None` where the
+    /// sweeps do not settle: it is too long. `before` is the step that ended here.
     pub(super) fn step(
         &self,
         length: f64,
         before: Option<&Step>,
         mut field: impl FnMut(f64, &Vector3<f64>) -> Result<Vector3<f64>, OrbitError>,
-    ) -> Result<Outcome, OrbitError> {
+    ) -> Result<Option<(Step, f64)>, OrbitError> {
         let (rule, half) = (&*RULE, 0.5 * length);
         let times = rule.nodes.map(|x| self.time + half * (x + 1.0));
         let free = rule.nodes.map(|x| self.position[0] + self.velocity[0] * (half * (x + 1.0)));
@@ -70,10 +63,10 @@ impl Start {
             if moved <= settled {
                 let step = Step { start: *self, length, spectrum: spectrum(rule, &a) };
                 let error = step.truncation();
-                return Ok(Outcome::Done(step, error));
+                return Ok(Some((step, error)));
             }
         }
-        Ok(Outcome::Unsettled)
+        Ok(None)
     }
 }
 
