@@ -9,9 +9,14 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterio
 use nalgebra::Vector3;
 use onorbit_core::control::{ComputedTorque, ControlLaw};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
-use onorbit_core::environment::GravityGradient;
+use onorbit_core::earth::{Earth, EarthParameters, Epoch};
+use onorbit_core::environment::atmosphere::{MagneticActivity, Nrlmsise00, SpaceIndices, SpaceWeather};
+use onorbit_core::environment::surfaces::{Optics, Surfaces};
+use onorbit_core::environment::{Drag, GravityGradient, RadiationPressure};
+use onorbit_core::gravity::{Gravity, GravityField, Luminary};
 use onorbit_core::model::neutral;
-use onorbit_core::orbit::{Kepler, MU_EARTH};
+use onorbit_core::model::urdf::from_file;
+use onorbit_core::orbit::{Kepler, MU_EARTH, Numerical};
 use onorbit_core::reference::LineParabola;
 use onorbit_core::simulation::{Integrator, Simulation};
 use onorbit_core::spatial::InstructionSet;
@@ -57,6 +62,35 @@ fn controlled(mut simulation: Simulation) -> Simulation {
     simulation
 }
 
+/// In everything: EGM2008 36 × 36, Sun and Moon, NRLMSISE-00 and light on the faces of the bundled torso, its reference
+/// integrated in the same field.
+fn in_everything() -> Simulation {
+    let urdf = concat!(env!("CARGO_MANIFEST_DIR"), "/../../python/onorbit_rs/robots/humanoid_torso.urdf");
+    let model = Arc::new(from_file(urdf.as_ref(), &[]).unwrap());
+    let mut q = neutral(&model);
+    q[7..].copy_from_slice(&[0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]);
+    let v = vec![0.0; model.nv()];
+    let mut simulation = Simulation { record_every: 100, ..Simulation::new(Arc::clone(&model), q, v) };
+    let epoch = Epoch::parse("2026-03-20T12:00:00 UTC").unwrap();
+    let earth = Arc::new(Earth::new(epoch, &EarthParameters::default()).unwrap());
+    let field = Arc::new(GravityField::bundled("egm2008", 36, 36).unwrap());
+    let gravity = Gravity::of_field(field, Some(Arc::clone(&earth))).unwrap();
+    let gravity = gravity.with(Luminary::Sun, &earth).unwrap().with(Luminary::Moon, &earth).unwrap();
+    let gravity = Arc::new(gravity);
+    let (r, v) = (Vector3::new(6_778e3, 0.0, 0.0), Vector3::new(0.0, 4_700.0, 6_100.0));
+    simulation.orbit = Some(Arc::new(Numerical::new(r, v, 0.0, Arc::clone(&gravity)).unwrap()));
+    (simulation.gravity, simulation.earth) = (Some(gravity), Some(earth));
+    let indices = SpaceIndices { f107: 150.0, f107a: 150.0, activity: MagneticActivity::Daily(15.0) };
+    let air = Arc::new(Nrlmsise00::new(SpaceWeather::Constant(indices)));
+    let faces = || Surfaces::from_shapes(&model, 2.2, Optics::new(0.2, 0.3).unwrap()).unwrap();
+    simulation.effects = vec![
+        Arc::new(GravityGradient),
+        Arc::new(Drag::new(air, faces())),
+        Arc::new(RadiationPressure::new(faces())),
+    ];
+    simulation
+}
+
 type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
 
 /// Times one step: criterion's iterations are steps, done a thousand at a time.
@@ -84,6 +118,7 @@ fn benches(c: &mut Criterion) {
     step(&mut group, "in orbit rk4", in_orbit(passive()));
     step(&mut group, "controlled rk4", controlled(passive()));
     step(&mut group, "controlled in orbit rk4", in_orbit(controlled(passive())));
+    step(&mut group, "in everything rk4", in_everything());
     group.finish();
 }
 

@@ -85,18 +85,6 @@ impl Effect for DifferentialGravity {
                 wrench.force += g * body.mass;
             }
         }
-        for third in planet.gravity.third_bodies() {
-            let place = third.position(scene.time)?;
-            for (body, wrench) in scene.paired(wrenches)? {
-                // a third body at s pulls on the planet's centre too: [g(r - s) - g(-s)] - [g(R - s) - g(-s)], or the first alone
-                let (from, offset) = if differs {
-                    (state.position, body.com)
-                } else {
-                    (Vector3::zeros(), state.position + body.com)
-                };
-                wrench.force += tide(third.mu(), &(from - place), &offset).0 * body.mass;
-            }
-        }
         Ok(())
     }
 }

@@ -13,9 +13,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// `F = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the velocity of that point in air that
 /// turns with the Earth. No part shadows another.
 ///
-/// The density is computed at points of a grid of 64 m and 1/8 s, at the one next to the robot where the step begins,
-/// and follows the scale height from there, within 160 m: wrong by at most 1e-4 of itself. Farther away it is
-/// computed for each body afresh. Which point it is follows from place and time alone.
+/// The density is computed at points of a grid of 64 m and 1/8 s, at the one next to the robot's base, and follows the
+/// scale height from there, within 160 m: wrong by at most 1e-4 of itself. For bodies farther away it is computed
+/// afresh. Which point it is follows from place and time alone.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.
 #[derive(Debug)]
@@ -65,7 +65,8 @@ impl Effect for Drag {
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], what the atmosphere refuses.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
-        let air = self.local(earth, scene.anchor.time, &(scene.anchor.origin + scene.anchor.com))?;
+        let near = scene.bodies.first().map_or_else(Vector3::zeros, |body| body.com);
+        let air = self.local(earth, scene.time, &(reference.position + near))?;
         for covering in self.surfaces.coverings() {
             let (body, wrench) = scene.pair(wrenches, covering.body)?;
             let r = reference.position + body.com;

@@ -47,13 +47,6 @@ impl Effect for GravityGradient {
                 wrench.torque += torque(&field.gradient(&body.com)?, body);
             }
         }
-        for third in planet.gravity.third_bodies() {
-            let place = third.position(scene.time)?;
-            for (body, wrench) in scene.paired(wrenches)? {
-                let r = planet.reference.position + body.com - place;
-                wrench.torque += towards(third.mu(), body, &r, r.norm());
-            }
-        }
         Ok(())
     }
 }

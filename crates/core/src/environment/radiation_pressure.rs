@@ -3,6 +3,7 @@
 use super::shadow::sunlit;
 use super::surfaces::{SurfaceError, Surfaces};
 use super::{Effect, EnvironmentError, Scene, Wrench};
+use nalgebra::Vector3;
 
 /// Radiation pressure on every covered body, with its torque, and the Earth's shadow.
 ///
@@ -30,6 +31,10 @@ pub const SOLAR_FLUX: f64 = 1361.0;
 /// Equatorial radius of the Earth, m: what casts the shadow. Source: WGS84.
 pub const SHADOW_RADIUS: f64 = 6_378_137.0;
 
+/// Distance from the base over which the light is the same, m: a penumbra changes by 1 part in 600 over it in a low
+/// orbit, where one is 60 km wide; the direction by 7e-10 rad.
+const REACH: f64 = 100.0;
+
 const ASTRONOMICAL_UNIT: f64 = 149_597_870_700.0;
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
@@ -45,6 +50,16 @@ impl RadiationPressure {
     /// [`SurfaceError::Value`] where one is negative or not finite.
     pub fn check(flux: f64, earth_radius: f64) -> Result<(), SurfaceError> {
         at_least_zero("flux", flux).and(at_least_zero("earth_radius", earth_radius)).map(drop)
+    }
+
+    /// The light at `r`, with the Sun at `sun`, both from the Earth's centre, m.
+    fn light(&self, r: &Vector3<f64>, sun: &Vector3<f64>) -> Light {
+        let to_sun = sun - r;
+        let distance = to_sun.norm();
+        let share = self.earth_radius.map_or(1.0, |radius| sunlit(r, sun, radius));
+        // P = ν (Φ/c) (1 au/d)²
+        let ratio = ASTRONOMICAL_UNIT / distance;
+        Light { to_sun: to_sun / distance, pressure: share * self.flux / SPEED_OF_LIGHT * ratio * ratio }
     }
 
     /// The same with another flux at 1 au, W/m².
@@ -63,6 +78,13 @@ impl RadiationPressure {
         let earth_radius = earth_radius.map(|radius| at_least_zero("earth_radius", radius)).transpose()?;
         Ok(Self { earth_radius, ..self })
     }
+}
+
+/// Unit vector to the Sun, and what its light presses with, N/m².
+#[derive(Clone, Copy)]
+struct Light {
+    to_sun: Vector3<f64>,
+    pressure: f64,
 }
 
 fn at_least_zero(name: &'static str, value: f64) -> Result<f64, SurfaceError> {
@@ -94,21 +116,17 @@ impl Effect for RadiationPressure {
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
         let sun = earth.sun(scene.time)?;
+        let Some(base) = scene.bodies.first().map(|body| body.com) else { return Ok(()) };
+        let at_base = self.light(&(reference.position + base), &sun);
         for covering in self.surfaces.coverings() {
             let (body, wrench) = scene.pair(wrenches, covering.body)?;
-            let r = reference.position + body.com;
-            let to_sun = sun - r;
-            let distance = to_sun.norm();
-            let share = self.earth_radius.map_or(1.0, |radius| sunlit(&r, &sun, radius));
-            if share == 0.0 {
-                continue;
+            let is_near = (body.com - base).norm_squared() <= REACH * REACH;
+            let light = if is_near { at_base } else { self.light(&(reference.position + body.com), &sun) };
+            if light.pressure > 0.0 {
+                let (force, torque) = covering.shine(&body.rot_wk, &light.to_sun);
+                wrench.force += force * light.pressure;
+                wrench.torque += torque * light.pressure;
             }
-            // P = ν (Φ/c) (1 au/d)²
-            let ratio = ASTRONOMICAL_UNIT / distance;
-            let pressure = share * self.flux / SPEED_OF_LIGHT * ratio * ratio;
-            let (force, torque) = covering.shine(&body.rot_wk, &(to_sun / distance));
-            wrench.force += force * pressure;
-            wrench.torque += torque * pressure;
         }
         Ok(())
     }

@@ -133,13 +133,13 @@ impl<'a> Scene<'a> {
         Ok(planet)
     }
 
-    /// The planet's field without its point mass, around the robot; none where that is all there is.
+    /// Gravity without the planet's point mass, around the robot; none where that is all there is.
     pub(super) fn nearby(
         &self,
         planet: &Planet<'a>,
         differs: bool,
     ) -> Result<Option<Nearby<'a>>, EnvironmentError> {
-        if planet.gravity.field().is_none() {
+        if planet.gravity.is_point_mass() {
             return Ok(None);
         }
         let moment: Vector3<f64> = self.bodies.iter().map(|body| body.com * body.mass).sum();

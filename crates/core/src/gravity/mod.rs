@@ -84,6 +84,11 @@ impl Gravity {
         self.mu
     }
 
+    /// Whether there is nothing but the planet's point mass.
+    pub fn is_point_mass(&self) -> bool {
+        self.field.is_none() && self.third_bodies.is_empty()
+    }
+
     /// The part that is not that of the point mass, where there is one.
     pub fn field(&self) -> Option<&Arc<GravityField>> {
         self.field.as_ref()
