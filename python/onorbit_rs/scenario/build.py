@@ -80,8 +80,8 @@ def build(scenario: Scenario) -> Built:
         controller, reference = _controlled(scenario, start)
         with located(scenario, "simulation"), _about_controllers(scenario):
             return _core.Simulation(
-                model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode, environment=effects,
-                controller=controller, reference=reference, tool=tool, **settings,
+                model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode,
+                environment=effects, controller=controller, reference=reference, tool=tool, **settings,
             )  # fmt: skip
 
     _try_one_step(scenario, simulation())  # a controller in Python may remember it: the run gets another

@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 const BLOCK: usize = 32;
 
 type Piece<const N: usize> = [Vector3<f64>; N];
+type Block<const N: usize> = Box<[OnceLock<Piece<N>>; BLOCK]>;
 
 /// A vector function of time by Chebyshev series of `N` coefficients, each made when it is first asked for.
 ///
@@ -16,7 +17,7 @@ type Piece<const N: usize> = [Vector3<f64>; N];
 pub(super) struct Pieces<const N: usize> {
     start: f64,
     length: f64,
-    blocks: Box<[OnceLock<Box<[OnceLock<Piece<N>>; BLOCK]>>]>,
+    blocks: Box<[OnceLock<Block<N>>]>,
 }
 
 impl<const N: usize> Pieces<N> {
