@@ -1,7 +1,7 @@
 """A low orbit under EGM96 2×2, Sun and Moon, against GMAT.
 
-Source: ssmichael1/satkit, ``tests/gmat/cases/leo_iss_j2.json`` at 482e601: GMAT R2026A, EarthICRF, DE440. Its
-own integration is good to 3 cm there, satkit's gate is 0.1 m over 7 days.
+Source: ssmichael1/satkit, ``tests/gmat/cases/leo_iss_j2.json`` at 482e601: GMAT R2026A, EarthICRF, DE440.
+Its own integration is good to 3 cm there, satkit's gate is 0.1 m over 7 days.
 """
 
 from __future__ import annotations

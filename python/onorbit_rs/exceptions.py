@@ -15,7 +15,7 @@ class                       built-in               fields
 ``ElementSetError``         ``OrbitError``         ``line, column, name``: a TLE or OMM that cannot be read
 ``Sgp4Error``               ``OrbitError``         ``code, time, got``: what SGP4 refuses, decay included
 ``PathError``               ``OrbitError``         ``time, start, end``: no path, or none at that time
-``EarthError``              ``ValueError``         ``name, got, expected``: epochs, how the Earth turns
+``EarthError``              ``ValueError``         ``name, got, expected``: epochs, the Earth's turn, sky
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
 ``GravityError``            ``ValueError``         ``name, got, expected, path, line``: a field, a file
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
@@ -178,7 +178,7 @@ class PathError(OrbitError):
 
 
 class EarthError(OnOrbitError, ValueError):
-    """An epoch, a time or parameters for which nobody knows how the Earth is turned, or where the Sun is."""
+    """An epoch, a time or parameters for which nobody knows how the Earth or the sky stands."""
 
     name: Any = None
     got: Any = None

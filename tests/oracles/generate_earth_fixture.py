@@ -1,10 +1,10 @@
-"""Writes ``tests/fixtures/earth.json``: how the Earth turns, where Sun and Moon are, as others compute it.
+"""Writes ``tests/fixtures/earth.json``: the Earth, Sun and Moon, as others compute them.
 
     pip install de421 jplephem mpmath pyerfa skyfield
     python tests/oracles/generate_earth_fixture.py
 
-Orientation from pyerfa (IAU 2006/2000A in full), TEME from skyfield, Sun and Moon from JPL's DE421, the rest
-from closed forms by mpmath.
+Orientation from pyerfa (IAU 2006/2000A in full), TEME from skyfield, Sun and Moon from JPL's DE421, the
+rest from closed forms by mpmath.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ def places() -> list[dict[str, float]]:
 
 
 def tides() -> list[dict[str, Any]]:
-    """Third bodies and a satellite of the Earth, to fifty digits: ``μ [(s - r)/|s - r|³ - s/|s|³]``."""
+    """What third bodies do to a satellite, to fifty digits: ``μ [(s - r)/|s - r|³ - s/|s|³]``."""
     mp.dps = 50
     rows = []
     for mu, body in ((1.3271244e20, [-2.65e10, 1.327e11, 5.75e10]), (4.9028e12, [-2.9e8, -2.7e8, -9.3e7])):

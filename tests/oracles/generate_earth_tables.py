@@ -4,9 +4,9 @@
     python tests/oracles/generate_earth_tables.py
 
 The nutation's terms are those that skyfield carries, cut where they get small. Sun and Moon are our own short
-series: sines and cosines of the fundamental arguments, their multiples picked one after the other by what
-they explain of JPL's DE421 over 1900-2050 (orthogonal matching), amplitudes by least squares; in the mean
-ecliptic and equinox of date.
+series: sines and cosines of the fundamental arguments, their multiples picked one by one, by what they
+explain of JPL's DE421 over 1900-2050 (orthogonal matching), amplitudes by least squares; in the mean ecliptic
+and equinox of date.
 """
 
 from __future__ import annotations

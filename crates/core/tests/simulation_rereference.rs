@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 use onorbit_core::environment::{BodyWrench, GravityGradient, ReferenceMotion};
 use onorbit_core::model::Model;
 use onorbit_core::orbit::{Kepler, MU_EARTH, Orbit};
-use onorbit_core::simulation::{Checkpoint, Moment, Simulation, Trace, certify};
+use onorbit_core::simulation::{Checkpoint, Integrator, Moment, Simulation, Trace, certify};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -68,6 +68,23 @@ fn days_of_drifting_cost_no_accuracy() {
     // what is left was made before: the error of a step grows with the distance
     assert!(missed(&with) < 1e-3 && missed(&with) < missed(&without) / 1000.0);
     assert!(without.rereferenced.is_empty());
+}
+
+#[test]
+fn an_adaptive_run_keeps_its_accuracy_too() {
+    let adaptive = |beyond| {
+        let mut simulation = coasting(&rigid(), 600.0, beyond);
+        simulation.integrator = Integrator::DormandPrince;
+        simulation.tolerance = 1e-11;
+        go(&mut simulation, 50_000.0)
+    };
+    let (with, without) = (adaptive(2e4), adaptive(f64::INFINITY));
+    println!("adaptive: {:.1e} m with, {:.1e} m without", missed(&with), missed(&without));
+    assert!(!with.rereferenced.is_empty() && missed(&with) < 1e-3);
+    // rows between steps too
+    for (a, b) in with.position_eci.iter().zip(&without.position_eci) {
+        assert!((a - b).abs() < 1.0, "{a} {b}");
+    }
 }
 
 #[test]

@@ -39,7 +39,8 @@ def write_trace(folder: OutputFolder, trace: Trace) -> None:
         columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
         columns |= {f"tracking_{name}": np.asarray(errors) for name, errors in trace.tracking.items()}
         columns |= {f"wrench_{name}": np.asarray(rows) for name, rows in trace.wrenches.items()}
-        columns["rereferenced"] = np.asarray(trace.rereferenced)
+        if len(trace.rereferenced):
+            columns["rereferenced"] = np.asarray(trace.rereferenced)
         np.savez(stream, allow_pickle=False, **columns)
 
 

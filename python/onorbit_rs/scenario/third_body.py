@@ -10,7 +10,7 @@ from onorbit_rs.scenario.part import Part
 
 
 class ThirdBodyEffect(Part):
-    """The pull of Sun or Moon on robot and reference; needs an orbit around the Earth and an epoch."""
+    """The pull of the Sun or the Moon on robot and reference; needs an orbit and an epoch."""
 
     kind: Literal["third_body"] = "third_body"
     body: Literal["sun", "moon"]

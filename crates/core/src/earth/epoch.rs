@@ -48,7 +48,7 @@ impl Epoch {
         let byte = |x: u16| u8::try_from(x).unwrap_or(u8::MAX); // no month and no hour
         let (month, day, hour, minute) = (byte(month), byte(day), byte(hour), byte(minute));
         let second = if is_leap { 59 } else { byte(second) };
-        if !YEARS.contains(&year) || second > 59 {
+        if !YEARS.contains(&year) || hour > 23 || second > 59 {
             return Err(refused());
         }
         let instant =

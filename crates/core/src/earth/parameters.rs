@@ -145,11 +145,11 @@ const MJD_1972: f64 = 41_317.0;
 const MJD_2100: f64 = 88_069.0;
 
 fn check(row: usize, ut1_minus_utc: f64, polar_motion: &[f64; 2]) -> Result<(), EarthError> {
-    if !(0.0..=LARGEST_UT1).contains(&ut1_minus_utc.abs()) {
+    if !(-LARGEST_UT1..=LARGEST_UT1).contains(&ut1_minus_utc) {
         let expected = "UT1 - UTC in seconds is needed (it stays within 0.9 s where UTC is true)";
         return Err(EarthError::Parameter { name: "UT1 - UTC", value: ut1_minus_utc, row, expected });
     }
-    if let Some(&value) = polar_motion.iter().find(|x| !(0.0..=FARTHEST_POLE).contains(&x.abs())) {
+    if let Some(&value) = polar_motion.iter().find(|x| !(-FARTHEST_POLE..=FARTHEST_POLE).contains(*x)) {
         let expected = "rad are needed, and within 2.4e-5 (are these arc seconds?)";
         return Err(EarthError::Parameter { name: "polar motion", value, row, expected });
     }

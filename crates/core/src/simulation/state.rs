@@ -132,6 +132,7 @@ impl<S: Real> State<S> {
         for i in 0..self.v.len() {
             self.v[i] = rate.a[i].mul_add(h, from.v[i]);
         }
+        self.start = from.start;
         self.impulse.linear = rate.wrench.linear.scale_add(h, from.impulse.linear);
         self.impulse.angular = rate.wrench.angular.scale_add(h, from.impulse.angular);
         self.work = rate.power.mul_add(h, from.work);
