@@ -1,7 +1,7 @@
 """NRLMSISE-00 against pymsis, the Naval Research Laboratory's own Fortran.
 
 Its Fortran is in single precision: it differs from the C translation in double precision (PyPI's
-``nrlmsise00``), which ours follows to 2e-15, by up to 9e-5 in density too. So what can be asked is
+``nrlmsise00``), which ours follows to 1e-12, by up to 9e-5 in density too. So what can be asked is
 agreement to that, and to 2e-6 in the middle.
 """
 

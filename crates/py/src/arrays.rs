@@ -1,6 +1,6 @@
 //! Arrays in and out.
 
-use crate::errors::{fields, raise};
+use crate::errors::{fields, raise, shape_error};
 use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
@@ -97,7 +97,7 @@ pub(crate) fn fixed<const N: usize>(
 /// The error for an array of the wrong shape.
 pub(crate) fn wrong_shape(py: Python<'_>, name: &str, expected: &str, got: &[usize]) -> PyErr {
     let message = format!("{name} has shape {}, expected {expected}", shape_text(got));
-    raise(py, "ShapeError", &message, &fields!(py, "name": name, "expected": expected, "got": got.to_vec()))
+    shape_error(py, &message, name, expected, got.to_vec())
 }
 
 /// `(2, 3)` as Python writes it.

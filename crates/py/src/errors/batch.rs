@@ -1,0 +1,43 @@
+//! Inputs of calls over many states.
+
+use super::{IntoPython, fields, plain, raise, shape_error};
+use onorbit_core::batch::InputError;
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+
+impl IntoPython for InputError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        match &self {
+            Self::WrongLength { name, expected, got } | Self::WrongBatch { name, expected, got } => {
+                shape_error(py, &message, name, expected, got)
+            }
+            Self::NotFinite { name, value, .. } => {
+                raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
+            }
+            Self::Singular { .. } => plain(py, "ConvergenceError", &message),
+            Self::Adaptive => {
+                let fields = fields!(py, "name": "integrator", "got": "dormand_prince");
+                raise(py, "InputError", &message, &fields)
+            }
+            Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
+            Self::NeedsOrbit => plain(py, "ControlError", &message),
+            Self::Orbit { orbit, source } => {
+                let error = source.clone().into_python(py);
+                for (name, value) in [("index", orbit.into_py_any(py)), ("message", message.into_py_any(py))]
+                {
+                    let _ = value.and_then(|value| error.value(py).setattr(name, value));
+                }
+                error
+            }
+            Self::NoEllipse { name, value, expected, .. } => {
+                let fields = fields!(py, "name": name, "got": value, "expected": expected);
+                raise(py, "InputError", &message, &fields)
+            }
+            Self::Diverged { .. } => plain(py, "SimulationError", &message),
+            Self::QuaternionNorm { norm, .. } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
+            }
+        }
+    }
+}

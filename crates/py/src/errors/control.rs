@@ -1,0 +1,52 @@
+//! Controllers, and what they follow.
+
+use super::{IntoPython, fields, plain, raise, shape_error};
+use onorbit_core::control::ControlError;
+use onorbit_core::reference::ReferenceError;
+use onorbit_core::spatial::SplineError;
+use pyo3::prelude::*;
+
+impl IntoPython for ReferenceError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        match &self {
+            Self::DurationNotPositive { value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "duration", "got": value))
+            }
+            Self::Ramp { value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "ramp", "got": value))
+            }
+            Self::LimitNotPositive { value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "limit", "got": value))
+            }
+            Self::LastRow { row } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "pose", "got": row.to_vec()))
+            }
+            Self::WrongLength { name, expected, got } => shape_error(py, &message, name, expected, got),
+            Self::NoJoint { joint, .. } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "joint", "got": joint))
+            }
+            Self::Spline(SplineError::WrongLength { name, expected, got }) => {
+                shape_error(py, &message, name, expected, got)
+            }
+            _ => plain(py, "ControlError", &message),
+        }
+    }
+}
+
+impl IntoPython for ControlError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::User(error) => match error.downcast::<PyErr>() {
+                Ok(raised) => *raised, // that very object, traceback included
+                Err(other) => plain(py, "ControlError", &other.to_string()),
+            },
+            Self::WrongLength { name, expected, got } => shape_error(py, &message, name, expected, got),
+            Self::NotFinite { name, value } | Self::Negative { name, value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": name, "got": value))
+            }
+            _ => plain(py, "ControlError", &message),
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Fields of gravity and their files.
+
+use super::{IntoPython, fields, raise};
+use onorbit_core::gravity::GravityError;
+use pyo3::prelude::*;
+
+impl IntoPython for GravityError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let fields = match &self {
+            Self::Earth(error) => return error.clone().into_python(py),
+            Self::NotFinite { name, value } | Self::NotPositive { name, value } => {
+                fields!(py, "name": name, "got": value)
+            }
+            Self::Degree { degree } | Self::ZonalDegree { degree } => {
+                fields!(py, "name": "degree", "got": degree)
+            }
+            Self::BeyondModel { degree, highest, .. } => {
+                fields!(py, "name": "degree", "got": degree, "expected": highest)
+            }
+            Self::OrderAboveDegree { degree, order } => {
+                fields!(py, "name": "order", "got": order, "expected": degree)
+            }
+            Self::UnknownModel { name, known } => {
+                fields!(py, "name": "model", "got": name, "expected": known)
+            }
+            Self::WrongLength { name, expected, got } => {
+                fields!(py, "name": name, "got": got, "expected": expected)
+            }
+            Self::Unreadable { file, .. } | Self::Truncated { file, .. } => fields!(py, "path": file),
+            Self::Header { file, key, .. } => fields!(py, "path": file, "name": key),
+            Self::Row { file, line, .. }
+            | Self::Twice { file, line, .. }
+            | Self::VariesWithTime { file, line, .. } => fields!(py, "path": file, "line": line),
+            Self::BelowSurface { distance, minimum } => {
+                fields!(py, "name": "r", "got": distance, "expected": minimum)
+            }
+            Self::OtherPlanet { field, orbit } => {
+                fields!(py, "name": "mu", "got": orbit, "expected": field)
+            }
+            _ => fields!(py,),
+        };
+        raise(py, "GravityError", &self.to_string(), &fields)
+    }
+}

@@ -1,0 +1,59 @@
+//! The one bridge from errors of the core to the classes of `onorbit_rs.exceptions`.
+
+mod batch;
+mod control;
+mod earth;
+mod environment;
+mod gravity;
+mod model;
+mod orbit;
+mod simulation;
+
+pub(crate) use simulation::SimulationErrorExt;
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// An error of the core that knows its Python class.
+pub(crate) trait IntoPython {
+    fn into_python(self, py: Python<'_>) -> PyErr;
+}
+
+/// `onorbit_rs.exceptions.<class>(message, **fields)`.
+pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'_, PyDict>) -> PyErr {
+    let make = || -> PyResult<Bound<'_, PyAny>> {
+        let module = py.import("onorbit_rs.exceptions")?;
+        module.getattr(class)?.call((message,), Some(fields))
+    };
+    match make() {
+        Ok(error) => PyErr::from_value(error),
+        Err(_) => PyRuntimeError::new_err(message.to_owned()),
+    }
+}
+
+/// An error without fields.
+pub(crate) fn plain(py: Python<'_>, class: &str, message: &str) -> PyErr {
+    raise(py, class, message, &PyDict::new(py))
+}
+
+/// An array whose shape is not the one expected.
+pub(crate) fn shape_error<'py>(
+    py: Python<'py>,
+    message: &str,
+    name: impl IntoPyObject<'py>,
+    expected: impl IntoPyObject<'py>,
+    got: impl IntoPyObject<'py>,
+) -> PyErr {
+    raise(py, "ShapeError", message, &fields!(py, "name": name, "expected": expected, "got": got))
+}
+
+/// Collects the fields of an error; what cannot be converted is left out of them.
+macro_rules! fields {
+    ($py:expr, $($name:literal: $value:expr),* $(,)?) => {{
+        let fields = pyo3::types::PyDict::new($py);
+        $( let _ = fields.set_item($name, $value); )*
+        fields
+    }};
+}
+pub(crate) use fields;

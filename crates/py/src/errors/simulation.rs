@@ -1,0 +1,95 @@
+//! A run that cannot begin, or that ends before its time.
+
+use super::{IntoPython, fields, plain, raise, shape_error};
+use crate::trace::PyTrace;
+use onorbit_core::control::ControlError;
+use onorbit_core::simulation::SimulationError;
+use pyo3::prelude::*;
+
+/// Turns the error of a run into its class, the trace so far attached where there is one.
+pub(crate) trait SimulationErrorExt {
+    fn into_python_with(self, py: Python<'_>, trace: Option<Py<PyTrace>>) -> PyErr;
+}
+
+impl SimulationErrorExt for SimulationError {
+    fn into_python_with(self, py: Python<'_>, trace: Option<Py<PyTrace>>) -> PyErr {
+        let message = self.to_string();
+        match self {
+            Self::WrongLength { name, expected, got } => shape_error(py, &message, name, expected, got),
+            Self::NotFinite { name, value, .. } | Self::NotPositive { name, value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
+            }
+            Self::QuaternionNorm { norm } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
+            }
+            Self::Tolerance { value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "tolerance", "got": value))
+            }
+            Self::RereferenceBeyond { value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "rereference_beyond", "got": value))
+            }
+            Self::Restitution { value } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "restitution", "got": value))
+            }
+            Self::OutsideLimits { joint, value, lower, upper } => raise(
+                py,
+                "InputError",
+                &message,
+                &fields!(py, "name": joint, "got": value, "expected": (lower, upper)),
+            ),
+            Self::StepTooSmall { time, step } => raise(
+                py,
+                "SimulationError",
+                &message,
+                &fields!(py, "time": time, "step": step, "trace": trace),
+            ),
+            Self::Earth(source) => source.into_python(py),
+            Self::RecordEvery => plain(py, "InputError", &message),
+            Self::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
+            Self::NeedsReference | Self::NeedsTool | Self::OtherTool { .. } => {
+                plain(py, "ControlError", &message)
+            }
+            Self::ReferenceStartsAway { position, angle, tolerance } => raise(
+                py,
+                "ControlError",
+                &message,
+                &fields!(py, "name": "reference", "got": (position, angle), "expected": tolerance.to_vec()),
+            ),
+            Self::JointsStartAway { offset, tolerance, .. } => raise(
+                py,
+                "ControlError",
+                &message,
+                &fields!(py, "name": "reference", "got": offset, "expected": tolerance),
+            ),
+            Self::UnknownFrame { .. } | Self::TooManyRows { .. } => plain(py, "InputError", &message),
+            Self::Diverged { time, q, v } => raise(
+                py,
+                "SimulationError",
+                &message,
+                &fields!(py, "time": time, "q": q, "v": v, "trace": trace),
+            ),
+            Self::Interrupted { time } => {
+                raise(py, "RunInterrupted", &message, &fields!(py, "time": time, "trace": trace))
+            }
+            Self::Orbit { time, source } => with_trace(py, source.into_python(py), time, trace),
+            Self::Environment { time, source } => with_trace(py, source.into_python(py), time, trace),
+            Self::Gravity(source) => source.into_python(py),
+            Self::Checkpoint(_) => plain(py, "CheckpointError", &message),
+            Self::Reference { time, source } => with_trace(py, source.into_python(py), time, trace),
+            Self::Control(source @ ControlError::User(_)) => {
+                let raised = source.into_python(py);
+                let _ = raised.value(py).setattr("trace", trace); // an object without attributes goes without
+                raised
+            }
+            Self::Control(source) => source.into_python(py),
+        }
+    }
+}
+
+/// Adds the instant and the trace so far to an error.
+fn with_trace(py: Python<'_>, error: PyErr, time: f64, trace: Option<Py<PyTrace>>) -> PyErr {
+    let value = error.value(py);
+    let _ = value.setattr("time", time);
+    let _ = value.setattr("trace", trace);
+    error
+}
