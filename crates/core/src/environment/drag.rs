@@ -4,6 +4,7 @@ use super::atmosphere::{AirPlace, Atmosphere, AtmosphereError, LocalAir};
 use super::surfaces::Surfaces;
 use super::{Effect, EnvironmentError, Scene, Wrench};
 use crate::earth::Earth;
+use crate::spatial::{Fused, InstructionSet, Scalar};
 use nalgebra::Vector3;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -64,23 +65,38 @@ impl Effect for Drag {
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], what the atmosphere refuses.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+        match InstructionSet::current() {
+            InstructionSet::Baseline => self.add::<f64>(scene, wrenches),
+            InstructionSet::Fused | InstructionSet::Wide => self.add::<Fused>(scene, wrenches),
+        }
+    }
+}
+
+impl Drag {
+    /// As [`Effect::add_wrenches`], in the arithmetic of `S`.
+    fn add<S: Scalar>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
         let near = scene.bodies.first().map_or_else(Vector3::zeros, |body| body.com);
         let air = self.local(earth, scene.time, &(reference.position + near))?;
-        for covering in self.surfaces.coverings() {
-            let (body, wrench) = scene.pair(wrenches, covering.body)?;
-            let r = reference.position + body.com;
-            let density = match air.density(&r) {
-                Some(density) => density,
-                None => self.atmosphere.density(&AirPlace::new(earth, scene.time, &r)?)?,
-            };
-            // v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
-            let v = reference.velocity + body.velocity - air.spin.cross(&r);
-            let w = body.angular_velocity - air.spin;
-            let (force, torque) = covering.blow(&body.rot_wk, &v, &w);
-            wrench.force += force * density;
-            wrench.torque += torque * density;
-        }
-        Ok(())
+        S::enter(
+            #[inline(always)]
+            || {
+                for covering in self.surfaces.coverings() {
+                    let (body, wrench) = scene.pair(wrenches, covering.body)?;
+                    let r = reference.position + body.com;
+                    let density = match air.density(&r) {
+                        Some(density) => density,
+                        None => self.atmosphere.density(&AirPlace::new(earth, scene.time, &r)?)?,
+                    };
+                    // v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
+                    let v = reference.velocity + body.velocity - air.spin.cross(&r);
+                    let w = body.angular_velocity - air.spin;
+                    let push = covering.blow::<S>(&body.rot_wk, &v, &w);
+                    wrench.force += push.force * density;
+                    wrench.torque += push.torque * density;
+                }
+                Ok(())
+            },
+        )
     }
 }

@@ -3,6 +3,7 @@
 use super::shadow::sunlit;
 use super::surfaces::{SurfaceError, Surfaces};
 use super::{Effect, EnvironmentError, Scene, Wrench};
+use crate::spatial::{Fused, InstructionSet, Scalar};
 use nalgebra::Vector3;
 
 /// Radiation pressure on every covered body, with its torque, and the Earth's shadow.
@@ -114,20 +115,36 @@ impl Effect for RadiationPressure {
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], and an Earth without epoch.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+        match InstructionSet::current() {
+            InstructionSet::Baseline => self.add::<f64>(scene, wrenches),
+            InstructionSet::Fused | InstructionSet::Wide => self.add::<Fused>(scene, wrenches),
+        }
+    }
+}
+
+impl RadiationPressure {
+    /// As [`Effect::add_wrenches`], in the arithmetic of `S`.
+    fn add<S: Scalar>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
         let sun = earth.sun(scene.time)?;
         let Some(base) = scene.bodies.first().map(|body| body.com) else { return Ok(()) };
         let at_base = self.light(&(reference.position + base), &sun);
-        for covering in self.surfaces.coverings() {
-            let (body, wrench) = scene.pair(wrenches, covering.body)?;
-            let is_near = (body.com - base).norm_squared() <= REACH * REACH;
-            let light = if is_near { at_base } else { self.light(&(reference.position + body.com), &sun) };
-            if light.pressure > 0.0 {
-                let (force, torque) = covering.shine(&body.rot_wk, &light.to_sun);
-                wrench.force += force * light.pressure;
-                wrench.torque += torque * light.pressure;
-            }
-        }
-        Ok(())
+        S::enter(
+            #[inline(always)]
+            || {
+                for covering in self.surfaces.coverings() {
+                    let (body, wrench) = scene.pair(wrenches, covering.body)?;
+                    let is_near = (body.com - base).norm_squared() <= REACH * REACH;
+                    let light =
+                        if is_near { at_base } else { self.light(&(reference.position + body.com), &sun) };
+                    if light.pressure > 0.0 {
+                        let push = covering.shine::<S>(&body.rot_wk, &light.to_sun);
+                        wrench.force += push.force * light.pressure;
+                        wrench.torque += push.torque * light.pressure;
+                    }
+                }
+                Ok(())
+            },
+        )
     }
 }

@@ -3,8 +3,9 @@
 use super::error::{SurfaceError, not_negative};
 use super::from_shapes::parts_of_body;
 use super::part::{Optics, Part, Push};
+use crate::environment::Wrench;
 use crate::model::{Frame, Model};
-use crate::spatial::{Mat3, Vec3};
+use crate::spatial::{Mat3, Scalar, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
 /// How a body meets wind and light.
@@ -115,11 +116,11 @@ impl Surface {
 
     /// Force (N for a density of 1) and torque of the air, axes of the body.
     #[inline(always)]
-    fn blow(&self, v: Vec3<f64>, w: Vec3<f64>) -> Push {
+    fn blow<S: Scalar>(&self, v: Vec3<S>, w: Vec3<S>) -> Push<S> {
         let mut push = Push::none();
         let half = match self {
             Self::Cannonball { area, drag_coefficient, .. } => {
-                push.force = v * (-area * v.norm());
+                push.force = v * (v.norm() * S::of(-area));
                 0.5 * drag_coefficient
             }
             Self::Faces { parts, drag_coefficient, .. } => {
@@ -129,15 +130,15 @@ impl Surface {
                 0.5 * drag_coefficient
             }
         };
-        Push { force: push.force * half, torque: push.torque * half }
+        Push { force: push.force * S::of(half), torque: push.torque * S::of(half) }
     }
 
     /// Force (N for a pressure of 1) and torque of light from the direction `s`, axes of the body.
     #[inline(always)]
-    fn shine(&self, s: Vec3<f64>) -> Push {
+    fn shine<S: Scalar>(&self, s: Vec3<S>) -> Push<S> {
         let mut push = Push::none();
         match self {
-            Self::Cannonball { area, reflectivity, .. } => push.force = s * (-area * reflectivity),
+            Self::Cannonball { area, reflectivity, .. } => push.force = s * S::of(-area * reflectivity),
             Self::Faces { parts, optics, .. } => {
                 for part in parts {
                     part.shine(s, optics, &mut push);
@@ -194,30 +195,27 @@ impl Covering {
     ///
     /// `v` and `w` are velocity of the centre of mass and turn relative to the air, `W` axes.
     #[inline(always)]
-    pub(in crate::environment) fn blow(
+    pub(in crate::environment) fn blow<S: Scalar>(
         &self,
         rot_wk: &Matrix3<f64>,
         v: &Vector3<f64>,
         w: &Vector3<f64>,
-    ) -> (Vector3<f64>, Vector3<f64>) {
-        let rot = Mat3::from(*rot_wk);
-        out(rot, self.surface.blow(rot.transpose_mul(Vec3::from(*v)), rot.transpose_mul(Vec3::from(*w))))
+    ) -> Wrench {
+        let rot = Mat3::<S>::of(&Mat3::from(*rot_wk));
+        let in_body = |v: &Vector3<f64>| rot.transpose_mul(Vec3::of(&Vec3::from(*v)));
+        out(rot, self.surface.blow(in_body(v), in_body(w)))
     }
 
     /// Force and torque about the centre of mass, `W` axes, of light with a pressure of 1 Pa from `s`.
     #[inline(always)]
-    pub(in crate::environment) fn shine(
-        &self,
-        rot_wk: &Matrix3<f64>,
-        s: &Vector3<f64>,
-    ) -> (Vector3<f64>, Vector3<f64>) {
-        let rot = Mat3::from(*rot_wk);
-        out(rot, self.surface.shine(rot.transpose_mul(Vec3::from(*s))))
+    pub(in crate::environment) fn shine<S: Scalar>(&self, rot_wk: &Matrix3<f64>, s: &Vector3<f64>) -> Wrench {
+        let rot = Mat3::<S>::of(&Mat3::from(*rot_wk));
+        out(rot, self.surface.shine(rot.transpose_mul(Vec3::of(&Vec3::from(*s)))))
     }
 }
 
 /// In `W` axes.
 #[inline(always)]
-fn out(rot_wk: Mat3<f64>, push: Push) -> (Vector3<f64>, Vector3<f64>) {
-    ((rot_wk * push.force).to_nalgebra(), (rot_wk * push.torque).to_nalgebra())
+fn out<S: Scalar>(rot_wk: Mat3<S>, push: Push<S>) -> Wrench {
+    Wrench { force: (rot_wk * push.force).to_nalgebra(), torque: (rot_wk * push.torque).to_nalgebra() }
 }

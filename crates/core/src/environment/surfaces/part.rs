@@ -1,7 +1,7 @@
 //! Parts of a surface, and what a stream of air or light does to each.
 
 use super::error::{SurfaceError, not_negative};
-use crate::spatial::Vec3;
+use crate::spatial::{Scalar, Vec3};
 use std::f64::consts::PI;
 
 /// A part of a body's outside; axes of the body, positions from its centre of mass, m.
@@ -71,19 +71,19 @@ impl Optics {
 
 /// A force through the centre of mass and a torque about it, axes of the body.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Push {
-    pub(super) force: Vec3<f64>,
-    pub(super) torque: Vec3<f64>,
+pub(super) struct Push<S> {
+    pub(super) force: Vec3<S>,
+    pub(super) torque: Vec3<S>,
 }
 
-impl Push {
+impl<S: Scalar> Push<S> {
     #[inline(always)]
     pub(super) fn none() -> Self {
         Self { force: Vec3::zero(), torque: Vec3::zero() }
     }
 
     #[inline(always)]
-    fn add(&mut self, force: Vec3<f64>, torque: Vec3<f64>) {
+    fn add(&mut self, force: Vec3<S>, torque: Vec3<S>) {
         self.force += force;
         self.torque += torque;
     }
@@ -95,33 +95,38 @@ impl Part {
     /// `u = v + w × c` is the velocity of the part's middle in the air, `v` that of the centre of mass and `w` the
     /// turn relative to the air, body axes. Since `|u|² (n·û) û = (n·u) u`, no root is needed for a plate.
     #[inline(always)]
-    pub(super) fn blow(&self, v: Vec3<f64>, w: Vec3<f64>, push: &mut Push) {
+    pub(super) fn blow<S: Scalar>(&self, v: Vec3<S>, w: Vec3<S>, push: &mut Push<S>) {
+        let (s, of) = (S::of, Vec3::<S>::of);
         match *self {
             Self::Plate { area, normal, centroid } => {
+                let (normal, centroid) = (of(&normal), of(&centroid));
                 let u = v + w.cross(centroid);
                 // F = -A (n·u)₊ u,  T = c × F
-                let force = u * (-area * normal.dot(u).max(0.0));
+                let force = u * (positive(normal.dot(u)) * s(-area));
                 push.add(force, centroid.cross(force));
             }
             Self::Slab { area, normal, centre, half } => {
+                let (normal, centre) = (of(&normal), of(&centre));
                 // the turn moves neither face along its normal: n·u is that of the middle
-                let side = normal * half.copysign(normal.dot(v + w.cross(centre)));
+                let side = normal * signed(s(half), normal.dot(v + w.cross(centre)));
                 let centroid = centre + side;
                 let u = v + w.cross(centroid);
-                let force = u * (-area * normal.dot(u).abs());
+                let force = u * (normal.dot(u).abs() * s(-area));
                 push.add(force, centroid.cross(force));
             }
             Self::Tube { radius, length, axis, centre } => {
+                let (axis, centre) = (of(&axis), of(&centre));
                 // over the half in the wind: Σ A (n·u)₊ = 2 r L |u⊥|, its centroid is π/4 r û⊥ off the axis
                 let u = v + w.cross(centre);
                 let across = u - axis * axis.dot(u);
                 let speed = across.norm();
-                let side = u * (-2.0 * radius * length);
-                push.add(side * speed, (centre * speed + across * (PI / 4.0 * radius)).cross(side));
+                let side = u * s(-2.0 * radius * length);
+                push.add(side * speed, (centre * speed + across * s(PI / 4.0 * radius)).cross(side));
             }
             Self::Ball { area, centre } => {
+                let centre = of(&centre);
                 let u = v + w.cross(centre);
-                let force = u * (-area * u.norm());
+                let force = u * (u.norm() * s(-area));
                 push.add(force, centre.cross(force));
             }
         }
@@ -129,38 +134,44 @@ impl Part {
 
     /// `-Σ A (n·s)₊ [(1 - ρs) s + 2 (ρs n·s + ρd/3) n]` and its torque: light's push but for its pressure.
     ///
-    /// `s` points to the Sun, body axes. Of a ball a mirror's push is that of a black one, of a matt one 4/9
+    /// `s`, here `to_sun`, points to the Sun, body axes. Of a ball a mirror's push is that of a black one, of a matt one 4/9
     /// more; a tube is the integral of the same over its lit half.
     ///
     /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.4; Wertz, Spacecraft Attitude
     /// Determination and Control, 1978, section 17.2.
     #[inline(always)]
-    pub(super) fn shine(&self, s: Vec3<f64>, optics: &Optics, push: &mut Push) {
+    pub(super) fn shine<S: Scalar>(&self, to_sun: Vec3<S>, optics: &Optics, push: &mut Push<S>) {
+        let (s, of) = (S::of, Vec3::<S>::of);
         let Optics { specular, diffuse } = *optics;
         match *self {
             Self::Plate { area, normal, centroid } => {
-                let force = lit(s, normal, normal.dot(s).max(0.0), optics) * area;
+                let (normal, centroid) = (of(&normal), of(&centroid));
+                let force = lit(to_sun, normal, positive(normal.dot(to_sun)), optics) * s(area);
                 push.add(force, centroid.cross(force));
             }
             Self::Slab { area, normal, centre, half } => {
-                let cosine = normal.dot(s);
-                let facing = normal * 1.0_f64.copysign(cosine);
-                let force = lit(s, facing, cosine.abs(), optics) * area;
-                push.add(force, (centre + facing * half).cross(force));
+                let (normal, centre) = (of(&normal), of(&centre));
+                let cosine = normal.dot(to_sun);
+                let facing = normal * signed(s(1.0), cosine);
+                let force = lit(to_sun, facing, cosine.abs(), optics) * s(area);
+                push.add(force, (centre + facing * s(half)).cross(force));
             }
             Self::Tube { radius, length, axis, centre } => {
+                let (axis, centre) = (of(&axis), of(&centre));
                 // n = cos φ ŝ⊥ + sin φ …,  n·s = σ cos φ,  dA = r L dφ over |φ| < π/2
-                let across = s - axis * axis.dot(s);
+                let across = to_sun - axis * axis.dot(to_sun);
                 let sigma = across.norm();
                 let area = radius * length;
-                let absorbed = s * (-2.0 * area * (1.0 - specular));
-                let reflected = across * (-area * (8.0 / 3.0 * specular * sigma + PI / 3.0 * diffuse));
+                let absorbed = to_sun * s(-2.0 * area * (1.0 - specular));
+                let reflected =
+                    across * ((sigma * s(8.0 / 3.0 * specular) + s(PI / 3.0 * diffuse)) * s(-area));
                 let force = absorbed * sigma + reflected;
-                let torque = (across * (PI / 4.0 * radius)).cross(absorbed);
+                let torque = (across * s(PI / 4.0 * radius)).cross(absorbed);
                 push.add(force, centre.cross(force) + torque);
             }
             Self::Ball { area, centre } => {
-                let force = s * (-area * (1.0 + 4.0 / 9.0 * diffuse));
+                let centre = of(&centre);
+                let force = to_sun * s(-area * (1.0 + 4.0 / 9.0 * diffuse));
                 push.add(force, centre.cross(force));
             }
         }
@@ -169,7 +180,19 @@ impl Part {
 
 /// `-cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]`.
 #[inline(always)]
-fn lit(s: Vec3<f64>, normal: Vec3<f64>, cosine: f64, optics: &Optics) -> Vec3<f64> {
-    let along_normal = 2.0 * (optics.specular * cosine + optics.diffuse / 3.0);
-    (s * (1.0 - optics.specular) + normal * along_normal) * -cosine
+fn lit<S: Scalar>(to_sun: Vec3<S>, normal: Vec3<S>, cosine: S, optics: &Optics) -> Vec3<S> {
+    let along_normal = (cosine * S::of(optics.specular) + S::of(optics.diffuse / 3.0)) * S::of(2.0);
+    (to_sun * S::of(1.0 - optics.specular) + normal * along_normal) * -cosine
+}
+
+/// `x₊`
+#[inline(always)]
+fn positive<S: Scalar>(x: S) -> S {
+    S::select(S::of(0.0).less(x), x, S::of(0.0))
+}
+
+/// `x` with the sign of `y`.
+#[inline(always)]
+fn signed<S: Scalar>(x: S, y: S) -> S {
+    S::select(y.less(S::of(0.0)), -x, x)
 }
