@@ -94,6 +94,14 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         "derivative of the position"
     }
 
+    /// Rate of the position at `t`, m/s, where the orbit is in `state`: that velocity, unless the orbit states another.
+    ///
+    /// # Errors
+    /// As [`Orbit::state`].
+    fn rate_of_position(&self, _t: f64, state: &OrbitState) -> Result<Vector3<f64>, OrbitError> {
+        Ok(state.velocity)
+    }
+
     /// Instants at which the acceleration jumps, s of simulation; the integrator stops at each.
     fn event_times(&self) -> Vec<f64> {
         Vec::new()

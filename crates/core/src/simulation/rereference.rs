@@ -22,8 +22,8 @@ pub(super) struct OwnReference {
     /// Position and velocity of the robot's centre of mass then, axes of I, m and m/s.
     pub(super) position: [f64; 3],
     pub(super) velocity: [f64; 3],
-    /// Linear momentum in W at the start of the run, kg m/s.
-    first_momentum: [f64; 3],
+    /// Linear momentum that changes of frame took, kg m/s.
+    momentum_taken: [f64; 3],
     /// What the work in W is ahead of that in `W'` beside the energy that goes with the frame, J.
     work_ahead: f64,
     /// When it began, and those before it, s.
@@ -37,7 +37,7 @@ pub(super) struct Shift {
     velocity: Vector3<f64>,
     acceleration: Vector3<f64>,
     mass: f64,
-    first_momentum: Vector3<f64>,
+    momentum_taken: Vector3<f64>,
     work_ahead: f64,
 }
 
@@ -49,7 +49,7 @@ impl Shift {
             velocity: state.velocity - home.velocity,
             acceleration: state.acceleration - home.acceleration,
             mass,
-            first_momentum: own.first_momentum.into(),
+            momentum_taken: own.momentum_taken.into(),
             work_ahead: own.work_ahead,
         }
     }
@@ -57,18 +57,17 @@ impl Shift {
     /// Puts the last row of `trace`, which was written in `W'`, in W; all but its acceleration.
     pub(super) fn row(&self, trace: &mut Trace, model: &Model) {
         let (nq, nv) = (model.nq(), model.nv());
-        let Self { position, velocity, mass, first_momentum, work_ahead, .. } = self;
+        let Self { position, velocity, mass, momentum_taken, work_ahead, .. } = self;
         let rot_bw = last_attitude(trace, nq).transpose();
         let momentum = Vector3::from_column_slice(last(&mut trace.momentum, 6, 3));
         // T = T' + P'·ṡ + m ṡ²/2, and so the work
         let energy = momentum.dot(velocity) + 0.5 * mass * velocity.norm_squared();
         last(&mut trace.kinetic_energy, 1, 1)[0] += energy;
         last(&mut trace.work, 1, 1)[0] += energy + work_ahead;
-        // P = P' + m ṡ, all of it beyond the first from the forces
-        let momentum = momentum + velocity * *mass;
-        last(&mut trace.momentum, 6, 3).copy_from_slice(momentum.as_slice());
-        let impulse = momentum - first_momentum;
-        last(&mut trace.impulse, 6, 3).copy_from_slice(impulse.as_slice());
+        // P = P' + m ṡ
+        let carried = velocity * *mass;
+        add(last(&mut trace.momentum, 6, 3), &carried);
+        add(last(&mut trace.impulse, 6, 3), &(carried - momentum_taken));
         add(last(&mut trace.q, nq, 3), position);
         add(last(&mut trace.v, nv, 3), &(rot_bw * velocity));
         add(last(&mut trace.center_of_mass, 3, 3), position);
@@ -114,17 +113,15 @@ impl<S: Scalar> Plant<'_, S, Surroundings> {
     /// The centre of mass is at rest at the origin of the new frame: `p' = p − c`, `ṗ' = ṗ − P/m`, `P' = 0`, and the
     /// energy there is less by `P²/2m` (König).
     pub(super) fn rereference(&mut self, t: f64, state: &mut State<S>) -> Result<(), SimulationError> {
-        let Some(origin) = self.surroundings.orbit_state(t)? else { return Ok(()) };
+        let Some(origin) = self.surroundings.origin(t)? else { return Ok(()) };
         self.settle(state);
         let lift = |v: Vector3<f64>| Vec3::new(S::of(v.x), S::of(v.y), S::of(v.z));
         let com = center_of_mass(&self.data, &state.q).to_nalgebra();
         let momentum = momentum(&self.data, &state.q).linear.to_nalgebra();
         let flight = momentum / self.model.mass();
 
-        let mut own = self.surroundings.own().cloned().unwrap_or_else(|| OwnReference {
-            first_momentum: state.start.linear.to_nalgebra().into(),
-            ..OwnReference::default()
-        });
+        let mut own = self.surroundings.own().cloned().unwrap_or_default();
+        own.momentum_taken = (Vector3::from(own.momentum_taken) + momentum).into();
         own.position = (origin.position + com).into();
         own.velocity = (origin.velocity + flight).into();
         own.work_ahead -= 0.5 * momentum.dot(&flight);

@@ -95,8 +95,13 @@ impl Surroundings {
         }
         let Some(state) = self.orbit_state(t)? else { return Ok(None) };
         let (Some(home), Some(own)) = (&self.home, &self.own) else { return Ok(None) };
-        let home = home.state(t).map_err(|source| SimulationError::Orbit { time: t, source })?;
+        let home = as_it_moves(&**home, t)?;
         Ok(Some(Shift::between(own, &state, &home, mass)))
+    }
+
+    /// State of the reference at `t` with the rate of its position for a velocity, if the run has one.
+    pub(super) fn origin(&self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
+        self.orbit.as_ref().map(|orbit| as_it_moves(&**orbit, t)).transpose()
     }
 
     /// State of the reference at `t`, if the run has one.
@@ -207,6 +212,15 @@ impl Surroundings {
             body.external = Force::at(force, torque, body.com_b);
         }
     }
+}
+
+/// State of an orbit, its velocity the rate of its position.
+fn as_it_moves(orbit: &dyn Orbit, t: f64) -> Result<OrbitState, SimulationError> {
+    let moving = |state: OrbitState| {
+        let velocity = orbit.rate_of_position(t, &state)?;
+        Ok(OrbitState { velocity, ..state })
+    };
+    orbit.state(t).and_then(moving).map_err(|source| SimulationError::Orbit { time: t, source })
 }
 
 impl<S: Scalar> World<S> for Surroundings {

@@ -37,6 +37,9 @@ const STEP: f64 = 30.0;
 /// Weights of the central sixth-order second difference, times 180.
 const WEIGHTS: [f64; 4] = [-490.0, 270.0, -27.0, 2.0];
 
+/// Weights of the central sixth-order first difference, times 60.
+const SLOPE_WEIGHTS: [f64; 3] = [45.0, -9.0, 1.0];
+
 /// The orbit of an element set; simulation time zero is its epoch, axes are TEME.
 ///
 /// Position and velocity are SGP4's own, as published. Its velocity is not exactly the derivative of its
@@ -102,6 +105,18 @@ impl Sgp4 {
         )
     }
 
+    /// First derivative of the position over steps of `h`, m/s.
+    fn rate(&self, t: f64, h: f64) -> Result<Vector3<f64>, Sgp4Error> {
+        // ṙ ≈ Σ wₖ (r(t + k h) - r(t - k h))/(60 h)
+        let mut sum = Vector3::zeros();
+        for (k, weight) in SLOPE_WEIGHTS.iter().enumerate() {
+            let away = (k + 1) as f64 * h;
+            let (after, before) = (self.propagator.at(t + away)?, self.propagator.at(t - away)?);
+            sum += (after.position - before.position).to_nalgebra() * (1e3 * weight);
+        }
+        Ok(sum / (60.0 * h))
+    }
+
     /// Second derivative of the position over steps of `h`, m/s².
     fn acceleration(&self, t: f64, r: &Vector3<f64>, h: f64) -> Result<Vector3<f64>, Sgp4Error> {
         // r̈ ≈ Σ wₖ (r(t + k h) + r(t - k h))/(180 h²)
@@ -141,6 +156,10 @@ impl Orbit for Sgp4 {
             .acceleration(t, &position, STEP)
             .or_else(|_| self.acceleration(t, &position, STEP / 16.0))?;
         Ok(OrbitState { position, velocity, acceleration })
+    }
+
+    fn rate_of_position(&self, t: f64, _state: &OrbitState) -> Result<Vector3<f64>, OrbitError> {
+        Ok(self.rate(t, STEP).or_else(|_| self.rate(t, STEP / 16.0))?)
     }
 
     fn position_velocity(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
