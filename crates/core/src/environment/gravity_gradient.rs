@@ -3,9 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::error::Place;
-use super::scene::BodyState;
 use super::{Effect, EnvironmentError, Scene, Wrench};
-use crate::spatial::{Mat3, Sym3, Vec3};
+use crate::spatial::{Fused, InstructionSet, Mat3, Scalar, Sym3, Vec3};
 
 /// Gravity-gradient torque of each body about its own centre of mass, at its own position.
 ///
@@ -36,38 +35,60 @@ impl Effect for GravityGradient {
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::InsidePlanet`] and [`EnvironmentError::Gravity`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-        let planet = scene.planet(NAME)?;
-        for (k, (body, wrench)) in scene.paired(wrenches)?.enumerate() {
-            let r = planet.reference.position + body.com;
-            let distance = planet.outside(Place::Body(k), r.norm())?;
-            wrench.torque += towards(planet.mu, body, &r, distance);
+        match InstructionSet::current() {
+            InstructionSet::Baseline => add::<f64>(scene, wrenches),
+            InstructionSet::Fused | InstructionSet::Wide => add::<Fused>(scene, wrenches),
         }
-        if let Some(field) = scene.nearby(&planet, planet.falls_freely)? {
-            for (body, wrench) in scene.paired(wrenches)? {
-                wrench.torque += torque(&field.gradient(&body.com)?, body);
-            }
-        }
-        Ok(())
     }
 }
 
-/// The torque of a point mass, `r` and `distance` from it: `(3μ/r³) R (r̂_k × I r̂_k)`, with `r̂_k = Rᵀ r̂` in body axes,
-/// where `I` is constant.
-#[inline]
-fn towards(mu: f64, body: &BodyState, r: &Vector3<f64>, distance: f64) -> Vector3<f64> {
-    let inverse = 1.0 / distance;
-    let (rot_wk, inertia) = (Mat3::from(body.rot_wk), Sym3::from(body.inertia));
-    let up_k = rot_wk.transpose_mul(Vec3::from(*r)) * inverse;
-    let torque_k = up_k.cross(inertia * up_k) * (3.0 * mu * inverse * inverse * inverse);
-    (rot_wk * torque_k).to_nalgebra()
+/// [`GravityGradient::add_wrenches`] in the arithmetic of `S`.
+fn add<S: Scalar>(scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+    let planet = scene.planet(NAME)?;
+    let field = scene.nearby(&planet, planet.falls_freely)?;
+    S::enter(
+        #[inline(always)]
+        || {
+            for (k, (body, wrench)) in scene.paired(wrenches)?.enumerate() {
+                let r = planet.reference.position + body.com;
+                let distance = planet.outside(Place::Body(k), r.norm())?;
+                let rot_wk = Mat3::<S>::of(&Mat3::from(body.rot_wk));
+                let inertia = Sym3::<S>::of(&Sym3::from(body.inertia));
+                let mut torque_k = towards(planet.mu, &inertia, &rot_wk, &r, distance);
+                if let Some(field) = &field {
+                    torque_k += of_field(&field.gradient(&body.com)?, &inertia, &rot_wk);
+                }
+                wrench.torque += (rot_wk * torque_k).to_nalgebra();
+            }
+            Ok(())
+        },
+    )
 }
 
-/// The torque of a field with gradient `G`, `W` axes, on a body about its centre of mass, N m, `W` axes.
+/// The torque of a point mass, `r` and `distance` from it: `(3μ/r³) r̂_k × I r̂_k`, with `r̂_k = Rᵀ r̂` in body axes,
+/// where `I` is constant.
+#[inline(always)]
+fn towards<S: Scalar>(
+    mu: f64,
+    inertia: &Sym3<S>,
+    rot_wk: &Mat3<S>,
+    r: &Vector3<f64>,
+    distance: f64,
+) -> Vec3<S> {
+    let inverse = 1.0 / distance;
+    let up_k = rot_wk.transpose_mul(Vec3::of(&Vec3::from(*r))) * S::of(inverse);
+    up_k.cross(*inertia * up_k) * S::of(3.0 * mu * inverse * inverse * inverse)
+}
+
+/// The torque of a field with gradient `G`, `W` axes, about the centre of mass, N m, body axes.
 ///
-/// `T_i = ∫ ε_ijk x_j G_kl x_l dm = -ε_ijk (I G)_jk`, since `∫ x xᵀ dm = ½ tr(I) 1 - I` and `G` is symmetric.
-pub(super) fn torque(gradient: &Matrix3<f64>, body: &BodyState) -> Vector3<f64> {
-    // in body axes, where I is constant
-    let product = body.inertia * (body.rot_wk.tr_mul(gradient) * body.rot_wk);
-    let axial = |j: usize, k: usize| product[(k, j)] - product[(j, k)];
-    body.rot_wk * Vector3::new(axial(1, 2), axial(2, 0), axial(0, 1))
+/// `T_i = ∫ ε_ijk x_j G_kl x_l dm = -ε_ijk (I G)_jk`, since `∫ x xᵀ dm = ½ tr(I) 1 - I` and `G` is symmetric:
+/// `T = Σ e_k × I G e_k`.
+#[inline(always)]
+fn of_field<S: Scalar>(gradient: &Matrix3<f64>, inertia: &Sym3<S>, rot_wk: &Mat3<S>) -> Vec3<S> {
+    let g = Sym3::<S>::of(&Sym3::from(*gradient)).rotate(&rot_wk.transpose());
+    let x = *inertia * Vec3::new(g.xx, g.xy, g.xz);
+    let y = *inertia * Vec3::new(g.xy, g.yy, g.yz);
+    let z = *inertia * Vec3::new(g.xz, g.yz, g.zz);
+    Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x)
 }
