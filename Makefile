@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint bench bench-peers bench-orbits clean
+.PHONY: help demo test test-rust test-python lint bench bench-peers bench-orbits bench-everything clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -59,6 +59,9 @@ bench-peers: $(VENV)/.built $(VENV)/.tested ## humanoid_reach against a C++ loop
 bench-orbits: $(VENV)/.built $(VENV)/.tested ## propagation against sgp4, numpy, SciPy and brahe, alternated
 	$(BIN)/python -m pip install --quiet scipy 'brahe==1.8.0'
 	$(BIN)/python benches/compare_orbits.py
+
+bench-everything: $(VENV)/.built ## humanoid_reach with the whole environment on against as it is bundled, alternated
+	$(BIN)/python benches/compare_everything.py
 
 clean: ## forgets builds and the environment
 	rm -rf target $(VENV) out
