@@ -64,7 +64,7 @@ def test_geo_radiation_is_dark_for_an_hour_a_day() -> None:
     assert len(edges) == 4 and not dark[0], "one umbra a day"
     begins, ends = trace.time[edges[::2]], trace.time[edges[1::2]]
     print("geo:", (ends - begins) / 60.0, "min")
-    # through the middle: the disc of the Earth, 17.4 degrees, less the Sun's, 0.53, at 4 min a degree: 67.4 min
+    # through the middle: the disc of the Earth, 17.4 degrees, less the Sun's, 0.53, at 4 min a degree: 67 min
     assert np.all((ends - begins > 60.0 * 60.0) & (ends - begins < 70.0 * 60.0))
     assert begins[1] - begins[0] == pytest.approx(86_164.0 + 236.0, abs=300.0)  # a day of the Sun
 
