@@ -54,7 +54,38 @@ def blocks(file: Path) -> list[str]:
     return re.findall(r"```python\n(.*?)```", file.read_text(), re.DOTALL)
 
 
-@pytest.mark.parametrize("file", [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").rglob("*.md"))])
+PAGES = [
+    *sorted(REPOSITORY.glob("*.md")),
+    *sorted((REPOSITORY / "docs").rglob("*.md")),
+    REPOSITORY / "benches" / "README.md",
+]
+
+
+def unbalanced(text: str) -> int | None:
+    """Line of the first fence that opens within another one or is never closed."""
+    opened = None
+    for number, line in enumerate(text.splitlines(), 1):
+        if not line.lstrip().startswith("```"):
+            continue
+        if opened is None:
+            opened = number
+        elif line.strip() == "```":
+            opened = None
+        else:
+            return opened
+    return opened
+
+
+@pytest.mark.parametrize("file", PAGES, ids=lambda file: file.name)
+def test_code_in_the_documents_ends(file: Path) -> None:
+    text = file.read_text()
+    assert unbalanced(text) is None, f"{file.name}:{unbalanced(text)}: this fence is not closed"
+    # negative control: the same page with one closing fence lost
+    for lost in re.finditer(r"^```\n", text, re.MULTILINE):
+        assert unbalanced(text[: lost.start()] + text[lost.end() :]) is not None
+
+
+@pytest.mark.parametrize("file", PAGES, ids=lambda file: file.name)
 def test_python_in_the_documents_runs(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
