@@ -69,7 +69,8 @@ impl Parameters {
     pub(super) fn new(given: &EarthParameters, epoch: Epoch) -> Result<Self, EarthError> {
         match given {
             EarthParameters::Constant { ut1_minus_utc, polar_motion } => {
-                check(0, *ut1_minus_utc, polar_motion)?;
+                let has_utc = epoch.utc_minus_tai() != 0.0;
+                check(0, *ut1_minus_utc, polar_motion, has_utc)?;
                 let ut1_minus_tai = ut1_minus_utc + epoch.utc_minus_tai();
                 Ok(Self::Constant { ut1_minus_tai, polar_motion: *polar_motion })
             }
@@ -89,7 +90,7 @@ impl Parameters {
                         });
                     }
                     last = row.mjd;
-                    check(index, row.ut1_minus_utc, &row.polar_motion)?;
+                    check(index, row.ut1_minus_utc, &row.polar_motion, true)?;
                     let at = Epoch::of_mjd_utc(row.mjd);
                     let ut1_minus_tai = row.ut1_minus_utc + at.utc_minus_tai();
                     Ok(Row { time: at.since(epoch), ut1_minus_tai, polar_motion: row.polar_motion })
@@ -138,15 +139,18 @@ fn around(rows: &[Row], t: f64) -> (&Row, &Row, f64) {
     (a, b, ((t - a.time) / (b.time - a.time)).clamp(0.0, 1.0))
 }
 
-/// Largest difference accepted, s: UT1 less TAI, which stands for it before 1972, comes near it.
-const LARGEST_UT1: f64 = 60.0;
+/// Largest difference accepted, s; before 1972 UT1 less TAI stands for it.
+const LARGEST_UT1: f64 = 0.9;
+const LARGEST_BEFORE_UTC: f64 = 60.0;
 
 const MJD_1972: f64 = 41_317.0;
 const MJD_2100: f64 = 88_069.0;
 
-fn check(row: usize, ut1_minus_utc: f64, polar_motion: &[f64; 2]) -> Result<(), EarthError> {
-    if !(-LARGEST_UT1..=LARGEST_UT1).contains(&ut1_minus_utc) {
-        let expected = "UT1 - UTC in seconds is needed (it stays within 0.9 s where UTC is true)";
+fn check(row: usize, ut1_minus_utc: f64, polar_motion: &[f64; 2], has_utc: bool) -> Result<(), EarthError> {
+    let largest = if has_utc { LARGEST_UT1 } else { LARGEST_BEFORE_UTC };
+    if !(-largest..=largest).contains(&ut1_minus_utc) {
+        let expected =
+            "it stays within 0.9 s, and is given in seconds (are these milliseconds, or UT1 - TAI?)";
         return Err(EarthError::Parameter { name: "UT1 - UTC", value: ut1_minus_utc, row, expected });
     }
     if let Some(&value) = polar_motion.iter().find(|x| !(-FARTHEST_POLE..=FARTHEST_POLE).contains(*x)) {
