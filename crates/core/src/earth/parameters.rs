@@ -69,8 +69,7 @@ impl Parameters {
     pub(super) fn new(given: &EarthParameters, epoch: Epoch) -> Result<Self, EarthError> {
         match given {
             EarthParameters::Constant { ut1_minus_utc, polar_motion } => {
-                let has_utc = epoch.utc_minus_tai() != 0.0;
-                check(0, *ut1_minus_utc, polar_motion, has_utc)?;
+                check(0, epoch.utc().0 as f64, *ut1_minus_utc, polar_motion)?;
                 let ut1_minus_tai = ut1_minus_utc + epoch.utc_minus_tai();
                 Ok(Self::Constant { ut1_minus_tai, polar_motion: *polar_motion })
             }
@@ -90,7 +89,7 @@ impl Parameters {
                         });
                     }
                     last = row.mjd;
-                    check(index, row.ut1_minus_utc, &row.polar_motion, true)?;
+                    check(index, row.mjd, row.ut1_minus_utc, &row.polar_motion)?;
                     let at = Epoch::of_mjd_utc(row.mjd);
                     let ut1_minus_tai = row.ut1_minus_utc + at.utc_minus_tai();
                     Ok(Row { time: at.since(epoch), ut1_minus_tai, polar_motion: row.polar_motion })
@@ -139,15 +138,20 @@ fn around(rows: &[Row], t: f64) -> (&Row, &Row, f64) {
     (a, b, ((t - a.time) / (b.time - a.time)).clamp(0.0, 1.0))
 }
 
-/// Largest difference accepted, s; before 1972 UT1 less TAI stands for it.
-const LARGEST_UT1: f64 = 0.9;
-const LARGEST_BEFORE_UTC: f64 = 60.0;
+/// Largest difference accepted, s: UTC's own bound while it has leap seconds. Before 1972 UT1 less TAI stands for it, and
+/// by 2035 the bound is to rise.
+///
+/// Source: General Conference on Weights and Measures, 27th meeting (2022), resolution 4.
+fn largest_ut1(mjd: f64) -> f64 {
+    if (MJD_1972..MJD_2035).contains(&mjd) { 0.9 } else { 60.0 }
+}
 
 const MJD_1972: f64 = 41_317.0;
+const MJD_2035: f64 = 64_328.0;
 const MJD_2100: f64 = 88_069.0;
 
-fn check(row: usize, ut1_minus_utc: f64, polar_motion: &[f64; 2], has_utc: bool) -> Result<(), EarthError> {
-    let largest = if has_utc { LARGEST_UT1 } else { LARGEST_BEFORE_UTC };
+fn check(row: usize, mjd: f64, ut1_minus_utc: f64, polar_motion: &[f64; 2]) -> Result<(), EarthError> {
+    let largest = largest_ut1(mjd);
     if !(-largest..=largest).contains(&ut1_minus_utc) {
         let expected =
             "it stays within 0.9 s, and is given in seconds (are these milliseconds, or UT1 - TAI?)";
