@@ -76,7 +76,7 @@ fn senseless_input_is_refused() {
     assert!(matches!(new(r * f64::NAN, v, 0.0), OrbitError::NotFinite { name: "position", .. }));
     assert!(matches!(new(r, v * f64::INFINITY, 0.0), OrbitError::NotFinite { name: "velocity", .. }));
     assert!(matches!(new(r, v, f64::NAN), OrbitError::NotFinite { .. }));
-    assert!(matches!(new(r * 0.3, v, 0.0), OrbitError::BelowSurface { .. }));
+    assert!(matches!(new(r * 0.3, v, 0.0), OrbitError::BeginsBelowSurface { .. }));
     let orbit = Numerical::new(r, v, 0.0, gravity()).expect("above ground");
     assert!(matches!(orbit.state(f64::NAN), Err(OrbitError::NotFinite { name: "time", .. })));
     assert!(matches!(orbit.state(1e15), Err(OrbitError::TooManySteps { .. })));

@@ -127,7 +127,7 @@ impl PyEarth {
         self.earth.epoch().map(|epoch| epoch.to_string())
     }
 
-    /// Inertial axes of what is asked here: ``GCRF`` or ``TEME``; None for one that turns about z of whatever axes.
+    /// Inertial axes of what is asked here: ``GCRF`` or ``TEME``; None for one that turns about z without an epoch.
     #[getter]
     fn axes(&self) -> Option<&'static str> {
         self.earth.axes().map(Axes::name)

@@ -68,6 +68,11 @@ impl PyEffect {
         }
     }
 
+    /// Whether it is part of gravity, which a reference may follow.
+    pub(crate) fn is_gravity(&self) -> bool {
+        matches!(self.kind, Kind::GravityField(_) | Kind::ThirdBody(_))
+    }
+
     /// The effect on a given robot; none where it is part of gravity.
     pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Option<Arc<dyn Effect>>> {
         Ok(Some(match &self.kind {

@@ -5,7 +5,7 @@ use crate::checkpoint::{Keeper, PyCheckpoint};
 use crate::control::{Robot, control_law};
 use crate::earth::PyEarth;
 use crate::environment::PyEffect;
-use crate::errors::{SimulationErrorExt, fields, plain, raise};
+use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
 use crate::gravity::gravity_of;
 use crate::model::PyModel;
 use crate::orbit::PyOrbit;
@@ -104,7 +104,16 @@ impl PySimulation {
         let effects = environment.iter().filter_map(|effect| effect.get().on(py, &core).transpose());
         simulation.effects = effects.collect::<PyResult<_>>()?;
         let mu = simulation.orbit.as_ref().and_then(|orbit| orbit.mu());
-        simulation.gravity = gravity_of(py, &environment, mu, simulation.earth.as_ref())?.map(Arc::new);
+        let own = simulation.orbit.as_ref().and_then(|orbit| orbit.gravity());
+        let given = gravity_of(py, &environment, mu, simulation.earth.as_ref())?;
+        if let (Some(orbit), Some(earth)) = (&simulation.orbit, &simulation.earth) {
+            earth.fits(orbit.axes(), orbit.epoch()).map_err(|error| error.into_python(py))?;
+        }
+        let shared = given.map(|given| match own {
+            Some(own) => given.shared_with(own),
+            None => Ok(Arc::new(given)),
+        });
+        simulation.gravity = shared.transpose().map_err(|error| error.into_python(py))?;
         if let Some(tolerance) = reference_start_tolerance {
             simulation.reference_start_tolerance = fixed(tolerance, "reference_start_tolerance", &[2])?;
         }

@@ -48,7 +48,8 @@ def integrated(
     """The orbit itself, or where it is a numerical one its integral in the gravity among the effects."""
     if not isinstance(part, NumericalOrbit) or orbit is None:
         return orbit
-    return _core.Numerical.from_orbit(orbit, environment=effects, earth=earth)
+    gravity = [effect for effect in effects if isinstance(effect, (_core.GravityField, _core.ThirdBody))]
+    return _core.Numerical.from_orbit(orbit, environment=gravity, earth=earth)
 
 
 def _sgp4(orbit: Sgp4Orbit, beside: Path) -> _core.Sgp4:

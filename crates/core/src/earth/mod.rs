@@ -56,16 +56,16 @@ impl Axes {
 }
 
 /// The turning Earth during a run; every answer depends on the time alone.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Earth {
     turning: Turning,
     sky: Option<Sky>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum Turning {
-    /// Evenly about z of `I`.
-    AboutZ { angle: f64, rate: f64 },
+    /// Evenly about z of `I`, whose axes matter to the sky.
+    AboutZ { angle: f64, rate: f64, inertial: Option<Box<Orientation>> },
     /// As the IERS has it.
     Iau2006(Box<Orientation>),
 }
@@ -73,7 +73,7 @@ enum Turning {
 impl Earth {
     /// An Earth that turns evenly about z of `I`: by `angle`, rad, at the start of the run, at `rate`, rad/s.
     pub fn about_z(angle: f64, rate: f64) -> Self {
-        Self { turning: Turning::AboutZ { angle, rate }, sky: None }
+        Self { turning: Turning::AboutZ { angle, rate, inertial: None }, sky: None }
     }
 
     /// The Earth of IAU 2006 and 2000A from `epoch` on, in GCRF axes: its pole to 2 mas (6 cm on the ground).
@@ -89,8 +89,11 @@ impl Earth {
         Ok(earth)
     }
 
-    /// The same Earth with time zero at `epoch`: one that turns about z gets a Sun and a Moon.
-    pub fn with_epoch(self, epoch: Epoch) -> Self {
+    /// The same Earth with time zero at `epoch`: one that turns about z gets a Sun and a Moon, in GCRF axes.
+    pub fn with_epoch(mut self, epoch: Epoch) -> Self {
+        if let Turning::AboutZ { inertial, .. } = &mut self.turning {
+            *inertial = Some(Box::new(Orientation::of_axes(epoch, years(epoch))));
+        }
         Self { sky: Some(Sky::new(epoch, None)), ..self }
     }
 
@@ -109,16 +112,19 @@ impl Earth {
     /// The same Earth seen in other axes.
     pub fn in_axes(&self, axes: Axes) -> Self {
         let turning = match &self.turning {
-            Turning::AboutZ { .. } => self.turning.clone(),
+            Turning::AboutZ { angle, rate, inertial } => {
+                let inertial = inertial.as_ref().map(|inertial| Box::new(inertial.in_axes(axes)));
+                Turning::AboutZ { angle: *angle, rate: *rate, inertial }
+            }
             Turning::Iau2006(orientation) => Turning::Iau2006(Box::new(orientation.in_axes(axes))),
         };
         Self { turning, sky: self.sky.as_ref().map(Sky::anew) }
     }
 
-    /// Axes of `I`; none for an Earth that turns about z, whatever they are.
+    /// Axes of `I`; none for an Earth that turns about z without an epoch, whatever they are.
     pub fn axes(&self) -> Option<Axes> {
         match &self.turning {
-            Turning::AboutZ { .. } => None,
+            Turning::AboutZ { inertial, .. } => inertial.as_ref().map(|inertial| inertial.axes()),
             Turning::Iau2006(orientation) => Some(orientation.axes()),
         }
     }
@@ -166,7 +172,7 @@ impl Earth {
     /// Where the Earth does not [cover](Self::covers) `t`, parameters and pole are those of the nearest time it does.
     pub fn rot_fi(&self, t: f64) -> Matrix3<f64> {
         match &self.turning {
-            Turning::AboutZ { angle, rate } => rotation::r3(angle + rate * t),
+            Turning::AboutZ { angle, rate, .. } => rotation::r3(angle + rate * t),
             Turning::Iau2006(orientation) => orientation.rot_fi(t),
         }
     }
@@ -217,7 +223,9 @@ impl Earth {
     /// Takes GCRF components to those of `I`.
     fn rot_ig(&self, t: f64) -> Matrix3<f64> {
         match &self.turning {
-            Turning::AboutZ { .. } => Matrix3::identity(),
+            Turning::AboutZ { inertial, .. } => {
+                inertial.as_ref().map_or_else(Matrix3::identity, |inertial| inertial.rot_ig(t))
+            }
             Turning::Iau2006(orientation) => orientation.rot_ig(t),
         }
     }

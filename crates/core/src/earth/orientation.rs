@@ -32,13 +32,23 @@ impl Orientation {
         parameters: &EarthParameters,
         span: (f64, f64),
     ) -> Result<Self, EarthError> {
-        let parameters = Parameters::new(parameters, epoch)?;
+        Ok(Self::with(epoch, axes, Parameters::new(parameters, epoch)?, span))
+    }
+
+    fn with(epoch: Epoch, axes: Axes, parameters: Parameters, span: (f64, f64)) -> Self {
         // θ = 2π (0.779 057 273 264 0 + 1.002 737 811 911 354 48 Tu), Tu in days of UT1 from J2000.0
         // (IERS Conventions 2010, eq. 5.15), whole turns left out
         let (days, part) = epoch.tai_days();
         let turns = 0.779_057_273_264 + part + 0.002_737_811_911_354_48 * (days + part);
         let angle = turns.fract() * TAU;
-        Ok(Self { epoch, axes, angle, parameters, poles: Pieces::new(span.0, span.1, PIECE) })
+        Self { epoch, axes, angle, parameters, poles: Pieces::new(span.0, span.1, PIECE) }
+    }
+
+    /// With UT1 that is UTC, and a pole that stays: for the axes alone.
+    pub(super) fn of_axes(epoch: Epoch, span: (f64, f64)) -> Self {
+        let ut1_minus_tai = epoch.utc_minus_tai();
+        let parameters = Parameters::Constant { ut1_minus_tai, polar_motion: [0.0; 2] };
+        Self::with(epoch, Axes::Gcrf, parameters, span)
     }
 
     /// The same Earth in other axes.
@@ -133,6 +143,13 @@ impl Orientation {
                 pole * rate + pole.cross(&slope)
             }
         }
+    }
+}
+
+impl PartialEq for Orientation {
+    fn eq(&self, other: &Self) -> bool {
+        // the rest follows from these
+        (self.epoch, self.axes, &self.parameters) == (other.epoch, other.axes, &other.parameters)
     }
 }
 

@@ -69,7 +69,7 @@ impl Parameters {
     pub(super) fn new(given: &EarthParameters, epoch: Epoch) -> Result<Self, EarthError> {
         match given {
             EarthParameters::Constant { ut1_minus_utc, polar_motion } => {
-                check(0, *ut1_minus_utc, polar_motion)?;
+                check(0, epoch.utc().0 as f64, *ut1_minus_utc, polar_motion)?;
                 let ut1_minus_tai = ut1_minus_utc + epoch.utc_minus_tai();
                 Ok(Self::Constant { ut1_minus_tai, polar_motion: *polar_motion })
             }
@@ -89,7 +89,7 @@ impl Parameters {
                         });
                     }
                     last = row.mjd;
-                    check(index, row.ut1_minus_utc, &row.polar_motion)?;
+                    check(index, row.mjd, row.ut1_minus_utc, &row.polar_motion)?;
                     let at = Epoch::of_mjd_utc(row.mjd);
                     let ut1_minus_tai = row.ut1_minus_utc + at.utc_minus_tai();
                     Ok(Row { time: at.since(epoch), ut1_minus_tai, polar_motion: row.polar_motion })
@@ -138,15 +138,23 @@ fn around(rows: &[Row], t: f64) -> (&Row, &Row, f64) {
     (a, b, ((t - a.time) / (b.time - a.time)).clamp(0.0, 1.0))
 }
 
-/// Largest difference accepted, s: UT1 less TAI, which stands for it before 1972, comes near it.
-const LARGEST_UT1: f64 = 60.0;
+/// Largest difference accepted, s: UTC's own bound while it has leap seconds. Before 1972 UT1 less TAI stands for it, and
+/// by 2035 the bound is to rise.
+///
+/// Source: General Conference on Weights and Measures, 27th meeting (2022), resolution 4.
+fn largest_ut1(mjd: f64) -> f64 {
+    if (MJD_1972..MJD_2035).contains(&mjd) { 0.9 } else { 60.0 }
+}
 
 const MJD_1972: f64 = 41_317.0;
+const MJD_2035: f64 = 64_328.0;
 const MJD_2100: f64 = 88_069.0;
 
-fn check(row: usize, ut1_minus_utc: f64, polar_motion: &[f64; 2]) -> Result<(), EarthError> {
-    if !(-LARGEST_UT1..=LARGEST_UT1).contains(&ut1_minus_utc) {
-        let expected = "UT1 - UTC in seconds is needed (it stays within 0.9 s where UTC is true)";
+fn check(row: usize, mjd: f64, ut1_minus_utc: f64, polar_motion: &[f64; 2]) -> Result<(), EarthError> {
+    let largest = largest_ut1(mjd);
+    if !(-largest..=largest).contains(&ut1_minus_utc) {
+        let expected =
+            "it stays within 0.9 s, and is given in seconds (are these milliseconds, or UT1 - TAI?)";
         return Err(EarthError::Parameter { name: "UT1 - UTC", value: ut1_minus_utc, row, expected });
     }
     if let Some(&value) = polar_motion.iter().find(|x| !(-FARTHEST_POLE..=FARTHEST_POLE).contains(*x)) {

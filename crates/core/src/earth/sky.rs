@@ -26,6 +26,12 @@ pub(super) struct Sky {
     moon: Pieces<12>,
 }
 
+impl PartialEq for Sky {
+    fn eq(&self, other: &Self) -> bool {
+        (self.epoch, &self.kernel) == (other.epoch, &other.kernel)
+    }
+}
+
 impl Sky {
     pub(super) fn new(epoch: Epoch, kernel: Option<Arc<Kernel>>) -> Self {
         let mut span = years(epoch);

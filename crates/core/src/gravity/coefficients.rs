@@ -6,6 +6,10 @@ use super::series::Series;
 /// Highest degree that is stable; no published model goes beyond.
 const HIGHEST: usize = 2700;
 
+/// Largest coefficients believed: Saturn's `C̄20` is 0.0073; those of degree 1 are the offset of the centre of mass, `√3 C̄ R`.
+const LARGEST: f64 = 1e-2;
+const LARGEST_FIRST: f64 = 1e-4;
+
 /// Fully normalised coefficients of a planet's field, of degree 1 and above.
 ///
 /// `U = (μ/r) [1 + Σ (R/r)ⁿ P̄nm(sin φ) (C̄nm cos mλ + S̄nm sin mλ)]`, in axes fixed in the planet.
@@ -20,7 +24,7 @@ pub struct Coefficients {
 impl Coefficients {
     /// From square arrays `c` and `s`, row after row: `c[n (degree + 1) + m]`; `mu` in m³/s², `radius` `R` in m.
     ///
-    /// `c[0]` is taken for 1 whatever it holds, and entries with `m > n` are not looked at.
+    /// `c[0]` is taken for 1 whatever it holds; entries with `m > n` and `s` of order 0 must be zero.
     ///
     /// # Errors
     /// [`GravityError`]: wrong lengths, numbers that are not finite, `mu` or `radius` not positive, and
@@ -40,6 +44,14 @@ impl Coefficients {
             }
         }
         let mut series = Series::zeros(check_degree(degree)?);
+        for index in 1..expected {
+            let (n, m) = (index / (degree + 1), index % (degree + 1));
+            for (name, value, exists) in [("c", c[index], m <= n), ("s", s[index], (1..=n).contains(&m))] {
+                if !exists && value != 0.0 {
+                    return Err(GravityError::NoSuchTerm { name, degree: n, order: m, value });
+                }
+            }
+        }
         for n in 1..=degree {
             for m in 0..=n {
                 *series.at(n, m) = [c[n * (degree + 1) + m], s[n * (degree + 1) + m]];
@@ -54,11 +66,7 @@ impl Coefficients {
         radius: f64,
         mut series: Series,
     ) -> Result<Self, GravityError> {
-        for (name, value) in [("mu", mu), ("radius", radius)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(GravityError::NotPositive { name, value });
-            }
-        }
+        check_planet(mu, radius)?;
         *series.at(0, 0) = [0.0; 2]; // the point mass
         for n in 1..=series.degree() {
             for m in 0..=n {
@@ -66,10 +74,15 @@ impl Coefficients {
                     if !value.is_finite() {
                         return Err(GravityError::NotFinite { name, value });
                     }
+                    let limit = if n == 1 { LARGEST_FIRST } else { LARGEST };
+                    if value.abs() > limit {
+                        return Err(GravityError::Implausible { model, degree: n, order: m, value, limit });
+                    }
                 }
             }
         }
-        if let Some(found) = fall_of_unnormalised(&series) {
+        let found = earth_not_normalised(mu, &series).or_else(|| fall_of_unnormalised(&series));
+        if let Some(found) = found {
             return Err(GravityError::NotNormalised { model, found });
         }
         Ok(Self { model, mu, radius, series })
@@ -101,6 +114,33 @@ impl Coefficients {
 
 pub(super) fn check_degree(degree: usize) -> Result<usize, GravityError> {
     if (2..=HIGHEST).contains(&degree) { Ok(degree) } else { Err(GravityError::Degree { degree }) }
+}
+
+/// Refuses what is no planet in SI units.
+pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
+    for (name, value) in [("mu", mu), ("radius", radius)] {
+        if !(value.is_finite() && value > 0.0) {
+            return Err(GravityError::NotPositive { name, value });
+        }
+    }
+    if radius < 1e5 {
+        let expected = "planets have radii of at least 1e5 m";
+        return Err(GravityError::Units { name: "radius", value: radius, expected });
+    }
+    // μ/R³ = 4π/3 G ρ
+    if !(1e-8..=1e-5).contains(&(mu / radius.powi(3))) {
+        let expected = "with this radius no density of a planet, of 40 to 40 000 kg/m³";
+        return Err(GravityError::Units { name: "mu", value: mu, expected });
+    }
+    Ok(())
+}
+
+/// The Earth's `C20` where it is not normalised, -1.08e-3: √5 times what it ought to be.
+fn earth_not_normalised(mu: f64, series: &Series) -> Option<String> {
+    let [c20, _] = series.get(2, 0);
+    let is_earth = (mu / 3.986e14 - 1.0).abs() < 1e-3;
+    (is_earth && (0.9e-3..1.3e-3).contains(&c20.abs()))
+        .then(|| format!("of degree 2, order 0 it is {c20:.4e}, the Earth's is -4.84e-4"))
 }
 
 /// How coefficients that are not normalised show: those of order `n` fall off with the factorials of their degree.

@@ -33,6 +33,17 @@ pub enum GravityError {
          √((n + m)!/((2n + 1) k (n - m)!)), k = 1 for m = 0, else 2"
     )]
     NotNormalised { model: String, found: String },
+    #[error("{name} is {value}, {expected}: m³/s² and m are needed (are these kilometres?)")]
+    Units { name: &'static str, value: f64, expected: &'static str },
+    #[error(
+        "{model}: the coefficients of degree {degree}, order {order} reach {value}, those of planets stay below \
+         {limit} (is a row cut short, or is its centre not that of mass?)"
+    )]
+    Implausible { model: String, degree: usize, order: usize, value: f64, limit: f64 },
+    #[error(
+        "{name}[{degree}, {order}] is {value}: no such term exists, rows are degrees and columns orders, s[:, 0] is zero"
+    )]
+    NoSuchTerm { name: &'static str, degree: usize, order: usize, value: f64 },
     #[error("cannot read {file}: {reason}")]
     Unreadable { file: String, reason: String },
     #[error("{file}: {key} is {got}, {expected} is needed")]
@@ -65,6 +76,11 @@ pub enum GravityError {
          field's mu, or take the field of its planet"
     )]
     OtherPlanet { field: f64, orbit: f64 },
+    #[error(
+        "the run and its reference orbit disagree on {what}: give both the same, or leave gravity out of the \
+         run's environment, which then takes the orbit's"
+    )]
+    OtherGravity { what: &'static str },
     #[error("the {name} is given twice as a third body")]
     BodyTwice { name: &'static str },
     #[error(transparent)]

@@ -1,7 +1,7 @@
 //! The part of a planet's gravity that is not that of a point mass.
 
 use super::GravityError;
-use super::coefficients::Coefficients;
+use super::coefficients::{Coefficients, check_planet};
 use super::gfc;
 use super::harmonics::Harmonics;
 use super::zonal::{self, Zonal};
@@ -16,7 +16,7 @@ const BUNDLED: [(&str, &str); 2] =
 const SURFACE: f64 = 0.996;
 
 /// A planet's field without that of its point mass, in axes `F` fixed in the planet, z along its axis.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct GravityField {
     name: String,
     mu: f64,
@@ -26,7 +26,7 @@ pub struct GravityField {
     kind: Kind,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum Kind {
     Zonal(Zonal),
     Harmonics(Harmonics),
@@ -53,11 +53,7 @@ impl GravityField {
         if j.is_empty() || degree > zonal::HIGHEST {
             return Err(GravityError::ZonalDegree { degree });
         }
-        for (name, value) in [("mu", mu), ("radius", radius)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(GravityError::NotPositive { name, value });
-            }
-        }
+        check_planet(mu, radius)?;
         if let Some(&value) = j.iter().find(|j| !j.is_finite()) {
             return Err(GravityError::NotFinite { name: "j", value });
         }

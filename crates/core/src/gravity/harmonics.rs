@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 /// `Vnm = Vmm hnm`, `Wnm = Wmm hnm`: one recursion for `h` serves both, needs no memory beyond
 /// its last two values and divides by nothing that vanishes at a pole. `G` has no trace because `Gyy`
 /// is what the others leave.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Harmonics {
     mu: f64,
     radius: f64,
@@ -22,7 +22,7 @@ pub(super) struct Harmonics {
 }
 
 /// One degree of one order.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Term {
     /// `a` and `b` of the next degree.
     next: [f64; 2],

@@ -8,6 +8,7 @@ mod error;
 mod field;
 mod gfc;
 mod harmonics;
+mod likeness;
 mod nearby;
 mod perturber;
 mod point_mass;
@@ -23,7 +24,7 @@ pub use perturber::{Luminary, Perturber};
 pub(crate) use point_mass::{point_mass, point_mass_gradient, smallest_radius_cubed, tide};
 pub use third_body::ThirdBody;
 
-use crate::earth::Earth;
+use crate::earth::{Earth, Epoch};
 use nalgebra::{Matrix3, Vector3};
 use nearby::Memo;
 use std::sync::Arc;
@@ -76,7 +77,9 @@ impl Gravity {
         if self.third_bodies.iter().any(|known| known.name() == name) {
             return Err(GravityError::BodyTwice { name });
         }
-        Ok(self.and(Arc::new(Perturber::new(body, Arc::clone(earth))?)))
+        let gravity = self.and(Arc::new(Perturber::new(body, Arc::clone(earth))?));
+        let earth = gravity.earth.clone().or_else(|| gravity.field.is_none().then(|| Arc::clone(earth)));
+        Ok(Self { earth, ..gravity })
     }
 
     /// Gravitational parameter of the planet, m³/s².
@@ -97,6 +100,11 @@ impl Gravity {
     /// The bodies beyond the planet.
     pub fn third_bodies(&self) -> &[Arc<dyn ThirdBody>] {
         &self.third_bodies
+    }
+
+    /// Instant of time zero, where the field or the bodies know it.
+    pub fn epoch(&self) -> Option<Epoch> {
+        self.earth.as_ref().and_then(|earth| earth.epoch())
     }
 
     /// Whether an orbit around `mu`, m³/s², is one around this planet: values in use for one differ by parts in a million.
@@ -147,9 +155,9 @@ impl Gravity {
         Ok(tensor)
     }
 
-    /// How the planet stands, where it is known.
+    /// How the planet stands, where it is known and matters.
     #[inline]
     fn rot_fi(&self, t: f64) -> Option<Matrix3<f64>> {
-        self.earth.as_ref().map(|earth| earth.rot_fi(t))
+        self.field.as_ref().and(self.earth.as_ref()).map(|earth| earth.rot_fi(t))
     }
 }

@@ -19,7 +19,7 @@ pub(super) const EARTH: [f64; 5] = [
 /// The part of a planet's field that is symmetric about its axis z.
 ///
 /// `U = -(μ/r) Σ Jn (R/r)ⁿ Pn(u)`, `u = z/r`
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Zonal {
     pub(super) mu: f64,
     pub(super) radius: f64,

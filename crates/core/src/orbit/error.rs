@@ -158,11 +158,22 @@ pub enum OrbitError {
     /// The orbit lies inside the planet.
     #[error(
         "the orbit is inside the planet at t = {time} s: {distance} m from its centre, \
-         at least {smallest_radius} m are accepted: end the run earlier"
+         at least {smallest_radius} m are accepted: end the run earlier, or raise the orbit"
     )]
     BelowSurface {
         /// When, s.
         time: f64,
+        /// Distance from the planet's centre, m.
+        distance: f64,
+        /// Smallest distance at which there is a field, m.
+        smallest_radius: f64,
+    },
+    /// The orbit begins inside the planet.
+    #[error(
+        "the orbit begins inside the planet: {distance} m from its centre, at least {smallest_radius} m are \
+         accepted (m and m/s from the centre are needed: are these kilometres, or an altitude?)"
+    )]
+    BeginsBelowSurface {
         /// Distance from the planet's centre, m.
         distance: f64,
         /// Smallest distance at which there is a field, m.

@@ -34,6 +34,14 @@ impl IntoPython for GravityError {
             Self::BelowSurface { distance, minimum } => {
                 fields!(py, "name": "r", "got": distance, "expected": minimum)
             }
+            Self::Units { name, value, expected } => {
+                fields!(py, "name": name, "got": value, "expected": expected)
+            }
+            Self::Implausible { value, limit, .. } => {
+                fields!(py, "name": "c, s", "got": value, "expected": limit)
+            }
+            Self::NoSuchTerm { name, value, .. } => fields!(py, "name": name, "got": value, "expected": 0.0),
+            Self::OtherGravity { what } => fields!(py, "name": what),
             Self::OtherPlanet { field, orbit } => {
                 fields!(py, "name": "mu", "got": orbit, "expected": field)
             }

@@ -36,6 +36,10 @@ impl IntoPython for OrbitError {
                     fields!(py, "name": "t", "time": time, "got": distance, "expected": smallest_radius);
                 raise(py, "OrbitError", &message, &fields)
             }
+            Self::BeginsBelowSurface { distance, smallest_radius } => {
+                let fields = fields!(py, "name": "r", "got": distance, "expected": smallest_radius);
+                raise(py, "OrbitError", &message, &fields)
+            }
             Self::TooManySteps { time, .. } | Self::StepTooShort { time, .. } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": "t", "time": time))
             }

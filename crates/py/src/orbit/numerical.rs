@@ -8,7 +8,7 @@ use crate::errors::{IntoPython, fields, raise};
 use crate::gravity::gravity_of;
 use nalgebra::Vector3;
 use onorbit_core::gravity::Gravity;
-use onorbit_core::orbit::{Axes, Numerical, Orbit, OrbitError};
+use onorbit_core::orbit::{Axes, MU_EARTH, Numerical, Orbit, OrbitError};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use std::sync::Arc;
@@ -80,16 +80,26 @@ fn made(
     mu: Option<f64>,
 ) -> PyResult<PyClassInitializer<PyNumerical>> {
     let turning = earth.map(|earth| Arc::new(earth.get().earth.in_axes(axes)));
-    let gravity = match gravity_of(py, &environment, mu, turning.as_ref())? {
-        Some(gravity) => Ok(gravity),
-        None => match mu.unwrap_or(onorbit_core::orbit::MU_EARTH) {
-            mu if mu.is_finite() && mu > 0.0 => Ok(Gravity::point_mass(mu)),
-            value => Err(OrbitError::NotPositive { name: "mu", value }),
-        },
-    };
-    let numerical = gravity
-        .and_then(|gravity| Numerical::new(r, v, t0, Arc::new(gravity)))
-        .map_err(|error| error.into_python(py))?;
+    let others = environment.iter().filter(|effect| !effect.get().is_gravity());
+    let others =
+        others.map(|effect| Ok(effect.get_type().name()?.to_string())).collect::<PyResult<Vec<_>>>()?;
+    if !others.is_empty() {
+        let message = format!(
+            "{} would act on the robot, not on the reference, which falls freely: leave out what is no \
+             GravityField or ThirdBody, and give it to the simulation",
+            others.join(", ")
+        );
+        return Err(raise(py, "OrbitError", &message, &fields!(py, "name": "environment", "got": others)));
+    }
+    // a field brings its own
+    let brings_mu = environment.iter().any(|effect| effect.get().field().is_some());
+    let chosen = mu.or_else(|| (!brings_mu).then_some(MU_EARTH));
+    if let Some(value) = chosen.filter(|mu| !(mu.is_finite() && *mu > 0.0)) {
+        return Err(OrbitError::NotPositive { name: "mu", value }.into_python(py));
+    }
+    let gravity = gravity_of(py, &environment, chosen, turning.as_ref())?
+        .unwrap_or_else(|| Gravity::point_mass(chosen.unwrap_or(MU_EARTH)));
+    let numerical = Numerical::new(r, v, t0, Arc::new(gravity)).map_err(|error| error.into_python(py))?;
     let numerical = Arc::new(numerical.with_axes(axes)) as Arc<dyn Orbit>;
     let arguments = (array_of(py, &[3], r.as_slice()), array_of(py, &[3], v.as_slice())).into_pyobject(py)?;
     let keywords = fields!(

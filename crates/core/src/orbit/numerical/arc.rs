@@ -42,7 +42,7 @@ impl Arcs {
         let smallest_radius = crate::gravity::smallest_radius_cubed(mu).cbrt();
         let distance = r.norm();
         if distance < smallest_radius {
-            return Err(OrbitError::BelowSurface { time: t0, distance, smallest_radius });
+            return Err(OrbitError::BeginsBelowSurface { distance, smallest_radius });
         }
         let (initial, length) = (Start::new(t0, r, v), FIRST * (distance.powi(3) / mu).sqrt());
         let half = |length| RwLock::new(Half { steps: Vec::new(), next: (initial, length), ended: None });

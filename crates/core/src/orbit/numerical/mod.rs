@@ -6,7 +6,8 @@ mod step;
 
 use super::error::finite;
 use super::{Axes, Orbit, OrbitError, OrbitState};
-use crate::gravity::Gravity;
+use crate::earth::Epoch;
+use crate::gravity::{Gravity, GravityError};
 use arc::Arcs;
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -27,13 +28,19 @@ impl Numerical {
     /// The orbit through position `r` (m) with velocity `v` (m/s) at `t0` s of simulation, axes of `I`.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], and [`OrbitError::BelowSurface`] where it would begin inside the planet.
+    /// [`OrbitError::NotFinite`], and [`OrbitError::BeginsBelowSurface`], and those of the field.
     pub fn new(r: Vector3<f64>, v: Vector3<f64>, t0: f64, gravity: Arc<Gravity>) -> Result<Self, OrbitError> {
         for (name, x) in [("position", &r), ("velocity", &v)] {
             x.iter().try_for_each(|&c| finite(name, c).map(drop))?;
         }
         finite("time of the initial state", t0)?;
         let arcs = Arcs::new(t0, r, v, gravity.mu())?;
+        gravity.acceleration(t0, &r).map_err(|error| match error {
+            GravityError::BelowSurface { distance, minimum } => {
+                OrbitError::BeginsBelowSurface { distance, smallest_radius: minimum }
+            }
+            error => error.into(),
+        })?;
         Ok(Self { gravity, axes: Axes::default(), arcs })
     }
 
@@ -57,10 +64,22 @@ impl Orbit for Numerical {
         self.axes
     }
 
+    /// That of the Earth whose field or sky it obeys.
+    fn epoch(&self) -> Option<Epoch> {
+        self.gravity.epoch()
+    }
+
     /// # Errors
     /// [`OrbitError::BelowSurface`] from the time on at which the orbit enters the planet,
     /// [`OrbitError::TooManySteps`] too far from `t₀`, and those of the field.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
-        self.arcs.state(finite("time", t)?, |t, r| Ok(self.gravity.acceleration(t, r)?))
+        self.arcs.state(finite("time", t)?, |time, r| {
+            self.gravity.acceleration(time, r).map_err(|error| match error {
+                GravityError::BelowSurface { distance, minimum } => {
+                    OrbitError::BelowSurface { time, distance, smallest_radius: minimum }
+                }
+                error => error.into(),
+            })
+        })
     }
 }
