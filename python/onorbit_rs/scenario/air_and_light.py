@@ -13,6 +13,7 @@ from onorbit_rs.scenario.fields import (
     Angle,
     Area,
     Density,
+    FilePath,
     Length,
     Length3,
     NotNegative,
@@ -74,7 +75,7 @@ class Nrlmsise00Air(Part):
     f107: Number | None = None
     f107a: Number | None = None
     ap: Number | Annotated[list[Number], Field(min_length=7, max_length=7)] | None = None
-    table: str | None = None
+    table: FilePath | None = None
     """A CSV beside the scenario."""
     three_hourly: bool = True
 

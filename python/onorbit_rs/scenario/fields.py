@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, PlainValidator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    SerializationInfo,
+)
 
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.scenario import units
@@ -26,6 +34,14 @@ def _not_negative(value: float) -> float:
         raise QuantityError(f"{value:g} is negative", text=value, expected="zero or above")
     return value
 
+
+def beside(path: Path | str, info: SerializationInfo) -> str:
+    """The path, from the folder that the context of the dump names, if it names one."""
+    return str(path if info.context is None else (info.context / path).resolve())
+
+
+FilePath = Annotated[Path, PlainSerializer(beside, when_used="json")]
+"""A file or folder, beside the scenario unless its path is absolute."""
 
 Positive = AfterValidator(_positive)
 NotNegative = AfterValidator(_not_negative)
