@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import (
     AfterValidator,
@@ -60,10 +61,24 @@ AngularAcceleration = Annotated[float, _reader(units.ANGULAR_ACCELERATION)]
 JointRate = Annotated[float, _reader(units.ANGULAR_RATE, units.SPEED)]
 JointAcceleration = Annotated[float, _reader(units.ANGULAR_ACCELERATION, units.ACCELERATION)]
 Rate = Annotated[float, _reader(units.RATE)]
+Flux = Annotated[float, _reader(units.FLUX)]
 Force = Annotated[float, _reader(units.FORCE)]
 Torque = Annotated[float, _reader(units.TORQUE)]
 Inertia = Annotated[float, _reader(units.INERTIA)]
 Stiffness = Annotated[float, _reader(units.STIFFNESS)]
+
+
+def _drift(value: object) -> float | Literal["never"]:
+    if value in ("never", math.inf):
+        return "never"
+    distance = parse_quantity(value, units.LENGTH)
+    if distance < 1.0:
+        message = f"{distance:g} m is too near: give at least 1 m, or never"
+        raise QuantityError(message, text=value, expected="at least 1 m")
+    return distance
+
+
+Drift = Annotated[float | Literal["never"], BeforeValidator(_drift)]
 GravitationalParameter = Annotated[float, _reader(units.GRAVITY)]
 Length3 = Annotated[list[Length], Field(min_length=3, max_length=3)]
 Angle3 = Annotated[list[Angle], Field(min_length=3, max_length=3)]
