@@ -369,8 +369,8 @@ class Kepler(Orbit):
         epoch: float = 0.0,
         mu: float = ...,
         secular_j2: bool = False,
-        j2: float = ...,
-        radius: float = ...,
+        j2: float | None = None,
+        radius: float | None = None,
     ) -> Kepler: ...
     @staticmethod
     def from_state(
@@ -379,8 +379,8 @@ class Kepler(Orbit):
         *,
         mu: float = ...,
         secular_j2: bool = False,
-        j2: float = ...,
-        radius: float = ...,
+        j2: float | None = None,
+        radius: float | None = None,
     ) -> Kepler: ...
     @staticmethod
     def states(

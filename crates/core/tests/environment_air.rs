@@ -153,6 +153,10 @@ fn tables_that_cannot_be_read_say_where() {
     let one = |row: &str| refused(&format!("DATE,AP_AVG,F10.7_OBS,F10.7_OBS_CENTER81\n{row}"));
     assert!(one("").contains("no rows"));
     assert!(one("2023-02-29,4,150,150").contains("line 2: '2023-02-29' is no date"));
+    // a download cut short, and CelesTrak's mark of a gap
+    assert!(one("2023-02-28,4,150,150\n2023-03-01,4,1").contains("line 3: has 3 fields, the header 4"));
+    assert!(one("2023-02-28,4,999.9,150").contains("F10.7_OBS is '999.9'"));
+    assert!(one("2023-02-28,401,150,150").contains("Ap, not Kp"));
     assert!(one("2023-02-28,four,150,150").contains("AP_AVG is 'four'"));
     assert!(one("2023-02-28,4,-150,150").contains("F10.7_OBS is '-150'"));
     assert!(

@@ -2,7 +2,7 @@
 
 use crate::arrays::{Input, fresh, wrong_shape, zeros};
 use crate::earth::PyEarth;
-use crate::errors::{IntoPython, fields, plain, raise};
+use crate::errors::{IntoPython, fields, in_file, plain, raise};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::atmosphere::{
     Atmosphere, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer, MagneticActivity,
@@ -245,7 +245,9 @@ fn read_table(py: Python<'_>, path: &std::path::Path, three_hourly: bool) -> PyR
         let message = format!("{}: the space weather table cannot be read: {error}", path.display());
         raise(py, class, &message, &fields!(py, "path": path, "kind": "space weather"))
     })?;
-    let table = SpaceWeatherTable::from_csv(&text).map_err(|error| error.into_python(py))?;
+    let table = SpaceWeatherTable::from_csv(&text)
+        .map_err(|error| in_file(py, path, error))?
+        .named(format!("the table {}", path.display()));
     Ok(if three_hourly { table } else { table.daily() })
 }
 

@@ -2,6 +2,7 @@
 
 use crate::errors::{fields, raise, shape_error};
 use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 
@@ -16,12 +17,38 @@ impl<'py> FromPyObject<'_, 'py> for Count {
         match value.extract::<i64>() {
             Ok(count) => usize::try_from(count).map(Self).map_err(|_| {
                 let py = value.py();
-                let message = format!("{count} is negative, a whole number of at least 0 is needed");
+                let message = format!(
+                    "{count} is no number of steps, rows or threads: a whole number of at least 0 is needed"
+                );
                 raise(py, "InputError", &message, &fields!(py, "got": count, "expected": "at least 0"))
             }),
             Err(error) => Err(error),
         }
     }
+}
+
+/// The entries of a list that all are of the class `T`; `what` is the class in words.
+pub(crate) fn list_of<'py, T: PyClass>(
+    value: &Bound<'py, PyAny>,
+    name: &str,
+    what: &str,
+) -> PyResult<Vec<Bound<'py, T>>> {
+    let py = value.py();
+    let refuse = |says: &str, got: &Bound<'py, PyAny>| {
+        let got = got.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string());
+        let message = format!("{name} {says} {got}, a list of {what} is needed");
+        raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
+    };
+    if value.is_instance_of::<PyString>() {
+        return Err(refuse("is", value));
+    }
+    let entries = value.try_iter().map_err(|_| refuse("is", value))?;
+    entries
+        .map(|entry| {
+            let entry = entry?;
+            entry.cast_into::<T>().map_err(|error| refuse("holds", &error.into_inner()))
+        })
+        .collect()
 }
 
 /// A contiguous array of `f64`, borrowed for reading.

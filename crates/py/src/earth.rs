@@ -1,7 +1,7 @@
 //! The turning Earth, and the sky above it.
 
 use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
-use crate::errors::{IntoPython, fields, raise};
+use crate::errors::{IntoPython, fields, in_file, raise};
 use crate::orbit::times;
 use onorbit_core::earth::{
     Axes, Earth, EarthError, EarthParameters, Epoch, Kernel, KernelSegment, ROTATION_RATE,
@@ -269,7 +269,7 @@ fn table_of(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
             let message = format!("the Earth-orientation table {path} cannot be read: {error}");
             raise(py, class, &message, &fields!(py, "path": path, "kind": "Earth-orientation table"))
         })?;
-        return EarthParameters::read(&text).map_err(|error| error.into_python(py));
+        return EarthParameters::read(&text).map_err(|error| in_file(py, &path, error));
     }
     let rows = Input::new(eop, "eop")?;
     let [_, 4] = rows.shape() else { return Err(wrong_shape(py, "eop", "(N, 4)", rows.shape())) };

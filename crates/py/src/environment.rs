@@ -1,7 +1,7 @@
 //! Effects of the environment; a body's name is looked up when the simulation is made.
 
 use crate::air::PyAtmosphere;
-use crate::arrays::fixed;
+use crate::arrays::{fixed, list_of};
 use crate::errors::{IntoPython, fields, raise};
 use crate::surfaces::Spread;
 use nalgebra::Vector3;
@@ -46,6 +46,14 @@ enum Kind {
     },
 }
 
+/// What a run's ``environment`` holds.
+pub(crate) fn effects<'py>(environment: Option<Any<'_, 'py>>) -> PyResult<Vec<Bound<'py, PyEffect>>> {
+    environment.map_or_else(
+        || Ok(Vec::new()),
+        |value| list_of(value, "environment", "effects, such as [oo.GravityGradient()],"),
+    )
+}
+
 impl PyEffect {
     /// The field of a planet as one of the effects.
     pub(crate) fn of_field(field: Arc<GravityField>) -> Self {
@@ -86,10 +94,10 @@ impl PyEffect {
                 Arc::new(wrench)
             }
             Kind::Drag { atmosphere, surfaces } => {
-                Arc::new(Drag::new(Arc::clone(atmosphere), surfaces.on(py, model)?))
+                Arc::new(Drag::new(Arc::clone(atmosphere), surfaces.told_on(py, model, "drag")?))
             }
             Kind::RadiationPressure { surfaces, flux, earth_radius } => {
-                let light = RadiationPressure::new(surfaces.on(py, model)?)
+                let light = RadiationPressure::new(surfaces.told_on(py, model, "radiation pressure")?)
                     .with_flux(*flux)
                     .and_then(|light| light.with_shadow(*earth_radius))
                     .map_err(|error| error.into_python(py))?;

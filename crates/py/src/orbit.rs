@@ -150,6 +150,20 @@ pub(crate) struct PyKepler {
     flattening: Flattening,
 }
 
+/// The flattening that an ellipse obeys: the Earth's where nothing else is given.
+fn flattening(
+    py: Python<'_>,
+    secular_j2: bool,
+    j2: Option<f64>,
+    radius: Option<f64>,
+) -> PyResult<Flattening> {
+    if !secular_j2 && (j2.is_some() || radius.is_some()) {
+        let message = "j2 and radius do nothing without secular_j2=True: give it, or leave them out";
+        return Err(raise(py, "OrbitError", message, &fields!(py, "name": "j2, radius")));
+    }
+    Ok(secular_j2.then_some((j2.unwrap_or(1.08262617e-3), radius.unwrap_or(6_378_136.3))))
+}
+
 /// Whether the planet's flattening turns the ellipse: its `j2` and reference radius, m.
 type Flattening = Option<(f64, f64)>;
 
@@ -177,7 +191,7 @@ impl PyKepler {
     #[pyo3(signature = (
         *, semi_major_axis=None, semi_latus_rectum=None, eccentricity=0.0, inclination=0.0, raan=0.0,
         argument_of_periapsis=0.0, mean_anomaly=None, true_anomaly=None, periapsis_time=None, epoch=0.0, mu=3.986004418e14,
-        secular_j2=false, j2=1.08262617e-3, radius=6378136.3,
+        secular_j2=false, j2=None, radius=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -193,8 +207,8 @@ impl PyKepler {
         epoch: f64,
         mu: f64,
         secular_j2: bool,
-        j2: f64,
-        radius: f64,
+        j2: Option<f64>,
+        radius: Option<f64>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let refuse = |message: &str| raise(py, "OrbitError", message, &fields!(py,));
         let size = match (semi_major_axis, semi_latus_rectum) {
@@ -218,28 +232,28 @@ impl PyKepler {
             "true_anomaly": true_anomaly, "periapsis_time": periapsis_time, "epoch": epoch, "mu": mu,
             "secular_j2": secular_j2, "j2": j2, "radius": radius,
         );
-        let flattening = secular_j2.then_some((j2, radius));
+        let flattening = flattening(py, secular_j2, j2, radius)?;
         let made = |orbit| base(orbit, "Kepler", &PyTuple::empty(py), &keywords);
         wrap(py, Kepler::new(&elements), flattening, made)
     }
 
     /// The orbit through position ``r`` (3,) m with velocity ``v`` (3,) m/s at time zero, inertial axes.
     #[staticmethod]
-    #[pyo3(signature = (r, v, *, mu=3.986004418e14, secular_j2=false, j2=1.08262617e-3, radius=6378136.3))]
+    #[pyo3(signature = (r, v, *, mu=3.986004418e14, secular_j2=false, j2=None, radius=None))]
     fn from_state<'py>(
         py: Python<'py>,
         r: Any<'_, 'py>,
         v: Any<'_, 'py>,
         mu: f64,
         secular_j2: bool,
-        j2: f64,
-        radius: f64,
+        j2: Option<f64>,
+        radius: Option<f64>,
     ) -> PyResult<Bound<'py, Self>> {
         let (r, v) = (vector(r, "r")?, vector(v, "v")?);
         let arguments =
             (array_of(py, &[3], r.as_slice()), array_of(py, &[3], v.as_slice())).into_pyobject(py)?;
         let keywords = fields!(py, "mu": mu, "secular_j2": secular_j2, "j2": j2, "radius": radius);
-        let flattening = secular_j2.then_some((j2, radius));
+        let flattening = flattening(py, secular_j2, j2, radius)?;
         let made = |orbit| base(orbit, "Kepler.from_state", &arguments, &keywords);
         Bound::new(py, wrap(py, Kepler::from_state(r, v, mu), flattening, made)?)
     }
@@ -264,7 +278,7 @@ impl PyKepler {
         mean_anomaly: Any<'_, 'py>,
         mu: f64,
         threads: Option<Count>,
-        out: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let given = [
             ("semi_major_axis", semi_major_axis),

@@ -1,6 +1,6 @@
 //! Many orbits at once.
 
-use crate::arrays::{Count, Input, fresh, shape_text, wrong_shape, zeros};
+use crate::arrays::{Count, Input, fresh, list_of, shape_text, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use crate::orbit::PyOrbit;
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 type Pair<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
-type Out<'py> = Option<Pair<'py>>;
+type Out<'a, 'py> = Option<Any<'a, 'py>>;
 
 /// Positions and velocities of many orbits of any kinds: ``r``, ``v`` (N, T, 3), m and m/s, each in the axes of its orbit.
 ///
@@ -23,19 +23,20 @@ type Out<'py> = Option<Pair<'py>>;
 #[pyo3(signature = (orbits, times, *, threads=None, out=None))]
 pub(crate) fn propagate<'py>(
     py: Python<'py>,
-    orbits: Vec<PyRef<'py, PyOrbit>>,
+    orbits: Any<'_, 'py>,
     times: Any<'_, 'py>,
     threads: Option<Count>,
-    out: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    out: Option<Any<'_, 'py>>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let input = Input::new(times, "times")?;
+    let orbits = list_of::<PyOrbit>(orbits, "orbits", "orbits")?;
     let count = orbits.len();
     let (instants, each) = match input.shape() {
         [each] => (Times::Common(input.data()), *each),
         [n, each] if *n == count => (Times::Each(input.data()), *each),
         other => return Err(wrong_shape(py, "times", &format!("(T,) or ({count}, T)"), other)),
     };
-    let orbits: Vec<Arc<dyn Orbit>> = orbits.iter().map(|orbit| Arc::clone(&orbit.orbit)).collect();
+    let orbits: Vec<Arc<dyn Orbit>> = orbits.iter().map(|orbit| Arc::clone(&orbit.get().orbit)).collect();
     let (shape, threads) = ([count, each, 3], threads.map(|count| count.0));
     let run = |r: &mut [f64], v: &mut [f64]| {
         py.detach(|| batch::propagate(&orbits, instants, r, v, threads))
@@ -48,14 +49,18 @@ pub(crate) fn propagate<'py>(
 fn written<'py>(
     py: Python<'py>,
     shape: &[usize],
-    out: Out<'py>,
+    out: Out<'_, 'py>,
     write: impl FnOnce(&mut [f64], &mut [f64]) -> PyResult<()>,
 ) -> PyResult<Pair<'py>> {
-    let Some((r, v)) = out else {
+    let Some(out) = out else {
         let (r, v) = (zeros(py, shape)?, zeros(py, shape)?);
         write(fresh(&r), fresh(&v))?;
         return Ok((r.into_any(), v.into_any()));
     };
+    let (r, v) = out.extract::<Pair<'py>>().map_err(|_| {
+        let message = format!("out is no pair of arrays: give (r, v), each of shape {}", shape_text(shape));
+        raise(py, "InputError", &message, &fields!(py, "name": "out", "expected": "(r, v)"))
+    })?;
     let (mut to_r, mut to_v) = (writable(&r, "out[0]", shape)?, writable(&v, "out[1]", shape)?);
     write(slice(&mut to_r), slice(&mut to_v))?;
     drop((to_r, to_v));
@@ -98,7 +103,7 @@ pub(crate) fn kepler_states<'py>(
     given: [(&str, Any<'_, 'py>); 7],
     mu: f64,
     threads: Option<Count>,
-    out: Out<'py>,
+    out: Out<'_, 'py>,
 ) -> PyResult<Pair<'py>> {
     let inputs = given.iter().map(|(name, value)| Input::new(value, name)).collect::<PyResult<Vec<_>>>()?;
     let count = inputs.iter().map(|input| input.data().len()).find(|count| *count != 1).unwrap_or(1);

@@ -4,7 +4,7 @@ use crate::arrays::{Input, fixed, wrong_shape};
 use crate::checkpoint::{Keeper, PyCheckpoint};
 use crate::control::{Robot, control_law};
 use crate::earth::PyEarth;
-use crate::environment::PyEffect;
+use crate::environment::effects;
 use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
 use crate::gravity::gravity_of;
 use crate::model::PyModel;
@@ -61,7 +61,7 @@ impl PySimulation {
         orbit: Option<&Bound<'_, PyOrbit>>,
         earth: Option<&Bound<'_, PyEarth>>,
         gravity_mode: &str,
-        environment: Option<Vec<Bound<'_, PyEffect>>>,
+        environment: Option<&Bound<'_, PyAny>>,
         controller: Option<Any<'_, '_>>,
         reference: Option<Any<'_, '_>>,
         tool: Option<Any<'_, '_>>,
@@ -100,9 +100,9 @@ impl PySimulation {
                 return Err(raise(py, "InputError", &message, &fields));
             }
         };
-        let environment = environment.unwrap_or_default();
-        let effects = environment.iter().filter_map(|effect| effect.get().on(py, &core).transpose());
-        simulation.effects = effects.collect::<PyResult<_>>()?;
+        let environment = effects(environment)?;
+        let on_robot = environment.iter().filter_map(|effect| effect.get().on(py, &core).transpose());
+        simulation.effects = on_robot.collect::<PyResult<_>>()?;
         let mu = simulation.orbit.as_ref().and_then(|orbit| orbit.mu());
         let own = simulation.orbit.as_ref().and_then(|orbit| orbit.gravity());
         let given = gravity_of(py, &environment, mu, simulation.earth.as_ref())?;

@@ -2,7 +2,7 @@
 
 use crate::arrays::{Input, wrong_shape};
 use crate::errors::{IntoPython, fields, raise};
-use onorbit_core::environment::surfaces::{Covering, Optics, Surface, Surfaces};
+use onorbit_core::environment::surfaces::{Covering, Optics, Surface, SurfaceError, Surfaces};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use pyo3::types::PyMapping;
@@ -84,6 +84,7 @@ impl Spread {
             }
         };
         match surfaces.cast::<PyMapping>() {
+            Ok(named) if named.is_empty()? => Err(SurfaceError::Nothing.into_python(surfaces.py())),
             Ok(named) => {
                 let entry = |item: Bound<'_, PyAny>| {
                     let (name, value): (String, Bound<'_, PyAny>) = item.extract()?;
@@ -95,7 +96,23 @@ impl Spread {
         }
     }
 
-    pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Surfaces> {
+    /// As [`Spread::on`], with a warning where the faces of the whole robot leave bodies out.
+    pub(crate) fn told_on(&self, py: Python<'_>, model: &Model, effect: &str) -> PyResult<Surfaces> {
+        let surfaces = self.on(py, model)?;
+        let bare =
+            if matches!(self, Self::All(SurfaceKind::Faces { .. })) { surfaces.bare(model) } else { vec![] };
+        if !bare.is_empty() {
+            let bodies = bare.join(", ");
+            let message = format!(
+                "{effect} does not act on {bodies}: no visual geometry to take faces from; cover each body by name, or \
+                 give the links shapes"
+            );
+            py.import("warnings")?.call_method1("warn", (message,))?;
+        }
+        Ok(surfaces)
+    }
+
+    fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Surfaces> {
         let count = model.nodes().len();
         let coverings = match self {
             Self::All(SurfaceKind::Faces { drag_coefficient, optics }) => {
@@ -108,7 +125,8 @@ impl Spread {
             }
             Self::All(_) => {
                 let message = format!(
-                    "the robot has {count} bodies: say which one shows this surface, such as surfaces={{'{}': …}}",
+                    "the robot has {count} bodies: say which one shows this surface, such as surfaces={{'{0}': …}} (in YAML bodies: \
+                     {{{0}: …}})",
                     model.body_frame(0).name
                 );
                 return Err(raise(py, "EffectError", &message, &fields!(py, "name": "surfaces")));

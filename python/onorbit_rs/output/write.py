@@ -73,20 +73,7 @@ def write_pictures(folder: OutputFolder, trace: Trace, summary: dict[str, Any], 
 
 def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
     """The resolved scenario with paths that hold from any folder, and the period of control."""
-    data = scenario.resolved()
-    beside = scenario.file.parent if scenario.file else Path()
-    robot = data["robot"]
-    if "urdf" in robot:
-        robot["urdf"] = str((beside / robot["urdf"]).resolve())
-    if "package_paths" in robot:
-        robot["package_paths"] = [str((beside / folder).resolve()) for folder in robot["package_paths"]]
-    parts = [data.get("orbit"), data.get("controller"), data.get("reference")]
-    for control in data.get("controllers", []):
-        parts += [control, control.get("reference")]
-    for part in filter(None, parts):
-        for name in ("file", "tle_file", "omm_file"):
-            if name in part:
-                part[name] = str((beside / part[name]).resolve())
+    data = scenario.resolved(scenario.file.parent if scenario.file else Path())
     settings = data["simulation"]
     settings.setdefault("control_period", settings["time_step"])
     return data

@@ -13,6 +13,8 @@ from onorbit_rs.scenario.fields import (
     Angle,
     Area,
     Density,
+    FilePath,
+    Flux,
     Length,
     Length3,
     NotNegative,
@@ -74,7 +76,7 @@ class Nrlmsise00Air(Part):
     f107: Number | None = None
     f107a: Number | None = None
     ap: Number | Annotated[list[Number], Field(min_length=7, max_length=7)] | None = None
-    table: str | None = None
+    table: FilePath | None = None
     """A CSV beside the scenario."""
     three_hourly: bool = True
 
@@ -160,7 +162,7 @@ class Covered(Part):
 
     surfaces: AnySurface | None = None
     """The faces of all links where neither is given."""
-    bodies: dict[str, AnySurface] | None = None
+    bodies: Annotated[dict[str, AnySurface], Field(min_length=1)] | None = None
 
     @model_validator(mode="after")
     def _is_covered_once(self) -> Covered:
@@ -192,7 +194,7 @@ class RadiationPressureEffect(Covered):
     """The push of sunlight; needs an orbit and an epoch."""
 
     kind: Literal["radiation_pressure"] = "radiation_pressure"
-    flux: Share = 1361.0
+    flux: Annotated[Flux, NotNegative] = 1361.0
     """W/m² at 1 au."""
     shadow: bool = True
     earth_radius: Annotated[Length, Positive] | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -11,9 +12,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core, robots
-from onorbit_rs.exceptions import ControlError, EffectError, FrameError, OnOrbitError, OrbitError, ShapeError
+from onorbit_rs.exceptions import (
+    ControlError,
+    EarthError,
+    EffectError,
+    FrameError,
+    OnOrbitError,
+    OrbitError,
+    ShapeError,
+)
 from onorbit_rs.names import did_you_mean, nearest
-from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffect
+from onorbit_rs.scenario.air_and_light import Covered, DragEffect, RadiationPressureEffect
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.environment import BodyWrenchEffect
 from onorbit_rs.scenario.gravity_field import GravityFieldEffect
@@ -41,6 +50,17 @@ class Built:
     q: Floats
     v: Floats
     simulation: _core.Simulation
+
+
+@dataclass(frozen=True)
+class _Flight:
+    """A robot on its way."""
+
+    model: _core.Model
+    q: Floats
+    v: Floats
+    orbit: _core.Orbit | None
+    earth: _core.Earth | None
 
 
 def build(scenario: Scenario) -> Built:
@@ -74,7 +94,10 @@ def build(scenario: Scenario) -> Built:
     with located(scenario, "tool"):
         tool_pose = None if tool is None else model.frame_pose(q, tool)
     start = Start(model, q, tool_pose, orbit, beside)
+    _try_effects(scenario, effects, _Flight(model, q, v, orbit, earth))
     settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
+    if settings["rereference_beyond"] == "never":
+        settings["rereference_beyond"] = np.inf
 
     def simulation() -> _core.Simulation:
         controller, reference = _controlled(scenario, start)
@@ -129,6 +152,24 @@ def _try_one_step(scenario: Scenario, simulation: _core.Simulation) -> None:
         is_about_orbit = isinstance(error, (OrbitError, EffectError)) and scenario.orbit is not None
         with located(scenario, "orbit" if is_about_orbit else "simulation"):
             raise
+
+
+def _try_effects(scenario: Scenario, effects: list[Any], flight: _Flight) -> None:
+    """One step under air or light alone: what they refuse stands with them; the rest is told in its place."""
+    for index, (part, effect) in enumerate(zip(scenario.environment, effects, strict=True)):
+        if not isinstance(part, Covered):
+            continue
+        with located(scenario, "environment", index), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the run itself warns
+            try:
+                alone = _core.Simulation(
+                    flight.model, flight.q, flight.v, orbit=flight.orbit, earth=flight.earth,
+                    environment=[effect], time_step=scenario.simulation.time_step,
+                )  # fmt: skip
+                alone.run(scenario.simulation.time_step)
+            except OnOrbitError as error:
+                if isinstance(error, (EarthError, EffectError, FrameError)):
+                    raise
 
 
 @contextmanager

@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.fields import (
     DamperGain,
+    FilePath,
     JointEffort,
     JointNumber,
     JointRateGain,
@@ -84,7 +85,7 @@ class PythonController(Part):
     """A class of yours with ``update(t, state)``; its file is run as Python."""
 
     kind: Literal["python"] = "python"
-    file: str | None = None
+    file: FilePath | None = None
     """Beside the scenario."""
     module: str | None = None
     """Or one that can be imported."""

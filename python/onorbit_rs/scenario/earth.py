@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from onorbit_rs import _core
 from onorbit_rs.exceptions import EarthError
-from onorbit_rs.scenario.fields import Angle, AngularRate, Time
+from onorbit_rs.scenario.fields import Angle, AngularRate, FilePath, Time
 from onorbit_rs.scenario.part import Part
 
 if TYPE_CHECKING:
@@ -36,11 +36,11 @@ class EarthPart(Part):
     rotation: Literal["iau2006", "about_z"] = "iau2006"
     ut1_minus_utc: Time | None = None
     polar_motion: Annotated[list[Angle], Field(min_length=2, max_length=2)] | None = None
-    eop: str | None = None
+    eop: FilePath | None = None
     """A file of Earth-orientation parameters, beside the scenario unless its path is absolute."""
     angle: Angle | None = None
     rate: AngularRate | None = None
-    ephemeris: str | None = None
+    ephemeris: FilePath | None = None
     """A SPICE kernel with Sun and Moon, beside the scenario unless its path is absolute."""
 
     @model_validator(mode="after")

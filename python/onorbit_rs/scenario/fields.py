@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import math
+from pathlib import Path
+from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, PlainValidator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    SerializationInfo,
+)
 
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.scenario import units
@@ -27,6 +36,14 @@ def _not_negative(value: float) -> float:
     return value
 
 
+def beside(path: Path | str, info: SerializationInfo) -> str:
+    """The path, from the folder that the context of the dump names, if it names one."""
+    return str(path if info.context is None else (info.context / path).resolve())
+
+
+FilePath = Annotated[Path, PlainSerializer(beside, when_used="json")]
+"""A file or folder, beside the scenario unless its path is absolute."""
+
 Positive = AfterValidator(_positive)
 NotNegative = AfterValidator(_not_negative)
 
@@ -44,10 +61,24 @@ AngularAcceleration = Annotated[float, _reader(units.ANGULAR_ACCELERATION)]
 JointRate = Annotated[float, _reader(units.ANGULAR_RATE, units.SPEED)]
 JointAcceleration = Annotated[float, _reader(units.ANGULAR_ACCELERATION, units.ACCELERATION)]
 Rate = Annotated[float, _reader(units.RATE)]
+Flux = Annotated[float, _reader(units.FLUX)]
 Force = Annotated[float, _reader(units.FORCE)]
 Torque = Annotated[float, _reader(units.TORQUE)]
 Inertia = Annotated[float, _reader(units.INERTIA)]
 Stiffness = Annotated[float, _reader(units.STIFFNESS)]
+
+
+def _drift(value: object) -> float | Literal["never"]:
+    if value in ("never", math.inf):
+        return "never"
+    distance = parse_quantity(value, units.LENGTH)
+    if distance < 1.0:
+        message = f"{distance:g} m is too near: give at least 1 m, or never"
+        raise QuantityError(message, text=value, expected="at least 1 m")
+    return distance
+
+
+Drift = Annotated[float | Literal["never"], BeforeValidator(_drift)]
 GravitationalParameter = Annotated[float, _reader(units.GRAVITY)]
 Length3 = Annotated[list[Length], Field(min_length=3, max_length=3)]
 Angle3 = Annotated[list[Angle], Field(min_length=3, max_length=3)]

@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, SerializationInfo, field_serializer
 
 from onorbit_rs import _core
+from onorbit_rs.scenario.fields import beside
 from onorbit_rs.scenario.part import Part
 
 
@@ -21,11 +22,20 @@ class GravityFieldEffect(Part):
     order: Annotated[int, Field(ge=0)] | None = None
     """That of the degree where not given."""
 
-    def make(self, beside: Path) -> _core.GravityField:
+    @field_serializer("model", when_used="json")
+    def _file(self, model: str, info: SerializationInfo) -> str:
+        return beside(model, info) if self.is_file else model
+
+    @property
+    def is_file(self) -> bool:
+        """Whether ``model`` is a path."""
+        return self.model.endswith(".gfc")
+
+    def make(self, folder: Path) -> _core.GravityField:
         """The engine's."""
         degree = {} if self.degree is None else {"degree": self.degree}
-        if self.model.endswith(".gfc"):
-            return _core.GravityField.from_gfc(beside / self.model, order=self.order, **degree)
+        if self.is_file:
+            return _core.GravityField.from_gfc(folder / self.model, order=self.order, **degree)
         if self.model == "zonal" and not self.order:
             return _core.GravityField.zonal(**degree)
         return _core.GravityField(self.model, order=self.order, **degree)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -10,6 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.fields import (
     Acceleration3,
+    FilePath,
     GravitationalParameter,
     Length3,
     Number4,
@@ -37,8 +37,8 @@ class Sgp4Orbit(Part):
     line2: str | None = None
     tle: str | None = None
     """Two lines, or three with a name before them."""
-    tle_file: Path | None = None
-    omm_file: Path | None = None
+    tle_file: FilePath | None = None
+    omm_file: FilePath | None = None
     """A CCSDS Orbit Mean-Elements Message: JSON, XML or KVN."""
     gravity: Literal["wgs72", "wgs72old", "wgs84"] = "wgs72"
     check_checksum: bool = True
@@ -66,7 +66,7 @@ class CustomPathOrbit(Part):
     accelerations: list[Acceleration3] | None = None
     attitudes: list[Number4] | None = None
     """Quaternions xyzw: path axes to inertial ones."""
-    file: Path | None = None
+    file: FilePath | None = None
     """Columns ``t,x,y,z[,vx,vy,vz[,ax,ay,az]][,qx,qy,qz,qw]`` under a header, SI."""
     mu: Mu | None = None
     """Gravitational parameter, m³/s²; around no planet, without gravity, where not given."""

@@ -16,6 +16,7 @@ from onorbit_rs.scenario.fields import (
     AngularAcceleration,
     AngularRate,
     AngularRate3,
+    FilePath,
     JointAcceleration,
     JointPositions,
     JointRate,
@@ -155,7 +156,7 @@ class SampledReference(TaskReference):
     """From a CSV with the header ``time,x,y,z,qx,qy,qz,qw`` and, where known, ``vx,vy,vz,wx,wy,wz``; SI."""
 
     kind: Literal["sampled"] = "sampled"
-    file: str
+    file: FilePath
     """Beside the scenario."""
     relative: bool = False
     """Whether the motion is moved so that it begins at the start."""
@@ -203,7 +204,7 @@ class JointSampledReference(Part):
     """From a CSV with the header ``time`` and names of joints; rad and m. Joints that are not named stay."""
 
     kind: Literal["joint_sampled"] = "joint_sampled"
-    file: str
+    file: FilePath
 
 
 def _wrong(message: str) -> PydanticCustomError:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import Field, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
 from onorbit_rs import robots
-from onorbit_rs.scenario.fields import Inertia, Mass, Positive
+from onorbit_rs.scenario.fields import FilePath, Inertia, Mass, Positive
 from onorbit_rs.scenario.part import Part
 
 
@@ -41,9 +40,9 @@ class Robot(Part):
     """Exactly one of the three."""
 
     bundled: str | None = None
-    urdf: Path | None = None
+    urdf: FilePath | None = None
     rigid_body: RigidBody | None = None
-    package_paths: list[Path] = Field(default_factory=list)
+    package_paths: list[FilePath] = Field(default_factory=list)
     """Folders in which ``package://`` and xacro's ``$(find ...)`` are looked up."""
     xacro_arguments: dict[str, str | bool | int | float] = Field(default_factory=dict)
     """What ``$(arg name)`` gives in a xacro file."""

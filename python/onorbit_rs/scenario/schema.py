@@ -100,9 +100,14 @@ class Scenario(Part):
         """Where it was read from, for messages."""
         self._file, self._lines = file, lines
 
-    def resolved(self) -> dict[str, Any]:
-        """Plain data in SI with every default written out; reading it back gives the same scenario."""
-        return self.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=self._empty_parts())
+    def resolved(self, folder: Path | None = None) -> dict[str, Any]:
+        """Plain data in SI with every default written out; reading it back gives the same scenario.
+
+        Paths are absolute, from ``folder``, where one is given.
+        """
+        return self.model_dump(
+            mode="json", by_alias=True, exclude_none=True, exclude=self._empty_parts(), context=folder
+        )
 
     def _empty_parts(self) -> dict[str, Any]:
         return {

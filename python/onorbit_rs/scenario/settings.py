@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from onorbit_rs.scenario.fields import Length, NotNegative, Number, Positive, Time
+from onorbit_rs.scenario.fields import Drift, NotNegative, Number, Positive, Time
 from onorbit_rs.scenario.part import Part
 
 NotNegativeNumber = Annotated[Number, NotNegative]
@@ -35,8 +35,8 @@ class SimulationSettings(Part):
     """One row of the trace every so many steps."""
     record_wrenches: bool = False
     """Whether the trace holds the wrench of every effect on every body."""
-    rereference_beyond: Annotated[Length, Field(ge=1.0)] = 1e5
-    """How far a robot that nothing leads may drift before it gets a reference of its own."""
+    rereference_beyond: Drift = 1e5
+    """How far a robot that nothing leads may drift before it gets a reference of its own; ``never``."""
     reference_start_tolerance: (
         Annotated[list[NotNegativeNumber], Field(min_length=2, max_length=2)] | None
     ) = None

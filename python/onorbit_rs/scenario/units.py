@@ -39,6 +39,7 @@ ANGULAR_RATE = Dimension("an angular rate", (0, 0, -1, 1), "rad/s")
 ANGULAR_ACCELERATION = Dimension("an angular acceleration", (0, 0, -2, 1), "rad/s^2")
 RATE = Dimension("a rate", (0, 0, -1, 0), "1/s")
 STIFFNESS = Dimension("a stiffness per mass", (0, 0, -2, 0), "1/s^2")
+FLUX = Dimension("a flux of energy", (1, 0, -3, 0), "W/m^2")
 FORCE = Dimension("a force", (1, 1, -2, 0), "N")
 TORQUE = Dimension("a torque", (1, 2, -2, 0), "N m")
 INERTIA = Dimension("a moment of inertia", (1, 2, 0, 0), "kg m^2")
@@ -75,6 +76,8 @@ _UNITS: dict[str, tuple[float, Powers]] = {
     "N": (1.0, FORCE.powers),
     "mN": (1e-3, FORCE.powers),
     "kN": (1e3, FORCE.powers),
+    "W": (1.0, (1, 2, -3, 0)),
+    "kW": (1e3, (1, 2, -3, 0)),
     "Nm": (1.0, TORQUE.powers),
     "mNm": (1e-3, TORQUE.powers),
     "Hz": (1.0, RATE.powers),

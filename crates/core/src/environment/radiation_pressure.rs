@@ -48,9 +48,9 @@ impl RadiationPressure {
     /// Whether a flux, W/m², and an Earth's radius, m, make sense.
     ///
     /// # Errors
-    /// [`SurfaceError::Value`] where one is negative or not finite.
+    /// [`SurfaceError::Value`] where one is negative or not finite, or the radius below 100 km.
     pub fn check(flux: f64, earth_radius: f64) -> Result<(), SurfaceError> {
-        at_least_zero("flux", flux).and(at_least_zero("earth_radius", earth_radius)).map(drop)
+        at_least_zero("flux", flux).and(a_planets(earth_radius)).map(drop)
     }
 
     /// The light at `r`, with the Sun at `sun`, both from the Earth's centre, m.
@@ -74,9 +74,9 @@ impl RadiationPressure {
     /// The same with a shadow cast by an Earth of this radius, m; without shadow if none.
     ///
     /// # Errors
-    /// [`SurfaceError::Value`] where it is negative or not finite.
+    /// [`SurfaceError::Value`] where it is below 100 km or not finite.
     pub fn with_shadow(self, earth_radius: Option<f64>) -> Result<Self, SurfaceError> {
-        let earth_radius = earth_radius.map(|radius| at_least_zero("earth_radius", radius)).transpose()?;
+        let earth_radius = earth_radius.map(a_planets).transpose()?;
         Ok(Self { earth_radius, ..self })
     }
 }
@@ -93,6 +93,14 @@ fn at_least_zero(name: &'static str, value: f64) -> Result<f64, SurfaceError> {
         return Ok(value);
     }
     Err(SurfaceError::Value { name, value, expected: "a finite number of at least 0" })
+}
+
+fn a_planets(radius: f64) -> Result<f64, SurfaceError> {
+    if radius.is_finite() && radius >= 1e5 {
+        return Ok(radius);
+    }
+    let expected = "a radius of at least 1e5 m (in metres, not kilometres)";
+    Err(SurfaceError::Value { name: "earth_radius", value: radius, expected })
 }
 
 impl Effect for RadiationPressure {

@@ -19,6 +19,16 @@ pub enum OrbitError {
         /// What was given.
         value: f64,
     },
+    /// A quantity is beyond what makes sense.
+    #[error("{name} is {value}, {expected} is needed")]
+    OutOfRange {
+        /// Which input.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is accepted.
+        expected: &'static str,
+    },
     /// A quantity that must be positive is not.
     #[error("{name} is {value}, it must be greater than zero")]
     NotPositive {

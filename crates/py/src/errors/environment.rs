@@ -39,8 +39,8 @@ impl IntoPython for AtmosphereError {
             Self::Value { name, value, expected } => {
                 fields!(py, "name": name, "got": value, "expected": expected)
             }
-            Self::MissingSpaceWeather { name, date } => fields!(py, "name": name, "got": date),
-            Self::OutsideTable { date, first, last } => {
+            Self::MissingSpaceWeather { name, date, .. } => fields!(py, "name": name, "got": date),
+            Self::OutsideTable { date, first, last, .. } => {
                 fields!(py, "name": "date", "got": date, "expected": (first, last))
             }
             _ => fields!(py,),

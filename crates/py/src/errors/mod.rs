@@ -32,6 +32,16 @@ pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'
     }
 }
 
+/// The error, with the file that it is about before its message.
+pub(crate) fn in_file(py: Python<'_>, path: &std::path::Path, error: impl IntoPython) -> PyErr {
+    let error = error.into_python(py);
+    let value = error.value(py);
+    let told = value.getattr("message").and_then(|message| message.extract::<String>());
+    let message = format!("{}: {}", path.display(), told.unwrap_or_else(|_| value.to_string()));
+    let _ = value.setattr("message", message); // without it the message stays as it was
+    error
+}
+
 /// An error without fields.
 pub(crate) fn plain(py: Python<'_>, class: &str, message: &str) -> PyErr {
     raise(py, class, message, &PyDict::new(py))

@@ -12,6 +12,10 @@ impl IntoPython for OrbitError {
             Self::NotFinite { name, value } | Self::NotPositive { name, value } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": name, "got": value))
             }
+            Self::OutOfRange { name, value, expected } => {
+                let fields = fields!(py, "name": name, "got": value, "expected": expected);
+                raise(py, "OrbitError", &message, &fields)
+            }
             Self::AxisSign { semi_major_axis, .. } | Self::ParabolaHasNoAxis { semi_major_axis } => {
                 let fields = fields!(py, "name": "semi_major_axis", "got": semi_major_axis);
                 raise(py, "OrbitError", &message, &fields)

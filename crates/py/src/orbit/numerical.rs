@@ -3,7 +3,7 @@
 use super::{Any, PyOrbit, base, vector};
 use crate::arrays::array_of;
 use crate::earth::PyEarth;
-use crate::environment::PyEffect;
+use crate::environment::{PyEffect, effects};
 use crate::errors::{IntoPython, fields, raise};
 use crate::gravity::gravity_of;
 use nalgebra::Vector3;
@@ -30,7 +30,7 @@ impl PyNumerical {
         r: Any<'_, '_>,
         v: Any<'_, '_>,
         t0: f64,
-        environment: Option<Vec<Bound<'_, PyEffect>>>,
+        environment: Option<&Bound<'_, PyAny>>,
         earth: Option<&Bound<'_, PyEarth>>,
         mu: Option<f64>,
         axes: &str,
@@ -44,7 +44,7 @@ impl PyNumerical {
                 return Err(raise(py, "InputError", &message, &fields!(py, "name": "axes", "got": other)));
             }
         };
-        made(py, start, axes, environment.unwrap_or_default(), earth, mu)
+        made(py, start, axes, effects(environment)?, earth, mu)
     }
 
     /// The orbit that leaves from where ``orbit`` is at ``t0`` s, in its axes; ``mu`` is its own where not given.
@@ -54,13 +54,13 @@ impl PyNumerical {
         py: Python<'py>,
         orbit: &Bound<'py, PyOrbit>,
         t0: f64,
-        environment: Option<Vec<Bound<'py, PyEffect>>>,
+        environment: Option<&Bound<'py, PyAny>>,
         earth: Option<&Bound<'py, PyEarth>>,
         mu: Option<f64>,
     ) -> PyResult<Bound<'py, Self>> {
         let orbit = &orbit.get().orbit;
         let (r, v) = orbit.position_velocity(t0).map_err(|error| error.into_python(py))?;
-        let environment = environment.unwrap_or_default();
+        let environment = effects(environment)?;
         let brings_mu = environment.iter().any(|effect| effect.get().field().is_some());
         let mu = mu.or_else(|| if brings_mu { None } else { orbit.mu() });
         Bound::new(py, made(py, (r, v, t0), orbit.axes(), environment, earth, mu)?)

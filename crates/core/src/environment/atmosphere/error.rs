@@ -52,9 +52,11 @@ pub enum AtmosphereError {
     NoLayers,
     /// A table of space weather lacks a number that the day needs.
     #[error(
-        "space weather: {name} of {date} is missing, and the run needs it: give a table that holds it, or constants"
+        "space weather: {name} of {date} is missing from {table}, and the run needs it: give a table that holds it, or constants"
     )]
     MissingSpaceWeather {
+        /// What the table is called.
+        table: String,
         /// Which column.
         name: &'static str,
         /// Which day.
@@ -62,9 +64,11 @@ pub enum AtmosphereError {
     },
     /// A run takes place on a day that a table of space weather does not have.
     #[error(
-        "space weather: {date} is outside of the table, which runs from {first} to {last}: give constants there"
+        "space weather: {date} is outside of {table}, which runs from {first} to {last}: give constants there"
     )]
     OutsideTable {
+        /// What the table is called.
+        table: String,
         /// The day asked for.
         date: String,
         /// First day of the table.

@@ -3,6 +3,7 @@
 use super::{AirPlace, Atmosphere, AtmosphereError};
 use crate::earth::Earth;
 use nalgebra::{Rotation3, Unit, Vector3};
+use std::f64::consts::PI;
 
 /// Density between a night profile `ρm` and a day profile `ρM` of mean solar activity.
 ///
@@ -20,14 +21,15 @@ impl HarrisPriester {
     /// `exponent` is `n`: 2 for low inclinations to 6 for polar orbits; `lag` in rad, some 30°.
     ///
     /// # Errors
-    /// [`AtmosphereError::Value`] for an exponent outside of 2 to 6, a lag that is not finite.
+    /// [`AtmosphereError::Value`] for an exponent outside of 2 to 6, a lag beyond π either way.
     pub fn new(exponent: f64, lag: f64) -> Result<Self, AtmosphereError> {
         if !(2.0..=6.0).contains(&exponent) {
             let (name, expected) = ("exponent", "a number from 2 (low inclination) to 6 (polar orbit)");
             return Err(AtmosphereError::Value { name, value: exponent, expected });
         }
-        if !lag.is_finite() {
-            return Err(AtmosphereError::Value { name: "lag", value: lag, expected: "a finite angle" });
+        if !(-PI..=PI).contains(&lag) {
+            let expected = "an angle from -π to π rad (30° is 0.524)";
+            return Err(AtmosphereError::Value { name: "lag", value: lag, expected });
         }
         Ok(Self { exponent, lag })
     }

@@ -3,6 +3,7 @@
 use super::AtmosphereError;
 use crate::earth::{Earth, Geodetic, WGS84};
 use nalgebra::Vector3;
+use std::f64::consts::FRAC_PI_2;
 
 /// A place outside the Earth at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -33,8 +34,13 @@ impl<'a> AirPlace<'a> {
     /// The place at these coordinates.
     ///
     /// # Errors
-    /// As [`AirPlace::new`].
+    /// As [`AirPlace::new`]; [`AtmosphereError::Value`] for a latitude beyond a pole.
     pub fn at(earth: &'a Earth, time: f64, geodetic: Geodetic) -> Result<Self, AtmosphereError> {
+        let value = geodetic.latitude;
+        if !(-FRAC_PI_2..=FRAC_PI_2).contains(&value) {
+            let expected = "an angle from -π/2 to π/2 rad (45° is 0.785)";
+            return Err(AtmosphereError::Value { name: "latitude", value, expected });
+        }
         let rot_fi = earth.rot_fi(time);
         let (position, up) = (rot_fi.tr_mul(&geodetic.position(&WGS84)), rot_fi.tr_mul(&up(&geodetic)));
         Self { earth, time, geodetic, position, up }.outside()

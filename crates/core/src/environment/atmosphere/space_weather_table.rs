@@ -1,5 +1,6 @@
 //! Space weather day by day.
 
+use super::space_weather::{ACTIVITY, FLUX as A_FLUX, is_activity, is_flux};
 use super::{AtmosphereError, MagneticActivity, SpaceIndices};
 
 /// Columns of a day, as CelesTrak names them; the eight `AP` of three hours each come after.
@@ -20,6 +21,8 @@ pub struct SpaceWeatherTable {
     first: i64,
     days: Vec<Day>,
     has_history: bool,
+    /// What messages call it.
+    name: String,
 }
 
 impl SpaceWeatherTable {
@@ -47,6 +50,13 @@ impl SpaceWeatherTable {
         let (mut first, mut days) = (0, Vec::new());
         for (line, row) in lines {
             let fields: Vec<&str> = row.split(',').map(str::trim).collect();
+            if fields.len() < names.len() {
+                let (has, needed) = (fields.len(), names.len());
+                return Err(wrong(
+                    line,
+                    format!("has {has} fields, the header {needed}: the file is cut short, fetch it again"),
+                ));
+            }
             let field = |k: usize| fields.get(k).copied().unwrap_or("");
             let day = day_of(field(date))
                 .ok_or_else(|| wrong(line, format!("'{}' is no date like 2024-03-01", field(date))))?;
@@ -62,8 +72,10 @@ impl SpaceWeatherTable {
                 if text.is_empty() {
                     continue;
                 }
-                let number = text.parse::<f64>().ok().filter(|x| x.is_finite() && *x >= 0.0);
-                let wrong = || wrong(line, format!("{} is '{text}', no number of at least 0", COLUMNS[k]));
+                let (is_one, expected): (fn(f64) -> bool, _) =
+                    if k < DAILY { (is_flux, A_FLUX) } else { (is_activity, ACTIVITY) };
+                let number = text.parse::<f64>().ok().filter(|x| is_one(*x));
+                let wrong = || wrong(line, format!("{} is '{text}', {expected} is needed", COLUMNS[k]));
                 numbers[k] = Some(number.ok_or_else(wrong)?);
             }
             days.push(numbers);
@@ -71,12 +83,17 @@ impl SpaceWeatherTable {
         if days.is_empty() {
             return Err(wrong(1, "the table has no rows".to_owned()));
         }
-        Ok(Self { first, days, has_history })
+        Ok(Self { first, days, has_history, name: "the table".to_owned() })
     }
 
     /// The same without the three-hourly history: the mean of the day alone.
     pub fn daily(self) -> Self {
         Self { has_history: false, ..self }
+    }
+
+    /// The same under the name that messages call it by, such as its file's.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..self }
     }
 
     /// Indices at `seconds` of the UTC day with this modified Julian date.
@@ -103,11 +120,16 @@ impl SpaceWeatherTable {
     fn number(&self, day: i64, column: usize) -> Result<f64, AtmosphereError> {
         let row = usize::try_from(day - self.first).ok().and_then(|k| self.days.get(k));
         let outside = || AtmosphereError::OutsideTable {
+            table: self.name.clone(),
             date: date_of(day),
             first: date_of(self.first),
             last: date_of(self.first + self.days.len() as i64 - 1),
         };
-        let missing = || AtmosphereError::MissingSpaceWeather { name: COLUMNS[column], date: date_of(day) };
+        let missing = || AtmosphereError::MissingSpaceWeather {
+            table: self.name.clone(),
+            name: COLUMNS[column],
+            date: date_of(day),
+        };
         row.ok_or_else(outside)?[column].ok_or_else(missing)
     }
 }

@@ -50,12 +50,18 @@ impl Surface {
     /// A cannonball.
     ///
     /// # Errors
-    /// [`SurfaceError::Value`] for what is negative or not finite.
+    /// [`SurfaceError::Value`] for what is negative or not finite, and a reflectivity above 2.
     pub fn cannonball(area: f64, drag_coefficient: f64, reflectivity: f64) -> Result<Self, SurfaceError> {
         Ok(Self::Cannonball {
             area: not_negative("area", area)?,
             drag_coefficient: not_negative("drag_coefficient", drag_coefficient)?,
-            reflectivity: not_negative("reflectivity", reflectivity)?,
+            reflectivity: match not_negative("reflectivity", reflectivity)? {
+                value if value > 2.0 => {
+                    let expected = "a number from 0 to 2 (a flat mirror that faces the Sun)";
+                    return Err(SurfaceError::Value { name: "reflectivity", value, expected });
+                }
+                value => value,
+            },
         })
     }
 
@@ -80,7 +86,7 @@ impl Surface {
     /// Flat plates: areas, m², outward normals of any length, centroids, m; axes and origin of `frame`.
     ///
     /// # Errors
-    /// [`SurfaceError::WrongLength`], [`SurfaceError::Normal`], [`SurfaceError::Value`].
+    /// [`SurfaceError::WrongLength`], [`SurfaceError::NoPlates`], [`SurfaceError::Normal`], [`SurfaceError::Value`].
     pub fn plates(
         model: &Model,
         frame: &Frame,
@@ -93,6 +99,9 @@ impl Surface {
         if areas.len() != normals.len() || areas.len() != centroids.len() {
             let (areas, normals, centroids) = (areas.len(), normals.len(), centroids.len());
             return Err(SurfaceError::WrongLength { areas, normals, centroids });
+        }
+        if areas.is_empty() {
+            return Err(SurfaceError::NoPlates);
         }
         let com = model.nodes()[frame.body].com;
         let plate = |plate: usize| {
@@ -153,8 +162,11 @@ impl Surfaces {
     /// These coverings on a robot of `count` bodies.
     ///
     /// # Errors
-    /// [`SurfaceError::UnknownBody`], [`SurfaceError::Twice`].
+    /// [`SurfaceError::Nothing`], [`SurfaceError::UnknownBody`], [`SurfaceError::Twice`].
     pub fn new(coverings: Vec<Covering>, count: usize) -> Result<Self, SurfaceError> {
+        if coverings.is_empty() {
+            return Err(SurfaceError::Nothing);
+        }
         let mut is_covered = vec![false; count];
         for &Covering { body, .. } in &coverings {
             let covered = is_covered.get_mut(body).ok_or(SurfaceError::UnknownBody { body, count })?;
@@ -182,6 +194,14 @@ impl Surfaces {
             return Err(SurfaceError::NoShape { body: "the robot".to_owned() });
         }
         Self::new(coverings, count)
+    }
+
+    /// Names of the bodies with mass that are not covered: they feel nothing.
+    pub fn bare<'a>(&self, model: &'a Model) -> Vec<&'a str> {
+        let is_bare = |body: &usize| {
+            model.nodes()[*body].mass > 0.0 && self.coverings.iter().all(|covering| covering.body != *body)
+        };
+        (0..model.nodes().len()).filter(is_bare).map(|body| model.body_frame(body).name.as_str()).collect()
     }
 
     /// The bodies that are covered, each with its covering.

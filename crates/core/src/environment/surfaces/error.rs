@@ -22,6 +22,12 @@ pub enum SurfaceError {
         /// Share scattered.
         diffuse: f64,
     },
+    /// Nothing is covered.
+    #[error("no body shows a surface, so that there would be no force: cover one, or leave the effect out")]
+    Nothing,
+    /// There are no plates.
+    #[error("no plates are given, so that there would be no force: give at least one, or leave the body out")]
+    NoPlates,
     /// A normal has no direction.
     #[error("normal of plate {plate} is zero or not finite, a direction is needed")]
     Normal {

@@ -30,10 +30,19 @@ impl Kepler {
     /// This ellipse with the secular rates of a planet flattened by `j2` about z, with reference radius `radius` (m).
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `radius`, [`OrbitError::NotClosed`] for an open orbit.
+    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `radius`, [`OrbitError::OutOfRange`] for what no planet has, [`OrbitError::NotClosed`] for an open orbit.
     pub fn with_secular_j2(self, j2: f64, radius: f64) -> Result<SecularJ2, OrbitError> {
-        finite("j2", j2)?;
-        positive("radius", radius)?;
+        if finite("j2", j2)?.abs() > 0.1 {
+            return Err(OrbitError::OutOfRange {
+                name: "j2",
+                value: j2,
+                expected: "a number from -0.1 to 0.1",
+            });
+        }
+        if positive("radius", radius)? < 1e5 {
+            let expected = "at least 1e5 m (in metres, not kilometres)";
+            return Err(OrbitError::OutOfRange { name: "radius", value: radius, expected });
+        }
         let Conic::Ellipse { n, .. } = self.conic else {
             return Err(OrbitError::NotClosed { eccentricity: self.eccentricity() });
         };

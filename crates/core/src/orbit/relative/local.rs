@@ -1,5 +1,6 @@
 //! Exact coordinates in the frames that ride on a reference.
 
+use crate::orbit::error::finite;
 use crate::orbit::{Lvlh, Nadir, Orbit, OrbitError, OrbitState};
 use nalgebra::{Matrix3, Vector3};
 
@@ -105,6 +106,9 @@ fn rows(
         ("positions out", expected, to_r.len()),
         ("velocities out", expected, to_v.len()),
     ])?;
+    for (name, values) in [("r", r), ("v", v)] {
+        values.iter().try_for_each(|x| finite(name, *x).map(drop))?;
+    }
     let to = to_r.chunks_exact_mut(3).zip(to_v.chunks_exact_mut(3));
     for (index, (&t, (to_r, to_v))) in times.iter().zip(to).enumerate() {
         let state = orbit.state(t)?;
