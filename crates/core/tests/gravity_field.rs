@@ -63,7 +63,10 @@ fn a_mass_off_the_centre_pulls_from_where_it_is() {
         (360, Vector3::new(-0.2, 0.1, -0.88), 1e-12),
         (360, Vector3::new(0.0, 0.9, 0.0), 1e-12),
     ] {
+        // a share of the mass, for coefficients stay as small as planets have them: a power of two, so that nothing is rounded
+        let share = 2f64.powi(-14);
         let (c, s) = mass_off_centre(degree, d);
+        let [c, s] = [c, s].map(|x| x.into_iter().map(|x| x * share).collect::<Vec<_>>());
         let model = Coefficients::new("off centre", MU, R, degree, &c, &s).unwrap();
         let field = GravityField::new(&model, degree, degree).unwrap();
         let mut worst = (0.0_f64, 0.0_f64);
@@ -76,11 +79,12 @@ fn a_mass_off_the_centre_pulls_from_where_it_is() {
             Vector3::new(0.0, 6.7e6, 1e5),
         ] {
             let (g, tensor) = field.gradient(&r).unwrap();
+            let (g, tensor) = (g / share, tensor / share);
             let (off, centre) = (point_mass(r - d * R), point_mass(r));
             let (eg, et) = (off.0 - centre.0, off.1 - centre.1);
             worst.0 = worst.0.max((g - eg).norm() / off.0.norm());
             worst.1 = worst.1.max((tensor - et).norm() / off.1.norm());
-            let alone = field.acceleration(&r).unwrap();
+            let alone = field.acceleration(&r).unwrap() / share;
             assert!((alone - g).norm() <= 1e-14 * off.0.norm());
             assert_eq!(tensor, tensor.transpose());
             assert!(tensor.trace().abs() <= 4.0 * f64::EPSILON * tensor.norm());
