@@ -1,4 +1,4 @@
-"""What the whole environment costs: humanoid_reach as bundled against the same with everything switched on, alternated.
+"""What the whole environment costs the paper's reach: as bundled and with everything switched on, alternated.
 
 Run it with ``make bench-everything``. The ratio of the real-time factors is what counts.
 """
