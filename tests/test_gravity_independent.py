@@ -165,7 +165,7 @@ def test_what_the_bodies_of_a_jointed_robot_feel_adds_up(name: str) -> None:
     q[7:] = np.linspace(0.4, 1.6, model.nq - 7)
     effects = [field(8), oo.GravityGradient()]
     trace = oo.Simulation(
-        model, q, np.zeros(model.nv), orbit=oo.Numerical(*TYPICAL, environment=effects, earth=EARTH, mu=MU),
+        model, q, np.zeros(model.nv), orbit=oo.Numerical(*TYPICAL, environment=effects[:1], earth=EARTH, mu=MU),
         earth=EARTH, environment=effects, time_step=0.1, record_wrenches=True,
     ).run(0.1)  # fmt: skip
     poses = [model.frame_pose(q, body.name) for body in model.bodies]
