@@ -163,10 +163,10 @@ def test_what_the_bodies_of_a_jointed_robot_feel_adds_up(name: str) -> None:
     q = model.neutral()
     q[3:7] = np.array([0.3, -0.2, 0.5, 0.7]) / np.linalg.norm([0.3, -0.2, 0.5, 0.7])
     q[7:] = np.linspace(0.4, 1.6, model.nq - 7)
-    gravity = field(8)
+    own = field(8)
     trace = oo.Simulation(
-        model, q, np.zeros(model.nv), orbit=oo.Numerical(*TYPICAL, environment=[gravity], earth=EARTH, mu=MU),
-        earth=EARTH, environment=[gravity, oo.GravityGradient()], time_step=0.1, record_wrenches=True,
+        model, q, np.zeros(model.nv), orbit=oo.Numerical(*TYPICAL, environment=[own], earth=EARTH, mu=MU),
+        earth=EARTH, environment=[own, oo.GravityGradient()], time_step=0.1, record_wrenches=True,
     ).run(0.1)  # fmt: skip
     poses = [model.frame_pose(q, body.name) for body in model.bodies]
     arms = np.array(
