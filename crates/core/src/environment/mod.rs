@@ -20,6 +20,7 @@ pub use drag::Drag;
 pub use error::{EnvironmentError, Place};
 pub use gravity_gradient::GravityGradient;
 pub use radiation_pressure::{RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX};
+pub(crate) use scene::center_of_mass;
 pub use scene::{Anchor, BodyState, Reference, Scene, Wrench};
 pub use shadow::sunlit;
 

@@ -1,7 +1,7 @@
 //! The push of sunlight.
 
 use super::shadow::sunlit;
-use super::surfaces::{SurfaceError, Surfaces};
+use super::surfaces::{SurfaceError, Surfaces, not_negative};
 use super::{Effect, EnvironmentError, Scene, Wrench};
 use crate::spatial::{Fused, InstructionSet, Scalar};
 use nalgebra::Vector3;
@@ -50,7 +50,7 @@ impl RadiationPressure {
     /// # Errors
     /// [`SurfaceError::Value`] where one is negative or not finite, or the radius below 100 km.
     pub fn check(flux: f64, earth_radius: f64) -> Result<(), SurfaceError> {
-        at_least_zero("flux", flux).and(a_planets(earth_radius)).map(drop)
+        not_negative("flux", flux).and(a_planets(earth_radius)).map(drop)
     }
 
     /// The light at `r`, with the Sun at `sun`, both from the Earth's centre, m.
@@ -68,7 +68,7 @@ impl RadiationPressure {
     /// # Errors
     /// [`SurfaceError::Value`] where it is negative or not finite.
     pub fn with_flux(self, flux: f64) -> Result<Self, SurfaceError> {
-        Ok(Self { flux: at_least_zero("flux", flux)?, ..self })
+        Ok(Self { flux: not_negative("flux", flux)?, ..self })
     }
 
     /// The same with a shadow cast by an Earth of this radius, m; without shadow if none.
@@ -86,13 +86,6 @@ impl RadiationPressure {
 struct Light {
     to_sun: Vector3<f64>,
     pressure: f64,
-}
-
-fn at_least_zero(name: &'static str, value: f64) -> Result<f64, SurfaceError> {
-    if value.is_finite() && value >= 0.0 {
-        return Ok(value);
-    }
-    Err(SurfaceError::Value { name, value, expected: "a finite number of at least 0" })
 }
 
 fn a_planets(radius: f64) -> Result<f64, SurfaceError> {

@@ -142,12 +142,17 @@ impl<'a> Scene<'a> {
         if planet.gravity.is_point_mass() {
             return Ok(None);
         }
-        let moment: Vector3<f64> = self.bodies.iter().map(|body| body.com * body.mass).sum();
-        let com = moment / self.bodies.iter().map(|body| body.mass).sum::<f64>();
+        let com = center_of_mass(self.bodies);
         let now = Station { time: self.time, origin: planet.reference.position, com };
         let Anchor { time, com, origin } = self.anchor;
         Ok(planet.gravity.nearby(&now, &Station { time, origin, com }, differs)?)
     }
+}
+
+/// Centre of mass of a robot in `W`, m: `c = Σ mₖ cₖ / Σ mₖ`.
+pub(crate) fn center_of_mass(bodies: &[BodyState]) -> Vector3<f64> {
+    let moment: Vector3<f64> = bodies.iter().map(|body| body.com * body.mass).sum();
+    moment / bodies.iter().map(|body| body.mass).sum::<f64>()
 }
 
 /// The planet of a scene, as one effect sees it.

@@ -5,7 +5,9 @@ use super::plant::World;
 use super::rereference::{OwnReference, Shift};
 use crate::dynamics::{Data, base_rotation};
 use crate::earth::Earth;
-use crate::environment::{Anchor, BodyState, DifferentialGravity, Effect, Reference, Scene, Wrench};
+use crate::environment::{
+    Anchor, BodyState, DifferentialGravity, Effect, Reference, Scene, Wrench, center_of_mass,
+};
 use crate::gravity::Gravity;
 use crate::model::{Model, Node};
 use crate::orbit::{Numerical, Orbit, OrbitState};
@@ -119,9 +121,7 @@ impl Surroundings {
     /// Where the step being integrated began: at the first look at it.
     fn begin_step(&mut self, t: f64, interval: (f64, f64), reference: Option<&OrbitState>) {
         if self.step.0 != interval {
-            // c = Σ mₖ cₖ / Σ mₖ
-            let moment: Vector3<f64> = self.bodies.iter().map(|body| body.com * body.mass).sum();
-            let com = moment / self.bodies.iter().map(|body| body.mass).sum::<f64>();
+            let com = center_of_mass(&self.bodies);
             let origin = reference.map_or_else(Vector3::zeros, |state| state.position);
             self.step = (interval, Anchor { time: t, com, origin });
         }
@@ -150,7 +150,9 @@ impl Surroundings {
         effects: Range<usize>,
     ) -> Result<(), SimulationError> {
         self.wrenches.fill(Wrench::default());
-        self.shared.fill(Wrench::default());
+        if self.is_carried {
+            self.shared.fill(Wrench::default());
+        }
         let falls_freely = self.falls_freely();
         let reference =
             reference.map(|state| Reference { state, gravity: self.gravity.as_deref(), falls_freely });

@@ -82,7 +82,7 @@ pub enum SurfaceError {
 }
 
 /// `value` if it is at least zero and finite.
-pub(super) fn not_negative(name: &'static str, value: f64) -> Result<f64, SurfaceError> {
+pub(in crate::environment) fn not_negative(name: &'static str, value: f64) -> Result<f64, SurfaceError> {
     if value.is_finite() && value >= 0.0 {
         return Ok(value);
     }

@@ -9,4 +9,5 @@ mod part;
 
 pub use covering::{Covering, Surface, Surfaces};
 pub use error::SurfaceError;
+pub(super) use error::not_negative;
 pub use part::{Optics, Part};
