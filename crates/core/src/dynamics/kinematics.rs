@@ -31,7 +31,7 @@ pub fn kinematics<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) 
 
 #[inline(always)]
 pub(super) fn positions_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
-    walk(model, data, q, |_, _, _, _| {});
+    walk(model, data, q, |_| Motion::zero(), |_, _, _| Motion::zero());
 }
 
 #[inline(always)]
@@ -44,41 +44,60 @@ pub(crate) fn kinematics_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &
         data,
         q,
         #[inline(always)]
-        |k, parent, body, _| {
-            body.velocity = body.subspace.scale_add(rates[k], parent.velocity);
+        |body| body.velocity,
+        #[inline(always)]
+        |k, velocity, body| {
+            body.velocity = body.subspace.scale_add(rates[k], velocity);
+            body.velocity
         },
     );
 }
 
-/// Outward over the tree: places each body, then hands it to `visit` with its parent.
+/// What a body must know of the one that carries it.
+#[derive(Clone, Copy)]
+struct Carrier<S> {
+    rot_bk: Mat3<S>,
+    pos_b: Vec3<S>,
+    velocity: Motion<S>,
+}
+
+/// Outward over the tree: places each body, then hands it to `visit` with its parent's velocity.
+///
+/// Most bodies hang on the one before them, whose pose is then passed on without a way through memory.
 #[inline(always)]
 fn walk<S: Real>(
     model: &Model,
     data: &mut Data<S>,
     q: &[S],
-    mut visit: impl FnMut(usize, &BodyData<S>, &mut BodyData<S>, &Node),
+    velocity: impl Fn(&BodyData<S>) -> Motion<S>,
+    mut visit: impl FnMut(usize, Motion<S>, &mut BodyData<S>) -> Motion<S>,
 ) {
     let nodes = model.nodes();
-    let bodies = &mut data.bodies[..nodes.len()];
+    let Data { bodies, turns } = data;
+    let bodies = &mut bodies[..nodes.len()];
+    let (turns, q) = (&mut turns[..nodes.len()], &q[6..nodes.len() + 6]);
+    S::sin_cos_each(&q[1..], &mut turns[1..]);
     place_inertia(&nodes[0], &mut bodies[0]);
+    let look = |body: &BodyData<S>| Carrier { rot_bk: body.rot_bk, pos_b: body.pos_b, velocity: velocity(body) };
+    let mut previous = look(&bodies[0]);
     for k in 1..nodes.len() {
         let (done, rest) = bodies.split_at_mut(k);
         let (node, body) = (&nodes[k], &mut rest[0]);
-        let parent = &done[node.parent];
-        place(node, parent, body, q[k + 6]);
+        let parent = if node.parent + 1 == k { previous } else { look(&done[node.parent]) };
+        place(node, &parent, body, q[k], turns[k]);
         place_inertia(node, body);
-        visit(k, parent, body, node);
+        let velocity = visit(k, parent.velocity, body);
+        previous = Carrier { rot_bk: body.rot_bk, pos_b: body.pos_b, velocity };
     }
 }
 
 /// Pose of a body from its parent's: `R_bk = R_bp R_pk Rz(q)`, and its motion subspace.
 #[inline(always)]
-fn place<S: Real>(node: &Node, parent: &BodyData<S>, body: &mut BodyData<S>, q: S) {
+fn place<S: Real>(node: &Node, parent: &Carrier<S>, body: &mut BodyData<S>, q: S, (s, c): (S, S)) {
     let tree = parent.rot_bk * Mat3::of(&node.rot_pk);
     let pos = parent.rot_bk * Vec3::of(&node.pos_pk) + parent.pos_b;
     match node.axis {
         Axis::Revolute => {
-            let (s, c) = q.sin_cos();
             let x = tree.x.scale_add(c, tree.y * s);
             let y = tree.y.scale_add(c, -(tree.x * s));
             body.rot_bk = Mat3::from_columns(x, y, tree.z);
