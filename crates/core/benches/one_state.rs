@@ -9,8 +9,8 @@ mod common;
 use common::torso;
 use onorbit_core::control::{ComputedTorque, ControlLaw};
 use onorbit_core::dynamics::{
-    Data, FreeFloating, bias_forces, forward_dynamics, frame_drift, frame_jacobian, frame_pose, free_floating,
-    inverse_dynamics, kinematics, mass_matrix, positions,
+    Data, FreeFloating, bias_forces, forward_dynamics, frame_drift, frame_jacobian, frame_pose,
+    free_floating, inverse_dynamics, kinematics, mass_matrix, positions,
 };
 use onorbit_core::environment::GravityGradient;
 use onorbit_core::model::{Model, neutral, urdf::from_file};
@@ -67,13 +67,18 @@ fn kernels<S: Real>(model: &Model, rounds: usize) {
     let space = || (Data::<S>::new(model), vec![S::of(0.0); nv * nv]);
     let mut jobs: Vec<Job<'_>> = Vec::new();
     let (mut data, mut out) = space();
-    jobs.push(("kinematics", Box::new(move || timed(|k| kinematics(model, &mut data, black_box(&q[k]), &v[k])))));
+    jobs.push((
+        "kinematics",
+        Box::new(move || timed(|k| kinematics(model, &mut data, black_box(&q[k]), &v[k]))),
+    ));
     let States { q, v, .. } = States::<S>::new(model);
     let mut data = Data::<S>::new(model);
     jobs.push((
         "aba",
         Box::new(move || {
-            timed(|k| forward_dynamics(model, &mut data, black_box(&q[k]), &v[k], &tau[k], &[], &mut out[..nv]))
+            timed(|k| {
+                forward_dynamics(model, &mut data, black_box(&q[k]), &v[k], &tau[k], &[], &mut out[..nv])
+            })
         }),
     ));
     let States { q, v, tau: a } = States::<S>::new(model);
@@ -88,7 +93,9 @@ fn kernels<S: Real>(model: &Model, rounds: usize) {
     let (mut data, mut out) = space();
     jobs.push((
         "bias",
-        Box::new(move || timed(|k| bias_forces(model, &mut data, black_box(&q[k]), &v[k], &[], &mut out[..nv]))),
+        Box::new(move || {
+            timed(|k| bias_forces(model, &mut data, black_box(&q[k]), &v[k], &[], &mut out[..nv]))
+        }),
     ));
     let States { q, .. } = States::<S>::new(model);
     let (mut data, mut out) = space();
@@ -113,7 +120,9 @@ fn kernels<S: Real>(model: &Model, rounds: usize) {
     jobs.push((
         "reduced",
         Box::new(move || {
-            timed(|k| free_floating(model, &mut data, black_box(&q[k]), &v[k], tool, &[], black_box(&mut out)))
+            timed(|k| {
+                free_floating(model, &mut data, black_box(&q[k]), &v[k], tool, &[], black_box(&mut out))
+            })
         }),
     ));
     print(jobs, rounds);

@@ -44,7 +44,7 @@ pub struct BodyData<S> {
 pub struct Data<S> {
     /// One entry per body, base first.
     pub bodies: Vec<BodyData<S>>,
-    /// Sine and cosine of each joint's position, that of the base's first unused. Set by [`positions`](super::positions).
+    /// Sine and cosine of each joint's position. Set by [`positions`](super::positions).
     pub turns: Vec<(S, S)>,
 }
 
@@ -69,7 +69,7 @@ impl<S: Real> Data<S> {
             drive: S::of(0.0),
         };
         let (n, o) = (model.nodes().len(), S::of(0.0));
-        Self { bodies: vec![body; n], turns: vec![(o, o); n] }
+        Self { bodies: vec![body; n], turns: vec![(o, o); n - 1] }
     }
 
     /// Takes all external wrenches away.

@@ -1,6 +1,7 @@
 //! Where the bodies are and how they move.
 
 use super::data::{BodyData, Data};
+use super::walk::outward;
 use crate::model::{Axis, Frame, Model, Node};
 use crate::spatial::{Mat3, Motion, Quat, Real, SpatialInertia, Sym3, Vec3};
 
@@ -31,71 +32,55 @@ pub fn kinematics<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) 
 
 #[inline(always)]
 pub(super) fn positions_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
-    walk(model, data, q, |_| Motion::zero(), |_, _, _| Motion::zero());
+    let (nodes, n) = (model.nodes(), model.joint_count());
+    let Data { bodies, turns } = data;
+    let (turns, q) = (&mut turns[..n], &q[7..n + 7]);
+    S::sin_cos_each(q, turns);
+    place_inertia(&nodes[0], &mut bodies[0]);
+    outward(
+        nodes,
+        bodies,
+        #[inline(always)]
+        |body| (body.rot_bk, body.pos_b),
+        #[inline(always)]
+        |k, node, body, parent| {
+            place(node, parent, body, q[k - 1], turns[k - 1]);
+            place_inertia(node, body);
+            (body.rot_bk, body.pos_b)
+        },
+    );
 }
 
 #[inline(always)]
 pub(crate) fn kinematics_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) {
+    positions_kernel(model, data, q);
     data.bodies[0].velocity = Motion::from_slice(v);
-    let rates = &v[5..];
-    // v_k = v_p + S q̇
-    walk(
-        model,
-        data,
-        q,
+    let rates = &v[5..model.nodes().len() + 5];
+    outward(
+        model.nodes(),
+        &mut data.bodies,
         #[inline(always)]
         |body| body.velocity,
         #[inline(always)]
-        |k, velocity, body| {
+        |k, _, body, velocity| {
+            // v_k = v_p + S q̇
             body.velocity = body.subspace.scale_add(rates[k], velocity);
             body.velocity
         },
     );
 }
 
-/// What a body must know of the one that carries it.
-#[derive(Clone, Copy)]
-struct Carrier<S> {
-    rot_bk: Mat3<S>,
-    pos_b: Vec3<S>,
-    velocity: Motion<S>,
-}
-
-/// Outward over the tree: places each body, then hands it to `visit` with its parent's velocity.
-///
-/// Most bodies hang on the one before them, whose pose is then passed on without a way through memory.
-#[inline(always)]
-fn walk<S: Real>(
-    model: &Model,
-    data: &mut Data<S>,
-    q: &[S],
-    velocity: impl Fn(&BodyData<S>) -> Motion<S>,
-    mut visit: impl FnMut(usize, Motion<S>, &mut BodyData<S>) -> Motion<S>,
-) {
-    let nodes = model.nodes();
-    let Data { bodies, turns } = data;
-    let bodies = &mut bodies[..nodes.len()];
-    let (turns, q) = (&mut turns[..nodes.len()], &q[6..nodes.len() + 6]);
-    S::sin_cos_each(&q[1..], &mut turns[1..]);
-    place_inertia(&nodes[0], &mut bodies[0]);
-    let look = |body: &BodyData<S>| Carrier { rot_bk: body.rot_bk, pos_b: body.pos_b, velocity: velocity(body) };
-    let mut previous = look(&bodies[0]);
-    for k in 1..nodes.len() {
-        let (done, rest) = bodies.split_at_mut(k);
-        let (node, body) = (&nodes[k], &mut rest[0]);
-        let parent = if node.parent + 1 == k { previous } else { look(&done[node.parent]) };
-        place(node, &parent, body, q[k], turns[k]);
-        place_inertia(node, body);
-        let velocity = visit(k, parent.velocity, body);
-        previous = Carrier { rot_bk: body.rot_bk, pos_b: body.pos_b, velocity };
-    }
-}
-
 /// Pose of a body from its parent's: `R_bk = R_bp R_pk Rz(q)`, and its motion subspace.
 #[inline(always)]
-fn place<S: Real>(node: &Node, parent: &Carrier<S>, body: &mut BodyData<S>, q: S, (s, c): (S, S)) {
-    let tree = parent.rot_bk * Mat3::of(&node.rot_pk);
-    let pos = parent.rot_bk * Vec3::of(&node.pos_pk) + parent.pos_b;
+fn place<S: Real>(
+    node: &Node,
+    (rot_bp, pos_bp): (Mat3<S>, Vec3<S>),
+    body: &mut BodyData<S>,
+    q: S,
+    (s, c): (S, S),
+) {
+    let tree = rot_bp * Mat3::of(&node.rot_pk);
+    let pos = rot_bp * Vec3::of(&node.pos_pk) + pos_bp;
     match node.axis {
         Axis::Revolute => {
             let x = tree.x.scale_add(c, tree.y * s);

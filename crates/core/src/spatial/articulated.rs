@@ -5,6 +5,7 @@ use super::mat3::Mat3;
 use super::motion::{Force, Motion};
 use super::scalar::Real;
 use super::sym3::Sym3;
+use std::ops::Add;
 
 /// A symmetric 6 × 6 operator `[[A, H], [Hᵀ, I]]`, linear first: twenty-one numbers.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,14 +57,6 @@ impl<S: Real> ArticulatedInertia<S> {
         }
     }
 
-    /// Adds another.
-    #[inline(always)]
-    pub fn accumulate(&mut self, o: &Self) {
-        self.linear += o.linear;
-        self.coupling += o.coupling;
-        self.angular += o.angular;
-    }
-
     /// `IA⁻¹ f` by block elimination: `v = A⁻¹ (f − H ω)`,
     /// `ω = (I − Hᵀ A⁻¹ H)⁻¹ (n − Hᵀ A⁻¹ f)`.
     #[inline(always)]
@@ -82,5 +75,17 @@ impl<S: Real> ArticulatedInertia<S> {
         let af = a * f.linear;
         let angular = schur.inverse() * (f.angular - h.transpose_mul(af));
         Motion::new(af - (x * angular.x + y * angular.y + z * angular.z), angular)
+    }
+}
+
+impl<S: Real> Add for ArticulatedInertia<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self {
+            linear: self.linear + o.linear,
+            coupling: self.coupling + o.coupling,
+            angular: self.angular + o.angular,
+        }
     }
 }
