@@ -25,6 +25,8 @@ pub struct BodyData<S> {
     pub outside: Force<S>,
     /// Spatial acceleration: velocity products alone, or all of it.
     pub acceleration: Motion<S>,
+    /// What of it joints and base add to the velocity products. Set by ABA where a tree forks.
+    pub response: Motion<S>,
     /// Force through its joint, or `I S`, or the bias of the articulated body.
     pub force: Force<S>,
     /// Inertia of the subtree, rigid. Set by CRBA and `free_floating`.
@@ -35,7 +37,7 @@ pub struct BodyData<S> {
     pub reach: Force<S>,
     /// `1 / (Sᵀ U + rotor)`. Set by ABA.
     pub inverse_pivot: S,
-    /// `τ − Sᵀ (pA + IA ζ)`, of a locked joint the torque that holds it. Set by ABA.
+    /// `τ − Sᵀ p`, of a locked joint the torque that holds it. Set by ABA.
     pub drive: S,
 }
 
@@ -61,6 +63,7 @@ impl<S: Real> Data<S> {
             external: Force::zero(),
             outside: Force::zero(),
             acceleration: Motion::zero(),
+            response: Motion::zero(),
             force: Force::zero(),
             composite: SpatialInertia::zero(),
             articulated: ArticulatedInertia::zero(),
