@@ -111,10 +111,10 @@ fn kernel<S: Real>(
         #[inline(always)]
         |k, node, body, carried| {
             // q̈ = (u − Uᵀ a_p)/D,  a = a_p + S q̈, beside that of no q̈
-            let held = carried.dot(body.reach);
-            let acceleration = (body.drive - held) * body.inverse_pivot;
+            let pull = body.reach * -body.inverse_pivot;
+            let acceleration = carried.dot_add(pull, body.drive * body.inverse_pivot);
             if is_locked(k) {
-                body.drive = held - body.drive; // λ = Uᵀ a_p − u
+                body.drive = carried.dot(body.reach) - body.drive; // λ = Uᵀ a_p − u
             }
             a[k + 5] = acceleration;
             let response = body.subspace.scale_add(acceleration, carried);

@@ -54,6 +54,12 @@ impl<S: Real> Vec3<S> {
         self.x.mul_add(o.x, self.y.mul_add(o.y, self.z * o.z))
     }
 
+    /// `self · o + s`.
+    #[inline(always)]
+    pub fn dot_add(self, o: Self, s: S) -> S {
+        self.x.mul_add(o.x, self.y.mul_add(o.y, self.z.mul_add(o.z, s)))
+    }
+
     /// Vector product.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
