@@ -92,7 +92,7 @@ impl OneByOne for Drag {
                     let w = group.vectors(|body| &body.angular_velocity) - spin;
                     let rot_wk = group.rot_wk::<S>();
                     let push = surface.blow(rot_wk.transpose_mul(v), rot_wk.transpose_mul(w));
-                    add_push(wrenches, push.turned(&rot_wk, density));
+                    add_push(wrenches, push.turned(&rot_wk) * density);
                 }
                 Ok(())
             },

@@ -143,7 +143,7 @@ impl OneByOne for RadiationPressure {
                     if light.pressure > 0.0 {
                         let rot_wk = group.rot_wk::<S>();
                         let push = surface.shine(rot_wk.transpose_mul(Vec3::of(&light.to_sun)));
-                        add_push(wrenches, push.turned(&rot_wk, S::of(light.pressure)));
+                        add_push(wrenches, push.turned(&rot_wk) * S::of(light.pressure));
                     }
                 }
                 Ok(())

@@ -11,10 +11,10 @@ pub(in crate::environment) struct Push<S> {
 }
 
 impl<S: Real> Push<S> {
-    /// In the axes that `rot` leads to, `s` times as strong.
+    /// In the axes that `rot` leads to.
     #[inline(always)]
-    pub(in crate::environment) fn turned(self, rot: &Mat3<S>, s: S) -> Self {
-        Self { force: *rot * (self.force * s), torque: *rot * (self.torque * s) }
+    pub(in crate::environment) fn turned(self, rot: &Mat3<S>) -> Self {
+        Self { force: *rot * self.force, torque: *rot * self.torque }
     }
 }
 
