@@ -92,7 +92,7 @@ fn kernel<S: Real>(
             body.drive = tau[k + 5] - body.subspace.dot(force);
             // Ia = IA − U Uᵀ/D,  pa = p + U u/D
             let yielding = body.reach * -body.inverse_pivot;
-            (articulated.add_outer(body.reach, yielding), yielding.scale_add(-body.drive, force))
+            (articulated.add_parallel(body.reach, yielding), yielding.scale_add(-body.drive, force))
         },
     );
 

@@ -1,5 +1,6 @@
 //! What the algorithms compute, allocated once per model.
 
+use super::kinematics::place_inertia;
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Force, Mat3, Motion, Real, SpatialInertia, Vec3};
 
@@ -72,7 +73,9 @@ impl<S: Real> Data<S> {
             drive: S::of(0.0),
         };
         let (n, o) = (model.nodes().len(), S::of(0.0));
-        Self { bodies: vec![body; n], turns: vec![(o, o); n - 1] }
+        let mut bodies = vec![body; n];
+        place_inertia(&model.nodes()[0], &mut bodies[0]);
+        Self { bodies, turns: vec![(o, o); n - 1] }
     }
 
     /// Takes all external wrenches away.
