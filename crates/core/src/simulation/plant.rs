@@ -148,9 +148,13 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
 
     /// Torques at the joints: `τ − b q̇ − f s` with `s` the direction of slip.
     pub(super) fn drive(&mut self, v: &[S]) {
+        self.forces[6..].copy_from_slice(&self.command);
+        if !self.is_lossy {
+            return;
+        }
         for (j, joint) in self.model.joints().iter().enumerate() {
             let drag = S::of(self.contacts.drag(j));
-            self.forces[j + 6] = self.command[j] - (v[j + 6] * S::of(joint.damping) + drag);
+            self.forces[j + 6] -= v[j + 6] * S::of(joint.damping) + drag;
         }
     }
 
