@@ -39,6 +39,13 @@ pub trait Real:
     /// The number in lane `i`.
     fn lane(self, i: usize) -> f64;
 
+    /// Puts `x` into lane `i`.
+    #[inline(always)]
+    fn set_lane(&mut self, i: usize, x: f64) {
+        let before = *self;
+        *self = Self::from_lanes(|lane| if lane == i { x } else { before.lane(lane) });
+    }
+
     /// `self · a + b`, fused where the type's instruction set does it in hardware.
     #[must_use]
     fn mul_add(self, a: Self, b: Self) -> Self;
