@@ -61,6 +61,14 @@ pub trait Real:
     /// Sine and cosine, rad. Errors below 1e-16 up to 1e5 rad.
     fn sin_cos(self) -> (Self, Self);
 
+    /// [`sin_cos`](Real::sin_cos) of many angles, the same bits: several at a time where there is room for it.
+    #[inline(always)]
+    fn sin_cos_each(angles: &[Self], out: &mut [(Self, Self)]) {
+        for (angle, out) in angles.iter().zip(out) {
+            *out = angle.sin_cos();
+        }
+    }
+
     /// Angle of the point `(x, self)`, rad.
     #[must_use]
     fn atan2(self, x: Self) -> Self;
