@@ -66,4 +66,9 @@ impl<const N: usize> Array<N> {
     pub(super) fn all(held: [bool; N]) -> bool {
         !held.contains(&false)
     }
+    /// Number `j` of array `i` becomes number `i` of array `j`.
+    #[inline(always)]
+    pub(super) fn transpose(rows: [Self; N]) -> [Self; N] {
+        std::array::from_fn(|j| Self::each(|i| rows[i].0[j]))
+    }
 }

@@ -5,7 +5,7 @@
 mod register;
 
 use super::fused::Fused;
-use super::scalar::{FAST_SINE_LIMIT, Real};
+use super::scalar::{FAST_SINE_LIMIT, Real, gather_one_by_one, scatter_one_by_one};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 macro_rules! lanes {
@@ -85,6 +85,43 @@ macro_rules! lanes {
                 let mut numbers = self.0.to_array();
                 numbers[i] = x;
                 self.0 = register::$register::from_array(numbers);
+            }
+            #[inline(always)]
+            fn gather(from: &[f64], place: impl Fn(usize) -> usize, to: &mut [Self]) {
+                let width = to.len();
+                if width < $width {
+                    return gather_one_by_one(from, place, to);
+                }
+                let mut block = [Self::default().0; $width];
+                for start in (0..width).step_by($width) {
+                    let start = start.min(width - $width); // the last block overlaps the one before
+                    for lane in 0..$width {
+                        let row = from[place(lane) + start..][..$width].try_into();
+                        block[lane] = register::$register::from_array(row.unwrap_or_default());
+                    }
+                    let columns = register::$register::transpose(block);
+                    for (to, column) in to[start..start + $width].iter_mut().zip(columns) {
+                        *to = Self(column);
+                    }
+                }
+            }
+            #[inline(always)]
+            fn scatter(from: &[Self], to: &mut [f64], count: usize, place: impl Fn(usize) -> usize) {
+                let width = from.len();
+                if width < $width {
+                    return scatter_one_by_one(from, to, count, place);
+                }
+                let mut block = [Self::default().0; $width];
+                for start in (0..width).step_by($width) {
+                    let start = start.min(width - $width);
+                    for (block, from) in block.iter_mut().zip(&from[start..start + $width]) {
+                        *block = from.0;
+                    }
+                    let rows = register::$register::transpose(block);
+                    for (lane, row) in rows.into_iter().enumerate().take(count) {
+                        to[place(lane) + start..][..$width].copy_from_slice(&row.to_array());
+                    }
+                }
             }
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
@@ -196,6 +233,21 @@ mod tests {
             assert_eq!(lanes.atan2(L::of(2.0)).lane(i), x(i).atan2(2.0));
         }
         assert!((-L::of(0.0)).lane(1).is_sign_negative() && (-L::of(-0.0)).lane(1).is_sign_positive());
+        // rows of every width, further apart than they are wide, and back
+        for width in 1..20 {
+            let rows: Vec<f64> = (0..L::LANES * 25).map(|i| i as f64).collect();
+            let (mut lanes, place) = (vec![L::of(0.0); width], |lane| 3 + 22 * lane);
+            L::gather(&rows, place, &mut lanes);
+            for (i, x) in lanes.iter().enumerate() {
+                assert!((0..L::LANES).all(|lane| x.lane(lane) == (place(lane) + i) as f64));
+            }
+            for count in 1..=L::LANES {
+                let mut back = vec![-1.0; rows.len()];
+                L::scatter(&lanes, &mut back, count, place);
+                let is_written = |i: usize| i >= 3 && (i - 3) / 22 < count && (i - 3) % 22 < width;
+                assert!((0..rows.len()).all(|i| back[i] == if is_written(i) { i as f64 } else { -1.0 }));
+            }
+        }
         let far = L::from_lanes(|i| if i == 1 { 3.0e7 } else { 0.5 });
         assert_eq!(far.sin_cos().0.lane(1), 3.0e7_f64.sin());
     }

@@ -97,3 +97,55 @@ register!(
     abs x86::_mm512_abs_pd(a), less x86::_mm512_cmp_pd_mask::<{ x86::_CMP_LT_OQ }>(a, b),
     select(held) x86::_mm512_mask_blend_pd(held, b, a), any held != 0, all held == u8::MAX
 );
+
+impl Four {
+    /// Lane `j` of register `i` becomes lane `i` of register `j`.
+    #[inline(always)]
+    pub(super) fn transpose(rows: [Self; 4]) -> [Self; 4] {
+        let [a, b, c, d] = rows.map(|row| row.0);
+        // SAFETY: as above.
+        let columns = unsafe {
+            use x86::{
+                _mm256_permute2f128_pd as halves, _mm256_unpackhi_pd as odd, _mm256_unpacklo_pd as even,
+            };
+            let (ab, cd) = ((even(a, b), odd(a, b)), (even(c, d), odd(c, d)));
+            [
+                halves::<0x20>(ab.0, cd.0),
+                halves::<0x20>(ab.1, cd.1),
+                halves::<0x31>(ab.0, cd.0),
+                halves::<0x31>(ab.1, cd.1),
+            ]
+        };
+        columns.map(Self)
+    }
+}
+
+impl Eight {
+    /// Lane `j` of register `i` becomes lane `i` of register `j`.
+    #[inline(always)]
+    pub(super) fn transpose(rows: [Self; 8]) -> [Self; 8] {
+        let [a, b, c, d, e, f, g, h] = rows.map(|row| row.0);
+        // SAFETY: as above.
+        let columns = unsafe {
+            use x86::{_mm512_shuffle_f64x2 as pairs, _mm512_unpackhi_pd as odd, _mm512_unpacklo_pd as even};
+            // pairs of lanes 0, 2 (0x88) or 1, 3 (0xdd) of both
+            let (ab, cd, ef, gh) = (even(a, b), even(c, d), even(e, f), even(g, h));
+            let (x0, x2) = (pairs::<0x88>(ab, cd), pairs::<0xdd>(ab, cd));
+            let (y0, y2) = (pairs::<0x88>(ef, gh), pairs::<0xdd>(ef, gh));
+            let (ab, cd, ef, gh) = (odd(a, b), odd(c, d), odd(e, f), odd(g, h));
+            let (x1, x3) = (pairs::<0x88>(ab, cd), pairs::<0xdd>(ab, cd));
+            let (y1, y3) = (pairs::<0x88>(ef, gh), pairs::<0xdd>(ef, gh));
+            [
+                pairs::<0x88>(x0, y0),
+                pairs::<0x88>(x1, y1),
+                pairs::<0x88>(x2, y2),
+                pairs::<0x88>(x3, y3),
+                pairs::<0xdd>(x0, y0),
+                pairs::<0xdd>(x1, y1),
+                pairs::<0xdd>(x2, y2),
+                pairs::<0xdd>(x3, y3),
+            ]
+        };
+        columns.map(Self)
+    }
+}
