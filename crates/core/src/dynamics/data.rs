@@ -73,7 +73,10 @@ impl<S: Real> Data<S> {
     }
 
     /// Takes all external wrenches away.
+    #[inline(always)]
     pub fn clear_external(&mut self) {
-        self.bodies.iter_mut().for_each(|body| body.external = Force::zero());
+        for body in &mut self.bodies {
+            body.external = Force::zero();
+        }
     }
 }
