@@ -12,6 +12,7 @@ mod gravity;
 mod kernels;
 mod model;
 mod orbit;
+mod output;
 mod propagate;
 mod records;
 mod reference;

@@ -6,7 +6,7 @@ use crate::dynamics::{
     momentum, positions,
 };
 use crate::model::{Model, difference, integrate};
-use crate::spatial::{Force, Real, Vec3, pose_rows};
+use crate::spatial::{Force, Real, pose_rows};
 
 /// What to compute from a state; frames by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,14 +50,6 @@ pub(super) struct Work<S> {
 impl<S: Real> Work<S> {
     pub(super) fn new(model: &Model) -> Self {
         Self { data: Data::new(model), reduced: FreeFloating::new(model), external: Vec::new() }
-    }
-
-    pub(super) fn set_external(&mut self, external: &[FrameWrench<f64>]) {
-        self.external.clear();
-        self.external.extend(external.iter().map(|w| FrameWrench {
-            frame: w.frame,
-            wrench: Force::new(Vec3::of(&w.wrench.linear), Vec3::of(&w.wrench.angular)),
-        }));
     }
 }
 

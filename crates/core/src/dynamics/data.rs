@@ -28,7 +28,7 @@ pub struct BodyData<S> {
     pub acceleration: Motion<S>,
     /// What of it joints and base add to the velocity products. Set by ABA where a tree forks.
     pub response: Motion<S>,
-    /// Force through its joint, or `I S`, or the bias of the articulated body.
+    /// Force through its joint, or `I S`, or the bias of the articulated body (of a locked joint).
     pub force: Force<S>,
     /// Inertia of the subtree, rigid. Set by CRBA and `free_floating`.
     pub composite: SpatialInertia<S>,
@@ -79,7 +79,10 @@ impl<S: Real> Data<S> {
     }
 
     /// Takes all external wrenches away.
+    #[inline(always)]
     pub fn clear_external(&mut self) {
-        self.bodies.iter_mut().for_each(|body| body.external = Force::zero());
+        for body in &mut self.bodies {
+            body.external = Force::zero();
+        }
     }
 }
