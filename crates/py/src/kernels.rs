@@ -27,6 +27,21 @@ pub(crate) struct PyFreeFloating {
     drift: Py<PyAny>,
 }
 
+/// Derivatives of the reduced model at given joint accelerations, tangent of ``q`` as in ``Model.integrate``.
+#[pyclass(name = "FreeFloatingDerivatives", frozen, get_all, module = "onorbit_rs")]
+pub(crate) struct PyFreeFloatingDerivatives {
+    /// `∂τ/∂q` of `τ = M* q̈ + c* - Q*`, (n, nv) or (B, n, nv).
+    torque_dq: Py<PyAny>,
+    /// `∂τ/∂v`, (n, nv) or (B, n, nv).
+    torque_dv: Py<PyAny>,
+    /// `∂ẍ/∂q` of `ẍ = Jg q̈ + d`, (6, nv) or (B, 6, nv), rows in W axes, linear first.
+    acceleration_dq: Py<PyAny>,
+    /// `∂ẍ/∂v`, (6, nv) or (B, 6, nv), rows in W axes.
+    acceleration_dv: Py<PyAny>,
+    /// `∂ẋ/∂q` of the frame's twist `ẋ = J v`, (6, nv) or (B, 6, nv), rows in W axes.
+    velocity_dq: Py<PyAny>,
+}
+
 /// Computes `kernel`; `shapes` are the trailing shapes of its outputs.
 pub(crate) fn evaluate<'py>(
     py: Python<'py>,
@@ -109,4 +124,27 @@ pub(crate) fn free_floating<'py>(
     let mut out = evaluate(py, model, kernel, state, external, &shapes, threads)?.into_iter();
     let mut next = || out.next().map_or_else(|| py.None(), |array| array.into_any().unbind());
     Ok(PyFreeFloating { inertia: next(), bias: next(), external: next(), jacobian: next(), drift: next() })
+}
+
+/// The derivatives of the reduced model with their arrays.
+pub(crate) fn free_floating_derivatives<'py>(
+    py: Python<'py>,
+    model: &PyModel,
+    frame: usize,
+    state: &[&Bound<'py, PyAny>],
+    external: Option<&Bound<'py, PyDict>>,
+    threads: Option<Count>,
+) -> PyResult<PyFreeFloatingDerivatives> {
+    let (n, nv) = (model.model.joint_count(), model.model.nv());
+    let shapes: [&[usize]; 5] = [&[n, nv], &[n, nv], &[6, nv], &[6, nv], &[6, nv]];
+    let kernel = Kernel::FreeFloatingDerivatives(frame);
+    let mut out = evaluate(py, model, kernel, state, external, &shapes, threads)?.into_iter();
+    let mut next = || out.next().map_or_else(|| py.None(), |array| array.into_any().unbind());
+    Ok(PyFreeFloatingDerivatives {
+        torque_dq: next(),
+        torque_dv: next(),
+        acceleration_dq: next(),
+        acceleration_dv: next(),
+        velocity_dq: next(),
+    })
 }

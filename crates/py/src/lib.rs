@@ -59,6 +59,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<records::PyBody>()?;
     m.add_class::<records::PyFrame>()?;
     m.add_class::<kernels::PyFreeFloating>()?;
+    m.add_class::<kernels::PyFreeFloatingDerivatives>()?;
     m.add_class::<builder::PyModelBuilder>()?;
     m.add_class::<orbit::PyOrbit>()?;
     m.add_class::<orbit::PyKepler>()?;

@@ -2,7 +2,9 @@
 
 use crate::arrays::{Count, array_of, fixed};
 use crate::errors::{IntoPython, fields, raise};
-use crate::kernels::{PyFreeFloating, evaluate, free_floating};
+use crate::kernels::{
+    PyFreeFloating, PyFreeFloatingDerivatives, evaluate, free_floating, free_floating_derivatives,
+};
 use crate::records::{self, PyBody, PyFrame, PyJoint, PyVisual};
 use crate::xacro::from_xacro;
 use nalgebra::Matrix3;
@@ -11,7 +13,7 @@ use onorbit_core::batch::{Evaluator, Kernel};
 use onorbit_core::model::urdf::{self, UrdfProblem};
 use onorbit_core::model::{Model, neutral};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{PyDict, PyString, PyTuple};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
@@ -303,6 +305,39 @@ impl PyModel {
         self.one(py, Kernel::ForwardDynamics, &[q, v, tau], external, &[self.model.nv()], threads)
     }
 
+    /// Derivatives of :meth:`inverse_dynamics` with respect to ``q``, ``v``, ``a``: three arrays (nv, nv).
+    ///
+    /// Column ``j`` of the first is the rate along ``integrate(q, eps * e_j)``: the base's shifts, m, and turns, rad, in
+    /// its own axes, then the joints. The third is the mass matrix. ``external`` stays constant in the axes of its frames.
+    #[pyo3(signature = (q, v, a, *, external=None, threads=None))]
+    fn inverse_dynamics_derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        a: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<Count>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        self.three(py, Kernel::InverseDynamicsDerivatives, &[q, v, a], external, threads)
+    }
+
+    /// Derivatives of :meth:`forward_dynamics` with respect to ``q``, ``v``, ``tau``: three arrays (nv, nv).
+    ///
+    /// Tangent and wrenches as in :meth:`inverse_dynamics_derivatives`; the third is the inverse mass matrix.
+    #[pyo3(signature = (q, v, tau, *, external=None, threads=None))]
+    fn forward_dynamics_derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        tau: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<Count>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        self.three(py, Kernel::ForwardDynamicsDerivatives, &[q, v, tau], external, threads)
+    }
+
     /// Linear momentum and angular momentum about the system's centre of mass: (6,), W axes, kg m/s and kg m²/s.
     #[pyo3(signature = (q, v, *, threads=None))]
     fn momentum<'py>(
@@ -325,7 +360,7 @@ impl PyModel {
         threads: Option<Count>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let energy = self.one(py, Kernel::KineticEnergy, &[q, v], None, &[], threads)?;
-        energy.call_method1("__getitem__", (pyo3::types::PyTuple::empty(py),))
+        energy.call_method1("__getitem__", (PyTuple::empty(py),))
     }
 
     /// Centre of mass in W: (3,), m.
@@ -353,6 +388,25 @@ impl PyModel {
         free_floating(py, self, self.frame(frame)?, &[q, v], external, threads)
     }
 
+    /// Derivatives of ``M* q̈ + c* - Q*``, ``ẍ = Jg q̈ + d`` and ``ẋ`` at given joint accelerations (n,).
+    ///
+    /// Tangent and wrenches as in :meth:`inverse_dynamics_derivatives`. With ``q̈ = 0`` those of ``c* - Q*`` and ``d``;
+    /// with respect to ``q̈`` they are ``M*`` and ``Jg``, that of ``ẋ`` with respect to ``v`` is :meth:`frame_jacobian`.
+    #[pyo3(signature = (q, v, joint_acceleration, frame, *, external=None, threads=None))]
+    fn free_floating_derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        joint_acceleration: Any<'_, 'py>,
+        frame: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<Count>,
+    ) -> PyResult<PyFreeFloatingDerivatives> {
+        let state = [q, v, joint_acceleration];
+        free_floating_derivatives(py, self, self.frame(frame)?, &state, external, threads)
+    }
+
     fn __repr__(&self) -> String {
         let m = &self.model;
         format!(
@@ -378,5 +432,19 @@ impl PyModel {
     ) -> PyResult<Array<'py>> {
         let mut outputs = evaluate(py, self, kernel, values, external, &[shape], threads)?;
         Ok(outputs.swap_remove(0))
+    }
+
+    /// A kernel with three outputs of shape (nv, nv).
+    fn three<'py>(
+        &self,
+        py: Python<'py>,
+        kernel: Kernel,
+        values: &[Any<'_, 'py>],
+        external: External<'_, 'py>,
+        threads: Option<Count>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let nv = self.model.nv();
+        let square: &[usize] = &[nv, nv];
+        PyTuple::new(py, evaluate(py, self, kernel, values, external, &[square; 3], threads)?)
     }
 }

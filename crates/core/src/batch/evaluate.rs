@@ -92,11 +92,11 @@ impl Evaluator {
 fn check(kernel: Kernel, model: &Model, inputs: &[Rows<'_>]) -> Result<(), InputError> {
     let count = inputs[0].data.len() / inputs[0].width.max(1);
     for (name, rows) in kernel.inputs().iter().zip(inputs) {
-        let expected = if name.starts_with('q') { model.nq() } else { model.nv() };
+        let expected = Kernel::width(name, model);
         if rows.width != expected {
             return Err(InputError::WrongLength { name, expected, got: rows.width });
         }
-        let got = rows.data.len() / expected;
+        let got = rows.data.len().checked_div(expected).unwrap_or(count); // a robot may have no joints
         if got != count {
             return Err(InputError::WrongBatch { name, expected: count, got });
         }
@@ -110,11 +110,11 @@ fn check(kernel: Kernel, model: &Model, inputs: &[Rows<'_>]) -> Result<(), Input
 
 /// Refuses what forward dynamics makes of a mass matrix that is singular in this configuration.
 fn check_regular(kernel: Kernel, model: &Model, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
-    if kernel != Kernel::ForwardDynamics {
+    if !matches!(kernel, Kernel::ForwardDynamics | Kernel::ForwardDynamicsDerivatives) {
         return Ok(()); // no other kernel divides by what a joint feels
     }
     match outputs[0].iter().position(|x| !x.is_finite()) {
-        Some(index) => Err(InputError::Singular { state: index / model.nv() }),
+        Some(index) => Err(InputError::Singular { state: index / kernel.outputs(model)[0] }),
         None => Ok(()),
     }
 }
