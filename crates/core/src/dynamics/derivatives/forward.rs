@@ -6,7 +6,7 @@ use crate::dynamics::aba::forward_dynamics;
 use crate::dynamics::data::Data;
 use crate::dynamics::external::FrameWrench;
 use crate::model::Model;
-use crate::spatial::Real;
+use crate::spatial::{Real, Vec3};
 
 /// Derivatives of [`forward_dynamics`] with respect to `q`, `v` and `tau`, each row major `(nv, nv)`, row `i`
 /// that of `a_i`:
@@ -48,25 +48,29 @@ fn kernel<S: Real>(
         dv[i * nv..i * nv + 3].fill(S::of(0.0));
     }
     for j in 1..nodes.len() {
-        work.joint_columns(nodes, &data.bodies, j);
-        product(dtau, nv, &work.joint, |i, [x_q, x_v]| {
-            dq[i * nv + j + 5] = -x_q;
-            dv[i * nv + j + 5] = -x_v;
+        product(dtau, nv, work.joint_columns(nodes, &data.bodies, j), |i, x| {
+            dq[i * nv + j + 5] = -x[0];
+            dv[i * nv + j + 5] = -x[1];
         });
     }
-    work.base_columns();
-    product(dtau, nv, &work.base, |i, x| {
+    product(dtau, nv, work.base_columns(), |i, x| {
         for m in 0..3 {
             dv[i * nv + m + 3] = -x[m];
         }
     });
     // M⁻¹ M (v_b × e_m) = v_b × e_m: [[ω×, v×], [0, ω×]]
     let twist = data.bodies[0].velocity;
-    for (v, row, column) in [(twist.angular, 0, 0), (twist.linear, 0, 3), (twist.angular, 3, 3)] {
-        for (i, j, x) in [(0, 1, -v.z), (0, 2, v.y), (1, 0, v.z), (1, 2, -v.x), (2, 0, -v.y), (2, 1, v.x)] {
-            dv[(row + i) * nv + column + j] -= x;
-        }
-    }
+    subtract_cross(twist.angular, 0, 0, nv, dv);
+    subtract_cross(twist.linear, 0, 3, nv, dv);
+    subtract_cross(twist.angular, 3, 3, nv, dv);
+}
+
+/// Takes `v×` from a block of three rows and columns.
+#[inline(always)]
+fn subtract_cross<S: Real>(v: Vec3<S>, row: usize, column: usize, nv: usize, out: &mut [S]) {
+    let mut subtract = |i: usize, j: usize, x: S| out[(row + i) * nv + column + j] -= x;
+    (subtract(0, 1, -v.z), subtract(0, 2, v.y), subtract(1, 0, v.z));
+    (subtract(1, 2, -v.x), subtract(2, 0, -v.y), subtract(2, 1, v.x));
 }
 
 /// Rows of a product that are computed side by side, to keep their sums in registers.

@@ -1,13 +1,13 @@
 //! Derivatives of inverse dynamics.
 
-use super::terms::{Derivatives, components, unit_axes};
+use super::terms::{Derivatives, components};
 use crate::dynamics::crba::mass_matrix;
 use crate::dynamics::data::Data;
 use crate::dynamics::external::{FrameWrench, apply_external};
 use crate::dynamics::kinematics::kinematics;
 use crate::dynamics::rnea::inverse_dynamics_recursion;
 use crate::model::Model;
-use crate::spatial::{Motion, Real, Vec3};
+use crate::spatial::{Motion, Real};
 
 /// Derivatives of [`inverse_dynamics`](crate::dynamics::inverse_dynamics) with respect to `q`, `v` and `a`
 /// (the mass matrix), each row major `(nv, nv)`, row `i` that of `τ_i`.
@@ -40,26 +40,26 @@ fn kernel<S: Real>(model: &Model, data: &Data<S>, work: &mut Derivatives<S>, dq:
     dq.fill(S::of(0.0));
     dv.fill(S::of(0.0));
     for j in 1..nodes.len() {
-        work.joint_columns(nodes, &data.bodies, j);
-        for row in &work.joint {
+        for row in work.joint_columns(nodes, &data.bodies, j) {
             dq[row.index * nv + j + 5] = row.values[0];
             dv[row.index * nv + j + 5] = row.values[1];
         }
     }
-    work.base_columns();
-    for row in &work.base {
+    for row in work.base_columns() {
         dv[row.index * nv + 3..row.index * nv + 6].copy_from_slice(&row.values);
     }
     // ∂τ/∂v_b = 2B + M (v_b × e_m)
     let velocity = data.bodies[0].velocity;
-    for (m, axis) in unit_axes().into_iter().enumerate() {
-        for (j, unit) in [(m, Motion::new(axis, Vec3::zero())), (m + 3, Motion::new(Vec3::zero(), axis))] {
-            let carried = velocity.cross(unit);
-            let force = components(work.bodies[0].inertia.momentum(carried));
-            (0..6).for_each(|i| dv[i * nv + j] += force[i]);
-            for k in 1..nodes.len() {
-                dv[(k + 5) * nv + j] += carried.dot(work.bodies[k].reach);
-            }
+    for j in 0..6 {
+        let mut unit = [S::of(0.0); 6];
+        unit[j] = S::of(1.0);
+        let carried = velocity.cross(Motion::from_slice(&unit));
+        let force = components(work.bodies[0].inertia.momentum(carried));
+        for i in 0..6 {
+            dv[i * nv + j] += force[i];
+        }
+        for k in 1..nodes.len() {
+            dv[(k + 5) * nv + j] += carried.dot(work.bodies[k].reach);
         }
     }
 }

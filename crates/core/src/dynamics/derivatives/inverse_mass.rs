@@ -1,9 +1,9 @@
 //! The inverse of the mass matrix, from the articulated bodies that forward dynamics left.
 
-use super::terms::{Terms, components, unit_axes};
+use super::terms::{Terms, components};
 use crate::dynamics::data::BodyData;
 use crate::model::Node;
-use crate::spatial::{Force, Motion, Real, Vec3};
+use crate::spatial::{Force, Motion, Real};
 
 /// `M⁻¹`, row major `(nv, nv)`: column `j` is the acceleration that a unit of `τ_j` gives.
 ///
@@ -19,14 +19,16 @@ pub(super) fn inverse_mass<S: Real>(
 ) {
     let (nv, zero) = (nodes.len() + 5, S::of(0.0));
     let base = bodies[0].articulated.inverse();
-    for (j, axis) in unit_axes().into_iter().enumerate() {
-        for (j, unit) in [(j, Force::new(axis, Vec3::zero())), (j + 3, Force::new(Vec3::zero(), axis))] {
-            base_rows(base.apply(unit), nv, j, out);
-        }
+    for j in 0..6 {
+        let mut unit = [zero; 6];
+        unit[j] = S::of(1.0);
+        base_rows(base.apply(Force::from_slice(&unit)), nv, j, out);
     }
     for j in 1..nodes.len() {
         // u_j = 1,  P = U u/D;  of those that carry j: u = −Sᵀ P,  P ← P + U u/D
-        terms[1..j].iter_mut().for_each(|term| term.left = zero);
+        for term in &mut terms[1..j] {
+            term.left = zero;
+        }
         terms[j].left = S::of(1.0);
         let mut force = bodies[j].reach * bodies[j].inverse_pivot;
         let mut i = nodes[j].parent;
@@ -56,7 +58,8 @@ pub(super) fn inverse_mass<S: Real>(
 /// A twist as the base's rows of column `j`.
 #[inline(always)]
 fn base_rows<S: Real>(twist: Motion<S>, nv: usize, j: usize, out: &mut [S]) {
-    for (i, x) in components(Force::new(twist.linear, twist.angular)).into_iter().enumerate() {
-        out[i * nv + j] = x;
+    let rows = components(Force::new(twist.linear, twist.angular));
+    for i in 0..6 {
+        out[i * nv + j] = rows[i];
     }
 }

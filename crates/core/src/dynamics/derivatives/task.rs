@@ -51,22 +51,21 @@ fn kernel<S: Real>(
     let inverse = give_way(data, &work.force);
     work.gather(nodes, data);
     let point = Point::new(base_rotation(q), frame_origin_b(data, frame), data, frame.body);
-    for out in [&mut *torque_q, torque_v, acceleration_q, acceleration_v, velocity_q] {
-        out.fill(S::of(0.0));
-    }
+    let zero = S::of(0.0);
+    (torque_q.fill(zero), torque_v.fill(zero));
+    (acceleration_q.fill(zero), acceleration_v.fill(zero), velocity_q.fill(zero));
 
     for j in 1..nodes.len() {
-        work.joint_columns(nodes, &data.bodies, j);
-        // ∂a_b = −Mbb⁻¹ ∂τ_b
-        let (back_q, back_v) = (recoil(&inverse, &work.joint, 0), recoil(&inverse, &work.joint, 1));
-        for (k, term) in work.bodies.iter().enumerate().skip(1) {
-            // ∂τ_m + Mbmᵀ ∂a_b; ∂τ_m follows below
-            torque_q[(k - 1) * nv + j + 5] = back_q.dot(term.reach);
-            torque_v[(k - 1) * nv + j + 5] = back_v.dot(term.reach);
+        let rows = work.joint_columns(nodes, &data.bodies, j);
+        // ∂a_b = −Mbb⁻¹ ∂τ_b,  ∂τ_m + Mbmᵀ ∂a_b
+        let (back_q, back_v) = (recoil(&inverse, rows, 0), recoil(&inverse, rows, 1));
+        for row in &rows[6..] {
+            torque_q[(row.index - 6) * nv + j + 5] = row.values[0];
+            torque_v[(row.index - 6) * nv + j + 5] = row.values[1];
         }
-        for row in &work.joint[6..] {
-            torque_q[(row.index - 6) * nv + j + 5] += row.values[0];
-            torque_v[(row.index - 6) * nv + j + 5] += row.values[1];
+        for k in 1..nodes.len() {
+            torque_q[(k - 1) * nv + j + 5] += back_q.dot(work.bodies[k].reach);
+            torque_v[(k - 1) * nv + j + 5] += back_v.dot(work.bodies[k].reach);
         }
         let (term, subspace) = (&work.bodies[j], data.bodies[j].subspace);
         let (mut to_q, mut to_v) = (point.at(back_q), point.at(back_v));
@@ -81,11 +80,15 @@ fn kernel<S: Real>(
         point.write(acceleration_v, nv, j + 5, to_v);
     }
 
-    work.base_columns();
-    for (m, axis) in unit_axes().into_iter().enumerate() {
-        let back = recoil(&inverse, &work.base, m);
-        for (row, term) in work.base[6..].iter().zip(&work.bodies[1..]) {
-            torque_v[(row.index - 6) * nv + m + 3] = row.values[m] + back.dot(term.reach);
+    for m in 0..3 {
+        let axis = unit_axes()[m];
+        let rows = work.base_columns();
+        let back = recoil(&inverse, rows, m);
+        for row in &rows[6..] {
+            torque_v[(row.index - 6) * nv + m + 3] = row.values[m];
+        }
+        for k in 1..nodes.len() {
+            torque_v[(k - 1) * nv + m + 3] += back.dot(work.bodies[k].reach);
         }
         point.write(acceleration_v, nv, m + 3, point.at(back) + point.coriolis(axis));
         point.write(acceleration_q, nv, m + 3, turn(axis, point.acceleration));
@@ -151,8 +154,9 @@ impl<S: Real> Point<S> {
     #[inline(always)]
     fn write(&self, out: &mut [S], nv: usize, j: usize, m: Motion<S>) {
         let turned = Force::new(self.rot_wb * m.linear, self.rot_wb * m.angular);
-        for (i, x) in components(turned).into_iter().enumerate() {
-            out[i * nv + j] = x;
+        let rows = components(turned);
+        for i in 0..6 {
+            out[i * nv + j] = rows[i];
         }
     }
 }

@@ -8,10 +8,10 @@ use crate::spatial::{Coriolis, Force, Motion, Real, SpatialInertia, Vec3};
 #[derive(Clone, Debug)]
 pub struct Derivatives<S> {
     pub(super) bodies: Vec<Terms<S>>,
-    /// Rows of `∂τ/∂q_j` and `∂τ/∂q̇_j` that are not zero.
-    pub(super) joint: Vec<Row<S, 2>>,
-    /// Rows of `∂τ/∂v_j` for the base's three rates of turn.
-    pub(super) base: Vec<Row<S, 3>>,
+    /// Rows of `∂τ/∂q_j` and `∂τ/∂q̇_j` that are not zero come first.
+    joint: Vec<Row<S, 2>>,
+    /// Rows for the base's three rates of turn.
+    base: Vec<Row<S, 3>>,
     /// Generalized accelerations, `(nv,)`.
     pub(super) acceleration: Vec<S>,
     /// Generalized forces, `(nv,)`.
@@ -75,8 +75,8 @@ impl<S: Real> Derivatives<S> {
         let nv = model.nv();
         Self {
             bodies,
-            joint: Vec::with_capacity(nv),
-            base: Vec::with_capacity(nv),
+            joint: vec![Row { index: 0, values: [S::of(0.0); 2] }; nv],
+            base: vec![Row { index: 0, values: [S::of(0.0); 3] }; nv],
             acceleration: vec![S::of(0.0); nv],
             force: vec![S::of(0.0); nv],
         }
@@ -107,47 +107,55 @@ impl<S: Real> Derivatives<S> {
         }
     }
 
-    /// Puts `∂τ/∂q_j` and `∂τ/∂q̇_j` into `joint`: the base, the joints that carry `j`, and its subtree.
+    /// Rows of `∂τ/∂q_j` and `∂τ/∂q̇_j` that are not zero: of the base, the joints that carry `j`, its subtree.
     #[inline(always)]
-    pub(super) fn joint_columns(&mut self, nodes: &[Node], bodies: &[BodyData<S>], j: usize) {
+    pub(super) fn joint_columns(&mut self, nodes: &[Node], bodies: &[BodyData<S>], j: usize) -> &[Row<S, 2>] {
         let (term, subspace) = (&self.bodies[j], bodies[j].subspace);
         let two = S::of(2.0);
         let force_q = term.coriolis.apply(term.rate.angular)
             + term.inertia.momentum(term.rate2)
             + subspace.cross_force(term.force);
         let force_v = term.coriolis.apply(subspace.angular) + term.inertia.momentum(term.rate) * two;
-        self.joint.clear();
-        for (index, values) in components(force_q).into_iter().zip(components(force_v)).enumerate() {
-            self.joint.push(Row { index, values: [values.0, values.1] });
+        // loops by index: arrays taken apart by iterators go through memory
+        let (base_q, base_v) = (components(force_q), components(force_v));
+        for i in 0..6 {
+            self.joint[i] = Row { index: i, values: [base_q[i], base_v[i]] };
         }
+        let mut count = 6;
         let mut i = nodes[j].parent;
         while i > 0 {
             let s = bodies[i].subspace;
-            self.joint.push(Row { index: i + 5, values: [s.dot(force_q), s.dot(force_v)] });
-            i = nodes[i].parent;
+            self.joint[count] = Row { index: i + 5, values: [s.dot(force_q), s.dot(force_v)] };
+            (i, count) = (nodes[i].parent, count + 1);
         }
-        for (k, below) in self.bodies[j..term.end].iter().enumerate() {
+        for k in j..term.end {
             // Sᵀ (2B_C Ψ̇_j + I_C Ψ̈_j),  Sᵀ (2B_C S_j + 2 I_C Ψ̇_j)
+            let below = &self.bodies[k];
             let row_q = below.reach_coriolis.dot(term.rate.angular) + term.rate2.dot(below.reach);
             let row_v = below.reach_coriolis.dot(subspace.angular) + term.rate.dot(below.reach) * two;
-            self.joint.push(Row { index: j + k + 5, values: [row_q, row_v] });
+            self.joint[count] = Row { index: k + 5, values: [row_q, row_v] };
+            count += 1;
         }
+        &self.joint[..count]
     }
 
-    /// Puts `[2B; Sᵀ 2B] e_m` for the base's three rates of turn into `base`.
+    /// Rows of `[2B; Sᵀ 2B] e_m` for the base's three rates of turn.
     ///
     /// What is missing to `∂τ/∂v_b` is `M [v_b × e_m; 0]`: the base's axes turn.
     #[inline(always)]
-    pub(super) fn base_columns(&mut self) {
-        let columns = unit_axes().map(|axis| components(self.bodies[0].coriolis.apply(axis)));
-        self.base.clear();
-        for index in 0..6 {
-            self.base.push(Row { index, values: [columns[0][index], columns[1][index], columns[2][index]] });
+    pub(super) fn base_columns(&mut self) -> &[Row<S, 3>] {
+        let ([x, y, z], coriolis) = (unit_axes(), &self.bodies[0].coriolis);
+        let x = components(coriolis.apply(x));
+        let y = components(coriolis.apply(y));
+        let z = components(coriolis.apply(z));
+        for i in 0..6 {
+            self.base[i] = Row { index: i, values: [x[i], y[i], z[i]] };
         }
-        for (k, term) in self.bodies.iter().enumerate().skip(1) {
-            let row = term.reach_coriolis;
-            self.base.push(Row { index: k + 5, values: [row.x, row.y, row.z] });
+        for k in 1..self.bodies.len() {
+            let row = self.bodies[k].reach_coriolis;
+            self.base[k + 5] = Row { index: k + 5, values: [row.x, row.y, row.z] };
         }
+        &self.base
     }
 }
 
