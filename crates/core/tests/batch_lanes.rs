@@ -4,11 +4,10 @@
 mod common;
 
 use common::{Random, difference, random_model, random_state};
-use onorbit_core::batch::{Evaluator, InputError, Kernel, Rollout, RolloutControl, Rows};
-use onorbit_core::dynamics::FrameWrench;
+use onorbit_core::batch::{Evaluator, InputError, Kernel, Rollout, RolloutControl, Rows, Wrenches};
 use onorbit_core::model::Model;
 use onorbit_core::simulation::{Integrator, Simulation};
-use onorbit_core::spatial::{Force, InstructionSet};
+use onorbit_core::spatial::InstructionSet;
 use std::ops::ControlFlow;
 use std::sync::{Arc, atomic::AtomicBool};
 
@@ -63,8 +62,8 @@ fn many(
     outputs
 }
 
-fn wrenches() -> [FrameWrench<f64>; 1] {
-    [FrameWrench { frame: 1, wrench: Force::from_slice(&[1.0, -2.0, 0.5, 0.3, 0.2, -0.7]) }]
+fn wrenches() -> [Wrenches<'static>; 1] {
+    [Wrenches { frame: 1, rows: &[1.0, -2.0, 0.5, 0.3, 0.2, -0.7] }]
 }
 
 /// In one test, since the level is the process's: levels not here fall back to what is.

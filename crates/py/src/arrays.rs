@@ -4,7 +4,7 @@ use crate::errors::{fields, raise, shape_error};
 use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::PyClass;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString, PyTuple};
+use pyo3::types::{PyString, PyTuple};
 
 /// A whole number that is not negative.
 #[derive(Clone, Copy)]
@@ -61,8 +61,9 @@ impl<'py> Input<'py> {
     pub(crate) fn new(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
             && array.is_c_contiguous()
+            && array.is_aligned()
         {
-            return Ok(Self { array: array.readonly() });
+            return Self::borrow(array, name);
         }
         Self::converted(value, name)
     }
@@ -84,11 +85,19 @@ impl<'py> Input<'py> {
         if !matches!(kind.as_str(), "f" | "i" | "u") {
             return Err(refuse(format!("of dtype {}", array.getattr("dtype")?)));
         }
-        let kwargs = PyDict::new(py);
-        kwargs.set_item("dtype", "float64")?;
-        let array = numpy.call_method("ascontiguousarray", (array,), Some(&kwargs))?;
-        // ascontiguousarray makes a scalar one-dimensional; that is refused by its length later
-        Ok(Self { array: array.cast_into::<PyArrayDyn<f64>>()?.readonly() })
+        // contiguous and aligned
+        let array = numpy.call_method1("require", (array, "float64", ["C", "A"]))?;
+        Self::borrow(&array.cast_into::<PyArrayDyn<f64>>()?, name)
+    }
+
+    fn borrow(array: &Bound<'py, PyArrayDyn<f64>>, name: &str) -> PyResult<Self> {
+        match array.try_readonly() {
+            Ok(array) => Ok(Self { array }),
+            Err(_) => {
+                let (py, message) = (array.py(), format!("{name} is being written by another call"));
+                Err(raise(py, "InputError", &message, &fields!(py, "name": name)))
+            }
+        }
     }
 
     /// All numbers, row after row.

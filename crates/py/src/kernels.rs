@@ -1,12 +1,11 @@
 //! The dynamics of a model: one state `(n,)` or a batch `(B, n)`.
 
-use crate::arrays::{Count, Input, fixed, fresh, wrong_shape, zeros};
+use crate::arrays::{Count, Input, wrong_shape};
 use crate::errors::IntoPython;
 use crate::model::PyModel;
+use crate::output::{Output, outputs};
 use numpy::PyArrayDyn;
-use onorbit_core::batch::{Evaluator, Kernel, Rows, RowsMut};
-use onorbit_core::dynamics::FrameWrench;
-use onorbit_core::spatial::Force;
+use onorbit_core::batch::{Evaluator, Kernel, Rows, RowsMut, Wrenches};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -27,45 +26,32 @@ pub(crate) struct PyFreeFloating {
     drift: Py<PyAny>,
 }
 
-/// Derivatives of the reduced model at given joint accelerations, tangent of ``q`` as in ``Model.integrate``.
-#[pyclass(name = "FreeFloatingDerivatives", frozen, get_all, module = "onorbit_rs")]
-pub(crate) struct PyFreeFloatingDerivatives {
-    /// `∂τ/∂q` of `τ = M* q̈ + c* - Q*`, (n, nv) or (B, n, nv).
-    torque_dq: Py<PyAny>,
-    /// `∂τ/∂v`, (n, nv) or (B, n, nv).
-    torque_dv: Py<PyAny>,
-    /// `∂ẍ/∂q` of `ẍ = Jg q̈ + d`, (6, nv) or (B, 6, nv), rows in W axes, linear first.
-    acceleration_dq: Py<PyAny>,
-    /// `∂ẍ/∂v`, (6, nv) or (B, 6, nv), rows in W axes.
-    acceleration_dv: Py<PyAny>,
-    /// `∂ẋ/∂q` of the frame's twist `ẋ = J v`, (6, nv) or (B, 6, nv), rows in W axes.
-    velocity_dq: Py<PyAny>,
-}
-
-/// Computes `kernel`; `shapes` are the trailing shapes of its outputs.
-pub(crate) fn evaluate<'py>(
+/// Computes `kernel`; `shapes` are the trailing shapes of its outputs, `out` the arrays to write them into.
+pub(crate) fn evaluate<'py, const N: usize>(
     py: Python<'py>,
     model: &PyModel,
     kernel: Kernel,
     values: &[&Bound<'py, PyAny>],
     external: Option<&Bound<'py, PyDict>>,
-    shapes: &[&[usize]],
+    shapes: [&[usize]; N],
+    out: Option<[Bound<'py, PyAny>; N]>,
     threads: Option<Count>,
-) -> PyResult<Vec<Array<'py>>> {
+) -> PyResult<[Array<'py>; N]> {
     let names = kernel.inputs();
-    let inputs: Vec<Input<'py>> =
+    let mut inputs: Vec<Input<'py>> =
         values.iter().zip(names).map(|(value, name)| Input::new(value, name)).collect::<PyResult<_>>()?;
     let batch = batch_of(py, &inputs, names)?;
-    let external = wrenches(model, external)?;
-    let outputs: Vec<Array<'py>> = shapes
-        .iter()
-        .map(|shape| zeros(py, &batch.iter().chain(shape.iter()).copied().collect::<Vec<_>>()))
-        .collect::<PyResult<_>>()?;
-    let rows: Vec<Rows<'_>> = inputs
+    let frames = wrenches(model, external, batch, &mut inputs)?;
+    let whole = shapes.map(|shape| batch.iter().chain(shape).copied().collect::<Vec<_>>());
+    let mut outputs = outputs(py, out, whole.each_ref().map(Vec::as_slice), &inputs)?;
+    let (states, wrenches) = inputs.split_at(names.len());
+    let rows: Vec<Rows<'_>> = states
         .iter()
         .map(|input| Rows { data: input.data(), width: input.shape().last().copied().unwrap_or(0) })
         .collect();
-    let mut slices: Vec<RowsMut<'_>> = outputs.iter().map(fresh).collect();
+    let external: Vec<Wrenches<'_>> =
+        frames.iter().zip(wrenches).map(|(&frame, input)| Wrenches { frame, rows: input.data() }).collect();
+    let mut slices: [RowsMut<'_>; N] = outputs.each_mut().map(Output::numbers);
     let core = &*model.model;
     let result = if batch.is_some() {
         let threads = threads.map(|count| count.0);
@@ -75,7 +61,7 @@ pub(crate) fn evaluate<'py>(
         evaluator.single(kernel, core, &rows, &external, &mut slices)
     };
     result.map_err(|error| error.into_python(py))?;
-    Ok(outputs)
+    Ok(outputs.map(Output::into_array))
 }
 
 /// The batch size, if the first argument is a batch.
@@ -95,56 +81,55 @@ fn batch_of(py: Python<'_>, inputs: &[Input<'_>], names: &[&str]) -> PyResult<Op
     Ok((first.len() == 2).then(|| first[0]))
 }
 
-/// `{frame: (6,)}`: wrenches in the frame's axes about its origin, N and N m, linear first.
-pub(crate) fn wrenches(
+/// `{frame: (6,) or (B, 6)}`: wrenches in the frame's axes about its origin, N and N m, linear first.
+///
+/// Puts their numbers behind `inputs` and returns their frames.
+fn wrenches<'py>(
     model: &PyModel,
-    external: Option<&Bound<'_, PyDict>>,
-) -> PyResult<Vec<FrameWrench<f64>>> {
+    external: Option<&Bound<'py, PyDict>>,
+    batch: Option<usize>,
+    inputs: &mut Vec<Input<'py>>,
+) -> PyResult<Vec<usize>> {
     let Some(external) = external else { return Ok(Vec::new()) };
-    let one = |(name, wrench): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+    let mut one = |(name, wrench): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
         let frame = model.frame(&name)?;
-        let numbers: [f64; 6] = fixed(&wrench, "external wrench", &[6])?;
-        Ok(FrameWrench { frame, wrench: Force::from_slice(&numbers) })
+        let input = Input::new(&wrench, "external wrench")?;
+        match (input.shape(), batch) {
+            ([6], _) => {}
+            ([count, 6], Some(batch)) if *count == batch => {}
+            (shape, Some(batch)) => {
+                let expected = format!("(6,) or ({batch}, 6)");
+                return Err(wrong_shape(name.py(), "external wrench", &expected, shape));
+            }
+            (shape, None) => return Err(wrong_shape(name.py(), "external wrench", "(6,)", shape)),
+        }
+        inputs.push(input);
+        Ok(frame)
     };
-    external.iter().map(one).collect()
+    external.iter().map(&mut one).collect()
 }
 
-/// The reduced model with its arrays.
+/// The reduced model with its arrays, fresh or those of `out`.
 pub(crate) fn free_floating<'py>(
     py: Python<'py>,
     model: &PyModel,
     frame: usize,
     state: &[&Bound<'py, PyAny>],
     external: Option<&Bound<'py, PyDict>>,
+    out: Option<&Bound<'py, PyFreeFloating>>,
     threads: Option<Count>,
-) -> PyResult<PyFreeFloating> {
+) -> PyResult<Bound<'py, PyFreeFloating>> {
     let n = model.model.joint_count();
     let shapes: [&[usize]; 5] = [&[n, n], &[n], &[n], &[6, n], &[6]];
     let kernel = Kernel::FreeFloating(frame);
-    let mut out = evaluate(py, model, kernel, state, external, &shapes, threads)?.into_iter();
-    let mut next = || out.next().map_or_else(|| py.None(), |array| array.into_any().unbind());
-    Ok(PyFreeFloating { inertia: next(), bias: next(), external: next(), jacobian: next(), drift: next() })
-}
-
-/// The derivatives of the reduced model with their arrays.
-pub(crate) fn free_floating_derivatives<'py>(
-    py: Python<'py>,
-    model: &PyModel,
-    frame: usize,
-    state: &[&Bound<'py, PyAny>],
-    external: Option<&Bound<'py, PyDict>>,
-    threads: Option<Count>,
-) -> PyResult<PyFreeFloatingDerivatives> {
-    let (n, nv) = (model.model.joint_count(), model.model.nv());
-    let shapes: [&[usize]; 5] = [&[n, nv], &[n, nv], &[6, nv], &[6, nv], &[6, nv]];
-    let kernel = Kernel::FreeFloatingDerivatives(frame);
-    let mut out = evaluate(py, model, kernel, state, external, &shapes, threads)?.into_iter();
-    let mut next = || out.next().map_or_else(|| py.None(), |array| array.into_any().unbind());
-    Ok(PyFreeFloatingDerivatives {
-        torque_dq: next(),
-        torque_dv: next(),
-        acceleration_dq: next(),
-        acceleration_dv: next(),
-        velocity_dq: next(),
-    })
+    let given = out.map(|out| {
+        let PyFreeFloating { inertia, bias, external, jacobian, drift } = out.get();
+        [inertia, bias, external, jacobian, drift].map(|array| array.bind(py).clone())
+    });
+    let arrays = evaluate(py, model, kernel, state, external, shapes, given, threads)?;
+    if let Some(out) = out {
+        return Ok(out.clone());
+    }
+    let [inertia, bias, external, jacobian, drift] = arrays.map(|array| array.into_any().unbind());
+    Bound::new(py, PyFreeFloating { inertia, bias, external, jacobian, drift })
 }

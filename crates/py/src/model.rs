@@ -1,10 +1,9 @@
 //! The robot.
 
 use crate::arrays::{Count, array_of, fixed};
+use crate::derivatives::{PyFreeFloatingDerivatives, free_floating_derivatives, three};
 use crate::errors::{IntoPython, fields, raise};
-use crate::kernels::{
-    PyFreeFloating, PyFreeFloatingDerivatives, evaluate, free_floating, free_floating_derivatives,
-};
+use crate::kernels::{PyFreeFloating, evaluate, free_floating};
 use crate::records::{self, PyBody, PyFrame, PyJoint, PyVisual};
 use crate::xacro::from_xacro;
 use nalgebra::Matrix3;
@@ -26,7 +25,8 @@ type External<'a, 'py> = Option<&'a Bound<'py, PyDict>>;
 /// ``q = [p(3), quat_xyzw(4), joints(n)]`` in m and rad, ``v = [v_body(3), w_body(3), rates(n)]``: the
 /// base's velocity in its own axes, linear first. W is the world of the simulation. Every method takes
 /// one state ``(n,)`` or a batch ``(B, n)`` and returns the matching shape; batches run on all cores
-/// unless ``threads`` says otherwise.
+/// unless ``threads`` says otherwise. ``out`` is an array of that shape to write into, which is then what
+/// returns: large fresh ones cost page faults (nobody may look at it meanwhile; after an error it holds anything).
 #[pyclass(name = "Model", frozen, module = "onorbit_rs")]
 pub(crate) struct PyModel {
     pub(crate) model: Arc<Model>,
@@ -186,43 +186,46 @@ impl PyModel {
     }
 
     /// ``q ⊕ dv``: the base follows the constant body twist ``dv[:6]`` (m, rad) for unit time: (nq,).
-    #[pyo3(signature = (q, dv, *, threads=None))]
+    #[pyo3(signature = (q, dv, *, threads=None, out=None))]
     fn integrate<'py>(
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
         dv: Any<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::Integrate, &[q, dv], None, &[self.model.nq()], threads)
+        self.one(py, Kernel::Integrate, &[q, dv], None, &[self.model.nq()], threads, out)
     }
 
     /// ``q2 ⊖ q``: the ``dv`` (nv,) with ``integrate(q, dv) = q2``, the base turning the shorter way.
-    #[pyo3(signature = (q, q2, *, threads=None))]
+    #[pyo3(signature = (q, q2, *, threads=None, out=None))]
     fn difference<'py>(
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
         q2: Any<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::Difference, &[q, q2], None, &[self.model.nv()], threads)
+        self.one(py, Kernel::Difference, &[q, q2], None, &[self.model.nv()], threads, out)
     }
 
     /// Pose of a frame in W: (4, 4), m.
-    #[pyo3(signature = (q, frame, *, threads=None))]
+    #[pyo3(signature = (q, frame, *, threads=None, out=None))]
     fn frame_pose<'py>(
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::FramePose(self.frame(frame)?), &[q], None, &[4, 4], threads)
+        self.one(py, Kernel::FramePose(self.frame(frame)?), &[q], None, &[4, 4], threads, out)
     }
 
     /// Twist of a frame at its origin in W axes: (6,), m/s and rad/s, linear first.
-    #[pyo3(signature = (q, v, frame, *, threads=None))]
+    #[pyo3(signature = (q, v, frame, *, threads=None, out=None))]
     fn frame_velocity<'py>(
         &self,
         py: Python<'py>,
@@ -230,38 +233,49 @@ impl PyModel {
         v: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::FrameVelocity(self.frame(frame)?), &[q, v], None, &[6], threads)
+        self.one(py, Kernel::FrameVelocity(self.frame(frame)?), &[q, v], None, &[6], threads, out)
     }
 
     /// Jacobian of a frame: (6, nv), its twist at its origin in W axes is ``J v``.
-    #[pyo3(signature = (q, frame, *, threads=None))]
+    #[pyo3(signature = (q, frame, *, threads=None, out=None))]
     fn frame_jacobian<'py>(
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::FrameJacobian(self.frame(frame)?), &[q], None, &[6, self.model.nv()], threads)
+        self.one(
+            py,
+            Kernel::FrameJacobian(self.frame(frame)?),
+            &[q],
+            None,
+            &[6, self.model.nv()],
+            threads,
+            out,
+        )
     }
 
     /// Mass matrix: (nv, nv), rotor inertia included.
-    #[pyo3(signature = (q, *, threads=None))]
+    #[pyo3(signature = (q, *, threads=None, out=None))]
     fn mass_matrix<'py>(
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         let nv = self.model.nv();
-        self.one(py, Kernel::MassMatrix, &[q], None, &[nv, nv], threads)
+        self.one(py, Kernel::MassMatrix, &[q], None, &[nv, nv], threads, out)
     }
 
     /// Coriolis and centrifugal forces ``c(q, v)``, less ``Σ Jᵀ F`` of ``external`` wrenches: (nv,), N and N m.
     ///
     /// ``external`` as in :meth:`inverse_dynamics`.
-    #[pyo3(signature = (q, v, *, external=None, threads=None))]
+    #[pyo3(signature = (q, v, *, external=None, threads=None, out=None))]
     fn bias_forces<'py>(
         &self,
         py: Python<'py>,
@@ -269,14 +283,15 @@ impl PyModel {
         v: Any<'_, 'py>,
         external: External<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::BiasForces, &[q, v], external, &[self.model.nv()], threads)
+        self.one(py, Kernel::BiasForces, &[q, v], external, &[self.model.nv()], threads, out)
     }
 
     /// Forces ``M a + c - Σ Jᵀ F`` behind an acceleration: (nv,); ``tau[:6]`` is the wrench on the base, its axes.
     ///
-    /// ``external``: ``{frame: (6,)}``, wrenches in the frame's axes about its origin, N and N m.
-    #[pyo3(signature = (q, v, a, *, external=None, threads=None))]
+    /// ``external``: ``{frame: (6,) or (B, 6)}``, wrenches in the frame's axes about its origin, N and N m.
+    #[pyo3(signature = (q, v, a, *, external=None, threads=None, out=None))]
     fn inverse_dynamics<'py>(
         &self,
         py: Python<'py>,
@@ -285,14 +300,15 @@ impl PyModel {
         a: Any<'_, 'py>,
         external: External<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::InverseDynamics, &[q, v, a], external, &[self.model.nv()], threads)
+        self.one(py, Kernel::InverseDynamics, &[q, v, a], external, &[self.model.nv()], threads, out)
     }
 
     /// Acceleration ``M⁻¹ (tau - c + Σ Jᵀ F)`` in O(n): (nv,), m/s² and rad/s².
     ///
     /// ``tau[:6]`` is a wrench on the base in its axes; ``external`` as in :meth:`inverse_dynamics`.
-    #[pyo3(signature = (q, v, tau, *, external=None, threads=None))]
+    #[pyo3(signature = (q, v, tau, *, external=None, threads=None, out=None))]
     fn forward_dynamics<'py>(
         &self,
         py: Python<'py>,
@@ -301,15 +317,16 @@ impl PyModel {
         tau: Any<'_, 'py>,
         external: External<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::ForwardDynamics, &[q, v, tau], external, &[self.model.nv()], threads)
+        self.one(py, Kernel::ForwardDynamics, &[q, v, tau], external, &[self.model.nv()], threads, out)
     }
 
     /// Derivatives of :meth:`inverse_dynamics` with respect to ``q``, ``v``, ``a``: three arrays (nv, nv).
     ///
     /// Column ``j`` of the first is the rate along ``integrate(q, eps * e_j)``: the base's shifts, m, and turns, rad, in
     /// its own axes, then the joints. The third is the mass matrix. ``external`` stays constant in the axes of its frames.
-    #[pyo3(signature = (q, v, a, *, external=None, threads=None))]
+    #[pyo3(signature = (q, v, a, *, external=None, threads=None, out=None))]
     fn inverse_dynamics_derivatives<'py>(
         &self,
         py: Python<'py>,
@@ -318,14 +335,15 @@ impl PyModel {
         a: Any<'_, 'py>,
         external: External<'_, 'py>,
         threads: Option<Count>,
+        out: Option<[Bound<'py, PyAny>; 3]>,
     ) -> PyResult<Bound<'py, PyTuple>> {
-        self.three(py, Kernel::InverseDynamicsDerivatives, &[q, v, a], external, threads)
+        three(py, self, Kernel::InverseDynamicsDerivatives, &[q, v, a], external, out, threads)
     }
 
     /// Derivatives of :meth:`forward_dynamics` with respect to ``q``, ``v``, ``tau``: three arrays (nv, nv).
     ///
     /// Tangent and wrenches as in :meth:`inverse_dynamics_derivatives`; the third is the inverse mass matrix.
-    #[pyo3(signature = (q, v, tau, *, external=None, threads=None))]
+    #[pyo3(signature = (q, v, tau, *, external=None, threads=None, out=None))]
     fn forward_dynamics_derivatives<'py>(
         &self,
         py: Python<'py>,
@@ -334,48 +352,57 @@ impl PyModel {
         tau: Any<'_, 'py>,
         external: External<'_, 'py>,
         threads: Option<Count>,
+        out: Option<[Bound<'py, PyAny>; 3]>,
     ) -> PyResult<Bound<'py, PyTuple>> {
-        self.three(py, Kernel::ForwardDynamicsDerivatives, &[q, v, tau], external, threads)
+        three(py, self, Kernel::ForwardDynamicsDerivatives, &[q, v, tau], external, out, threads)
     }
 
     /// Linear momentum and angular momentum about the system's centre of mass: (6,), W axes, kg m/s and kg m²/s.
-    #[pyo3(signature = (q, v, *, threads=None))]
+    #[pyo3(signature = (q, v, *, threads=None, out=None))]
     fn momentum<'py>(
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::Momentum, &[q, v], None, &[6], threads)
+        self.one(py, Kernel::Momentum, &[q, v], None, &[6], threads, out)
     }
 
     /// Kinetic energy in W, J: a float, or (B,).
-    #[pyo3(signature = (q, v, *, threads=None))]
+    #[pyo3(signature = (q, v, *, threads=None, out=None))]
     fn kinetic_energy<'py>(
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let energy = self.one(py, Kernel::KineticEnergy, &[q, v], None, &[], threads)?;
-        energy.call_method1("__getitem__", (PyTuple::empty(py),))
+        let energy = self.one(py, Kernel::KineticEnergy, &[q, v], None, &[], threads, out)?;
+        match out {
+            Some(_) => Ok(energy.into_any()),
+            None => energy.call_method1("__getitem__", (PyTuple::empty(py),)),
+        }
     }
 
     /// Centre of mass in W: (3,), m.
-    #[pyo3(signature = (q, *, threads=None))]
+    #[pyo3(signature = (q, *, threads=None, out=None))]
     fn center_of_mass<'py>(
         &self,
         py: Python<'py>,
         q: Any<'_, 'py>,
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::CenterOfMass, &[q], None, &[3], threads)
+        self.one(py, Kernel::CenterOfMass, &[q], None, &[3], threads, out)
     }
 
     /// The reduced model for one frame: ``M*, c*, Q*, Jg, d``, exact for any momentum and wrench.
-    #[pyo3(signature = (q, v, frame, *, external=None, threads=None))]
+    ///
+    /// ``out``: what an earlier call with as many states returned, to be written anew.
+    #[pyo3(signature = (q, v, frame, *, external=None, threads=None, out=None))]
     fn free_floating<'py>(
         &self,
         py: Python<'py>,
@@ -384,15 +411,16 @@ impl PyModel {
         frame: Any<'_, 'py>,
         external: External<'_, 'py>,
         threads: Option<Count>,
-    ) -> PyResult<PyFreeFloating> {
-        free_floating(py, self, self.frame(frame)?, &[q, v], external, threads)
+        out: Option<&Bound<'py, PyFreeFloating>>,
+    ) -> PyResult<Bound<'py, PyFreeFloating>> {
+        free_floating(py, self, self.frame(frame)?, &[q, v], external, out, threads)
     }
 
     /// Derivatives of ``M* q̈ + c* - Q*``, ``ẍ = Jg q̈ + d`` and ``ẋ`` at given joint accelerations (n,).
     ///
     /// Tangent and wrenches as in :meth:`inverse_dynamics_derivatives`. With ``q̈ = 0`` those of ``c* - Q*`` and ``d``;
     /// with respect to ``q̈`` they are ``M*`` and ``Jg``, that of ``ẋ`` with respect to ``v`` is :meth:`frame_jacobian`.
-    #[pyo3(signature = (q, v, joint_acceleration, frame, *, external=None, threads=None))]
+    #[pyo3(signature = (q, v, joint_acceleration, frame, *, external=None, threads=None, out=None))]
     fn free_floating_derivatives<'py>(
         &self,
         py: Python<'py>,
@@ -402,9 +430,10 @@ impl PyModel {
         frame: Any<'_, 'py>,
         external: External<'_, 'py>,
         threads: Option<Count>,
-    ) -> PyResult<PyFreeFloatingDerivatives> {
+        out: Option<&Bound<'py, PyFreeFloatingDerivatives>>,
+    ) -> PyResult<Bound<'py, PyFreeFloatingDerivatives>> {
         let state = [q, v, joint_acceleration];
-        free_floating_derivatives(py, self, self.frame(frame)?, &state, external, threads)
+        free_floating_derivatives(py, self, self.frame(frame)?, &state, external, out, threads)
     }
 
     fn __repr__(&self) -> String {
@@ -429,22 +458,10 @@ impl PyModel {
         external: External<'_, 'py>,
         shape: &[usize],
         threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        let mut outputs = evaluate(py, self, kernel, values, external, &[shape], threads)?;
-        Ok(outputs.swap_remove(0))
-    }
-
-    /// A kernel with three outputs of shape (nv, nv).
-    fn three<'py>(
-        &self,
-        py: Python<'py>,
-        kernel: Kernel,
-        values: &[Any<'_, 'py>],
-        external: External<'_, 'py>,
-        threads: Option<Count>,
-    ) -> PyResult<Bound<'py, PyTuple>> {
-        let nv = self.model.nv();
-        let square: &[usize] = &[nv, nv];
-        PyTuple::new(py, evaluate(py, self, kernel, values, external, &[square; 3], threads)?)
+        let out = out.map(|out| [out.clone()]);
+        let [output] = evaluate(py, self, kernel, values, external, [shape], out, threads)?;
+        Ok(output)
     }
 }

@@ -1,9 +1,9 @@
 //! Many orbits at once.
 
-use crate::arrays::{Count, Input, fresh, list_of, shape_text, wrong_shape, zeros};
-use crate::errors::{IntoPython, fields, raise};
+use crate::arrays::{Count, Input, list_of, shape_text, wrong_shape};
+use crate::errors::IntoPython;
 use crate::orbit::PyOrbit;
-use numpy::{PyArrayDyn, PyArrayMethods, PyReadwriteArrayDyn, PyUntypedArrayMethods};
+use crate::output::{outputs, pair};
 use onorbit_core::batch::{self, Times};
 use onorbit_core::orbit::Orbit;
 use pyo3::prelude::*;
@@ -42,7 +42,7 @@ pub(crate) fn propagate<'py>(
         py.detach(|| batch::propagate(&orbits, instants, r, v, threads))
             .map_err(|error| error.into_python(py))
     };
-    written(py, &shape, out, run)
+    written(py, &shape, out, std::slice::from_ref(&input), run)
 }
 
 /// What `write` leaves in two arrays of this shape: the caller's, or fresh ones.
@@ -50,51 +50,13 @@ fn written<'py>(
     py: Python<'py>,
     shape: &[usize],
     out: Out<'_, 'py>,
+    inputs: &[Input<'py>],
     write: impl FnOnce(&mut [f64], &mut [f64]) -> PyResult<()>,
 ) -> PyResult<Pair<'py>> {
-    let Some(out) = out else {
-        let (r, v) = (zeros(py, shape)?, zeros(py, shape)?);
-        write(fresh(&r), fresh(&v))?;
-        return Ok((r.into_any(), v.into_any()));
-    };
-    let (r, v) = out.extract::<Pair<'py>>().map_err(|_| {
-        let message = format!("out is no pair of arrays: give (r, v), each of shape {}", shape_text(shape));
-        raise(py, "InputError", &message, &fields!(py, "name": "out", "expected": "(r, v)"))
-    })?;
-    let (mut to_r, mut to_v) = (writable(&r, "out[0]", shape)?, writable(&v, "out[1]", shape)?);
-    write(slice(&mut to_r), slice(&mut to_v))?;
-    drop((to_r, to_v));
-    Ok((r, v))
-}
-
-/// A caller's array, to be written.
-fn writable<'py>(
-    value: Any<'_, 'py>,
-    name: &str,
-    shape: &[usize],
-) -> PyResult<PyReadwriteArrayDyn<'py, f64>> {
-    let refuse = |got: String| {
-        let message = format!(
-            "{name} is {got}, a writable contiguous float64 array of shape {} of its own is needed",
-            shape_text(shape)
-        );
-        let fields = fields!(value.py(), "name": name, "expected": shape.to_vec(), "got": got);
-        raise(value.py(), "ShapeError", &message, &fields)
-    };
-    let Ok(array) = value.cast::<PyArrayDyn<f64>>() else {
-        return Err(refuse("no float64 array".to_owned()));
-    };
-    if array.shape() != shape {
-        return Err(refuse(format!("of shape {}", shape_text(array.shape()))));
-    }
-    if !array.is_c_contiguous() {
-        return Err(refuse("not contiguous".to_owned()));
-    }
-    array.try_readwrite().map_err(|_| refuse("read-only or in use".to_owned()))
-}
-
-fn slice<'a>(array: &'a mut PyReadwriteArrayDyn<'_, f64>) -> &'a mut [f64] {
-    array.as_slice_mut().unwrap_or(&mut []) // contiguity was checked when it was borrowed
+    let given = pair(out, &format!("(r, v), each of shape {}", shape_text(shape)))?;
+    let [mut r, mut v] = outputs(py, given, [shape, shape], inputs)?;
+    write(r.numbers(), v.numbers())?;
+    Ok((r.into_array().into_any(), v.into_array().into_any()))
 }
 
 /// Elements and time of [`crate::orbit::PyKepler`]'s `states`, each a number or (N,).
@@ -114,7 +76,7 @@ pub(crate) fn kepler_states<'py>(
     }
     let elements: [&[f64]; 7] = std::array::from_fn(|k| inputs[k].data());
     let threads = threads.map(|count| count.0);
-    written(py, &[count, 3], out, |r, v| {
+    written(py, &[count, 3], out, &inputs, |r, v| {
         py.detach(|| batch::kepler_states(elements, mu, r, v, threads)).map_err(|error| error.into_python(py))
     })
 }

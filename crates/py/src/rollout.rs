@@ -1,9 +1,10 @@
 //! Many runs at once.
 
-use crate::arrays::{Count, Input, fresh, wrong_shape, zeros};
+use crate::arrays::{Count, Input, shape_text, wrong_shape};
 use crate::control::PyComputedTorque;
 use crate::errors::{IntoPython, fields, plain, raise};
 use crate::model::PyModel;
+use crate::output::{outputs, pair};
 use crate::reference;
 use crate::simulation::{PACE, integrator_named};
 use onorbit_core::batch::{Rollout, RolloutControl};
@@ -18,11 +19,11 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// ``q0`` (B, nq), ``v0`` (B, nv); ``tau`` (B, steps, n) N m, each held for one step; ``controller`` a
 /// ``ComputedTorque`` that tracks ``reference``. Returns the final ``q`` (B, nq) and ``v`` (B, nv), or with
 /// ``record_every`` (B, K, nq) and (B, K, nv), the start being the first of ``K = steps // record_every + 1`` rows.
-/// The bits do not depend on ``threads``. Raises ``SimulationError`` if a state diverges.
+/// ``out`` is a pair of such arrays to write into, which is then what returns. The bits do not depend on ``threads``. Raises ``SimulationError`` if a state diverges.
 #[pyfunction]
 #[pyo3(signature = (
     model, q0, v0, *, steps, time_step=1e-3, tau=None, controller=None, reference=None, integrator="rk4",
-    record_every=None, threads=None,
+    record_every=None, threads=None, out=None,
 ))]
 pub(crate) fn rollout<'py>(
     py: Python<'py>,
@@ -37,6 +38,7 @@ pub(crate) fn rollout<'py>(
     integrator: &str,
     record_every: Option<Count>,
     threads: Option<Count>,
+    out: Option<Any<'_, 'py>>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let core = &*model.model;
     let (steps, record_every) = (steps.0, record_every.map(|count| count.0));
@@ -58,13 +60,14 @@ pub(crate) fn rollout<'py>(
         return Err(plain(py, "InputError", "record_every is 0, it must be at least 1 step"));
     }
     let tau = tau.map(|tau| Input::new(tau, "tau")).transpose()?;
+    let inputs: Vec<Input<'py>> = [q0, v0].into_iter().chain(tau).collect();
     let reference = reference.map(|value| reference::extract(value, None)).transpose()?;
-    let control = match (&tau, controller, &reference) {
+    let control = match (inputs.get(2), controller, &reference) {
         (None, None, _) => RolloutControl::Passive,
         (Some(tau), None, _) => {
             let shape = [batch, steps, core.joint_count()];
             if tau.shape() != shape {
-                return Err(wrong_shape(py, "tau", &crate::arrays::shape_text(&shape), tau.shape()));
+                return Err(wrong_shape(py, "tau", &shape_text(&shape), tau.shape()));
             }
             RolloutControl::Torques(tau.data())
         }
@@ -86,11 +89,13 @@ pub(crate) fn rollout<'py>(
         None => vec![batch, width],
         Some(_) => vec![batch, rollout.rows(), width],
     };
-    let (q, v) = (zeros(py, &shape(core.nq()))?, zeros(py, &shape(core.nv()))?);
-    let (to_q, to_v, from_q, from_v) = (fresh(&q), fresh(&v), q0.data(), v0.data());
+    let (q_shape, v_shape) = (shape(core.nq()), shape(core.nv()));
+    let what = format!("(q, v) of shapes {} and {}", shape_text(&q_shape), shape_text(&v_shape));
+    let [mut q, mut v] = outputs(py, pair(out, &what)?, [&q_shape, &v_shape], &inputs)?;
+    let (to_q, to_v, from_q, from_v) = (q.numbers(), v.numbers(), inputs[0].data(), inputs[1].data());
     let result = interruptible(py, &stop, || rollout.run(core, from_q, from_v, to_q, to_v))?;
     result.map_err(|error| error.into_python(py))?;
-    Ok((q.into_any(), v.into_any()))
+    Ok((q.into_array().into_any(), v.into_array().into_any()))
 }
 
 /// Runs `work` on a thread of its own and looks for Ctrl-C meanwhile, which sets `stop`.

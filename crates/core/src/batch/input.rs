@@ -1,7 +1,18 @@
 //! What is checked before a kernel runs.
 
+use super::kernel::Kernel;
+use super::space::Call;
 use crate::orbit::OrbitError;
 use thiserror::Error;
+
+/// Wrenches on the body that carries a frame: in the frame's axes, about its origin, N and N m, linear first.
+#[derive(Clone, Copy, Debug)]
+pub struct Wrenches<'a> {
+    /// Index of the frame.
+    pub frame: usize,
+    /// Six numbers for all states, or six for each, (B, 6).
+    pub rows: &'a [f64],
+}
 
 /// Numbers that no kernel can take.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -42,7 +53,28 @@ pub enum InputError {
 }
 
 /// Largest deviation of a quaternion from unit norm.
-const UNIT_NORM: f64 = 1e-6;
+pub(super) const UNIT_NORM: f64 = 1e-6;
+
+/// Refuses rows of another width or number than the kernel takes.
+pub(super) fn check_shapes(call: &Call<'_>) -> Result<(), InputError> {
+    let count = call.count();
+    for (name, rows) in call.kernel.inputs().iter().zip(call.inputs) {
+        let expected = Kernel::width(name, call.model);
+        if rows.width != expected {
+            return Err(InputError::WrongLength { name, expected, got: rows.width });
+        }
+        let got = rows.data.len().checked_div(expected).unwrap_or(count); // a robot may have no joints
+        if got != count {
+            return Err(InputError::WrongBatch { name, expected: count, got });
+        }
+    }
+    match call.external.iter().find(|one| one.rows.len() != 6 && one.rows.len() != 6 * count) {
+        Some(one) => {
+            Err(InputError::WrongBatch { name: "external", expected: count, got: one.rows.len() / 6 })
+        }
+        None => Ok(()),
+    }
+}
 
 /// Refuses rows that are not finite.
 pub(super) fn check_finite(name: &'static str, data: &[f64], width: usize) -> Result<(), InputError> {

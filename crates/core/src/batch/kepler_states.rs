@@ -67,7 +67,7 @@ fn all<S: Real>(
     let rows = positions.chunks_mut(3 * CHUNK).zip(velocities.chunks_mut(3 * CHUNK));
     for_each(
         threads,
-        rows.enumerate().collect(),
+        rows.enumerate(),
         || (),
         |(), (chunk, (positions, velocities))| {
             S::enter(

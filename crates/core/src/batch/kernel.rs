@@ -9,7 +9,7 @@ use crate::dynamics::{
     momentum, positions,
 };
 use crate::model::{Model, difference, integrate};
-use crate::spatial::{Force, Real, Vec3, pose_rows};
+use crate::spatial::{Force, Real, pose_rows};
 
 /// What to compute from a state; frames by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,14 +66,6 @@ impl<S: Real> Work<S> {
             external: Vec::new(),
         }
     }
-
-    pub(super) fn set_external(&mut self, external: &[FrameWrench<f64>]) {
-        self.external.clear();
-        self.external.extend(external.iter().map(|w| FrameWrench {
-            frame: w.frame,
-            wrench: Force::new(Vec3::of(&w.wrench.linear), Vec3::of(&w.wrench.angular)),
-        }));
-    }
 }
 
 impl Kernel {
@@ -97,6 +89,11 @@ impl Kernel {
             _ if name.starts_with('q') => model.nq(),
             _ => model.nv(),
         }
+    }
+
+    /// Whether it divides by what a joint feels: its first output is not finite where that is nothing.
+    pub(super) fn divides(self) -> bool {
+        matches!(self, Self::ForwardDynamics | Self::ForwardDynamicsDerivatives)
     }
 
     /// Widths of the outputs' rows.

@@ -6,11 +6,14 @@ mod kepler_states;
 mod kernel;
 mod propagate;
 mod rollout;
+mod side_by_side;
+mod space;
 mod threads;
 
-pub use evaluate::{Evaluator, Rows, RowsMut};
-pub use input::InputError;
+pub use evaluate::Evaluator;
+pub use input::{InputError, Wrenches};
 pub use kepler_states::kepler_states;
 pub use kernel::Kernel;
 pub use propagate::{Times, propagate};
 pub use rollout::{Rollout, RolloutControl};
+pub use space::{Rows, RowsMut};

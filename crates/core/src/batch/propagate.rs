@@ -39,10 +39,10 @@ pub fn propagate(
         }
     }
     if expected == 0 {
-        return for_each(threads, Vec::<()>::new(), || (), |(), ()| ());
+        return for_each(threads, [(); 0], || (), |(), ()| ());
     }
     let rows = positions.chunks_mut(3 * count).zip(velocities.chunks_mut(3 * count));
-    let tasks = orbits.iter().zip(rows).enumerate().collect();
+    let tasks = orbits.iter().zip(rows).enumerate();
     let first: Mutex<Option<(usize, OrbitError)>> = Mutex::new(None);
     for_each(
         threads,

@@ -1,13 +1,14 @@
 //! Many runs at once, in empty space: passive, with given torques, or under computed torque.
 
 use super::input::{InputError, check_finite, check_quaternions};
+use super::side_by_side::{Places, gather, scatter};
 use super::threads::for_each;
 use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
-use crate::model::Model;
+use crate::model::{Model, neutral};
 use crate::reference::TaskReference;
 use crate::simulation::{Integrator, Nothing, Plant, State, Stepper, Stepping};
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// What drives the joints in a rollout.
 #[derive(Clone, Copy, Debug, Default)]
@@ -76,19 +77,20 @@ impl Rollout<'_> {
         {
             return Err(InputError::NeedsOrbit);
         }
-        match InstructionSet::current() {
+        let diverged = match InstructionSet::current() {
             InstructionSet::Baseline => self.all::<f64>(model, q0, v0, q, v),
             InstructionSet::Fused | InstructionSet::Wide if sticks => self.all::<Fused>(model, q0, v0, q, v),
             InstructionSet::Fused if q0.len() == model.nq() => self.all::<Fused>(model, q0, v0, q, v),
             InstructionSet::Fused => self.all::<Lanes4>(model, q0, v0, q, v),
             InstructionSet::Wide => self.all::<Lanes8>(model, q0, v0, q, v),
         }?;
-        match v.chunks(self.rows() * model.nv()).position(|state| !state.iter().all(|x| x.is_finite())) {
+        match diverged {
             Some(state) => Err(InputError::Diverged { state }),
             None => Ok(()),
         }
     }
 
+    /// Rolls all out; returns the first that did not stay finite.
     fn all<S: Real>(
         &self,
         model: &Model,
@@ -96,27 +98,28 @@ impl Rollout<'_> {
         v0: &[f64],
         q: &mut [f64],
         v: &mut [f64],
-    ) -> Result<(), InputError> {
-        let (nq, nv) = (model.nq(), model.nv());
-        let (q_rows, v_rows) = (S::LANES * self.rows() * nq, S::LANES * self.rows() * nv);
-        let tasks = q
-            .chunks_mut(q_rows)
-            .zip(v.chunks_mut(v_rows))
-            .zip(q0.chunks(S::LANES * nq).zip(v0.chunks(S::LANES * nv)))
-            .enumerate()
-            .collect();
+    ) -> Result<Option<usize>, InputError> {
+        let count = q0.len() / model.nq();
+        let (q_rows, v_rows) = (S::LANES * self.rows() * model.nq(), S::LANES * self.rows() * model.nv());
+        let diverged = AtomicUsize::new(count);
         for_each(
             self.threads,
-            tasks,
-            || (),
-            |(), (group, ((q, v), (q0, v0)))| {
-                Lanes::<S>::new(self, model, q0, v0, group * S::LANES).run(q, v);
+            q.chunks_mut(q_rows).zip(v.chunks_mut(v_rows)).enumerate(),
+            || Lanes::<S>::new(self, model),
+            |lanes, (group, (q, v))| {
+                let first = group * S::LANES;
+                lanes.start(q0, v0, first, S::LANES.min(count - first));
+                lanes.run(q, v);
+                if let Some(lane) = lanes.diverged() {
+                    diverged.fetch_min(first + lane, Ordering::Relaxed);
+                }
             },
-        )
+        )?;
+        Ok(Some(diverged.into_inner()).filter(|state| *state < count))
     }
 }
 
-/// As many runs as the scalar has lanes.
+/// As many runs as the scalar has lanes, one group of runs after the other.
 struct Lanes<'a, S> {
     settings: &'a Rollout<'a>,
     plant: Plant<'a, S, Nothing>,
@@ -130,23 +133,36 @@ struct Lanes<'a, S> {
 }
 
 impl<'a, S: Real> Lanes<'a, S> {
-    fn new(settings: &'a Rollout<'a>, model: &'a Model, q0: &[f64], v0: &[f64], first: usize) -> Self {
-        let count = v0.len() / model.nv();
-        let gather = |rows: &[f64], width: usize| -> Vec<S> {
-            (0..width).map(|i| S::from_lanes(|lane| rows[lane.min(count - 1) * width + i])).collect()
-        };
+    fn new(settings: &'a Rollout<'a>, model: &'a Model) -> Self {
         let mut plant = Plant::new(model, Nothing, None);
-        let state = State::at(model, &mut plant.data, gather(q0, model.nq()), gather(v0, model.nv()));
+        let q = neutral(model).into_iter().map(S::of).collect();
+        let state = State::at(model, &mut plant.data, q, vec![S::of(0.0); model.nv()]);
         let Rollout { integrator, time_step, .. } = *settings;
         let duration = time_step * settings.steps as f64;
         let how = Stepping { integrator, tolerance: 0.0, time_step, duration };
         let stepper = Stepper::new(model, &state, &how);
         let is_controlled = matches!(settings.control, RolloutControl::ComputedTorque(..));
         let work = is_controlled.then(|| ComputedTorqueWork::new(model));
-        Self { settings, plant, state, stepper, work, first, count }
+        Self { settings, plant, state, stepper, work, first: 0, count: 0 }
     }
 
-    fn run(mut self, q: &mut [f64], v: &mut [f64]) {
+    /// Takes up the runs from `first` on.
+    fn start(&mut self, q0: &[f64], v0: &[f64], first: usize, count: usize) {
+        (self.first, self.count) = (first, count);
+        let (mut q, mut v) = (std::mem::take(&mut self.state.q), std::mem::take(&mut self.state.v));
+        S::enter(
+            #[inline(always)]
+            || {
+                for (from, to) in [(q0, &mut q), (v0, &mut v)] {
+                    gather(from, Places { first: first * to.len(), stride: to.len(), count }, to);
+                }
+            },
+        );
+        self.state = State::at(self.plant.model, &mut self.plant.data, q, v);
+        self.stepper.restart();
+    }
+
+    fn run(&mut self, q: &mut [f64], v: &mut [f64]) {
         let Rollout { steps, time_step, record_every, .. } = *self.settings;
         let mut row = 0;
         for step in 0..steps {
@@ -185,14 +201,16 @@ impl<'a, S: Real> Lanes<'a, S> {
     /// Torques for a step.
     fn drive(&mut self, step: usize) {
         let Self { plant, state, settings, work, first, count, .. } = self;
-        let n = plant.command.len();
         match settings.control {
             RolloutControl::Passive => {}
             RolloutControl::Torques(tau) => {
-                for (j, command) in plant.command.iter_mut().enumerate() {
-                    let at = |lane: usize| ((*first + lane.min(*count - 1)) * settings.steps + step) * n + j;
-                    *command = S::from_lanes(|lane| tau[at(lane)]);
-                }
+                let n = plant.command.len();
+                let stride = settings.steps * n;
+                let places = Places { first: *first * stride + step * n, stride, count: *count };
+                S::enter(
+                    #[inline(always)]
+                    || gather(tau, places, &mut plant.command),
+                );
             }
             RolloutControl::ComputedTorque(law, reference) => {
                 let Some(work) = work else { return };
@@ -207,13 +225,21 @@ impl<'a, S: Real> Lanes<'a, S> {
     }
 
     fn write(&self, row: usize, q: &mut [f64], v: &mut [f64]) {
-        let rows = self.settings.rows();
-        for (out, values) in [(q, &self.state.q), (v, &self.state.v)] {
-            let width = values.len();
-            for lane in 0..self.count {
-                let to = &mut out[(lane * rows + row) * width..][..width];
-                to.iter_mut().zip(values).for_each(|(to, from)| *to = from.lane(lane));
-            }
-        }
+        let (rows, count) = (self.settings.rows(), self.count);
+        S::enter(
+            #[inline(always)]
+            || {
+                for (values, to) in [(&self.state.q, q), (&self.state.v, v)] {
+                    let width = values.len();
+                    scatter(values, Places { first: row * width, stride: rows * width, count }, to);
+                }
+            },
+        );
+    }
+
+    /// The first of the runs whose state is not finite. One that was not once never is again.
+    fn diverged(&self) -> Option<usize> {
+        let numbers = || self.state.q.iter().chain(&self.state.v);
+        (0..self.count).find(|&lane| !numbers().all(|x| x.lane(lane).is_finite()))
     }
 }

@@ -1,19 +1,22 @@
 //! On how many threads a batch runs.
 
 use super::input::InputError;
-use rayon::prelude::*;
+use std::sync::{Mutex, PoisonError};
 
 /// Runs `task` on every element, with a workspace per thread: on all cores if `threads` is `None`,
 /// never on more than there are elements or processors, and on the calling thread if that is one.
 ///
+/// Elements are made as they are taken, so that a long batch costs no memory before it runs.
+///
 /// # Errors
 /// [`InputError::NoThreads`].
-pub(super) fn for_each<T: Send, W>(
+pub(super) fn for_each<T, W>(
     threads: Option<usize>,
-    tasks: Vec<T>,
+    tasks: impl IntoIterator<IntoIter: ExactSizeIterator<Item = T> + Send>,
     workspace: impl Fn() -> W + Sync,
     task: impl Fn(&mut W, T) + Sync,
 ) -> Result<(), InputError> {
+    let tasks = tasks.into_iter();
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     let wanted = threads.unwrap_or(processors).min(tasks.len()).min(processors);
     if threads == Some(0) {
@@ -21,13 +24,18 @@ pub(super) fn for_each<T: Send, W>(
     }
     if wanted <= 1 {
         let mut space = workspace();
-        tasks.into_iter().for_each(|one| task(&mut space, one));
+        tasks.for_each(|one| task(&mut space, one));
         return Ok(());
     }
-    let all = || tasks.into_par_iter().for_each_init(&workspace, &task);
-    match threads.map(|_| rayon::ThreadPoolBuilder::new().num_threads(wanted).build()) {
-        Some(Ok(pool)) => pool.install(all),
-        _ => all(), // the shared pool; it computes the same bits
-    }
+    let queue = Mutex::new(tasks);
+    let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let strand = || {
+        let mut space = workspace();
+        while let Some(one) = next() {
+            task(&mut space, one);
+        }
+    };
+    // no more strands than wanted, whatever the pool has
+    rayon::scope(|scope| (0..wanted).for_each(|_| scope.spawn(|_| strand())));
     Ok(())
 }

@@ -1,10 +1,11 @@
 //! Forward dynamics: the motion behind forces, in O(n) (articulated bodies, floating base).
 
-use super::data::Data;
+use super::data::{BodyData, Data};
 use super::external::{FrameWrench, apply_external};
 use super::kinematics::kinematics;
+use super::walk::{inward, outward};
 use crate::model::Model;
-use crate::spatial::{ArticulatedInertia, Force, Motion, Real};
+use crate::spatial::{ArticulatedInertia, Force, Real};
 
 /// Acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)`.
 ///
@@ -68,50 +69,62 @@ fn kernel<S: Real>(
     let bodies = &mut data.bodies[..nodes.len()];
     let (v, tau, a) = (&v[..nodes.len() + 5], &tau[..nodes.len() + 5], &mut a[..nodes.len() + 5]);
 
-    for (k, body) in bodies.iter_mut().enumerate() {
-        // ζ_k = v_k × S q̇,  pA_k = v ×* I v − F
-        if k > 0 {
+    let load = inward(
+        nodes,
+        bodies,
+        #[inline(always)]
+        |k, node, body, load| {
+            // ζ = v × S q̇,  pA = v ×* I v − F,  p = pA + IA ζ
             body.acceleration = body.velocity.cross(body.subspace * v[k + 5]);
-        }
-        body.articulated = ArticulatedInertia::rigid(&body.inertia);
-        body.force = body.velocity.cross_force(body.inertia.momentum(body.velocity)) - body.external;
-    }
-
-    for k in (1..nodes.len()).rev() {
-        let (before, rest) = bodies.split_at_mut(k);
-        let (node, body) = (&nodes[k], &mut rest[0]);
-        let parent = &mut before[node.parent];
-        // U = IA S,  D = Sᵀ U + rotor,  u = τ − Sᵀ pA
-        body.reach = body.articulated.apply(body.subspace);
-        // a locked joint hands on all of IA: as if nothing could move it, 1/D = 0
-        body.inverse_pivot = match is_locked(k) {
-            true => S::of(0.0),
-            false => S::of(1.0) / (body.subspace.dot(body.reach) + S::of(node.rotor_inertia)),
-        };
-        body.drive = tau[k + 5] - body.subspace.dot(body.force);
-        // Ia = IA − U Uᵀ/D,  pa = pA + IA ζ + U (u − Uᵀ ζ)/D
-        let share = (body.drive - body.acceleration.dot(body.reach)) * body.inverse_pivot;
-        let bias = body.reach.scale_add(share, body.force + body.articulated.apply(body.acceleration));
-        parent.articulated.accumulate(&body.articulated.add_outer(body.reach, -body.inverse_pivot));
-        parent.force += bias;
-    }
+            let (articulated, bias) = with_own(body, load);
+            body.force = bias + articulated.apply(body.acceleration);
+            // U = IA S,  D = Sᵀ U + rotor,  u = τ − Sᵀ p
+            body.reach = articulated.apply(body.subspace);
+            // a locked joint hands on all of IA: as if nothing could move it, 1/D = 0
+            body.inverse_pivot = match is_locked(k) {
+                true => S::of(0.0),
+                false => S::of(1.0) / (body.subspace.dot(body.reach) + S::of(node.rotor_inertia)),
+            };
+            body.drive = tau[k + 5] - body.subspace.dot(body.force);
+            // Ia = IA − U Uᵀ/D,  pa = p + U u/D
+            let yielding = body.reach * -body.inverse_pivot;
+            (articulated.add_outer(body.reach, yielding), yielding.scale_add(-body.drive, body.force))
+        },
+    );
 
     // a_0 = IA⁻¹ (τ_b − pA)
     let base = &mut bodies[0];
+    (base.articulated, base.force) = with_own(base, load);
     base.acceleration = base.articulated.solve(Force::from_slice(tau) - base.force);
     base.acceleration.write(a);
 
-    for k in 1..nodes.len() {
-        let (done, rest) = bodies.split_at_mut(k);
-        let (parent, body) = (&done[nodes[k].parent], &mut rest[0]);
-        // a' = a_p + ζ,  q̈ = (u − Uᵀ a')/D,  a = a' + S q̈
-        let carried: Motion<S> = parent.acceleration + body.acceleration;
-        let missing = body.drive - carried.dot(body.reach);
-        let acceleration = missing * body.inverse_pivot;
-        if is_locked(k) {
-            body.drive = -missing; // λ = Uᵀ a' − u
-        }
-        body.acceleration = body.subspace.scale_add(acceleration, carried);
-        a[k + 5] = acceleration;
-    }
+    outward(
+        nodes,
+        bodies,
+        #[inline(always)]
+        |body| body.acceleration,
+        #[inline(always)]
+        |k, _, body, carried| {
+            // q̈ = (u − Uᵀ a_p)/D,  a = a_p + ζ + S q̈
+            let held = carried.dot(body.reach);
+            let acceleration = (body.drive - held) * body.inverse_pivot;
+            if is_locked(k) {
+                body.drive = held - body.drive; // λ = Uᵀ a_p − u
+            }
+            body.acceleration = body.subspace.scale_add(acceleration, carried + body.acceleration);
+            a[k + 5] = acceleration;
+            body.acceleration
+        },
+    );
+}
+
+/// `IA` and `pA` of a body: its own, `I` and `v ×* I v − F`, and those of what it carries.
+#[inline(always)]
+fn with_own<S: Real>(
+    body: &BodyData<S>,
+    (mut articulated, force): (ArticulatedInertia<S>, Force<S>),
+) -> (ArticulatedInertia<S>, Force<S>) {
+    articulated.add_rigid(&body.inertia);
+    let own = body.velocity.cross_force(body.inertia.momentum(body.velocity)) - body.external;
+    (articulated, force + own)
 }

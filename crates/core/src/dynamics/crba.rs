@@ -1,9 +1,10 @@
 //! Mass matrix (composite rigid bodies).
 
-use super::data::{BodyData, Data};
+use super::data::Data;
 use super::kinematics::positions_kernel;
-use crate::model::{Model, Node};
-use crate::spatial::{Force, Real};
+use super::walk::inward;
+use crate::model::Model;
+use crate::spatial::{Real, SpatialInertia};
 
 /// Mass matrix `M(q)`, row major `(nv, nv)`, kg, kg m, kg m².
 ///
@@ -25,43 +26,42 @@ pub fn mass_matrix<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], out: &mu
 fn kernel<S: Real>(model: &Model, data: &mut Data<S>, out: &mut [S]) {
     let (nodes, nv) = (model.nodes(), model.nv());
     let bodies = &mut data.bodies[..nodes.len()];
-    out.fill(S::of(0.0));
-    composites(nodes, bodies);
-    for k in (1..nodes.len()).rev() {
-        let force = bodies[k].force;
-        let row = k + 5;
-        out[row * nv + row] = bodies[k].subspace.dot(force) + S::of(nodes[k].rotor_inertia);
-        let mut j = nodes[k].parent;
-        while j > 0 {
-            let entry = bodies[j].subspace.dot(force);
-            out[row * nv + j + 5] = entry;
-            out[(j + 5) * nv + row] = entry;
-            j = nodes[j].parent;
-        }
+    let carried = inward(
+        nodes,
+        bodies,
+        #[inline(always)]
+        |_, _, body, carried| {
+            // I^c = I + Σ I^c of what it carries,  F = I^c S
+            let composite: SpatialInertia<S> = carried + body.inertia;
+            body.force = composite.momentum(body.subspace);
+            composite
+        },
+    );
+    base_block(&(carried + bodies[0].inertia), nv, out);
+    for k in 1..nodes.len() {
+        let (force, row) = (bodies[k].force, k + 5);
         force.write(&mut out[row * nv..]);
-        for i in 0..6 {
+        let mut ancestor = nodes[k].parent;
+        for j in (1..k).rev() {
+            let mut entry = S::of(0.0);
+            if j == ancestor {
+                entry = bodies[j].subspace.dot(force);
+                ancestor = nodes[j].parent;
+            }
+            out[row * nv + j + 5] = entry;
+        }
+        for i in 0..row {
             out[i * nv + row] = out[row * nv + i];
         }
-    }
-    base_block(&bodies[0], nv, out);
-}
-
-/// Inward: composite inertias, and `force = I^c S` of every joint.
-#[inline(always)]
-pub(super) fn composites<S: Real>(nodes: &[Node], bodies: &mut [BodyData<S>]) {
-    bodies.iter_mut().for_each(|body| body.composite = body.inertia);
-    for k in (1..nodes.len()).rev() {
-        let composite = bodies[k].composite;
-        bodies[nodes[k].parent].composite += composite;
-        bodies[k].force = composite.momentum(bodies[k].subspace);
+        out[row * nv + row] = bodies[k].subspace.dot(force) + S::of(nodes[k].rotor_inertia);
     }
 }
 
 /// `Mbb = [[m 1, −h×], [h×, I_o]]`.
 #[inline(always)]
-fn base_block<S: Real>(base: &BodyData<S>, nv: usize, out: &mut [S]) {
-    let (o, i) = (S::of(0.0), &base.composite);
-    let (m, h, r) = (i.mass, i.moment, &i.about_origin);
+fn base_block<S: Real>(composite: &SpatialInertia<S>, nv: usize, out: &mut [S]) {
+    let o = S::of(0.0);
+    let (m, h, r) = (composite.mass, composite.moment, &composite.about_origin);
     let rows = [
         [m, o, o, o, h.z, -h.y],
         [o, m, o, -h.z, o, h.x],
@@ -73,10 +73,4 @@ fn base_block<S: Real>(base: &BodyData<S>, nv: usize, out: &mut [S]) {
     for (i, row) in rows.iter().enumerate() {
         out[i * nv..i * nv + 6].copy_from_slice(row);
     }
-}
-
-/// `I^c S` of joint `k`: column `k` of `Mbm`. Needs [`composites`].
-#[inline(always)]
-pub(super) fn coupling<S: Real>(bodies: &[BodyData<S>], k: usize) -> Force<S> {
-    bodies[k].force
 }

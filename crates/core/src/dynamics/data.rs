@@ -29,13 +29,13 @@ pub struct BodyData<S> {
     pub force: Force<S>,
     /// Inertia of the subtree, rigid. Set by CRBA and `free_floating`.
     pub composite: SpatialInertia<S>,
-    /// Inertia of the subtree, articulated. Set by ABA.
+    /// Inertia of the subtree, articulated. Set by ABA, of the base alone.
     pub articulated: ArticulatedInertia<S>,
     /// `U = IA S`. Set by ABA.
     pub reach: Force<S>,
     /// `1 / (Sᵀ U + rotor)`. Set by ABA.
     pub inverse_pivot: S,
-    /// `τ − Sᵀ pA`, of a locked joint the torque that holds it. Set by ABA.
+    /// `τ − Sᵀ (pA + IA ζ)`, of a locked joint the torque that holds it. Set by ABA.
     pub drive: S,
 }
 
@@ -44,6 +44,8 @@ pub struct BodyData<S> {
 pub struct Data<S> {
     /// One entry per body, base first.
     pub bodies: Vec<BodyData<S>>,
+    /// Sine and cosine of each joint's position. Set by [`positions`](super::positions).
+    pub turns: Vec<(S, S)>,
 }
 
 impl<S: Real> Data<S> {
@@ -61,12 +63,13 @@ impl<S: Real> Data<S> {
             acceleration: Motion::zero(),
             force: Force::zero(),
             composite: SpatialInertia::zero(),
-            articulated: ArticulatedInertia::rigid(&SpatialInertia::zero()),
+            articulated: ArticulatedInertia::zero(),
             reach: Force::zero(),
             inverse_pivot: S::of(0.0),
             drive: S::of(0.0),
         };
-        Self { bodies: vec![body; model.nodes().len()] }
+        let (n, o) = (model.nodes().len(), S::of(0.0));
+        Self { bodies: vec![body; n], turns: vec![(o, o); n - 1] }
     }
 
     /// Takes all external wrenches away.

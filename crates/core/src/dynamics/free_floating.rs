@@ -1,15 +1,15 @@
 //! The reduced model of a manipulator whose base nothing holds.
 
-use super::crba::{composites, coupling};
-use super::data::Data;
+use super::data::{BodyData, Data};
 use super::external::{FrameWrench, apply_external};
-use super::jacobian::{frame_drift, write_column};
+use super::jacobian::{classical, frame_drift, write_column};
 use super::kinematics::{
     FramePose, base_rotation, frame_origin_b, frame_pose, frame_rotation_b, frame_velocity, kinematics,
 };
-use super::rnea::inverse_dynamics_recursion;
-use crate::model::{Model, Node};
-use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, Vec3};
+use super::rnea::{accelerations, net_force};
+use super::walk::{inward, load};
+use crate::model::Model;
+use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, Vec3};
 
 /// `M* q̈ + c* = τ + Q*` and `ẍ = Jg q̈ + d` for one frame; exact for any momentum and any wrench.
 ///
@@ -33,10 +33,12 @@ pub struct FreeFloating<S> {
     pub pose: FramePose<S>,
     /// Twist of the frame in W axes at its origin.
     pub velocity: Motion<S>,
-    /// `[cb − Qb; cm − Qm]`, `(nv,)`.
-    net_bias: Vec<S>,
-    /// `Mbb⁻¹ Mbm`, a base twist per joint: how the base recoils from a unit joint rate.
+    /// `cb − Qb`.
+    base_bias: Force<S>,
+    /// `−Mbb⁻¹ Mbm`, a twist per joint: how the base, and all that the joint does not move, recoils from its unit rate.
     recoil: Vec<Motion<S>>,
+    /// `S − Mbb⁻¹ Mbm`: how what the joint moves does.
+    stroke: Vec<Motion<S>>,
 }
 
 impl<S: Real> FreeFloating<S> {
@@ -51,8 +53,9 @@ impl<S: Real> FreeFloating<S> {
             drift: Motion::zero(),
             pose: FramePose { rot_wf: Mat3::identity(), pos_w: Vec3::zero() },
             velocity: Motion::zero(),
-            net_bias: vec![o; model.nv()],
+            base_bias: Force::zero(),
             recoil: vec![Motion::zero(); n],
+            stroke: vec![Motion::zero(); n],
         }
     }
 }
@@ -81,11 +84,9 @@ pub fn free_floating_recursion<S: Real>(
     frame: usize,
     out: &mut FreeFloating<S>,
 ) {
-    inverse_dynamics_recursion(model, data, v, None, &mut out.net_bias);
-    out.drift = frame_drift(model, data, q, v, frame);
     S::enter(
         #[inline(always)]
-        || kernel(model, data, q, frame, out),
+        || kernel(model, data, q, v, frame, out),
     );
 }
 
@@ -103,8 +104,6 @@ pub fn free_floating_frame<S: Real>(
     S::enter(
         #[inline(always)]
         || {
-            out.pose = frame_pose(model, data, q, frame);
-            out.velocity = frame_velocity(model, data, q, frame);
             reduce_task(model, data, q, frame, &data.bodies[0].composite.inverse(), out);
         },
     );
@@ -147,64 +146,86 @@ pub fn base_relative_frame<S: Real>(
 }
 
 #[inline(always)]
-fn kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], frame: usize, out: &mut FreeFloating<S>) {
+fn kernel<S: Real>(
+    model: &Model,
+    data: &mut Data<S>,
+    q: &[S],
+    v: &[S],
+    frame: usize,
+    out: &mut FreeFloating<S>,
+) {
     let (nodes, n) = (model.nodes(), model.joint_count());
-    out.pose = frame_pose(model, data, q, frame);
-    out.velocity = frame_velocity(model, data, q, frame);
-    composites(nodes, &mut data.bodies);
-    let inverse = data.bodies[0].composite.inverse();
+    let bodies = &mut data.bodies[..=n];
+    accelerations(nodes, bodies, v, None);
+    let load = inward(
+        nodes,
+        bodies,
+        #[inline(always)]
+        |k, _, body, load| {
+            let load = with_own(body, load);
+            let (composite, (bias, Outside(outside))) = load;
+            // column of Mbm, cm − Qm, Qm
+            body.force = composite.momentum(body.subspace);
+            out.bias[k - 1] = body.subspace.dot(bias);
+            out.external[k - 1] = body.subspace.dot(outside);
+            load
+        },
+    );
+    let (composite, (bias, Outside(outside))) = with_own(&bodies[0], load);
+    (bodies[0].composite, out.base_bias) = (composite, bias);
+    let inverse = composite.inverse();
 
-    for k in 1..=n {
-        // column of Mbb⁻¹ Mbm
-        out.recoil[k - 1] = inverse.apply(coupling(&data.bodies, k));
+    for (k, body) in bodies[1..].iter().enumerate() {
+        out.recoil[k] = -inverse.apply(body.force);
+        out.stroke[k] = out.recoil[k] + body.subspace;
     }
-    out.inertia.fill(S::of(0.0));
-    for k in (1..=n).rev() {
-        let force = coupling(&data.bodies, k);
-        let mut j = k;
-        while j > 0 {
-            out.inertia[(k - 1) * n + j - 1] = data.bodies[j].subspace.dot(force);
-            j = nodes[j].parent;
-        }
-        out.inertia[(k - 1) * n + k - 1] += S::of(nodes[k].rotor_inertia);
-        for j in 1..=k {
+    for k in 1..=n {
+        let (force, mut ancestor) = (bodies[k].force, k);
+        for j in (1..=k).rev() {
             // M* = Mmm − Mbmᵀ (Mbb⁻¹ Mbm)
-            let entry = out.inertia[(k - 1) * n + j - 1] - out.recoil[j - 1].dot(force);
+            let mut twist = out.recoil[j - 1];
+            if j == ancestor {
+                twist = out.stroke[j - 1];
+                ancestor = nodes[j].parent;
+            }
+            let entry = twist.dot(force);
             out.inertia[(k - 1) * n + j - 1] = entry;
             out.inertia[(j - 1) * n + k - 1] = entry;
         }
+        out.inertia[(k - 1) * (n + 1)] += S::of(nodes[k].rotor_inertia);
     }
 
-    reduce_forces(nodes, data, &inverse, out);
+    let (net, outside) = (inverse.apply(bias), inverse.apply(outside)); // Mbb⁻¹ (cb − Qb), Mbb⁻¹ Qb
+    for (k, body) in bodies[1..].iter().enumerate() {
+        // Q* = Qm − Mbmᵀ Mbb⁻¹ Qb,  c* = (cm − Qm) − Mbmᵀ Mbb⁻¹ (cb − Qb) + Q*
+        out.external[k] -= outside.dot(body.force);
+        out.bias[k] = out.bias[k] - net.dot(body.force) + out.external[k];
+    }
+    out.drift = classical(model, data, q, frame, data.bodies[model.frames()[frame].body].acceleration);
     reduce_task(model, data, q, frame, &inverse, out);
 }
 
-/// `c*` and `Q*`: what is left at the joints when the base gives way.
-#[inline(always)]
-fn reduce_forces<S: Real>(
-    nodes: &[Node],
-    data: &mut Data<S>,
-    inverse: &InverseInertia<S>,
-    out: &mut FreeFloating<S>,
-) {
-    let bodies = &mut data.bodies[..nodes.len()];
-    bodies.iter_mut().for_each(|body| body.outside = body.external);
-    for k in (1..nodes.len()).rev() {
-        let outside = bodies[k].outside;
-        bodies[nodes[k].parent].outside += outside;
-    }
-    let net = inverse.apply(Force::from_slice(&out.net_bias)); // Mbb⁻¹ (cb − Qb)
-    let outside = inverse.apply(bodies[0].outside); // Mbb⁻¹ Qb
-    for k in 1..nodes.len() {
-        let column = coupling(bodies, k);
-        // Q* = Qm − Mbmᵀ Mbb⁻¹ Qb,  c* = (cm − Qm) − Mbmᵀ Mbb⁻¹ (cb − Qb) + Q*
-        let reduced = bodies[k].subspace.dot(bodies[k].outside) - outside.dot(column);
-        out.external[k - 1] = reduced;
-        out.bias[k - 1] = out.net_bias[k + 5] - net.dot(column) + reduced;
+/// Wrenches from outside on a subtree.
+#[derive(Clone, Copy)]
+struct Outside<S>(Force<S>);
+impl<S: Real> std::ops::Add for Outside<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
     }
 }
+load!(Outside<S>, Self(Force::zero()), |body| Self(body.outside), |this, body| body.outside = this.0);
+/// A body's own inertia, bias and wrench beside those of what it carries.
+#[inline(always)]
+fn with_own<S: Real>(
+    body: &BodyData<S>,
+    (composite, (bias, outside)): (SpatialInertia<S>, (Force<S>, Outside<S>)),
+) -> (SpatialInertia<S>, (Force<S>, Outside<S>)) {
+    (composite + body.inertia, (bias + net_force(body), Outside(outside.0 + body.external)))
+}
 
-/// `Jg` and `d`: what the frame does when the base gives way.
+/// Pose, twist, `Jg` and `d`, the last from `J̇ v`: what the frame does when the base gives way.
 #[inline(always)]
 fn reduce_task<S: Real>(
     model: &Model,
@@ -214,20 +235,22 @@ fn reduce_task<S: Real>(
     inverse: &InverseInertia<S>,
     out: &mut FreeFloating<S>,
 ) {
+    out.pose = frame_pose(model, data, q, frame);
+    out.velocity = frame_velocity(model, data, q, frame);
     let n = model.joint_count();
     let frame = &model.frames()[frame];
     let (rot_wb, p) = (base_rotation(q), frame_origin_b(data, frame));
-    for k in 0..n {
-        // Jg = Jm − Jb Mbb⁻¹ Mbm; Jm follows below
-        write_column(&mut out.jacobian, n, k, rot_wb, p, -out.recoil[k]);
-    }
-    let mut k = frame.body;
-    while k > 0 {
-        let unit = data.bodies[k].subspace - out.recoil[k - 1];
-        write_column(&mut out.jacobian, n, k - 1, rot_wb, p, unit);
-        k = model.nodes()[k].parent;
+    let mut ancestor = frame.body;
+    for k in (1..=n).rev() {
+        // Jg = Jm − Jb Mbb⁻¹ Mbm
+        let mut twist = out.recoil[k - 1];
+        if k == ancestor {
+            twist = out.stroke[k - 1];
+            ancestor = model.nodes()[k].parent;
+        }
+        write_column(&mut out.jacobian, n, k - 1, rot_wb, p, twist);
     }
     // d = J̇ v − Jb Mbb⁻¹ (cb − Qb)
-    let net = inverse.apply(Force::from_slice(&out.net_bias));
+    let net = inverse.apply(out.base_bias);
     out.drift -= Motion::new(rot_wb * net.at(p), rot_wb * net.angular);
 }

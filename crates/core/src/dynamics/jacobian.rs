@@ -83,7 +83,13 @@ pub fn frame_acceleration<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame
 /// A spatial acceleration is the rate of the velocity field at a fixed point; the last term
 /// follows the material point instead.
 #[inline(always)]
-fn classical<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize, spatial: Motion<S>) -> Motion<S> {
+pub(super) fn classical<S: Real>(
+    model: &Model,
+    data: &Data<S>,
+    q: &[S],
+    frame: usize,
+    spatial: Motion<S>,
+) -> Motion<S> {
     let frame = &model.frames()[frame];
     let (rot_wb, p) = (base_rotation(q), frame_origin_b(data, frame));
     let velocity = data.bodies[frame.body].velocity;

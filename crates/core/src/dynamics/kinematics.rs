@@ -1,6 +1,7 @@
 //! Where the bodies are and how they move.
 
 use super::data::{BodyData, Data};
+use super::walk::outward;
 use crate::model::{Axis, Frame, Model, Node};
 use crate::spatial::{Mat3, Motion, Quat, Real, SpatialInertia, Sym3, Vec3};
 
@@ -31,54 +32,57 @@ pub fn kinematics<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) 
 
 #[inline(always)]
 pub(super) fn positions_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
-    walk(model, data, q, |_, _, _, _| {});
-}
-
-#[inline(always)]
-pub(crate) fn kinematics_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) {
-    data.bodies[0].velocity = Motion::from_slice(v);
-    let rates = &v[5..];
-    // v_k = v_p + S q̇
-    walk(
-        model,
-        data,
-        q,
+    let (nodes, n) = (model.nodes(), model.joint_count());
+    let Data { bodies, turns } = data;
+    let (turns, q) = (&mut turns[..n], &q[7..n + 7]);
+    S::sin_cos_each(q, turns);
+    place_inertia(&nodes[0], &mut bodies[0]);
+    outward(
+        nodes,
+        bodies,
         #[inline(always)]
-        |k, parent, body, _| {
-            body.velocity = body.subspace.scale_add(rates[k], parent.velocity);
+        |body| (body.rot_bk, body.pos_b),
+        #[inline(always)]
+        |k, node, body, parent| {
+            place(node, parent, body, q[k - 1], turns[k - 1]);
+            place_inertia(node, body);
+            (body.rot_bk, body.pos_b)
         },
     );
 }
 
-/// Outward over the tree: places each body, then hands it to `visit` with its parent.
 #[inline(always)]
-fn walk<S: Real>(
-    model: &Model,
-    data: &mut Data<S>,
-    q: &[S],
-    mut visit: impl FnMut(usize, &BodyData<S>, &mut BodyData<S>, &Node),
-) {
-    let nodes = model.nodes();
-    let bodies = &mut data.bodies[..nodes.len()];
-    place_inertia(&nodes[0], &mut bodies[0]);
-    for k in 1..nodes.len() {
-        let (done, rest) = bodies.split_at_mut(k);
-        let (node, body) = (&nodes[k], &mut rest[0]);
-        let parent = &done[node.parent];
-        place(node, parent, body, q[k + 6]);
-        place_inertia(node, body);
-        visit(k, parent, body, node);
-    }
+pub(crate) fn kinematics_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) {
+    positions_kernel(model, data, q);
+    data.bodies[0].velocity = Motion::from_slice(v);
+    let rates = &v[5..model.nodes().len() + 5];
+    outward(
+        model.nodes(),
+        &mut data.bodies,
+        #[inline(always)]
+        |body| body.velocity,
+        #[inline(always)]
+        |k, _, body, velocity| {
+            // v_k = v_p + S q̇
+            body.velocity = body.subspace.scale_add(rates[k], velocity);
+            body.velocity
+        },
+    );
 }
 
 /// Pose of a body from its parent's: `R_bk = R_bp R_pk Rz(q)`, and its motion subspace.
 #[inline(always)]
-fn place<S: Real>(node: &Node, parent: &BodyData<S>, body: &mut BodyData<S>, q: S) {
-    let tree = parent.rot_bk * Mat3::of(&node.rot_pk);
-    let pos = parent.rot_bk * Vec3::of(&node.pos_pk) + parent.pos_b;
+fn place<S: Real>(
+    node: &Node,
+    (rot_bp, pos_bp): (Mat3<S>, Vec3<S>),
+    body: &mut BodyData<S>,
+    q: S,
+    (s, c): (S, S),
+) {
+    let tree = rot_bp * Mat3::of(&node.rot_pk);
+    let pos = rot_bp * Vec3::of(&node.pos_pk) + pos_bp;
     match node.axis {
         Axis::Revolute => {
-            let (s, c) = q.sin_cos();
             let x = tree.x.scale_add(c, tree.y * s);
             let y = tree.y.scale_add(c, -(tree.x * s));
             body.rot_bk = Mat3::from_columns(x, y, tree.z);

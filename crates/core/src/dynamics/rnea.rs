@@ -1,10 +1,11 @@
 //! Inverse dynamics: the forces behind a motion (recursive Newton-Euler).
 
-use super::data::Data;
+use super::data::{BodyData, Data};
 use super::external::{FrameWrench, apply_external};
 use super::kinematics::kinematics;
-use crate::model::Model;
-use crate::spatial::{Motion, Real};
+use super::walk::{inward, outward};
+use crate::model::{Model, Node};
+use crate::spatial::{Force, Motion, Real};
 
 /// Generalized forces `M a + c − Σ Jᵀ F` that give the acceleration `a`.
 ///
@@ -51,43 +52,60 @@ pub fn inverse_dynamics_recursion<S: Real>(
     S::enter(
         #[inline(always)]
         || match a {
-            Some(a) => kernel(model, data, v, |k| a[k + 5], Motion::from_slice(a), tau),
-            None => kernel(model, data, v, |_| S::of(0.0), Motion::zero(), tau),
+            Some(a) => kernel(model, data, v, Some(a), tau), // each its own code
+            None => kernel(model, data, v, None, tau),
         },
     );
 }
 
 #[inline(always)]
-fn kernel<S: Real>(
-    model: &Model,
-    data: &mut Data<S>,
-    v: &[S],
-    joint_acceleration: impl Fn(usize) -> S,
-    base_acceleration: Motion<S>,
-    tau: &mut [S],
-) {
+fn kernel<S: Real>(model: &Model, data: &mut Data<S>, v: &[S], a: Option<&[S]>, tau: &mut [S]) {
     let nodes = model.nodes();
     let bodies = &mut data.bodies[..nodes.len()];
-    bodies[0].acceleration = base_acceleration;
-    for k in 0..nodes.len() {
-        let (done, rest) = bodies.split_at_mut(k);
-        let body = &mut rest[0];
-        if k > 0 {
-            // a_k = a_p + v_k × S q̇ + S q̈
-            let carried = done[nodes[k].parent].acceleration + body.velocity.cross(body.subspace * v[k + 5]);
-            body.acceleration = body.subspace.scale_add(joint_acceleration(k), carried);
-        }
-        // f_k = I a + v ×* I v − F
-        body.force = body.inertia.momentum(body.acceleration)
-            + body.velocity.cross_force(body.inertia.momentum(body.velocity))
-            - body.external;
-    }
-    for k in (1..nodes.len()).rev() {
-        let node = &nodes[k];
-        let force = bodies[k].force;
-        // τ_k = Sᵀ f_k + rotor q̈
-        tau[k + 5] = joint_acceleration(k).mul_add(S::of(node.rotor_inertia), bodies[k].subspace.dot(force));
-        bodies[node.parent].force += force;
-    }
+    let tau = &mut tau[..nodes.len() + 5];
+    accelerations(nodes, bodies, v, a);
+    let carried = inward(
+        nodes,
+        bodies,
+        #[inline(always)]
+        |k, node, body, carried: Force<S>| {
+            // f_k = I a + v ×* I v − F + Σ f of what it carries,  τ_k = Sᵀ f_k + rotor q̈
+            body.force = carried + net_force(body);
+            tau[k + 5] = body.subspace.dot(body.force);
+            if let Some(a) = a {
+                tau[k + 5] = a[k + 5].mul_add(S::of(node.rotor_inertia), tau[k + 5]);
+            }
+            body.force
+        },
+    );
+    bodies[0].force = carried + net_force(&bodies[0]);
     bodies[0].force.write(tau);
+}
+
+/// Outward: `a_k = a_p + v_k × S q̇ + S q̈` of all bodies; no `a` is zero.
+#[inline(always)]
+pub(super) fn accelerations<S: Real>(nodes: &[Node], bodies: &mut [BodyData<S>], v: &[S], a: Option<&[S]>) {
+    let v = &v[..nodes.len() + 5];
+    bodies[0].acceleration = a.map_or_else(Motion::zero, Motion::from_slice);
+    outward(
+        nodes,
+        bodies,
+        #[inline(always)]
+        |body| body.acceleration,
+        #[inline(always)]
+        |k, _, body, carrier| {
+            body.acceleration = carrier + body.velocity.cross(body.subspace * v[k + 5]);
+            if let Some(a) = a {
+                body.acceleration = body.subspace.scale_add(a[k + 5], body.acceleration);
+            }
+            body.acceleration
+        },
+    );
+}
+
+/// What moves a body as it does, less what acts on it from outside: `I a + v ×* I v − F`.
+#[inline(always)]
+pub(super) fn net_force<S: Real>(body: &BodyData<S>) -> Force<S> {
+    body.inertia.momentum(body.acceleration) + body.velocity.cross_force(body.inertia.momentum(body.velocity))
+        - body.external
 }

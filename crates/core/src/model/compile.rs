@@ -132,6 +132,8 @@ fn attach(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
         JointKind::Prismatic(axis) => (Axis::Prismatic, axis),
     };
     let rot_link_body = rotation_to_axis(axis);
+    let next = model.nodes.len();
+    model.nodes[parent.body].is_fork |= parent.body + 1 != next;
     model.nodes.push(Node {
         parent: parent.body,
         axis: kind,
@@ -153,6 +155,7 @@ fn attach(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
 fn empty_node() -> Node {
     Node {
         parent: 0,
+        is_fork: false,
         axis: Axis::Revolute,
         rot_pk: Mat3::identity(),
         pos_pk: Vec3::zero(),

@@ -21,6 +21,8 @@ pub enum Axis {
 pub struct Node {
     /// Index of the body it hangs on; always smaller than its own.
     pub parent: usize,
+    /// Whether bodies beside the next one hang on it.
+    pub is_fork: bool,
     /// What its joint does (of no meaning for the base).
     pub axis: Axis,
     /// Axes of this body at joint position zero, in the parent's axes.

@@ -55,6 +55,11 @@ impl<S: Real> Stepper<S> {
         }
     }
 
+    /// Forgets the run before.
+    pub(crate) fn restart(&mut self) {
+        self.cuts = 0;
+    }
+
     /// What the control of the step remembers, if it adapts.
     pub(super) fn memory(&self) -> Option<Memory> {
         self.stages.pair.as_ref().map(|pair| pair.memory)

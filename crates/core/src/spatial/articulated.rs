@@ -5,7 +5,7 @@ use super::mat3::Mat3;
 use super::motion::{Force, Motion};
 use super::scalar::Real;
 use super::sym3::Sym3;
-use super::vec3::Vec3;
+use std::ops::Add;
 
 /// A symmetric 6 × 6 operator `[[A, H], [Hᵀ, I]]`, linear first: twenty-one numbers.
 #[derive(Clone, Copy, Debug, Default)]
@@ -19,19 +19,22 @@ pub struct ArticulatedInertia<S> {
 }
 
 impl<S: Real> ArticulatedInertia<S> {
-    /// That of a rigid body alone: `A = m 1`, `H = −h×`.
+    /// No inertia.
     #[inline(always)]
-    pub fn rigid(i: &SpatialInertia<S>) -> Self {
-        let (o, h) = (S::of(0.0), i.moment);
-        Self {
-            linear: Sym3::diagonal(i.mass),
-            coupling: Mat3::from_columns(
-                Vec3::new(o, -h.z, h.y),
-                Vec3::new(h.z, o, -h.x),
-                Vec3::new(-h.y, h.x, o),
-            ),
-            angular: i.about_origin,
-        }
+    pub fn zero() -> Self {
+        let o = Sym3::diagonal(S::of(0.0));
+        Self { linear: o, coupling: Mat3::zero(), angular: o }
+    }
+
+    /// Adds that of a rigid body: `A = m 1`, `H = −h×`.
+    #[inline(always)]
+    pub fn add_rigid(&mut self, i: &SpatialInertia<S>) {
+        let (a, c, h) = (&mut self.linear, &mut self.coupling, i.moment);
+        (a.xx, a.yy, a.zz) = (a.xx + i.mass, a.yy + i.mass, a.zz + i.mass);
+        (c.x.y, c.x.z) = (c.x.y - h.z, c.x.z + h.y);
+        (c.y.x, c.y.z) = (c.y.x + h.z, c.y.z - h.x);
+        (c.z.x, c.z.y) = (c.z.x - h.y, c.z.y + h.x);
+        self.angular += i.about_origin;
     }
 
     /// `IA a`.
@@ -43,23 +46,15 @@ impl<S: Real> ArticulatedInertia<S> {
         )
     }
 
-    /// `IA + U Uᵀ s`.
+    /// `IA + U Wᵀ`, of which `W` must be a multiple of `U`.
     #[inline(always)]
     #[must_use]
-    pub fn add_outer(&self, u: Force<S>, s: S) -> Self {
+    pub fn add_outer(&self, u: Force<S>, w: Force<S>) -> Self {
         Self {
-            linear: self.linear.add_outer(u.linear, s),
-            coupling: self.coupling.add_outer(u.linear, u.angular, s),
-            angular: self.angular.add_outer(u.angular, s),
+            linear: self.linear.add_outer(u.linear, w.linear),
+            coupling: self.coupling.add_outer(u.linear, w.angular),
+            angular: self.angular.add_outer(u.angular, w.angular),
         }
-    }
-
-    /// Adds another.
-    #[inline(always)]
-    pub fn accumulate(&mut self, o: &Self) {
-        self.linear += o.linear;
-        self.coupling += o.coupling;
-        self.angular += o.angular;
     }
 
     /// Prepares `IA⁻¹` by block elimination: `A⁻¹`, `A⁻¹ H`, `(I − Hᵀ A⁻¹ H)⁻¹`.
@@ -103,5 +98,17 @@ impl<S: Real> InverseArticulated<S> {
     pub fn apply(&self, f: Force<S>) -> Motion<S> {
         let angular = self.angular * (f.angular - self.carried.transpose_mul(f.linear));
         Motion::new(self.linear * f.linear - self.carried * angular, angular)
+    }
+}
+
+impl<S: Real> Add for ArticulatedInertia<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self {
+            linear: self.linear + o.linear,
+            coupling: self.coupling + o.coupling,
+            angular: self.angular + o.angular,
+        }
     }
 }

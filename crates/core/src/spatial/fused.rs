@@ -1,5 +1,6 @@
 //! One number whose multiply-adds are fused: the scalar of processors with AVX2 and FMA.
 
+use super::lanes::Lanes4;
 use super::scalar::{FAST_SINE_LIMIT, Real, Scalar};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -105,6 +106,15 @@ impl Real for Fused {
         } else {
             let (s, c) = self.0.sin_cos();
             (Self(s), Self(c))
+        }
+    }
+    #[inline(always)]
+    fn sin_cos_each(angles: &[Self], out: &mut [(Self, Self)]) {
+        for (angles, out) in angles.chunks(4).zip(out.chunks_mut(4)) {
+            let (s, c) = Lanes4::from_lanes(|i| angles.get(i).map_or(0.0, |x| x.0)).sin_cos();
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = (Self(s.lane(i)), Self(c.lane(i)));
+            }
         }
     }
     #[inline(always)]

@@ -87,6 +87,10 @@ macro_rules! lanes {
                 self.0[i]
             }
             #[inline(always)]
+            fn set_lane(&mut self, i: usize, x: f64) {
+                self.0[i] = x;
+            }
+            #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
                 let mut out = [0.0; $width];
                 for i in 0..$width {

@@ -59,15 +59,11 @@ impl<S: Real> Mat3<S> {
         Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
     }
 
-    /// `A + u vᵀ s`.
+    /// `A + u vᵀ`.
     #[inline(always)]
     #[must_use]
-    pub fn add_outer(&self, u: Vec3<S>, v: Vec3<S>, s: S) -> Self {
-        Self::from_columns(
-            u.scale_add(v.x * s, self.x),
-            u.scale_add(v.y * s, self.y),
-            u.scale_add(v.z * s, self.z),
-        )
+    pub fn add_outer(&self, u: Vec3<S>, v: Vec3<S>) -> Self {
+        Self::from_columns(u.scale_add(v.x, self.x), u.scale_add(v.y, self.y), u.scale_add(v.z, self.z))
     }
 }
 

@@ -39,6 +39,13 @@ pub trait Real:
     /// The number in lane `i`.
     fn lane(self, i: usize) -> f64;
 
+    /// Puts `x` into lane `i`.
+    #[inline(always)]
+    fn set_lane(&mut self, i: usize, x: f64) {
+        let before = *self;
+        *self = Self::from_lanes(|lane| if lane == i { x } else { before.lane(lane) });
+    }
+
     /// `self · a + b`, fused where the type's instruction set does it in hardware.
     #[must_use]
     fn mul_add(self, a: Self, b: Self) -> Self;
@@ -53,6 +60,14 @@ pub trait Real:
 
     /// Sine and cosine, rad. Errors below 1e-16 up to 1e5 rad.
     fn sin_cos(self) -> (Self, Self);
+
+    /// [`sin_cos`](Real::sin_cos) of many angles, the same bits: several at a time where there is room for it.
+    #[inline(always)]
+    fn sin_cos_each(angles: &[Self], out: &mut [(Self, Self)]) {
+        for (angle, out) in angles.iter().zip(out) {
+            *out = angle.sin_cos();
+        }
+    }
 
     /// Angle of the point `(x, self)`, rad.
     #[must_use]

@@ -43,18 +43,17 @@ impl<S: Real> Sym3<S> {
         Self::new(S::of(m.xx), S::of(m.yy), S::of(m.zz), S::of(m.xy), S::of(m.xz), S::of(m.yz))
     }
 
-    /// `A + u uᵀ s`.
+    /// `A + u wᵀ`, of which `w` must be a multiple of `u`.
     #[inline(always)]
     #[must_use]
-    pub fn add_outer(&self, u: Vec3<S>, s: S) -> Self {
-        let us = u * s;
+    pub fn add_outer(&self, u: Vec3<S>, w: Vec3<S>) -> Self {
         Self::new(
-            u.x.mul_add(us.x, self.xx),
-            u.y.mul_add(us.y, self.yy),
-            u.z.mul_add(us.z, self.zz),
-            u.x.mul_add(us.y, self.xy),
-            u.x.mul_add(us.z, self.xz),
-            u.y.mul_add(us.z, self.yz),
+            u.x.mul_add(w.x, self.xx),
+            u.y.mul_add(w.y, self.yy),
+            u.z.mul_add(w.z, self.zz),
+            u.x.mul_add(w.y, self.xy),
+            u.x.mul_add(w.z, self.xz),
+            u.y.mul_add(w.z, self.yz),
         )
     }
 
