@@ -189,6 +189,7 @@ class Model:
         *,
         external: _External | None = None,
         threads: int | None = None,
+        out: tuple[_Array, _Array, _Array] | None = None,
     ) -> tuple[_Array, _Array, _Array]: ...
     def forward_dynamics_derivatives(
         self,
@@ -198,6 +199,7 @@ class Model:
         *,
         external: _External | None = None,
         threads: int | None = None,
+        out: tuple[_Array, _Array, _Array] | None = None,
     ) -> tuple[_Array, _Array, _Array]: ...
     def momentum(self, q: ArrayLike, v: ArrayLike, *, threads: int | None = None) -> _Array: ...
     @overload
@@ -223,6 +225,7 @@ class Model:
         *,
         external: _External | None = None,
         threads: int | None = None,
+        out: FreeFloatingDerivatives | None = None,
     ) -> FreeFloatingDerivatives: ...
 
 @final

@@ -1,6 +1,7 @@
 //! Derivatives of the dynamics.
 
 use crate::arrays::Count;
+use crate::errors::{fields, raise};
 use crate::kernels::evaluate;
 use crate::model::PyModel;
 use onorbit_core::batch::Kernel;
@@ -58,9 +59,14 @@ pub(crate) fn three<'py>(
     kernel: Kernel,
     values: &[&Bound<'py, PyAny>],
     external: Option<&Bound<'py, PyDict>>,
-    out: Option<[Bound<'py, PyAny>; 3]>,
+    out: Option<&Bound<'py, PyAny>>,
     threads: Option<Count>,
 ) -> PyResult<Bound<'py, PyTuple>> {
+    let out = out.map(|out| out.extract::<[Bound<'py, PyAny>; 3]>()).transpose().map_err(|_| {
+        let needed = "three arrays (nv, nv) or (B, nv, nv)";
+        let message = format!("out is not what an earlier call returned, give {needed}");
+        raise(py, "InputError", &message, &fields!(py, "name": "out", "expected": needed))
+    })?;
     let square: &[usize] = &[model.model.nv(); 2];
     PyTuple::new(py, evaluate(py, model, kernel, values, external, [square; 3], out, threads)?)
 }

@@ -335,7 +335,7 @@ impl PyModel {
         a: Any<'_, 'py>,
         external: External<'_, 'py>,
         threads: Option<Count>,
-        out: Option<[Bound<'py, PyAny>; 3]>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
         three(py, self, Kernel::InverseDynamicsDerivatives, &[q, v, a], external, out, threads)
     }
@@ -352,7 +352,7 @@ impl PyModel {
         tau: Any<'_, 'py>,
         external: External<'_, 'py>,
         threads: Option<Count>,
-        out: Option<[Bound<'py, PyAny>; 3]>,
+        out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
         three(py, self, Kernel::ForwardDynamicsDerivatives, &[q, v, tau], external, out, threads)
     }
