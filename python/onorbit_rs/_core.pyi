@@ -147,14 +147,24 @@ class Model:
     @property
     def visuals(self) -> list[Visual]: ...
     def neutral(self) -> _Array: ...
-    def integrate(self, q: ArrayLike, dv: ArrayLike, *, threads: int | None = None) -> _Array: ...
-    def difference(self, q: ArrayLike, q2: ArrayLike, *, threads: int | None = None) -> _Array: ...
-    def frame_pose(self, q: ArrayLike, frame: str, *, threads: int | None = None) -> _Array: ...
-    def frame_velocity(
-        self, q: ArrayLike, v: ArrayLike, frame: str, *, threads: int | None = None
+    def integrate(
+        self, q: ArrayLike, dv: ArrayLike, *, threads: int | None = None, out: _Array | None = None
     ) -> _Array: ...
-    def frame_jacobian(self, q: ArrayLike, frame: str, *, threads: int | None = None) -> _Array: ...
-    def mass_matrix(self, q: ArrayLike, *, threads: int | None = None) -> _Array: ...
+    def difference(
+        self, q: ArrayLike, q2: ArrayLike, *, threads: int | None = None, out: _Array | None = None
+    ) -> _Array: ...
+    def frame_pose(
+        self, q: ArrayLike, frame: str, *, threads: int | None = None, out: _Array | None = None
+    ) -> _Array: ...
+    def frame_velocity(
+        self, q: ArrayLike, v: ArrayLike, frame: str, *, threads: int | None = None, out: _Array | None = None
+    ) -> _Array: ...
+    def frame_jacobian(
+        self, q: ArrayLike, frame: str, *, threads: int | None = None, out: _Array | None = None
+    ) -> _Array: ...
+    def mass_matrix(
+        self, q: ArrayLike, *, threads: int | None = None, out: _Array | None = None
+    ) -> _Array: ...
     def bias_forces(
         self,
         q: ArrayLike,
@@ -162,6 +172,7 @@ class Model:
         *,
         external: _External | None = None,
         threads: int | None = None,
+        out: _Array | None = None,
     ) -> _Array: ...
     def inverse_dynamics(
         self,
@@ -171,6 +182,7 @@ class Model:
         *,
         external: _External | None = None,
         threads: int | None = None,
+        out: _Array | None = None,
     ) -> _Array: ...
     def forward_dynamics(
         self,
@@ -180,6 +192,7 @@ class Model:
         *,
         external: _External | None = None,
         threads: int | None = None,
+        out: _Array | None = None,
     ) -> _Array: ...
     def inverse_dynamics_derivatives(
         self,
@@ -201,12 +214,20 @@ class Model:
         threads: int | None = None,
         out: tuple[_Array, _Array, _Array] | None = None,
     ) -> tuple[_Array, _Array, _Array]: ...
-    def momentum(self, q: ArrayLike, v: ArrayLike, *, threads: int | None = None) -> _Array: ...
+    def momentum(
+        self, q: ArrayLike, v: ArrayLike, *, threads: int | None = None, out: _Array | None = None
+    ) -> _Array: ...
     @overload
-    def kinetic_energy(self, q: _Vector, v: _Vector, *, threads: int | None = None) -> np.float64: ...
+    def kinetic_energy(
+        self, q: _Vector, v: _Vector, *, threads: int | None = None, out: None = None
+    ) -> np.float64: ...
     @overload
-    def kinetic_energy(self, q: ArrayLike, v: ArrayLike, *, threads: int | None = None) -> Any: ...
-    def center_of_mass(self, q: ArrayLike, *, threads: int | None = None) -> _Array: ...
+    def kinetic_energy(
+        self, q: ArrayLike, v: ArrayLike, *, threads: int | None = None, out: _Array | None = None
+    ) -> Any: ...
+    def center_of_mass(
+        self, q: ArrayLike, *, threads: int | None = None, out: _Array | None = None
+    ) -> _Array: ...
     def free_floating(
         self,
         q: ArrayLike,
@@ -215,6 +236,7 @@ class Model:
         *,
         external: _External | None = None,
         threads: int | None = None,
+        out: FreeFloating | None = None,
     ) -> FreeFloating: ...
     def free_floating_derivatives(
         self,
@@ -1027,6 +1049,7 @@ def rollout(
     integrator: _Integrator = "rk4",
     record_every: int | None = None,
     threads: int | None = None,
+    out: tuple[_Array, _Array] | None = None,
 ) -> tuple[_Array, _Array]: ...
 def propagate(
     orbits: Sequence[Orbit],

@@ -1,5 +1,4 @@
-//! Derivatives against dual numbers, which are exact, and central differences, which know no dual numbers; on
-//! random trees with every joint type, with wrenches on every frame.
+//! Derivatives against dual numbers, which are exact: on random trees with every joint type, wrenches on every frame.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 

@@ -122,7 +122,7 @@ fn fault(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
         }
     }
     for wrenches in call.external {
-        check_finite("external", wrenches.rows, 6)?;
+        check_finite("external wrench", wrenches.rows, 6)?;
     }
     // the mass matrix is singular
     match outputs[0].iter().position(|x| !x.is_finite()) {

@@ -70,7 +70,7 @@ pub(super) fn check_shapes(call: &Call<'_>) -> Result<(), InputError> {
     }
     match call.external.iter().find(|one| one.rows.len() != 6 && one.rows.len() != 6 * count) {
         Some(one) => {
-            Err(InputError::WrongBatch { name: "external", expected: count, got: one.rows.len() / 6 })
+            Err(InputError::WrongBatch { name: "external wrench", expected: count, got: one.rows.len() / 6 })
         }
         None => Ok(()),
     }

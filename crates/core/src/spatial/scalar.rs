@@ -46,6 +46,18 @@ pub trait Real:
         *self = Self::from_lanes(|lane| if lane == i { x } else { before.lane(lane) });
     }
 
+    /// Rows into lanes: number `i` of the row that begins at `place(l)` becomes lane `l` of `to[i]`.
+    #[inline(always)]
+    fn gather(from: &[f64], place: impl Fn(usize) -> usize, to: &mut [Self]) {
+        gather_one_by_one(from, place, to);
+    }
+
+    /// The first `count` lanes into rows, the way back of [`gather`](Real::gather).
+    #[inline(always)]
+    fn scatter(from: &[Self], to: &mut [f64], count: usize, place: impl Fn(usize) -> usize) {
+        scatter_one_by_one(from, to, count, place);
+    }
+
     /// `self · a + b`, fused where the type's instruction set does it in hardware.
     #[must_use]
     fn mul_add(self, a: Self, b: Self) -> Self;
@@ -97,6 +109,33 @@ pub trait Real:
     /// The closure and all it calls must be `#[inline(always)]`: what is left out of line is
     /// compiled for the baseline and loses the speed.
     fn enter<R>(kernel: impl FnOnce() -> R) -> R;
+}
+
+/// [`Real::gather`] for any number of lanes and any width.
+#[inline(always)]
+pub(super) fn gather_one_by_one<S: Real>(from: &[f64], place: impl Fn(usize) -> usize, to: &mut [S]) {
+    for lane in 0..S::LANES {
+        let row = &from[place(lane)..][..to.len()];
+        for (to, from) in to.iter_mut().zip(row) {
+            to.set_lane(lane, *from);
+        }
+    }
+}
+
+/// [`Real::scatter`] for any number of lanes and any width.
+#[inline(always)]
+pub(super) fn scatter_one_by_one<S: Real>(
+    from: &[S],
+    to: &mut [f64],
+    count: usize,
+    place: impl Fn(usize) -> usize,
+) {
+    for lane in 0..count {
+        let row = &mut to[place(lane)..][..from.len()];
+        for (to, from) in row.iter_mut().zip(from) {
+            *to = from.lane(lane);
+        }
+    }
 }
 
 /// A [`Real`] that holds a single number, so that it can be read back.

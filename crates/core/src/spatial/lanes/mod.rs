@@ -1,0 +1,264 @@
+//! Several states side by side: the scalars of batches.
+
+#[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
+#[cfg_attr(not(target_arch = "x86_64"), path = "array.rs")]
+mod register;
+
+use super::fused::Fused;
+use super::scalar::{FAST_SINE_LIMIT, Real, gather_one_by_one, scatter_one_by_one};
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+macro_rules! lanes {
+    (
+        $(#[$doc:meta])* $name:ident, $register:ident, $mask:ident, $width:literal, $features:literal,
+        $enter:ident, $available:expr
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        #[repr(transparent)]
+        pub struct $name(register::$register);
+
+        impl $name {
+            /// Whether this processor has the instructions that [`Real::enter`] uses.
+            #[inline(always)]
+            pub fn is_available() -> bool {
+                $available
+            }
+
+            #[inline(always)]
+            fn each(self, f: impl Fn(f64) -> f64) -> Self {
+                let numbers = self.0.to_array();
+                Self::from_lanes(|i| f(numbers[i]))
+            }
+        }
+
+        impl Default for $name {
+            #[inline(always)]
+            fn default() -> Self {
+                Self::of(0.0)
+            }
+        }
+
+        lanes!(@operator $name, Add, add, AddAssign, add_assign);
+        lanes!(@operator $name, Sub, sub, SubAssign, sub_assign);
+        lanes!(@operator $name, Mul, mul, MulAssign, mul_assign);
+        impl Div for $name {
+            type Output = Self;
+            #[inline(always)]
+            fn div(self, other: Self) -> Self {
+                Self(self.0.div(other.0))
+            }
+        }
+
+        impl Neg for $name {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self::of(-0.0) - self // exactly −x, zeros included
+            }
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = $features)]
+        fn $enter<R>(kernel: impl FnOnce() -> R) -> R {
+            kernel()
+        }
+
+        impl Real for $name {
+            type Mask = register::$mask;
+            const LANES: usize = $width;
+
+            #[inline(always)]
+            fn of(x: f64) -> Self {
+                Self(register::$register::from_array([x; $width]))
+            }
+            #[inline(always)]
+            fn from_lanes(f: impl Fn(usize) -> f64) -> Self {
+                Self(register::$register::from_array(std::array::from_fn(f)))
+            }
+            #[inline(always)]
+            fn lane(self, i: usize) -> f64 {
+                self.0.to_array()[i]
+            }
+            #[inline(always)]
+            fn set_lane(&mut self, i: usize, x: f64) {
+                let mut numbers = self.0.to_array();
+                numbers[i] = x;
+                self.0 = register::$register::from_array(numbers);
+            }
+            #[inline(always)]
+            fn gather(from: &[f64], place: impl Fn(usize) -> usize, to: &mut [Self]) {
+                let width = to.len();
+                if width < $width {
+                    return gather_one_by_one(from, place, to);
+                }
+                let mut block = [Self::default().0; $width];
+                for start in (0..width).step_by($width) {
+                    let start = start.min(width - $width); // the last block overlaps the one before
+                    for lane in 0..$width {
+                        let row = from[place(lane) + start..][..$width].try_into();
+                        block[lane] = register::$register::from_array(row.unwrap_or_default());
+                    }
+                    let columns = register::$register::transpose(block);
+                    for (to, column) in to[start..start + $width].iter_mut().zip(columns) {
+                        *to = Self(column);
+                    }
+                }
+            }
+            #[inline(always)]
+            fn scatter(from: &[Self], to: &mut [f64], count: usize, place: impl Fn(usize) -> usize) {
+                let width = from.len();
+                if width < $width {
+                    return scatter_one_by_one(from, to, count, place);
+                }
+                let mut block = [Self::default().0; $width];
+                for start in (0..width).step_by($width) {
+                    let start = start.min(width - $width);
+                    for (block, from) in block.iter_mut().zip(&from[start..start + $width]) {
+                        *block = from.0;
+                    }
+                    let rows = register::$register::transpose(block);
+                    for (lane, row) in rows.into_iter().enumerate().take(count) {
+                        to[place(lane) + start..][..$width].copy_from_slice(&row.to_array());
+                    }
+                }
+            }
+            #[inline(always)]
+            fn mul_add(self, a: Self, b: Self) -> Self {
+                Self(self.0.mul_add(a.0, b.0))
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                Self(self.0.sqrt())
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                Self(self.0.abs())
+            }
+            #[inline(always)]
+            fn sin_cos(self) -> (Self, Self) {
+                if register::$register::all(self.abs().less(Self::of(FAST_SINE_LIMIT))) {
+                    super::sine::sin_cos(self)
+                } else {
+                    (self.each(f64::sin), self.each(f64::cos))
+                }
+            }
+            #[inline(always)]
+            fn atan2(self, x: Self) -> Self {
+                let (y, x) = (self.0.to_array(), x.0.to_array());
+                Self::from_lanes(|i| f64::atan2(y[i], x[i]))
+            }
+            #[inline(always)]
+            fn less(self, other: Self) -> Self::Mask {
+                self.0.less(other.0)
+            }
+            #[inline(always)]
+            fn select(mask: Self::Mask, a: Self, b: Self) -> Self {
+                Self(register::$register::select(mask, a.0, b.0))
+            }
+            #[inline(always)]
+            fn any(mask: Self::Mask) -> bool {
+                register::$register::any(mask)
+            }
+            #[inline(always)]
+            fn enter<R>(kernel: impl FnOnce() -> R) -> R {
+                #[cfg(target_arch = "x86_64")]
+                {
+                    assert!(Self::is_available(), "lanes entered on a processor without their instructions");
+                    // SAFETY: the processor has these features, checked on the line above.
+                    unsafe { $enter(kernel) }
+                }
+                #[cfg(not(target_arch = "x86_64"))]
+                {
+                    kernel()
+                }
+            }
+        }
+    };
+    (@operator $name:ident, $trait:ident, $method:ident, $assign:ident, $assigned:ident) => {
+        impl $trait for $name {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0))
+            }
+        }
+        impl $assign for $name {
+            #[inline(always)]
+            fn $assigned(&mut self, other: Self) {
+                self.0 = self.0.$method(other.0);
+            }
+        }
+    };
+}
+
+lanes!(
+    /// Four states, for processors with AVX2 and FMA (or fused multiply-add in the baseline).
+    Lanes4, Four, FourMask, 4, "avx2,fma", enter_four, Fused::is_available()
+);
+lanes!(
+    /// Eight states, for processors with AVX-512.
+    Lanes8, Eight, EightMask, 8, "avx512f,avx512dq,avx512vl,avx2,fma", enter_eight, has_avx512()
+);
+
+#[inline(always)]
+fn has_avx512() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        Fused::is_available()
+            && std::arch::is_x86_feature_detected!("avx512f")
+            && std::arch::is_x86_feature_detected!("avx512dq")
+            && std::arch::is_x86_feature_detected!("avx512vl")
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Lanes4, Lanes8};
+    use crate::spatial::Real;
+
+    fn agrees_with_plain_numbers<L: Real>() {
+        let x = |i: usize| 0.37 * i as f64 - 1.1;
+        let lanes = L::from_lanes(x);
+        let (s, c) = lanes.sin_cos();
+        let chosen = L::select(L::less(lanes, L::of(0.0)), -lanes, lanes);
+        for i in 0..L::LANES {
+            assert!((s.lane(i) - x(i).sin()).abs() < 2.3e-16 && (c.lane(i) - x(i).cos()).abs() < 2.3e-16);
+            assert_eq!(chosen.lane(i), x(i).abs());
+            assert_eq!(lanes.mul_add(lanes, L::of(1.0)).lane(i), f64::mul_add(x(i), x(i), 1.0));
+            assert_eq!(lanes.atan2(L::of(2.0)).lane(i), x(i).atan2(2.0));
+        }
+        assert!((-L::of(0.0)).lane(1).is_sign_negative() && (-L::of(-0.0)).lane(1).is_sign_positive());
+        // rows of every width, further apart than they are wide, and back
+        for width in 1..20 {
+            let rows: Vec<f64> = (0..L::LANES * 25).map(|i| i as f64).collect();
+            let (mut lanes, place) = (vec![L::of(0.0); width], |lane| 3 + 22 * lane);
+            L::gather(&rows, place, &mut lanes);
+            for (i, x) in lanes.iter().enumerate() {
+                assert!((0..L::LANES).all(|lane| x.lane(lane) == (place(lane) + i) as f64));
+            }
+            for count in 1..=L::LANES {
+                let mut back = vec![-1.0; rows.len()];
+                L::scatter(&lanes, &mut back, count, place);
+                let is_written = |i: usize| i >= 3 && (i - 3) / 22 < count && (i - 3) % 22 < width;
+                assert!((0..rows.len()).all(|i| back[i] == if is_written(i) { i as f64 } else { -1.0 }));
+            }
+        }
+        let far = L::from_lanes(|i| if i == 1 { 3.0e7 } else { 0.5 });
+        assert_eq!(far.sin_cos().0.lane(1), 3.0e7_f64.sin());
+    }
+
+    #[test]
+    fn lanes_agree_with_plain_numbers() {
+        if Lanes4::is_available() {
+            agrees_with_plain_numbers::<Lanes4>();
+        }
+        if Lanes8::is_available() {
+            agrees_with_plain_numbers::<Lanes8>();
+        }
+    }
+}
