@@ -56,6 +56,24 @@ def test_the_reduced_model_by_differences_of_its_own() -> None:
     np.testing.assert_allclose(ours_v, by_v, atol=1e-7)
 
 
+def test_neighbours_part_as_the_tangent_says() -> None:
+    # δ̇ = δv - [v_b × δ_b; 0], from configurations a moment later
+    def drifted(shift: Any, rate: Any, t: float) -> Any:
+        near = MODEL.integrate(MODEL.integrate(Q1, shift), t * (V1 + rate))
+        return MODEL.difference(MODEL.integrate(Q1, t * V1), near)
+
+    shift, rate = 1e-4 * RNG.uniform(-1.0, 1.0, (2, NV))
+    carried = np.zeros(NV)
+    linear, angular = shift[:3], shift[3:6]
+    carried[:3] = np.cross(V1[3:6], linear) + np.cross(V1[:3], angular)
+    carried[3:6] = np.cross(V1[3:6], angular)
+    t = 1e-4
+    rates = (drifted(shift, rate, t) - drifted(shift, rate, -t)) / (2 * t)
+    # of second order in the shift, 1e-8
+    np.testing.assert_allclose(rates, rate - carried, atol=5e-8)
+    assert np.abs(rates - rate).max() > 1e-5
+
+
 def test_control_turns_in_w_axes_are_another_tangent() -> None:
     # the same shift of attitude, taken in W axes: columns 3 to 5 differ
     def turned(step: Any) -> Any:
@@ -89,7 +107,11 @@ def test_a_robot_without_joints_has_those_of_its_base() -> None:
     dq, dv, dtau = body.forward_dynamics_derivatives(q, v, np.zeros(6))
     x, y, z = v[3:]
     # Euler: dω/dt = -I⁻¹ ω × I ω;  dv/dt = -ω × v
-    spin = -np.array([[0, 3 - 2, 3 - 2], [1 - 3, 0, 1 - 3], [2 - 1, 2 - 1, 0]]) * [[1, z, y], [z, 1, x], [y, x, 1]]
+    spin = -np.array([[0, 3 - 2, 3 - 2], [1 - 3, 0, 1 - 3], [2 - 1, 2 - 1, 0]]) * [
+        [1, z, y],
+        [z, 1, x],
+        [y, x, 1],
+    ]
     np.testing.assert_allclose(dv[3:, 3:], spin / np.array([[1.0], [2.0], [3.0]]), atol=1e-15)
     np.testing.assert_allclose(dv[:3, :3], [[0, z, -y], [-z, 0, x], [y, -x, 0]], atol=1e-15)
     np.testing.assert_allclose(np.diag(dtau), [0.5, 0.5, 0.5, 1.0, 1 / 2, 1 / 3], atol=1e-15)
@@ -138,7 +160,9 @@ def test_a_singular_state_is_named() -> None:
     builder = oo.ModelBuilder("wrist", base="base", mass=10.0, inertia=np.eye(3))
     builder.add_link("a", parent="base", joint="j1", axis=[0, 0, 1])
     builder.add_link("b", parent="a", joint="j2", axis=[0, 1, 0])
-    builder.add_link("c", parent="b", joint="j3", axis=[0, 0, 1], mass=1.0, com=[0, 0, 0.1], inertia=np.eye(3))
+    builder.add_link(
+        "c", parent="b", joint="j3", axis=[0, 0, 1], mass=1.0, com=[0, 0, 0.1], inertia=np.eye(3)
+    )
     model = builder.build()
     q, v, tau = np.tile(model.neutral(), (2, 1)), np.zeros((2, model.nv)), np.ones((2, model.nv))
     q[0, 8] = 0.5

@@ -244,7 +244,7 @@ def same_kernels(model: oo.Model, state: Any, tool: str) -> dict[str, Any]:
 
 
 def derivatives(robot: PinRobot, state: State, tool: str) -> dict[str, Array]:
-    """Every derivative, from Pinocchio's analytic ones; the reduced model by differentiating its definition."""
+    """Every derivative from Pinocchio's analytic ones; of the reduced model through its definition."""
     model, data = robot.model, robot.data
     q, v, fext = robot.q(state.q), robot.v(state.v), robot.wrenches(state.external)
     square = np.ix_(robot.order, robot.order)
@@ -277,33 +277,27 @@ def derivatives(robot: PinRobot, state: State, tool: str) -> dict[str, Array]:
 def point(robot: PinRobot, state: State, a: Array, name: str) -> tuple[Array, Array, Array]:
     """``∂ẋ/∂q``, ``∂ẍ/∂q``, ``∂ẍ/∂v`` of a frame's origin, classical, W axes."""
     model, data = robot.model, robot.data
-    q, v = robot.q(state.q), robot.v(state.v)
-    pin.computeForwardKinematicsDerivatives(model, data, q, v, robot.v(a))
+    twist, turning = robot.frame_velocity(state, name), robot.frame_jacobian(state, name)[3:].T
+    pin.computeForwardKinematicsDerivatives(model, data, robot.q(state.q), robot.v(state.v), robot.v(a))
     frame = model.frames[robot.frame(name)]
-    at = (model, data, frame.parentJoint, frame.placement, pin.ReferenceFrame.LOCAL)
+    joint = frame.parentJoint
+    axes = np.array(data.oMi[joint].rotation @ frame.placement.rotation)
+    spatial, rate = frame.placement.actInv(data.a[joint]), frame.placement.actInv(data.v[joint])
+    classical = [spatial.linear + np.cross(rate.angular, rate.linear), spatial.angular]
+    at = (model, data, joint, frame.placement, pin.ReferenceFrame.LOCAL)
+    velocity_q, angular_q, angular_v, _ = pin.getFrameAccelerationDerivatives(*at)
     _, linear_q, linear_v, _ = pin.getPointClassicAccelerationDerivatives(*at)
     speed_q, _ = pin.getPointVelocityDerivatives(*at)
-    velocity_q, angular_q, angular_v, _ = pin.getFrameAccelerationDerivatives(*at)
-    # in the frame's own axes; its axes turn with q
-    turn = np.array(data.oMi[frame.parentJoint].rotation @ frame.placement.rotation)
-    pin.forwardKinematics(model, data, q, v, robot.v(a))
-    twist, jacobian = robot.frame_velocity(state, name), robot.frame_jacobian(state, name)
-    pin.forwardKinematics(model, data, q, v, robot.v(a))
-    joint = data.a[frame.parentJoint]
-    spatial = frame.placement.actInv(joint)
-    rates = frame.placement.actInv(data.v[frame.parentJoint])
-    acceleration = np.concatenate(
-        [turn @ (spatial.linear + np.cross(rates.angular, rates.linear)), turn @ spatial.angular]
-    )
 
-    def in_w(linear: Array, angular: Array, value: Array | None) -> Array:
-        rows = np.vstack([turn @ linear, turn @ angular])[:, robot.order]
-        if value is not None:
-            rows += np.vstack([np.cross(jacobian[3:].T, value[:3]).T, np.cross(jacobian[3:].T, value[3:]).T])
+    def in_w(linear: Array, angular: Array, of: Array | None = None) -> Array:
+        """Rows in the frame's axes turned to W; what they are derivatives of turns along with the frame."""
+        rows = np.vstack([axes @ linear, axes @ angular[3:]])[:, robot.order]
+        if of is not None:
+            rows += np.hstack([np.cross(turning, of[:3]), np.cross(turning, of[3:])]).T
         return np.array(rows)
 
     return (
-        in_w(speed_q, velocity_q[3:], twist),
-        in_w(linear_q, angular_q[3:], acceleration),
-        in_w(linear_v, angular_v[3:], None),
+        in_w(speed_q, velocity_q, twist),
+        in_w(linear_q, angular_q, (np.array(classical) @ axes.T).ravel()),
+        in_w(linear_v, angular_v),
     )

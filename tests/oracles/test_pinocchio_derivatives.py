@@ -1,6 +1,7 @@
 """Derivatives of the dynamics against Pinocchio's analytic ones, on random trees with every kind of joint.
 
-Gate 1e-10 of the largest entry (what is seen is printed): forward dynamics solves with matrices of condition 1e4.
+Gate 1e-10 of the largest entry, what the issue asks for (seen: 8e-14, printed): forward dynamics solves with
+matrices of condition 1e3 to 1e4.
 """
 
 from __future__ import annotations
