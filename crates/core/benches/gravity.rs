@@ -11,7 +11,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::{
-    Anchor, BodyState, DifferentialGravity, Effect, GravityGradient, Reference, Scene, Wrench,
+    BodyState, DifferentialGravity, Effect, GravityGradient, Instant, Reference, Scene, Wrench,
 };
 use onorbit_core::gravity::{Gravity, GravityField};
 use onorbit_core::orbit::OrbitState;
@@ -60,9 +60,8 @@ fn effects(c: &mut Criterion) {
         let (position, zero) = (Vector3::from(PLACE), Vector3::zeros());
         let state = OrbitState { position, velocity: zero, acceleration: zero };
         let reference = Some(Reference { state, gravity: Some(&gravity), falls_freely: false });
-        let anchor = Anchor { time: 0.0, com, origin: position };
-        let scene =
-            Scene { interval: (0.0, 1e-3), time: 5e-4, reference, earth: None, anchor, bodies: &bodies };
+        let instant = Instant::default();
+        let scene = Scene::new((0.0, 1e-3), 5e-4, &bodies, &instant).beside(reference);
         c.bench_function(&format!("gravity_8_bodies_{name}_known"), |b| {
             b.iter(|| {
                 DifferentialGravity::default().add_wrenches(black_box(&scene), &mut wrenches)?;

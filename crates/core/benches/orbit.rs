@@ -9,7 +9,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::environment::{
-    Anchor, BodyState, DifferentialGravity, Effect, GravityGradient, Reference, Scene, Wrench,
+    BodyState, DifferentialGravity, Effect, GravityGradient, Instant, Reference, Scene, Wrench,
 };
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{Elements, Kepler, Orbit, Size, states};
@@ -69,14 +69,8 @@ fn effects(c: &mut Criterion) {
     let mut wrenches = [Wrench::default(); 8];
     let gravity = orbit.mu().map(Gravity::point_mass);
     let reference = Some(Reference { state, gravity: gravity.as_ref(), falls_freely: false });
-    let scene = Scene {
-        interval: (0.0, 1.0),
-        time: 0.0,
-        reference,
-        earth: None,
-        anchor: Anchor::default(),
-        bodies: &bodies,
-    };
+    let instant = Instant::default();
+    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
     c.bench_function("differential_gravity_8_bodies", |b| {
         b.iter(|| DifferentialGravity::default().add_wrenches(black_box(&scene), &mut wrenches));
     });

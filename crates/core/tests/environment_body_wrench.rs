@@ -1,7 +1,7 @@
 //! A timed wrench: its frame, its lever, its switches, its refusals.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use onorbit_core::environment::{Anchor, BodyState, BodyWrench, Effect, EnvironmentError, Scene, Wrench};
+use onorbit_core::environment::{BodyState, BodyWrench, Effect, EnvironmentError, Instant, Scene, Wrench};
 
 /// A body turned a quarter about z, its centre of mass off the link's origin.
 fn body() -> BodyState {
@@ -18,14 +18,8 @@ fn body() -> BodyState {
 
 fn act(effect: &BodyWrench, interval: (f64, f64)) -> Result<[Wrench; 2], EnvironmentError> {
     let mut wrenches = [Wrench::default(); 2];
-    let scene = Scene {
-        interval,
-        time: interval.0,
-        reference: None,
-        earth: None,
-        anchor: Anchor::default(),
-        bodies: &[body(), body()],
-    };
+    let (bodies, instant) = ([body(), body()], Instant::default());
+    let scene = Scene::new(interval, interval.0, &bodies, &instant);
     effect.add_wrenches(&scene, &mut wrenches)?;
     Ok(wrenches)
 }

@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::environment::{
-    Anchor, BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Place, Reference,
+    BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Instant, Place, Reference,
     ReferenceMotion, Scene, Wrench,
 };
 use onorbit_core::gravity::Gravity;
@@ -68,14 +68,8 @@ fn wrench(
     body: BodyState,
 ) -> Result<Wrench, EnvironmentError> {
     let mut wrenches = [Wrench::default()];
-    let scene = Scene {
-        interval: (0.0, 1.0),
-        time: 0.0,
-        reference,
-        earth: None,
-        anchor: Anchor::default(),
-        bodies: &[body],
-    };
+    let (bodies, instant) = ([body], Instant::default());
+    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
     effect.add_wrenches(&scene, &mut wrenches)?;
     Ok(wrenches[0])
 }
@@ -135,14 +129,8 @@ fn force_scales_with_mass_and_adds_to_what_is_there() {
     let there = Wrench { force: Vector3::new(1.0, 2.0, 3.0), torque: Vector3::y() };
     let mut wrenches = [Wrench::default(), there];
     let reference = Some(reference(ORIGIN, MU_EARTH));
-    let scene = Scene {
-        interval: (0.0, 1.0),
-        time: 0.0,
-        reference,
-        earth: None,
-        anchor: Anchor::default(),
-        bodies: &bodies,
-    };
+    let instant = Instant::default();
+    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
     CARRIED.add_wrenches(&scene, &mut wrenches).expect("outside");
     assert_eq!(wrenches[1].force, there.force + wrenches[0].force * 3.0);
     assert_eq!(wrenches[1].torque, there.torque);
@@ -248,14 +236,8 @@ fn gravity_is_refused_around_no_planet_and_inside_one() {
 
 #[test]
 fn one_wrench_per_body_is_needed() {
-    let scene = Scene {
-        interval: (0.0, 1.0),
-        time: 0.0,
-        reference: Some(reference(ORIGIN, MU_EARTH)),
-        earth: None,
-        anchor: Anchor::default(),
-        bodies: &[body(Vector3::zeros())],
-    };
+    let (bodies, instant) = ([body(Vector3::zeros())], Instant::default());
+    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(Some(reference(ORIGIN, MU_EARTH)));
     let mut two = [Wrench::default(); 2];
     for effect in [&TRUE as &dyn Effect, &GravityGradient] {
         let error = effect.add_wrenches(&scene, &mut two).expect_err("one too many");

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::{
-    Anchor, BodyState, DifferentialGravity, Effect, GravityGradient, Reference, Scene, Wrench,
+    BodyState, DifferentialGravity, Effect, GravityGradient, Instant, Reference, Scene, Wrench,
 };
 use onorbit_core::gravity::{Gravity, GravityField};
 use onorbit_core::orbit::OrbitState;
@@ -69,10 +69,10 @@ fn fields() -> [Gravity; 3] {
 fn felt(gravity: &Gravity, bodies: &[BodyState], forces: bool) -> Vec<Wrench> {
     let position = Vector3::from(ORIGIN);
     let acceleration = gravity.acceleration(0.0, &position).unwrap();
-    let state = OrbitState { position, velocity: Vector3::zeros(), acceleration };
+    let state = OrbitState { position, velocity: Vector3::new(0.0, 5.4e3, 5.4e3), acceleration };
     let reference = Some(Reference { state, gravity: Some(gravity), falls_freely: true });
-    let anchor = Anchor { time: 0.0, com: Vector3::zeros(), origin: position };
-    let scene = Scene { interval: (0.0, 1e-3), time: 0.0, reference, earth: None, anchor, bodies };
+    let instant = Instant::default();
+    let scene = Scene::new((0.0, 1.0), 0.0, bodies, &instant).beside(reference);
     let mut wrenches = vec![Wrench::default(); bodies.len()];
     GravityGradient.add_wrenches(&scene, &mut wrenches).unwrap();
     if forces {

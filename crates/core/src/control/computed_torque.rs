@@ -166,16 +166,23 @@ fn kernel<S: Real>(
     let lag = desired.velocity - reduced.velocity;
     let command = law.command(error, lag, desired.acceleration) - reduced.drift;
 
-    // q̈ = Jg⁺ (p̈r − d) − k N q̇ − κ D q̇
-    let jacobian = &reduced.jacobian;
+    // q̈ = Jg⁺ (p̈r − d) − k N q̇ − κ D q̇, written as Jg⁺ (p̈r − d + k Jg q̇) − k q̇ + (k − κ) D q̇
+    let (jacobian, rates, k) = (&reduced.jacobian, &v[6..], S::of(law.null_space_damping));
     work.inverse.factor(jacobian, n, &[law.damping]);
     let mut task = [S::of(0.0); 6];
     command.write(&mut task);
+    for (row, task) in jacobian.chunks_exact(n).zip(&mut task) {
+        *task = dot(row, rates).mul_add(k, *task);
+    }
     work.inverse.apply(jacobian, &task, &mut work.acceleration);
-    work.inverse.split(jacobian, &v[6..], &mut work.free, &mut work.lost);
-    let brake = S::of(law.brake());
-    for (j, a) in work.acceleration.iter_mut().enumerate() {
-        *a = *a - work.free[j] * S::of(law.null_space_damping) - work.lost[j] * brake;
+    for (a, rate) in work.acceleration.iter_mut().zip(rates) {
+        *a = (-k).mul_add(*rate, *a);
+    }
+    if work.inverse.is_damped() {
+        work.inverse.split(jacobian, rates, &mut work.free, &mut work.lost);
+        for (a, lost) in work.acceleration.iter_mut().zip(&work.lost) {
+            *a = (k - S::of(law.brake())).mul_add(*lost, *a);
+        }
     }
 
     // τ = M* q̈ + c* − Q* + f

@@ -96,6 +96,12 @@ impl<S: Real> PseudoInverse<S> {
         transpose_apply(self.rows, factor, jacobian, &mut self.x, out);
     }
 
+    /// Whether some task is damped.
+    #[inline(always)]
+    pub fn is_damped(&self) -> bool {
+        self.is_damped
+    }
+
     /// Splits joint rates `y`, `(n,)`: what the tasks do not feel, `(1 − J⁺ J) y` undamped, into
     /// `free`, and what they feel but give up for the damping, into `lost` (zero where undamped).
     #[inline(always)]
@@ -152,18 +158,17 @@ fn transpose_apply_rows<S: Real>(rows: usize, factor: &[S], jacobian: &[S], x: &
     }
 }
 
-/// `Σ (A⁻¹)_jj = Σ (L⁻¹)²` over some columns `j`, with the factor of `A`; `column` is room for one.
+/// `Σ (A⁻¹)_jj = Σ (L⁻¹)_ij²/D_i` over some columns `j`, with the factors of `A`; `column` is room for one.
 #[inline(always)]
 fn inverse_trace<S: Real>(factor: &[S], rows: usize, columns: std::ops::Range<usize>, column: &mut [S]) -> S {
     let mut trace = S::of(0.0);
     for j in columns {
-        // column j of L⁻¹ by forward substitution; the factor's diagonal holds 1/L_ii
-        column[j] = factor[j * rows + j];
-        trace = column[j].mul_add(column[j], trace);
+        // column j of L⁻¹ by forward substitution; the factor's diagonal holds 1/D_i
+        column[j] = S::of(1.0);
+        trace += factor[j * rows + j];
         for i in j + 1..rows {
-            let sum = dot(&factor[i * rows + j..i * rows + i], &column[j..i]);
-            column[i] = -sum * factor[i * rows + i];
-            trace = column[i].mul_add(column[i], trace);
+            column[i] = -dot(&factor[i * rows + j..i * rows + i], &column[j..i]);
+            trace = (column[i] * column[i]).mul_add(factor[i * rows + i], trace);
         }
     }
     trace

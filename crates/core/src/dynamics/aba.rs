@@ -3,6 +3,7 @@
 use super::data::{BodyData, Data};
 use super::external::{FrameWrench, apply_external};
 use super::kinematics::kinematics;
+use super::rnea::{accelerations, net_force};
 use super::walk::{inward, outward};
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Force, Real};
@@ -10,6 +11,9 @@ use crate::spatial::{ArticulatedInertia, Force, Real};
 /// Acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)`.
 ///
 /// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in its axes.
+///
+/// The velocity products are dealt with first, as in inverse dynamics with `q̈ = 0`: what the joints add is counted from
+/// there, and the recursion of the articulated inertias has but one product with each.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Tables 7.1 and 9.4.
 pub fn forward_dynamics<S: Real>(
@@ -69,62 +73,66 @@ fn kernel<S: Real>(
     let bodies = &mut data.bodies[..nodes.len()];
     let (v, tau, a) = (&v[..nodes.len() + 5], &tau[..nodes.len() + 5], &mut a[..nodes.len() + 5]);
 
+    // what everything does if no joint accelerates; the rest is counted from there
+    accelerations(nodes, bodies, v, None);
     let load = inward(
         nodes,
         bodies,
         #[inline(always)]
         |k, node, body, load| {
-            // ζ = v × S q̇,  pA = v ×* I v − F,  p = pA + IA ζ
-            body.acceleration = body.velocity.cross(body.subspace * v[k + 5]);
-            let (articulated, bias) = with_own(body, load);
-            body.force = bias + articulated.apply(body.acceleration);
+            let (articulated, force) = with_own(body, load);
             // U = IA S,  D = Sᵀ U + rotor,  u = τ − Sᵀ p
+            body.force = force;
             body.reach = articulated.apply(body.subspace);
             // a locked joint hands on all of IA: as if nothing could move it, 1/D = 0
             body.inverse_pivot = match is_locked(k) {
                 true => S::of(0.0),
                 false => S::of(1.0) / (body.subspace.dot(body.reach) + S::of(node.rotor_inertia)),
             };
-            body.drive = tau[k + 5] - body.subspace.dot(body.force);
+            body.drive = tau[k + 5] - body.subspace.dot(force);
             // Ia = IA − U Uᵀ/D,  pa = p + U u/D
             let yielding = body.reach * -body.inverse_pivot;
-            (articulated.add_outer(body.reach, yielding), yielding.scale_add(-body.drive, body.force))
+            (articulated.add_parallel(body.reach, yielding), yielding.scale_add(-body.drive, force))
         },
     );
 
-    // a_0 = IA⁻¹ (τ_b − pA)
+    // a_0 = IA⁻¹ (τ_b − p)
     let base = &mut bodies[0];
     (base.articulated, base.force) = with_own(base, load);
     base.acceleration = base.articulated.solve(Force::from_slice(tau) - base.force);
+    base.response = base.acceleration;
     base.acceleration.write(a);
 
     outward(
         nodes,
         bodies,
         #[inline(always)]
-        |body| body.acceleration,
+        |body| body.response,
         #[inline(always)]
-        |k, _, body, carried| {
-            // q̈ = (u − Uᵀ a_p)/D,  a = a_p + ζ + S q̈
-            let held = carried.dot(body.reach);
-            let acceleration = (body.drive - held) * body.inverse_pivot;
+        |k, node, body, carried| {
+            // q̈ = (u − Uᵀ a_p)/D,  a = a_p + S q̈, beside that of no q̈
+            let pull = body.reach * -body.inverse_pivot;
+            let acceleration = carried.dot_add(pull, body.drive * body.inverse_pivot);
             if is_locked(k) {
-                body.drive = held - body.drive; // λ = Uᵀ a_p − u
+                body.drive = carried.dot(body.reach) - body.drive; // λ = Uᵀ a_p − u
             }
-            body.acceleration = body.subspace.scale_add(acceleration, carried + body.acceleration);
             a[k + 5] = acceleration;
-            body.acceleration
+            let response = body.subspace.scale_add(acceleration, carried);
+            body.acceleration += response;
+            if node.is_fork {
+                body.response = response;
+            }
+            response
         },
     );
 }
 
-/// `IA` and `pA` of a body: its own, `I` and `v ×* I v − F`, and those of what it carries.
+/// `IA` and `p` of a body: its own, `I` and `I a + v ×* I v − F`, and those of what it carries.
 #[inline(always)]
 fn with_own<S: Real>(
     body: &BodyData<S>,
     (mut articulated, force): (ArticulatedInertia<S>, Force<S>),
 ) -> (ArticulatedInertia<S>, Force<S>) {
     articulated.add_rigid(&body.inertia);
-    let own = body.velocity.cross_force(body.inertia.momentum(body.velocity)) - body.external;
-    (articulated, force + own)
+    (articulated, force + net_force(body))
 }

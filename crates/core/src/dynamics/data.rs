@@ -1,5 +1,6 @@
 //! What the algorithms compute, allocated once per model.
 
+use super::kinematics::place_inertia;
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Force, Mat3, Motion, Real, SpatialInertia, Vec3};
 
@@ -25,6 +26,8 @@ pub struct BodyData<S> {
     pub outside: Force<S>,
     /// Spatial acceleration: velocity products alone, or all of it.
     pub acceleration: Motion<S>,
+    /// What of it joints and base add to the velocity products. Set by ABA where a tree forks.
+    pub response: Motion<S>,
     /// Force through its joint, or `I S`, or the bias of the articulated body.
     pub force: Force<S>,
     /// Inertia of the subtree, rigid. Set by CRBA and `free_floating`.
@@ -35,7 +38,7 @@ pub struct BodyData<S> {
     pub reach: Force<S>,
     /// `1 / (Sᵀ U + rotor)`. Set by ABA.
     pub inverse_pivot: S,
-    /// `τ − Sᵀ (pA + IA ζ)`, of a locked joint the torque that holds it. Set by ABA.
+    /// `τ − Sᵀ p`, of a locked joint the torque that holds it. Set by ABA.
     pub drive: S,
 }
 
@@ -61,6 +64,7 @@ impl<S: Real> Data<S> {
             external: Force::zero(),
             outside: Force::zero(),
             acceleration: Motion::zero(),
+            response: Motion::zero(),
             force: Force::zero(),
             composite: SpatialInertia::zero(),
             articulated: ArticulatedInertia::zero(),
@@ -69,11 +73,16 @@ impl<S: Real> Data<S> {
             drive: S::of(0.0),
         };
         let (n, o) = (model.nodes().len(), S::of(0.0));
-        Self { bodies: vec![body; n], turns: vec![(o, o); n - 1] }
+        let mut bodies = vec![body; n];
+        place_inertia(&model.nodes()[0], &mut bodies[0]);
+        Self { bodies, turns: vec![(o, o); n - 1] }
     }
 
     /// Takes all external wrenches away.
+    #[inline(always)]
     pub fn clear_external(&mut self) {
-        self.bodies.iter_mut().for_each(|body| body.external = Force::zero());
+        for body in &mut self.bodies {
+            body.external = Force::zero();
+        }
     }
 }

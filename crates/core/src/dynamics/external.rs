@@ -16,10 +16,15 @@ pub struct FrameWrench<S> {
 
 /// Puts these wrenches, and no others, on the bodies. Needs [`positions`](super::positions).
 pub fn apply_external<S: Real>(model: &Model, data: &mut Data<S>, wrenches: &[FrameWrench<S>]) {
-    data.clear_external();
-    for FrameWrench { frame, wrench } in wrenches {
-        let frame = &model.frames()[*frame];
-        let (rot, pos) = (frame_rotation_b(data, frame), frame_origin_b(data, frame));
-        data.bodies[frame.body].external += Force::at(rot * wrench.linear, rot * wrench.angular, pos);
-    }
+    S::enter(
+        #[inline(always)]
+        || {
+            data.clear_external();
+            for FrameWrench { frame, wrench } in wrenches {
+                let frame = &model.frames()[*frame];
+                let (rot, pos) = (frame_rotation_b(data, frame), frame_origin_b(data, frame));
+                data.bodies[frame.body].external += Force::at(rot * wrench.linear, rot * wrench.angular, pos);
+            }
+        },
+    );
 }

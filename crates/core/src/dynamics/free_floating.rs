@@ -179,20 +179,24 @@ fn kernel<S: Real>(
         out.recoil[k] = -inverse.apply(body.force);
         out.stroke[k] = out.recoil[k] + body.subspace;
     }
-    for k in 1..=n {
+    for (k, row) in (1..).zip(out.inertia.chunks_exact_mut(n.max(1))) {
         let (force, mut ancestor) = (bodies[k].force, k);
-        for j in (1..=k).rev() {
+        let (row, recoil, stroke) = (&mut row[..k], &out.recoil[..k], &out.stroke[..k]);
+        for j in (0..k).rev() {
             // M* = Mmm − Mbmᵀ (Mbb⁻¹ Mbm)
-            let mut twist = out.recoil[j - 1];
-            if j == ancestor {
-                twist = out.stroke[j - 1];
-                ancestor = nodes[j].parent;
+            let mut twist = recoil[j];
+            if j + 1 == ancestor {
+                twist = stroke[j];
+                ancestor = nodes[j + 1].parent;
             }
-            let entry = twist.dot(force);
-            out.inertia[(k - 1) * n + j - 1] = entry;
-            out.inertia[(j - 1) * n + k - 1] = entry;
+            row[j] = twist.dot(force);
         }
-        out.inertia[(k - 1) * (n + 1)] += S::of(nodes[k].rotor_inertia);
+        row[k - 1] += S::of(nodes[k].rotor_inertia);
+    }
+    for k in 0..n {
+        for j in 0..k {
+            out.inertia[j * n + k] = out.inertia[k * n + j];
+        }
     }
 
     let (net, outside) = (inverse.apply(bias), inverse.apply(outside)); // Mbb⁻¹ (cb − Qb), Mbb⁻¹ Qb

@@ -32,20 +32,16 @@ pub fn kinematics<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) 
 
 #[inline(always)]
 pub(super) fn positions_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
-    let (nodes, n) = (model.nodes(), model.joint_count());
     let Data { bodies, turns } = data;
-    let (turns, q) = (&mut turns[..n], &q[7..n + 7]);
-    S::sin_cos_each(q, turns);
-    place_inertia(&nodes[0], &mut bodies[0]);
+    let q = turned(model, q, turns);
     outward(
-        nodes,
+        model.nodes(),
         bodies,
         #[inline(always)]
         |body| (body.rot_bk, body.pos_b),
         #[inline(always)]
         |k, node, body, parent| {
             place(node, parent, body, q[k - 1], turns[k - 1]);
-            place_inertia(node, body);
             (body.rot_bk, body.pos_b)
         },
     );
@@ -53,24 +49,33 @@ pub(super) fn positions_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[
 
 #[inline(always)]
 pub(crate) fn kinematics_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) {
-    positions_kernel(model, data, q);
-    data.bodies[0].velocity = Motion::from_slice(v);
-    let rates = &v[5..model.nodes().len() + 5];
+    let Data { bodies, turns } = data;
+    let (q, rates) = (turned(model, q, turns), &v[6..model.nv()]);
+    bodies[0].velocity = Motion::from_slice(v);
     outward(
         model.nodes(),
-        &mut data.bodies,
+        bodies,
         #[inline(always)]
-        |body| body.velocity,
+        |body| (body.rot_bk, body.pos_b, body.velocity),
         #[inline(always)]
-        |k, _, body, velocity| {
+        |k, node, body, (rot_bp, pos_b, velocity)| {
+            place(node, (rot_bp, pos_b), body, q[k - 1], turns[k - 1]);
             // v_k = v_p + S q̇
-            body.velocity = body.subspace.scale_add(rates[k], velocity);
-            body.velocity
+            body.velocity = body.subspace.scale_add(rates[k - 1], velocity);
+            (body.rot_bk, body.pos_b, body.velocity)
         },
     );
 }
 
-/// Pose of a body from its parent's: `R_bk = R_bp R_pk Rz(q)`, and its motion subspace.
+/// The joints of `q`, after working out their sines and cosines.
+#[inline(always)]
+fn turned<'q, S: Real>(model: &Model, q: &'q [S], turns: &mut [(S, S)]) -> &'q [S] {
+    let q = &q[7..model.nq()];
+    S::sin_cos_each(q, turns);
+    q
+}
+
+/// Pose of a body from its parent's: `R_bk = R_bp R_pk Rz(q)`, its motion subspace and its inertia.
 #[inline(always)]
 fn place<S: Real>(
     node: &Node,
@@ -95,10 +100,12 @@ fn place<S: Real>(
             body.subspace = Motion::new(tree.z, Vec3::zero());
         }
     }
+    place_inertia(node, body);
 }
 
+/// Centre of mass and inertia of a body where it is. The base's are constants.
 #[inline(always)]
-fn place_inertia<S: Real>(node: &Node, body: &mut BodyData<S>) {
+pub(super) fn place_inertia<S: Real>(node: &Node, body: &mut BodyData<S>) {
     let mass = S::of(node.mass);
     body.com_b = body.rot_bk * Vec3::of(&node.com) + body.pos_b;
     body.inertia = SpatialInertia::at_com(mass, body.com_b, Sym3::of(&node.about_com).rotate(&body.rot_bk));

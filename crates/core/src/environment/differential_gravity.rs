@@ -2,9 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::error::Place;
+use super::lanes::{OnLanes, add_force};
 use super::{Effect, EnvironmentError, Reference, Scene, Wrench};
 use crate::gravity::{point_mass, tide};
+use crate::spatial::{Real, Vec3};
 
 /// What happens where the reference does not itself fall freely in the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,6 +66,12 @@ impl Effect for DifferentialGravity {
     /// reference or a body comes nearer to the centre than any planet of that mass allows, and
     /// [`EnvironmentError::Gravity`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+        self.add_on_widest(scene, wrenches)
+    }
+}
+
+impl OnLanes for DifferentialGravity {
+    fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         let planet = scene.planet(NAME)?;
         let state = &planet.reference;
         let differs = planet.falls_freely || self.motion == ReferenceMotion::Carried;
@@ -73,18 +80,25 @@ impl Effect for DifferentialGravity {
         } else {
             point_mass(planet.mu, &state.position) - state.acceleration
         };
-        for (k, (body, wrench)) in scene.paired(wrenches)?.enumerate() {
-            let (tide, distance) = tide(planet.mu, &state.position, &body.com);
-            planet.outside(Place::Body(k), distance)?;
-            // F = m [(g(r) - g(R)) + (g(R) - r̈_ref)], g here that of the point mass
-            wrench.force += (tide + residual) * body.mass;
-        }
-        if let Some(field) = scene.nearby(&planet, differs)? {
-            for (body, wrench) in scene.paired(wrenches)? {
-                let g = if differs { field.difference(&body.com)? } else { field.acceleration(&body.com)? };
-                wrench.force += g * body.mass;
-            }
-        }
-        Ok(())
+        let field = scene.nearby(&planet, differs)?;
+        let (origin, residual) = (Vec3::from(state.position), Vec3::from(residual));
+        S::enter(
+            #[inline(always)]
+            || {
+                for (group, wrenches) in scene.groups::<S>(wrenches)? {
+                    let com = group.vectors::<S>(|body| &body.com);
+                    let (tide, distance) = tide(planet.mu, &origin, com);
+                    planet.all_outside(&group, distance)?;
+                    let beyond = match field {
+                        Some(field) if differs => field.difference(com)?,
+                        Some(field) => field.acceleration(com)?,
+                        None => Vec3::zero(),
+                    };
+                    // F = m [(g(r) - g(R)) + (g(R) - r̈_ref) + gp], g here that of the point mass
+                    add_force(wrenches, (tide + Vec3::of(&residual) + beyond) * group.masses());
+                }
+                Ok(())
+            },
+        )
     }
 }

@@ -1,10 +1,11 @@
 //! Drag of the air that turns with the Earth.
 
 use super::atmosphere::{AirPlace, Atmosphere, AtmosphereError, LocalAir};
+use super::lanes::{OneByOne, add_push};
 use super::surfaces::Surfaces;
 use super::{Effect, EnvironmentError, Scene, Wrench};
 use crate::earth::Earth;
-use crate::spatial::{Fused, InstructionSet, Scalar};
+use crate::spatial::{Scalar, Vec3};
 use nalgebra::Vector3;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -14,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// `F = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the velocity of that point in air that
 /// turns with the Earth. No part shadows another.
 ///
-/// The density is computed at points of a grid of 64 m and 1/8 s, at the one next to the robot's base, and follows the
+/// The density is computed at points of a grid of 128 m and 1/8 s, at the one next to the robot's base, and follows the
 /// scale height from there, within 160 m: wrong by at most 1e-4 of itself. For bodies farther away it is computed
 /// afresh. Which point it is follows from place and time alone.
 ///
@@ -65,35 +66,33 @@ impl Effect for Drag {
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], what the atmosphere refuses.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-        match InstructionSet::current() {
-            InstructionSet::Baseline => self.add::<f64>(scene, wrenches),
-            InstructionSet::Fused | InstructionSet::Wide => self.add::<Fused>(scene, wrenches),
-        }
+        self.add_one_by_one(scene, wrenches)
     }
 }
 
-impl Drag {
-    /// As [`Effect::add_wrenches`], in the arithmetic of `S`.
+impl OneByOne for Drag {
     fn add<S: Scalar>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
         let near = scene.bodies.first().map_or_else(Vector3::zeros, |body| body.com);
         let air = self.local(earth, scene.time, &(reference.position + near))?;
+        let afresh = |r: Vector3<f64>| -> Result<f64, EnvironmentError> {
+            Ok(self.atmosphere.density(&AirPlace::new(earth, scene.time, &r)?)?)
+        };
+        let (origin, velocity) = (Vec3::from(reference.position), Vec3::from(reference.velocity));
+        let spin = Vec3::<S>::of(&air.spin.into());
         S::enter(
             #[inline(always)]
             || {
-                for covering in self.surfaces.coverings() {
-                    let (body, wrench) = scene.pair(wrenches, covering.body)?;
-                    let r = reference.position + body.com;
-                    let density = match air.density(&r) {
-                        Some(density) => density,
-                        None => self.atmosphere.density(&AirPlace::new(earth, scene.time, &r)?)?,
-                    };
+                for (group, wrenches) in scene.groups::<S>(wrenches)? {
+                    let Some(surface) = self.surfaces.of_body(group.first) else { continue };
+                    let r = Vec3::<S>::of(&origin) + group.vectors(|body| &body.com);
+                    let density = air.densities(r, afresh)?;
                     // v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
-                    let v = reference.velocity + body.velocity - air.spin.cross(&r);
-                    let w = body.angular_velocity - air.spin;
-                    let push = covering.blow::<S>(&body.rot_wk, &v, &w);
-                    wrench.force += push.force * density;
-                    wrench.torque += push.torque * density;
+                    let v = Vec3::<S>::of(&velocity) + group.vectors(|body| &body.velocity) - spin.cross(r);
+                    let w = group.vectors(|body| &body.angular_velocity) - spin;
+                    let rot_wk = group.rot_wk::<S>();
+                    let push = surface.blow(rot_wk.transpose_mul(v), rot_wk.transpose_mul(w));
+                    add_push(wrenches, push.turned(&rot_wk) * density);
                 }
                 Ok(())
             },

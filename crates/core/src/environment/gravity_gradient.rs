@@ -1,10 +1,8 @@
 //! Torque of the field on each extended body.
 
-use nalgebra::{Matrix3, Vector3};
-
-use super::error::Place;
+use super::lanes::{OnLanes, add_torque};
 use super::{Effect, EnvironmentError, Scene, Wrench};
-use crate::spatial::{Fused, InstructionSet, Mat3, Scalar, Sym3, Vec3};
+use crate::spatial::{Real, Sym3, Vec3};
 
 /// Gravity-gradient torque of each body about its own centre of mass, at its own position.
 ///
@@ -35,58 +33,48 @@ impl Effect for GravityGradient {
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::InsidePlanet`] and [`EnvironmentError::Gravity`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-        match InstructionSet::current() {
-            InstructionSet::Baseline => add::<f64>(scene, wrenches),
-            InstructionSet::Fused | InstructionSet::Wide => add::<Fused>(scene, wrenches),
-        }
+        self.add_on_widest(scene, wrenches)
     }
 }
 
-/// [`GravityGradient::add_wrenches`] in the arithmetic of `S`.
-fn add<S: Scalar>(scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-    let planet = scene.planet(NAME)?;
-    let field = scene.nearby(&planet, planet.falls_freely)?;
-    S::enter(
-        #[inline(always)]
-        || {
-            for (k, (body, wrench)) in scene.paired(wrenches)?.enumerate() {
-                let r = planet.reference.position + body.com;
-                let distance = planet.outside(Place::Body(k), r.norm())?;
-                let rot_wk = Mat3::<S>::of(&Mat3::from(body.rot_wk));
-                let inertia = Sym3::<S>::of(&Sym3::from(body.inertia));
-                let mut torque_k = towards(planet.mu, &inertia, &rot_wk, &r, distance);
-                if let Some(field) = &field {
-                    torque_k += of_field(&field.gradient(&body.com)?, &inertia, &rot_wk);
+impl OnLanes for GravityGradient {
+    fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+        let planet = scene.planet(NAME)?;
+        let field = scene.nearby(&planet, planet.falls_freely)?;
+        let origin = Vec3::from(planet.reference.position);
+        S::enter(
+            #[inline(always)]
+            || {
+                for (group, wrenches) in scene.groups::<S>(wrenches)? {
+                    let com = group.vectors::<S>(|body| &body.com);
+                    let r = Vec3::<S>::of(&origin) + com;
+                    let distance = r.norm();
+                    planet.all_outside(&group, distance)?;
+                    // G = (3μ/r³) r̂ r̂ᵀ + Gp;  what is left out, -(μ/r³) 1, turns nothing
+                    let inverse = S::of(1.0) / distance;
+                    let up = r * inverse;
+                    let rate = S::of(3.0 * planet.mu) * inverse * inverse * inverse;
+                    let beyond = match field {
+                        Some(field) => field.gradient(com)?,
+                        None => Sym3::default(),
+                    };
+                    let rot_wk = group.rot_wk();
+                    let torque_k =
+                        torque(&beyond.add_outer(up, rate).rotate(&rot_wk.transpose()), &group.inertias());
+                    add_torque(wrenches, rot_wk * torque_k);
                 }
-                wrench.torque += (rot_wk * torque_k).to_nalgebra();
-            }
-            Ok(())
-        },
-    )
+                Ok(())
+            },
+        )
+    }
 }
 
-/// The torque of a point mass, `r` and `distance` from it: `(3μ/r³) r̂_k × I r̂_k`, with `r̂_k = Rᵀ r̂` in body axes,
-/// where `I` is constant.
-#[inline(always)]
-fn towards<S: Scalar>(
-    mu: f64,
-    inertia: &Sym3<S>,
-    rot_wk: &Mat3<S>,
-    r: &Vector3<f64>,
-    distance: f64,
-) -> Vec3<S> {
-    let inverse = 1.0 / distance;
-    let up_k = rot_wk.transpose_mul(Vec3::of(&Vec3::from(*r))) * S::of(inverse);
-    up_k.cross(*inertia * up_k) * S::of(3.0 * mu * inverse * inverse * inverse)
-}
-
-/// The torque of a field with gradient `G`, `W` axes, about the centre of mass, N m, body axes.
+/// Torque of a field with gradient `G` about the centre of mass, N m; gradient, inertia and torque in the same axes.
 ///
 /// `T_i = ∫ ε_ijk x_j G_kl x_l dm = -ε_ijk (I G)_jk`, since `∫ x xᵀ dm = ½ tr(I) 1 - I` and `G` is symmetric:
 /// `T = Σ e_k × I G e_k`.
 #[inline(always)]
-fn of_field<S: Scalar>(gradient: &Matrix3<f64>, inertia: &Sym3<S>, rot_wk: &Mat3<S>) -> Vec3<S> {
-    let g = Sym3::<S>::of(&Sym3::from(*gradient)).rotate(&rot_wk.transpose());
+fn torque<S: Real>(g: &Sym3<S>, inertia: &Sym3<S>) -> Vec3<S> {
     let x = *inertia * Vec3::new(g.xx, g.xy, g.xz);
     let y = *inertia * Vec3::new(g.xy, g.yy, g.yz);
     let z = *inertia * Vec3::new(g.xz, g.yz, g.zz);

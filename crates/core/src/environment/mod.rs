@@ -9,6 +9,7 @@ mod differential_gravity;
 mod drag;
 mod error;
 mod gravity_gradient;
+mod lanes;
 mod radiation_pressure;
 mod scene;
 mod shadow;
@@ -20,8 +21,7 @@ pub use drag::Drag;
 pub use error::{EnvironmentError, Place};
 pub use gravity_gradient::GravityGradient;
 pub use radiation_pressure::{RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX};
-pub(crate) use scene::center_of_mass;
-pub use scene::{Anchor, BodyState, Reference, Scene, Wrench};
+pub use scene::{BodyState, Instant, Reference, Scene, Wrench};
 pub use shadow::sunlit;
 
 /// Something that pulls, pushes or turns the bodies of a robot.

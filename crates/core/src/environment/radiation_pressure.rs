@@ -1,9 +1,10 @@
 //! The push of sunlight.
 
+use super::lanes::{OneByOne, add_push};
 use super::shadow::sunlit;
 use super::surfaces::{SurfaceError, Surfaces, not_negative};
 use super::{Effect, EnvironmentError, Scene, Wrench};
-use crate::spatial::{Fused, InstructionSet, Scalar};
+use crate::spatial::{Scalar, Vec3};
 use nalgebra::Vector3;
 
 /// Radiation pressure on every covered body, with its torque, and the Earth's shadow.
@@ -60,7 +61,10 @@ impl RadiationPressure {
         let share = self.earth_radius.map_or(1.0, |radius| sunlit(r, sun, radius));
         // P = ν (Φ/c) (1 au/d)²
         let ratio = ASTRONOMICAL_UNIT / distance;
-        Light { to_sun: to_sun / distance, pressure: share * self.flux / SPEED_OF_LIGHT * ratio * ratio }
+        Light {
+            to_sun: (to_sun / distance).into(),
+            pressure: share * self.flux / SPEED_OF_LIGHT * ratio * ratio,
+        }
     }
 
     /// The same with another flux at 1 au, W/m².
@@ -84,7 +88,7 @@ impl RadiationPressure {
 /// Unit vector to the Sun, and what its light presses with, N/m².
 #[derive(Clone, Copy)]
 struct Light {
-    to_sun: Vector3<f64>,
+    to_sun: Vec3<f64>,
     pressure: f64,
 }
 
@@ -116,32 +120,30 @@ impl Effect for RadiationPressure {
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], and an Earth without epoch.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-        match InstructionSet::current() {
-            InstructionSet::Baseline => self.add::<f64>(scene, wrenches),
-            InstructionSet::Fused | InstructionSet::Wide => self.add::<Fused>(scene, wrenches),
-        }
+        self.add_one_by_one(scene, wrenches)
     }
 }
 
-impl RadiationPressure {
-    /// As [`Effect::add_wrenches`], in the arithmetic of `S`.
+impl OneByOne for RadiationPressure {
     fn add<S: Scalar>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
-        let sun = earth.sun(scene.time)?;
+        let sun = scene.sun(earth)?;
         let Some(base) = scene.bodies.first().map(|body| body.com) else { return Ok(()) };
         let at_base = self.light(&(reference.position + base), &sun);
         S::enter(
             #[inline(always)]
             || {
-                for covering in self.surfaces.coverings() {
-                    let (body, wrench) = scene.pair(wrenches, covering.body)?;
-                    let is_near = (body.com - base).norm_squared() <= REACH * REACH;
-                    let light =
-                        if is_near { at_base } else { self.light(&(reference.position + body.com), &sun) };
+                for (group, wrenches) in scene.groups::<S>(wrenches)? {
+                    let Some(surface) = self.surfaces.of_body(group.first) else { continue };
+                    let com = &group.bodies[0].com;
+                    let light = match (com - base).norm_squared() <= REACH * REACH {
+                        true => at_base,
+                        false => self.light(&(reference.position + com), &sun),
+                    };
                     if light.pressure > 0.0 {
-                        let push = covering.shine::<S>(&body.rot_wk, &light.to_sun);
-                        wrench.force += push.force * light.pressure;
-                        wrench.torque += push.torque * light.pressure;
+                        let rot_wk = group.rot_wk::<S>();
+                        let push = surface.shine(rot_wk.transpose_mul(Vec3::of(&light.to_sun)));
+                        add_push(wrenches, push.turned(&rot_wk) * S::of(light.pressure));
                     }
                 }
                 Ok(())

@@ -4,9 +4,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::EnvironmentError;
 use super::error::Place;
+use super::lanes::Group;
 use crate::earth::Earth;
-use crate::gravity::{Gravity, Nearby, Station, smallest_radius_cubed};
+use crate::gravity::{Gravity, Nearby, Sky, Station, smallest_radius_cubed};
 use crate::orbit::OrbitState;
+use crate::spatial::Real;
+use std::cell::OnceCell;
 
 /// One body of the robot, in `W`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +41,15 @@ pub struct Reference<'a> {
     pub falls_freely: bool,
 }
 
+/// What depends on the instant alone, found at the first look: stages of a step, and steps, share it.
+#[derive(Clone, Debug, Default)]
+pub struct Instant {
+    sky: OnceCell<Sky>,
+    sun: OnceCell<Vector3<f64>>,
+}
+
 /// All that an effect may look at.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Scene<'a> {
     /// The step being integrated, s: its middle decides what is switched on.
     pub interval: (f64, f64),
@@ -49,21 +59,11 @@ pub struct Scene<'a> {
     pub reference: Option<Reference<'a>>,
     /// How the Earth turns, where the run says so.
     pub earth: Option<&'a Earth>,
-    /// Where and when the step being integrated began: what is dear may be expanded about it.
-    pub anchor: Anchor,
     /// The robot's bodies now.
     pub bodies: &'a [BodyState],
-}
-
-/// The start of a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Anchor {
-    /// Its instant, s of simulation.
-    pub time: f64,
-    /// The robot's centre of mass in `W` then, m.
-    pub com: Vector3<f64>,
-    /// Position of `W`'s origin then, axes of `I`, m.
-    pub origin: Vector3<f64>,
+    instant: &'a Instant,
+    /// What effects look at one after the other: the field by itself, and where differences are asked for.
+    near: [OnceCell<Nearby<'a>>; 2],
 }
 
 /// Force through a body's centre of mass and torque about it.
@@ -76,6 +76,23 @@ pub struct Wrench {
 }
 
 impl<'a> Scene<'a> {
+    /// The bodies at `time` in a step over `interval`; no orbit, no Earth. `instant` is one for each time and reference.
+    pub fn new(interval: (f64, f64), time: f64, bodies: &'a [BodyState], instant: &'a Instant) -> Self {
+        Self { interval, time, reference: None, earth: None, bodies, instant, near: Default::default() }
+    }
+
+    /// Beside a reference orbit, where there is one.
+    #[must_use]
+    pub fn beside(self, reference: Option<Reference<'a>>) -> Self {
+        Self { reference, ..self }
+    }
+
+    /// Above this Earth, where the run has one.
+    #[must_use]
+    pub fn above(self, earth: Option<&'a Earth>) -> Self {
+        Self { earth, ..self }
+    }
+
     /// Middle of the step being integrated, s.
     pub fn middle(&self) -> f64 {
         0.5 * (self.interval.0 + self.interval.1)
@@ -96,21 +113,22 @@ impl<'a> Scene<'a> {
         Ok(self.bodies.iter().zip(wrenches.iter_mut()))
     }
 
-    /// The body with this index and its wrench.
+    /// Bodies and their wrenches in groups of as many as `S` has lanes.
     ///
     /// # Errors
-    /// [`EnvironmentError::WrongLength`] and [`EnvironmentError::UnknownBody`].
-    pub(super) fn pair<'w>(
+    /// [`EnvironmentError::WrongLength`] when there is not one wrench per body.
+    #[inline(always)]
+    pub(super) fn groups<'w, S: Real>(
         &self,
         wrenches: &'w mut [Wrench],
-        body: usize,
-    ) -> Result<(&'a BodyState, &'w mut Wrench), EnvironmentError> {
+    ) -> Result<impl Iterator<Item = (Group<'a>, &'w mut [Wrench])>, EnvironmentError> {
         let (expected, got) = (self.bodies.len(), wrenches.len());
         if expected != got {
             return Err(EnvironmentError::WrongLength { expected, got });
         }
-        let unknown = EnvironmentError::UnknownBody { body, count: expected };
-        self.bodies.get(body).zip(wrenches.get_mut(body)).ok_or(unknown)
+        let groups = self.bodies.chunks(S::LANES).enumerate();
+        let groups = groups.map(|(k, bodies)| Group { first: k * S::LANES, bodies });
+        Ok(groups.zip(wrenches.chunks_mut(S::LANES)))
     }
 
     /// State of the reference around its planet, and how the Earth turns.
@@ -138,19 +156,37 @@ impl<'a> Scene<'a> {
         &self,
         planet: &Planet<'a>,
         differs: bool,
-    ) -> Result<Option<Nearby<'a>>, EnvironmentError> {
+    ) -> Result<Option<&Nearby<'a>>, EnvironmentError> {
         if planet.gravity.is_point_mass() {
             return Ok(None);
         }
-        let com = center_of_mass(self.bodies);
-        let now = Station { time: self.time, origin: planet.reference.position, com };
-        let Anchor { time, com, origin } = self.anchor;
-        Ok(planet.gravity.nearby(&now, &Station { time, origin, com }, differs)?)
+        let near = || -> Result<Nearby<'a>, EnvironmentError> {
+            let OrbitState { position, velocity, .. } = planet.reference;
+            let travel = velocity.norm() * (self.interval.1 - self.interval.0);
+            let (time, origin, com) = (self.time, position.into(), center_of_mass(self.bodies).into());
+            let sky = found(&self.instant.sky, || planet.gravity.sky(time, origin))?;
+            let station = Station { time, origin, com, travel };
+            Ok(planet.gravity.nearby(&station, sky, differs)?)
+        };
+        found(&self.near[usize::from(differs)], near).map(Some)
+    }
+
+    /// Position of the Sun from the Earth's centre, axes of `I`, m.
+    pub(super) fn sun(&self, earth: &Earth) -> Result<Vector3<f64>, EnvironmentError> {
+        Ok(*found(&self.instant.sun, || earth.sun(self.time))?)
+    }
+}
+
+/// What the cell holds, or is given now.
+fn found<T, E>(cell: &OnceCell<T>, find: impl FnOnce() -> Result<T, E>) -> Result<&T, E> {
+    match cell.get() {
+        Some(known) => Ok(known),
+        None => find().map(|it| cell.get_or_init(|| it)),
     }
 }
 
 /// Centre of mass of a robot in `W`, m: `c = Σ mₖ cₖ / Σ mₖ`.
-pub(crate) fn center_of_mass(bodies: &[BodyState]) -> Vector3<f64> {
+fn center_of_mass(bodies: &[BodyState]) -> Vector3<f64> {
     let moment: Vector3<f64> = bodies.iter().map(|body| body.com * body.mass).sum();
     moment / bodies.iter().map(|body| body.mass).sum::<f64>()
 }
@@ -166,10 +202,25 @@ pub(super) struct Planet<'a> {
 }
 
 impl Planet<'_> {
-    /// `distance` from the planet's centre, m, if it lies outside the planet.
-    pub(super) fn outside(&self, what: Place, distance: f64) -> Result<f64, EnvironmentError> {
+    /// Refuses bodies that are inside the planet; `distance` from its centre, m.
+    #[inline(always)]
+    pub(super) fn all_outside<S: Real>(
+        &self,
+        group: &Group<'_>,
+        distance: S,
+    ) -> Result<(), EnvironmentError> {
+        if S::any((distance * distance * distance).less(S::of(self.minimum_cubed))) {
+            for (i, k) in (group.first..).take(group.bodies.len()).enumerate() {
+                self.outside(Place::Body(k), distance.lane(i))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a `distance` from the planet's centre, m, that lies inside the planet.
+    pub(super) fn outside(&self, what: Place, distance: f64) -> Result<(), EnvironmentError> {
         if distance * distance * distance >= self.minimum_cubed {
-            return Ok(distance);
+            return Ok(());
         }
         let (effect, minimum) = (self.effect, self.minimum_cubed.cbrt());
         Err(EnvironmentError::InsidePlanet { effect, what, distance, minimum })

@@ -5,6 +5,7 @@
 
 mod coefficients;
 mod error;
+mod expansion;
 mod field;
 mod gfc;
 mod harmonics;
@@ -19,14 +20,15 @@ mod zonal;
 pub use coefficients::Coefficients;
 pub use error::GravityError;
 pub use field::GravityField;
-pub use nearby::{Nearby, Station};
+pub use nearby::{Nearby, Sky, Station};
 pub use perturber::{Luminary, Perturber};
 pub(crate) use point_mass::{point_mass, point_mass_gradient, smallest_radius_cubed, tide};
 pub use third_body::ThirdBody;
 
 use crate::earth::{Earth, Epoch};
+use crate::spatial::Vec3;
+use expansion::Memo;
 use nalgebra::{Matrix3, Vector3};
-use nearby::Memo;
 use std::sync::Arc;
 
 /// The full field chosen for a run.
@@ -132,7 +134,7 @@ impl Gravity {
             };
         }
         for body in &self.third_bodies {
-            g += tide(body.mu(), &-body.position(t)?, r).0;
+            g += tide(body.mu(), &(-body.position(t)?).into(), Vec3::from(*r)).0.to_nalgebra();
         }
         Ok(g)
     }

@@ -1,5 +1,6 @@
 //! The field of a point mass: its pull, the gradient of it, and the tide between two places.
 
+use crate::spatial::{Real, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
 /// Acceleration of a point mass's field, `g = -μ r / |r|³`, m/s², axes of `r`.
@@ -23,18 +24,22 @@ pub(crate) fn point_mass_gradient(mu: f64, r: &Vector3<f64>) -> Matrix3<f64> {
 /// `origin` is `R`, `offset` is `ρ`, m. Returns the tide and the distance `r = |R + ρ|`.
 ///
 /// Source: Battin, AIAA 1999, chapter 8, the disturbing function (Encke's form).
-pub(crate) fn tide(mu: f64, origin: &Vector3<f64>, offset: &Vector3<f64>) -> (Vector3<f64>, f64) {
+#[inline(always)]
+pub(crate) fn tide<S: Real>(mu: f64, origin: &Vec3<f64>, offset: Vec3<S>) -> (Vec3<S>, S) {
+    let (s, origin_s) = (S::of, Vec3::<S>::of(origin));
     // q = ρ·(ρ + 2R)/R²,  s = √(1 + q),  r = R s
-    let r2 = origin.norm_squared();
-    let q = offset.dot(&(offset + origin * 2.0)) / r2;
-    let square = (1.0 + q).max(0.0);
+    let r2 = origin.dot(*origin);
+    let q = offset.dot(offset + origin_s * s(2.0)) / s(r2);
+    let square = s(1.0) + q;
+    let square = S::select(square.less(s(0.0)), s(0.0), square);
     let root = square.sqrt();
-    let distance = r2.sqrt() * root;
+    let distance = s(r2.sqrt()) * root;
     // f = n/a,  n = q (3 + 3q + q²),  a = 1 + s³;  both divisions in one
-    let (n, a, cube) = (q * (3.0 + q * (3.0 + q)), 1.0 + square * root, r2 * square * distance);
-    let inverse = 1.0 / (a * cube);
+    let n = q * q.mul_add(s(3.0) + q, s(3.0));
+    let (a, cube) = (square.mul_add(root, s(1.0)), s(r2) * square * distance);
+    let inverse = s(1.0) / (a * cube);
     let f = n * cube * inverse;
-    ((offset - origin * f) * (-mu * a * inverse), distance)
+    ((offset - origin_s * f) * (s(-mu) * a * inverse), distance)
 }
 
 /// Cube of the radius below which no solid body of this `μ = G m` can have its surface, m³.

@@ -158,13 +158,13 @@ impl<S: Real> Stages<S> {
         );
         let (straight, mut bends) = (rate.origin, [rate.bend; 3]);
         for (stage, (reach, weight)) in STAGES.into_iter().enumerate() {
-            let turned = rate.turn * S::of(reach * h);
             bends[stage] = rate.bend;
-            S::enter(
+            let turned = S::enter(
                 #[inline(always)]
                 || {
                     trial.move_from(start, rate, S::of(reach * h));
                     bend(straight, &bends, BEND[stage], S::of(reach * h), S::of(h * h), start, trial);
+                    rate.turn * S::of(reach * h)
                 },
             );
             let instant = if reach == 1.0 { interval.1 } else { t + reach * h };
@@ -191,12 +191,17 @@ impl<S: Real> Stages<S> {
     fn euler(&mut self, carried: Vec3<S>, state: &mut State<S>, interval: (f64, f64)) {
         let Self { start, rate, sum, .. } = self;
         let h = S::of(interval.1 - interval.0);
-        state.move_from(start, rate, h);
-        for (delta, v) in sum.v.iter_mut().zip(&state.v) {
-            *delta = *v * h;
-        }
-        integrate(&start.q, &sum.v, &mut state.q);
-        carried.scale_add(h, Vec3::from_slice(&state.q)).write(&mut state.q);
+        S::enter(
+            #[inline(always)]
+            || {
+                state.move_from(start, rate, h);
+                for (delta, v) in sum.v.iter_mut().zip(&state.v) {
+                    *delta = *v * h;
+                }
+                integrate(&start.q, &sum.v, &mut state.q);
+                carried.scale_add(h, Vec3::from_slice(&state.q)).write(&mut state.q);
+            },
+        );
     }
 }
 

@@ -110,12 +110,17 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
     /// axes even a straight flight is a velocity that turns, at the cost of digits and of order.
     pub(crate) fn ride(&mut self, q: &[S], v: &mut [S]) {
         let passing = Vec3::from_slice(v);
-        self.carried = S::enter(
+        let Self { data, carried, .. } = self;
+        S::enter(
             #[inline(always)]
-            || base_rotation(q) * passing,
+            || {
+                *carried = base_rotation(q) * passing;
+                Vec3::zero().write(v);
+                for body in &mut data.bodies {
+                    body.velocity.linear -= passing;
+                }
+            },
         );
-        Vec3::zero().write(v);
-        self.data.bodies.iter_mut().for_each(|body| body.velocity.linear -= passing);
     }
 
     /// Velocity of the frame of the step, W axes, m/s.
@@ -148,10 +153,16 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
 
     /// Torques at the joints: `τ − b q̇ − f s` with `s` the direction of slip.
     pub(super) fn drive(&mut self, v: &[S]) {
-        for (j, joint) in self.model.joints().iter().enumerate() {
-            let drag = S::of(self.contacts.drag(j));
-            self.forces[j + 6] = self.command[j] - (v[j + 6] * S::of(joint.damping) + drag);
-        }
+        let Self { model, contacts, command, forces, .. } = self;
+        S::enter(
+            #[inline(always)]
+            || {
+                for (j, joint) in model.joints().iter().enumerate() {
+                    let drag = S::of(contacts.drag(j));
+                    forces[j + 6] = command[j] - (v[j + 6] * S::of(joint.damping) + drag);
+                }
+            },
+        );
     }
 
     /// Kinematics, wrenches and rates of a later stage.

@@ -125,7 +125,7 @@ impl<S: Real> State<S> {
     pub(crate) fn move_from(&mut self, from: &Self, rate: &Rate<S>, h: S) {
         rate.origin.scale_add(h, Vec3::from_slice(&from.q)).write(&mut self.q);
         let attitude = Quat::from_xyzw(&from.q[3..]).product(exp_so3(rate.turn * h));
-        attitude.normalized().write_xyzw(&mut self.q[3..]);
+        attitude.renormalized().write_xyzw(&mut self.q[3..]);
         for j in 7..self.q.len() {
             self.q[j] = rate.v[j - 1].mul_add(h, from.q[j]);
         }

@@ -5,9 +5,7 @@ use super::plant::World;
 use super::rereference::{OwnReference, Shift};
 use crate::dynamics::{Data, base_rotation};
 use crate::earth::Earth;
-use crate::environment::{
-    Anchor, BodyState, DifferentialGravity, Effect, Reference, Scene, Wrench, center_of_mass,
-};
+use crate::environment::{BodyState, DifferentialGravity, Effect, Instant, Reference, Scene, Wrench};
 use crate::gravity::Gravity;
 use crate::model::{Model, Node};
 use crate::orbit::{Numerical, Orbit, OrbitState};
@@ -28,15 +26,33 @@ pub(super) struct Surroundings {
     own: Option<OwnReference>,
     gravity: Option<Arc<Gravity>>,
     earth: Option<Arc<Earth>>,
-    /// The step being integrated, and where it began.
-    step: ((f64, f64), Anchor),
+    /// The step being integrated.
+    interval: (f64, f64),
     /// The last instants asked for: the stages of a step share them.
-    known: [(f64, Option<OrbitState>); 3],
+    known: [Known; 3],
     bodies: Vec<BodyState>,
     wrenches: Vec<Wrench>,
     /// Of effects that a reference which carries the robot along has in its own motion.
     shared: Vec<Wrench>,
     is_carried: bool,
+}
+
+/// An instant, with the state of the reference there.
+#[derive(Clone, Debug)]
+struct Known {
+    time: f64,
+    state: Option<OrbitState>,
+    instant: Instant,
+}
+
+impl Known {
+    fn new(time: f64, state: Option<OrbitState>) -> Self {
+        Self { time, state, instant: Instant::default() }
+    }
+
+    fn nothing() -> [Self; 3] {
+        std::array::from_fn(|_| Self::new(f64::NAN, None))
+    }
 }
 
 impl Surroundings {
@@ -65,8 +81,8 @@ impl Surroundings {
             own: None,
             gravity,
             earth,
-            step: ((f64::NAN, f64::NAN), Anchor::default()),
-            known: [(f64::NAN, None); 3],
+            interval: (f64::NAN, f64::NAN),
+            known: Known::nothing(),
             bodies: model.nodes().iter().map(at_rest).collect(),
             wrenches: vec![Wrench::default(); model.nodes().len()],
             shared: vec![Wrench::default(); model.nodes().len()],
@@ -84,8 +100,7 @@ impl Surroundings {
         let (Some(gravity), Some(&time)) = (&self.gravity, own.times.last()) else { return Ok(()) };
         let orbit = Numerical::new(own.position.into(), own.velocity.into(), time, Arc::clone(gravity));
         self.orbit = Some(Arc::new(orbit.map_err(|source| SimulationError::Orbit { time, source })?));
-        self.known.fill((f64::NAN, None));
-        self.step.0 = (f64::NAN, f64::NAN);
+        self.known = Known::nothing();
         self.own = Some(own);
         Ok(())
     }
@@ -108,23 +123,21 @@ impl Surroundings {
 
     /// State of the reference at `t`, if the run has one.
     pub(super) fn orbit_state(&mut self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
-        let Some(orbit) = &self.orbit else { return Ok(None) };
-        if let Some((_, state)) = self.known.iter().find(|(known, _)| *known == t) {
-            return Ok(*state);
-        }
-        let state = orbit.state(t).map_err(|source| SimulationError::Orbit { time: t, source })?;
-        self.known.rotate_right(1);
-        self.known[0] = (t, Some(state));
-        Ok(Some(state))
+        self.look_up(t)?;
+        Ok(self.known[0].state)
     }
 
-    /// Where the step being integrated began: at the first look at it.
-    fn begin_step(&mut self, t: f64, interval: (f64, f64), reference: Option<&OrbitState>) {
-        if self.step.0 != interval {
-            let com = center_of_mass(&self.bodies);
-            let origin = reference.map_or_else(Vector3::zeros, |state| state.position);
-            self.step = (interval, Anchor { time: t, com, origin });
+    /// Puts what is known of an instant first.
+    fn look_up(&mut self, t: f64) -> Result<(), SimulationError> {
+        if let Some(place) = self.known.iter().position(|known| known.time == t) {
+            self.known[..=place].rotate_right(1);
+            return Ok(());
         }
+        let state = self.orbit.as_ref().map(|orbit| orbit.state(t)).transpose();
+        let state = state.map_err(|source| SimulationError::Orbit { time: t, source })?;
+        self.known.rotate_right(1);
+        self.known[0] = Known::new(t, state);
+        Ok(())
     }
 
     /// Whether the reference obeys the very gravity of the run.
@@ -142,22 +155,20 @@ impl Surroundings {
             .map_err(|source| SimulationError::Environment { time: t, source })
     }
 
-    /// Adds up what these effects do to the bodies that were looked at last.
-    fn feel(
-        &mut self,
-        t: f64,
-        reference: Option<OrbitState>,
-        effects: Range<usize>,
-    ) -> Result<(), SimulationError> {
+    /// Adds up what these effects do at `t` to the bodies that were looked at last.
+    fn feel(&mut self, t: f64, effects: Range<usize>) -> Result<(), SimulationError> {
+        self.look_up(t)?;
         self.wrenches.fill(Wrench::default());
         if self.is_carried {
             self.shared.fill(Wrench::default());
         }
         let falls_freely = self.falls_freely();
-        let reference =
-            reference.map(|state| Reference { state, gravity: self.gravity.as_deref(), falls_freely });
-        let (earth, (interval, anchor)) = (self.earth.as_deref(), self.step);
-        let scene = Scene { interval, time: t, reference, earth, anchor, bodies: &self.bodies };
+        let Known { state, instant, .. } = &self.known[0];
+        let gravity = self.gravity.as_deref();
+        let reference = state.map(|state| Reference { state, gravity, falls_freely });
+        let scene = Scene::new(self.interval, t, &self.bodies, instant)
+            .beside(reference)
+            .above(self.earth.as_deref());
         for effect in &self.effects[effects] {
             let is_shared = self.is_carried && effect.acts_on_reference();
             let wrenches = if is_shared { &mut self.shared } else { &mut self.wrenches };
@@ -183,8 +194,7 @@ impl Surroundings {
 
     /// The wrench of one effect on each body, as they were looked at last, at `t`.
     pub(super) fn wrenches_of(&mut self, effect: usize, t: f64) -> Result<&[Wrench], SimulationError> {
-        let reference = self.orbit_state(t)?;
-        self.feel(t, reference, effect..effect + 1)?;
+        self.feel(t, effect..effect + 1)?;
         Ok(&self.wrenches)
     }
 
@@ -237,13 +247,12 @@ impl<S: Scalar> World<S> for Surroundings {
         if self.effects.is_empty() {
             return Ok(());
         }
-        let reference = self.orbit_state(t)?;
         let rot_wb = S::enter(
             #[inline(always)]
             || self.look(data, q, carried),
         );
-        self.begin_step(t, interval, reference.as_ref());
-        self.feel(t, reference, 0..self.effects.len())?;
+        self.interval = interval;
+        self.feel(t, 0..self.effects.len())?;
         S::enter(
             #[inline(always)]
             || self.hand_over(data, &rot_wb),

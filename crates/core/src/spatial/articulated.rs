@@ -49,11 +49,11 @@ impl<S: Real> ArticulatedInertia<S> {
     /// `IA + U Wᵀ`, of which `W` must be a multiple of `U`.
     #[inline(always)]
     #[must_use]
-    pub fn add_outer(&self, u: Force<S>, w: Force<S>) -> Self {
+    pub fn add_parallel(&self, u: Force<S>, w: Force<S>) -> Self {
         Self {
-            linear: self.linear.add_outer(u.linear, w.linear),
+            linear: self.linear.add_parallel(u.linear, w.linear),
             coupling: self.coupling.add_outer(u.linear, w.angular),
-            angular: self.angular.add_outer(u.angular, w.angular),
+            angular: self.angular.add_parallel(u.angular, w.angular),
         }
     }
 

@@ -109,6 +109,12 @@ impl<S: Real> Motion<S> {
         self.linear.dot(f.linear) + self.angular.dot(f.angular)
     }
 
+    /// `vᵀ f + s`.
+    #[inline(always)]
+    pub fn dot_add(self, f: Force<S>, s: S) -> S {
+        self.linear.dot_add(f.linear, s) + self.angular.dot(f.angular)
+    }
+
     /// `v × m = (ω × m_lin + v × m_ang, ω × m_ang)`: the rate of `m` carried by `v`.
     #[inline(always)]
     pub fn cross(self, m: Self) -> Self {

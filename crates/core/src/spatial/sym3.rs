@@ -43,10 +43,17 @@ impl<S: Real> Sym3<S> {
         Self::new(S::of(m.xx), S::of(m.yy), S::of(m.zz), S::of(m.xy), S::of(m.xz), S::of(m.yz))
     }
 
+    /// `A + u uᵀ s`.
+    #[inline(always)]
+    #[must_use]
+    pub fn add_outer(&self, u: Vec3<S>, s: S) -> Self {
+        self.add_parallel(u, u * s)
+    }
+
     /// `A + u wᵀ`, of which `w` must be a multiple of `u`.
     #[inline(always)]
     #[must_use]
-    pub fn add_outer(&self, u: Vec3<S>, w: Vec3<S>) -> Self {
+    pub fn add_parallel(&self, u: Vec3<S>, w: Vec3<S>) -> Self {
         Self::new(
             u.x.mul_add(w.x, self.xx),
             u.y.mul_add(w.y, self.yy),

@@ -34,6 +34,18 @@ impl<S: Real> Vec3<S> {
         Self::new(S::of(v.x), S::of(v.y), S::of(v.z))
     }
 
+    /// A vector per lane.
+    #[inline(always)]
+    pub fn from_lanes(f: impl Fn(usize) -> Vec3<f64>) -> Self {
+        Self::new(S::from_lanes(|i| f(i).x), S::from_lanes(|i| f(i).y), S::from_lanes(|i| f(i).z))
+    }
+
+    /// The vector in lane `i`.
+    #[inline(always)]
+    pub fn lane(self, i: usize) -> Vec3<f64> {
+        Vec3::new(self.x.lane(i), self.y.lane(i), self.z.lane(i))
+    }
+
     /// The first three numbers of a slice.
     #[inline(always)]
     pub fn from_slice(s: &[S]) -> Self {
@@ -52,6 +64,12 @@ impl<S: Real> Vec3<S> {
     #[inline(always)]
     pub fn dot(self, o: Self) -> S {
         self.x.mul_add(o.x, self.y.mul_add(o.y, self.z * o.z))
+    }
+
+    /// `self · o + s`.
+    #[inline(always)]
+    pub fn dot_add(self, o: Self, s: S) -> S {
+        self.x.mul_add(o.x, self.y.mul_add(o.y, self.z.mul_add(o.z, s)))
     }
 
     /// Vector product.

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::surfaces::{Covering, Surface, Surfaces};
-use onorbit_core::environment::{Anchor, BodyState, Effect, EnvironmentError, Reference, Scene, Wrench};
+use onorbit_core::environment::{BodyState, Effect, EnvironmentError, Instant, Reference, Scene, Wrench};
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{MU_EARTH, OrbitState};
 
@@ -38,14 +38,9 @@ pub fn wrenches(
     let gravity = Gravity::point_mass(MU_EARTH);
     let state = OrbitState { position: r, velocity: v, acceleration: Vector3::zeros() };
     let mut wrenches = vec![Wrench::default(); bodies.len()];
-    let scene = Scene {
-        interval: (0.0, 1.0),
-        time: 0.0,
-        reference: Some(Reference { state, gravity: Some(&gravity), falls_freely: true }),
-        earth,
-        anchor: Anchor { time: 0.0, com: Vector3::zeros(), origin: r },
-        bodies,
-    };
+    let (reference, instant) =
+        (Reference { state, gravity: Some(&gravity), falls_freely: true }, Instant::default());
+    let scene = Scene::new((0.0, 1.0), 0.0, bodies, &instant).beside(Some(reference)).above(earth);
     effect.add_wrenches(&scene, &mut wrenches)?;
     Ok(wrenches)
 }

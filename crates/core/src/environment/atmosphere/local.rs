@@ -2,6 +2,7 @@
 
 use super::{AirPlace, Atmosphere, AtmosphereError};
 use crate::earth::Earth;
+use crate::spatial::{Lanes8, Real, Vec3};
 use nalgebra::Vector3;
 
 /// How far from its centre a local density is trusted, m.
@@ -13,7 +14,7 @@ const TRUST: f64 = 160.0;
 
 /// Pitch of the points about which local air is made, m and s: robots near each other, and in steps that follow
 /// each other, share one.
-const PITCH: (f64, f64) = (64.0, 0.125);
+const PITCH: (f64, f64) = (128.0, 0.125);
 
 /// Rise over which the scale height is taken, m.
 const RISE: f64 = 100.0;
@@ -51,14 +52,36 @@ impl LocalAir {
         Ok(Self { time, centre: *centre, up: place.up, density, decay, spin })
     }
 
-    /// Density at `r`, axes of `I`, m, kg/m³; none beyond 160 m from the centre.
+    /// Density at places `r`, axes of `I`, m, kg/m³; found `afresh` where one is beyond 160 m from the centre.
     #[inline(always)]
+    pub(in crate::environment) fn densities<S: Real, E>(
+        &self,
+        r: Vec3<S>,
+        afresh: impl Fn(Vector3<f64>) -> Result<f64, E>,
+    ) -> Result<S, E> {
+        let offset = r - Vec3::of(&self.centre.into());
+        if S::any(S::of(TRUST * TRUST).less(offset.dot(offset))) {
+            let mut found = [0.0; Lanes8::LANES];
+            for (i, density) in found.iter_mut().enumerate().take(S::LANES) {
+                let r = r.lane(i).to_nalgebra();
+                *density = self.density(&r).map_or_else(|| afresh(r), Ok)?;
+            }
+            return Ok(S::from_lanes(|i| found[i]));
+        }
+        Ok(self.near(offset))
+    }
+
+    /// Density at `r`, axes of `I`, m, kg/m³; none beyond 160 m from the centre.
     pub fn density(&self, r: &Vector3<f64>) -> Option<f64> {
         let offset = r - self.centre;
+        (offset.norm_squared() <= TRUST * TRUST).then(|| self.near(offset.into()))
+    }
+
+    #[inline(always)]
+    fn near<S: Real>(&self, offset: Vec3<S>) -> S {
         // e⁻ˣ to third order: x is at most 100 m by the scale height, 0.02 near the ground
-        let x = self.decay * self.up.dot(&offset);
-        let is_near = offset.norm_squared() <= TRUST * TRUST;
-        is_near.then_some(self.density * (1.0 - x * (1.0 - x * (0.5 - x / 6.0))))
+        let (s, x) = (S::of, Vec3::of(&self.up.into()).dot(offset) * S::of(self.decay));
+        s(self.density) * (s(1.0) - x * (s(1.0) - x * (s(0.5) - x * s(1.0 / 6.0))))
     }
 
     /// Whether this is the air about `centre` at `time`.
@@ -66,7 +89,7 @@ impl LocalAir {
         self.time == time && self.centre == *centre
     }
 
-    /// The point of the grid near a place, at most 56 m and 1/8 s away, about which its local air is made.
+    /// The point of the grid near a place, at most 111 m and 1/8 s away, about which its local air is made.
     pub(in crate::environment) fn grid_point(time: f64, r: &Vector3<f64>) -> (f64, Vector3<f64>) {
         let (pitch, tick) = PITCH;
         ((time / tick).floor() * tick, r.map(|x| (x / pitch).round() * pitch))

@@ -2,33 +2,34 @@
 
 use super::error::{SurfaceError, not_negative};
 use super::from_shapes::parts_of_body;
-use super::part::{Optics, Part, Push};
-use crate::environment::Wrench;
+use super::part::{Ball, Optics, Plate, Tube};
+use super::push::{Pressed, Push, Swept};
 use crate::model::{Frame, Model};
-use crate::spatial::{Mat3, Scalar, Vec3};
-use nalgebra::{Matrix3, Vector3};
+use crate::spatial::{Real, Vec3};
+use nalgebra::Vector3;
 
 /// How a body meets wind and light.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Surface {
-    /// The same from all sides, at the centre of mass: no torque.
-    Cannonball {
-        /// Area across the stream, m².
-        area: f64,
-        /// `C_D`.
-        drag_coefficient: f64,
-        /// `C_R`: 1 where all light is absorbed, 2 for a flat mirror that faces the Sun.
-        reflectivity: f64,
-    },
-    /// Faces, each at its own angle.
-    Faces {
-        /// The faces.
-        parts: Vec<Part>,
-        /// `C_D` on the area that faces the stream.
-        drag_coefficient: f64,
-        /// What light does.
-        optics: Optics,
-    },
+pub struct Surface {
+    parts: Parts,
+    /// `C_D` on the area that faces the stream.
+    drag_coefficient: f64,
+    /// What light does.
+    optics: Optics,
+}
+
+/// The outside of a body; axes of the body, positions from its centre of mass.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Parts {
+    pub(super) plates: Vec<Plate>,
+    pub(super) tubes: Vec<Tube>,
+    pub(super) balls: Vec<Ball>,
+}
+
+impl Parts {
+    fn is_empty(&self) -> bool {
+        self.plates.is_empty() && self.tubes.is_empty() && self.balls.is_empty()
+    }
 }
 
 /// A body with what covers it.
@@ -43,7 +44,8 @@ pub struct Covering {
 /// What a robot shows to wind and light: at most one covering per body, the others feel nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfaces {
-    coverings: Vec<Covering>,
+    /// By body.
+    surfaces: Vec<Option<Surface>>,
 }
 
 impl Surface {
@@ -52,17 +54,16 @@ impl Surface {
     /// # Errors
     /// [`SurfaceError::Value`] for what is negative or not finite, and a reflectivity above 2.
     pub fn cannonball(area: f64, drag_coefficient: f64, reflectivity: f64) -> Result<Self, SurfaceError> {
-        Ok(Self::Cannonball {
-            area: not_negative("area", area)?,
-            drag_coefficient: not_negative("drag_coefficient", drag_coefficient)?,
-            reflectivity: match not_negative("reflectivity", reflectivity)? {
-                value if value > 2.0 => {
-                    let expected = "a number from 0 to 2 (a flat mirror that faces the Sun)";
-                    return Err(SurfaceError::Value { name: "reflectivity", value, expected });
-                }
-                value => value,
-            },
-        })
+        let area = not_negative("area", area)?;
+        let drag_coefficient = not_negative("drag_coefficient", drag_coefficient)?;
+        let value = not_negative("reflectivity", reflectivity)?;
+        if value > 2.0 {
+            let expected = "a number from 0 to 2 (a flat mirror that faces the Sun)";
+            return Err(SurfaceError::Value { name: "reflectivity", value, expected });
+        }
+        let balls = vec![Ball { area, centre: Vec3::zero(), reflectivity }];
+        let parts = Parts { balls, ..Parts::default() };
+        Ok(Self { parts, drag_coefficient, optics: Optics::default() })
     }
 
     /// The faces of all shapes fixed to a body: boxes, cylinders, capsules, balls.
@@ -75,12 +76,12 @@ impl Surface {
         drag_coefficient: f64,
         optics: Optics,
     ) -> Result<Self, SurfaceError> {
-        let parts = parts_of_body(model, body)?;
+        let parts = parts_of_body(model, body, &optics)?;
         if parts.is_empty() {
             return Err(SurfaceError::NoShape { body: model.body_frame(body).name.clone() });
         }
         let drag_coefficient = not_negative("drag_coefficient", drag_coefficient)?;
-        Ok(Self::Faces { parts, drag_coefficient, optics })
+        Ok(Self { parts, drag_coefficient, optics })
     }
 
     /// Flat plates: areas, m², outward normals of any length, centroids, m; axes and origin of `frame`.
@@ -112,49 +113,36 @@ impl Surface {
             }
             let centroid = Vec3::from(Vector3::from(centroids[plate]));
             not_negative("distance of a centroid", centroid.norm())?;
-            Ok(Part::Plate {
-                area: not_negative("area", areas[plate])?,
-                normal: frame.rot_kf * (normal * (1.0 / length)),
-                centroid: frame.rot_kf * centroid + frame.pos_kf - com,
-            })
+            let area = not_negative("area", areas[plate])?;
+            let normal = frame.rot_kf * (normal * (1.0 / length));
+            Ok(Plate::new(area, normal, frame.rot_kf * centroid + frame.pos_kf - com))
         };
-        let parts = (0..areas.len()).map(plate).collect::<Result<_, _>>()?;
+        let plates = (0..areas.len()).map(plate).collect::<Result<_, _>>()?;
+        let parts = Parts { plates, ..Parts::default() };
         let drag_coefficient = not_negative("drag_coefficient", drag_coefficient)?;
-        Ok(Self::Faces { parts, drag_coefficient, optics })
+        Ok(Self { parts, drag_coefficient, optics })
     }
 
     /// Force (N for a density of 1) and torque of the air, axes of the body.
+    ///
+    /// `v` and `w` are velocity of the centre of mass and turn relative to the air, axes of the body.
     #[inline(always)]
-    fn blow<S: Scalar>(&self, v: Vec3<S>, w: Vec3<S>) -> Push<S> {
-        let mut push = Push::none();
-        let half = match self {
-            Self::Cannonball { area, drag_coefficient, .. } => {
-                push.force = v * (v.norm() * S::of(-area));
-                0.5 * drag_coefficient
-            }
-            Self::Faces { parts, drag_coefficient, .. } => {
-                for part in parts {
-                    part.blow(v, w, &mut push);
-                }
-                0.5 * drag_coefficient
-            }
-        };
-        Push { force: push.force * S::of(half), torque: push.torque * S::of(half) }
+    pub(in crate::environment) fn blow<S: Real>(&self, v: Vec3<S>, w: Vec3<S>) -> Push<S> {
+        let (mut swept, Parts { plates, tubes, balls }) = (Swept::nothing(), &self.parts);
+        plates.iter().for_each(|plate| plate.blow(v, w, &mut swept));
+        tubes.iter().for_each(|tube| tube.blow(v, w, &mut swept));
+        balls.iter().for_each(|ball| ball.blow(v, w, &mut swept));
+        swept.push(v, w) * S::of(0.5 * self.drag_coefficient)
     }
 
-    /// Force (N for a pressure of 1) and torque of light from the direction `s`, axes of the body.
+    /// Force (N for a pressure of 1) and torque of light from the direction `to_sun`, axes of the body.
     #[inline(always)]
-    fn shine<S: Scalar>(&self, s: Vec3<S>) -> Push<S> {
-        let mut push = Push::none();
-        match self {
-            Self::Cannonball { area, reflectivity, .. } => push.force = s * S::of(-area * reflectivity),
-            Self::Faces { parts, optics, .. } => {
-                for part in parts {
-                    part.shine(s, optics, &mut push);
-                }
-            }
-        }
-        push
+    pub(in crate::environment) fn shine<S: Real>(&self, to_sun: Vec3<S>) -> Push<S> {
+        let (mut pressed, Parts { plates, tubes, balls }) = (Pressed::nothing(), &self.parts);
+        plates.iter().for_each(|plate| plate.shine(to_sun, &self.optics, &mut pressed));
+        tubes.iter().for_each(|tube| tube.shine(to_sun, &self.optics, &mut pressed));
+        balls.iter().for_each(|ball| ball.shine(&mut pressed));
+        pressed.push(to_sun)
     }
 }
 
@@ -167,14 +155,14 @@ impl Surfaces {
         if coverings.is_empty() {
             return Err(SurfaceError::Nothing);
         }
-        let mut is_covered = vec![false; count];
-        for &Covering { body, .. } in &coverings {
-            let covered = is_covered.get_mut(body).ok_or(SurfaceError::UnknownBody { body, count })?;
-            if std::mem::replace(covered, true) {
+        let mut surfaces = vec![None; count];
+        for Covering { body, surface } in coverings {
+            let place = surfaces.get_mut(body).ok_or(SurfaceError::UnknownBody { body, count })?;
+            if place.replace(surface).is_some() {
                 return Err(SurfaceError::Twice { body });
             }
         }
-        Ok(Self { coverings })
+        Ok(Self { surfaces })
     }
 
     /// Every body with the faces of its own shapes; bodies that look like nothing feel nothing.
@@ -198,44 +186,12 @@ impl Surfaces {
 
     /// Names of the bodies with mass that are not covered: they feel nothing.
     pub fn bare<'a>(&self, model: &'a Model) -> Vec<&'a str> {
-        let is_bare = |body: &usize| {
-            model.nodes()[*body].mass > 0.0 && self.coverings.iter().all(|covering| covering.body != *body)
-        };
+        let is_bare = |body: &usize| model.nodes()[*body].mass > 0.0 && self.of_body(*body).is_none();
         (0..model.nodes().len()).filter(is_bare).map(|body| model.body_frame(body).name.as_str()).collect()
     }
 
-    /// The bodies that are covered, each with its covering.
-    pub fn coverings(&self) -> &[Covering] {
-        &self.coverings
+    /// What covers a body.
+    pub(in crate::environment) fn of_body(&self, body: usize) -> Option<&Surface> {
+        self.surfaces.get(body)?.as_ref()
     }
-}
-
-impl Covering {
-    /// Force and torque about the centre of mass, `W` axes, of air with a density of 1 kg/m³.
-    ///
-    /// `v` and `w` are velocity of the centre of mass and turn relative to the air, `W` axes.
-    #[inline(always)]
-    pub(in crate::environment) fn blow<S: Scalar>(
-        &self,
-        rot_wk: &Matrix3<f64>,
-        v: &Vector3<f64>,
-        w: &Vector3<f64>,
-    ) -> Wrench {
-        let rot = Mat3::<S>::of(&Mat3::from(*rot_wk));
-        let in_body = |v: &Vector3<f64>| rot.transpose_mul(Vec3::of(&Vec3::from(*v)));
-        out(rot, self.surface.blow(in_body(v), in_body(w)))
-    }
-
-    /// Force and torque about the centre of mass, `W` axes, of light with a pressure of 1 Pa from `s`.
-    #[inline(always)]
-    pub(in crate::environment) fn shine<S: Scalar>(&self, rot_wk: &Matrix3<f64>, s: &Vector3<f64>) -> Wrench {
-        let rot = Mat3::<S>::of(&Mat3::from(*rot_wk));
-        out(rot, self.surface.shine(rot.transpose_mul(Vec3::of(&Vec3::from(*s)))))
-    }
-}
-
-/// In `W` axes.
-#[inline(always)]
-fn out<S: Scalar>(rot_wk: Mat3<S>, push: Push<S>) -> Wrench {
-    Wrench { force: (rot_wk * push.force).to_nalgebra(), torque: (rot_wk * push.torque).to_nalgebra() }
 }

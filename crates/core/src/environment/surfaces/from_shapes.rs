@@ -1,19 +1,20 @@
 //! Faces from the visual geometry of links.
 
+use super::covering::Parts;
 use super::error::SurfaceError;
-use super::part::Part;
+use super::part::{Ball, Optics, Plate, Tube};
 use crate::model::{Frame, Geometry, Model, Visual};
 use crate::spatial::{Mat3, Vec3};
 use std::f64::consts::PI;
 
 /// The parts of every shape fixed to a body, from its centre of mass.
-pub(super) fn parts_of_body(model: &Model, body: usize) -> Result<Vec<Part>, SurfaceError> {
-    let mut parts = Vec::new();
+pub(super) fn parts_of_body(model: &Model, body: usize, optics: &Optics) -> Result<Parts, SurfaceError> {
+    let mut parts = Parts::default();
     for (frame, visual) in model.visuals() {
         let frame = &model.frames()[*frame];
         if frame.body == body {
             let place = Place::of(frame, visual, model.nodes()[body].com);
-            place.add(frame, &visual.geometry, &mut parts)?;
+            place.add(frame, &visual.geometry, optics, &mut parts)?;
         }
     }
     Ok(parts)
@@ -37,7 +38,13 @@ impl Place {
         self.rot * Vec3::new(unit(0), unit(1), unit(2))
     }
 
-    fn add(&self, frame: &Frame, geometry: &Geometry, parts: &mut Vec<Part>) -> Result<(), SurfaceError> {
+    fn add(
+        &self,
+        frame: &Frame,
+        geometry: &Geometry,
+        optics: &Optics,
+        parts: &mut Parts,
+    ) -> Result<(), SurfaceError> {
         match geometry {
             Geometry::Box([x, y, z]) => {
                 self.pair(0, y * z, *x, parts);
@@ -45,17 +52,18 @@ impl Place {
                 self.pair(2, x * y, *z, parts);
             }
             Geometry::Cylinder { radius, length } => {
-                parts.push(self.tube(*radius, *length));
+                parts.tubes.push(self.tube(*radius, *length));
                 self.pair(2, PI * radius * radius, *length, parts);
             }
             Geometry::Capsule { radius, length } => {
-                parts.push(self.tube(*radius, *length));
+                parts.tubes.push(self.tube(*radius, *length));
                 for end in [-1.0, 1.0] {
                     self.dome(*radius, 0.5 * end * length, end, parts);
                 }
             }
             Geometry::Sphere { radius } => {
-                parts.push(Part::Ball { area: PI * radius * radius, centre: self.pos });
+                let (area, centre, reflectivity) = (PI * radius * radius, self.pos, optics.of_ball());
+                parts.balls.push(Ball { area, centre, reflectivity });
             }
             Geometry::Mesh { filename, .. } => {
                 let (link, filename) = (frame.name.clone(), filename.clone());
@@ -66,16 +74,19 @@ impl Place {
     }
 
     /// The two faces across axis `k`, `distance` apart.
-    fn pair(&self, k: usize, area: f64, distance: f64, parts: &mut Vec<Part>) {
-        parts.push(Part::Slab { area, normal: self.axis(k), centre: self.pos, half: 0.5 * distance });
+    fn pair(&self, k: usize, area: f64, distance: f64, parts: &mut Parts) {
+        for side in [-0.5, 0.5] {
+            let centroid = self.pos + self.axis(k) * (side * distance);
+            parts.plates.push(Plate::new(area, self.axis(k) * side.signum(), centroid));
+        }
     }
 
-    fn tube(&self, radius: f64, length: f64) -> Part {
-        Part::Tube { radius, length, axis: self.axis(2), centre: self.pos }
+    fn tube(&self, radius: f64, length: f64) -> Tube {
+        Tube { radius, length, axis: self.axis(2), centre: self.pos }
     }
 
     /// Half a ball about `height` on z, as plates: right along z, to 2 % from elsewhere.
-    fn dome(&self, radius: f64, height: f64, end: f64, parts: &mut Vec<Part>) {
+    fn dome(&self, radius: f64, height: f64, end: f64, parts: &mut Parts) {
         const RINGS: usize = 4;
         const SECTORS: usize = 12;
         for ring in 0..RINGS {
@@ -93,7 +104,7 @@ impl Place {
                 let normal = self.rot * (vector * (1.0 / size));
                 let centre = self.pos + self.axis(2) * height;
                 let area = size * radius * radius;
-                parts.push(Part::Plate { area, normal, centroid: centre + normal * radius });
+                parts.plates.push(Plate::new(area, normal, centre + normal * radius));
             }
         }
     }

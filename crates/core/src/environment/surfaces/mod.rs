@@ -6,8 +6,10 @@ mod covering;
 mod error;
 mod from_shapes;
 mod part;
+mod push;
 
 pub use covering::{Covering, Surface, Surfaces};
 pub use error::SurfaceError;
 pub(super) use error::not_negative;
-pub use part::{Optics, Part};
+pub use part::Optics;
+pub(super) use push::Push;

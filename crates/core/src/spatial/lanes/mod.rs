@@ -61,6 +61,8 @@ macro_rules! lanes {
         #[cfg(target_arch = "x86_64")]
         #[target_feature(enable = $features)]
         fn $enter<R>(kernel: impl FnOnce() -> R) -> R {
+            // a register in memory makes LLVM align the stack; else all that it spills lies across cache lines
+            std::hint::black_box(&$name::default());
             kernel()
         }
 
