@@ -82,8 +82,7 @@ def test_control_what_is_left_out_or_taken_elsewhere_is_noticed() -> None:
     model, robot = robots(11)
     state = random_state(model, np.random.default_rng(11))
     found, right = ours(model, state), pin_robot.derivatives(robot, state, TOOL)
-    name = next(iter(state.external))
-    less = {frame: wrench for frame, wrench in state.external.items() if frame != name}
+    less = {frame: wrench for frame, wrench in state.external.items() if frame != TOOL}
     rng = np.random.default_rng(0)
     wrong = {
         "without a wrench": replace(state, external=less),
@@ -101,16 +100,16 @@ def test_control_a_wrench_fixed_in_w_is_another_derivative() -> None:
     # the same wrench, but held in W axes while the base and the joints turn
     model, _ = robots(11)
     state = random_state(model, np.random.default_rng(12))
-    (name, wrench), *_ = state.external.items()
-    axes = model.frame_pose(state.q, name)[:3, :3]
+    wrench = state.external[TOOL]
+    axes = model.frame_pose(state.q, TOOL)[:3, :3]
     in_w = wrench.reshape(2, 3) @ axes.T
 
     def acceleration(step: Any, fixed_in_w: bool) -> Any:
         q = model.integrate(state.q, step)
-        held = (in_w @ model.frame_pose(q, name)[:3, :3]).ravel() if fixed_in_w else wrench
-        return model.forward_dynamics(q, state.v, state.tau, external={name: held})
+        held = (in_w @ model.frame_pose(q, TOOL)[:3, :3]).ravel() if fixed_in_w else wrench
+        return model.forward_dynamics(q, state.v, state.tau, external={TOOL: held})
 
-    exact = model.forward_dynamics_derivatives(state.q, state.v, state.tau, external={name: wrench})[0]
+    exact = model.forward_dynamics_derivatives(state.q, state.v, state.tau, external={TOOL: wrench})[0]
     for fixed_in_w in (False, True):
         h = 1e-5  # truncation and rounding both about 1e-9
         steps = h * np.eye(model.nv)
