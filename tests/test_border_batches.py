@@ -28,6 +28,16 @@ def reduced(name: str) -> Kernel:
     return lambda q, v, a, **k: getattr(MODEL.free_floating(q, v, FRAME, external=EXTERNAL, **k), name)
 
 
+def derivative(kernel: str, place: int) -> Kernel:
+    return lambda q, v, a, **k: getattr(MODEL, kernel)(q, v, a, external=EXTERNAL, **k)[place]
+
+
+def reduced_derivative(name: str) -> Kernel:
+    return lambda q, v, a, **k: getattr(
+        MODEL.free_floating_derivatives(q, v, a[..., 6:], FRAME, external=EXTERNAL, **k), name
+    )
+
+
 KERNELS: dict[str, Kernel] = {
     "frame_pose": lambda q, v, a, **k: MODEL.frame_pose(q, FRAME, **k),
     "frame_velocity": lambda q, v, a, **k: MODEL.frame_velocity(q, v, FRAME, **k),
@@ -42,6 +52,14 @@ KERNELS: dict[str, Kernel] = {
     "integrate": lambda q, v, a, **k: MODEL.integrate(q, v, **k),
     "difference": lambda q, v, a, **k: MODEL.difference(q, MODEL.integrate(q, a), **k),
 } | {f"free_floating.{name}": reduced(name) for name in ("inertia", "bias", "external", "jacobian", "drift")}
+KERNELS |= {
+    f"{kernel}[{place}]": derivative(kernel, place)
+    for kernel in ("inverse_dynamics_derivatives", "forward_dynamics_derivatives")
+    for place in range(3)
+} | {
+    f"free_floating_derivatives.{name}": reduced_derivative(name)
+    for name in ("torque_dq", "torque_dv", "acceleration_dq", "acceleration_dv", "velocity_dq")
+}
 
 
 def states(count: int, seed: int = 0) -> tuple[Any, Any, Any]:

@@ -113,6 +113,7 @@ ARRAYS = [
     *((oo.Model, name) for name in (
         "neutral", "integrate", "difference", "frame_pose", "frame_velocity", "frame_jacobian", "mass_matrix",
         "bias_forces", "inverse_dynamics", "forward_dynamics", "momentum", "kinetic_energy", "center_of_mass",
+        "inverse_dynamics_derivatives", "forward_dynamics_derivatives", "free_floating_derivatives",
     )),
     *((oo.Trace, name) for name in (
         "time", "q", "v", "tau", "acceleration", "momentum", "impulse", "kinetic_energy", "work",
@@ -120,6 +121,9 @@ ARRAYS = [
         "velocity_eci",
     )),
     *((oo.FreeFloating, name) for name in ("inertia", "bias", "external", "jacobian", "drift")),
+    *((oo.FreeFloatingDerivatives, name) for name in (
+        "torque_dq", "torque_dv", "acceleration_dq", "acceleration_dv", "velocity_dq",
+    )),
     *((oo.State, name) for name in (
         "q", "v", "reference_pose", "reference_velocity", "reference_acceleration",
     )),

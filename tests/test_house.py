@@ -36,6 +36,7 @@ ORDER = (
 LONGEST = 400
 LONGER_WITH_REASON = {
     "python/onorbit_rs/_core.pyi": "one module, one stub",
+    "crates/py/src/model.rs": "PyO3 takes the methods of a class in one block",
     "crates/core/tests/simulation_nasa.rs": "NASA's tables stand beside the cases they belong to",
 }
 

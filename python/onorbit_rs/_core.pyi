@@ -55,6 +55,7 @@ __all__ = [
     "FixedFrame",
     "Frame",
     "FreeFloating",
+    "FreeFloatingDerivatives",
     "Goal",
     "GravityField",
     "GravityGradient",
@@ -193,6 +194,26 @@ class Model:
         threads: int | None = None,
         out: _Array | None = None,
     ) -> _Array: ...
+    def inverse_dynamics_derivatives(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        *,
+        external: _External | None = None,
+        threads: int | None = None,
+        out: tuple[_Array, _Array, _Array] | None = None,
+    ) -> tuple[_Array, _Array, _Array]: ...
+    def forward_dynamics_derivatives(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        tau: ArrayLike,
+        *,
+        external: _External | None = None,
+        threads: int | None = None,
+        out: tuple[_Array, _Array, _Array] | None = None,
+    ) -> tuple[_Array, _Array, _Array]: ...
     def momentum(
         self, q: ArrayLike, v: ArrayLike, *, threads: int | None = None, out: _Array | None = None
     ) -> _Array: ...
@@ -217,6 +238,17 @@ class Model:
         threads: int | None = None,
         out: FreeFloating | None = None,
     ) -> FreeFloating: ...
+    def free_floating_derivatives(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        joint_acceleration: ArrayLike,
+        frame: str,
+        *,
+        external: _External | None = None,
+        threads: int | None = None,
+        out: FreeFloatingDerivatives | None = None,
+    ) -> FreeFloatingDerivatives: ...
 
 @final
 class Joint:
@@ -296,6 +328,19 @@ class FreeFloating:
     def jacobian(self) -> _Array: ...
     @property
     def drift(self) -> _Array: ...
+
+@final
+class FreeFloatingDerivatives:
+    @property
+    def torque_dq(self) -> _Array: ...
+    @property
+    def torque_dv(self) -> _Array: ...
+    @property
+    def acceleration_dq(self) -> _Array: ...
+    @property
+    def acceleration_dv(self) -> _Array: ...
+    @property
+    def velocity_dq(self) -> _Array: ...
 
 @final
 class ModelBuilder:

@@ -241,3 +241,63 @@ def same_kernels(model: oo.Model, state: Any, tool: str) -> dict[str, Any]:
         "free_floating.jacobian": reduced.jacobian,
         "free_floating.drift": reduced.drift,
     }
+
+
+def derivatives(robot: PinRobot, state: State, tool: str) -> dict[str, Array]:
+    """Every derivative from Pinocchio's analytic ones; of the reduced model through its definition."""
+    model, data = robot.model, robot.data
+    q, v, fext = robot.q(state.q), robot.v(state.v), robot.wrenches(state.external)
+    square = np.ix_(robot.order, robot.order)
+
+    def inverse(a: Array) -> tuple[Array, ...]:
+        found = pin.computeRNEADerivatives(model, data, q, v, robot.v(a), fext)
+        return tuple(np.array(matrix)[square] for matrix in found)
+
+    forward = pin.computeABADerivatives(model, data, q, v, robot.v(state.tau), fext)
+    out = dict(zip(("inverse.dq", "inverse.dv", "inverse.da"), inverse(state.a), strict=True))
+    for name, matrix in zip(("forward.dq", "forward.dv", "forward.dtau"), forward, strict=True):
+        out[name] = np.array(matrix)[square]
+
+    # a_b = -Mbb⁻¹ (Mbm q̈ + cb - Qb) makes the base rows of inverse dynamics vanish, whatever q and v are
+    rest = np.concatenate([np.zeros(6), state.a[6:]])
+    mass = inverse(rest)[2]
+    missing = pin.rnea(model, data, q, v, robot.v(rest), fext)[robot.order][:6]
+    a = np.concatenate([-np.linalg.solve(mass[:6, :6], missing), state.a[6:]])
+    dq, dv, _ = inverse(a)
+    back_q, back_v = (-np.linalg.solve(mass[:6, :6], force[:6]) for force in (dq, dv))
+    out["reduced.torque_dq"] = dq[6:] + mass[6:, :6] @ back_q
+    out["reduced.torque_dv"] = dv[6:] + mass[6:, :6] @ back_v
+    jacobian = robot.frame_jacobian(state, tool)
+    for name, back, part in (("dq", back_q, 1), ("dv", back_v, 2)):
+        out[f"reduced.acceleration_{name}"] = point(robot, state, a, tool)[part] + jacobian[:, :6] @ back
+    out["reduced.velocity_dq"] = point(robot, state, a, tool)[0]
+    return out
+
+
+def point(robot: PinRobot, state: State, a: Array, name: str) -> tuple[Array, Array, Array]:
+    """``∂ẋ/∂q``, ``∂ẍ/∂q``, ``∂ẍ/∂v`` of a frame's origin, classical, W axes."""
+    model, data = robot.model, robot.data
+    twist, turning = robot.frame_velocity(state, name), robot.frame_jacobian(state, name)[3:].T
+    pin.computeForwardKinematicsDerivatives(model, data, robot.q(state.q), robot.v(state.v), robot.v(a))
+    frame = model.frames[robot.frame(name)]
+    joint = frame.parentJoint
+    axes = np.array(data.oMi[joint].rotation @ frame.placement.rotation)
+    spatial, rate = frame.placement.actInv(data.a[joint]), frame.placement.actInv(data.v[joint])
+    classical = [spatial.linear + np.cross(rate.angular, rate.linear), spatial.angular]
+    at = (model, data, joint, frame.placement, pin.ReferenceFrame.LOCAL)
+    velocity_q, angular_q, angular_v, _ = pin.getFrameAccelerationDerivatives(*at)
+    _, linear_q, linear_v, _ = pin.getPointClassicAccelerationDerivatives(*at)
+    speed_q, _ = pin.getPointVelocityDerivatives(*at)
+
+    def in_w(linear: Array, angular: Array, of: Array | None = None) -> Array:
+        """Rows in the frame's axes turned to W; what they are derivatives of turns along with the frame."""
+        rows = np.vstack([axes @ linear, axes @ angular[3:]])[:, robot.order]
+        if of is not None:
+            rows += np.hstack([np.cross(turning, of[:3]), np.cross(turning, of[3:])]).T
+        return np.array(rows)
+
+    return (
+        in_w(speed_q, velocity_q, twist),
+        in_w(linear_q, angular_q, (np.array(classical) @ axes.T).ravel()),
+        in_w(linear_v, angular_v),
+    )

@@ -14,7 +14,7 @@ use std::sync::{Arc, atomic::AtomicBool};
 /// Rounding of a dozen bodies in another order or with fused products.
 const ROUNDING: f64 = 1e-11;
 
-fn kernels(tool: usize) -> [Kernel; 13] {
+fn kernels(tool: usize) -> [Kernel; 16] {
     [
         Kernel::FramePose(tool),
         Kernel::FrameVelocity(tool),
@@ -23,6 +23,9 @@ fn kernels(tool: usize) -> [Kernel; 13] {
         Kernel::BiasForces,
         Kernel::InverseDynamics,
         Kernel::ForwardDynamics,
+        Kernel::InverseDynamicsDerivatives,
+        Kernel::ForwardDynamicsDerivatives,
+        Kernel::FreeFloatingDerivatives(tool),
         Kernel::Momentum,
         Kernel::KineticEnergy,
         Kernel::CenterOfMass,
@@ -36,7 +39,11 @@ fn kernels(tool: usize) -> [Kernel; 13] {
 fn inputs(kernel: Kernel, model: &Model, random: &mut Random, count: usize) -> Vec<(Vec<f64>, usize)> {
     let row = |name: &str, random: &mut Random| {
         let (q, v) = random_state(model, random);
-        if name.starts_with('q') { q } else { v }
+        match name {
+            "joint_acceleration" => v[6..].to_vec(),
+            _ if name.starts_with('q') => q,
+            _ => v,
+        }
     };
     let rows = |name: &&str| {
         let data: Vec<f64> = (0..count).flat_map(|_| row(name, random)).collect();

@@ -9,10 +9,15 @@ use onorbit_core::control::{
     Compliance, ComputedTorque, Control, ControlError, ControlLaw, Controller, Goal, Interface,
     JointComputedTorque, JointPid, Law, Observation,
 };
+use onorbit_core::dynamics::derivatives::{
+    Derivatives, forward_dynamics_derivatives, free_floating_derivatives, inverse_dynamics_derivatives,
+};
+use onorbit_core::dynamics::{Data, FrameWrench};
 use onorbit_core::environment::{BodyWrench, GravityGradient};
 use onorbit_core::orbit::{Kepler, MU_EARTH};
 use onorbit_core::reference::{Hold, JointHold};
 use onorbit_core::simulation::{Integrator, Simulation};
+use onorbit_core::spatial::Force;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -128,4 +133,20 @@ fn allocations_do_not_grow_with_the_number_of_steps() {
             assert_eq!(few, many);
         }
     }
+}
+
+#[test]
+fn derivatives_allocate_nothing() {
+    let model = humanoid();
+    let (q, v, n, nv) = (start(&model), vec![0.1; model.nv()], model.joint_count(), model.nv());
+    let (mut data, mut work) = (Data::new(&model), Derivatives::new(&model));
+    let wrench = [FrameWrench { frame: 3, wrench: Force::from_slice(&[1.0; 6]) }];
+    let mut out = [nv, nv, nv, n, n, 6, 6, 6].map(|rows| vec![0.0; rows * nv]);
+    let [a, b, c, d, e, f, g, h] = &mut out;
+    let before = COUNT.with(Cell::get);
+    inverse_dynamics_derivatives(&model, &mut data, &mut work, &q, &v, &v, &wrench, [a, b, c]);
+    forward_dynamics_derivatives(&model, &mut data, &mut work, &q, &v, &v, &wrench, [a, b, c]);
+    let out = [&mut d[..], e, f, g, h];
+    free_floating_derivatives(&model, &mut data, &mut work, &q, &v, &v[6..], 3, &wrench, out);
+    assert_eq!(COUNT.with(Cell::get), before);
 }

@@ -5,6 +5,7 @@ mod arrays;
 mod builder;
 mod checkpoint;
 mod control;
+mod derivatives;
 mod earth;
 mod environment;
 mod errors;
@@ -60,6 +61,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<records::PyBody>()?;
     m.add_class::<records::PyFrame>()?;
     m.add_class::<kernels::PyFreeFloating>()?;
+    m.add_class::<derivatives::PyFreeFloatingDerivatives>()?;
     m.add_class::<builder::PyModelBuilder>()?;
     m.add_class::<orbit::PyOrbit>()?;
     m.add_class::<orbit::PyKepler>()?;

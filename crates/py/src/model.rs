@@ -1,6 +1,7 @@
 //! The robot.
 
 use crate::arrays::{Count, array_of, fixed};
+use crate::derivatives::{PyFreeFloatingDerivatives, free_floating_derivatives, three};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
 use crate::records::{self, PyBody, PyFrame, PyJoint, PyVisual};
@@ -11,7 +12,7 @@ use onorbit_core::batch::{Evaluator, Kernel};
 use onorbit_core::model::urdf::{self, UrdfProblem};
 use onorbit_core::model::{Model, neutral};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{PyDict, PyString, PyTuple};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
@@ -321,6 +322,41 @@ impl PyModel {
         self.one(py, Kernel::ForwardDynamics, &[q, v, tau], external, &[self.model.nv()], threads, out)
     }
 
+    /// Derivatives of :meth:`inverse_dynamics` with respect to ``q``, ``v``, ``a``: three arrays (nv, nv).
+    ///
+    /// Column ``j`` of the first is the rate along ``integrate(q, eps * e_j)``: the base's shifts, m, and turns, rad, in
+    /// its own axes, then the joints. The third is the mass matrix. ``external`` stays constant in the axes of its frames.
+    #[pyo3(signature = (q, v, a, *, external=None, threads=None, out=None))]
+    fn inverse_dynamics_derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        a: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        three(py, self, Kernel::InverseDynamicsDerivatives, &[q, v, a], external, out, threads)
+    }
+
+    /// Derivatives of :meth:`forward_dynamics` with respect to ``q``, ``v``, ``tau``: three arrays (nv, nv).
+    ///
+    /// Tangent and wrenches as in :meth:`inverse_dynamics_derivatives`; the third is the inverse mass matrix.
+    #[pyo3(signature = (q, v, tau, *, external=None, threads=None, out=None))]
+    fn forward_dynamics_derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        tau: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<Count>,
+        out: Option<Any<'_, 'py>>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        three(py, self, Kernel::ForwardDynamicsDerivatives, &[q, v, tau], external, out, threads)
+    }
+
     /// Linear momentum and angular momentum about the system's centre of mass: (6,), W axes, kg m/s and kg m²/s.
     #[pyo3(signature = (q, v, *, threads=None, out=None))]
     fn momentum<'py>(
@@ -347,7 +383,7 @@ impl PyModel {
         let energy = self.one(py, Kernel::KineticEnergy, &[q, v], None, &[], threads, out)?;
         match out {
             Some(_) => Ok(energy.into_any()),
-            None => energy.call_method1("__getitem__", (pyo3::types::PyTuple::empty(py),)),
+            None => energy.call_method1("__getitem__", (PyTuple::empty(py),)),
         }
     }
 
@@ -378,6 +414,26 @@ impl PyModel {
         out: Option<&Bound<'py, PyFreeFloating>>,
     ) -> PyResult<Bound<'py, PyFreeFloating>> {
         free_floating(py, self, self.frame(frame)?, &[q, v], external, out, threads)
+    }
+
+    /// Derivatives of ``M* q̈ + c* - Q*``, ``ẍ = Jg q̈ + d`` and ``ẋ`` at given joint accelerations (n,).
+    ///
+    /// Tangent and wrenches as in :meth:`inverse_dynamics_derivatives`. With ``q̈ = 0`` those of ``c* - Q*`` and ``d``;
+    /// with respect to ``q̈`` they are ``M*`` and ``Jg``, that of ``ẋ`` with respect to ``v`` is :meth:`frame_jacobian`.
+    #[pyo3(signature = (q, v, joint_acceleration, frame, *, external=None, threads=None, out=None))]
+    fn free_floating_derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        joint_acceleration: Any<'_, 'py>,
+        frame: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<Count>,
+        out: Option<&Bound<'py, PyFreeFloatingDerivatives>>,
+    ) -> PyResult<Bound<'py, PyFreeFloatingDerivatives>> {
+        let state = [q, v, joint_acceleration];
+        free_floating_derivatives(py, self, self.frame(frame)?, &state, external, out, threads)
     }
 
     fn __repr__(&self) -> String {

@@ -124,9 +124,9 @@ fn fault(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
     for wrenches in call.external {
         check_finite("external wrench", wrenches.rows, 6)?;
     }
-    // forward dynamics where the mass matrix is singular; no other kernel divides by what a joint feels
+    // the mass matrix is singular
     match outputs[0].iter().position(|x| !x.is_finite()) {
-        Some(index) => Err(InputError::Singular { state: index / call.model.nv() }),
+        Some(index) => Err(InputError::Singular { state: index / call.kernel.outputs(call.model)[0] }),
         None => Ok(()),
     }
 }

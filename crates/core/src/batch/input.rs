@@ -1,5 +1,6 @@
 //! What is checked before a kernel runs.
 
+use super::kernel::Kernel;
 use super::space::Call;
 use crate::orbit::OrbitError;
 use thiserror::Error;
@@ -58,11 +59,11 @@ pub(super) const UNIT_NORM: f64 = 1e-6;
 pub(super) fn check_shapes(call: &Call<'_>) -> Result<(), InputError> {
     let count = call.count();
     for (name, rows) in call.kernel.inputs().iter().zip(call.inputs) {
-        let expected = if name.starts_with('q') { call.model.nq() } else { call.model.nv() };
+        let expected = Kernel::width(name, call.model);
         if rows.width != expected {
             return Err(InputError::WrongLength { name, expected, got: rows.width });
         }
-        let got = rows.data.len() / expected;
+        let got = rows.data.len().checked_div(expected).unwrap_or(count); // a robot may have no joints
         if got != count {
             return Err(InputError::WrongBatch { name, expected: count, got });
         }

@@ -1,5 +1,8 @@
 //! The kernels by name, with the widths of their rows.
 
+use crate::dynamics::derivatives::{
+    Derivatives, forward_dynamics_derivatives, free_floating_derivatives, inverse_dynamics_derivatives,
+};
 use crate::dynamics::{
     Data, FrameWrench, FreeFloating, bias_forces, center_of_mass, forward_dynamics, frame_jacobian,
     frame_pose, frame_velocity, free_floating, inverse_dynamics, kinematics, kinetic_energy, mass_matrix,
@@ -25,6 +28,10 @@ pub enum Kernel {
     InverseDynamics,
     /// `q, v, tau` → `(nv,)`.
     ForwardDynamics,
+    /// `q, v, a` → `∂τ/∂q`, `∂τ/∂v`, `∂τ/∂a`, each `(nv, nv)`.
+    InverseDynamicsDerivatives,
+    /// `q, v, tau` → `∂a/∂q`, `∂a/∂v`, `∂a/∂τ`, each `(nv, nv)`.
+    ForwardDynamicsDerivatives,
     /// `q, v` → `(6,)`.
     Momentum,
     /// `q, v` → `(1,)`.
@@ -33,6 +40,8 @@ pub enum Kernel {
     CenterOfMass,
     /// `q, v` → `M* (n, n)`, `c* (n,)`, `Q* (n,)`, `Jg (6, n)`, `d (6,)`.
     FreeFloating(usize),
+    /// `q, v, joint_acceleration` → `∂τ/∂q`, `∂τ/∂v` `(n, nv)`, `∂ẍ/∂q`, `∂ẍ/∂v`, `∂ẋ/∂q` `(6, nv)`.
+    FreeFloatingDerivatives(usize),
     /// `q, dv` → `(nq,)`.
     Integrate,
     /// `q, q2` → `(nv,)`.
@@ -44,26 +53,47 @@ pub enum Kernel {
 pub(super) struct Work<S> {
     pub(super) data: Data<S>,
     pub(super) reduced: FreeFloating<S>,
+    pub(super) derivatives: Derivatives<S>,
     pub(super) external: Vec<FrameWrench<S>>,
 }
 
 impl<S: Real> Work<S> {
     pub(super) fn new(model: &Model) -> Self {
-        Self { data: Data::new(model), reduced: FreeFloating::new(model), external: Vec::new() }
+        Self {
+            data: Data::new(model),
+            reduced: FreeFloating::new(model),
+            derivatives: Derivatives::new(model),
+            external: Vec::new(),
+        }
     }
 }
 
 impl Kernel {
-    /// Names of the inputs; those in `q` are configurations, all others have `nv` numbers.
+    /// Names of the inputs.
     pub fn inputs(self) -> &'static [&'static str] {
         match self {
             Self::FramePose(_) | Self::FrameJacobian(_) | Self::MassMatrix | Self::CenterOfMass => &["q"],
-            Self::InverseDynamics => &["q", "v", "a"],
-            Self::ForwardDynamics => &["q", "v", "tau"],
+            Self::InverseDynamics | Self::InverseDynamicsDerivatives => &["q", "v", "a"],
+            Self::ForwardDynamics | Self::ForwardDynamicsDerivatives => &["q", "v", "tau"],
+            Self::FreeFloatingDerivatives(_) => &["q", "v", "joint_acceleration"],
             Self::Integrate => &["q", "dv"],
             Self::Difference => &["q", "q2"],
             _ => &["q", "v"],
         }
+    }
+
+    /// Width of the rows of an input: configurations are called `q`.
+    pub(super) fn width(name: &str, model: &Model) -> usize {
+        match name {
+            "joint_acceleration" => model.joint_count(),
+            _ if name.starts_with('q') => model.nq(),
+            _ => model.nv(),
+        }
+    }
+
+    /// Whether it divides by what a joint feels: its first output is not finite where that is nothing.
+    pub(super) fn divides(self) -> bool {
+        matches!(self, Self::ForwardDynamics | Self::ForwardDynamicsDerivatives)
     }
 
     /// Widths of the outputs' rows.
@@ -78,6 +108,8 @@ impl Kernel {
             Self::KineticEnergy => vec![1],
             Self::CenterOfMass => vec![3],
             Self::FreeFloating(_) => vec![n * n, n, n, 6 * n, 6],
+            Self::InverseDynamicsDerivatives | Self::ForwardDynamicsDerivatives => vec![nv * nv; 3],
+            Self::FreeFloatingDerivatives(_) => vec![n * nv, n * nv, 6 * nv, 6 * nv, 6 * nv],
             Self::Integrate => vec![nq],
         }
     }
@@ -90,7 +122,7 @@ impl Kernel {
         inputs: &[Vec<S>],
         out: &mut [Vec<S>],
     ) {
-        let Work { data, reduced, external } = work;
+        let Work { data, reduced, derivatives, external } = work;
         let q = &inputs[0];
         match self {
             Self::FramePose(frame) => {
@@ -142,6 +174,18 @@ impl Kernel {
                 out[3].copy_from_slice(&reduced.jacobian);
                 reduced.drift.write(&mut out[4]);
             }
+            Self::InverseDynamicsDerivatives => {
+                let (v, a, out) = (&inputs[1], &inputs[2], slices(out));
+                inverse_dynamics_derivatives(model, data, derivatives, q, v, a, external, out);
+            }
+            Self::ForwardDynamicsDerivatives => {
+                let (v, tau, out) = (&inputs[1], &inputs[2], slices(out));
+                forward_dynamics_derivatives(model, data, derivatives, q, v, tau, external, out);
+            }
+            Self::FreeFloatingDerivatives(frame) => {
+                let (v, a, out) = (&inputs[1], &inputs[2], slices(out));
+                free_floating_derivatives(model, data, derivatives, q, v, a, frame, external, out);
+            }
             Self::Integrate => S::enter(
                 #[inline(always)]
                 || integrate(q, &inputs[1], &mut out[0]),
@@ -152,4 +196,10 @@ impl Kernel {
             ),
         }
     }
+}
+
+/// The first `N` outputs.
+fn slices<S, const N: usize>(out: &mut [Vec<S>]) -> [&mut [S]; N] {
+    let mut rows = out.iter_mut();
+    std::array::from_fn(|_| rows.next().map(Vec::as_mut_slice).unwrap_or_default())
 }

@@ -76,7 +76,7 @@ impl<S: Real> Space<S> {
                 for (out, space) in outputs.iter_mut().zip(&self.outputs) {
                     scatter(space, Places { first: 0, stride: space.len(), count: range.len() }, out);
                 }
-                kernel != Kernel::ForwardDynamics || is_finite(&self.outputs[0])
+                !kernel.divides() || is_finite(&self.outputs[0])
             },
         )
     }

@@ -9,6 +9,7 @@
 mod aba;
 mod crba;
 mod data;
+pub mod derivatives;
 mod external;
 mod free_floating;
 mod jacobian;

@@ -57,13 +57,12 @@ impl<S: Real> ArticulatedInertia<S> {
         }
     }
 
-    /// `IA⁻¹ f` by block elimination: `v = A⁻¹ (f − H ω)`,
-    /// `ω = (I − Hᵀ A⁻¹ H)⁻¹ (n − Hᵀ A⁻¹ f)`.
+    /// Prepares `IA⁻¹` by block elimination: `A⁻¹`, `A⁻¹ H`, `(I − Hᵀ A⁻¹ H)⁻¹`.
     #[inline(always)]
-    pub fn solve(&self, f: Force<S>) -> Motion<S> {
+    pub fn inverse(&self) -> InverseArticulated<S> {
         let a = self.linear.inverse();
-        let (x, y, z) = (a * self.coupling.x, a * self.coupling.y, a * self.coupling.z);
         let h = &self.coupling;
+        let (x, y, z) = (a * h.x, a * h.y, a * h.z);
         let schur = Sym3::new(
             self.angular.xx - h.x.dot(x),
             self.angular.yy - h.y.dot(y),
@@ -72,9 +71,33 @@ impl<S: Real> ArticulatedInertia<S> {
             self.angular.xz - h.x.dot(z),
             self.angular.yz - h.y.dot(z),
         );
-        let af = a * f.linear;
-        let angular = schur.inverse() * (f.angular - h.transpose_mul(af));
-        Motion::new(af - (x * angular.x + y * angular.y + z * angular.z), angular)
+        InverseArticulated { linear: a, carried: Mat3::from_columns(x, y, z), angular: schur.inverse() }
+    }
+
+    /// `IA⁻¹ f`.
+    #[inline(always)]
+    pub fn solve(&self, f: Force<S>) -> Motion<S> {
+        self.inverse().apply(f)
+    }
+}
+
+/// `IA⁻¹` prepared once for many right-hand sides.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct InverseArticulated<S> {
+    /// `A⁻¹`.
+    linear: Sym3<S>,
+    /// `A⁻¹ H`.
+    carried: Mat3<S>,
+    /// `(I − Hᵀ A⁻¹ H)⁻¹`.
+    angular: Sym3<S>,
+}
+
+impl<S: Real> InverseArticulated<S> {
+    /// `IA⁻¹ f`: `ω = (I − Hᵀ A⁻¹ H)⁻¹ (n − (A⁻¹ H)ᵀ f)`, `v = A⁻¹ f − A⁻¹ H ω`.
+    #[inline(always)]
+    pub fn apply(&self, f: Force<S>) -> Motion<S> {
+        let angular = self.angular * (f.angular - self.carried.transpose_mul(f.linear));
+        Motion::new(self.linear * f.linear - self.carried * angular, angular)
     }
 }
 

@@ -4,6 +4,7 @@
 //! instruction set takes its arithmetic with it. Linear parts come before angular ones.
 
 mod articulated;
+mod coriolis;
 mod fused;
 mod inertia;
 mod instruction_set;
@@ -20,7 +21,8 @@ mod spline;
 mod sym3;
 mod vec3;
 
-pub use articulated::ArticulatedInertia;
+pub use articulated::{ArticulatedInertia, InverseArticulated};
+pub use coriolis::Coriolis;
 pub use fused::Fused;
 pub use inertia::{InverseInertia, SpatialInertia};
 pub use instruction_set::InstructionSet;

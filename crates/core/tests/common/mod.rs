@@ -1,6 +1,7 @@
 //! Random robots and states; the seed of each is in the name of the test that fails.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)] // each test binary uses its own part
 
+pub mod dual;
 pub mod humanoid;
 pub mod slider;
 pub mod spacecraft;

@@ -1,0 +1,102 @@
+//! Derivatives of forward dynamics.
+
+use super::inverse_mass::inverse_mass;
+use super::terms::{Derivatives, Row};
+use crate::dynamics::aba::forward_dynamics;
+use crate::dynamics::data::Data;
+use crate::dynamics::external::FrameWrench;
+use crate::model::Model;
+use crate::spatial::{Real, Vec3};
+
+/// Derivatives of [`forward_dynamics`] with respect to `q`, `v` and `tau`, each row major `(nv, nv)`, row `i`
+/// that of `a_i`:
+///
+/// `∂a/∂τ = M⁻¹`,  `∂a/∂x = −M⁻¹ ∂τ/∂x` with `∂τ/∂x` that of inverse dynamics at `a`.
+///
+/// Tangent of `q` and what is held constant as said in [`derivatives`](super).
+pub fn forward_dynamics_derivatives<S: Real>(
+    model: &Model,
+    data: &mut Data<S>,
+    work: &mut Derivatives<S>,
+    q: &[S],
+    v: &[S],
+    tau: &[S],
+    external: &[FrameWrench<S>],
+    [dq, dv, dtau]: [&mut [S]; 3],
+) {
+    forward_dynamics(model, data, q, v, tau, external, &mut work.acceleration);
+    S::enter(
+        #[inline(always)]
+        || kernel(model, data, work, dq, dv, dtau),
+    );
+}
+
+#[inline(always)]
+fn kernel<S: Real>(
+    model: &Model,
+    data: &Data<S>,
+    work: &mut Derivatives<S>,
+    dq: &mut [S],
+    dv: &mut [S],
+    dtau: &mut [S],
+) {
+    let (nodes, nv) = (model.nodes(), model.nv());
+    inverse_mass(nodes, &data.bodies, &mut work.bodies, dtau);
+    work.gather(nodes, data);
+    for i in 0..nv {
+        dq[i * nv..i * nv + 6].fill(S::of(0.0));
+        dv[i * nv..i * nv + 3].fill(S::of(0.0));
+    }
+    for j in 1..nodes.len() {
+        product(dtau, nv, work.joint_columns(nodes, &data.bodies, j), |i, x| {
+            dq[i * nv + j + 5] = -x[0];
+            dv[i * nv + j + 5] = -x[1];
+        });
+    }
+    product(dtau, nv, work.base_columns(), |i, x| {
+        for m in 0..3 {
+            dv[i * nv + m + 3] = -x[m];
+        }
+    });
+    // M⁻¹ M (v_b × e_m) = v_b × e_m: [[ω×, v×], [0, ω×]]
+    let twist = data.bodies[0].velocity;
+    subtract_cross(twist.angular, 0, 0, nv, dv);
+    subtract_cross(twist.linear, 0, 3, nv, dv);
+    subtract_cross(twist.angular, 3, 3, nv, dv);
+}
+
+/// Takes `v×` from a block of three rows and columns.
+#[inline(always)]
+fn subtract_cross<S: Real>(v: Vec3<S>, row: usize, column: usize, nv: usize, out: &mut [S]) {
+    let mut subtract = |i: usize, j: usize, x: S| out[(row + i) * nv + column + j] -= x;
+    (subtract(0, 1, -v.z), subtract(0, 2, v.y), subtract(1, 0, v.z));
+    (subtract(1, 2, -v.x), subtract(2, 0, -v.y), subtract(2, 1, v.x));
+}
+
+/// Rows of a product that are computed side by side, to keep their sums in registers.
+const TILE: usize = 4;
+
+/// `A b` for a symmetric `A`, `(nv, nv)` with `nv ≥ 6`, and columns `b` of which only some rows are not zero.
+#[inline(always)]
+fn product<S: Real, const N: usize>(
+    a: &[S],
+    nv: usize,
+    b: &[Row<S, N>],
+    mut write: impl FnMut(usize, [S; N]),
+) {
+    for start in (0..nv).step_by(TILE) {
+        let start = start.min(nv - TILE); // the last tile may overlap the one before
+        let mut sums = [[S::of(0.0); N]; TILE];
+        for row in b {
+            let a = &a[row.index * nv + start..][..TILE];
+            for t in 0..TILE {
+                for c in 0..N {
+                    sums[t][c] = a[t].mul_add(row.values[c], sums[t][c]);
+                }
+            }
+        }
+        for t in 0..TILE {
+            write(start + t, sums[t]);
+        }
+    }
+}
