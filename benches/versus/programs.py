@@ -50,7 +50,7 @@ def ours() -> Path:
 
 
 def peers() -> tuple[dict[str, Path], dict[str, str]]:
-    """The C++ programs by name, and why others are missing. Compiled when sources, flags or versions change."""
+    """The C++ programs by name, and why others are missing; compiled when what they are made of changes."""
     known = versions()
     if not known["g++"]:
         return {}, dict.fromkeys(("kernels", "controlled", "mujoco"), "no g++ on this machine")

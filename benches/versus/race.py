@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+Array = NDArray[np.float64]
+
 
 class Contestant:
     """A process that waits on its standard input, on one core if asked, until it is its turn."""
@@ -33,7 +35,7 @@ class Contestant:
         """Nanoseconds per unit of work."""
         return float(self.ask("time", job, seconds)["ns"])
 
-    def result(self, job: str, folder: Path) -> NDArray[np.float64]:
+    def result(self, job: str, folder: Path) -> Array:
         file = folder / f"{job}.result"
         self.ask("result", job, file)
         return np.fromfile(file)
@@ -46,8 +48,7 @@ class Contestant:
         return answer
 
     def close(self) -> None:
-        self.process.stdin.close()
-        self.process.wait()
+        self.process.communicate()  # closes its standard input, which ends it
 
 
 @dataclass(frozen=True)
@@ -76,12 +77,13 @@ def ratios(theirs: list[float], ours: list[float]) -> dict[str, float]:
     return {"min": each[0], "median": statistics.median(each), "max": each[-1]}
 
 
-def difference(ours: NDArray[np.float64], theirs: NDArray[np.float64], widths: list[int]) -> float:
-    """The largest difference over all states, of each part of a row as a share of its largest number."""
+def difference(ours: Array, theirs: Array, widths: list[int]) -> float:
+    """The largest difference, of each part of each state's results as a share of its largest number."""
     ours, theirs = (x.reshape(-1, sum(widths)) for x in (ours, theirs))
     count = min(len(ours), len(theirs))
     worst, at = 0.0, 0
     for width in widths:
         a, b = ours[:count, at : at + width], theirs[:count, at : at + width]
-        worst, at = max(worst, float(np.abs(a - b).max() / np.abs(b).max())), at + width
+        shares = np.abs(a - b).max(axis=1) / np.abs(b).max(axis=1)
+        worst, at = max(worst, float(shares.max())), at + width
     return worst

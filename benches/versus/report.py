@@ -44,21 +44,29 @@ def change(row: Run, before: Run | None) -> float | None:
 
 
 def head() -> str:
-    return (
-        f"{'what':39} {'nv':>3} {'ours':>9} {'ratio':>6} {'(min to max)':>14} {'asked':>6} {'':4} {'differ by':>9}  "
-        f"{'last':>5}  against"
+    return columns("what", "nv", "ours", "ratio", "(min to max)", "asked", "", "differ by", "last", "against")
+
+
+def columns(*texts: str) -> str:
+    widths = (-39, 3, 9, 6, 14, 6, -4, 9, 5, -1)
+    return " ".join(
+        f"{text:<{-w}}" if w < 0 else f"{text:>{w}}" for text, w in zip(texts, widths, strict=True)
     )
 
 
 def line(row: Run, before: Run | None) -> str:
-    ratio, asked = row["ratio"], row["asked"]
-    spread = f"({ratio['min']:.1f} to {ratio['max']:.1f})"
-    verdict = "" if asked is None else "yes" if ratio["median"] >= asked else "no"
-    share = change(row, before)
-    told = "" if share is None else f"{share - 1:+.0%}"
-    return (
-        f"{row['what']:39} {row['nv']:3d} {row['ours_ns'] / 1e3:6.2f} µs {ratio['median']:6.2f} {spread:>14} "
-        f"{'' if asked is None else f'{asked:.1f}':>6} {verdict:4} {row['difference']:9.0e}  {told:>5}  {row['against']}"
+    ratio, asked, share = row["ratio"], row["asked"], change(row, before)
+    return columns(
+        row["what"],
+        str(row["nv"]),
+        f"{row['ours_ns'] / 1e3:.2f} µs",
+        f"{ratio['median']:.2f}",
+        f"({ratio['min']:.1f} to {ratio['max']:.1f})",
+        "" if asked is None else f"{asked:.1f}",
+        "" if asked is None else "yes" if ratio["median"] >= asked else "no",
+        f"{row['difference']:.0e}",
+        "" if share is None else f"{share - 1:+.0%}",
+        row["against"],
     )
 
 
@@ -68,7 +76,5 @@ def regressions(run: Run, before: Run | None) -> list[str]:
     for row in run["rows"]:
         share = change(row, before)
         if share is not None and share < SLOWER:
-            lost.append(
-                f"{row['what']}, nv = {row['nv']}: ratio down to {share:.0%} of that of {before['date']}"
-            )  # type: ignore[index]
+            lost.append(f"SLOWER: {row['what']}, nv = {row['nv']}: {share:.0%} of the last ratio")
     return lost

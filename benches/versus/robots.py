@@ -105,6 +105,10 @@ def text(numbers: list[float]) -> str:
     return " ".join(repr(x) for x in numbers)
 
 
+def unit(axis: str) -> str:
+    return " ".join("1" if letter == axis else "0" for letter in "xyz")
+
+
 def urdf(robot: Robot) -> str:
     def link(name: str, body: Body) -> str:
         names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -115,13 +119,13 @@ def urdf(robot: Robot) -> str:
     def ends(parent: int, child: str, xyz: list[float]) -> str:
         return f'<parent link="body0{parent}"/><child link="{child}"/><origin xyz="{text(xyz)}"/>'
 
+    limit = '<limit lower="-99" upper="99" effort="999" velocity="99"/>'
     lines = ['<robot name="humanoid">', link("body00", robot.base)]
     for k, joint in enumerate(robot.joints, 1):
-        axis = " ".join("1" if letter == joint.axis else "0" for letter in "xyz")
         lines.append(link(f"body0{k}", joint.body))
         lines.append(
             f'<joint name="joint{k}" type="revolute">{ends(joint.parent, f"body0{k}", joint.xyz)}'
-            f'<axis xyz="{axis}"/><limit lower="-99" upper="99" effort="999" velocity="99"/></joint>'
+            f'<axis xyz="{unit(joint.axis)}"/>{limit}</joint>'
         )
     tool = ends(robot.tool, "tool", robot.tool_xyz)
     return "\n".join(
@@ -137,23 +141,20 @@ def table(robot: Robot) -> str:
 
 
 def mjcf(robot: Robot) -> str:
-    """MuJoCo's file: a free base and hinges, nothing that collides; it takes inertias as xx yy zz xy xz yz."""
+    """MuJoCo's file: a free base and hinges, nothing that collides; inertias as xx yy zz xy xz yz."""
 
     def body(k: int, xyz: list[float], mass: Body, joint: str) -> str:
         order = [mass.inertia[i] for i in (0, 3, 5, 1, 2, 4)]
         inertial = f'<inertial pos="{text(mass.com)}" mass="{mass.mass!r}" fullinertia="{text(order)}"/>'
-        below = [
-            body(
-                i,
-                j.xyz,
-                j.body,
-                f'<joint name="joint{i}" type="hinge" axis="{"1 0 0" if j.axis == "x" else "0 1 0" if j.axis == "y" else "0 0 1"}"/>',
-            )
-            for i, j in enumerate(robot.joints, 1)
-            if j.parent == k
-        ]
-        return f'<body name="body0{k}" pos="{text(xyz)}">{joint}{inertial}{"".join(below)}</body>'
+        below = "".join(hinge(i) for i, j in enumerate(robot.joints, 1) if j.parent == k)
+        return f'<body name="body0{k}" pos="{text(xyz)}">{joint}{inertial}{below}</body>'
+
+    def hinge(k: int) -> str:
+        joint = robot.joints[k - 1]
+        element = f'<joint name="joint{k}" type="hinge" axis="{unit(joint.axis)}"/>'
+        return body(k, joint.xyz, joint.body, element)
 
     base = body(0, [0.0, 0.0, 0.0], robot.base, "<freejoint/>")
-    options = '<compiler angle="radian" autolimits="false"/><option timestep="0.001" gravity="0 0 0" integrator="RK4"/>'
-    return f"<mujoco>{options}<worldbody>{base}</worldbody></mujoco>"
+    settings = '<option timestep="0.001" gravity="0 0 0" integrator="RK4"/>'
+    angles = '<compiler angle="radian" autolimits="false"/>'
+    return f"<mujoco>{angles}{settings}<worldbody>{base}</worldbody></mujoco>"

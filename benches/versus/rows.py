@@ -9,8 +9,8 @@ from dataclasses import dataclass
 class Row:
     """A job of ours against jobs of one peer, of which the fastest counts.
 
-    `asked` is the ratio to reach, or that for each instruction set; `parts` the widths of what a row of the
-    results holds, in terms of nq, nv and n.
+    `asked` is the ratio to reach, or that for each instruction set or nv; `parts` the widths of what a row of
+    the results holds, in terms of nq, nv and n.
     """
 
     what: str
@@ -18,8 +18,14 @@ class Row:
     peer: str
     jobs: tuple[str, ...]
     against: str
-    asked: float | dict[str, float] | None
+    asked: float | dict[object, float] | None
     parts: str
+
+    def minimum(self, nv: int, level: str) -> float | None:
+        """The ratio to reach with this robot on this instruction set."""
+        if not isinstance(self.asked, dict):
+            return self.asked
+        return self.asked.get(nv, self.asked.get(level))
 
     def widths(self, nv: int) -> list[int]:
         sizes = {"nq": nv + 1, "nv": nv, "n": nv - 6, "6": 6}
@@ -31,8 +37,8 @@ class Row:
 
 
 PIN, MUJOCO = "Pinocchio C++", "MuJoCo"
-BATCH = {"avx512": 14.0, "avx2+fma": 8.0}
-ROLLOUT = {"13": 15.0, "20": 12.0}
+BATCH: dict[object, float] = {"avx512": 14.0, "avx2+fma": 8.0}
+ROLLOUT: dict[object, float] = {13: 15.0, 20: 12.0}
 
 ROWS = [
     Row("ABA", ("rust", "aba"), "kernels", ("aba", "aba_local"), f"{PIN} aba", 2.5, "nv"),
