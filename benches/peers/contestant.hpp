@@ -4,7 +4,7 @@
 //   result JOB FILE   -> {}           writes what the job computes to FILE, as raw doubles
 //
 // A pass is all states once, so that inputs vary as they do in use; ours answers the same lines
-// (crates/core/examples/contestant).
+// (benches/contestant).
 #pragma once
 #include <algorithm>
 #include <chrono>
