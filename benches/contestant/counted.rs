@@ -4,37 +4,37 @@ use onorbit_core::spatial::Real;
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-thread_local! {
-    static DONE: Cell<Operations> = const { Cell::new(Operations { add: 0, mul: 0, mul_add: 0, div: 0, sqrt: 0, sin_cos: 0 }) };
-}
-
-/// How often each operation was done. Signs, comparisons and choices are not counted.
+/// What is counted; signs, comparisons and choices are not.
 #[derive(Clone, Copy)]
-struct Operations {
-    add: u32,
-    mul: u32,
-    mul_add: u32,
-    div: u32,
-    sqrt: u32,
-    sin_cos: u32,
+enum Operation {
+    Sum,
+    Product,
+    MulAdd,
+    Quotient,
+    Root,
+    SinCos,
+}
+use Operation::{MulAdd, Product, Quotient, Root, SinCos, Sum};
+
+const NAMES: [&str; 6] = ["add", "mul", "mul_add", "div", "sqrt", "sin_cos"];
+
+thread_local! {
+    static DONE: Cell<[u32; 6]> = const { Cell::new([0; 6]) };
 }
 
-fn count(change: impl FnOnce(&mut Operations)) {
-    DONE.with(|done| {
-        let mut now = done.get();
-        change(&mut now);
-        done.set(now);
-    });
+fn count(operation: Operation) {
+    let mut done = DONE.get();
+    done[operation as usize] += 1;
+    DONE.set(done);
 }
 
-/// What `work` does, as JSON.
+/// How often `work` does each operation, as JSON.
 pub(crate) fn during(work: impl FnOnce()) -> String {
-    DONE.with(|done| done.set(Operations { add: 0, mul: 0, mul_add: 0, div: 0, sqrt: 0, sin_cos: 0 }));
+    DONE.set([0; 6]);
     work();
-    let Operations { add, mul, mul_add, div, sqrt, sin_cos } = DONE.with(Cell::get);
-    format!(
-        r#"{{"add": {add}, "mul": {mul}, "mul_add": {mul_add}, "div": {div}, "sqrt": {sqrt}, "sin_cos": {sin_cos}}}"#
-    )
+    let pairs: Vec<String> =
+        NAMES.iter().zip(DONE.get()).map(|(name, times)| format!("\"{name}\": {times}")).collect();
+    format!("{{{}}}", pairs.join(", "))
 }
 
 /// An `f64` whose arithmetic is counted.
@@ -42,11 +42,11 @@ pub(crate) fn during(work: impl FnOnce()) -> String {
 pub(crate) struct Counted(f64);
 
 macro_rules! operator {
-    ($trait:ident, $method:ident, $assign:ident, $in_place:ident, $op:tt, $kind:ident) => {
+    ($trait:ident, $method:ident, $assign:ident, $in_place:ident, $op:tt, $kind:expr) => {
         impl $trait for Counted {
             type Output = Self;
             fn $method(self, other: Self) -> Self {
-                count(|done| done.$kind += 1);
+                count($kind);
                 Self(self.0 $op other.0)
             }
         }
@@ -57,14 +57,14 @@ macro_rules! operator {
         }
     };
 }
-operator!(Add, add, AddAssign, add_assign, +, add);
-operator!(Sub, sub, SubAssign, sub_assign, -, add);
-operator!(Mul, mul, MulAssign, mul_assign, *, mul);
+operator!(Add, add, AddAssign, add_assign, +, Sum);
+operator!(Sub, sub, SubAssign, sub_assign, -, Sum);
+operator!(Mul, mul, MulAssign, mul_assign, *, Product);
 
 impl Div for Counted {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        count(|done| done.div += 1);
+        count(Quotient);
         Self(self.0 / other.0)
     }
 }
@@ -90,18 +90,18 @@ impl Real for Counted {
         self.0
     }
     fn mul_add(self, a: Self, b: Self) -> Self {
-        count(|done| done.mul_add += 1);
+        count(MulAdd);
         Self(self.0 * a.0 + b.0)
     }
     fn sqrt(self) -> Self {
-        count(|done| done.sqrt += 1);
+        count(Root);
         Self(self.0.sqrt())
     }
     fn abs(self) -> Self {
         Self(self.0.abs())
     }
     fn sin_cos(self) -> (Self, Self) {
-        count(|done| done.sin_cos += 1);
+        count(SinCos);
         let (sine, cosine) = self.0.sin_cos();
         (Self(sine), Self(cosine))
     }

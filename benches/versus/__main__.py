@@ -24,8 +24,8 @@ def commit() -> str:
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python benches/versus", description=__doc__)
-    parser.add_argument("--rounds", type=int, default=9)
-    parser.add_argument("--seconds", type=float, default=0.2, help="of each contestant in a round")
+    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--seconds", type=float, default=0.1, help="of each contestant in a round")
     parser.add_argument("--only", default="", help="rows whose name contains this; nothing is saved")
     parser.add_argument(
         "--no-save", action="store_true", help="leave benches/results.json and the page alone"
