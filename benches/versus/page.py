@@ -26,11 +26,12 @@ def flops(operations: dict[str, int]) -> int:
     return once + 2 * operations["mul_add"] + SINE_AND_COSINE * operations["sin_cos"]
 
 
+def head(*columns: str) -> list[str]:
+    return [f"| {' | '.join(columns)} |", "|-" * len(columns) + "|"]
+
+
 def ratios(run: Run) -> list[str]:
-    lines = [
-        "| what | nv | against | ratio | rounds | asked | differ by |",
-        "|-|-|-|-|-|-|-|",
-    ]
+    lines = head("what", "nv", "against", "ratio", "rounds", "asked", "differ by")
     for row in run["rows"]:
         ratio, asked = row["ratio"], row["asked"]
         lines.append(
@@ -43,10 +44,8 @@ def ratios(run: Run) -> list[str]:
 
 def limits(run: Run) -> list[str]:
     """Operations beside time: of one state, and of the batch on lanes."""
-    lines = [
-        "| kernel | nv | operations | ns, one state | of a lane's peak | ns, in a batch | of the lanes' peak |",
-        "|-|-|-|-|-|-|-|",
-    ]
+    kinds = ("ns, one state", "of a lane's peak", "ns, in a batch", "of the lanes' peak")
+    lines = head("kernel", "nv", "operations", *kinds)
     times = {(row["what"], row["nv"]): row["ours_ns"] for row in run["rows"]}
     for entry in run["ceiling"]:
         nv, peaks = entry["nv"], entry["peak_gflops"]
