@@ -26,14 +26,18 @@ def versus(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """The modules of the benchmark, which stand alone beside the package."""
     before = set(sys.modules)
     monkeypatch.syspath_prepend(str(VERSUS))
+    import field
     import inputs
+    import measure
     import page
+    import programs
     import race
     import report
     import robots
     import rows
 
-    yield SimpleNamespace(inputs=inputs, page=page, race=race, report=report, robots=robots, rows=rows)
+    modules = (field, inputs, measure, page, programs, race, report, robots, rows)
+    yield SimpleNamespace(**{module.__name__: module for module in modules})
     for name in set(sys.modules) - before:
         if str(getattr(sys.modules[name], "__file__", "")).startswith(str(VERSUS)):
             del sys.modules[name]
@@ -82,6 +86,21 @@ def test_contestants_answer_and_agree(versus: Any, tmp_path: Path) -> None:
     assert [len(rounds) for rounds in times] == [3, 3]
     assert all(100 < ns < 1e6 for rounds in times for ns in rounds)
     first.close(), second.close()
+
+
+def test_without_a_compiler_its_rows_are_left_out_with_the_reason(
+    versus: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known = versus.programs.versions()
+    monkeypatch.setattr(versus.programs, "versions", lambda: known | {"g++": ""})
+    monkeypatch.setattr(versus.programs, "BUILD", tmp_path)
+    programs, missing = versus.programs.peers()
+    assert not programs
+    field = versus.field.Field(1, Path("contestant"), programs, missing)
+    told = [versus.measure.measure(row, 13, field, 1, 0.0) for row in versus.rows.ROWS if "C" in row.against]
+    assert set(told) == {"no g++ on this machine"}
+    assert len(told) >= 10
+    assert not field.running, "nobody was started in vain"
 
 
 def test_ratios_are_taken_round_by_round(versus: Any) -> None:
