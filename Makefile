@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint bench bench-peers bench-orbits bench-everything clean
+.PHONY: help demo test test-rust test-python lint bench bench-quick bench-rust bench-orbits bench-everything clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -46,15 +46,19 @@ lint: $(VENV)/.built $(VENV)/.tested ## formatting, lints as errors, types
 	$(BIN)/ruff check python tests benches
 	$(BIN)/mypy
 
-bench: $(VENV)/.built $(VENV)/.tested ## criterion for the kernels, pytest-benchmark for the border
+$(VENV)/.benched: pyproject.toml | $(VENV)/.tested
+	$(MATURIN) --extras bench
+	@touch $@
+
+bench: $(VENV)/.built $(VENV)/.benched ## against Pinocchio and MuJoCo, built from PyPI's wheels and alternated; keeps a history
+	$(BIN)/python benches/versus
+
+bench-quick: $(VENV)/.built $(VENV)/.benched ## the same in a minute or two, not kept
+	$(BIN)/python benches/versus --rounds 3 --seconds 0.05 --no-save
+
+bench-rust: $(VENV)/.built $(VENV)/.tested ## criterion for the kernels, pytest-benchmark for the border
 	cargo bench -p onorbit-core
 	$(BIN)/python -m pytest benches -o testpaths=benches --benchmark-only --benchmark-columns=min,median,iqr
-
-PEERS ?= ../shared/peers
-
-bench-peers: $(VENV)/.built $(VENV)/.tested ## humanoid_reach against a C++ loop on Pinocchio (PEERS=folder), alternated
-	$(BIN)/python -m pip install --quiet cmeel-eigen
-	$(BIN)/python benches/compare_reach.py $(PEERS)
 
 bench-orbits: $(VENV)/.built $(VENV)/.tested ## propagation against sgp4, numpy, SciPy and brahe, alternated
 	$(BIN)/python -m pip install --quiet scipy 'brahe==1.8.0'

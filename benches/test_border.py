@@ -1,4 +1,4 @@
-"""What the border costs: pytest-benchmark, run by ``make bench`` and not by ``make test``.
+"""What the border costs: pytest-benchmark, run by ``make bench-rust`` and not by ``make test``.
 
 Held: the bundled humanoid, random states drawn once, arrays of float64. Varied: the kernel,
 one state or a thousand, how a run's columns are looked at. Kernels themselves are measured in Rust; ``call``

@@ -25,6 +25,7 @@ mod trace;
 mod xacro;
 
 use onorbit_core::spatial::InstructionSet;
+use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -43,16 +44,23 @@ fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 }
 
 /// ``ONORBIT_INSTRUCTION_SET=baseline`` (or ``avx2+fma``) keeps the engine off newer instructions.
-fn limit_instructions() {
-    let level = std::env::var("ONORBIT_INSTRUCTION_SET").ok();
-    if let Some(level) = level.as_deref().and_then(InstructionSet::named) {
-        InstructionSet::limit(level);
+fn limit_instructions() -> PyResult<()> {
+    let level = std::env::var("ONORBIT_INSTRUCTION_SET").unwrap_or_default();
+    if level.is_empty() {
+        return Ok(());
     }
+    let Some(level) = InstructionSet::named(&level) else {
+        let names = InstructionSet::ALL.map(InstructionSet::name).join(", ");
+        let message = format!("ONORBIT_INSTRUCTION_SET is {level:?}, it must be one of {names}");
+        return Err(PyImportError::new_err(message));
+    };
+    InstructionSet::limit(level);
+    Ok(())
 }
 
 #[pymodule]
 fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
-    limit_instructions();
+    limit_instructions()?;
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add("MU_EARTH", onorbit_core::orbit::MU_EARTH)?;
     m.add_class::<model::PyModel>()?;

@@ -20,6 +20,9 @@ pub enum InstructionSet {
 static ALLOWED: AtomicU8 = AtomicU8::new(u8::MAX);
 
 impl InstructionSet {
+    /// All levels, the lowest first.
+    pub const ALL: [Self; 3] = [Self::Baseline, Self::Fused, Self::Wide];
+
     /// The highest level that the processor has and [`InstructionSet::limit`] allows.
     pub fn current() -> Self {
         let allowed = ALLOWED.load(Ordering::Relaxed);
@@ -39,7 +42,7 @@ impl InstructionSet {
 
     /// The level with this [`name`](Self::name).
     pub fn named(name: &str) -> Option<Self> {
-        [Self::Baseline, Self::Fused, Self::Wide].into_iter().find(|level| level.name() == name)
+        Self::ALL.into_iter().find(|level| level.name() == name)
     }
 
     /// Its name.

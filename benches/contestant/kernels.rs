@@ -1,0 +1,103 @@
+//! The kernels by name, each with its states and its results.
+
+use onorbit_core::dynamics::{
+    Data, FreeFloating, forward_dynamics, frame_drift, frame_jacobian, free_floating, inverse_dynamics,
+    kinematics, mass_matrix,
+};
+use onorbit_core::model::Model;
+use onorbit_core::spatial::Real;
+
+/// What can be asked for: forward dynamics, mass matrix, inverse dynamics, the Jacobian and drift of the
+/// tool, and `M*, c*, Jg, d` of it.
+pub(crate) const KERNELS: [&str; 5] = ["aba", "crba", "rnea", "jacobian", "reduced"];
+
+/// `q`, `v` and torques or accelerations of one state.
+struct State<S> {
+    q: Vec<S>,
+    v: Vec<S>,
+    x: Vec<S>,
+}
+
+/// Kernels, states and room for results.
+pub(crate) struct Kernels<'a, S> {
+    model: &'a Model,
+    tool: usize,
+    states: Vec<State<S>>,
+    data: Data<S>,
+    reduced: FreeFloating<S>,
+    out: Vec<S>,
+    matrix: Vec<S>,
+    jacobian: Vec<S>,
+    drift: Vec<S>,
+}
+
+impl<'a, S: Real> Kernels<'a, S> {
+    /// `rows`: `q, v, x` of state after state.
+    pub(crate) fn new(model: &'a Model, tool: usize, rows: &[f64]) -> Self {
+        let (nq, nv, o) = (model.nq(), model.nv(), S::of(0.0));
+        let lift = |row: &[f64]| row.iter().map(|x| S::of(*x)).collect();
+        let states = rows
+            .chunks_exact(nq + 2 * nv)
+            .map(|row| State { q: lift(&row[..nq]), v: lift(&row[nq..nq + nv]), x: lift(&row[nq + nv..]) })
+            .collect();
+        Self {
+            model,
+            tool,
+            states,
+            data: Data::new(model),
+            reduced: FreeFloating::new(model),
+            out: vec![o; nv],
+            matrix: vec![o; nv * nv],
+            jacobian: vec![o; 6 * nv],
+            drift: vec![o; 6],
+        }
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.states.len()
+    }
+
+    /// Computes state `k`; a number of the result, so that nothing of it can be left out.
+    #[inline(always)]
+    pub(crate) fn run(&mut self, kernel: usize, k: usize) -> S {
+        let Self { model, tool, states, data, reduced, out, matrix, jacobian, drift } = self;
+        let (State { q, v, x }, tool) = (&states[k], *tool);
+        match kernel {
+            0 => {
+                forward_dynamics(model, data, q, v, x, &[], out);
+                out[6]
+            }
+            1 => {
+                mass_matrix(model, data, q, matrix);
+                matrix[0]
+            }
+            2 => {
+                inverse_dynamics(model, data, q, v, x, &[], out);
+                out[6]
+            }
+            3 => {
+                kinematics(model, data, q, v);
+                frame_jacobian(model, data, q, tool, jacobian);
+                frame_drift(model, data, q, v, tool).write(drift);
+                drift[0]
+            }
+            _ => {
+                free_floating(model, data, q, v, tool, &[], reduced);
+                reduced.drift.write(drift);
+                drift[0]
+            }
+        }
+    }
+
+    /// All of the last result, matrices row by row.
+    pub(crate) fn output(&self, kernel: usize) -> impl Iterator<Item = S> {
+        let reduced = &self.reduced;
+        let parts: [&[S]; 4] = match kernel {
+            0 | 2 => [&self.out, &[], &[], &[]],
+            1 => [&self.matrix, &[], &[], &[]],
+            3 => [&self.jacobian, &self.drift, &[], &[]],
+            _ => [&reduced.inertia, &reduced.bias, &reduced.jacobian, &self.drift],
+        };
+        parts.into_iter().flatten().copied()
+    }
+}

@@ -1,0 +1,108 @@
+//! Our kernels for one state as `make bench` times them, without Python in the way.
+//!
+//! `contestant URDF STATES COUNT [SET]`: the robot; `COUNT` rows of `q, v, x` as raw `f64`, `x` being torques or
+//! accelerations; the highest instruction set to use. Then, line by line from standard input:
+//!
+//! - `time KERNEL SECONDS` → `{"ns": …}`, nanoseconds per state: the median over passes through all states;
+//! - `result KERNEL FILE` → writes the results of all states to `FILE` as raw `f64`;
+//! - `flops KERNEL` → what one state costs in operations, by kind;
+//! - `peak SET SECONDS` → `{"gflops": …}`, what one core does with that instruction set at best.
+//!
+//! Each of the C++ peers beside it (`benches/peers`) answers the same lines.
+#![allow(clippy::print_stdout)] // answers go there
+
+mod counted;
+mod kernels;
+mod peak;
+
+use counted::Counted;
+use kernels::{KERNELS, Kernels};
+use onorbit_core::model::{Model, urdf::from_file};
+use onorbit_core::spatial::{Fused, InstructionSet, Real};
+use std::error::Error;
+use std::hint::black_box;
+use std::io::{BufRead, stdin};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// The frame whose task is computed.
+const TOOL: &str = "tool";
+
+type Answer = Result<String, Box<dyn Error>>;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let given: Vec<String> = std::env::args().skip(1).collect();
+    let [urdf, states, count, set @ ..] = &given[..] else {
+        return Err("usage: contestant URDF STATES COUNT [SET]".into());
+    };
+    let model = from_file(Path::new(urdf), &[])?;
+    let rows = read(states)?;
+    if rows.len() != count.parse::<usize>()? * (model.nq() + 2 * model.nv()) {
+        return Err(format!("{states} does not hold {count} states of the robot").into());
+    }
+    if let Some(set) = set.first() {
+        InstructionSet::limit(InstructionSet::named(set).ok_or("no such instruction set")?);
+    }
+    // one state is never wider than this
+    match InstructionSet::current() {
+        InstructionSet::Baseline => serve::<f64>(&model, &rows),
+        InstructionSet::Fused | InstructionSet::Wide => serve::<Fused>(&model, &rows),
+    }
+}
+
+fn read(file: &str) -> Result<Vec<f64>, Box<dyn Error>> {
+    let bytes = std::fs::read(file)?;
+    Ok(bytes.as_chunks::<8>().0.iter().map(|word| f64::from_le_bytes(*word)).collect())
+}
+
+/// Answers until standard input ends.
+fn serve<S: Real>(model: &Model, rows: &[f64]) -> Result<(), Box<dyn Error>> {
+    let mut kernels = Kernels::<S>::new(model, model.frame(TOOL)?, rows);
+    println!("{{\"ready\": \"{}\"}}", InstructionSet::current().name());
+    for line in stdin().lock().lines() {
+        let line = line?;
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let answer = match words[..] {
+            ["time", name, seconds] => time(&mut kernels, name, seconds),
+            ["result", name, file] => result(&mut kernels, name, file),
+            ["flops", name] => flops(model, rows, name),
+            ["peak", set, seconds] => peak::answer(set, seconds.parse()?),
+            _ => Err(format!("what is {line}?").into()),
+        };
+        println!("{}", answer?);
+    }
+    Ok(())
+}
+
+fn index(name: &str) -> Result<usize, Box<dyn Error>> {
+    KERNELS.iter().position(|kernel| *kernel == name).ok_or_else(|| format!("no kernel {name}").into())
+}
+
+fn time<S: Real>(kernels: &mut Kernels<'_, S>, name: &str, seconds: &str) -> Answer {
+    let (kernel, end) = (index(name)?, Instant::now() + Duration::try_from_secs_f64(seconds.parse()?)?);
+    let mut passes = Vec::new();
+    while passes.is_empty() || Instant::now() < end {
+        let started = Instant::now();
+        for k in 0..kernels.count() {
+            black_box(kernels.run(kernel, black_box(k)));
+        }
+        passes.push(started.elapsed().as_secs_f64() * 1e9 / kernels.count() as f64);
+    }
+    passes.sort_by(f64::total_cmp);
+    Ok(format!("{{\"ns\": {}}}", passes[passes.len() / 2]))
+}
+
+fn result<S: Real>(kernels: &mut Kernels<'_, S>, name: &str, file: &str) -> Answer {
+    let (kernel, mut bytes) = (index(name)?, Vec::new());
+    for k in 0..kernels.count() {
+        kernels.run(kernel, k);
+        kernels.output(kernel).for_each(|x| bytes.extend(x.lane(0).to_le_bytes()));
+    }
+    std::fs::write(file, bytes)?;
+    Ok("{}".into())
+}
+
+fn flops(model: &Model, rows: &[f64], name: &str) -> Answer {
+    let (kernel, mut kernels) = (index(name)?, Kernels::<Counted>::new(model, model.frame(TOOL)?, rows));
+    Ok(counted::during(|| _ = kernels.run(kernel, 0)))
+}

@@ -1,0 +1,78 @@
+// A contestant of `make bench`: jobs by name, asked for line by line on standard input.
+//
+//   time JOB SECONDS  -> {"ns": ...}  nanoseconds per unit of work: the median over passes
+//   result JOB FILE   -> {}           writes what the job computes to FILE, as raw doubles
+//
+// A pass is all states once, so that inputs vary as they do in use; ours answers the same lines
+// (benches/contestant).
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+using Numbers = std::vector<double>;
+
+// keeps the compiler from leaving out what made `p`
+inline void use(const void* p) { asm volatile("" : : "r"(p) : "memory"); }
+
+inline Numbers read_numbers(const std::string& file) {
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) throw std::runtime_error("cannot read " + file);
+  Numbers out(static_cast<size_t>(in.tellg()) / sizeof(double));
+  in.seekg(0);
+  in.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size() * sizeof(double)));
+  return out;
+}
+
+struct Job {
+  std::function<double(double)> time;
+  std::function<void(Numbers&)> result;
+};
+
+// `pass` does all the work once, `units` of it; `result` appends what it computes.
+template <class Pass, class Result>
+Job job(double units, Pass pass, Result result) {
+  auto time = [units, pass](double seconds) {
+    using Clock = std::chrono::steady_clock;
+    const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+    Numbers passes;
+    do {
+      const auto started = Clock::now();
+      pass();
+      passes.push_back(std::chrono::duration<double, std::nano>(Clock::now() - started).count() / units);
+    } while (Clock::now() < end);
+    std::sort(passes.begin(), passes.end());
+    return passes[passes.size() / 2];
+  };
+  return {time, result};
+}
+
+inline int serve(const std::map<std::string, Job>& jobs) {
+  std::cout << "{\"ready\": \"" << __VERSION__ << "\"}" << std::endl;
+  for (std::string line; std::getline(std::cin, line);) {
+    std::istringstream words(line);
+    std::string verb, name, last;
+    words >> verb >> name >> last;
+    const Job& asked = jobs.at(name);
+    if (verb == "time") {
+      std::printf("{\"ns\": %.9g}\n", asked.time(std::stod(last)));
+    } else {
+      Numbers out;
+      asked.result(out);
+      std::ofstream(last, std::ios::binary)
+          .write(reinterpret_cast<const char*>(out.data()), static_cast<std::streamsize>(out.size() * sizeof(double)));
+      std::puts("{}");
+    }
+    std::fflush(stdout);
+  }
+  return 0;
+}

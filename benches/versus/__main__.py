@@ -1,0 +1,66 @@
+"""``make bench``: every kernel and every run against its best-known peer, on this machine, in this run."""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import os
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import page
+import programs
+import report
+from field import Field
+from measure import ceiling, measure
+from rows import ROWS
+
+
+def commit() -> str:
+    command = ["git", "describe", "--always", "--dirty", "--exclude", "*"]
+    return subprocess.run(command, cwd=Path(__file__).parent, capture_output=True, text=True).stdout.strip()
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python benches/versus", description=__doc__)
+    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--seconds", type=float, default=0.1, help="of each contestant in a round")
+    parser.add_argument("--only", default="", help="rows whose name contains this; nothing is saved")
+    parser.add_argument(
+        "--no-save", action="store_true", help="leave benches/results.json and the page alone"
+    )
+    return parser.parse_args()
+
+
+def main() -> None:
+    given = arguments()
+    peers, missing = programs.peers()
+    ours = programs.ours()
+    now = datetime.datetime.now(datetime.UTC)
+    run: dict[str, Any] = {"date": now.strftime("%Y-%m-%d %H:%M UTC"), "commit": commit()}
+    before, skipped = None, []
+    for arms in (1, 2):
+        field, nv = Field(arms, ours, peers, missing), 6 + 7 * arms
+        if arms == 1:
+            level = field["ours"].about["ready"]
+            run["machine"] = f"{programs.processor()}, {os.cpu_count()} cores, {level}"
+            run |= {"versions": programs.versions(), "rounds": given.rounds, "ceiling": [], "rows": []}
+            before = report.last_like(run)
+            print(f"{run['machine']}; commit {run['commit']}\n{report.head()}")
+        for row in (row for row in ROWS if given.only in row.what):
+            measured = measure(row, nv, field, given.rounds, given.seconds)
+            if isinstance(measured, str):
+                skipped.append(f"not measured: {row.what}, nv = {nv}: {measured}")
+            else:
+                run["rows"].append(measured)
+                print(report.line(measured, before), flush=True)
+        run["ceiling"].append(ceiling(nv, field))
+        field.close()
+    print(*skipped, *report.regressions(run, before), sep="\n")
+    if not given.only and not given.no_save:
+        report.append(run)
+        page.update(run)
+
+
+main()

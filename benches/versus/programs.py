@@ -1,0 +1,100 @@
+"""Compiles the contestants that are not Python: ours by cargo, the peers by g++ from PyPI's wheels."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import subprocess
+import sysconfig
+from importlib import metadata
+from pathlib import Path
+
+HERE = Path(__file__).parent
+PEERS = HERE.parent / "peers"
+BUILD = HERE.parent / "build"
+SITE = Path(sysconfig.get_paths()["purelib"])
+WHEELS = ("pin", "libpinocchio", "cmeel-boost", "cmeel-eigen", "mujoco")
+
+FLAGS = ["-std=c++17", "-O3", "-DNDEBUG", "-march=native", "-w"]
+# what Pinocchio's joint variant needs of Boost
+BOOST = ["MPL_LIMIT_LIST_SIZE=30", "MPL_LIMIT_VECTOR_SIZE=30", "FUSION_INVOKE_MAX_ARITY=12"]
+BOOST = [f"-DBOOST_{limit}" for limit in [*BOOST, "MPL_CFG_NO_PREPROCESSED_HEADERS"]]
+
+
+def versions() -> dict[str, str]:
+    """Of wheels and compilers; empty where there is none."""
+    found = {}
+    for wheel in (*WHEELS, "numpy"):
+        try:
+            found[wheel] = metadata.version(wheel)
+        except metadata.PackageNotFoundError:
+            found[wheel] = ""
+    for tool in ("g++", "rustc"):
+        path = shutil.which(tool)
+        command = [path or tool, "--version"]
+        found[tool] = (
+            subprocess.run(command, capture_output=True, text=True).stdout.split("\n")[0] if path else ""
+        )
+    return found
+
+
+def ours() -> Path:
+    """The Rust program, with the flags of a release: no ``target-cpu``."""
+    command = ["cargo", "build", "--release", "-p", "onorbit-core", "--example", "contestant"]
+    told = subprocess.run(
+        [*command, "--message-format=json"], cwd=HERE.parents[1], check=True, capture_output=True, text=True
+    )
+    built = [json.loads(line) for line in told.stdout.splitlines()]
+    return next(Path(made["executable"]) for made in built if made.get("executable"))
+
+
+def peers() -> tuple[dict[str, Path], dict[str, str]]:
+    """The C++ programs by name, and why others are missing; compiled when what they are made of changes."""
+    known = versions()
+    if not known["g++"]:
+        return {}, dict.fromkeys(("kernels", "controlled", "mujoco"), "no g++ on this machine")
+    lib = next(iter(SITE.glob("mujoco/libmujoco.so.*")), None)
+    prefix = SITE / "cmeel.prefix" / "include"
+    pinocchio = [*BOOST, f"-I{prefix}", f"-I{prefix / 'eigen3'}"]
+    links = [f"-I{SITE / 'mujoco' / 'include'}", str(lib), f"-Wl,-rpath,{SITE / 'mujoco'}"]
+    options = {"kernels": pinocchio, "controlled": pinocchio, "mujoco": links}
+    needs = {"kernels": ("pin", "cmeel-eigen"), "controlled": ("pin", "cmeel-eigen"), "mujoco": ("mujoco",)}
+    headers = "".join(file.read_text() for file in sorted(PEERS.glob("*.hpp")))
+    programs, missing, running = {}, {}, {}
+    BUILD.mkdir(exist_ok=True)
+    for name, option in options.items():
+        if absent := [wheel for wheel in needs[name] if not known[wheel]]:
+            missing[name] = f"{', '.join(absent)} not installed"
+            continue
+        source = PEERS / f"{name}.cpp"
+        recipe = [
+            headers,
+            source.read_text(),
+            FLAGS,
+            option,
+            [known[x] for x in (*WHEELS, "g++")],
+            processor(),
+        ]
+        program = BUILD / f"{name}-{hashlib.sha256(repr(recipe).encode()).hexdigest()[:12]}"
+        programs[name] = program
+        if not program.exists():
+            command = ["g++", *FLAGS, str(source), *option, "-o", str(program) + ".new"]
+            running[name] = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    if running:
+        print(f"compiling {', '.join(running)} (once; Pinocchio's templates take minutes) ...", flush=True)
+    for name, compiler in running.items():
+        complaint = compiler.communicate()[1]
+        if compiler.returncode:
+            missing[name] = f"g++ failed: {(complaint.splitlines() or ['killed'])[0]}"
+            del programs[name]
+        else:
+            Path(str(programs[name]) + ".new").rename(programs[name])
+    return programs, missing
+
+
+def processor() -> str:
+    """Its name, as far as the machine tells."""
+    file = Path("/proc/cpuinfo")
+    lines = file.read_text().splitlines() if file.exists() else []
+    return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), "unknown")

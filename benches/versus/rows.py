@@ -1,0 +1,147 @@
+"""What is compared: a row per line of the table, for each robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Row:
+    """A job of ours against jobs of one peer, of which the fastest counts.
+
+    `asked` is the ratio to reach, or that for each instruction set or nv; `parts` the widths of what a row of
+    the results holds, in terms of nq, nv and n.
+    """
+
+    what: str
+    ours: tuple[str, str]
+    peer: str
+    jobs: tuple[str, ...]
+    against: str
+    asked: float | dict[object, float] | None
+    parts: str
+
+    def minimum(self, nv: int, level: str) -> float | None:
+        """The ratio to reach with this robot on this instruction set."""
+        if not isinstance(self.asked, dict):
+            return self.asked
+        return self.asked.get(nv, self.asked.get(level))
+
+    def widths(self, nv: int) -> list[int]:
+        sizes = {"nq": nv + 1, "nv": nv, "n": nv - 6, "6": 6}
+
+        def size(term: str) -> int:
+            return int(sizes[term]) if term in sizes else size(term.split("*")[0]) * size(term.split("*")[1])
+
+        return [size(term) for term in self.parts.split()]
+
+
+PIN, MUJOCO = "Pinocchio C++", "MuJoCo"
+BATCH: dict[object, float] = {"avx512": 14.0, "avx2+fma": 8.0}
+ROLLOUT: dict[object, float] = {13: 15.0, 20: 12.0}
+
+ROWS = [
+    Row("ABA", ("rust", "aba"), "kernels", ("aba", "aba_local"), f"{PIN} aba", 2.5, "nv"),
+    Row("CRBA", ("rust", "crba"), "kernels", ("crba", "crba_world"), f"{PIN} crba", 1.5, "nv*nv"),
+    Row("RNEA", ("rust", "rnea"), "kernels", ("rnea",), f"{PIN} rnea", 1.5, "nv"),
+    Row(
+        "frame Jacobian and drift",
+        ("rust", "jacobian"),
+        "kernels",
+        ("jacobian", "jacobian_rate"),
+        f"{PIN}, by accelerations or by its rate",
+        1.5,
+        "6*nv 6",
+    ),
+    Row(
+        "M*, c*, Jg, d together",
+        ("rust", "reduced"),
+        "kernels",
+        ("reduced", "reduced_rate"),
+        f"{PIN} and Eigen",
+        2.5,
+        "n*n n 6*n 6",
+    ),
+    Row(
+        "batch forward dynamics",
+        ("ours", "batch"),
+        "kernels",
+        ("aba", "aba_local"),
+        f"{PIN} aba",
+        BATCH,
+        "nv",
+    ),
+    Row(
+        "batch forward dynamics, AVX2",
+        ("ours_avx2", "batch"),
+        "kernels",
+        ("aba", "aba_local"),
+        f"{PIN} aba",
+        BATCH,
+        "nv",
+    ),
+    Row(
+        "passive step in Simulation.run",
+        ("ours", "passive"),
+        "mujoco",
+        ("step",),
+        f"{MUJOCO} C, RK4",
+        2.0,
+        "nq nv",
+    ),
+    Row(
+        "rollout, RK4, one thread",
+        ("ours", "rollout"),
+        "mujoco_rollout",
+        ("rollout",),
+        "mujoco.rollout",
+        ROLLOUT,
+        "nq nv",
+    ),
+    Row(
+        "rollout, RK4, all cores",
+        ("ours_all", "rollout_threads"),
+        "mujoco_rollout_all",
+        ("rollout_threads",),
+        "mujoco.rollout",
+        ROLLOUT,
+        "nq nv",
+    ),
+    Row(
+        "humanoid_reach, controlled step",
+        ("ours", "reach"),
+        "reach",
+        ("step", "step_rate"),
+        f"{PIN} loop, RK4",
+        2.5,
+        "nq nv",
+    ),
+    Row(
+        "the same without orbit",
+        ("ours", "reach_empty"),
+        "reach",
+        ("step", "step_rate"),
+        f"{PIN} loop, RK4",
+        None,
+        "nq nv",
+    ),
+    Row(
+        "controlled rollout of 1024 arms",
+        ("ours", "controlled_rollout"),
+        "controlled",
+        ("step", "step_rate"),
+        f"{PIN} loop, RK4",
+        12.0,
+        "nq nv",
+    ),
+    Row(
+        "derivatives of forward dynamics, batch",
+        ("ours", "derivatives"),
+        "kernels",
+        ("derivatives",),
+        f"{PIN} computeABADerivatives",
+        4.0,
+        "nv*nv nv*nv nv*nv",
+    ),
+    Row("one call from Python", ("ours", "call"), "pinocchio_calls", ("call",), "pin.aba", 2.0, "nv"),
+]

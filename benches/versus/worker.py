@@ -1,0 +1,50 @@
+"""A contestant in Python: the lines of ``benches/peers/contestant.hpp``."""
+
+from __future__ import annotations
+
+import json
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+
+@dataclass
+class Job:
+    """`run` does `units` of work; `result` tells what comes out (arrays, one row per state)."""
+
+    units: int
+    run: Callable[[], Any]
+    result: Callable[[], Any]
+
+
+def timed(job: Job, seconds: float) -> float:
+    """Nanoseconds per unit, the median over passes."""
+    passes, end = [], time.perf_counter() + seconds
+    while not passes or time.perf_counter() < end:
+        started = time.perf_counter_ns()
+        job.run()
+        passes.append((time.perf_counter_ns() - started) / job.units)
+    return statistics.median(passes)
+
+
+def serve(ready: str, jobs: dict[str, Job]) -> None:
+    """Answer until standard input ends."""
+    answer({"ready": ready, "jobs": list(jobs)})
+    for line in sys.stdin:
+        verb, name, last = line.split()
+        if verb == "time":
+            answer({"ns": timed(jobs[name], float(last))})
+        else:
+            arrays = [np.asarray(part, dtype=float) for part in jobs[name].result()]
+            np.hstack([part.reshape(len(part), -1) for part in arrays]).tofile(last)
+            answer({})
+
+
+def answer(what: dict[str, Any]) -> None:
+    sys.stdout.write(json.dumps(what) + "\n")
+    sys.stdout.flush()

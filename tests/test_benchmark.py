@@ -1,0 +1,138 @@
+"""What ``make bench`` compares is the same robot on both sides, and what it says can be believed."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import mujoco
+import numpy as np
+import pinocchio as pin  # type: ignore[import-untyped]
+import pytest
+
+import onorbit_rs as oo
+
+REPOSITORY = Path(__file__).parents[1]
+VERSUS = REPOSITORY / "benches" / "versus"
+RESULTS = REPOSITORY / "benches" / "results.json"
+
+
+@pytest.fixture
+def versus(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    """The modules of the benchmark, which stand alone beside the package."""
+    before = set(sys.modules)
+    monkeypatch.syspath_prepend(str(VERSUS))
+    import field
+    import inputs
+    import measure
+    import page
+    import programs
+    import race
+    import report
+    import robots
+    import rows
+
+    modules = (field, inputs, measure, page, programs, race, report, robots, rows)
+    yield SimpleNamespace(**{module.__name__: module for module in modules})
+    for name in set(sys.modules) - before:
+        if str(getattr(sys.modules[name], "__file__", "")).startswith(str(VERSUS)):
+            del sys.modules[name]
+
+
+@pytest.mark.parametrize("arms", [1, 2])
+def test_all_contestants_hold_the_same_robot(versus: Any, arms: int, tmp_path: Path) -> None:
+    versus.inputs.write(tmp_path, arms)
+    model = oo.Model.from_urdf(tmp_path / "robot.urdf")
+    assert model.nv == 6 + 7 * arms
+    q, v, x = (rows[0] for rows in versus.inputs.read(tmp_path / "states.bin", model.nq, model.nv, model.nv))
+    mass = model.mass_matrix(q)
+    if arms == 1:  # the bundled one
+        assert np.array_equal(mass, oo.robots.load("humanoid_torso").mass_matrix(q))
+    # Pinocchio's, in Python by the file and in C++ by the table
+    theirs = pin.buildModelFromUrdf(str(tmp_path / "robot.urdf"), pin.JointModelFreeFlyer())
+    upper = np.triu(pin.crba(theirs, theirs.createData(), q))
+    np.testing.assert_allclose(upper, np.triu(mass), rtol=0, atol=1e-12 * mass.max())
+    table = [line.split() for line in (tmp_path / "robot.txt").read_text().splitlines()]
+    bodies = [line[5:] for line in table[2:-1]]
+    assert [float(body[0]) for body in bodies] == [body.mass for body in model.bodies[1:]]
+    axes = {"RX": "x", "RY": "y", "RZ": "z"}
+    kinds = [joint.shortname().removeprefix("JointModel") for joint in theirs.joints[2:]]
+    assert [line[1] for line in table[2:-1]] == [axes[kind] for kind in kinds]  # its fastest types
+    # MuJoCo's
+    inside = mujoco.MjModel.from_xml_path(str(tmp_path / "robot.xml"))
+    data = mujoco.MjData(inside)
+    data.qpos[:], data.qvel[:] = oo.layouts.to_mujoco(model, q, v)
+    data.qfrc_applied[:] = np.concatenate([np.zeros(6), x[6:]])
+    mujoco.mj_forward(inside, data)
+    ours = model.forward_dynamics(q, v, np.concatenate([np.zeros(6), x[6:]]))
+    np.testing.assert_allclose(data.qacc[6:], ours[6:], rtol=0, atol=1e-9 * np.abs(ours).max())
+
+
+def test_contestants_answer_and_agree(versus: Any, tmp_path: Path) -> None:
+    versus.inputs.write(tmp_path, 1)
+    first, second = (
+        versus.race.Contestant([sys.executable, str(VERSUS / name), str(tmp_path)])
+        for name in ("ours.py", "pinocchio_calls.py")
+    )
+    ours, theirs = (who.result("call", tmp_path) for who in (first, second))
+    assert versus.race.difference(ours, theirs, [13]) < 1e-11
+    assert versus.race.difference(ours + 1e-3, theirs, [13]) > 1e-6  # it can tell
+    entries = [versus.race.Entry(who, "call") for who in (first, second)]
+    times = versus.race.alternate(entries, rounds=3, seconds=0.01)
+    assert [len(rounds) for rounds in times] == [3, 3]
+    assert all(100 < ns < 1e6 for rounds in times for ns in rounds)
+    first.close(), second.close()
+
+
+def test_without_a_compiler_its_rows_are_left_out_with_the_reason(
+    versus: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known = versus.programs.versions()
+    monkeypatch.setattr(versus.programs, "versions", lambda: known | {"g++": ""})
+    monkeypatch.setattr(versus.programs, "BUILD", tmp_path)
+    programs, missing = versus.programs.peers()
+    assert not programs
+    field = versus.field.Field(1, Path("contestant"), programs, missing)
+    told = [versus.measure.measure(row, 13, field, 1, 0.0) for row in versus.rows.ROWS if "C" in row.against]
+    assert set(told) == {"no g++ on this machine"}
+    assert len(told) >= 10
+    assert not field.running, "nobody was started in vain"
+
+
+def test_ratios_are_taken_round_by_round(versus: Any) -> None:
+    # a machine that slows down by half in between changes no ratio
+    assert versus.race.ratios([4.0, 8.0, 8.0], [2.0, 4.0, 4.0]) == {"min": 2.0, "median": 2.0, "max": 2.0}
+
+
+def test_a_lost_tenth_is_told(versus: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(versus.report, "RESULTS", tmp_path / "results.json")
+
+    def run(ratio: float, machine: str = "this") -> Any:
+        row = {"what": "ABA", "nv": 13, "ratio": {"median": ratio}}
+        return {"date": "today", "machine": machine, "rows": [row]}
+
+    for one in (run(3.0), run(9.0, "another")):
+        versus.report.append(one)
+    assert [one["machine"] for one in versus.report.history()] == ["this", "another"]
+    before = versus.report.last_like(run(2.0))
+    assert versus.report.regressions(run(2.8), before) == []
+    assert versus.report.regressions(run(2.6), before) == ["SLOWER: ABA, nv = 13: 87% of the last ratio"]
+
+
+def test_the_kept_results_are_whole_and_on_the_page(versus: Any) -> None:
+    runs = json.loads(RESULTS.read_text())["runs"]
+    assert runs
+    for run in runs:
+        assert {"date", "commit", "machine", "versions", "rounds", "ceiling", "rows"} <= set(run)
+        for row in run["rows"]:
+            ratio = row["ratio"]
+            assert 0 < ratio["min"] <= ratio["median"] <= ratio["max"], row
+            # of the loops, the peers' Runge-Kutta leaves the manifold by 3e-9
+            assert row["difference"] < 1e-8, row
+    assert versus.page.measured(runs[-1]) in versus.page.PAGE.read_text()
+    for row in versus.rows.ROWS:
+        assert sum(row.widths(13)) > 0

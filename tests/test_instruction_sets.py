@@ -1,0 +1,96 @@
+"""One wheel for every processor: the same physics on each instruction set, and none where it is unknown."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import onorbit_rs as oo
+
+REPOSITORY = Path(__file__).parents[1]
+LEVELS = ("baseline", "avx2+fma", "avx512")
+BEST = oo.build_info()["instruction_set"]
+# kernels against Pinocchio and MuJoCo, batches, rollouts, forces from outside
+KERNELS = (
+    "oracles/test_pinocchio.py",
+    "oracles/test_mujoco.py",
+    "test_border_batches.py",
+    "test_border_rollouts.py",
+)
+
+
+def python(level: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    environment = os.environ | {"ONORBIT_INSTRUCTION_SET": level}
+    return subprocess.run(
+        [sys.executable, *arguments], env=environment, cwd=REPOSITORY, capture_output=True, text=True
+    )
+
+
+INFO = "import onorbit_rs as oo; print(oo.build_info()['instruction_set'])"
+
+
+@pytest.mark.skipif(BEST not in LEVELS, reason=f"not x86-64: {BEST}")
+@pytest.mark.parametrize("level", LEVELS)
+def test_a_lower_set_is_taken_when_asked(level: str) -> None:
+    # more than the processor has is what it has
+    expected = LEVELS[min(LEVELS.index(level), LEVELS.index(BEST))]
+    assert python(level, "-c", INFO).stdout.strip() == expected
+
+
+def test_an_unknown_set_is_refused() -> None:
+    told = python("sse9", "-c", INFO)
+    assert told.returncode != 0
+    assert 'ONORBIT_INSTRUCTION_SET is "sse9", it must be one of baseline, ' in told.stderr
+
+
+@pytest.mark.skipif(BEST not in LEVELS, reason=f"not x86-64: {BEST}")
+@pytest.mark.parametrize("level", LEVELS)
+def test_kernels_pass_their_tests_on(level: str) -> None:
+    if LEVELS.index(level) >= LEVELS.index(BEST):
+        pytest.skip(f"{BEST} is this processor's best: every other test runs on it")
+    told = python(level, "-m", "pytest", "-q", *(f"tests/{name}" for name in KERNELS))
+    assert told.returncode == 0, told.stdout
+    passed = re.search(r"(\d+) passed", told.stdout)
+    assert passed
+    assert int(passed[1]) > 250
+
+
+def test_nothing_is_built_for_the_machine_it_is_built_on() -> None:
+    recipes = [*REPOSITORY.glob("crates/*/Cargo.toml")]
+    recipes += [REPOSITORY / name for name in ("Cargo.toml", "pyproject.toml", "Makefile")]
+    recipes += [file for folder in (".cargo", ".ci") for file in (REPOSITORY / folder).glob("*")]
+    for file in recipes:
+        assert not re.search(r"target-(cpu|feature)|RUSTFLAGS|rustflags", file.read_text()), file
+
+
+OLD = """
+import numpy as np, onorbit_rs as oo
+model = oo.robots.load("humanoid_torso")
+v = np.full(model.nv, 0.1)
+q, _ = oo.rollout(model, np.tile(model.neutral(), (9, 1)), np.tile(v, (9, 1)), steps=5)
+print(oo.build_info()["instruction_set"], repr(q[8].sum()))
+"""
+
+
+def test_a_processor_of_2008_runs_the_wheel() -> None:
+    emulator = shutil.which("qemu-x86_64-static") or shutil.which("qemu-x86_64")
+    if emulator is None:
+        pytest.skip("no qemu-user on this machine (Debian: apt install qemu-user-static)")
+    # without AVX, the oldest that numpy's own wheel runs on
+    path = os.pathsep.join(sys.path)
+    old = subprocess.run(
+        [emulator, "-cpu", "Nehalem", str(Path(sys.executable).resolve()), "-c", OLD],
+        env=os.environ | {"PYTHONPATH": path, "OPENBLAS_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    level, number = old.stdout.split()
+    assert level == "baseline"
+    assert python("", "-c", OLD).stdout.split()[1][:18] == number[:18]
