@@ -59,8 +59,8 @@ def test_356_eclipses_to_a_thousandth_of_what_light_does() -> None:
     # Low circle. The displacement is 1.2 km, most of it having cancelled. GMAT's own end is 6 m off: its
     # script asks RungeKutta89 for 1e-11 of a step, and with steps of a minute across 710 edges of the shadow
     # an integration to that tolerance errs by metres (a DOP853 of ours under the same control: 29 to 40 m, by
-    # its first step; at 1e-14 it ends 0.3 m from here). The end is therefore held against that of nyx, a third
-    # program, which prints its elements after the same 24 days to 1e-6 degrees: 0.2 m along the track.
+    # its first step; at 1e-14 it ends 0.3 m from here). The end is therefore held against that of nyx, a
+    # third program, which prints its elements after the same 24 days to 1e-6 degrees: 0.2 m along the track.
     # Source: nyx-space documentation, "Solar radiation pressure", the output of srp_earth_leo.
     node, periapsis, anomaly = 293.379260, 90.482624, 252.626454
     elements, gmat = GMAT["low circle"]
