@@ -69,8 +69,12 @@ fn kernel<S: Real>(
 #[inline(always)]
 fn subtract_cross<S: Real>(v: Vec3<S>, row: usize, column: usize, nv: usize, out: &mut [S]) {
     let mut subtract = |i: usize, j: usize, x: S| out[(row + i) * nv + column + j] -= x;
-    (subtract(0, 1, -v.z), subtract(0, 2, v.y), subtract(1, 0, v.z));
-    (subtract(1, 2, -v.x), subtract(2, 0, -v.y), subtract(2, 1, v.x));
+    subtract(0, 1, -v.z);
+    subtract(0, 2, v.y);
+    subtract(1, 0, v.z);
+    subtract(1, 2, -v.x);
+    subtract(2, 0, -v.y);
+    subtract(2, 1, v.x);
 }
 
 /// Rows of a product that are computed side by side, to keep their sums in registers.

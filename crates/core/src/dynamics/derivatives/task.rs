@@ -45,15 +45,17 @@ fn kernel<S: Real>(
     work: &mut Derivatives<S>,
     q: &[S],
     frame: usize,
-    [torque_q, torque_v, acceleration_q, acceleration_v, velocity_q]: [&mut [S]; 5],
+    out: [&mut [S]; 5],
 ) {
     let (nodes, nv, frame) = (model.nodes(), model.nv(), &model.frames()[frame]);
     let inverse = give_way(data, &work.force);
     work.gather(nodes, data);
     let point = Point::new(base_rotation(q), frame_origin_b(data, frame), data, frame.body);
     let zero = S::of(0.0);
-    (torque_q.fill(zero), torque_v.fill(zero));
-    (acceleration_q.fill(zero), acceleration_v.fill(zero), velocity_q.fill(zero));
+    let [torque_q, torque_v, acceleration_q, acceleration_v, velocity_q] = out.map(|matrix| {
+        matrix.fill(zero);
+        matrix
+    });
 
     for j in 1..nodes.len() {
         let rows = work.joint_columns(nodes, &data.bodies, j);
