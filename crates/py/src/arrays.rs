@@ -85,9 +85,13 @@ impl<'py> Input<'py> {
         if !matches!(kind.as_str(), "f" | "i" | "u") {
             return Err(refuse(format!("of dtype {}", array.getattr("dtype")?)));
         }
-        // contiguous and aligned
-        let array = numpy.call_method1("require", (array, "float64", ["C", "A"]))?;
-        Self::borrow(&array.cast_into::<PyArrayDyn<f64>>()?, name)
+        // ascontiguousarray makes a scalar one-dimensional; that is refused by its length later
+        let array = numpy.call_method1("ascontiguousarray", (array, "float64"))?;
+        let array = array.cast_into::<PyArrayDyn<f64>>()?;
+        if array.is_aligned() {
+            return Self::borrow(&array, name);
+        }
+        Self::borrow(array.call_method0("copy")?.cast::<PyArrayDyn<f64>>()?, name)
     }
 
     fn borrow(array: &Bound<'py, PyArrayDyn<f64>>, name: &str) -> PyResult<Self> {

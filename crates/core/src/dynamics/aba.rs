@@ -82,8 +82,10 @@ fn kernel<S: Real>(
         |k, node, body, load| {
             let (articulated, force) = with_own(body, load);
             // U = IA S,  D = Sᵀ U + rotor,  u = τ − Sᵀ p
-            body.force = force;
             body.reach = articulated.apply(body.subspace);
+            if is_locked(k) {
+                body.force = force; // read for these alone, and a store of lanes is dear
+            }
             // a locked joint hands on all of IA: as if nothing could move it, 1/D = 0
             body.inverse_pivot = match is_locked(k) {
                 true => S::of(0.0),

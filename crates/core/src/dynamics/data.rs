@@ -28,7 +28,7 @@ pub struct BodyData<S> {
     pub acceleration: Motion<S>,
     /// What of it joints and base add to the velocity products. Set by ABA where a tree forks.
     pub response: Motion<S>,
-    /// Force through its joint, or `I S`, or the bias of the articulated body.
+    /// Force through its joint, or `I S`, or the bias of the articulated body (of a locked joint).
     pub force: Force<S>,
     /// Inertia of the subtree, rigid. Set by CRBA and `free_floating`.
     pub composite: SpatialInertia<S>,

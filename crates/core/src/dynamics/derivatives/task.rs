@@ -51,9 +51,9 @@ fn kernel<S: Real>(
     let inverse = give_way(data, &work.force);
     work.gather(nodes, data);
     let point = Point::new(base_rotation(q), frame_origin_b(data, frame), data, frame.body);
-    let zero = S::of(0.0);
-    (torque_q.fill(zero), torque_v.fill(zero));
-    (acceleration_q.fill(zero), acceleration_v.fill(zero), velocity_q.fill(zero));
+    for out in [&mut *torque_q, torque_v, acceleration_q, acceleration_v, velocity_q] {
+        out.fill(S::of(0.0));
+    }
 
     for j in 1..nodes.len() {
         let rows = work.joint_columns(nodes, &data.bodies, j);
