@@ -196,4 +196,4 @@ def test_a_wrench_that_is_no_number_is_named_with_its_state() -> None:
     forces = FORCES.copy()
     forces[13, 2] = NAN
     call = lambda: WITH_WRENCHES["bias_forces"](forces, slice(None))  # noqa: E731
-    check(Bad(call, "InputError", ("external wrench", "nan", "state 13"), {"name": "external wrench"}))
+    check(Bad(call, "InputError", ("external wrench", "NaN", "state 13"), {"name": "external wrench"}))

@@ -189,87 +189,73 @@ impl PyModel {
     #[pyo3(signature = (q, dv, *, threads=None, out=None))]
     fn integrate<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         dv: Any<'_, 'py>,
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::Integrate, &[q, dv], None, &[self.model.nq()], threads, out)
+        self.one(Kernel::Integrate, &[q, dv], None, &[self.model.nq()], threads, out)
     }
 
     /// ``q2 ⊖ q``: the ``dv`` (nv,) with ``integrate(q, dv) = q2``, the base turning the shorter way.
     #[pyo3(signature = (q, q2, *, threads=None, out=None))]
     fn difference<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         q2: Any<'_, 'py>,
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::Difference, &[q, q2], None, &[self.model.nv()], threads, out)
+        self.one(Kernel::Difference, &[q, q2], None, &[self.model.nv()], threads, out)
     }
 
     /// Pose of a frame in W: (4, 4), m.
     #[pyo3(signature = (q, frame, *, threads=None, out=None))]
     fn frame_pose<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::FramePose(self.frame(frame)?), &[q], None, &[4, 4], threads, out)
+        self.one(Kernel::FramePose(self.frame(frame)?), &[q], None, &[4, 4], threads, out)
     }
 
     /// Twist of a frame at its origin in W axes: (6,), m/s and rad/s, linear first.
     #[pyo3(signature = (q, v, frame, *, threads=None, out=None))]
     fn frame_velocity<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::FrameVelocity(self.frame(frame)?), &[q, v], None, &[6], threads, out)
+        self.one(Kernel::FrameVelocity(self.frame(frame)?), &[q, v], None, &[6], threads, out)
     }
 
     /// Jacobian of a frame: (6, nv), its twist at its origin in W axes is ``J v``.
     #[pyo3(signature = (q, frame, *, threads=None, out=None))]
     fn frame_jacobian<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(
-            py,
-            Kernel::FrameJacobian(self.frame(frame)?),
-            &[q],
-            None,
-            &[6, self.model.nv()],
-            threads,
-            out,
-        )
+        self.one(Kernel::FrameJacobian(self.frame(frame)?), &[q], None, &[6, self.model.nv()], threads, out)
     }
 
     /// Mass matrix: (nv, nv), rotor inertia included.
     #[pyo3(signature = (q, *, threads=None, out=None))]
     fn mass_matrix<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         let nv = self.model.nv();
-        self.one(py, Kernel::MassMatrix, &[q], None, &[nv, nv], threads, out)
+        self.one(Kernel::MassMatrix, &[q], None, &[nv, nv], threads, out)
     }
 
     /// Coriolis and centrifugal forces ``c(q, v)``, less ``Σ Jᵀ F`` of ``external`` wrenches: (nv,), N and N m.
@@ -278,14 +264,13 @@ impl PyModel {
     #[pyo3(signature = (q, v, *, external=None, threads=None, out=None))]
     fn bias_forces<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         external: External<'_, 'py>,
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::BiasForces, &[q, v], external, &[self.model.nv()], threads, out)
+        self.one(Kernel::BiasForces, &[q, v], external, &[self.model.nv()], threads, out)
     }
 
     /// Forces ``M a + c - Σ Jᵀ F`` behind an acceleration: (nv,); ``tau[:6]`` is the wrench on the base, its axes.
@@ -294,7 +279,6 @@ impl PyModel {
     #[pyo3(signature = (q, v, a, *, external=None, threads=None, out=None))]
     fn inverse_dynamics<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         a: Any<'_, 'py>,
@@ -302,7 +286,7 @@ impl PyModel {
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::InverseDynamics, &[q, v, a], external, &[self.model.nv()], threads, out)
+        self.one(Kernel::InverseDynamics, &[q, v, a], external, &[self.model.nv()], threads, out)
     }
 
     /// Acceleration ``M⁻¹ (tau - c + Σ Jᵀ F)`` in O(n): (nv,), m/s² and rad/s².
@@ -311,7 +295,6 @@ impl PyModel {
     #[pyo3(signature = (q, v, tau, *, external=None, threads=None, out=None))]
     fn forward_dynamics<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         tau: Any<'_, 'py>,
@@ -319,7 +302,7 @@ impl PyModel {
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::ForwardDynamics, &[q, v, tau], external, &[self.model.nv()], threads, out)
+        self.one(Kernel::ForwardDynamics, &[q, v, tau], external, &[self.model.nv()], threads, out)
     }
 
     /// Derivatives of :meth:`inverse_dynamics` with respect to ``q``, ``v``, ``a``: three arrays (nv, nv).
@@ -329,7 +312,6 @@ impl PyModel {
     #[pyo3(signature = (q, v, a, *, external=None, threads=None, out=None))]
     fn inverse_dynamics_derivatives<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         a: Any<'_, 'py>,
@@ -337,7 +319,7 @@ impl PyModel {
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
-        three(py, self, Kernel::InverseDynamicsDerivatives, &[q, v, a], external, out, threads)
+        three(q.py(), self, Kernel::InverseDynamicsDerivatives, &[q, v, a], external, out, threads)
     }
 
     /// Derivatives of :meth:`forward_dynamics` with respect to ``q``, ``v``, ``tau``: three arrays (nv, nv).
@@ -346,7 +328,6 @@ impl PyModel {
     #[pyo3(signature = (q, v, tau, *, external=None, threads=None, out=None))]
     fn forward_dynamics_derivatives<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         tau: Any<'_, 'py>,
@@ -354,36 +335,34 @@ impl PyModel {
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
-        three(py, self, Kernel::ForwardDynamicsDerivatives, &[q, v, tau], external, out, threads)
+        three(q.py(), self, Kernel::ForwardDynamicsDerivatives, &[q, v, tau], external, out, threads)
     }
 
     /// Linear momentum and angular momentum about the system's centre of mass: (6,), W axes, kg m/s and kg m²/s.
     #[pyo3(signature = (q, v, *, threads=None, out=None))]
     fn momentum<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::Momentum, &[q, v], None, &[6], threads, out)
+        self.one(Kernel::Momentum, &[q, v], None, &[6], threads, out)
     }
 
     /// Kinetic energy in W, J: a float, or (B,).
     #[pyo3(signature = (q, v, *, threads=None, out=None))]
     fn kinetic_energy<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let energy = self.one(py, Kernel::KineticEnergy, &[q, v], None, &[], threads, out)?;
+        let energy = self.one(Kernel::KineticEnergy, &[q, v], None, &[], threads, out)?;
         match out {
             Some(_) => Ok(energy.into_any()),
-            None => energy.call_method1("__getitem__", (PyTuple::empty(py),)),
+            None => energy.call_method1("__getitem__", (PyTuple::empty(q.py()),)),
         }
     }
 
@@ -391,12 +370,11 @@ impl PyModel {
     #[pyo3(signature = (q, *, threads=None, out=None))]
     fn center_of_mass<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         threads: Option<Count>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
-        self.one(py, Kernel::CenterOfMass, &[q], None, &[3], threads, out)
+        self.one(Kernel::CenterOfMass, &[q], None, &[3], threads, out)
     }
 
     /// The reduced model for one frame: ``M*, c*, Q*, Jg, d``, exact for any momentum and wrench.
@@ -405,7 +383,6 @@ impl PyModel {
     #[pyo3(signature = (q, v, frame, *, external=None, threads=None, out=None))]
     fn free_floating<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         frame: Any<'_, 'py>,
@@ -413,7 +390,7 @@ impl PyModel {
         threads: Option<Count>,
         out: Option<&Bound<'py, PyFreeFloating>>,
     ) -> PyResult<Bound<'py, PyFreeFloating>> {
-        free_floating(py, self, self.frame(frame)?, &[q, v], external, out, threads)
+        free_floating(q.py(), self, self.frame(frame)?, &[q, v], external, out, threads)
     }
 
     /// Derivatives of ``M* q̈ + c* - Q*``, ``ẍ = Jg q̈ + d`` and ``ẋ`` at given joint accelerations (n,).
@@ -423,7 +400,6 @@ impl PyModel {
     #[pyo3(signature = (q, v, joint_acceleration, frame, *, external=None, threads=None, out=None))]
     fn free_floating_derivatives<'py>(
         &self,
-        py: Python<'py>,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         joint_acceleration: Any<'_, 'py>,
@@ -433,7 +409,7 @@ impl PyModel {
         out: Option<&Bound<'py, PyFreeFloatingDerivatives>>,
     ) -> PyResult<Bound<'py, PyFreeFloatingDerivatives>> {
         let state = [q, v, joint_acceleration];
-        free_floating_derivatives(py, self, self.frame(frame)?, &state, external, out, threads)
+        free_floating_derivatives(q.py(), self, self.frame(frame)?, &state, external, out, threads)
     }
 
     fn __repr__(&self) -> String {
@@ -452,7 +428,6 @@ impl PyModel {
     /// A kernel with one output.
     fn one<'py>(
         &self,
-        py: Python<'py>,
         kernel: Kernel,
         values: &[Any<'_, 'py>],
         external: External<'_, 'py>,
@@ -461,7 +436,7 @@ impl PyModel {
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         let out = out.map(|out| [out.clone()]);
-        let [output] = evaluate(py, self, kernel, values, external, [shape], out, threads)?;
+        let [output] = evaluate(values[0].py(), self, kernel, values, external, [shape], out, threads)?;
         Ok(output)
     }
 }

@@ -23,14 +23,40 @@ pub(super) fn gather<S: Real>(from: &[f64], places: Places, to: &mut [S]) {
     );
 }
 
+/// Numbers of a wide row that are put together before they go to memory, which is slow where many rows are
+/// written at once.
+const STRETCH: usize = 64;
+
+/// Stretches of as many rows as there are lanes at most, on the boundaries of registers.
+#[repr(align(64))]
+struct Stretches([f64; 8 * STRETCH]);
+
 /// Lanes into rows, as many as there are.
 #[inline(always)]
 pub(super) fn scatter<S: Real>(from: &[S], places: Places, to: &mut [f64]) {
-    S::scatter(
-        from,
-        to,
-        places.count,
-        #[inline(always)]
-        |lane| places.first + lane * places.stride,
-    );
+    let Places { first, stride, count } = places;
+    if from.len() < STRETCH {
+        S::scatter(
+            from,
+            to,
+            count,
+            #[inline(always)]
+            |lane| first + lane * stride,
+        );
+        return;
+    }
+    let mut near = Stretches([0.0; 8 * STRETCH]);
+    for (k, numbers) in from.chunks(STRETCH).enumerate() {
+        S::scatter(
+            numbers,
+            &mut near.0,
+            count,
+            #[inline(always)]
+            |lane| lane * STRETCH,
+        );
+        for lane in 0..count {
+            let row = &mut to[first + lane * stride + k * STRETCH..][..numbers.len()];
+            row.copy_from_slice(&near.0[lane * STRETCH..][..numbers.len()]);
+        }
+    }
 }

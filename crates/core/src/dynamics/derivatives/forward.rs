@@ -1,7 +1,7 @@
 //! Derivatives of forward dynamics.
 
 use super::inverse_mass::inverse_mass;
-use super::terms::{Derivatives, Row};
+use super::terms::{Derivatives, Row, unit_axes};
 use crate::dynamics::aba::forward_dynamics;
 use crate::dynamics::data::Data;
 use crate::dynamics::external::FrameWrench;
@@ -68,13 +68,13 @@ fn kernel<S: Real>(
 /// Takes `v×` from a block of three rows and columns.
 #[inline(always)]
 fn subtract_cross<S: Real>(v: Vec3<S>, row: usize, column: usize, nv: usize, out: &mut [S]) {
-    let mut subtract = |i: usize, j: usize, x: S| out[(row + i) * nv + column + j] -= x;
-    subtract(0, 1, -v.z);
-    subtract(0, 2, v.y);
-    subtract(1, 0, v.z);
-    subtract(1, 2, -v.x);
-    subtract(2, 0, -v.y);
-    subtract(2, 1, v.x);
+    for j in 0..3 {
+        let turned = v.cross(unit_axes()[j]);
+        let rows = [turned.x, turned.y, turned.z];
+        for i in 0..3 {
+            out[(row + i) * nv + column + j] -= rows[i];
+        }
+    }
 }
 
 /// Rows of a product that are computed side by side, to keep their sums in registers.

@@ -45,17 +45,15 @@ fn kernel<S: Real>(
     work: &mut Derivatives<S>,
     q: &[S],
     frame: usize,
-    out: [&mut [S]; 5],
+    [torque_q, torque_v, acceleration_q, acceleration_v, velocity_q]: [&mut [S]; 5],
 ) {
     let (nodes, nv, frame) = (model.nodes(), model.nv(), &model.frames()[frame]);
     let inverse = give_way(data, &work.force);
     work.gather(nodes, data);
     let point = Point::new(base_rotation(q), frame_origin_b(data, frame), data, frame.body);
-    let zero = S::of(0.0);
-    let [torque_q, torque_v, acceleration_q, acceleration_v, velocity_q] = out.map(|matrix| {
-        matrix.fill(zero);
-        matrix
-    });
+    for out in [&mut *torque_q, torque_v, acceleration_q, acceleration_v, velocity_q] {
+        out.fill(S::of(0.0));
+    }
 
     for j in 1..nodes.len() {
         let rows = work.joint_columns(nodes, &data.bodies, j);
