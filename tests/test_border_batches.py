@@ -209,6 +209,25 @@ def test_one_model_serves_many_threads() -> None:
     assert not wrong
 
 
+FORK = """
+import os, signal, numpy as np, onorbit_rs as oo
+model = oo.robots.load("humanoid_torso")
+q = np.tile(model.neutral(), (4096, 1))
+v = np.ones((4096, model.nv))
+before = model.bias_forces(q, v)
+child = os.fork()
+if child == 0:
+    signal.alarm(20)  # a child that waits for threads it does not have is ended by this
+    os._exit(0 if np.array_equal(model.bias_forces(q, v), before) else 1)
+raise SystemExit(os.waitpid(child, 0)[1])
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
+def test_a_forked_child_has_threads_of_its_own() -> None:
+    subprocess.run([sys.executable, "-c", FORK], check=True, timeout=60)
+
+
 # Instruction sets
 
 PROGRAM = """

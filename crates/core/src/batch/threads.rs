@@ -1,6 +1,7 @@
 //! On how many threads a batch runs.
 
 use super::input::InputError;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::{Mutex, PoisonError};
 
 /// Runs `task` on every element, with a workspace per thread: on all cores if `threads` is `None`,
@@ -35,7 +36,28 @@ pub(super) fn for_each<T, W>(
             task(&mut space, one);
         }
     };
-    // no more strands than wanted, whatever the pool has
-    rayon::scope(|scope| (0..wanted).for_each(|_| scope.spawn(|_| strand())));
+    match pool() {
+        // no more strands than wanted, whatever the pool has
+        Some(pool) => pool.scope(|scope| (0..wanted).for_each(|_| scope.spawn(|_| strand()))),
+        None => strand(),
+    }
     Ok(())
+}
+
+/// The threads of this process, started when first needed; `None` where the system gives none.
+///
+/// Not rayon's own: a child that `fork` made (Python's multiprocessing) has the memory of its parent's pool but
+/// none of its threads, and would wait for them forever.
+fn pool() -> Option<&'static ThreadPool> {
+    static POOL: Mutex<Option<(u32, &ThreadPool)>> = Mutex::new(None);
+    let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    let process = std::process::id();
+    match *known {
+        Some((owner, pool)) if owner == process => Some(pool),
+        _ => {
+            let pool: &ThreadPool = Box::leak(Box::new(ThreadPoolBuilder::new().build().ok()?));
+            *known = Some((process, pool));
+            Some(pool)
+        }
+    }
 }
