@@ -54,7 +54,7 @@ def job(threads: int) -> Job:
         last = state[:, -1, 1:]  # time comes first
         return oo.layouts.from_mujoco(ours, last[:, : model.nq], last[:, model.nq : model.nq + model.nv])
 
-    return Job(len(qpos) * inputs.ROLLOUT_STEPS, run, ends)
+    return Job(len(qpos) * inputs.ROLLOUT_STEPS, run, ends, threads)
 
 
 serve(f"mujoco {mujoco.__version__}", {"rollout": job(1), "rollout_threads": job(os.cpu_count() or 1)})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ model = oo.Model.from_urdf(folder / "robot.urdf")
 nq, nv = model.nq, model.nv
 q, v, x = inputs.read(folder / "states.bin", nq, nv, nv)
 arms_q, arms_v, _ = inputs.read(folder / "arms.bin", nq, nv, nv)
-batch = [np.tile(rows, (32, 1)) for rows in (q, v, x)]
+batch = [np.tile(rows, (8, 1)) for rows in (q, v, x)]
 law = oo.ComputedTorque(model, "tool", kp=inputs.KP, kd=inputs.KD, null_space_damping=inputs.SELF_MOTION)
 start = model.frame_pose(inputs.reach(model), "tool")
 path = oo.LineParabola(
@@ -63,13 +64,13 @@ def passive() -> Job:
     return Job(inputs.PASSIVE_STEPS, lambda: next(turn).run(duration), ends)
 
 
-def rollout(threads: int | None) -> Job:
+def rollout(threads: int) -> Job:
     def run() -> Any:
         return oo.rollout(
             model, q, v, steps=inputs.ROLLOUT_STEPS, time_step=inputs.TIME_STEP, threads=threads
         )
 
-    return Job(len(q) * inputs.ROLLOUT_STEPS, run, run)
+    return Job(len(q) * inputs.ROLLOUT_STEPS, run, run, threads)
 
 
 def controlled_rollout() -> Job:
@@ -105,7 +106,7 @@ jobs = {
     "batch": batch_of(model.forward_dynamics, *batch),
     "passive": passive(),
     "rollout": rollout(1),
-    "rollout_threads": rollout(None),
+    "rollout_threads": rollout(os.cpu_count() or 1),
     "controlled_rollout": controlled_rollout(),
     "reach": reach(orbit=orbit, environment=[oo.GravityGradient()]),
     "reach_empty": reach(),
