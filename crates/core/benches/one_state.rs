@@ -63,68 +63,52 @@ impl<S: Real> States<S> {
 
 fn kernels<S: Real>(model: &Model, rounds: usize) {
     let (nv, tool) = (model.nv(), model.frames().len() - 1);
-    let States { q, v, tau } = States::<S>::new(model);
+    let States { q, v, tau } = &States::<S>::new(model);
     let space = || (Data::<S>::new(model), vec![S::of(0.0); nv * nv]);
-    let mut jobs: Vec<Job<'_>> = Vec::new();
-    let (mut data, mut out) = space();
-    jobs.push((
-        "kinematics",
-        Box::new(move || timed(|k| kinematics(model, &mut data, black_box(&q[k]), &v[k]))),
-    ));
-    let States { q, v, .. } = States::<S>::new(model);
-    let mut data = Data::<S>::new(model);
-    jobs.push((
-        "aba",
-        Box::new(move || {
-            timed(|k| {
-                forward_dynamics(model, &mut data, black_box(&q[k]), &v[k], &tau[k], &[], &mut out[..nv])
-            })
+    let jobs: Vec<Job<'_>> = vec![
+        ("kinematics", {
+            let (mut data, _) = space();
+            Box::new(move || timed(|k| kinematics(model, &mut data, black_box(&q[k]), &v[k])))
         }),
-    ));
-    let States { q, v, tau: a } = States::<S>::new(model);
-    let (mut data, mut out) = space();
-    jobs.push((
-        "rnea",
-        Box::new(move || {
-            timed(|k| inverse_dynamics(model, &mut data, black_box(&q[k]), &v[k], &a[k], &[], &mut out[..nv]))
+        ("aba", {
+            let (mut data, mut a) = space();
+            let mut call = move |k: usize| {
+                forward_dynamics(model, &mut data, black_box(&q[k]), &v[k], &tau[k], &[], &mut a);
+            };
+            Box::new(move || timed(&mut call))
         }),
-    ));
-    let States { q, v, .. } = States::<S>::new(model);
-    let (mut data, mut out) = space();
-    jobs.push((
-        "bias",
-        Box::new(move || {
-            timed(|k| bias_forces(model, &mut data, black_box(&q[k]), &v[k], &[], &mut out[..nv]))
+        ("rnea", {
+            let (mut data, mut out) = space();
+            let mut call = move |k: usize| {
+                inverse_dynamics(model, &mut data, black_box(&q[k]), &v[k], &tau[k], &[], &mut out);
+            };
+            Box::new(move || timed(&mut call))
         }),
-    ));
-    let States { q, .. } = States::<S>::new(model);
-    let (mut data, mut out) = space();
-    jobs.push((
-        "crba",
-        Box::new(move || timed(|k| mass_matrix(model, &mut data, black_box(&q[k]), &mut out))),
-    ));
-    let States { q, v, .. } = States::<S>::new(model);
-    let (mut data, mut out) = space();
-    jobs.push((
-        "J+drift",
-        Box::new(move || {
-            timed(|k| {
+        ("bias", {
+            let (mut data, mut out) = space();
+            Box::new(move || timed(|k| bias_forces(model, &mut data, black_box(&q[k]), &v[k], &[], &mut out)))
+        }),
+        ("crba", {
+            let (mut data, mut out) = space();
+            Box::new(move || timed(|k| mass_matrix(model, &mut data, black_box(&q[k]), &mut out)))
+        }),
+        ("J+drift", {
+            let (mut data, mut out) = space();
+            let mut call = move |k: usize| {
                 kinematics(model, &mut data, black_box(&q[k]), &v[k]);
                 frame_jacobian(model, &data, &q[k], tool, &mut out[..6 * nv]);
                 black_box(frame_drift(model, &data, &q[k], &v[k], tool));
-            })
+            };
+            Box::new(move || timed(&mut call))
         }),
-    ));
-    let States { q, v, .. } = States::<S>::new(model);
-    let (mut data, mut out) = (Data::<S>::new(model), FreeFloating::new(model));
-    jobs.push((
-        "reduced",
-        Box::new(move || {
-            timed(|k| {
-                free_floating(model, &mut data, black_box(&q[k]), &v[k], tool, &[], black_box(&mut out))
-            })
+        ("reduced", {
+            let (mut data, mut out) = (Data::<S>::new(model), FreeFloating::new(model));
+            let mut call = move |k: usize| {
+                free_floating(model, &mut data, black_box(&q[k]), &v[k], tool, &[], black_box(&mut out));
+            };
+            Box::new(move || timed(&mut call))
         }),
-    ));
+    ];
     print(jobs, rounds);
 }
 

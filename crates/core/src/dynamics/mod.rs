@@ -28,6 +28,6 @@ pub use free_floating::{
 pub use jacobian::{frame_acceleration, frame_drift, frame_jacobian};
 pub(crate) use kinematics::base_rotation;
 pub use kinematics::{FramePose, frame_pose, frame_velocity, kinematics, positions};
-pub(crate) use momentum::center_of_mass_b;
 pub use momentum::{Momentum, base_twist, center_of_mass, composite_momentum, kinetic_energy, momentum};
+pub(crate) use momentum::{center_of_mass_b, motion_of_whole};
 pub use rnea::{bias_forces, inverse_dynamics, inverse_dynamics_recursion};

@@ -65,17 +65,39 @@ pub(crate) fn center_of_mass_b<S: Real>(data: &Data<S>) -> Vec3<S> {
 pub fn kinetic_energy<S: Real>(model: &Model, data: &Data<S>, v: &[S]) -> S {
     S::enter(
         #[inline(always)]
-        || {
-            let mut twice = S::of(0.0);
-            for (k, (node, body)) in model.nodes().iter().zip(&data.bodies).enumerate() {
-                twice += body.velocity.dot(body.inertia.momentum(body.velocity));
-                if k > 0 {
-                    twice += S::of(node.rotor_inertia) * v[k + 5] * v[k + 5];
-                }
-            }
-            twice * S::of(0.5)
-        },
+        || sums(model, data, v).2,
     )
+}
+
+/// [`momentum`], [`kinetic_energy`] and [`center_of_mass`] in one walk.
+#[inline(always)]
+pub(crate) fn motion_of_whole<S: Real>(
+    model: &Model,
+    data: &Data<S>,
+    q: &[S],
+    v: &[S],
+) -> (Momentum<S>, S, Vec3<S>) {
+    let (inertia, h, energy) = sums(model, data, v);
+    let (rot_wb, com) = (base_rotation(q), inertia.com());
+    let about_com = h.angular - com.cross(h.linear);
+    let momentum = Momentum { linear: rot_wb * h.linear, angular: rot_wb * about_com };
+    (momentum, energy, rot_wb * com + Vec3::from_slice(q))
+}
+
+/// Inertia, momentum (both in B about the base's origin) and kinetic energy of the whole robot.
+#[inline(always)]
+fn sums<S: Real>(model: &Model, data: &Data<S>, v: &[S]) -> (SpatialInertia<S>, Force<S>, S) {
+    let (mut inertia, mut momentum, mut twice) = (SpatialInertia::zero(), Force::zero(), S::of(0.0));
+    for body in &data.bodies {
+        let own = body.inertia.momentum(body.velocity);
+        inertia += body.inertia;
+        momentum += own;
+        twice += body.velocity.dot(own);
+    }
+    for (node, rate) in model.nodes()[1..].iter().zip(&v[6..]) {
+        twice = (*rate * *rate).mul_add(S::of(node.rotor_inertia), twice);
+    }
+    (inertia, momentum, twice * S::of(0.5))
 }
 
 /// The base twist that goes with a momentum and joint rates: `v_b = Mbb⁻¹ (h − Mbm q̇)`.

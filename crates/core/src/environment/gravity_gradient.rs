@@ -50,17 +50,21 @@ impl OnLanes for GravityGradient {
                     let r = Vec3::<S>::of(&origin) + com;
                     let distance = r.norm();
                     planet.all_outside(&group, distance)?;
-                    // G = (3μ/r³) r̂ r̂ᵀ + Gp;  what is left out, -(μ/r³) 1, turns nothing
+                    // G = (3μ/r³) r̂ r̂ᵀ + Gp;  what is left out, -(μ/r³) 1, turns nothing;  T = (3μ/r³) r̂ × I r̂ of the first
                     let inverse = S::of(1.0) / distance;
                     let up = r * inverse;
                     let rate = S::of(3.0 * planet.mu) * inverse * inverse * inverse;
-                    let beyond = match field {
-                        Some(field) => field.gradient(com)?,
-                        None => Sym3::default(),
+                    let (rot_wk, inertia) = (group.rot_wk(), group.inertias());
+                    let torque_k = match field {
+                        Some(field) => {
+                            let g = field.gradient(com)?.add_outer(up, rate);
+                            torque(&g.rotate(&rot_wk.transpose()), &inertia)
+                        }
+                        None => {
+                            let up_k = rot_wk.transpose_mul(up);
+                            up_k.cross(inertia * up_k) * rate
+                        }
                     };
-                    let rot_wk = group.rot_wk();
-                    let torque_k =
-                        torque(&beyond.add_outer(up, rate).rotate(&rot_wk.transpose()), &group.inertias());
                     add_torque(wrenches, rot_wk * torque_k);
                 }
                 Ok(())

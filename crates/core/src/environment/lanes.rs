@@ -10,10 +10,12 @@ pub(super) trait OnLanes {
     /// As [`add_wrenches`](super::Effect::add_wrenches), as many bodies at once as `S` has lanes.
     fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError>;
 
-    /// The same in the widest arithmetic there is.
+    /// The same in the widest arithmetic there is; around a point mass one by one, since the way onto the lanes costs
+    /// more than what there is to work out.
     fn add_on_widest(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
         match InstructionSet::current() {
             InstructionSet::Baseline => self.add::<f64>(scene, wrenches),
+            _ if scene.is_around_point_mass() => self.add::<Fused>(scene, wrenches),
             InstructionSet::Fused => self.add::<Lanes4>(scene, wrenches),
             InstructionSet::Wide => self.add::<Lanes8>(scene, wrenches),
         }

@@ -151,6 +151,12 @@ impl<'a> Scene<'a> {
         Ok(planet)
     }
 
+    /// Whether the planet's point mass is all that pulls.
+    pub(super) fn is_around_point_mass(&self) -> bool {
+        let gravity = self.reference.and_then(|reference| reference.gravity);
+        gravity.is_some_and(Gravity::is_point_mass)
+    }
+
     /// Gravity without the planet's point mass, around the robot; none where that is all there is.
     pub(super) fn nearby(
         &self,

@@ -22,6 +22,8 @@ pub(super) enum Driver<'a, S> {
         law: &'a ComputedTorque,
         reference: &'a TaskReference,
         work: Box<ComputedTorqueWork<S>>,
+        /// When it was asked last, and what the reference wanted then.
+        last: Option<(f64, TaskSample<f64>)>,
     },
     User {
         controller: &'a mut dyn Controller,
@@ -42,7 +44,8 @@ impl<'a, S: Scalar> Driver<'a, S> {
         Ok(match (control, reference) {
             (ControlLaw::None, _) => Self::None,
             (ControlLaw::ComputedTorque(law), Some(reference)) => {
-                Self::ComputedTorque { law, reference, work: Box::new(ComputedTorqueWork::new(model)) }
+                let work = Box::new(ComputedTorqueWork::new(model));
+                Self::ComputedTorque { law, reference, work, last: None }
             }
             (ControlLaw::ComputedTorque(_), None) => return Err(SimulationError::NeedsReference),
             (ControlLaw::User(controller), reference) => {
@@ -84,7 +87,11 @@ impl<'a, S: Scalar> Driver<'a, S> {
             stack.look(t, plant.model, &plant.data, &state.q, &state.v)?;
         }
         if let Some(reference) = reference {
-            return Ok(Some((at(reference, t)?, reference.is_relative_to_base())));
+            let sample = match self {
+                Self::ComputedTorque { last: Some((asked, sample)), .. } if *asked == t => *sample,
+                _ => at(reference, t)?,
+            };
+            return Ok(Some((sample, reference.is_relative_to_base())));
         }
         Ok(self.stack().and_then(|stack| {
             stack.controls().iter().enumerate().find_map(|(i, control)| {
@@ -150,8 +157,10 @@ impl<'a, S: Scalar> Driver<'a, S> {
         let Plant { model, data, command, .. } = plant;
         match self {
             Self::None => return Ok(()),
-            Self::ComputedTorque { law, reference, work } => {
-                let desired = at(reference, t)?.lift();
+            Self::ComputedTorque { law, reference, work, last } => {
+                let sample = at(reference, t)?;
+                *last = Some((t, sample));
+                let desired = sample.lift();
                 let data: &mut Data<S> = data;
                 let is_relative = reference.is_relative_to_base();
                 computed_torque(law, model, data, &state.q, &state.v, &desired, is_relative, work, command);

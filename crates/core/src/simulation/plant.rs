@@ -147,19 +147,25 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
             || balance(data, q, v, *carried, forces, rate),
         );
         if *is_lossy {
-            rate.loss = contacts.loss(model, v);
+            rate.loss = S::enter(
+                #[inline(always)]
+                || contacts.loss(model, v),
+            );
         }
     }
 
     /// Torques at the joints: `τ − b q̇ − f s` with `s` the direction of slip.
     pub(super) fn drive(&mut self, v: &[S]) {
-        let Self { model, contacts, command, forces, .. } = self;
+        let Self { model, contacts, command, forces, is_lossy, .. } = self;
+        forces[6..].copy_from_slice(command);
+        if !*is_lossy {
+            return;
+        }
         S::enter(
             #[inline(always)]
             || {
                 for (j, joint) in model.joints().iter().enumerate() {
-                    let drag = S::of(contacts.drag(j));
-                    forces[j + 6] = command[j] - (v[j + 6] * S::of(joint.damping) + drag);
+                    forces[j + 6] -= v[j + 6] * S::of(joint.damping) + S::of(contacts.drag(j));
                 }
             },
         );

@@ -8,7 +8,7 @@ use super::state::State;
 use super::surroundings::Surroundings;
 use super::trace::{NamedColumn, Trace};
 use crate::control::{Control, Stack, task_error};
-use crate::dynamics::{FramePose, base_rotation, center_of_mass, frame_pose, kinetic_energy, momentum};
+use crate::dynamics::{FramePose, base_rotation, frame_pose, motion_of_whole};
 use crate::model::Model;
 use crate::orbit::OrbitState;
 use crate::reference::TaskSample;
@@ -177,15 +177,15 @@ impl Recorder {
         push(&mut trace.q, q);
         push(&mut trace.v, v);
         push(&mut trace.tau, &plant.command);
-        let h = momentum(data, q);
+        let (h, energy, com) = motion_of_whole(plant.model, data, q, v);
         push_vector(&mut trace.momentum, h.linear);
         push_vector(&mut trace.momentum, h.angular);
         push_vector(&mut trace.impulse, state.impulse.linear);
         push_vector(&mut trace.impulse, state.impulse.angular);
-        trace.kinetic_energy.push(kinetic_energy(plant.model, data, v).value());
+        trace.kinetic_energy.push(energy.value());
         trace.work.push(state.work.value());
         trace.dissipated.push(state.dissipated.value());
-        push_vector(&mut trace.center_of_mass, center_of_mass(data, q));
+        push_vector(&mut trace.center_of_mass, com);
         if let Some(tool) = self.extras.tool {
             let pose = frame_pose(plant.model, data, q, tool);
             push_pose(&mut trace.tool_pose, &pose.rot_wf, pose.pos_w);

@@ -18,8 +18,8 @@ use super::error::finite;
 use super::rows::{in_lanes, one_by_one};
 use super::{Orbit, OrbitError, OrbitState, Rows};
 use crate::gravity::point_mass;
-use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real, Vec3};
-use conic::{Conic, Shape};
+use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real, Vec3};
+use conic::{Conic, InPlane, Shape};
 pub use elements::{Elements, Phase, Size};
 pub use secular::SecularJ2;
 pub(crate) use side_by_side::ellipse_state;
@@ -92,7 +92,8 @@ impl Orbit for Kepler {
             finite("time", t)?;
             return Err(OrbitError::TimeOutOfRange { time: t, epoch: self.epoch, limit });
         }
-        let s = self.conic.in_plane(&self.shape, self.conic.advance(self.phase, dt));
+        let s = self.fused(dt);
+        let s = s.unwrap_or_else(|| self.conic.in_plane(&self.shape, self.conic.advance(self.phase, dt)));
         let position = self.p_i * s.x + self.q_i * s.y;
         let velocity = self.p_i * s.vx + self.q_i * s.vy;
         Ok(OrbitState { position, velocity, acceleration: point_mass(self.mu, &position) })
@@ -108,6 +109,18 @@ impl Orbit for Kepler {
 }
 
 impl Kepler {
+    /// State in the plane of an ellipse, `dt` s after the epoch, on a processor with fused multiply-add.
+    fn fused(&self, dt: f64) -> Option<InPlane> {
+        if InstructionSet::current() == InstructionSet::Baseline {
+            return None;
+        }
+        let s = Fused::enter(
+            #[inline(always)]
+            || self.conic.several(&self.shape, self.phase, Fused(dt)),
+        )?;
+        Some(InPlane { x: s.x.0, y: s.y.0, vx: s.vx.0, vy: s.vy.0 })
+    }
+
     /// As many times at once as `S` has lanes; one by one where one of them is refused.
     fn side_by_side<S: Real>(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
         let (p, q, longest) = (self.p_i.into(), self.q_i.into(), self.conic.longest_time());

@@ -1,0 +1,63 @@
+//! Time per joint of the recursions on chains of 10 to 100 joints: linear but for the mass matrix, whose entries are as
+//! many as pairs of joints.
+#![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)] // a program that prints
+
+use nalgebra::{Isometry3, Matrix3, Vector3};
+use onorbit_core::dynamics::{Data, forward_dynamics, inverse_dynamics, mass_matrix};
+use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};
+use onorbit_core::spatial::{Fused, Real};
+use std::hint::black_box;
+use std::time::Instant;
+
+const ROUNDS: usize = 50;
+const CALLS: usize = 200;
+
+fn chain(joints: usize) -> Model {
+    let body = |mass: f64| {
+        Some(Inertial { mass, com: Vector3::new(0.0, 0.01, 0.1), inertia: Matrix3::identity() * 0.01 })
+    };
+    let mut builder = ModelBuilder::new("chain", Link::new("link0", body(100.0))).unwrap();
+    for k in 1..=joints {
+        let axis = if k % 2 == 0 { Vector3::z() } else { Vector3::y() };
+        let origin = Isometry3::translation(0.0, 0.0, 0.2);
+        let joint = Joint::new(&format!("joint{k}"), JointKind::Revolute(axis), origin);
+        builder.add(&format!("link{}", k - 1), joint, Link::new(&format!("link{k}"), body(1.0))).unwrap();
+    }
+    builder.build().unwrap()
+}
+
+/// Best time of a call over the rounds, ns.
+fn best(mut f: impl FnMut()) -> f64 {
+    let round = |_| {
+        let started = Instant::now();
+        (0..CALLS).for_each(|_| f());
+        started.elapsed().as_secs_f64() * 1e9 / CALLS as f64
+    };
+    (0..ROUNDS).map(round).fold(f64::INFINITY, f64::min)
+}
+
+fn measure<S: Real>(scalar: &str) {
+    println!("{scalar}: ns per joint\njoints      aba     rnea     crba");
+    for joints in [10, 20, 40, 70, 100] {
+        let model = chain(joints);
+        let numbers =
+            |n: usize, seed: f64| -> Vec<S> { (0..n).map(|i| S::of((i as f64 + seed).sin())).collect() };
+        let (mut q, v, tau) = (numbers(joints + 7, 0.1), numbers(joints + 6, 0.2), numbers(joints + 6, 0.3));
+        [0.0, 0.0, 0.6, 0.8].iter().zip(&mut q[3..7]).for_each(|(x, q)| *q = S::of(*x));
+        let (mut data, mut out) = (Data::<S>::new(&model), numbers((joints + 6) * (joints + 6), 0.0));
+        let times = [
+            best(|| forward_dynamics(&model, &mut data, black_box(&q), &v, &tau, &[], &mut out)),
+            best(|| inverse_dynamics(&model, &mut data, black_box(&q), &v, &tau, &[], &mut out)),
+            best(|| mass_matrix(&model, &mut data, black_box(&q), &mut out)),
+        ];
+        let [aba, rnea, crba] = times.map(|time| time / joints as f64);
+        println!("{joints:6} {aba:8.1} {rnea:8.1} {crba:8.1}");
+    }
+}
+
+fn main() {
+    measure::<f64>("plain");
+    if Fused::is_available() {
+        measure::<Fused>("fused");
+    }
+}
