@@ -119,6 +119,7 @@ impl Contacts {
     }
 
     /// Power that damping and friction take, `Σ (b q̇ + f s) q̇`, W.
+    #[inline(always)]
     pub(super) fn loss<S: Real>(&self, model: &Model, v: &[S]) -> S {
         let mut sum = S::of(0.0);
         for (j, joint) in model.joints().iter().enumerate() {
