@@ -156,29 +156,16 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
 
     /// Torques at the joints: `τ − b q̇ − f s` with `s` the direction of slip.
     pub(super) fn drive(&mut self, v: &[S]) {
-<<<<<<< HEAD
-        self.forces[6..].copy_from_slice(&self.command);
-        if !self.is_lossy {
-            return;
-        }
-        let Self { model, contacts, forces, .. } = self;
-=======
         let Self { model, contacts, command, forces, is_lossy, .. } = self;
         forces[6..].copy_from_slice(command);
         if !*is_lossy {
             return;
         }
->>>>>>> h_batch
         S::enter(
             #[inline(always)]
             || {
                 for (j, joint) in model.joints().iter().enumerate() {
-<<<<<<< HEAD
-                    let drag = S::of(contacts.drag(j));
-                    forces[j + 6] -= v[j + 6] * S::of(joint.damping) + drag;
-=======
                     forces[j + 6] -= v[j + 6] * S::of(joint.damping) + S::of(contacts.drag(j));
->>>>>>> h_batch
                 }
             },
         );
