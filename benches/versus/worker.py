@@ -17,7 +17,7 @@ import numpy as np
 class Job:
     """`run` does `units` of work; `result` tells what comes out (arrays, one row per state).
 
-    Time is the processor's, so that what others take in between does not count; on several threads the wall's.
+    Time is the processor's: what others take in between does not count. On several threads it is the wall's.
     """
 
     units: int
