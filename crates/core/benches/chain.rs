@@ -2,29 +2,17 @@
 //! many as pairs of joints.
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)] // a program that prints
 
-use nalgebra::{Isometry3, Matrix3, Vector3};
+#[path = "../tests/common/chain.rs"]
+mod chain;
+
+use chain::chain;
 use onorbit_core::dynamics::{Data, forward_dynamics, inverse_dynamics, mass_matrix};
-use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};
 use onorbit_core::spatial::{Fused, Real};
 use std::hint::black_box;
 use std::time::Instant;
 
 const ROUNDS: usize = 50;
 const CALLS: usize = 200;
-
-fn chain(joints: usize) -> Model {
-    let body = |mass: f64| {
-        Some(Inertial { mass, com: Vector3::new(0.0, 0.01, 0.1), inertia: Matrix3::identity() * 0.01 })
-    };
-    let mut builder = ModelBuilder::new("chain", Link::new("link0", body(100.0))).unwrap();
-    for k in 1..=joints {
-        let axis = if k % 2 == 0 { Vector3::z() } else { Vector3::y() };
-        let origin = Isometry3::translation(0.0, 0.0, 0.2);
-        let joint = Joint::new(&format!("joint{k}"), JointKind::Revolute(axis), origin);
-        builder.add(&format!("link{}", k - 1), joint, Link::new(&format!("link{k}"), body(1.0))).unwrap();
-    }
-    builder.build().unwrap()
-}
 
 /// Best time of a call over the rounds, ns.
 fn best(mut f: impl FnMut()) -> f64 {
