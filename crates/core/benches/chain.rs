@@ -1,6 +1,6 @@
 //! Time per joint of the recursions on chains of 10 to 100 joints: linear but for the mass matrix, whose entries are as
 //! many as pairs of joints.
-#![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)] // a program that prints
+#![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::print_stdout)] // a program that prints
 
 #[path = "../tests/common/chain.rs"]
 mod chain;
