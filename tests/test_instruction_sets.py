@@ -16,12 +16,14 @@ import onorbit_rs as oo
 REPOSITORY = Path(__file__).parents[1]
 LEVELS = ("baseline", "avx2+fma", "avx512")
 BEST = oo.build_info()["instruction_set"]
-# kernels against Pinocchio and MuJoCo, batches, rollouts, forces from outside
+# kernels against Pinocchio and MuJoCo, batches, rollouts, forces from outside, the environment
 KERNELS = (
     "oracles/test_pinocchio.py",
+    "oracles/test_pinocchio_derivatives.py",
     "oracles/test_mujoco.py",
     "test_border_batches.py",
     "test_border_rollouts.py",
+    "test_wrenches.py",
 )
 
 

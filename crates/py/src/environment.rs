@@ -196,7 +196,7 @@ impl PyBodyWrench {
 ///
 /// ``u`` is the velocity of the face's centroid in the air, a cannonball's that of the centre of mass. ``surfaces`` is ``Faces`` (the default,
 /// with C_D 2.2: those of the robot's visual geometry), one surface for a robot of one body, or a dict of them by link; links left out
-/// feel nothing. The density is computed on a grid of 64 m and follows the scale height from there: within 160 m wrong by at most 1e-4.
+/// feel nothing. The density is computed on a grid of 128 m and follows the scale height from there: within 160 m wrong by at most 1e-4.
 #[pyclass(name = "Drag", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(crate) struct PyDrag;
 

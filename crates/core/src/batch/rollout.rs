@@ -61,11 +61,24 @@ impl Rollout<'_> {
         q: &mut [f64],
         v: &mut [f64],
     ) -> Result<(), InputError> {
+        let (count, nq, nv) = (q0.len() / model.nq(), model.nq(), model.nv());
+        let rows = self.rows();
+        for (name, got, expected) in
+            [("q0", q0.len(), nq), ("v0", v0.len(), nv), ("q", q.len(), rows * nq), ("v", v.len(), rows * nv)]
+        {
+            if got != count * expected {
+                return Err(InputError::WrongLength { name, expected, got: got / count.max(1) });
+            }
+        }
         check_finite("q0", q0, model.nq())?;
         check_finite("v0", v0, model.nv())?;
         check_quaternions(q0, model.nq())?;
         if let RolloutControl::Torques(tau) = self.control {
-            check_finite("tau", tau, self.steps * model.joint_count())?;
+            let expected = self.steps * model.joint_count();
+            if tau.len() != count * expected {
+                return Err(InputError::WrongLength { name: "tau", expected, got: tau.len() / count.max(1) });
+            }
+            check_finite("tau", tau, expected)?;
         }
         if self.integrator == Integrator::DormandPrince {
             return Err(InputError::Adaptive);
@@ -170,7 +183,7 @@ impl<'a, S: Real> Lanes<'a, S> {
                 return;
             }
             self.plant.settle(&mut self.state);
-            if record_every.is_some_and(|every| step % every == 0) {
+            if record_every.is_some_and(|every| step % every.max(1) == 0) {
                 self.write(row, q, v);
                 row += 1;
             }
@@ -178,7 +191,7 @@ impl<'a, S: Real> Lanes<'a, S> {
             self.advance(step as f64 * time_step, (step + 1) as f64 * time_step);
         }
         self.plant.settle(&mut self.state);
-        if record_every.is_none_or(|every| steps % every == 0) {
+        if record_every.is_none_or(|every| steps % every.max(1) == 0) {
             self.write(row, q, v);
         }
     }

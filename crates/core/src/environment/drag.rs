@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 ///
 /// A face of area `A` and outward normal `n` feels `F = -½ ρ C_D A (n·u)₊ u` at its centroid, a cannonball
 /// `F = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the velocity of that point in air that
-/// turns with the Earth. No part shadows another.
+/// turns with the Earth, the same all over a face, tube or ball. No part shadows another.
 ///
 /// The density is computed at points of a grid of 128 m and 1/8 s, at the one next to the robot's base, and follows the
 /// scale height from there, within 160 m: wrong by at most 1e-4 of itself. For bodies farther away it is computed
@@ -39,13 +39,14 @@ impl Drag {
     /// The air about the point of the grid next to `r`, or about `r` itself at the edge of a model.
     fn local(&self, earth: &Earth, t: f64, r: &Vector3<f64>) -> Result<LocalAir, AtmosphereError> {
         let (time, centre) = LocalAir::grid_point(t, r);
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(air) = known.filter(|air| air.is_about(time, &centre)) {
+        // not held while the model is evaluated: other runs may share it
+        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(air) = known().filter(|air| air.is_about(time, &centre)) {
             return Ok(air);
         }
         let made = |time: f64, r: &Vector3<f64>| LocalAir::new(&*self.atmosphere, earth, time, r);
         let air = made(time, &centre).or_else(|_| made(t, r))?;
-        *known = Some(air);
+        *known() = Some(air);
         Ok(air)
     }
 }

@@ -72,11 +72,13 @@ impl Clone for Memo {
 impl Memo {
     /// The field about this place.
     pub(super) fn about(&self, field: &GravityField, at: Vec3<f64>) -> Result<Expansion, GravityError> {
-        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(expansion) = known.iter().flatten().find(|expansion| expansion.at == at) {
+        // not held while the field is evaluated: other runs may share it
+        let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(expansion) = known().iter().flatten().find(|expansion| expansion.at == at) {
             return Ok(*expansion);
         }
         let expansion = Expansion::of(field, at)?;
+        let mut known = known();
         known.rotate_right(1);
         known[0] = Some(expansion);
         Ok(expansion)

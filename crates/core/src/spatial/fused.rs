@@ -7,7 +7,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 /// An `f64` whose [`mul_add`](Real::mul_add) is one instruction.
 ///
 /// Compute with it only inside [`Real::enter`] on a processor for which
-/// [`Fused::is_available`] holds; elsewhere results are right but slow.
+/// [`Fused::is_available`] holds: several sines at a time are taken in its registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[repr(transparent)]
 pub struct Fused(pub f64);

@@ -7,9 +7,9 @@ use nalgebra::Vector3;
 
 /// How far from its centre a local density is trusted, m.
 ///
-/// Sideways the density of no model changes faster than by e within a third of the Earth's radius, so the
-/// density is wrong by at most 8e-5 of itself there; upwards the change of the scale height over that is less. Where the layers of a table do not meet, the place of
-/// the jump is off by that much.
+/// Sideways the density of no model changes faster than by e within a third of the Earth's radius, so the density is
+/// wrong by at most 8e-5 of itself there, and by 1e-4 with the change of the scale height upwards. Where the layers of a
+/// table do not meet, the place of the jump is off by that much.
 const TRUST: f64 = 160.0;
 
 /// Pitch of the points about which local air is made, m and s: robots near each other, and in steps that follow
@@ -79,7 +79,7 @@ impl LocalAir {
 
     #[inline(always)]
     fn near<S: Real>(&self, offset: Vec3<S>) -> S {
-        // e⁻ˣ to third order: x is at most 100 m by the scale height, 0.02 near the ground
+        // e⁻ˣ to third order: x is at most 160 m by the scale height, 0.03 near the ground
         let (s, x) = (S::of, Vec3::of(&self.up.into()).dot(offset) * S::of(self.decay));
         s(self.density) * (s(1.0) - x * (s(1.0) - x * (s(0.5) - x * s(1.0 / 6.0))))
     }

@@ -139,11 +139,13 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn sin_cos(self) -> (Self, Self) {
-                if register::$register::all(self.abs().less(Self::of(FAST_SINE_LIMIT))) {
-                    super::sine::sin_cos(self)
-                } else {
-                    (self.each(f64::sin), self.each(f64::cos))
+                let (near, (s, c)) =
+                    (self.abs().less(Self::of(FAST_SINE_LIMIT)), super::sine::sin_cos(self));
+                if register::$register::all(near) {
+                    return (s, c);
                 }
+                // lane by lane: no angle changes the bits of its neighbours
+                (Self::select(near, s, self.each(f64::sin)), Self::select(near, c, self.each(f64::cos)))
             }
             #[inline(always)]
             fn atan2(self, x: Self) -> Self {
