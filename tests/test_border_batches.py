@@ -53,7 +53,7 @@ KERNELS: dict[str, Kernel] = {
     "difference": lambda q, v, a, **k: MODEL.difference(q, MODEL.integrate(q, a), **k),
 } | {f"free_floating.{name}": reduced(name) for name in ("inertia", "bias", "external", "jacobian", "drift")}
 KERNELS |= {
-    f"{kernel}[{place}]": derivative(kernel, place)
+    f"{kernel}.{place}": derivative(kernel, place)
     for kernel in ("inverse_dynamics_derivatives", "forward_dynamics_derivatives")
     for place in range(3)
 } | {
