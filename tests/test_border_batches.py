@@ -93,6 +93,8 @@ def test_the_bits_of_a_state_do_not_depend_on_its_neighbours(name: str) -> None:
     q, v, a = states(97)
     whole = KERNELS[name](q, v, a)
     np.testing.assert_array_equal(KERNELS[name](q[40:], v[40:], a[40:]), whole[40:])
+    q[3, 8] = 2e5  # an angle for which sines are taken one by one
+    np.testing.assert_array_equal(np.delete(KERNELS[name](q, v, a), 3, axis=0), np.delete(whole, 3, axis=0))
 
 
 @pytest.mark.parametrize("name", KERNELS)
