@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.exceptions import SimulationError
+from onorbit_rs.exceptions import ControlError, SimulationError
 
 MODEL = oo.robots.load("humanoid_torso")
 REACH = [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]
@@ -102,3 +102,9 @@ def test_a_state_that_diverges_is_an_error() -> None:
     tau[3, 4:] = 1e200
     with pytest.raises(SimulationError, match="diverged"):
         oo.rollout(MODEL, q0, v0, steps=20, tau=tau)
+
+
+@pytest.mark.parametrize("alone", ["controller", "reference"])
+def test_a_controller_or_a_reference_alone_is_refused(alone: str) -> None:
+    with pytest.raises(ControlError, match="is given but no"):
+        oo.rollout(MODEL, *states(2), steps=5, **{alone: law()[alone]})

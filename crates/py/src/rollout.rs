@@ -19,7 +19,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// ``q0`` (B, nq), ``v0`` (B, nv); ``tau`` (B, steps, n) N m, each held for one step; ``controller`` a
 /// ``ComputedTorque`` that tracks ``reference``. Returns the final ``q`` (B, nq) and ``v`` (B, nv), or with
 /// ``record_every`` (B, K, nq) and (B, K, nv), the start being the first of ``K = steps // record_every + 1`` rows.
-/// ``out`` is a pair of such arrays to write into, which is then what returns. The bits do not depend on ``threads``. Raises ``SimulationError`` if a state diverges.
+/// ``out`` is a pair of such arrays to write into; the same two are returned. The bits do not depend on ``threads``.
+/// Raises ``SimulationError`` if a state diverges, ``ControlError`` for a controller or a reference alone.
 #[pyfunction]
 #[pyo3(signature = (
     model, q0, v0, *, steps, time_step=1e-3, tau=None, controller=None, reference=None, integrator="rk4",
@@ -63,8 +64,11 @@ pub(crate) fn rollout<'py>(
     let inputs: Vec<Input<'py>> = [q0, v0].into_iter().chain(tau).collect();
     let reference = reference.map(|value| reference::extract(value, None)).transpose()?;
     let control = match (inputs.get(2), controller, &reference) {
-        (None, None, _) => RolloutControl::Passive,
-        (Some(tau), None, _) => {
+        (_, None, Some(_)) => {
+            return Err(plain(py, "ControlError", "a reference is given but no controller that tracks it"));
+        }
+        (None, None, None) => RolloutControl::Passive,
+        (Some(tau), None, None) => {
             let shape = [batch, steps, core.joint_count()];
             if tau.shape() != shape {
                 return Err(wrong_shape(py, "tau", &shape_text(&shape), tau.shape()));

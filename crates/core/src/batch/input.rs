@@ -31,7 +31,7 @@ pub enum InputError {
     QuaternionNorm { state: usize, norm: f64 },
     #[error(
         "state {state} is singular: in this configuration nothing resists the motion of some joint; give the links \
-         around it an inertia or the joint a rotor"
+         around it an inertia or the joint a rotor (or its numbers are so large that their products overflow)"
     )]
     Singular { state: usize },
     #[error(

@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// turns with the Earth, the same all over a face, tube or ball. No part shadows another.
 ///
 /// The density is computed at points of a grid of 128 m and 1/8 s, at the one next to the robot's base, and follows the
-/// scale height from there, within 160 m: wrong by at most 1e-4 of itself. For bodies farther away it is computed
+/// scale height from there, within 160 m: wrong by at most 1e-4 of itself where the model is smooth. For bodies farther away it is computed
 /// afresh. Which point it is follows from place and time alone.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Distance over which a field is taken for linear, m.
 ///
-/// What that leaves out is `½ ∂²g d²`: at most 2e-12 m/s² within 28 m in a low orbit, 7e-13 in the mean (EGM2008 36 × 36,
+/// What that leaves out is `½ ∂²g d²`: at most 3.5e-12 m/s² within 28 m from 150 km up, 7e-13 in the mean (EGM2008 36 × 36,
 /// measured in `tests/gravity_nearby.rs`), a ten-billionth of the field without its point mass.
 const REACH: f64 = 40.0;
 
