@@ -18,6 +18,17 @@ Q, V = MODEL.neutral(), np.zeros(MODEL.nv)
 CUBE = np.eye(3)
 
 
+def wrist() -> oo.Model:
+    """z-y-z with massless links between: at zero the first and the last axis are one."""
+    builder = oo.ModelBuilder("wrist", base="base", mass=10.0, inertia=np.eye(3))
+    builder.add_link("a", parent="base", joint="j1", axis=[0, 0, 1])
+    builder.add_link("b", parent="a", joint="j2", axis=[0, 1, 0])
+    builder.add_link(
+        "c", parent="b", joint="j3", axis=[0, 0, 1], mass=1.0, com=[0, 0, 0.1], inertia=np.eye(3)
+    )
+    return builder.build()
+
+
 def with_value(index: int, value: float) -> Any:
     q = Q.copy()
     q[index] = value

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from border import wrist
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import ControlError, ConvergenceError, SimulationError
@@ -40,14 +41,7 @@ def test_the_tool_of_the_run_is_the_frame_of_the_law() -> None:
 
 
 def test_a_singular_state_is_named_and_leaves_no_nan() -> None:
-    # z-y-z with massless links between: at zero the first and the last axis are one
-    builder = oo.ModelBuilder("wrist", base="base", mass=10.0, inertia=np.eye(3))
-    builder.add_link("a", parent="base", joint="j1", axis=[0, 0, 1])
-    builder.add_link("b", parent="a", joint="j2", axis=[0, 1, 0])
-    builder.add_link(
-        "c", parent="b", joint="j3", axis=[0, 0, 1], mass=1.0, com=[0, 0, 0.1], inertia=np.eye(3)
-    )
-    model = builder.build()
+    model = wrist()
     v, q = np.zeros(model.nv), model.neutral()
     with pytest.raises(ConvergenceError, match="state 0 is singular"):
         model.forward_dynamics(q, v, np.ones(model.nv))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from border import MODEL, NAN, Bad, Q, V, check, shape
+from border import MODEL, NAN, Bad, Q, V, check, shape, wrist
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import ConvergenceError
@@ -156,14 +156,7 @@ def test_refused(name: str) -> None:
 
 
 def test_a_singular_state_is_named() -> None:
-    # z-y-z with massless links between: at zero the first and the last axis are one
-    builder = oo.ModelBuilder("wrist", base="base", mass=10.0, inertia=np.eye(3))
-    builder.add_link("a", parent="base", joint="j1", axis=[0, 0, 1])
-    builder.add_link("b", parent="a", joint="j2", axis=[0, 1, 0])
-    builder.add_link(
-        "c", parent="b", joint="j3", axis=[0, 0, 1], mass=1.0, com=[0, 0, 0.1], inertia=np.eye(3)
-    )
-    model = builder.build()
+    model = wrist()
     q, v, tau = np.tile(model.neutral(), (2, 1)), np.zeros((2, model.nv)), np.ones((2, model.nv))
     q[0, 8] = 0.5
     with pytest.raises(ConvergenceError, match="state 1 is singular"):

@@ -2,7 +2,7 @@
 
 use super::data::{BodyData, Data};
 use super::external::{FrameWrench, apply_external};
-use super::jacobian::{classical, frame_drift, write_column};
+use super::jacobian::{classical, frame_drift, point_acceleration, write_column};
 use super::kinematics::{
     FramePose, base_rotation, frame_origin_b, frame_pose, frame_rotation_b, frame_velocity, kinematics,
 };
@@ -138,9 +138,7 @@ pub fn base_relative_frame<S: Real>(
                 spatial += (body.velocity - base).cross(body.subspace * v[k + 5]);
                 k = model.nodes()[k].parent;
             }
-            // the point's acceleration: a + α × p + ω × (v + ω × p)
-            let linear = spatial.at(p) + twist.angular.cross(twist.at(p));
-            out.drift = Motion::new(linear, spatial.angular);
+            out.drift = point_acceleration(spatial, twist, p);
         },
     );
 }

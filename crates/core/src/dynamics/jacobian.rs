@@ -45,8 +45,9 @@ pub(super) fn write_column<S: Real>(
     }
 }
 
+/// The axes of the frame at hand.
 #[inline(always)]
-fn unit_axes<S: Real>() -> [Vec3<S>; 3] {
+pub(super) fn unit_axes<S: Real>() -> [Vec3<S>; 3] {
     let (o, l) = (S::of(0.0), S::of(1.0));
     [Vec3::new(l, o, o), Vec3::new(o, l, o), Vec3::new(o, o, l)]
 }
@@ -78,7 +79,7 @@ pub fn frame_acceleration<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame
     classical(model, data, q, frame, spatial)
 }
 
-/// A body's spatial acceleration as that of a point: `a + α × p + ω × (v + ω × p)`, in W axes.
+/// A body's spatial acceleration as that of a frame's origin, [`point_acceleration`], in W axes.
 ///
 /// A spatial acceleration is the rate of the velocity field at a fixed point; the last term
 /// follows the material point instead.
@@ -93,6 +94,12 @@ pub(super) fn classical<S: Real>(
     let frame = &model.frames()[frame];
     let (rot_wb, p) = (base_rotation(q), frame_origin_b(data, frame));
     let velocity = data.bodies[frame.body].velocity;
-    let linear = spatial.at(p) + velocity.angular.cross(velocity.at(p));
-    Motion::new(rot_wb * linear, rot_wb * spatial.angular)
+    let acceleration = point_acceleration(spatial, velocity, p);
+    Motion::new(rot_wb * acceleration.linear, rot_wb * acceleration.angular)
+}
+
+/// `a + α × p + ω × (v + ω × p)`, and `α`: of the point at `p` of a body with this spatial acceleration and velocity.
+#[inline(always)]
+pub(super) fn point_acceleration<S: Real>(spatial: Motion<S>, velocity: Motion<S>, p: Vec3<S>) -> Motion<S> {
+    Motion::new(spatial.at(p) + velocity.angular.cross(velocity.at(p)), spatial.angular)
 }

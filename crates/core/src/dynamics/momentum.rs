@@ -3,7 +3,7 @@
 use super::data::Data;
 use super::kinematics::base_rotation;
 use crate::model::Model;
-use crate::spatial::{Force, Motion, Real, SpatialInertia, Vec3};
+use crate::spatial::{Force, Mat3, Motion, Real, SpatialInertia, Vec3};
 
 /// Momentum of the whole robot in W axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,12 +34,16 @@ pub fn momentum<S: Real>(data: &Data<S>, q: &[S]) -> Momentum<S> {
         #[inline(always)]
         || {
             let (inertia, h) = composite_momentum(data);
-            // L_com = L − c × p
-            let about_com = h.angular - inertia.com().cross(h.linear);
-            let rot_wb = base_rotation(q);
-            Momentum { linear: rot_wb * h.linear, angular: rot_wb * about_com }
+            about_com(h, inertia.com(), &base_rotation(q))
         },
     )
+}
+
+/// A momentum in B about the base's origin, in W axes about the centre of mass: `L_com = L − c × p`.
+#[inline(always)]
+fn about_com<S: Real>(h: Force<S>, com: Vec3<S>, rot_wb: &Mat3<S>) -> Momentum<S> {
+    let angular = h.angular - com.cross(h.linear);
+    Momentum { linear: *rot_wb * h.linear, angular: *rot_wb * angular }
 }
 
 /// Centre of mass in W, m. Needs [`positions`](super::positions).
@@ -79,9 +83,7 @@ pub(crate) fn motion_of_whole<S: Real>(
 ) -> (Momentum<S>, S, Vec3<S>) {
     let (inertia, h, energy) = sums(model, data, v);
     let (rot_wb, com) = (base_rotation(q), inertia.com());
-    let about_com = h.angular - com.cross(h.linear);
-    let momentum = Momentum { linear: rot_wb * h.linear, angular: rot_wb * about_com };
-    (momentum, energy, rot_wb * com + Vec3::from_slice(q))
+    (about_com(h, com, &rot_wb), energy, rot_wb * com + Vec3::from_slice(q))
 }
 
 /// Inertia, momentum (both in B about the base's origin) and kinetic energy of the whole robot.

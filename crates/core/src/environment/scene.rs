@@ -98,6 +98,12 @@ impl<'a> Scene<'a> {
         0.5 * (self.interval.0 + self.interval.1)
     }
 
+    /// Refuses any but one wrench per body.
+    fn check_length(&self, wrenches: &[Wrench]) -> Result<(), EnvironmentError> {
+        let (expected, got) = (self.bodies.len(), wrenches.len());
+        if expected == got { Ok(()) } else { Err(EnvironmentError::WrongLength { expected, got }) }
+    }
+
     /// Each body with its wrench.
     ///
     /// # Errors
@@ -106,10 +112,7 @@ impl<'a> Scene<'a> {
         &self,
         wrenches: &'w mut [Wrench],
     ) -> Result<impl Iterator<Item = (&'a BodyState, &'w mut Wrench)>, EnvironmentError> {
-        let (expected, got) = (self.bodies.len(), wrenches.len());
-        if expected != got {
-            return Err(EnvironmentError::WrongLength { expected, got });
-        }
+        self.check_length(wrenches)?;
         Ok(self.bodies.iter().zip(wrenches.iter_mut()))
     }
 
@@ -122,10 +125,7 @@ impl<'a> Scene<'a> {
         &self,
         wrenches: &'w mut [Wrench],
     ) -> Result<impl Iterator<Item = (Group<'a>, &'w mut [Wrench])>, EnvironmentError> {
-        let (expected, got) = (self.bodies.len(), wrenches.len());
-        if expected != got {
-            return Err(EnvironmentError::WrongLength { expected, got });
-        }
+        self.check_length(wrenches)?;
         let groups = self.bodies.chunks(S::LANES).enumerate();
         let groups = groups.map(|(k, bodies)| Group { first: k * S::LANES, bodies });
         Ok(groups.zip(wrenches.chunks_mut(S::LANES)))

@@ -1,10 +1,11 @@
 //! Derivatives of forward dynamics.
 
 use super::inverse_mass::inverse_mass;
-use super::terms::{Derivatives, Row, unit_axes};
+use super::terms::{Derivatives, Row};
 use crate::dynamics::aba::forward_dynamics;
 use crate::dynamics::data::Data;
 use crate::dynamics::external::FrameWrench;
+use crate::dynamics::jacobian::unit_axes;
 use crate::model::Model;
 use crate::spatial::{Real, Vec3};
 

@@ -1,8 +1,9 @@
 //! Derivatives of the reduced model of a free-floating manipulator.
 
-use super::terms::{Derivatives, Row, components, unit_axes};
+use super::terms::{Derivatives, Row, components};
 use crate::dynamics::data::Data;
 use crate::dynamics::external::{FrameWrench, apply_external};
+use crate::dynamics::jacobian::{point_acceleration, unit_axes};
 use crate::dynamics::kinematics::{base_rotation, frame_origin_b, kinematics};
 use crate::dynamics::rnea::inverse_dynamics_recursion;
 use crate::model::Model;
@@ -133,9 +134,7 @@ impl<S: Real> Point<S> {
     fn new(rot_wb: Mat3<S>, position: Vec3<S>, data: &Data<S>, body: usize) -> Self {
         let (v, a) = (data.bodies[body].velocity, data.bodies[body].acceleration);
         let velocity = Motion::new(v.at(position), v.angular);
-        // a + α × p + ω × ẋ
-        let linear = a.at(position) + v.angular.cross(velocity.linear);
-        Self { rot_wb, position, velocity, acceleration: Motion::new(linear, a.angular) }
+        Self { rot_wb, position, velocity, acceleration: point_acceleration(a, v, position) }
     }
 
     /// A spatial motion, seen there.

@@ -1,6 +1,8 @@
 //! What every derivative is made of, body by body.
 
 use crate::dynamics::data::{BodyData, Data};
+use crate::dynamics::jacobian::unit_axes;
+use crate::dynamics::rnea::net_force;
 use crate::model::{Model, Node};
 use crate::spatial::{Coriolis, Force, Motion, Real, SpatialInertia, Vec3};
 
@@ -90,9 +92,7 @@ impl<S: Real> Derivatives<S> {
             let momentum = body.inertia.momentum(body.velocity);
             term.inertia = body.inertia;
             term.coriolis = Coriolis::of(&body.inertia, body.velocity, momentum);
-            // f = I a + v ×* I v − F
-            term.force = body.inertia.momentum(body.acceleration) + body.velocity.cross_force(momentum)
-                - body.external;
+            term.force = net_force(body);
         }
         for k in (1..nodes.len()).rev() {
             let (before, rest) = terms.split_at_mut(k);
@@ -163,11 +163,4 @@ impl<S: Real> Derivatives<S> {
 #[inline(always)]
 pub(super) fn components<S: Real>(f: Force<S>) -> [S; 6] {
     [f.linear.x, f.linear.y, f.linear.z, f.angular.x, f.angular.y, f.angular.z]
-}
-
-/// The base's axes in B.
-#[inline(always)]
-pub(super) fn unit_axes<S: Real>() -> [Vec3<S>; 3] {
-    let (o, l) = (S::of(0.0), S::of(1.0));
-    [Vec3::new(l, o, o), Vec3::new(o, l, o), Vec3::new(o, o, l)]
 }
