@@ -42,6 +42,19 @@ def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progr
         yield Progress(_Mover(bar, task), lambda doing: bar.update(task, completed=duration_s, doing=doing))
 
 
+@contextmanager
+def doing(name: str, *, quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Something that takes seconds: says on a terminal what, and what part of it."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda part: None
+        return
+    from rich.console import Console
+    from rich.markup import escape
+
+    with Console(stderr=True).status(escape(name)) as status:
+        yield lambda part: status.update(escape(f"{name}: {part}"))
+
+
 class _Mover:
     """Moves the bar; a resumed run begins where it was stopped, and what came before counts for no speed."""
 

@@ -27,6 +27,7 @@ def add_space(
     """3-D axes in a part of a figure (left, bottom, width, height from 0 to 1); angles in degrees."""
     axes: Axes3D = figure.add_axes(place, projection="3d")
     axes.set_in_layout(False)
+    axes.patch.set_visible(False)  # beside others, whose labels it would cover
     axes.view_init(elev=elevation, azim=azimuth)
     axes.tick_params(labelsize=SMALL, colors=INK, pad=-2)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):

@@ -57,7 +57,7 @@ def desired_trajectory(trace: Trace, model: Model) -> Figure:
         axes.scatter(*path[row], color=OBTAINED, s=14, depthshade=False, zorder=12)
         where = f"{('start', 'middle', 'end')[place]}, t = {time[row]:.4g} {unit[6:-1]}"
         figure.text(0.17 + place * 0.325, 0.945, where, fontsize=NORMAL, ha="center", color=INK)
-        fit(axes, corners, zoom=1.13)
+        fit(axes, corners, zoom=1.08)
         label(axes, "m")
     return figure
 

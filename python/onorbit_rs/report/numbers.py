@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from onorbit_rs.figures.style import with_prefix
 from onorbit_rs.output.summary import CHECKS
 
 # longest first: `_rad_s` ends in `_s` too
@@ -12,6 +13,17 @@ _UNITS = (
     ("_rad_s", "rad/s"), ("_m_s2", "m/s²"), ("_nm", "N m"), ("_rad", "rad"), ("_rel", "relative"),
     ("_m", "m"), ("_s", "s"), ("_j", "J"),
 )  # fmt: skip
+_SCALED = ("m", "rad", "N m", "J", "m/s²", "rad/s")
+_NAMES = {
+    "wall_s": "wall clock of the loop",
+    "real_time_factor": "times real time",
+    "rows": "rows of the trace",
+    "rereferenced": "times given another reference",
+    "velocity_eci_source": "inertial velocity from",
+    "onorbit_rs_version": "onorbit_rs",
+    "python_version": "Python",
+    "numpy_version": "numpy",
+}
 _GROUPS = (
     ("Tracking", ("tracking_", "control_")),
     ("Motion", ("joint_", "base_")),
@@ -51,20 +63,25 @@ def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
 def row(key: str, value: Any) -> Row:
     """One entry with its unit, which its key ends in."""
     ending, unit = next(((ending, unit) for ending, unit in _UNITS if key.endswith(ending)), ("", ""))
-    name = key.removesuffix(ending) if unit != "relative" else key.removesuffix("_rel")
-    words = name.replace("_eci_", " inertial ").replace("_", " ")
-    return Row(key, words, value, _shown(value, unit), "" if unit == "relative" else unit)
+    words = _NAMES.get(key) or key.removesuffix(ending).replace("_", " ")
+    shown = value
+    if unit in _SCALED and isinstance(value, float) and value != 0.0:
+        factor, unit = with_prefix(abs(value), unit)
+        shown = factor * value
+    text = _shown(shown)
+    if unit == "rad" or (unit == "mrad" and abs(value) > 0.01):
+        text += f" ({math.degrees(value):.3g}°)" if isinstance(value, float) and value else ""
+    return Row(key, words, value, text, "" if unit == "relative" else unit)
 
 
-def _shown(value: Any, unit: str) -> str:
+def _shown(value: Any) -> str:
     if value is None:
         return "not finite"
     if isinstance(value, bool):
         return "yes" if value else "no"
     if not isinstance(value, float):
         return str(value) if value != "" else "none"
-    text = f"{value:.4g}"
-    return f"{text} ({math.degrees(value):.3g}°)" if unit == "rad" and abs(value) > 1e-3 else text
+    return f"{value:.4g}"
 
 
 def checks(summary: dict[str, Any]) -> list[tuple[Row, bool | None]]:

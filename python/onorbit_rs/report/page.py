@@ -72,7 +72,7 @@ def _verdict(summary: dict[str, Any]) -> str:
 
 def _remarks(summary: dict[str, Any], remarks: Sequence[str]) -> str:
     """Warnings of the robot's file, and what the page had to leave out."""
-    said = [part for part in str(summary.get("warnings") or "").split("; ") if part]
+    said = [str(summary["warnings"])] if summary.get("warnings") else []
     exceeded = str(summary.get("joint_limits_exceeded") or "")
     said += [f"joint limits were exceeded: {exceeded}"] if exceeded else []
     items = "".join(f"<li>{escape(text)}</li>" for text in (*said, *remarks))
@@ -104,7 +104,7 @@ def _checks(summary: dict[str, Any]) -> str:
         f'{escape(row.unit)}</td><td class="{words[holds][0]}">{words[holds][1]}</td></tr>'
         for row, holds in checks(summary)
     )
-    return f"<table>{lines}</table>" if lines else "<p>This run carries no certificate.</p>"
+    return f'<table class="checks">{lines}</table>' if lines else "<p>This run carries no certificate.</p>"
 
 
 def _figure(picture: Picture) -> str:
@@ -113,6 +113,6 @@ def _figure(picture: Picture) -> str:
     kind = ' class="wide"' if picture.is_wide else ""
     source = f"data:{_TYPES[picture.kind]};base64,{content}"
     return (
-        f'<figure id="figure-{name}"{kind}><img alt="{caption}" src="{source}">'
+        f'<figure id="figure-{name}"{kind}><div class="scroll"><img alt="{caption}" src="{source}"></div>'
         f"<figcaption>{caption} <code>{name}</code></figcaption></figure>"
     )
