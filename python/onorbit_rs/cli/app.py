@@ -34,12 +34,12 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "run": run,
     "resume": resume,
     "list": list_,
-    "new": new,
     "check": check,
     "show": show,
-    "report": report,
     "info": info,
     "convert": convert,
+    "new": new,
+    "report": report,
 }
 for name, command in COMMANDS.items():
     app.command(name=name)(command)
