@@ -20,10 +20,10 @@ def compare(elements: ElementSet) -> tuple[float, float]:
     peer, orbit = api.Satrec.twoline2rv(elements.line1, elements.line2), elements.orbit()
     stop = elements.rows[-1][0]
     worst, disagreements = 0.0, 0
-    for minutes in np.linspace(-stop, stop + 200.0, TIMES):
-        code, r, v = peer.sgp4_tsince(minutes)
+    for seconds in 60.0 * np.linspace(-stop, stop + 200.0, TIMES):
+        code, r, v = peer.sgp4_tsince(seconds / 60.0)
         try:
-            ours = orbit.state(60.0 * minutes)
+            ours = orbit.state(seconds)
         except Sgp4Error as error:
             disagreements += error.code != code
             continue
