@@ -15,6 +15,7 @@ from onorbit_rs.cli.info import info
 from onorbit_rs.cli.list import list_
 from onorbit_rs.cli.run import resume, run
 from onorbit_rs.cli.show import show
+from onorbit_rs.cli.validate import validate
 from onorbit_rs.exceptions import OnOrbitError
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "show": show,
     "info": info,
     "convert": convert,
+    "validate": validate,
 }
 for name, command in COMMANDS.items():
     app.command(name=name)(command)

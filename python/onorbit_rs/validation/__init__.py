@@ -29,9 +29,9 @@ from onorbit_rs.validation import (
     secular,
     sgp4,
 )
-from onorbit_rs.validation.case import Case, Gate, Verdict
+from onorbit_rs.validation.case import Case, Check, Gate, Verdict
 
-__all__ = ["CASES", "Case", "Gate", "Verdict", "run", "select"]
+__all__ = ["CASES", "Case", "Check", "Gate", "Verdict", "run", "select"]
 
 CASES: tuple[Case, ...] = tuple(
     case
@@ -72,7 +72,7 @@ def run(
     threads: int | None = None,
     each: Callable[[Case], object] = lambda case: None,
 ) -> list[Verdict]:
-    """Run cases side by side and return a verdict for each of their gates, in their order.
+    """Run cases side by side; their verdicts come in their order.
 
     Parameters
     ----------
@@ -85,11 +85,11 @@ def run(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # what the robots' files are like is another command's
         with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
-            jobs = {pool.submit(case.verdicts): case for case in cases}
+            jobs = {pool.submit(case.judge): case for case in cases}
             try:
                 for job in as_completed(jobs):
                     each(jobs[job])
             except BaseException:  # Ctrl-C: what has not begun need not
                 pool.shutdown(cancel_futures=True)
                 raise
-    return [verdict for job in jobs for verdict in job.result()]
+    return [job.result() for job in jobs]

@@ -157,7 +157,7 @@ def bundled(name: str) -> tuple[float, float]:
     return compare(oo.robots.load(name), tree_of(oo.robots.path(name)), 1)
 
 
-GATES = (Gate("acceleration", GATE, "1"), Gate("acceleration by M*, c*", GATE, "1"))
+GATES = (Gate("acceleration", GATE), Gate("acceleration by M*, c*", GATE))
 
 CASES = (
     Case(

@@ -96,7 +96,7 @@ def bundled(name: str) -> Any:
 
 def case(name: str, measure: Callable[[], Any]) -> Case:
     """With one gate for every kernel."""
-    gates = tuple(Gate(kernel, 1e-12, "1") for kernel in KERNELS)
+    gates = tuple(Gate(kernel, 1e-12) for kernel in KERNELS)
     return Case("engines", name, "Pinocchio", gates, measure, needs="pinocchio")
 
 

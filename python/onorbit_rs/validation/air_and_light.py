@@ -131,22 +131,22 @@ CASES = (
     *(
         Case(
             "light", f"{name}, 24 days", "GMAT, by way of nyx-space/nyx, tests",
-            (Gate("position, of what light does", 1e-3, "1"),), partial(from_gmat, name),
+            (Gate("position, of what light does", 1e-3),), partial(from_gmat, name),
         )
         for name in ("high circle", "ellipse")
     ),
     Case(
         "light", "low circle with 356 eclipses, 24 days", "nyx-space documentation, srp_earth_leo",
-        (Gate("position along the track, of what light does", 1e-3, "1"),), from_nyx,
+        (Gate("position along the track, of what light does", 1e-3),), from_nyx,
     ),
     Case(
         "light", "the node of a balloon, 600 days",
         "Curtis, Orbital Mechanics, example 12.9, read off graphs",
-        (Gate("change of the node", 0.03, "1"),), balloon_node,
+        (Gate("change of the node", 0.03),), balloon_node,
     ),
     Case(
         "air", "decay of a circle at 250 km in 1e5 s",
         "Fitzpatrick, An Introduction to Celestial Mechanics, 2012, eq. 10.148",
-        (Gate("loss of height", 0.01, "1"), Gate("loss of semi-major axis", 0.003, "1")), decay,
+        (Gate("loss of height", 0.01), Gate("loss of semi-major axis", 0.003)), decay,
     ),
 )  # fmt: skip

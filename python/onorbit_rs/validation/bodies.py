@@ -139,7 +139,7 @@ def iiwa() -> tuple[float, float]:
 
 CASES = (
     *(
-        Case("bodies", f"{name} on a held base", RBDL, (Gate("acceleration", 1e-12, "1"),), partial(chain, name))
+        Case("bodies", f"{name} on a held base", RBDL, (Gate("acceleration", 1e-12),), partial(chain, name))
         for name in CHAINS
     ),
     Case(
@@ -152,6 +152,6 @@ CASES = (
     ),
     Case(
         "bodies", "the flange of an iiwa 14", DRAKE,
-        (Gate("position", 1e-14, "m"), Gate("rotation", 1e-14, "1")), iiwa,
+        (Gate("position", 1e-14, "m"), Gate("rotation", 1e-14)), iiwa,
     ),
 )  # fmt: skip

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import csv
 import importlib.util
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from onorbit_rs.exceptions import OnOrbitError
 
 INSTALL = {"pinocchio": "pip install pin", "mujoco": "pip install mujoco", "sgp4": "pip install sgp4"}
 """How to get the engines that some cases ask; none is needed to use the package."""
@@ -17,11 +17,63 @@ INSTALL = {"pinocchio": "pip install pin", "mujoco": "pip install mujoco", "sgp4
 
 @dataclass(frozen=True)
 class Gate:
-    """The error of ``quantity`` may be ``limit``, in ``unit`` (``"1"``: a share)."""
+    """The error of ``quantity`` may be ``limit``, in ``unit`` (empty for a share or a count)."""
 
     quantity: str
     limit: float
+    unit: str = ""
+
+    def __str__(self) -> str:
+        """``≤ 0.1 m``."""
+        return f"≤ {self.limit:.3g} {self.unit}".rstrip()
+
+
+@dataclass(frozen=True)
+class Check:
+    """One error against its gate; both are None where the case was skipped, the error where it broke."""
+
+    quantity: str
     unit: str
+    error: float | None
+    gate: float
+    passed: bool | None
+
+    @property
+    def share(self) -> float:
+        """Of the gate that the error takes."""
+        if self.error is None or self.error != self.error:
+            return float("inf")
+        return 0.0 if self.error == 0.0 else self.error / self.gate if self.gate else float("inf")
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of a case: ``passed`` is None where it was skipped, and ``note`` says why."""
+
+    family: str
+    case: str
+    source: str
+    passed: bool | None
+    checks: tuple[Check, ...]
+    note: str = ""
+
+    @property
+    def nearest(self) -> Check:
+        """The check that comes nearest to its gate, or is furthest beyond it."""
+        return max(self.checks, key=lambda check: check.share)
+
+    def plain(self) -> dict[str, Any]:
+        """For JSON: the nearest check beside the case's name and source, then all of them."""
+        head = {"family": self.family, "case": self.case, "source": self.source}
+        checks = [_plain(check) for check in self.checks]
+        tail = {"passed": self.passed, "note": self.note, "checks": checks}
+        return head | _plain(self.nearest) | tail
+
+
+def _plain(check: Check) -> dict[str, Any]:
+    """JSON has no NaN."""
+    is_finite = check.error is not None and math.isfinite(check.error)
+    return asdict(check) | {"error": check.error if is_finite else None}
 
 
 @dataclass(frozen=True)
@@ -39,50 +91,29 @@ class Case:
     measure: Callable[[], Sequence[float]]
     needs: str = ""
 
-    def verdicts(self) -> list[Verdict]:
-        """Run it; what raises has failed, and what cannot be run is neither passed nor failed."""
+    def judge(self) -> Verdict:
+        """Run it; what raises has failed, and what cannot be run has neither passed nor failed."""
         if self.needs and importlib.util.find_spec(self.needs) is None:
-            return self._without_error(None, f"{self.needs} is not installed: {INSTALL[self.needs]}")
+            return self._without_errors(None, f"{self.needs} is not installed: {INSTALL[self.needs]}")
         try:
             errors = [float(error) for error in self.measure()]
-            if len(errors) != len(self.gates):
-                raise ValueError(f"{len(errors)} errors for {len(self.gates)} gates")
-        except (OnOrbitError, ArithmeticError, ImportError, LookupError, ValueError) as error:
-            return self._without_error(False, f"{type(error).__name__}: {error}")
-        pairs = zip(self.gates, errors, strict=True)
-        # a NaN is not within any gate
-        return [Verdict.of(self, gate, error, error <= gate.limit) for gate, error in pairs]
+            pairs = list(zip(self.gates, errors, strict=True))
+        except Exception as error:  # whatever it is, the others run on
+            return self._without_errors(False, f"{type(error).__name__}: {error}")
+        # a NaN is within no gate
+        checks = [
+            Check(gate.quantity, gate.unit, error, gate.limit, error <= gate.limit) for gate, error in pairs
+        ]
+        passed = all(check.passed for check in checks)
+        return Verdict(self.family, self.name, self.source, passed, tuple(checks))
 
-    def _without_error(self, passed: bool | None, note: str) -> list[Verdict]:
-        return [Verdict.of(self, gate, None, passed, note) for gate in self.gates]
+    def not_run(self) -> Verdict:
+        """Its gates alone."""
+        return self._without_errors(None, "")
 
-
-@dataclass(frozen=True)
-class Verdict:
-    """One line of the table: ``error`` against ``gate``. ``passed`` is None where the case was skipped."""
-
-    family: str
-    case: str
-    source: str
-    quantity: str
-    unit: str
-    error: float | None
-    gate: float
-    passed: bool | None
-    note: str
-
-    @staticmethod
-    def of(case: Case, gate: Gate, error: float | None, passed: bool | None, note: str = "") -> Verdict:
-        """With what the case and its gate say."""
-        return Verdict(
-            case.family, case.name, case.source, gate.quantity, gate.unit, error, gate.limit, passed, note
-        )
-
-    def plain(self) -> dict[str, Any]:
-        """For JSON, which has no NaN."""
-        data = asdict(self)
-        is_number = self.error is not None and abs(self.error) < float("inf")
-        return data | {"error": self.error if is_number else None}
+    def _without_errors(self, passed: bool | None, note: str) -> Verdict:
+        checks = [Check(gate.quantity, gate.unit, None, gate.limit, passed) for gate in self.gates]
+        return Verdict(self.family, self.name, self.source, passed, tuple(checks), note)
 
 
 def table(name: str) -> list[dict[str, str]]:

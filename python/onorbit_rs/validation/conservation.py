@@ -113,13 +113,13 @@ CASES = (
     Case(
         "conservation", "100 s of free motion of the humanoid", "Newton and Euler: nothing acts on the whole",
         (
-            Gate("linear momentum", 1e-12, "1"), Gate("angular momentum", 1e-12, "1"),
-            Gate("kinetic energy", 1e-8, "1"), Gate("centre of mass off its line", 1e-7, "m"),
+            Gate("linear momentum", 1e-12), Gate("angular momentum", 1e-12),
+            Gate("kinetic energy", 1e-8), Gate("centre of mass off its line", 1e-7, "m"),
         ), free_motion,
     ),
     Case(
         "conservation", "the humanoid on a circular orbit, 300 s", "Jacobi's integral",
-        (Gate("energy in the turning frame", 1e-8, "1"),), in_orbit,
+        (Gate("energy in the turning frame", 1e-8),), in_orbit,
     ),
     Case(
         "conservation", "a slider that friction stops", "Coulomb: v²/2a",

@@ -96,7 +96,7 @@ CASES = (
     ),
     Case(
         "kepler", "a hyperbola, 4 h", "Curtis, Orbital Mechanics, example 3.5",
-        (Gate("distance", 1e-4, "1"), Gate("speed", 1e-3, "1")), hyperbola,
+        (Gate("distance", 1e-4), Gate("speed", 1e-3)), hyperbola,
     ),
     Case(
         "kepler", "a hyperbola by its elements",

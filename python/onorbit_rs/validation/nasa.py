@@ -94,7 +94,7 @@ STILL = (0.0, 0.0, 0.0)
 RUNS = {
     "2": Flown("the station turns freely", iss, TYPICAL),
     "3A": Flown(
-        "GGM02C to degree 4, by which NASA's simulators differ by 1.5 m", iss, TYPICAL,
+        "gravity of degree 4", iss, TYPICAL,
         lambda: [field("ggm02c", 4)], turning_earth, position_gate=1.5,
     ),
     "6A": Flown(

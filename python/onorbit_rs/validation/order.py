@@ -90,19 +90,19 @@ CASES = (
         Case(
             "order", f"{NAMES[integrator]} on a tree of eight links, half the step",
             f"order {EXPECTED[integrator]:g}",
-            tuple(Gate(f"order in {what}", limit, "1") for what in ("position", "attitude", "joints")),
+            tuple(Gate(f"order in {what}", limit) for what in ("position", "attitude", "joints")),
             partial(orders, integrator),
         )
         for integrator, limit in (("rk4", 0.4), ("semi_implicit_euler", 0.15))
     ),
     Case(
         "order", "Dormand and Prince's pair, tolerances from 1e-4 to 1e-9", "within a factor of ten over a turn",
-        (Gate("attitude, in tolerances", 10.0, "1"),), adaptive,
+        (Gate("attitude, in tolerances", 10.0),), adaptive,
     ),
     *(
         Case(
             "order", f"a path through {given}, half the gaps", f"order {expected:g}",
-            (Gate("order", 0.6, "1"),), partial(path, given),
+            (Gate("order", 0.6),), partial(path, given),
         )
         for given, expected in PATHS.items()
     ),

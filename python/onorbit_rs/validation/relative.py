@@ -72,6 +72,6 @@ CASES = (
     Case(
         "relative", "a body integrated beside its target, two revolutions",
         "Hill, American Journal of Mathematics 1, 1878: the closed form",
-        (Gate("position", 0.05, "m"), Gate("length by height, off 2", 0.02, "1")), ellipse,
+        (Gate("position", 0.05, "m"), Gate("length by height, off 2", 0.02)), ellipse,
     ),
 )  # fmt: skip

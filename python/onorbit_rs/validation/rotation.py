@@ -92,7 +92,7 @@ CASES = (
     *(
         Case(
             "rotation", f"small libration {where} of the orbit", f"linear theory: {period_s:g} s",
-            (Gate("period", 1e-4, "1"),), partial(libration, axis, period_s),
+            (Gate("period", 1e-4),), partial(libration, axis, period_s),
         )
         for axis, period_s, where in ((2, 3259.797, "in the plane"), (1, 2808.169, "out of the plane"))
     ),

@@ -98,6 +98,6 @@ CASES = (
     ),
     Case(
         "sgp4", "33 sets over their times: what is refused", f"{SOURCE}; brandon-rhodes/python-sgp4, tests",
-        (Gate("wrong error codes", 0.0, "1"),), wrong_codes,
+        (Gate("wrong error codes", 0.0),), wrong_codes,
     ),
 )  # fmt: skip
