@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trees import TOOL, State, Tree, build, deviation
 
 import onorbit_rs as oo
+from onorbit_rs.validation.trees import TOOL, State, Tree, build, deviation
 
 TABLE = json.loads((Path(__file__).parents[1] / "fixtures" / "pinocchio_tables.json").read_text())
 CASES = [(case, state) for case in TABLE["cases"] for state in case["states"]]

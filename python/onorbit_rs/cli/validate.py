@@ -31,7 +31,10 @@ JsonOption = Annotated[bool, typer.Option("--json", help="As a list, for program
 
 
 def validate(
-    only: OnlyOption = None, as_list: ListOption = False, in_full: AllOption = False, as_json: JsonOption = False
+    only: OnlyOption = None,
+    as_list: ListOption = False,
+    in_full: AllOption = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Run the published cases and compare: exit code 0 if none fails, else 1."""
     from onorbit_rs.validation import select
@@ -91,17 +94,18 @@ def _print(verdicts: Sequence[Verdict], *, in_full: bool) -> None:
     widths = _widths([row for _, some in rows for row in some], console.width)
     for family, members in itertools.groupby(rows, lambda row: row[0].family):
         console.print(f"[bold]{text(family)}[/bold]")
-        for source, some in itertools.groupby(members, lambda row: row[0].source):
+        for source, group in itertools.groupby(members, lambda row: row[0].source):
+            some = list(group)
             console.print(f"  [dim]{text(source)}[/dim]", soft_wrap=True)
             table = new_table()
             for width in (2, *widths):
                 table.add_column(width=width)
-            for verdict, lines in some:
+            for _, lines in some:
                 for *cells, outcome in lines:
                     table.add_row("", *map(text, cells), _WORDS[outcome])
-                if verdict.note:
-                    table.add_row("", f"[dim]{text(verdict.note)}[/dim]")
             console.print(table)
+            for note in dict.fromkeys(verdict.note for verdict, _ in some if verdict.note):
+                console.print(f"    [yellow]{text(note)}[/yellow]", soft_wrap=True)
 
 
 _WORDS = {True: "[green]pass[/green]", False: "[red]FAIL[/red]", None: "[yellow]skipped[/yellow]"}
@@ -113,7 +117,7 @@ def _rows(verdict: Verdict, *, in_full: bool) -> list[tuple[str, str, str, str, 
 
     failed = [check for check in verdict.checks if check.passed is False and check.error is not None]
     shown = verdict.checks if in_full else failed or [verdict.nearest]
-    rows = []
+    rows: list[tuple[str, str, str, str, bool | None]] = []
     for check in shown:
         error = "" if check.error is None else f"{check.error:.1e} {check.unit}".rstrip()
         limit = str(Gate(check.quantity, check.gate, check.unit))

@@ -1,4 +1,4 @@
-"""Published cases, and what must be so without a publication, run through the public API: ``onorbit validate``.
+"""Published cases, and what must be so anyway, run through the public API: ``onorbit validate``.
 
 One file per family; each lists its ``CASES``. The numbers are short tables with their sources.
 """

@@ -99,9 +99,10 @@ def tree_of(file: Path) -> Tree:
 
 
 class MujocoRobot:
-    """The tree in MuJoCo; joints in our order."""
+    """A tree in MuJoCo, its joints in our order."""
 
     def __init__(self, tree: Tree, joint_names: list[str]) -> None:
+        """Written as MJCF and read by MuJoCo."""
         mujoco: Any = importlib.import_module("mujoco")
         self.mujoco = mujoco
         self.model = mujoco.MjModel.from_xml_string(mjcf(tree))

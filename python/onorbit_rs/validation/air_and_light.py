@@ -14,7 +14,10 @@ from onorbit_rs.validation.secular import elements
 MU = 3.986004415e14
 RADIUS = 6_378_136.3  # GMAT's Earth
 DAYS_24 = 24 * 86_400.0
-FLUX, REFLECTIVITY = 1367.0, 1.8  # W/m²; C_R as the script of the run has it (tests/GMAT_scripts/prop/srp.script)
+FLUX, REFLECTIVITY = (
+    1367.0,
+    1.8,
+)  # W/m²; C_R as the script of the run has it (tests/GMAT_scripts/prop/srp.script)
 
 # GMAT, as published with nyx' tests: 300 kg, 16 m², epoch 2000-01-01T00:00:00 TAI; semi-major axis km,
 # eccentricity, inclination degrees; position after 24 days, km
@@ -131,13 +134,14 @@ CASES = (
     *(
         Case(
             "light", f"{name}, 24 days", "GMAT, by way of nyx-space/nyx, tests",
-            (Gate("position, of what light does", 1e-3),), partial(from_gmat, name),
+            (Gate("position, by what light does", 1e-3),), partial(from_gmat, name),
         )
         for name in ("high circle", "ellipse")
     ),
     Case(
-        "light", "low circle with 356 eclipses, 24 days", "nyx-space documentation, srp_earth_leo",
-        (Gate("position along the track, of what light does", 1e-3),), from_nyx,
+        "light", "low circle with 356 eclipses, along track, 24 days",
+        "nyx-space documentation, srp_earth_leo",
+        (Gate("position, by what light does", 1e-3),), from_nyx,
     ),
     Case(
         "light", "the node of a balloon, 600 days",

@@ -104,7 +104,7 @@ def free_point() -> tuple[float, float]:
     return float(np.abs(position).max()), float(np.abs(moves).max())
 
 
-# where each joint of the iiwa 14 stands on the link before it: xyz in m, roll and pitch and yaw in quarter turns
+# where each joint of the iiwa 14 stands on the link before it: xyz in m; roll, pitch, yaw in quarter turns
 IIWA = [
     ([0, 0, 0.1575], [0, 0, 0]), ([0, 0, 0.2025], [1, 0, 2]), ([0, 0.2045, 0], [1, 0, 2]),
     ([0, 0, 0.2155], [1, 0, 0]), ([0, 0.1845, 0], [-1, 2, 0]), ([0, 0, 0.2155], [1, 0, 0]),

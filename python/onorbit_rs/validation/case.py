@@ -10,7 +10,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-
 INSTALL = {"pinocchio": "pip install pin", "mujoco": "pip install mujoco", "sgp4": "pip install sgp4"}
 """How to get the engines that some cases ask; none is needed to use the package."""
 

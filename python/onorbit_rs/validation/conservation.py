@@ -23,7 +23,7 @@ def humanoid() -> tuple[oo.Model, Any]:
 
 
 def free_motion() -> tuple[float, float, float, float]:
-    """100 s of a torso that tumbles while its arm swings: what its momentum, energy and centre of mass drift by."""
+    """Drifts of momentum, energy and centre of mass of a torso that tumbles while its arm swings."""
     model, q = humanoid()
     trace = oo.Simulation(model, q, 0.5 * TUMBLING, time_step=STEP, record_every=10).run(100.0)
     certificate = {name: value for name, value, *_ in trace.certificate()}
@@ -78,7 +78,7 @@ def jacobi(model: oo.Model, orbit: oo.Kepler, trace: oo.Trace, rows: slice) -> A
 
 
 def in_orbit() -> tuple[float]:
-    """Drift of that integral over 300 s, as a share of the kinetic energy: the arm limp, 37 m from the reference."""
+    """Drift of that integral as a share of the kinetic energy, 37 m from the reference, the arm limp."""
     model, q = humanoid()
     q[:3] = [20.0, -30.0, 10.0]  # where tides are not small
     orbit = oo.Kepler(semi_major_axis=RADIUS, inclination=np.radians(51.6), mean_anomaly=0.0)

@@ -30,7 +30,8 @@ def orientation() -> tuple[float]:
 
 CASES = (
     Case(
-        "earth", "celestial to terrestrial axes, 2007-04-05", "IAU SOFA, Tools for Earth Attitude, IAU 2006/2000A",
+        "earth", "celestial to terrestrial axes, 2007-04-05",
+        "IAU SOFA, Tools for Earth Attitude, IAU 2006/2000A",
         (Gate("orientation", 5e-3, "arcsec"),), orientation,
     ),
 )  # fmt: skip

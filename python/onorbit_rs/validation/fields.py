@@ -14,9 +14,9 @@ MU, RADIUS = 3.986004415e14, 6_378_136.3
 def field(name: str, degree: int, order: int | None = None) -> oo.GravityField:
     """One of them up to a degree.
 
-    ``ggm02c`` (Center for Space Research, University of Texas, 2004): degree 8, zero-tide. ``jgm3`` (Tapley and
-    others, 1996): degree 12, free of the permanent tide as GMAT has it, where ICGEM's, which is bundled, has it;
-    C20 differs by 4.17e-9.
+    ``ggm02c`` (Center for Space Research, University of Texas, 2004): degree 8, zero-tide. ``jgm3`` (Tapley
+    and others, 1996): degree 12, free of the permanent tide as GMAT has it. ICGEM's, which is bundled, has
+    it: C20 differs by 4.17e-9.
     """
     c, s = np.zeros((degree + 1, degree + 1)), np.zeros((degree + 1, degree + 1))
     for row in table(name):

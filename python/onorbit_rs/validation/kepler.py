@@ -68,7 +68,7 @@ def hyperbola() -> tuple[float, float]:
     """Shares by which distance and speed are off, long after periapsis."""
     orbit = oo.Kepler.from_state([6678137.0, 0, 0], [0, 15000.0, 0], mu=HYPERBOLA_MU)
     r, v = orbit.state(14941.0)
-    return abs(np.linalg.norm(r) / 163180e3 - 1.0), abs(np.linalg.norm(v) / 10.51e3 - 1.0)
+    return abs(float(np.linalg.norm(r)) / 163180e3 - 1.0), abs(float(np.linalg.norm(v)) / 10.51e3 - 1.0)
 
 
 def hyperbola_by_elements() -> tuple[float, float]:

@@ -12,7 +12,7 @@ from onorbit_rs.validation.case import Case, Gate
 from onorbit_rs.validation.trees import build, random_state, random_tree
 
 SEED, DURATION = 3, 2.0
-NAMES = {"rk4": "Runge and Kutta's method", "semi_implicit_euler": "semi-implicit Euler"}
+NAMES = {"rk4": "a tree of eight links by RK4", "semi_implicit_euler": "the same by semi-implicit Euler"}
 STEPS = {"rk4": 160, "semi_implicit_euler": 1600}
 EXPECTED = {"rk4": 4.0, "semi_implicit_euler": 1.0}
 
@@ -88,7 +88,7 @@ def path(given: str) -> tuple[float]:
 CASES = (
     *(
         Case(
-            "order", f"{NAMES[integrator]} on a tree of eight links, half the step",
+            "order", f"{NAMES[integrator]}, half the step",
             f"order {EXPECTED[integrator]:g}",
             tuple(Gate(f"order in {what}", limit) for what in ("position", "attitude", "joints")),
             partial(orders, integrator),
@@ -96,7 +96,7 @@ CASES = (
         for integrator, limit in (("rk4", 0.4), ("semi_implicit_euler", 0.15))
     ),
     Case(
-        "order", "Dormand and Prince's pair, tolerances from 1e-4 to 1e-9", "within a factor of ten over a turn",
+        "order", "Dormand and Prince's pair, tolerances 1e-4 to 1e-9", "within a factor of ten over a turn",
         (Gate("attitude, in tolerances", 10.0),), adaptive,
     ),
     *(

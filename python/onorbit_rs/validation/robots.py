@@ -1,4 +1,4 @@
-"""Whole runs of robots: the paper's reach against another engine, and every bundled scenario's certificate."""
+"""Whole runs of robots: the paper's reach against another engine, the certificate of bundled scenarios."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TWO_SECONDS = {"peak torques": ([0.8014, 0.9838, 0.3073, 0.3446], 0.6e-4, "N m")
 
 
 def reach(duration: float, expected: dict[str, Any]) -> list[float]:
-    """Half a metre along x without an orbit, RK4 at 1 ms: largest difference of each from the printed digits."""
+    """Half a metre along x without an orbit, RK4 at 1 ms: largest differences from the printed digits."""
     model, q = humanoid()
     line = oo.LineParabola(
         model.frame_pose(q, "tool"), displacement=[0.5, 0, 0], height=[0, 0, 0.4], duration=duration
@@ -63,7 +63,7 @@ CASES = (
     *(
         Case(
             "certificates", scenario, "balances of momentum, energy and attitude, each with its gate",
-            (Gate("nearest to its gate", 1.0, "gates"),), partial(certificate, scenario),
+            (Gate("nearest balance", 1.0, "gates"),), partial(certificate, scenario),
         )
         for scenario in oo.scenarios.names()
     ),

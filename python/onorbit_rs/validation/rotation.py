@@ -31,8 +31,8 @@ SPIN = np.array([0.3, 0.0, 1.1])  # rad/s
 def top() -> tuple[float, float]:
     """Errors of its rate, rad/s, and of where its axis points, rad, after 100 s.
 
-    In body axes the rate turns by `λ = (C/A - 1) ω₃` about the axis; in space the axis turns about the angular
-    momentum by `|L|/A`.
+    In body axes the rate turns by `λ = (C/A - 1) ω₃` about the axis; in space the axis turns about the
+    angular momentum by `|L|/A`.
     """
     a, _, c = TOP
     body = oo.Model.rigid_body(1.0, np.diag(TOP))
@@ -82,11 +82,13 @@ def libration(axis: int, period_s: float) -> tuple[float]:
 
 CASES = (
     Case(
-        "rotation", "a brick that tumbles, 30 s", "NASA/TM-2015-218675, atmospheric case 2, two of four simulators",
+        "rotation", "a brick that tumbles, 30 s",
+        "NASA/TM-2015-218675, atmospheric case 2, two of four simulators",
         (Gate("rate", 1e-8, "deg/s"),), brick,
     ),
     Case(
-        "rotation", "a symmetric top without a torque, 100 s", "Euler; Landau and Lifshitz, Mechanics, 33 and 36",
+        "rotation", "a symmetric top without a torque, 100 s",
+        "Euler; Landau and Lifshitz, Mechanics, sections 33 and 36",
         (Gate("rate", 1e-9, "rad/s"), Gate("axis", 1e-9, "rad")), top,
     ),
     *(

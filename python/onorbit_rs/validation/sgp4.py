@@ -91,13 +91,13 @@ REGIMES = {
 CASES = (
     *(
         Case(
-            "sgp4", f"{name}: first, middle, last row", SOURCE,
+            "sgp4", f"{name}, three rows each", SOURCE,
             (Gate("position", 2e-7, "km"), Gate("velocity", 2e-7, "km/s")), partial(of_regime, regime),
         )
         for regime, name in REGIMES.items()
     ),
     Case(
-        "sgp4", "33 sets over their times: what is refused", f"{SOURCE}; brandon-rhodes/python-sgp4, tests",
+        "sgp4", "33 sets: which are refused, and why", f"{SOURCE}; brandon-rhodes/python-sgp4, tests",
         (Gate("wrong error codes", 0.0),), wrong_codes,
     ),
 )  # fmt: skip
