@@ -11,6 +11,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import Sgp4Error
+from onorbit_rs.validation.sgp4 import CODES, sets
 
 sgp4_api = pytest.importorskip("sgp4.api", reason="PyPI's sgp4 is in the test extra")
 
@@ -130,7 +131,16 @@ def test_the_errors_of_the_whole_set_in_file_order() -> None:
                 orbit.state(60.0 * min(minutes, stop))
         except Sgp4Error as error:
             codes.append(error.code)
-    assert codes == [1, 1, 6, 6, 4, 3, 6]
+    assert codes == CODES
+
+
+def test_the_packages_table_is_the_published_one() -> None:
+    """First, middle and last row of each set, and every set."""
+    for case, elements in zip(CASES, sets(), strict=True):
+        assert (case.line1, case.line2) == (elements.line1, elements.line2)
+        published = case.rows.tolist()
+        assert all(row in published for row in elements.rows)
+        assert bool(elements.rows) is is_sound(case)
 
 
 @pytest.mark.parametrize("gravity", ["wgs72old", "wgs72", "wgs84"])
