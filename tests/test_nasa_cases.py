@@ -1,4 +1,4 @@
-"""What NASA's check-cases must see; ``onorbit_rs.validation.nasa`` has them, ``test_validation`` runs them."""
+"""What NASA's check-cases must see; the cases are in ``onorbit_rs.validation.nasa``."""
 
 from __future__ import annotations
 
