@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from onorbit_rs.cli.failing import fail
+from onorbit_rs.cli.options import JsonOption
 
 if TYPE_CHECKING:
     from onorbit_rs.validation import Case, Verdict
@@ -19,7 +21,6 @@ OnlyOption = Annotated[
 ]
 ListOption = Annotated[bool, typer.Option("--list", help="Cases with sources and gates, without running.")]
 AllOption = Annotated[bool, typer.Option("--all", help="Every number, not each case's nearest to its gate.")]
-JsonOption = Annotated[bool, typer.Option("--json", help="As a list, for programs; nothing else on stdout.")]
 
 
 def validate(
@@ -29,6 +30,7 @@ def validate(
     as_json: JsonOption = False,
 ) -> None:
     """Run the published cases and compare: exit code 0 if none fails, else 1."""
+    from onorbit_rs.cli.printing import print_json
     from onorbit_rs.cli.verdicts import print_cases, print_count, print_verdicts
     from onorbit_rs.validation import select
 
@@ -36,7 +38,7 @@ def validate(
     started = time.perf_counter()
     verdicts = [case.not_run() for case in cases] if as_list else _run(cases)
     if as_json:
-        typer.echo(json.dumps([verdict.plain() for verdict in verdicts], indent=1))
+        print_json([verdict.plain() for verdict in verdicts])
     elif as_list:
         print_cases(cases)
     else:
@@ -55,6 +57,9 @@ def _run(cases: Sequence[Case]) -> list[Verdict]:
 
     columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
     console, is_quiet = Console(stderr=True), not sys.stderr.isatty()
-    with Progress(*columns, console=console, transient=True, disable=is_quiet) as bar:
-        task = bar.add_task("", total=len(cases))
-        return run(cases, each=lambda case: bar.update(task, advance=1, description=case.name))
+    try:
+        with Progress(*columns, console=console, transient=True, disable=is_quiet) as bar:
+            task = bar.add_task("", total=len(cases))
+            return run(cases, each=lambda case: bar.update(task, advance=1, description=case.name))
+    except KeyboardInterrupt:  # caught here: typer would swallow it
+        fail("stopped by Ctrl-C", 130)

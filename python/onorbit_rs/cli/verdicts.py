@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import itertools
-import sys
 from collections.abc import Sequence
-
-from rich.console import Console
 
 from onorbit_rs.cli.printing import new_console, new_table, text
 from onorbit_rs.validation import Case, Gate, Verdict
@@ -15,8 +12,6 @@ Row = tuple[str, str, str, str, bool | None]
 """The case, what is measured, our error, the gate, and whether it passes."""
 
 _WORDS = {True: "[green]pass[/green]", False: "[red]FAIL[/red]", None: "[yellow]skipped[/yellow]"}
-_WIDE = 200
-"""Columns where there is no terminal: nothing is broken."""
 _GAPS = 2 + 6 * 2
 """Columns between columns, and the indent."""
 
@@ -35,8 +30,7 @@ def print_cases(cases: Sequence[Case]) -> None:
 
 def print_verdicts(verdicts: Sequence[Verdict], *, in_full: bool) -> None:
     """A table by family and source: of each case the number nearest to its gate, and every one that fails."""
-    is_terminal = sys.stdout.isatty()
-    console = Console(highlight=False, width=None if is_terminal else _WIDE)
+    console = new_console()
     rows = [(verdict, _rows(verdict, in_full=in_full)) for verdict in verdicts]
     widths = _widths([row for _, some in rows for row in some], console.width)
     for family, members in itertools.groupby(rows, lambda row: row[0].family):

@@ -175,7 +175,34 @@ def gates(flown: Flown) -> tuple[Gate, ...]:
     )  # fmt: skip
 
 
-CASES = tuple(
-    Case("nasa", f"run {run}: {flown.what}", SOURCE, gates(flown), partial(off, run))
-    for run, flown in RUNS.items()
-)
+# rad/s², body axes, after 8 h
+GRADIENT = {
+    "10A": [0.0, 1.243056784774573e-07, 4.58638231464994e-08],
+    "10C": [0.0, 9.285032588060049e-08, 2.393403219339611e-08],
+}
+
+
+def gradient(run: str) -> tuple[float]:
+    """Largest error of the angular acceleration by gravity's gradient in NASA's state after 8 h, rad/s²."""
+    end, q, v = rows(run)[-1], np.zeros(7), np.zeros(6)
+    q[3:], v[3:] = quaternion_from_matrix(end.attitude.T), end.rate
+    trace = oo.Simulation(
+        cylinder(), q, v, orbit=oo.Kepler.from_state(end.position, end.velocity, mu=MU),
+        environment=[oo.GravityGradient()], time_step=1.0,
+    ).run(1.0)  # fmt: skip
+    return (float(np.abs(trace.acceleration[0, 3:] - GRADIENT[run]).max()),)
+
+
+CASES = (
+    *(
+        Case("nasa", f"run {run}: {flown.what}", SOURCE, gates(flown), partial(off, run))
+        for run, flown in RUNS.items()
+    ),
+    *(
+        Case(
+            "nasa", f"run {run}: the torque of the gradient after 8 h", SOURCE,
+            (Gate("angular acceleration", 3e-20, "rad/s2"),), partial(gradient, run),
+        )
+        for run in GRADIENT
+    ),
+)  # fmt: skip
