@@ -44,6 +44,8 @@ struct Block {
 #[derive(Clone, Debug)]
 pub(crate) struct BodyMotion<T> {
     pub(crate) com: Vec3<T>,
+    /// Centres of mass from the base's origin, with the digits that are lost far from the reference.
+    pub(crate) arm: Vec3<T>,
     pub(crate) rot_wk: Mat3<T>,
     /// Linear, of the centre of mass, and angular.
     pub(crate) velocity: [Vec3<T>; 2],
@@ -55,8 +57,9 @@ impl Bodies {
     pub(crate) fn put<S: Real>(&mut self, moves: bool, motion: impl Fn(usize) -> BodyMotion<S>) {
         for first in (0..self.count).step_by(S::LANES) {
             let (to, offset) = (&mut self.blocks[first / WIDTH].motion, first % WIDTH);
-            let BodyMotion { com, rot_wk, velocity: [linear, angular] } = motion(first);
+            let BodyMotion { com, arm, rot_wk, velocity: [linear, angular] } = motion(first);
             store(&mut to.com, offset, com);
+            store(&mut to.arm, offset, arm);
             store(&mut to.rot_wk.x, offset, rot_wk.x);
             store(&mut to.rot_wk.y, offset, rot_wk.y);
             store(&mut to.rot_wk.z, offset, rot_wk.z);
@@ -81,7 +84,7 @@ impl Bodies {
     pub fn get(&self, body: usize) -> Option<BodyState> {
         let (block, i) = (self.blocks.get(body / WIDTH).filter(|_| body < self.count)?, body % WIDTH);
         let vector = |rows: &Vec3<Row>| rows.map(|row| row.get(i)).to_nalgebra();
-        let BodyMotion { com, rot_wk, velocity: [velocity, angular_velocity] } = &block.motion;
+        let BodyMotion { com, rot_wk, velocity: [velocity, angular_velocity], .. } = &block.motion;
         let (com, rot_wk) = (vector(com), rot_wk.map(|row| row.get(i)).to_nalgebra());
         Some(BodyState {
             mass: block.mass.get(i),
@@ -99,10 +102,10 @@ impl Bodies {
         (0..self.count).filter_map(|body| self.get(body))
     }
 
-    /// Centres of mass of as many as `S` has lanes, from body number `first` on.
+    /// From the base's origin to the centres of mass of as many as `S` has lanes, from body number `first` on.
     #[inline(always)]
-    pub(crate) fn coms<S: Real>(&self, first: usize) -> Vec3<S> {
-        self.blocks[first / WIDTH].motion.com.map(|row| row.load(first % WIDTH))
+    pub(crate) fn arms<S: Real>(&self, first: usize) -> Vec3<S> {
+        self.blocks[first / WIDTH].motion.arm.map(|row| row.load(first % WIDTH))
     }
 
     /// Centre of mass of the base; the origin where there is none.
@@ -138,6 +141,7 @@ impl Bodies {
 impl FromIterator<BodyState> for Bodies {
     fn from_iter<I: IntoIterator<Item = BodyState>>(bodies: I) -> Self {
         let bodies: Vec<_> = bodies.into_iter().collect();
+        let base = bodies.first().map_or_else(Vector3::zeros, |base| base.origin);
         let block = |bodies: &[BodyState]| {
             let body = |i: usize| &bodies[i.min(bodies.len() - 1)];
             let vectors = |of: fn(&BodyState) -> &Vector3<f64>| Row::vectors(|i| (*of(body(i))).into());
@@ -156,6 +160,7 @@ impl FromIterator<BodyState> for Bodies {
                 com_k: Row::vectors(|i| body(i).rot_wk.tr_mul(&(body(i).com - body(i).origin)).into()),
                 motion: BodyMotion {
                     com: vectors(|body| &body.com),
+                    arm: Row::vectors(|i| (body(i).com - base).into()),
                     rot_wk: Mat3 { x: rot(0), y: rot(1), z: rot(2) },
                     velocity: [vectors(|body| &body.velocity), vectors(|body| &body.angular_velocity)],
                 },

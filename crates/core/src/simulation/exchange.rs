@@ -60,8 +60,10 @@ impl<S: Scalar> Base<S> {
                             let twist = Motion::new(linear, vectors(|body| &body.velocity.angular));
                             [rot_wb * twist.at(com_b) + carried, rot_wb * twist.angular]
                         };
+                        let arm = rot_wb * com_b;
                         BodyMotion {
-                            com: rot_wb * com_b + origin,
+                            com: arm + origin,
+                            arm,
                             rot_wk: rot_wb * rot_bk,
                             velocity: if moves { velocity() } else { [Vec3::zero(); 2] },
                         }
@@ -81,10 +83,10 @@ impl<S: Scalar> Base<S> {
         L::enter(
             #[inline(always)]
             || {
-                let Base { rot_wb, origin, .. } = self.on_lanes::<L>();
+                let Base { rot_wb, .. } = self.on_lanes::<L>();
                 for (k, bodies_of_group) in data.bodies.chunks_mut(L::LANES).enumerate() {
                     let push = wrenches.lanes::<L>(k * L::LANES);
-                    let arm = bodies.coms(k * L::LANES) - origin;
+                    let arm = bodies.arms(k * L::LANES);
                     let force = rot_wb.transpose_mul(push.force);
                     let torque = rot_wb.transpose_mul(push.torque + arm.cross(push.force));
                     for (i, body) in bodies_of_group.iter_mut().enumerate() {
