@@ -215,7 +215,7 @@ def test_a_saved_trace_is_the_trace(folder: Path) -> None:
     ("key", "value", "shown", "unit"),
     [
         ("tracking_position_error_max_m", 1.335e-5, "13.35", "µm"),
-        ("base_rotation_max_rad", 0.1913, "191.3 (11°)", "mrad"),
+        ("base_rotation_max_rad", 0.1913, "191.3", "mrad (11°)"),
         ("tracking_position_error_final_m", 7e-15, "7e-15", "m"),
         ("joint_torque_max_nm", 0.9908, "0.9908", "N m"),
         ("joint_rate_final_max_rad_s", 4.2e-5, "42", "µrad/s"),
