@@ -8,6 +8,7 @@ import sys
 import warnings
 from html import escape
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ import onorbit_rs as oo
 from onorbit_rs import figures
 from onorbit_rs.figures.solids import robot_polygons, robot_skeleton
 from onorbit_rs.figures.style import MOST_POINTS, thin, with_prefix
+from onorbit_rs.output.read import SavedTrace
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.make_orbit import make_orbit
 
@@ -134,6 +136,32 @@ def test_manipulability_is_the_root_of_the_determinant(reach: oo.Run) -> None:
             assert line.get_ydata()[0] == pytest.approx(
                 np.sqrt(np.linalg.det(jacobian @ jacobian.T)), rel=1e-9
             )
+
+
+def test_the_ledger_shows_what_nothing_explains(reach: oo.Run) -> None:
+    trace = reach.trace
+    columns = {name: np.array(getattr(trace, name)) for name in trace.columns()}
+    assert unexplained(SavedTrace(columns)) == pytest.approx(unexplained(trace))
+    assert max(unexplained(trace)) < 1e-10  # N s, N m s, J: RK4 at 5 ms
+    columns["momentum"][600:, 4] += 1e-3  # must be seen
+    columns["kinetic_energy"][600:] += 2e-3
+    linear, angular, energy = unexplained(SavedTrace(columns))
+    assert linear < 1e-11
+    assert (angular, energy) == pytest.approx((1e-3, 2e-3), rel=1e-6)
+
+
+def unexplained(trace: Any) -> list[float]:
+    """The largest value of each panel on the right."""
+    return [float(np.max(axes.lines[0].get_ydata())) for axes in figures.ledger(trace).axes[1::2]]
+
+
+def test_the_reaction_is_the_angle_turned_by(reach: oo.Run) -> None:
+    turned, rate = figures.base_reaction(reach.trace).axes
+    assert turned.get_ylabel() == "turned by [deg]"
+    angle = turned.lines[0].get_ydata()
+    assert np.radians(angle.max()) == pytest.approx(reach.summary["base_rotation_max_rad"], rel=1e-12)
+    drawn = np.column_stack([line.get_ydata() for line in rate.lines])
+    np.testing.assert_allclose(np.radians(drawn), reach.trace.v[:, 3:6], rtol=1e-12)
 
 
 def test_forces_are_those_of_the_wrenches(tumble: oo.Run) -> None:
