@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -123,6 +124,20 @@ def test_every_section_and_number_has_a_comment() -> None:
         assert "# " in line or line.rstrip().endswith(" s"), line
     assert {control["name"] for control in data["controllers"]} == {"arm", "hold"}
     assert all(len(line) <= 110 for line in lines)
+
+
+def test_what_stands_in_comments_works_when_it_is_uncommented(tmp_path: Path) -> None:
+    text = draft("humanoid_dual_arm").text
+    wanted = re.sub(r"(?m)^( +)# ", r"\1", text).replace(
+        "\norbit:", "\nepoch: 2026-03-20 12:00:00 UTC\norbit:"
+    )
+    scenario = load(yaml.safe_load(wanted))
+    kinds = [effect.kind for effect in scenario.environment]
+    assert kinds == ["gravity_gradient", "drag", "radiation_pressure"]
+    assert scenario.simulation.integrator == "dormand_prince" and scenario.simulation.record_wrenches
+    file = tmp_path / "mine.yaml"
+    file.write_text(wanted)
+    ran(file)
 
 
 def test_the_tool_is_found_or_told() -> None:

@@ -104,8 +104,9 @@ def test_every_command_says_the_next(reach: Path) -> None:
     assert "next: onorbit run mine.yaml --out DIR" in onorbit("check", "mine.yaml", cwd=folder).stdout
     ran = onorbit("run", "mine.yaml", "--out", "a b", cwd=folder).stdout
     assert "next: onorbit show 'a b'" in ran and "onorbit report 'a b'" in ran
-    reported = onorbit("report", "a b", cwd=folder).stdout
+    reported = onorbit("report", "a b", "--no-pdf", cwd=folder).stdout
     assert "report: a b/report.html" in reported and "next: open it in a browser" in reported
+    assert "next: onorbit new ets_vii --out FILE" in onorbit("info", "ets_vii").stdout
     shown = onorbit("show", "a b", "--no-viewer", cwd=folder).stdout
     assert "report.html" in shown
 

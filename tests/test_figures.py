@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import warnings
 from html import escape
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 import onorbit_rs as oo
 from onorbit_rs import figures
+from onorbit_rs.figures.solids import robot_polygons, robot_skeleton
 from onorbit_rs.figures.style import MOST_POINTS, thin, with_prefix
+from onorbit_rs.output.read import SavedTrace
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.make_orbit import make_orbit
 
@@ -133,6 +138,32 @@ def test_manipulability_is_the_root_of_the_determinant(reach: oo.Run) -> None:
             )
 
 
+def test_the_ledger_shows_what_nothing_explains(reach: oo.Run) -> None:
+    trace = reach.trace
+    columns = {name: np.array(getattr(trace, name)) for name in trace.columns()}
+    assert unexplained(SavedTrace(columns)) == pytest.approx(unexplained(trace))
+    assert max(unexplained(trace)) < 1e-10  # N s, N m s, J: RK4 at 5 ms
+    columns["momentum"][600:, 4] += 1e-3  # must be seen
+    columns["kinetic_energy"][600:] += 2e-3
+    linear, angular, energy = unexplained(SavedTrace(columns))
+    assert linear < 1e-11
+    assert (angular, energy) == pytest.approx((1e-3, 2e-3), rel=1e-6)
+
+
+def unexplained(trace: Any) -> list[float]:
+    """The largest value of each panel on the right."""
+    return [float(np.max(axes.lines[0].get_ydata())) for axes in figures.ledger(trace).axes[1::2]]
+
+
+def test_the_reaction_is_the_angle_turned_by(reach: oo.Run) -> None:
+    turned, rate = figures.base_reaction(reach.trace).axes
+    assert turned.get_ylabel() == "turned by [deg]"
+    angle = turned.lines[0].get_ydata()
+    assert np.radians(angle.max()) == pytest.approx(reach.summary["base_rotation_max_rad"], rel=1e-12)
+    drawn = np.column_stack([line.get_ydata() for line in rate.lines])
+    np.testing.assert_allclose(np.radians(drawn), reach.trace.v[:, 3:6], rtol=1e-12)
+
+
 def test_forces_are_those_of_the_wrenches(tumble: oo.Run) -> None:
     figure = figures.environment_forces(tumble.trace, tumble.model.body_names)
     effects = list(tumble.trace.wrenches)
@@ -154,6 +185,36 @@ def test_the_ground_track_is_where_the_earth_says(tumble: oo.Run) -> None:
     assert (lon[0], lat[0]) == pytest.approx((np.degrees(longitude), np.degrees(latitude)), abs=1e-9)
     assert profile.lines[0].get_ydata()[0] == pytest.approx(height / 1e3, rel=1e-9)
     assert np.nanmax(np.abs(lat)) < 36.0  # the orbit's inclination is 35 degrees, geodetic a little more
+
+
+def test_a_robot_of_meshes_is_drawn_as_its_skeleton(reach: oo.Run, tmp_path: Path) -> None:
+    urdf = oo.robots.path("humanoid_torso").read_text()
+    urdf = re.sub(r"<(box|sphere|cylinder|capsule)\b[^>]*/>", '<mesh filename="mesh.stl"/>', urdf)
+    (tmp_path / "mine.urdf").write_text(urdf)
+    (tmp_path / "mesh.stl").write_bytes(b"solid\nendsolid\n")
+    model = oo.Model.from_urdf(tmp_path / "mine.urdf")
+    q = reach.trace.q[0]
+    assert robot_polygons(model, q)[0] == []
+    bones = robot_skeleton(model, q)
+    shoulder = np.asarray(model.frame_pose(q, model.joints[0].child))[:3, 3]
+    np.testing.assert_allclose(bones[0, 1], shoulder, atol=1e-12)
+    assert bones.shape == (7, 2, 3)
+    figure = figures.desired_trajectory(reach.trace, model)
+    assert all(any(isinstance(item, Line3DCollection) for item in axes.collections) for axes in figure.axes)
+
+
+def test_errors_of_several_controllers_are_those_of_the_trace() -> None:
+    data = load("dual_arm_reach").resolved()
+    data["simulation"] |= {"duration": 0.5, "time_step": 5e-3}
+    run = oo.run(data, quiet=True)
+    names = {drawing.name for drawing in figures.drawings(subject(run))}
+    assert {"tracking_errors_left", "tracking_errors_right", "manipulability_left"} <= names
+    assert "tracking_errors" not in names  # which would be those of the right arm again
+    position, _ = figures.control_errors(run.trace, "left", []).axes
+    drawn = np.column_stack([line.get_ydata() for line in position.lines])[:, :3]
+    error = np.asarray(run.trace.tracking["left"])[:, :3]
+    ratio = np.abs(drawn).max() / np.abs(error).max()
+    np.testing.assert_allclose(drawn, ratio * error, rtol=1e-9, atol=1e-12)
 
 
 def test_names_in_the_users_words_are_no_formulas_and_are_not_left_out(reach: oo.Run) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.exceptions import NotFoundError, OutputFolderError, ReadError
+from onorbit_rs.exceptions import NotFoundError, OutputFolderError, ReadError, SimulationError
 from onorbit_rs.output.read import read_trace
 from onorbit_rs.report import write_report
 from onorbit_rs.report.numbers import row
@@ -155,6 +155,17 @@ def test_a_robot_that_is_gone_costs_only_its_figures(tmp_path: Path) -> None:
     assert "obtained_trajectory" in shown and "desired_trajectory" not in shown
 
 
+def test_a_run_that_diverged_has_a_page_without_pictures(tmp_path: Path) -> None:
+    data = load("free_tumble").resolved()
+    data["simulation"] |= {"duration": 200.0, "time_step": 2.0}
+    data["initial"]["angular_velocity"] = [3.0, 20.0, 5.0]
+    with pytest.raises(SimulationError):
+        oo.run(data, out=tmp_path / "out", quiet=True)
+    page = Page(write_report(tmp_path / "out", pdf=True).read_text())
+    assert "the run diverged" in page.text and "Run diverged" in page.text
+    assert page.having("src") == []
+
+
 def test_a_body_without_joints_and_without_orbit_has_a_page(tmp_path: Path) -> None:
     body = {"rigid_body": {"mass": 10.0, "inertia": [1.0, 2.0, 3.0]}}
     scenario = {"robot": body, "simulation": {"duration": 1.0, "time_step": 0.01}}
@@ -215,7 +226,7 @@ def test_a_saved_trace_is_the_trace(folder: Path) -> None:
     ("key", "value", "shown", "unit"),
     [
         ("tracking_position_error_max_m", 1.335e-5, "13.35", "µm"),
-        ("base_rotation_max_rad", 0.1913, "191.3 (11°)", "mrad"),
+        ("base_rotation_max_rad", 0.1913, "191.3", "mrad (11°)"),
         ("tracking_position_error_final_m", 7e-15, "7e-15", "m"),
         ("joint_torque_max_nm", 0.9908, "0.9908", "N m"),
         ("joint_rate_final_max_rad_s", 4.2e-5, "42", "µrad/s"),

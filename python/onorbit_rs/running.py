@@ -25,7 +25,7 @@ from onorbit_rs.output import (
     write_summary,
     write_trace,
 )
-from onorbit_rs.progress import progress_bar
+from onorbit_rs.progress import doing, progress_bar
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
 
@@ -139,7 +139,8 @@ def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints
             trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
             return _finish(trace, built, folder, progress.tell)
     except (SimulationError, RunInterrupted) as stop:
-        _keep(stop, built, folder)
+        with doing("stopped, writing what there is", quiet=quiet) as tell:
+            _keep(stop, built, folder, tell)
         raise
     except Exception as error:  # raised by a controller of the user's, or where orbit or environment end
         _keep_rows(error, built, folder)
@@ -169,7 +170,12 @@ def _keep_rows(error: Exception, built: Built, folder: OutputFolder | None) -> N
         error.add_note(f"the rows so far are in {folder.path}")
 
 
-def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFolder | None) -> None:
+def _keep(
+    stop: SimulationError | RunInterrupted,
+    built: Built,
+    folder: OutputFolder | None,
+    tell: Callable[[str], None],
+) -> None:
     """Write what there is of a run that stopped early, and say where."""
     diverged = isinstance(stop, SimulationError)
     if not diverged:
@@ -186,7 +192,7 @@ def _keep(stop: SimulationError | RunInterrupted, built: Built, folder: OutputFo
         discard_checkpoint(folder)
     else:
         stop.message += f"; go on with: onorbit resume {shlex.quote(str(folder.path))}"
-        write_pictures(folder, stop.trace, summary, built)
+        write_pictures(folder, stop.trace, summary, built, tell=tell)
 
 
 def _write_rows(trace: Trace, status: str, built: Built, folder: OutputFolder) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import warnings
 
 import typer
@@ -27,3 +28,4 @@ def info(
         typer.echo(json.dumps(describe(model), indent=1))
     else:
         print_info(model)
+        typer.echo(f"next: onorbit new {shlex.quote(robot)} --out FILE")

@@ -62,22 +62,27 @@ orbit:                          # with an orbit the planet pulls on every link, 
 
 environment:                    # what acts beside the planet's pull
   - kind: gravity_gradient      # torque of gravity on every link, N m
-# - kind: drag                  # the air; needs 'epoch: 2026-03-20 12:00:00 UTC' above
-#   atmosphere: {kind: nrlmsise00, f107: 150, f107a: 150, ap: 15}
-# - kind: radiation_pressure    # sunlight; needs an epoch too
+  # - kind: drag                # the air; needs 'epoch: 2026-03-20 12:00:00 UTC' above
+  #   atmosphere: {kind: nrlmsise00, f107: 150, f107a: 150, ap: 15}
+  # - kind: radiation_pressure  # sunlight; needs an epoch too
 """
 
 
 def _control(plan: Plan) -> str:
-    if plan.displacement is not None:
-        goal = (
-            f"    # friction in the joints (up to {plan.friction:g} N m) holds the tool back: "
-            "higher gains follow closer\n"
-            if plan.friction
-            else "    goal:\n      tolerance: [1 mm, 0.1 deg] # how near the tool is to be at the end\n"
-        )
-        displacement = _line("displacement", plan.displacement, "m, W: the base's axes at the start", 8)
-        law = f"""
+    if not plan.arm:
+        return ""
+    law = _task_law(plan) if plan.displacement is not None else _joint_law(plan)
+    hold = _HOLD.replace("JOINTS", _wrapped(plan.others)) if plan.others else ""
+    return f"""
+controllers:                    # each drives joints of its own; joints without one are limp
+  - name: arm
+    joints: {_wrapped(plan.arm)}
+{law}{hold}"""
+
+
+def _task_law(plan: Plan) -> str:
+    displacement = _line("displacement", plan.displacement, "m, W: the base's axes at the start", 8)
+    return f"""\
     kind: computed_torque       # the pose of the tool, on the generalized Jacobian
     tool: {_flow(plan.tool)}
     kp: 25                      # 1/s^2, on the error of the pose
@@ -87,9 +92,22 @@ def _control(plan: Plan) -> str:
       kind: line                # or hold, circle, screw, waypoints, line_parabola, sampled
       goal:
 {displacement}      duration: {plan.move_s:g} s
-{goal}"""
-    elif plan.goal is not None:
-        law = f"""
+{_goal(plan)}"""
+
+
+def _goal(plan: Plan) -> str:
+    """What the tool is to reach, or why it may not."""
+    if plan.friction:
+        held = f"friction in the joints (up to {plan.friction:g} N m) holds the tool back"
+        return f"    # {held}: higher gains follow closer\n"
+    return """\
+    goal:
+      tolerance: [1 mm, 0.1 deg]  # how near the tool is to be at the end
+"""
+
+
+def _joint_law(plan: Plan) -> str:
+    return f"""\
     kind: joint_computed_torque # the joints; a tool needs six of them to be placed and turned at will
     kp: 25                      # 1/s^2
     kd: 10                      # 1/s; 2 sqrt(kp) is critical
@@ -99,22 +117,16 @@ def _control(plan: Plan) -> str:
         - {_flow(plan.goal)}
       times: [{plan.move_s:g} s]
 """
-    else:
-        return ""
-    hold = f"""
+
+
+_HOLD = """\
   - name: hold                  # all other joints stay where they start
     kind: joint_computed_torque
-    joints: {_wrapped(plan.others, 12)}
+    joints: JOINTS
     kp: 25                      # 1/s^2
     kd: 10                      # 1/s
-    reference: {{kind: joint_hold}}
+    reference: {kind: joint_hold}
 """
-    head = f"""
-controllers:                    # each drives joints of its own; joints without one are limp
-  - name: arm
-    joints: {_wrapped(plan.arm, 12)}
-"""
-    return head.strip("\n") + "\n" + law.strip("\n") + ("\n" + hold.strip("\n") if plan.others else "")
 
 
 def _initial(plan: Plan) -> str:
@@ -136,12 +148,12 @@ def _simulation(plan: Plan) -> str:
 simulation:
 {_line("duration", f"{plan.duration_s:g} s", "simulated", 2)}\
 {_line("time_step", f"{1e3 * plan.time_step_s:g} ms", "of the integrator and of the control", 2)}\
-# integrator: dormand_prince    # adapts its steps; rk4 where not given
-# record_wrenches: true         # force and torque of every effect on every link
+  # integrator: dormand_prince  # adapts its steps; rk4 where not given
+  # record_wrenches: true       # force and torque of every effect on every link
 """
 
 
-def _wrapped(names: Sequence[str], indent: int) -> str:
+def _wrapped(names: Sequence[str], indent: int = 13) -> str:
     """A list of names over as many lines as it takes."""
     lines, line = [], ""
     for name in names:

@@ -82,8 +82,10 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
             yield Drawing(name, about, partial(control_errors, trace, tool.control, []))
     for control, joints in (subject.joint_controls or {}).items():
         if control in trace.tracking and joints and np.any(trace.tracking[control]):
-            about = f"Desired minus obtained positions of the joints of the controller {control}."
-            name = f"joint_errors_{_word(control)}"
+            is_alone = not subject.tools and len(subject.joint_controls or {}) == 1
+            whose = "." if is_alone else f" of the controller {control}."
+            about = f"Desired minus obtained positions of the joints{whose}"
+            name = "joint_errors" if is_alone else f"joint_errors_{_word(control)}"
             yield Drawing(name, about, partial(control_errors, trace, control, joints))
     if model is None:
         return

@@ -18,25 +18,29 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class _Saved:
+class SavedTrace:
     """Columns under their names, as a :class:`onorbit_rs.Trace` has them."""
 
     arrays: Mapping[str, Any]
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__") or name not in self.arrays:
+        """A column."""
+        if name.startswith("__") or name == "arrays" or name not in self.arrays:
             raise AttributeError(f"the trace has no column {name!r}")
         return self.arrays[name]
 
     def columns(self) -> list[str]:
+        """Names of the columns."""
         return [name for name in self.arrays if not name.startswith(("tracking_", "wrench_", "rereferenced"))]
 
     @property
     def tracking(self) -> dict[str, Any]:
+        """Errors of each controller."""
         return self._named("tracking_")
 
     @property
     def wrenches(self) -> dict[str, Any]:
+        """(T, bodies, 6) of each effect."""
         return self._named("wrench_")
 
     def _named(self, kind: str) -> dict[str, Any]:
@@ -61,7 +65,7 @@ def read_trace(folder: Path) -> Trace:
         raise NotFoundError(f"no trace in this folder: {file}", path=str(file), kind="trace") from error
     except (ValueError, EOFError, OSError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="trace") from error
-    return cast("Trace", _Saved(arrays))
+    return cast("Trace", SavedTrace(arrays))
 
 
 def read_summary(folder: Path) -> dict[str, Any]:

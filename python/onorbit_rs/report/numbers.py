@@ -70,10 +70,9 @@ def row(key: str, value: Any) -> Row:
     if unit in _SCALED and isinstance(value, float) and _LEAST_SCALED <= abs(value) < 0.5:
         factor, unit = with_prefix(abs(value), unit)
         shown = factor * value
-    text = _shown(shown)
     if unit in ("rad", "mrad") and isinstance(value, float) and abs(value) > 0.01:
-        text += f" ({math.degrees(value):.3g}°)"
-    return Row(key, words, value, text, "" if unit == "relative" else unit)
+        unit += f" ({math.degrees(value):.3g}°)"
+    return Row(key, words, value, _shown(shown), "" if unit == "relative" else unit)
 
 
 def _shown(value: Any) -> str:

@@ -61,7 +61,11 @@ def write_report(
     text, scenario = _scenario(out.path / "scenario.yaml")
     remarks: list[str] = []
     subject = _subject(out.path, scenario, remarks)
-    pictures = list(_pictures(subject, out, pdf, tell)) if len(subject.trace.time) > 1 else []
+    pictures: list[Picture] = []
+    if summary.get("status") == "diverged":
+        remarks.append("the run diverged: its numbers make no picture")
+    elif len(subject.trace.time) > 1:
+        pictures = list(_pictures(subject, out, pdf, tell))
     tell("writing the page")
     version = str(_core.build_info()["version"])
     content = page(
