@@ -45,6 +45,7 @@ FolderArgument = Annotated[Path, typer.Argument(metavar="DIR", help="A folder th
 OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write results here.")]
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace the run that is in DIR.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar, no summary.")]
+ViewOption = Annotated[bool, typer.Option("--view", help="Watch it in the viewer while it runs.")]
 CheckpointOption = Annotated[
     float, typer.Option(metavar="SECONDS", help="Wall-clock time between checkpoints in DIR.")
 ]
@@ -69,13 +70,16 @@ def run(
     out: OutOption = None,
     force: ForceOption = False,
     quiet: QuietOption = False,
+    view: ViewOption = False,
     checkpoint_every: CheckpointOption = 30.0,
 ) -> None:
     """Run a scenario and certify its momentum and energy."""
     from onorbit_rs.running import run as run_scenario
 
     _report(
-        lambda: run_scenario(scenario, out, force=force, quiet=quiet, checkpoint_every=checkpoint_every),
+        lambda: run_scenario(
+            scenario, out, force=force, quiet=quiet, view=view, checkpoint_every=checkpoint_every
+        ),
         quiet=quiet,
     )
 

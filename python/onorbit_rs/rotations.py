@@ -30,26 +30,32 @@ def quaternion_from_matrix(rotation: ArrayLike) -> Floats:
     """Unit quaternions (..., 4), xyzw with w ≥ 0, of rotation matrices (..., 3, 3)."""
     r = np.asarray(rotation, dtype=np.float64)
     xx, yy, zz = r[..., 0, 0], r[..., 1, 1], r[..., 2, 2]
-    # Each row is 4 c times the quaternion, with c one of its components.
-    yz, zx, xy = r[..., 2, 1], r[..., 0, 2], r[..., 1, 0]
-    zy, xz, yx = r[..., 1, 2], r[..., 2, 0], r[..., 0, 1]
-    rows = np.stack(
-        [
-            np.stack([1 + xx - yy - zz, xy + yx, zx + xz, yz - zy], axis=-1),
-            np.stack([xy + yx, 1 - xx + yy - zz, yz + zy, zx - xz], axis=-1),
-            np.stack([zx + xz, yz + zy, 1 - xx - yy + zz, xy - yx], axis=-1),
-            np.stack([yz - zy, zx - xz, xy - yx, 1 + xx + yy + zz], axis=-1),
-        ],
-        axis=-2,
-    )
-    best = np.argmax(np.stack([xx, yy, zz, xx + yy + zz], axis=-1), axis=-1)
-    quat: Floats = np.take_along_axis(rows, best[..., None, None], axis=-2)[..., 0, :]
-    quat = quat / np.linalg.norm(quat, axis=-1, keepdims=True)
+    # With c the largest component in amount, 4 c times the quaternion is a row of sums of entries of R.
+    best = np.argmax(np.stack([xx, yy, zz, xx + yy + zz]), axis=0)
+    quat = np.empty((*best.shape, 4))
+    for largest in np.unique(best):
+        rows = best == largest
+        quat[rows] = _times_four_components(r[rows], largest)
+    quat /= np.linalg.norm(quat, axis=-1, keepdims=True)
     return np.where(quat[..., 3:] < 0.0, -quat, quat)
 
 
+def _times_four_components(r: Floats, largest: int) -> Floats:
+    """`4 c` times the quaternions (k, 4) of matrices (k, 3, 3), with `c` one of the components."""
+    xx, yy, zz = r[:, 0, 0], r[:, 1, 1], r[:, 2, 2]
+    yz, zx, xy = r[:, 2, 1], r[:, 0, 2], r[:, 1, 0]
+    zy, xz, yx = r[:, 1, 2], r[:, 2, 0], r[:, 0, 1]
+    rows = {
+        0: (1 + xx - yy - zz, xy + yx, zx + xz, yz - zy),
+        1: (xy + yx, 1 - xx + yy - zz, yz + zy, zx - xz),
+        2: (zx + xz, yz + zy, 1 - xx - yy + zz, xy - yx),
+        3: (yz - zy, zx - xz, xy - yx, 1 + xx + yy + zz),
+    }
+    return np.stack(rows[largest], axis=-1)
+
+
 def product(p: ArrayLike, q: ArrayLike) -> Floats:
-    """Quaternions (..., 4), xyzw, of the rotations `q` and then, in the same fixed axes, `p`: `rot_p rot_q`."""
+    """Quaternions (..., 4), xyzw, of `rot_p rot_q`: first `q`, then `p` in the same fixed axes."""
     px, py, pz, pw = np.moveaxis(np.asarray(p, dtype=np.float64), -1, 0)
     qx, qy, qz, qw = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
     return np.stack(

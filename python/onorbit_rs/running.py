@@ -25,7 +25,8 @@ from onorbit_rs.output import (
     write_summary,
     write_trace,
 )
-from onorbit_rs.progress import progress_bar
+from onorbit_rs.output.relay import Relay
+from onorbit_rs.progress import ProgressCallback, progress_bar
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
 
@@ -57,6 +58,7 @@ def run(
     *,
     force: bool = False,
     quiet: bool = False,
+    view: bool = False,
     checkpoint_every: float = CHECKPOINT_EVERY,
 ) -> Run:
     """Run a scenario and, if asked, write its folder.
@@ -71,6 +73,8 @@ def run(
         Replace the files of an earlier run in ``out``.
     quiet : bool
         No progress bar, even on a terminal.
+    view : bool
+        Watch it in the viewer while it runs; where there is no screen a warning says so.
     checkpoint_every : float
         Wall-clock time between two checkpoints in ``out``, s; :func:`resume` goes on from the last one.
 
@@ -88,10 +92,10 @@ def run(
     built = build(checked)
     folder = None if out is None else OutputFolder.claim(out, force=force)
     if folder is None:
-        return _go(built, None, quiet=quiet)
+        return _go(built, None, quiet=quiet, view=view)
     write_scenario(folder, checked)
     writer = CheckpointWriter(folder, fingerprint_of(with_absolute_paths(checked)))
-    return _go(built, folder, quiet=quiet, checkpoint=writer, checkpoint_every=checkpoint_every)
+    return _go(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=checkpoint_every)
 
 
 def resume(
@@ -129,12 +133,17 @@ def resume(
     )  # fmt: skip
 
 
-def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints: Any) -> Run:
+def _go(
+    built: Built, folder: OutputFolder | None, *, quiet: bool, view: bool = False, **checkpoints: Any
+) -> Run:
     """Simulate, and write what came of it."""
     scenario, duration = built.scenario, built.scenario.simulation.duration
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
-            trace = built.simulation.run(duration, progress=progress, **checkpoints)
+            if view:
+                trace = _watched(built, progress, **checkpoints)
+            else:
+                trace = built.simulation.run(duration, progress=progress, **checkpoints)
     except (SimulationError, RunInterrupted) as stop:
         _keep(stop, built, folder)
         raise
@@ -148,6 +157,34 @@ def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints
         write_pictures(folder, trace, summary, built)
         discard_checkpoint(folder)
     return Run(trace, summary, built.model, scenario, folder.path if folder else None)
+
+
+def _watched(
+    built: Built,
+    progress: ProgressCallback | None,
+    checkpoint: CheckpointWriter | None = None,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+) -> Trace:
+    """Simulate while the viewer shows it."""
+    from onorbit_rs.viewer.live import LOOK_EVERY_S, open_live
+    from onorbit_rs.viewer.setting import Setting
+
+    duration = built.scenario.simulation.duration
+    live = open_live(Setting.of(built), duration)
+    if live is None:
+        return built.simulation.run(
+            duration, progress=progress, checkpoint=checkpoint, checkpoint_every=checkpoint_every
+        )
+    relay = Relay(live, checkpoint, checkpoint_every)
+    trace = None
+    try:
+        trace = built.simulation.run(
+            duration, progress=progress, checkpoint=relay, checkpoint_every=LOOK_EVERY_S
+        )
+    finally:
+        relay.hand_on()
+        live.finish(trace)
+    return trace
 
 
 def _keep_rows(error: Exception, built: Built, folder: OutputFolder | None) -> None:

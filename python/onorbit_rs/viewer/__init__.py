@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from onorbit_rs.viewer.frames import TIMELINE
 from onorbit_rs.viewer.recording import recorded_rows, write_recording
+from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.screenshot import take_screenshot
 from onorbit_rs.viewer.setting import Setting
 

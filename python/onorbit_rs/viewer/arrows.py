@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.viewer.frames import FOLLOW, WORLD, put_in, time_column
+from onorbit_rs.viewer.frames import FOLLOW, WORLD, put_in
+from onorbit_rs.viewer.rows import TIMELINE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,7 +46,7 @@ class Arrows:
     _scales: dict[str, float] = field(default_factory=dict)
 
     def send(self, rows: Rows) -> None:
-        """Momenta at the centre of mass, and where they are recorded the forces and torques of every effect."""
+        """Momenta at the centre of mass and, where they are recorded, forces and torques of every effect."""
         for name, vectors, unit in self._momenta(rows):
             origins = rows["center_of_mass"][:, None, :]
             path = f"world/arrows/{name.replace(' ', '_')}"
@@ -70,7 +71,7 @@ class Arrows:
         radius = self.stage.size / 4.0
         scale = math.sqrt(2.0 * mass * energy)
         for name, vectors, unit, at_least in (
-            ("momentum", rows["momentum"][:, :3], "N s", scale),
+            ("linear momentum", rows["momentum"][:, :3], "N s", scale),
             ("angular momentum", rows["momentum"][:, 3:], "N m s", scale * radius),
         ):
             peak = _peak(vectors)
@@ -93,20 +94,21 @@ class Arrows:
         if peak == 0.0 and path not in self._scales:
             return
         scale = max(_round_up(peak / (longest * self.stage.size)), self._scales.get(path, 0.0))
-        time, (count, each) = rows["time"], vectors.shape[:2]
+        count, each = vectors.shape[:2]
         if scale != self._scales.get(path):
             meaning = f"{path}/scale"
             if path not in self._scales:
                 self._introduce(path, meaning, color)
             self._scales[path] = scale
             label = rr.Points3D.columns(labels=[f"{name}: 1 m = {with_prefix(scale, unit)}"])
-            self.recording.send_columns(meaning, [time_column(time[:1])], label, strict=True)
+            self.recording.send_columns(
+                meaning, [rr.TimeColumn(TIMELINE, duration=rows["time"][:1])], label, strict=True
+            )
         columns = rr.Arrows3D.columns(
             vectors=(vectors / scale).reshape(-1, 3), origins=origins.reshape(-1, 3)
         )
         parts = columns.partition([each] * count)
-        self.recording.send_columns(path, [time_column(time)], parts, strict=True)
-
+        self.recording.send_columns(path, [rows.times], parts, strict=True)
 
     def _introduce(self, path: str, meaning: str, color: tuple[int, int, int]) -> None:
         """The look of arrows, and the place of the line that tells their scale."""

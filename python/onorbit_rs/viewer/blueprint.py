@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun.blueprint as rrb
 
-from onorbit_rs.viewer.frames import FOLLOW, TIMELINE
-from onorbit_rs.viewer.planet import INERTIAL
-from onorbit_rs.viewer.scene import OBTAINED_PATH
+from onorbit_rs.viewer.frames import FOLLOW
+from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL
+from onorbit_rs.viewer.rows import TIMELINE
+from onorbit_rs.viewer.scene import TRAILS
 
 if TYPE_CHECKING:
     from onorbit_rs.viewer.rows import Rows
@@ -48,7 +49,14 @@ _UNTIL_NOW = rrb.VisibleTimeRange(
 
 
 def layout(
-    rows: Rows, setting: Setting, stage: Stage, plots: Sequence[Series], duration_s: float, *, has_notes: bool
+    rows: Rows,
+    setting: Setting,
+    stage: Stage,
+    plots: Sequence[Series],
+    duration_s: float,
+    *,
+    has_notes: bool,
+    is_live: bool = False,
 ) -> rrb.Blueprint:
     """The views of one run."""
     axes = "W (inertial axes)" if rows.quat_wl is None else "L (local orbital frame)"
@@ -59,7 +67,7 @@ def layout(
         eye_controls=stage.eye(),
         background=_BACKGROUND,
         line_grid=False,
-        overrides={OBTAINED_PATH: rrb.VisibleTimeRanges([_UNTIL_NOW])},
+        overrides=dict.fromkeys(TRAILS.values(), rrb.VisibleTimeRanges([_UNTIL_NOW])),
     )
     below: list[rrb.View] = []
     if "position_eci" in rows:
@@ -72,8 +80,8 @@ def layout(
         rrb.TimePanel(
             state="collapsed",
             timeline=TIMELINE,
-            play_state="playing",
-            loop_mode="all",
+            play_state="following" if is_live else "playing",
+            loop_mode="off" if is_live else "all",
             playback_speed=max(1.0, duration_s / PLAYS_IN_S),
         ),
         rrb.BlueprintPanel(state="collapsed"),
@@ -83,7 +91,7 @@ def layout(
 
 
 def _orbit(rows: Rows) -> rrb.View:
-    """Looks at the planet over the place where the run starts, north up, from where all of the path is seen."""
+    """Looks at the planet near where the run starts, north up, from where all of the path is seen."""
     position = rows["position_eci"] / 1e3
     start = position[0] / np.linalg.norm(position[0])
     farthest = max(float(np.linalg.norm(position, axis=1).max()), 6400.0)
@@ -97,6 +105,7 @@ def _orbit(rows: Rows) -> rrb.View:
             position=3.1 * farthest * towards, look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0)
         ),
         background=_SPACE,
+        overrides={ORBIT_TRAIL: rrb.VisibleTimeRanges([_UNTIL_NOW])},
         line_grid=False,
     )
 

@@ -1,7 +1,7 @@
 """Named frames, as tf has them: W → L → base in orbit → base → links, each moving in the one before it.
 
-The frame ``follow`` has the axes of L (of W where there is no orbit) and its origin on the base: what is drawn
-in it stays sharp in 32 bits however far the robot drifts, and the eye that rides in it follows the base.
+The frame ``follow`` has the axes of L (of W where there is no orbit) and its origin on the base: what is
+drawn in it stays sharp in 32 bits however far the robot drifts, and the eye rides in it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pyarrow as pa
+import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
 import rerun as rr
 
 from onorbit_rs.rotations import conjugate, product, quaternion_from_matrix
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-TIMELINE = "simulation_time"
 WORLD, LOCAL, FOLLOW, COMPASS, DESIRED = "W", "L", "follow", "compass I", "desired tool"
 AT_REST = np.array([0.0, 0.0, 0.0, 1.0])
 ORIGIN = np.zeros(3)
@@ -32,11 +31,6 @@ ORIGIN = np.zeros(3)
 def of_link(link: str) -> str:
     """Name of the frame of a link or of a frame fixed to one."""
     return f"robot/{link}"
-
-
-def time_column(time: Floats) -> rr.TimeColumn:
-    """Seconds of simulation."""
-    return rr.TimeColumn(TIMELINE, duration=time)
 
 
 def send_frame(
@@ -89,11 +83,9 @@ def send_fixed_frames(recording: rr.RecordingStream, setting: Setting) -> None:
             fix_frame(recording, of_link(frame.body), of_link(frame.name), np.array(frame.pose))
 
 
-def send_moving_frames(
-    recording: rr.RecordingStream, time: rr.TimeColumn, rows: Rows, setting: Setting, compass: Floats
-) -> None:
+def send_moving_frames(recording: rr.RecordingStream, rows: Rows, setting: Setting, compass: Floats) -> None:
     """L, the base and every joint; ``compass`` is where inertial axes are shown in ``follow``, m."""
-    q = rows["q"]
+    q, time = rows["q"], rows.times
     if rows.quat_wl is None or rows.quat_lb is None or rows.rot_wl is None:
         send_frame(recording, time, WORLD, FOLLOW, q[:, :3], AT_REST)
         send_frame(recording, time, FOLLOW, of_link(setting.base), ORIGIN, q[:, 3:7])
@@ -109,7 +101,7 @@ def send_moving_frames(
 
 
 def _across(joint: Joint, values: Floats) -> tuple[Floats, Floats]:
-    """Where the child's link is in the parent's: translation and quaternion, each for all rows or one for all."""
+    """Where the child's link is in the parent's: translation and quaternion, for each row or one for all."""
     pose, axis = np.array(joint.pose), np.array(joint.axis)
     quat = quaternion_from_matrix(pose[:3, :3])
     if joint.kind == "prismatic":

@@ -11,8 +11,10 @@ import rerun as rr
 from onorbit_rs._core import MU_EARTH
 from onorbit_rs.exceptions import OrbitError
 from onorbit_rs.rotations import quaternion_from_matrix
-from onorbit_rs.viewer.frames import AT_REST, ORIGIN, put_in, send_frame, time_column
+from onorbit_rs.viewer.frames import ORIGIN, put_in, send_frame
 from onorbit_rs.viewer.land import world_map
+from onorbit_rs.viewer.rows import TIMELINE
+from onorbit_rs.viewer.scene import send_trail
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -80,10 +82,19 @@ def send_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> 
     t = t[np.unique(np.linspace(0, len(t) - 1, min(len(t), MOST_TURNS)).astype(np.int64))]
     rot_fi = np.asarray(earth.rotation(t)).reshape(-1, 3, 3)
     quat_if = quaternion_from_matrix(np.swapaxes(rot_fi, 1, 2))
-    send_frame(recording, time_column(t), INERTIAL, EARTH, ORIGIN, quat_if)
+    times = rr.TimeColumn(TIMELINE, duration=t)
+    send_frame(recording, times, INERTIAL, EARTH, ORIGIN, quat_if)
     if has_sun(earth):
         quat_is = quaternion_from_matrix(_axes_towards(np.asarray(earth.sun(t)).reshape(-1, 3)))
-        send_frame(recording, time_column(t), INERTIAL, SUN, ORIGIN, quat_is)
+        send_frame(recording, times, INERTIAL, SUN, ORIGIN, quat_is)
+
+
+ORBIT_TRAIL = "orbit/trail"
+
+
+def send_orbit_trail(recording: rr.RecordingStream, rows: Rows, most: int) -> None:
+    """The path so far."""
+    send_trail(recording, ORBIT_TRAIL, INERTIAL, rows, rows["position_eci"] / 1e3, most, _PATH)
 
 
 def log_path_flown(recording: rr.RecordingStream, rows: Rows) -> None:
@@ -104,7 +115,7 @@ def send_spacecraft(recording: rr.RecordingStream, rows: Rows, setting: Setting)
     )
     recording.log(path, look, static=True, strict=True)
     place = rr.Points3D.columns(positions=rows["position_eci"] / 1e3)
-    recording.send_columns(path, [time_column(rows["time"])], place, strict=True)
+    recording.send_columns(path, [rows.times], place, strict=True)
 
 
 def path_around_planet(orbit: Orbit | None, points: int = 361) -> Floats | None:
@@ -124,7 +135,8 @@ def path_around_planet(orbit: Orbit | None, points: int = 361) -> Floats | None:
 def _radius_km(mu: float, rows: Rows) -> float:
     """Of a ball of a usual density, below the lowest point of the path."""
     radius = (3.0 * mu / (4.0 * math.pi * _GRAVITATION * MEAN_DENSITY)) ** (1.0 / 3.0)
-    return min(radius, 0.95 * float(np.linalg.norm(rows["position_eci"], axis=1).min())) / 1e3
+    lowest = float(np.linalg.norm(rows["position_eci"], axis=1).min())
+    return float(min(radius, 0.95 * lowest)) / 1e3
 
 
 def _globe(radii: Floats, *, has_land: bool, rows: int = 60, columns: int = 120) -> rr.Mesh3D:
@@ -147,7 +159,7 @@ def _globe(radii: Floats, *, has_land: bool, rows: int = 60, columns: int = 120)
 
 
 def _night(radii: Floats, depth: float, rows: int = 24, columns: int = 72) -> rr.Mesh3D:
-    """A dark veil over the half away from the x axis, from where the Sun stands ``depth`` rad below the horizon."""
+    """A dark veil over the half away from the x axis, where the Sun is ``depth`` rad below the horizon."""
     away, around = np.meshgrid(
         np.linspace(np.pi / 2 + depth, np.pi, rows + 1),
         np.linspace(0.0, 2.0 * np.pi, columns + 1),

@@ -7,6 +7,7 @@ robot size. The orbit is drawn apart, in km; its exact state is there as 64-bit 
 from __future__ import annotations
 
 import uuid
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,10 +18,10 @@ from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.axes import log_all_axes
 from onorbit_rs.viewer.blueprint import layout
-from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames, time_column
+from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames
 from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
 from onorbit_rs.viewer.rows import Rows
-from onorbit_rs.viewer.scene import log_path, log_robot, send_desired, send_trail
+from onorbit_rs.viewer.scene import MOST_TRAIL_PIECES, log_path, log_robot, send_desired, send_trails
 from onorbit_rs.viewer.series import Series, log_style, send_series, series_of
 from onorbit_rs.viewer.stage import Stage
 from onorbit_rs.viewer.targets import log_targets, send_targets
@@ -65,16 +66,31 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
     recording = new_recording(setting)
     stream = rr.binary_stream(recording)  # rerun's own file sink waits for ever where the disk is full
     plots = list(series_of(rows, setting.model))
-    stage = open_stage(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
-    if "reference_pose" in rows:
-        log_path(recording, rows, setting, stage.size)
-    if "tool_pose" in rows:
-        send_trail(recording, rows, setting)
-    if "position_eci" in rows:
-        log_path_flown(recording, rows)
-    send_rows(recording, rows, setting, stage, plots)
-    Arrows(recording, setting, stage).send(rows)
-    path.write_bytes(_encoded(stream))
+    parts: list[Future[bytes | None]] = []
+    with ThreadPoolExecutor(1) as encoder:  # rerun compresses while it is read from, without the GIL
+
+        def encode() -> None:
+            parts.append(encoder.submit(stream.read, flush_timeout_sec=FLUSH_TIMEOUT_S))
+
+        stage = open_stage(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
+        for series in plots:
+            send_series(recording, rows, series)
+        encode()
+        send_rows(recording, rows, setting, stage)
+        encode()
+        if "reference_pose" in rows:
+            log_path(recording, rows, setting, stage.size)
+        if "tool_pose" in rows:
+            send_trails(recording, rows, setting, MOST_TRAIL_PIECES, "obtained")
+        if "position_eci" in rows:
+            log_path_flown(recording, rows)
+        Arrows(recording, setting, stage).send(rows)
+        encode()
+    try:
+        with path.open("wb") as file:
+            file.writelines(part.result() or b"" for part in parts)
+    except RuntimeError as error:
+        raise OnOrbitError(f"rerun did not encode the recording: {error}") from error
     recording.disconnect()
     return path
 
@@ -96,11 +112,13 @@ def open_stage(
     plots: list[Series],
     duration_s: float,
     *,
-    notes: str,
+    notes: str = "",
+    is_live: bool = False,
 ) -> Stage:
     """The layout and all that does not move, from the first rows."""
     stage = Stage.of(rows, setting)
-    recording.send_blueprint(layout(rows, setting, stage, plots, duration_s, has_notes=bool(notes)))
+    views = layout(rows, setting, stage, plots, duration_s, has_notes=bool(notes), is_live=is_live)
+    recording.send_blueprint(views)
     put_in(recording, "world", WORLD)
     send_fixed_frames(recording, setting)
     log_robot(recording, setting)
@@ -120,28 +138,15 @@ def open_stage(
     return stage
 
 
-def send_rows(
-    recording: rr.RecordingStream, rows: Rows, setting: Setting, stage: Stage, plots: list[Series]
-) -> None:
+def send_rows(recording: rr.RecordingStream, rows: Rows, setting: Setting, stage: Stage) -> None:
     """All that moves, every row."""
-    time = time_column(rows["time"])
-    send_moving_frames(recording, time, rows, setting, stage.inertial_at)
-    send_targets(recording, time, rows, setting)
+    send_moving_frames(recording, rows, setting, stage.inertial_at)
+    send_targets(recording, rows, setting)
     if "reference_pose" in rows:
-        send_desired(recording, time, rows)
+        send_desired(recording, rows)
     if "position_eci" in rows:
         send_planet(recording, rows, setting)
         send_spacecraft(recording, rows, setting)
-    for series in plots:
-        send_series(recording, time, series)
-
-
-def _encoded(stream: rr.BinaryStream) -> bytes:
-    """Everything sent so far, as the content of a ``.rrd``."""
-    try:
-        return stream.read(flush_timeout_sec=FLUSH_TIMEOUT_S) or b""
-    except RuntimeError as error:
-        raise OnOrbitError(f"rerun did not encode the recording: {error}") from error
 
 
 def recorded_rows(count: int) -> NDArray[np.int64]:

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+import rerun as rr
 
 from onorbit_rs.rotations import (
     conjugate,
@@ -24,13 +25,17 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+TIMELINE = "simulation_time"
 _POSES = ("tool_pose", "reference_pose")
 _PARTS = {"wrench_": 6, "tracking_": None}
 
 
 @dataclass(frozen=True)
 class Rows:
-    """Columns by the trace's names, (T, ...); ``wrenches`` (T, bodies, 6) by effect, ``tracking`` (T, k) by control."""
+    """Columns by the trace's names, (T, ...).
+
+    ``wrenches`` (T, bodies, 6) by effect, ``tracking`` (T, k) by control.
+    """
 
     columns: Mapping[str, Floats]
     wrenches: Mapping[str, Floats] = field(default_factory=dict)
@@ -74,15 +79,28 @@ class Rows:
         """How many rows."""
         return len(self.columns["time"])
 
+    def thinned(self, most: int) -> Rows:
+        """At most so many, evenly, the last one among them."""
+        if len(self) <= most:
+            return self
+        chosen = np.linspace(0, len(self) - 1, most).astype(np.int64)
+        parts = (self.columns, self.wrenches, self.tracking)
+        return Rows(*({name: values[chosen] for name, values in part.items()} for part in parts))
+
     def last(self) -> Rows:
-        """The last row alone."""
+        """The columns of the last row."""
         return Rows({name: values[-1:] for name, values in self.columns.items()})
 
     def after(self, earlier: Rows) -> Rows:
-        """These rows, with those of an earlier part before them."""
+        """The columns of these rows, with those of an earlier part before them."""
         return Rows(
             {name: np.concatenate([earlier.columns[name], values]) for name, values in self.columns.items()}
         )
+
+    @cached_property
+    def times(self) -> rr.TimeColumn:
+        """When each row is."""
+        return rr.TimeColumn(TIMELINE, duration=self["time"])
 
     @cached_property
     def rot_wl(self) -> Floats | None:

@@ -15,8 +15,8 @@ from onorbit_rs.viewer.frames import (
     of_link,
     put_in,
     send_frame,
-    time_column,
 )
+from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.solids import log_shape
 
 if TYPE_CHECKING:
@@ -28,8 +28,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 MOST_TRAIL_PIECES = 1000
-DESIRED_COLOR, OBTAINED_COLOR = (240, 240, 240), (255, 96, 64)
-DESIRED_PATH, OBTAINED_PATH = "world/tool/desired/path", "world/tool/obtained/trail"
+COLORS = {"desired": (240, 240, 240), "obtained": (255, 96, 64)}
+TRAILS = {name: f"world/tool/{name}/trail" for name in COLORS}
+_POSES = {"desired": "reference_pose", "obtained": "tool_pose"}
 
 
 def log_robot(recording: rr.RecordingStream, setting: Setting) -> None:
@@ -40,43 +41,59 @@ def log_robot(recording: rr.RecordingStream, setting: Setting) -> None:
             put_in(recording, path, of_link(shape.link))
 
 
-def send_desired(recording: rr.RecordingStream, time: rr.TimeColumn, rows: Rows) -> None:
+def send_desired(recording: rr.RecordingStream, rows: Rows) -> None:
     """Where the tool should be."""
     pose = rows["reference_pose"]
-    send_frame(recording, time, WORLD, DESIRED, pose[:, :3, 3], quaternion_from_matrix(pose[:, :3, :3]))
+    send_frame(recording, rows.times, WORLD, DESIRED, pose[:, :3, 3], quaternion_from_matrix(pose[:, :3, :3]))
 
 
 def log_path(recording: rr.RecordingStream, rows: Rows, setting: Setting, size: float) -> None:
     """The whole path that the tool should take, static, and where it ends."""
     points, frame = _on_path(rows, rows["reference_pose"][:, :3, 3], setting)
-    put_in(recording, DESIRED_PATH, frame)
-    line = rr.LineStrips3D([_thinned(points)], colors=[DESIRED_COLOR], radii=rr.Radius.ui_points(1.5))
-    recording.log(DESIRED_PATH, line, static=True, strict=True)
+    path, color = "world/tool/desired/path", COLORS["desired"]
+    put_in(recording, path, frame)
+    line = rr.LineStrips3D([_thinned(points)], colors=[color], radii=rr.Radius.ui_points(3.0))
+    recording.log(path, line, static=True, strict=True)
     if np.ptp(points, axis=0).max() < 0.02 * size:  # it holds a pose: nowhere to go
         return
     goal = "world/tool/desired/goal"
     put_in(recording, goal, frame)
     ring = rr.Points3D(
-        points[-1:], colors=[DESIRED_COLOR], radii=rr.Radius.ui_points(5), labels=["goal"], show_labels=True
+        points[-1:], colors=[color], radii=rr.Radius.ui_points(5), labels=["goal"], show_labels=True
     )
     recording.log(goal, ring, static=True, strict=True)
 
 
+def send_trails(recording: rr.RecordingStream, rows: Rows, setting: Setting, most: int, *names: str) -> None:
+    """What the tool has drawn so far, ``obtained`` or ``desired``."""
+    for name in names:
+        points, frame = _on_path(rows, rows[_POSES[name]][:, :3, 3], setting)
+        send_trail(recording, TRAILS[name], frame, rows, points, most, COLORS[name])
+
+
 def send_trail(
-    recording: rr.RecordingStream, rows: Rows, setting: Setting, most_pieces: int = MOST_TRAIL_PIECES
+    recording: rr.RecordingStream,
+    path: str,
+    frame: str,
+    rows: Rows,
+    points: Floats,
+    most: int,
+    color: tuple[int, int, int],
 ) -> None:
-    """What the tool has drawn so far: one short piece per moment, shown up to the present one."""
-    points, frame = _on_path(rows, rows["tool_pose"][:, :3, 3], setting)
-    ends = np.unique(np.linspace(0, len(points) - 1, min(len(points), most_pieces + 1)).astype(np.int64))
+    """Points (T, 3) as at most so many short pieces, one per moment: those up to now are shown."""
+    ends = np.unique(np.linspace(0, len(points) - 1, min(len(points), most + 1)).astype(np.int64))
     if len(ends) < 2:
         return
-    put_in(recording, OBTAINED_PATH, frame)
+    put_in(recording, path, frame)
     pieces = np.stack([points[ends[:-1]], points[ends[1:]]], axis=1)
     count = len(pieces)
     columns = rr.LineStrips3D.columns(
-        strips=list(pieces), colors=[OBTAINED_COLOR] * count, radii=[-3.0] * count  # points of the screen
+        strips=list(pieces),
+        colors=[color] * count,
+        radii=[-1.5] * count,  # points of the screen
     )
-    recording.send_columns(OBTAINED_PATH, [time_column(rows["time"][ends[1:]])], columns, strict=True)
+    time = rr.TimeColumn(TIMELINE, duration=rows["time"][ends[1:]])
+    recording.send_columns(path, [time], columns, strict=True)
 
 
 def _on_path(rows: Rows, position_w: Floats, setting: Setting) -> tuple[Floats, str]:

@@ -52,7 +52,9 @@ def series_of(rows: Rows, model: Model) -> Iterator[Series]:
 
 def _of_tools(rows: Rows) -> Iterator[Series]:
     if "position_error" in rows:
-        yield Series("Tool", "plots/tool_position_error", "Tool position error", "m", _AXES, rows["position_error"])
+        yield Series(
+            "Tool", "plots/tool_position_error", "Tool position error", "m", _AXES, rows["position_error"]
+        )
         yield Series(
             "Tool", "plots/tool_attitude_error", "Tool attitude error", "rad", _AXES, rows["attitude_error"]
         )
@@ -116,8 +118,8 @@ def log_style(recording: rr.RecordingStream, series: Series) -> None:
     recording.log(series.path, style, static=True, strict=True)
 
 
-def send_series(recording: rr.RecordingStream, time: rr.TimeColumn, series: Series) -> None:
+def send_series(recording: rr.RecordingStream, rows: Rows, series: Series) -> None:
     """One entity with all lines of a plot."""
     columns = rr.Scalars.columns(scalars=series.values.reshape(-1))
-    parts = columns.partition([len(series.names)] * len(series.values))
-    recording.send_columns(series.path, [time], parts, strict=True)
+    lengths = np.full(len(series.values), len(series.names))
+    recording.send_columns(series.path, [rows.times], columns.partition(lengths), strict=True)

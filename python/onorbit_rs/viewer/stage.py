@@ -43,7 +43,8 @@ class Stage:
     def place(self, right: float, up: float, behind: float = 0.0) -> Floats:
         """A point beside the robot as it is seen, in units of its size."""
         x, y, z = self._sight()
-        return self.center + self.size * (right * x + up * y - behind * z)
+        place: Floats = self.center + self.size * (right * x + up * y - behind * z)
+        return place
 
     def _sight(self) -> Floats:
         """Rows: to the right, up, and towards the eye, as seen at the start."""
@@ -62,9 +63,9 @@ class Stage:
     @property
     def inertial_at(self) -> Floats:
         """Where the axes of I are shown."""
-        return self.place(-0.88, 0.32)
+        return self.place(-0.84, 0.32)
 
     @property
     def local_at(self) -> Floats:
         """Where the axes of L are shown."""
-        return self.place(-0.88, -0.36)
+        return self.place(-0.84, -0.36)

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
 def path_frame(scenario: Scenario) -> PathFrame:
     """That of the first reference of a tool; a moving target's path is drawn in W."""
-    frame = next((reference.frame for reference in _references(scenario)), "world")
-    return frame if isinstance(frame, str) else "world"
+    frames: tuple[PathFrame, ...] = ("lvlh", "base")
+    first = next((reference.frame for reference in _references(scenario)), None)
+    return next((frame for frame in frames if frame == first), "world")
 
 
 def targets(scenario: Scenario) -> tuple[Target, ...]:
@@ -47,7 +48,7 @@ def _references(scenario: Scenario) -> Iterator[Any]:
     return (part for part in parts if hasattr(part, "frame"))
 
 
-def send_targets(recording: rr.RecordingStream, time: rr.TimeColumn, rows: Rows, setting: Setting) -> None:
+def send_targets(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
     """How they move."""
     t = rows["time"]
     for index, target in enumerate(setting.targets):
@@ -56,7 +57,7 @@ def send_targets(recording: rr.RecordingStream, time: rr.TimeColumn, rows: Rows,
         half = rate * t[:, None] / 2.0
         turned = np.hstack([np.sin(half) * axis, np.cos(half)])
         position = target.position + np.outer(t, target.velocity)
-        send_frame(recording, time, WORLD, _frame(index), position, product(turned, target.quat_xyzw))
+        send_frame(recording, rows.times, WORLD, _frame(index), position, product(turned, target.quat_xyzw))
 
 
 def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) -> None:
