@@ -9,11 +9,12 @@ import numpy as np
 import rerun.blueprint as rrb
 
 from onorbit_rs.viewer.frames import FOLLOW
-from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL
+from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL, has_sun
 from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.scene import TRAILS
 
 if TYPE_CHECKING:
+    from onorbit_rs._core import Earth
     from onorbit_rs.viewer.rows import Rows
     from onorbit_rs.viewer.series import Series
     from onorbit_rs.viewer.setting import Setting
@@ -71,7 +72,7 @@ def layout(
     )
     below: list[rrb.View] = []
     if "position_eci" in rows:
-        below.append(_orbit(rows))
+        below.append(_orbit(rows, setting.earth))
     if has_notes:
         below.append(rrb.TextDocumentView(origin="notes", name="Notes"))
     left = rrb.Vertical(robot, rrb.Horizontal(*below), row_shares=[5, 3]) if below else robot
@@ -90,12 +91,15 @@ def layout(
     )
 
 
-def _orbit(rows: Rows) -> rrb.View:
+def _orbit(rows: Rows, earth: Earth | None) -> rrb.View:
     """Looks at the planet near where the run starts, north up, from where all of the path is seen."""
     position = rows["position_eci"] / 1e3
     start = position[0] / np.linalg.norm(position[0])
     farthest = max(float(np.linalg.norm(position, axis=1).max()), 6400.0)
     towards = start + [0.0, 0.0, 0.5] + 0.6 * np.cross([0.0, 0.0, 1.0], start)
+    if earth is not None and has_sun(earth):  # half of it in the light
+        sun = np.asarray(earth.sun(0.0)).reshape(3)
+        towards -= 0.9 * (towards @ sun) / (sun @ sun) * sun
     towards /= np.linalg.norm(towards)
     return rrb.Spatial3DView(
         origin="orbit",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,7 @@ from onorbit_rs.viewer.recording import new_recording, open_stage, send_rows
 from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.scene import send_trails
 from onorbit_rs.viewer.screen import has_screen, open_viewer
-from onorbit_rs.viewer.series import send_series, series_of
+from onorbit_rs.viewer.series import ANGLES, Series, send_series, series_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -48,6 +49,7 @@ class LiveView:
         self._stage: Stage | None = None
         self._arrows: Arrows | None = None
         self._before: Rows | None = None
+        self._angles: dict[str, Floats] = {}
         self._count, self._is_lost = 0, False
 
     def take(self, columns: Mapping[str, Floats]) -> None:
@@ -82,7 +84,7 @@ class LiveView:
             self._arrows = Arrows(recording, setting, self._stage)
         send_rows(recording, rows, setting, self._stage)
         for series in plots:
-            send_series(recording, rows, series)
+            send_series(recording, rows, self._continued(series))
         if self._arrows is not None:
             self._arrows.send(rows)
         joined = rows if self._before is None else rows.after(self._before)
@@ -93,6 +95,16 @@ class LiveView:
         if "position_eci" in rows:
             send_orbit_trail(recording, joined, MOST_ROWS)
         self._before = rows.last()
+
+    def _continued(self, series: Series) -> Series:
+        """Angles without a jump of whole turns from those before."""
+        if series.names != ANGLES:
+            return series
+        values = series.values
+        before = self._angles.get(series.path, values[0])
+        values = values + 360.0 * np.round((before - values[0]) / 360.0)
+        self._angles[series.path] = values[-1]
+        return replace(series, values=values)
 
     def _lose(self, error: Exception) -> None:
         self._is_lost = True

@@ -7,17 +7,16 @@ robot size. The orbit is drawn apart, in km; its exact state is there as 64-bit 
 from __future__ import annotations
 
 import uuid
-from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.axes import log_all_axes
 from onorbit_rs.viewer.blueprint import layout
+from onorbit_rs.viewer.encoded import Encoded
 from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames
 from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
 from onorbit_rs.viewer.rows import Rows
@@ -36,9 +35,6 @@ if TYPE_CHECKING:
 
 MOST_STEPS = 500_000
 """Steps in a recording, which take half a gigabyte; a longer trace is thinned evenly, its last row kept."""
-
-FLUSH_TIMEOUT_S = 300.0
-"""Wall-clock time given to rerun's encoder, which needs seconds."""
 
 
 def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = "") -> Path:
@@ -64,34 +60,20 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
     if len(chosen) < len(trace.time):
         notes += f"\n\nThe recording holds {len(chosen)} of the {len(trace.time)} rows of the trace.\n"
     recording = new_recording(setting)
-    stream = rr.binary_stream(recording)  # rerun's own file sink waits for ever where the disk is full
+    encoded = Encoded(recording)
     plots = list(series_of(rows, setting.model))
-    parts: list[Future[bytes | None]] = []
-    with ThreadPoolExecutor(1) as encoder:  # rerun compresses while it is read from, without the GIL
-
-        def encode() -> None:
-            parts.append(encoder.submit(stream.read, flush_timeout_sec=FLUSH_TIMEOUT_S))
-
-        stage = open_stage(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
-        for series in plots:
-            send_series(recording, rows, series)
-        encode()
-        send_rows(recording, rows, setting, stage)
-        encode()
-        if "reference_pose" in rows:
-            log_path(recording, rows, setting, stage.size)
-        if "tool_pose" in rows:
-            send_trails(recording, rows, setting, MOST_TRAIL_PIECES, "obtained")
-        if "position_eci" in rows:
-            log_path_flown(recording, rows)
-        Arrows(recording, setting, stage).send(rows)
-        encode()
-    try:
-        with path.open("wb") as file:
-            file.writelines(part.result() or b"" for part in parts)
-    except RuntimeError as error:
-        raise OnOrbitError(f"rerun did not encode the recording: {error}") from error
-    recording.disconnect()
+    stage = open_stage(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
+    for series in plots:
+        send_series(recording, rows, series)
+    send_rows(recording, rows, setting, stage)
+    if "reference_pose" in rows:
+        log_path(recording, rows, setting, stage.size)
+    if "tool_pose" in rows:
+        send_trails(recording, rows, setting, MOST_TRAIL_PIECES, "obtained")
+    if "position_eci" in rows:
+        log_path_flown(recording, rows)
+    Arrows(recording, setting, stage).send(rows)
+    encoded.write_to(path)
     return path
 
 

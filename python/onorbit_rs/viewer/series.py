@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _XYZ = [(240, 95, 75), (70, 200, 120), (85, 155, 250)]
 _COLORS = [(85, 155, 250), (240, 130, 50), (70, 200, 120), (220, 140, 190), (240, 190, 50), (130, 210, 245),
            (180, 180, 180), (245, 235, 100)]  # fmt: skip
-_AXES, _ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
+_AXES, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,9 @@ def _of_base(rows: Rows) -> Iterator[Series]:
     if rows.quat_lb is not None:
         angles = np.degrees(np.unwrap(roll_pitch_yaw(rows.quat_lb), axis=0))
         title = "Base attitude relative to L (local orbital frame)"
-        yield Series("Base", "plots/base_attitude_lvlh", title, "deg", _ANGLES, angles)
+        yield Series("Base", "plots/base_attitude_lvlh", title, "deg", ANGLES, angles)
     angles = np.degrees(np.unwrap(roll_pitch_yaw(q[:, 3:7]), axis=0))
-    yield Series("Base", "plots/base_attitude", "Base attitude in W", "deg", _ANGLES, angles)
+    yield Series("Base", "plots/base_attitude", "Base attitude in W", "deg", ANGLES, angles)
     yield Series("Base", "plots/base_rate", "Base angular velocity, body axes", "rad/s", _AXES, v[:, 3:6])
     yield Series("Base", "plots/base_position", "Base position in W", "m", _AXES, q[:, :3])
     if "position_eci" in rows:
@@ -108,7 +108,7 @@ def _of_balances(rows: Rows) -> Iterator[Series]:
 
 def log_style(recording: rr.RecordingStream, series: Series) -> None:
     """Names and colours of the lines of a plot."""
-    colors = _XYZ if series.names in (_AXES, _ANGLES) else _COLORS
+    colors = _XYZ if series.names in (_AXES, ANGLES) else _COLORS
     count = len(series.names)
     style = rr.SeriesLines(
         names=list(series.names),
