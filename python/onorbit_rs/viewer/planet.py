@@ -57,7 +57,7 @@ def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> N
             recording.log(path, _night(radius * height * flat, depth), static=True, strict=True)
         put_in(recording, "orbit/sun", SUN)
         arrow = rr.Arrows3D(
-            vectors=[[0.5 * radius, 0.0, 0.0]], origins=[[1.25 * radius, 0.0, 0.0]], radii=[radius / 70.0],
+            vectors=[[0.45 * radius, 0.0, 0.0]], origins=[[1.4 * radius, 0.0, 0.0]], radii=[radius / 70.0],
             colors=[(255, 225, 90)], labels=["to the Sun"], show_labels=True,
         )  # fmt: skip
         recording.log("orbit/sun", arrow, static=True, strict=True)

@@ -52,7 +52,7 @@ def log_path(recording: rr.RecordingStream, rows: Rows, setting: Setting, size: 
     points, frame = _on_path(rows, rows["reference_pose"][:, :3, 3], setting)
     path, color = "world/tool/desired/path", COLORS["desired"]
     put_in(recording, path, frame)
-    line = rr.LineStrips3D([_thinned(points)], colors=[color], radii=rr.Radius.ui_points(3.0))
+    line = rr.LineStrips3D([_thinned(points)], colors=[color], radii=rr.Radius.ui_points(1.2))
     recording.log(path, line, static=True, strict=True)
     if np.ptp(points, axis=0).max() < 0.02 * size:  # it holds a pose: nowhere to go
         return
@@ -90,7 +90,7 @@ def send_trail(
     columns = rr.LineStrips3D.columns(
         strips=list(pieces),
         colors=[color] * count,
-        radii=[-1.5] * count,  # points of the screen
+        radii=[-2.5] * count,  # points of the screen
     )
     time = rr.TimeColumn(TIMELINE, duration=rows["time"][ends[1:]])
     recording.send_columns(path, [time], columns, strict=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 
 import numpy as np
@@ -10,8 +11,17 @@ import rerun as rr
 from onorbit_rs.geometry import GREY, Shape
 from onorbit_rs.rotations import quaternion_from_matrix
 
-MESHES = (".dae", ".glb", ".gltf", ".obj", ".stl")
-"""Files that rerun draws."""
+MESHES = {
+    ".dae": "model/vnd.collada+xml",
+    ".glb": "model/gltf-binary",
+    ".gltf": "model/gltf+json",
+    ".obj": "model/obj",
+    ".stl": "model/stl",
+}
+"""Files that rerun draws, and their media types, which it guesses wrongly for Collada."""
+
+_HEAD_BYTES = 65_536
+"""Where a Collada file tells its unit."""
 
 
 def log_shape(recording: rr.RecordingStream, path: str, shape: Shape) -> bool:
@@ -26,10 +36,23 @@ def log_shape(recording: rr.RecordingStream, path: str, shape: Shape) -> bool:
     placed = rr.InstancePoses3D(
         translations=[pose[:3, 3]],
         quaternions=[rr.Quaternion(xyzw=quaternion_from_matrix(pose[:3, :3]))],
-        scales=[shape.scale] if shape.kind == "mesh" else None,
+        scales=[np.array(shape.scale) * _unit(shape)] if shape.kind == "mesh" else None,
     )
     recording.log(path, drawn, placed, static=True, strict=True)
     return True
+
+
+def _unit(shape: Shape) -> float:
+    """Metres in the unit of a Collada file, which rerun passes over; other kinds of files are in metres."""
+    file = shape.filename
+    if file is None or file.suffix.lower() != ".dae":
+        return 1.0
+    with file.open("rb") as text:
+        found = re.search(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']([0-9.eE+-]+)", text.read(_HEAD_BYTES))
+    try:
+        return float(found[1]) if found else 1.0
+    except ValueError:
+        return 1.0
 
 
 def _archetype(shape: Shape) -> rr.AsComponents | None:
@@ -52,10 +75,12 @@ def _mesh(shape: Shape) -> rr.Asset3D | None:
     file = shape.filename
     if file is None or not file.is_file():
         return None  # the robot's loader has warned already
-    if file.suffix.lower() not in MESHES:
+    media_type = MESHES.get(file.suffix.lower())
+    if media_type is None:
         known = ", ".join(MESHES)
         warnings.warn(
             f"the mesh {file} of link {shape.link!r} is not drawn: the viewer reads {known}", stacklevel=2
         )
         return None
-    return rr.Asset3D(path=file, albedo_factor=None if shape.rgba == GREY else list(shape.rgba))
+    color = None if shape.rgba == GREY else list(shape.rgba)
+    return rr.Asset3D(contents=file.read_bytes(), media_type=media_type, albedo_factor=color)

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 _TO_EYE = np.array([0.60, -0.74, 0.34])
 """Base axes: from the front, the right and a little above."""
 
+_NEAR = 4.0
+"""A target farther away than so many sizes of the robot does not move the eye back."""
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -38,7 +41,13 @@ class Stage:
         center, size = setting.extent(q)
         quat = q[3:7] if rows.quat_lb is None else rows.quat_lb[0]
         rot_fb = matrix_from_quaternion(quat)
-        return cls(size, rot_fb @ center, rot_fb)
+        center = rot_fb @ center
+        for target in setting.targets:  # one that is near is seen too
+            aside = rot_fb @ matrix_from_quaternion(q[3:7]).T @ (target.position - q[:3]) - center
+            reach = float(np.linalg.norm(aside)) + float(np.linalg.norm(target.size)) / 2.0
+            if size / 2.0 < reach < _NEAR * size:
+                center, size = center + aside / 2.0 * (1.0 - size / 2.0 / reach), size / 2.0 + reach
+        return cls(size, center, rot_fb)
 
     def place(self, right: float, up: float, behind: float = 0.0) -> Floats:
         """A point beside the robot as it is seen, in units of its size."""
