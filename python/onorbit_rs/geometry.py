@@ -37,7 +37,7 @@ class Shape:
 
 
 def shapes(model: Model) -> list[Shape]:
-    """Everything there is to draw of a robot; a model without geometry becomes one box."""
+    """Everything there is to draw of a robot; boxes of its inertia stand for geometry that is not there."""
     found = [
         Shape(
             link=visual.link,
@@ -50,7 +50,22 @@ def shapes(model: Model) -> list[Shape]:
         )
         for visual in model.visuals
     ]
+    missing = {shape.link for shape in found if _is_missing(shape)}
+    found = [shape for shape in found if not _is_missing(shape)]
+    drawn = {shape.link for shape in found}
+    for body in model.bodies:
+        if body.name in missing - drawn and body.mass > 0.0:
+            sides, axes = box_of_inertia(body.mass, np.array(body.inertia))
+            found.append(_box(body.name, sides, _pose(axes, np.array(body.com))))
     return found or [_inertia_box(model)]
+
+
+def _is_missing(shape: Shape) -> bool:
+    return shape.kind == "mesh" and (shape.filename is None or not shape.filename.is_file())
+
+
+def _box(link: str, sides: Floats, pose: Floats) -> Shape:
+    return Shape(link, pose, "box", tuple(sides), None, (1.0, 1.0, 1.0), GREY)
 
 
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
@@ -119,4 +134,4 @@ def _inertia_box(model: Model) -> Shape:
     center = np.array([lever[2, 1], lever[0, 2], lever[1, 0]])
     inertia = matrix[3:6, 3:6] - mass * (center @ center * np.eye(3) - np.outer(center, center))
     sides, axes = box_of_inertia(mass, inertia)
-    return Shape(model.body_names[0], _pose(axes, center), "box", tuple(sides), None, (1.0, 1.0, 1.0), GREY)
+    return _box(model.body_names[0], sides, _pose(axes, center))

@@ -73,8 +73,8 @@ def _archetype(shape: Shape) -> rr.AsComponents | None:
 def _mesh(shape: Shape) -> rr.Asset3D | None:
     """The file as it is; a colour of the robot's rules over those of the file."""
     file = shape.filename
-    if file is None or not file.is_file():
-        return None  # the robot's loader has warned already
+    if file is None:
+        return None
     media_type = MESHES.get(file.suffix.lower())
     if media_type is None:
         known = ", ".join(MESHES)
