@@ -31,7 +31,9 @@ from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Model, Trace
+    from collections.abc import Callable
+
+    from onorbit_rs._core import Checkpoint, Model, Trace
 
 
 @dataclass(frozen=True)
@@ -99,7 +101,11 @@ def run(
 
 
 def resume(
-    out: str | os.PathLike[str], *, quiet: bool = False, checkpoint_every: float = CHECKPOINT_EVERY
+    out: str | os.PathLike[str],
+    *,
+    quiet: bool = False,
+    view: bool = False,
+    checkpoint_every: float = CHECKPOINT_EVERY,
 ) -> Run:
     """Go on with a run that was killed or interrupted, to the same bits as if it had not been.
 
@@ -109,6 +115,8 @@ def resume(
         The folder of the run: its ``scenario.yaml`` and its last checkpoint.
     quiet : bool
         No progress bar, even on a terminal.
+    view : bool
+        Watch it in the viewer, from its beginning.
     checkpoint_every : float
         Wall-clock time between two checkpoints, s.
 
@@ -128,7 +136,7 @@ def resume(
     checkpoint, rows = read_checkpoint(folder.path, fingerprint)
     writer = CheckpointWriter(folder, fingerprint, rows=rows)
     return _go(
-        build(scenario), folder, quiet=quiet,
+        build(scenario), folder, quiet=quiet, view=view,
         checkpoint=writer, checkpoint_every=checkpoint_every, resume=checkpoint,
     )  # fmt: skip
 
@@ -141,20 +149,28 @@ def _go(
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
             if view:
-                trace = _watched(built, progress, **checkpoints)
+                trace = _watched(built, progress.move, **checkpoints)
             else:
-                trace = built.simulation.run(duration, progress=progress, **checkpoints)
+                trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
+            return _finish(trace, built, folder, progress.tell)
     except (SimulationError, RunInterrupted) as stop:
         _keep(stop, built, folder)
         raise
     except Exception as error:  # raised by a controller of the user's, or where orbit or environment end
         _keep_rows(error, built, folder)
         raise
+
+
+def _finish(trace: Trace, built: Built, folder: OutputFolder | None, tell: Callable[[str], None]) -> Run:
+    """Certify a run that came to its end, and write its folder."""
+    tell("certificate")
+    scenario = built.scenario
     summary = summarize(trace, scenario, built.orbit, warnings=built.model.warnings)
     if folder is not None:
+        tell("writing the trace")
         write_trace(folder, trace)
         write_summary(folder, summary)
-        write_pictures(folder, trace, summary, built)
+        write_pictures(folder, trace, summary, built, tell=tell)
         discard_checkpoint(folder)
     return Run(trace, summary, built.model, scenario, folder.path if folder else None)
 
@@ -164,6 +180,7 @@ def _watched(
     progress: ProgressCallback | None,
     checkpoint: CheckpointWriter | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
+    resume: Checkpoint | None = None,
 ) -> Trace:
     """Simulate while the viewer shows it."""
     from onorbit_rs.viewer.live import LOOK_EVERY_S, open_live
@@ -173,13 +190,16 @@ def _watched(
     live = open_live(Setting.of(built), duration)
     if live is None:
         return built.simulation.run(
-            duration, progress=progress, checkpoint=checkpoint, checkpoint_every=checkpoint_every
-        )
+            duration, progress=progress, checkpoint=checkpoint, checkpoint_every=checkpoint_every,
+            resume=resume,
+        )  # fmt: skip
+    if resume is not None:
+        live.take(resume.columns)
     relay = Relay(live, checkpoint, checkpoint_every)
     trace = None
     try:
         trace = built.simulation.run(
-            duration, progress=progress, checkpoint=relay, checkpoint_every=LOOK_EVERY_S
+            duration, progress=progress, checkpoint=relay, checkpoint_every=LOOK_EVERY_S, resume=resume
         )
     finally:
         relay.hand_on()

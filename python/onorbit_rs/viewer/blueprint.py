@@ -94,7 +94,7 @@ def layout(
 def _orbit(rows: Rows, earth: Earth | None) -> rrb.View:
     """Looks at the planet near where the run starts, north up, from where all of the path is seen."""
     position = rows["position_eci"] / 1e3
-    start = position[0] / np.linalg.norm(position[0])
+    start = position[0] / max(float(np.linalg.norm(position[0])), 1e-6)
     farthest = max(float(np.linalg.norm(position, axis=1).max()), 6400.0)
     towards = start + [0.0, 0.0, 0.5] + 0.6 * np.cross([0.0, 0.0, 1.0], start)
     if earth is not None and has_sun(earth):  # half of it in the light
@@ -126,7 +126,7 @@ def _plots(plots: Sequence[Series], duration_s: float) -> rrb.Tabs:
         *(
             rrb.Vertical(
                 *(_plot(plot, duration_s) for plot in group),
-                row_shares=[max(4, len(plot.names)) for plot in group],
+                row_shares=[min(max(4, len(plot.names)), 9) for plot in group],
                 name=name,
             )
             for name, group in tabs.items()
