@@ -29,7 +29,7 @@ def log_axes(
     origin: Floats | None = None,
     brightness: float = 1.0,
 ) -> None:
-    """Axes of a frame, static; the tips carry ``names``, if any."""
+    """Axes of a frame, static; the tips carry ``names``, if any; a single one stands at z."""
     colors = (_COLORS * brightness).astype(np.uint8)
     start = np.zeros(3) if origin is None else origin
     put_in(recording, path, frame)
@@ -40,8 +40,8 @@ def log_axes(
     if names:
         put_in(recording, f"{path}/names", frame)
         labels = rr.Points3D(
-            start + 1.1 * length * np.eye(3),
-            colors=colors,
+            start + 1.1 * length * np.eye(3)[-len(names) :],
+            colors=colors[-len(names) :],
             radii=[0.0],
             labels=list(names),
             show_labels=True,
@@ -55,6 +55,7 @@ def log_all_axes(
     size: float,
     places: tuple[Floats, Floats],
     *,
+    tool_length: float,
     in_orbit: bool,
     has_reference: bool,
 ) -> None:
@@ -64,9 +65,9 @@ def log_all_axes(
     """
     log_axes(recording, "world/axes/base", of_link(setting.base), 0.45 * size, ("x B", "y B", "z B"))
     if setting.tool is not None:
-        log_axes(recording, "world/axes/tool", of_link(setting.tool), 0.14 * size)
+        log_axes(recording, "world/axes/tool", of_link(setting.tool), tool_length, (setting.tool,))
     if has_reference:
-        log_axes(recording, "world/axes/desired", DESIRED, 0.14 * size, brightness=0.6)
+        log_axes(recording, "world/axes/desired", DESIRED, tool_length, brightness=0.6)
     inertial, local = places
     if in_orbit:
         log_axes(recording, "world/axes/inertial", COMPASS, 0.2 * size, ("x I", "y I", "z I"))

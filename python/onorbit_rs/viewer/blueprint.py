@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import rerun.blueprint as rrb
@@ -11,10 +11,9 @@ import rerun.blueprint as rrb
 from onorbit_rs.viewer.frames import FOLLOW
 from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL, has_sun
 from onorbit_rs.viewer.rows import TIMELINE
-from onorbit_rs.viewer.scene import TRAILS
+from onorbit_rs.viewer.scene import MOVES, TRAILS, on_path
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Earth
     from onorbit_rs.viewer.rows import Rows
     from onorbit_rs.viewer.series import Series
     from onorbit_rs.viewer.setting import Setting
@@ -48,6 +47,9 @@ _UNTIL_NOW = rrb.VisibleTimeRange(
     TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
 )
 
+_LARGE = ("arrows", "axes/base", "axes/inertial", "axes/lvlh")
+_TRAILS_UNTIL_NOW: dict[Any, Any] = dict.fromkeys(TRAILS.values(), rrb.VisibleTimeRanges([_UNTIL_NOW]))
+
 
 def layout(
     rows: Rows,
@@ -68,14 +70,16 @@ def layout(
         eye_controls=stage.eye(),
         background=_BACKGROUND,
         line_grid=False,
-        overrides=dict.fromkeys(TRAILS.values(), rrb.VisibleTimeRanges([_UNTIL_NOW])),
+        overrides=_TRAILS_UNTIL_NOW,
     )
     below: list[rrb.View] = []
     if "position_eci" in rows:
-        below.append(_orbit(rows, setting.earth))
+        below.append(_orbit(rows, setting))
     if has_notes:
         below.append(rrb.TextDocumentView(origin="notes", name="Notes"))
-    left = rrb.Vertical(robot, rrb.Horizontal(*below), row_shares=[5, 3]) if below else robot
+    close_up = _close_up(rows, setting, stage) if "reference_pose" in rows and not is_live else None
+    top = robot if close_up is None else rrb.Tabs(robot, close_up, active_tab=0)
+    left = rrb.Vertical(top, rrb.Horizontal(*below), row_shares=[5, 3]) if below else top
     return rrb.Blueprint(
         rrb.Horizontal(left, _plots(plots, duration_s), column_shares=[3, 2]),
         rrb.TimePanel(
@@ -91,12 +95,40 @@ def layout(
     )
 
 
-def _orbit(rows: Rows, earth: Earth | None) -> rrb.View:
+def _close_up(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
+    """The path of the tool from near, in the frame in which it is drawn; None where it goes nowhere."""
+    points, frame = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
+    low, high = points.min(axis=0), points.max(axis=0)
+    length = float(np.linalg.norm(high - low))
+    if length < MOVES * stage.size:
+        return None
+    center = (low + high) / 2.0
+    return rrb.Spatial3DView(
+        origin="world",
+        contents=["$origin/**", *(f"- /world/{part}/**" for part in _LARGE)],
+        name="Tool and its path",
+        spatial_information=rrb.SpatialInformation(frame, show_axes=False),
+        eye_controls=rrb.EyeControls3D(
+            position=center + 2.2 * length * np.array([0.5, -0.75, 0.45]), look_target=center,
+            eye_up=(0.0, 0.0, 1.0),
+        ),
+        background=_BACKGROUND,
+        line_grid=False,
+        overrides=_TRAILS_UNTIL_NOW,
+    )  # fmt: skip
+
+
+def _orbit(rows: Rows, setting: Setting) -> rrb.View:
     """Looks at the planet near where the run starts, north up, from where all of the path is seen."""
-    position = rows["position_eci"] / 1e3
-    start = position[0] / max(float(np.linalg.norm(position[0])), 1e-6)
-    farthest = max(float(np.linalg.norm(position, axis=1).max()), 6400.0)
-    towards = start + [0.0, 0.0, 0.5] + 0.6 * np.cross([0.0, 0.0, 1.0], start)
+    position, earth = rows["position_eci"] / 1e3, setting.earth
+    if setting.orbit is not None and setting.orbit.mu is not None:
+        center, reach = np.zeros(3), max(float(np.linalg.norm(position, axis=1).max()), 6400.0)
+        start = position[0] / np.linalg.norm(position[0])
+        towards = start + [0.0, 0.0, 0.5] + 0.6 * np.cross([0.0, 0.0, 1.0], start)
+    else:
+        low, high = position.min(axis=0), position.max(axis=0)
+        center, reach = (low + high) / 2.0, max(float(np.linalg.norm(high - low)) / 2.0, 1e-3)
+        towards = np.array([0.5, -0.75, 0.45])
     if earth is not None and has_sun(earth):  # half of it in the light
         sun = np.asarray(earth.sun(0.0)).reshape(3)
         towards -= 0.9 * (towards @ sun) / (sun @ sun) * sun
@@ -106,11 +138,11 @@ def _orbit(rows: Rows, earth: Earth | None) -> rrb.View:
         name="Orbit (inertial axes, km)",
         spatial_information=rrb.SpatialInformation(INERTIAL, show_axes=False),
         eye_controls=rrb.EyeControls3D(
-            position=3.1 * farthest * towards, look_target=(0.0, 0.0, 0.0), eye_up=(0.0, 0.0, 1.0)
+            position=center + 3.1 * reach * towards, look_target=center, eye_up=(0.0, 0.0, 1.0)
         ),
         background=_SPACE,
-        overrides={ORBIT_TRAIL: rrb.VisibleTimeRanges([_UNTIL_NOW])},
         line_grid=False,
+        overrides={ORBIT_TRAIL: rrb.VisibleTimeRanges([_UNTIL_NOW])},
     )
 
 

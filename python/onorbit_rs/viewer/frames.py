@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-WORLD, LOCAL, FOLLOW, COMPASS, DESIRED = "W", "L", "follow", "compass I", "desired tool"
+WORLD, LOCAL, FOLLOW, COMPASS = "W", "L", "follow", "compass I"
+DESIRED, GOAL = "desired tool", "goal"
 AT_REST = np.array([0.0, 0.0, 0.0, 1.0])
 ORIGIN = np.zeros(3)
 

@@ -56,8 +56,9 @@ def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> N
             put_in(recording, path, SUN)
             recording.log(path, _night(radius * height * flat, depth), static=True, strict=True)
         put_in(recording, "orbit/sun", SUN)
+        far = max(radius, float(np.linalg.norm(rows["position_eci"], axis=1).max()) / 1e3)
         arrow = rr.Arrows3D(
-            vectors=[[0.45 * radius, 0.0, 0.0]], origins=[[1.4 * radius, 0.0, 0.0]], radii=[radius / 70.0],
+            vectors=[[0.4 * far, 0.0, 0.0]], origins=[[1.3 * far, 0.0, 0.0]], radii=[far / 70.0],
             colors=[(255, 225, 90)], labels=["to the Sun"], show_labels=True,
         )  # fmt: skip
         recording.log("orbit/sun", arrow, static=True, strict=True)

@@ -20,7 +20,15 @@ from onorbit_rs.viewer.encoded import Encoded
 from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames
 from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
 from onorbit_rs.viewer.rows import Rows
-from onorbit_rs.viewer.scene import MOST_TRAIL_PIECES, log_path, log_robot, send_desired, send_trails
+from onorbit_rs.viewer.scene import (
+    MOST_TRAIL_PIECES,
+    log_path,
+    log_robot,
+    path_length,
+    send_desired,
+    send_trails,
+    tool_axes,
+)
 from onorbit_rs.viewer.series import Series, log_style, send_series, series_of
 from onorbit_rs.viewer.stage import Stage
 from onorbit_rs.viewer.targets import log_targets, send_targets
@@ -107,7 +115,8 @@ def open_stage(
     in_orbit = rows.quat_wl is not None
     log_all_axes(
         recording, setting, stage.size, (stage.inertial_at, stage.local_at),
-        in_orbit=in_orbit, has_reference="reference_pose" in rows,
+        tool_length=tool_axes(stage.size, path_length(rows, setting)), in_orbit=in_orbit,
+        has_reference="reference_pose" in rows,
     )  # fmt: skip
     log_targets(recording, setting, stage.size)
     if "position_eci" in rows:

@@ -8,10 +8,13 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.rotations import matrix_from_quaternion, quaternion_from_matrix
+from onorbit_rs.viewer.axes import log_axes
 from onorbit_rs.viewer.frames import (
     DESIRED,
+    GOAL,
     LOCAL,
     WORLD,
+    fix_frame,
     of_link,
     put_in,
     send_frame,
@@ -28,6 +31,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 MOST_TRAIL_PIECES = 1000
+MOVES = 0.02
+"""A tool that should go less far, in sizes of the robot, holds its pose."""
+
 COLORS = {"desired": (240, 240, 240), "obtained": (255, 96, 64)}
 TRAILS = {name: f"world/tool/{name}/trail" for name in COLORS}
 _POSES = {"desired": "reference_pose", "obtained": "tool_pose"}
@@ -47,27 +53,37 @@ def send_desired(recording: rr.RecordingStream, rows: Rows) -> None:
     send_frame(recording, rows.times, WORLD, DESIRED, pose[:, :3, 3], quaternion_from_matrix(pose[:, :3, :3]))
 
 
+def path_length(rows: Rows, setting: Setting) -> float:
+    """Diagonal of the box around the path that the tool should take, m; 0 where it has none."""
+    if "reference_pose" not in rows:
+        return 0.0
+    points, _ = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
 def log_path(recording: rr.RecordingStream, rows: Rows, setting: Setting, size: float) -> None:
-    """The whole path that the tool should take, static, and where it ends."""
-    points, frame = _on_path(rows, rows["reference_pose"][:, :3, 3], setting)
+    """The whole path that the tool should take, static, and as dim axes where it ends."""
+    points, frame = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
     path, color = "world/tool/desired/path", COLORS["desired"]
     put_in(recording, path, frame)
     line = rr.LineStrips3D([_thinned(points)], colors=[color], radii=rr.Radius.ui_points(1.2))
     recording.log(path, line, static=True, strict=True)
-    if np.ptp(points, axis=0).max() < 0.02 * size:  # it holds a pose: nowhere to go
-        return
-    goal = "world/tool/desired/goal"
-    put_in(recording, goal, frame)
-    ring = rr.Points3D(
-        points[-1:], colors=[color], radii=rr.Radius.ui_points(5), labels=["goal"], show_labels=True
-    )
-    recording.log(goal, ring, static=True, strict=True)
+    length = path_length(rows, setting)
+    if length > MOVES * size:
+        pose_wp = _pose_of_path_frame(rows, setting)
+        fix_frame(recording, frame, GOAL, np.linalg.inv(pose_wp) @ rows["reference_pose"][-1])
+        log_axes(recording, "world/tool/desired/goal", GOAL, tool_axes(size, length), brightness=0.6)
+
+
+def tool_axes(size: float, path_m: float) -> float:
+    """Length of the axes at a tool: small beside the robot and beside its path, m."""
+    return min(0.14 * size, 0.35 * path_m) if path_m > MOVES * size else 0.14 * size
 
 
 def send_trails(recording: rr.RecordingStream, rows: Rows, setting: Setting, most: int, *names: str) -> None:
     """What the tool has drawn so far, ``obtained`` or ``desired``."""
     for name in names:
-        points, frame = _on_path(rows, rows[_POSES[name]][:, :3, 3], setting)
+        points, frame = on_path(rows, rows[_POSES[name]][:, :3, 3], setting)
         send_trail(recording, TRAILS[name], frame, rows, points, most, COLORS[name])
 
 
@@ -96,7 +112,7 @@ def send_trail(
     recording.send_columns(path, [time], columns, strict=True)
 
 
-def _on_path(rows: Rows, position_w: Floats, setting: Setting) -> tuple[Floats, str]:
+def on_path(rows: Rows, position_w: Floats, setting: Setting) -> tuple[Floats, str]:
     """Positions (T, 3) in the frame in which the path is drawn, m, and its name."""
     if setting.path_frame == "lvlh" and rows.rot_wl is not None:
         return np.einsum("tji,tj->ti", rows.rot_wl, position_w), LOCAL
@@ -104,6 +120,17 @@ def _on_path(rows: Rows, position_w: Floats, setting: Setting) -> tuple[Floats, 
         rot_wb = matrix_from_quaternion(rows["q"][:, 3:7])
         return np.einsum("tji,tj->ti", rot_wb, position_w - rows["q"][:, :3]), of_link(setting.base)
     return position_w, WORLD
+
+
+def _pose_of_path_frame(rows: Rows, setting: Setting) -> Floats:
+    """(4, 4), W, at the end."""
+    pose = np.eye(4)
+    if setting.path_frame == "lvlh" and rows.rot_wl is not None:
+        pose[:3, :3] = rows.rot_wl[-1]
+    elif setting.path_frame == "base":
+        q = rows["q"][-1]
+        pose[:3, :3], pose[:3, 3] = matrix_from_quaternion(q[3:7]), q[:3]
+    return pose
 
 
 def _thinned(points: Floats, most: int = 5000) -> Floats:
