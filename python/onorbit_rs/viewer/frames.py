@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-WORLD, LOCAL, FOLLOW, COMPASS = "W", "L", "follow", "compass I"
-DESIRED, GOAL = "desired tool", "goal"
+WORLD, LOCAL, FOLLOW, COMPASS = "W", "L", "follow", "compass"
+DESIRED, GOAL = "desired", "goal"
 AT_REST = np.array([0.0, 0.0, 0.0, 1.0])
 ORIGIN = np.zeros(3)
 
@@ -66,7 +66,7 @@ def fix_frame(recording: rr.RecordingStream, parent: str, child: str, pose: Floa
 
 def path_of(frame: str) -> str:
     """Entity that says where a frame is."""
-    return rr.new_entity_path(["frames", frame])
+    return rr.new_entity_path(["frames", *frame.split("/")])
 
 
 def put_in(recording: rr.RecordingStream, path: str, frame: str) -> None:

@@ -73,4 +73,4 @@ def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) ->
 
 
 def _frame(index: int) -> str:
-    return f"target {index}"
+    return f"target/{index}"
