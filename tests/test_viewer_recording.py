@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import rerun as rr
 from recordings import FrameTree, column, rows_by_entity
 from rerun.chunk import RrdReader
 
@@ -142,6 +144,38 @@ def test_a_hundred_thousand_steps_are_all_there(tmp_path: Path) -> None:
     moving, _ = rows_by_entity(path)
     assert moving.pop("/world/tool/obtained/trail") == 1000
     assert set(moving.values()) == {100_001}
+
+
+on_linux = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="files in memory are Linux's")
+
+
+@on_linux
+def test_without_files_in_memory_the_recording_is_the_same(
+    reach: tuple[Built, oo.Trace], recording: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delattr("os.memfd_create")
+    path = viewer.write_recording(
+        tmp_path / "run.rrd", reach[1], viewer.Setting.of(reach[0]), notes="# notes"
+    )
+    assert rows_by_entity(path) == rows_by_entity(recording)
+
+
+@on_linux
+def test_a_recording_that_was_cut_short_is_not_passed_on(
+    reach: tuple[Built, oo.Trace], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    flush = rr.RecordingStream.flush
+
+    def flush_and_cut(self: rr.RecordingStream, **options: float) -> None:
+        flush(self, **options)
+        self.disconnect()
+        for entry in Path("/proc/self/fd").iterdir():
+            if "run.rrd" in str(entry.resolve()):
+                os.truncate(entry, 1000)
+
+    monkeypatch.setattr(rr.RecordingStream, "flush", flush_and_cut)
+    with pytest.raises(oo.OnOrbitError, match="did not encode the recording to its end"):
+        viewer.write_recording(tmp_path / "run.rrd", reach[1], viewer.Setting.of(reach[0]))
 
 
 def test_longer_traces_are_thinned_to_their_last_row_and_it_is_said(

@@ -116,7 +116,7 @@ class Arrows:
         put_in(self.recording, meaning, FOLLOW)
         look = rr.Arrows3D.from_fields(colors=[color], radii=[self.stage.size / 160.0])
         self.recording.log(path, look, static=True, strict=True)
-        place = self.stage.place(0.9, 0.42 - 0.09 * len(self._scales))
+        place = self.stage.place(0.86, 0.42 - 0.09 * len(self._scales))
         line = rr.Points3D.from_fields(positions=[place], colors=[color], radii=[0.0], show_labels=True)
         self.recording.log(meaning, line, static=True, strict=True)
 

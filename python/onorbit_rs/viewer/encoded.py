@@ -13,6 +13,9 @@ from onorbit_rs.exceptions import OnOrbitError
 FLUSH_TIMEOUT_S = 300.0
 """Wall-clock time given to rerun's encoder, which needs seconds."""
 
+_MAGIC, _FOOTER_BYTES = b"RRF2", 12
+"""What a complete file ends with."""
+
 
 class Encoded:
     """Takes all that a recording is sent from now on.
@@ -43,5 +46,8 @@ class Encoded:
         except RuntimeError as error:
             raise OnOrbitError(f"rerun did not encode the recording: {error}") from error
         with os.fdopen(self._memory, "rb") as memory, path.open("wb") as file:
+            memory.seek(-_FOOTER_BYTES, os.SEEK_END)
+            if not memory.read().startswith(_MAGIC):  # its thread ran out of memory, and says so to nobody
+                raise OnOrbitError("rerun did not encode the recording to its end")
             memory.seek(0)
             shutil.copyfileobj(memory, file, 1 << 20)

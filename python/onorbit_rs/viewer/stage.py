@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-_TO_EYE = np.array([0.60, -0.74, 0.34])
+_TO_EYE = np.array([0.5, -0.8, 0.34])
 """Base axes: from the front, the right and a little above."""
 
 _NEAR = 4.0
@@ -66,15 +66,15 @@ class Stage:
     def eye(self) -> rrb.EyeControls3D:
         """Sees the whole robot from its front and a little above; its own z is up at the start."""
         return rrb.EyeControls3D(
-            position=self.place(0.0, 0.0, -1.25), look_target=self.center, eye_up=self.rot_fb[:, 2]
+            position=self.place(0.0, 0.0, -1.18), look_target=self.center, eye_up=self.rot_fb[:, 2]
         )
 
     @property
     def inertial_at(self) -> Floats:
         """Where the axes of I are shown."""
-        return self.place(-0.84, 0.32)
+        return self.place(-0.8, 0.32)
 
     @property
     def local_at(self) -> Floats:
         """Where the axes of L are shown."""
-        return self.place(-0.84, -0.36)
+        return self.place(-0.8, -0.36)
