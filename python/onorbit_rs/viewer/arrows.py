@@ -58,12 +58,12 @@ class Arrows:
             color, name = _COLORS.get(effect, _OTHER_COLOR), effect.replace("_", " ")
             force, torque = wrenches[:, :, :3], wrenches[:, :, 3:]
             path = f"world/arrows/{effect}"
-            self._send(rows, f"{path}/force", name, "N", color, centers, force, 0.4)
+            self._send(rows, f"{path}/force", name, "N", color, centers, force, 0.7)
             # About the centre of mass of the whole: Σ (r_k - r) × F_k + T_k.
             lever = centers - rows["center_of_mass"][:, None, :]
             total = (np.cross(lever, force) + torque).sum(axis=1, keepdims=True)
             origin = rows["center_of_mass"][:, None, :]
-            self._send(rows, f"{path}/torque", f"{name} torque", "N m", color, origin, total, 0.5)
+            self._send(rows, f"{path}/torque", f"{name} torque", "N m", color, origin, total, 0.6)
 
     def _momenta(self, rows: Rows) -> Iterator[tuple[str, Floats, str]]:
         """Those that are more than rounding and the pull of tides beside the motion of the joints."""
