@@ -47,6 +47,8 @@ def test_arrows_times_their_scale_are_the_wrenches(tmp_path: Path) -> None:
         np.testing.assert_allclose(arrows * scale, trace.wrenches["body_wrench"][:, 0, columns], rtol=1e-6)
         origins = np.array(column(path, f"{effect}/{part}", "Arrows3D:origins"))[:, 0]
         np.testing.assert_allclose(origins, trace.center_of_mass, atol=1e-6)
+    moving, _ = rows_by_entity(path)
+    assert {"/plots/body_wrench/force", "/plots/body_wrench/torque"} <= set(moving)
     ((label,),) = column(path, "/world/arrows/angular_momentum/scale", "Points3D:labels")
     scale = float(label.split(" = ")[1].split()[0]) * 1e-3
     assert label.endswith("mN m s")

@@ -28,8 +28,8 @@ WORTH_SHOWING = 1e-3
 
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _COLORS = {
-    "gravity": (190, 140, 255),
-    "gravity_gradient": (190, 140, 255),
+    "gravity": (150, 135, 255),
+    "gravity_gradient": (225, 130, 245),
     "drag": (80, 220, 230),
     "radiation_pressure": (255, 225, 90),
 }

@@ -78,7 +78,7 @@ class LiveView:
 
     def _send(self, rows: Rows) -> None:
         recording, setting = self._recording, self._setting
-        plots = list(series_of(rows, setting.model))
+        plots = list(series_of(rows, setting.model, is_live=True))
         if self._stage is None:
             self._stage = open_stage(recording, rows, setting, plots, self._duration_s, is_live=True)
             self._arrows = Arrows(recording, setting, self._stage)

@@ -37,17 +37,18 @@ class Series:
     values: Floats
 
 
-def series_of(rows: Rows, model: Model) -> Iterator[Series]:
-    """Every plot that these rows have the columns for."""
+def series_of(rows: Rows, model: Model, *, is_live: bool = False) -> Iterator[Series]:
+    """Every plot that these rows have the columns for; of effects that are over, what was not zero."""
     yield from _of_tools(rows)
     yield from _of_joints(rows, model)
     yield from _of_base(rows)
     yield from _of_balances(rows)
     for effect, wrenches in rows.wrenches.items():
         name, total = effect.replace("_", " ").capitalize(), wrenches.sum(axis=1)
-        yield Series("Forces", f"plots/{effect}/force", f"{name}: net force", "N", _AXES, total[:, :3])
-        title = f"{name}: torques on all bodies"
-        yield Series("Forces", f"plots/{effect}/torque", title, "N m", _AXES, total[:, 3:])
+        parts = (("force", "net force", "N"), ("torque", "torques on all bodies", "N m"))
+        for values, (part, title, unit) in zip((total[:, :3], total[:, 3:]), parts, strict=True):
+            if is_live or values.any():
+                yield Series("Forces", f"plots/{effect}/{part}", f"{name}: {title}", unit, _AXES, values)
 
 
 def _of_tools(rows: Rows) -> Iterator[Series]:
