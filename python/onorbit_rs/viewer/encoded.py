@@ -27,10 +27,9 @@ class Encoded:
         """Before anything is sent."""
         self._recording = recording
         self._stream: rr.BinaryStream | None = None
-        self._memory = -1
         if hasattr(os, "memfd_create") and Path("/proc/self/fd").is_dir():
-            self._memory = os.memfd_create("run.rrd")
-            recording.save(f"/proc/self/fd/{self._memory}")
+            self._memory = os.fdopen(os.memfd_create("run.rrd"), "rb")
+            recording.save(f"/proc/self/fd/{self._memory.fileno()}")
         else:
             self._stream = rr.binary_stream(recording)
 
@@ -45,9 +44,8 @@ class Encoded:
             self._recording.disconnect()
         except RuntimeError as error:
             raise OnOrbitError(f"rerun did not encode the recording: {error}") from error
-        with os.fdopen(self._memory, "rb") as memory, path.open("wb") as file:
+        with self._memory as memory:
             memory.seek(-_FOOTER_BYTES, os.SEEK_END)
             if not memory.read().startswith(_MAGIC):  # its thread ran out of memory, and says so to nobody
                 raise OnOrbitError("rerun did not encode the recording to its end")
-            memory.seek(0)
-            shutil.copyfileobj(memory, file, 1 << 20)
+            shutil.copyfile(f"/proc/self/fd/{memory.fileno()}", path)  # within the kernel
