@@ -30,22 +30,49 @@ def quaternion_from_matrix(rotation: ArrayLike) -> Floats:
     """Unit quaternions (..., 4), xyzw with w ≥ 0, of rotation matrices (..., 3, 3)."""
     r = np.asarray(rotation, dtype=np.float64)
     xx, yy, zz = r[..., 0, 0], r[..., 1, 1], r[..., 2, 2]
-    # Each row is 4 c times the quaternion, with c one of its components.
-    yz, zx, xy = r[..., 2, 1], r[..., 0, 2], r[..., 1, 0]
-    zy, xz, yx = r[..., 1, 2], r[..., 2, 0], r[..., 0, 1]
-    rows = np.stack(
-        [
-            np.stack([1 + xx - yy - zz, xy + yx, zx + xz, yz - zy], axis=-1),
-            np.stack([xy + yx, 1 - xx + yy - zz, yz + zy, zx - xz], axis=-1),
-            np.stack([zx + xz, yz + zy, 1 - xx - yy + zz, xy - yx], axis=-1),
-            np.stack([yz - zy, zx - xz, xy - yx, 1 + xx + yy + zz], axis=-1),
-        ],
-        axis=-2,
-    )
-    best = np.argmax(np.stack([xx, yy, zz, xx + yy + zz], axis=-1), axis=-1)
-    quat: Floats = np.take_along_axis(rows, best[..., None, None], axis=-2)[..., 0, :]
-    quat = quat / np.linalg.norm(quat, axis=-1, keepdims=True)
+    # With c the largest component in amount, 4 c times the quaternion is a row of sums of entries of R.
+    best = np.argmax(np.stack([xx, yy, zz, xx + yy + zz]), axis=0)
+    quat = np.empty((*best.shape, 4))
+    for largest in np.unique(best):
+        rows = best == largest
+        quat[rows] = _times_four_components(r[rows], largest)
+    quat /= np.linalg.norm(quat, axis=-1, keepdims=True)
     return np.where(quat[..., 3:] < 0.0, -quat, quat)
+
+
+def _times_four_components(r: Floats, largest: int) -> Floats:
+    """`4 c` times the quaternions (k, 4) of matrices (k, 3, 3), with `c` one of the components."""
+    xx, yy, zz = r[:, 0, 0], r[:, 1, 1], r[:, 2, 2]
+    yz, zx, xy = r[:, 2, 1], r[:, 0, 2], r[:, 1, 0]
+    zy, xz, yx = r[:, 1, 2], r[:, 2, 0], r[:, 0, 1]
+    rows = {
+        0: (1 + xx - yy - zz, xy + yx, zx + xz, yz - zy),
+        1: (xy + yx, 1 - xx + yy - zz, yz + zy, zx - xz),
+        2: (zx + xz, yz + zy, 1 - xx - yy + zz, xy - yx),
+        3: (yz - zy, zx - xz, xy - yx, 1 + xx + yy + zz),
+    }
+    return np.stack(rows[largest], axis=-1)
+
+
+def product(p: ArrayLike, q: ArrayLike) -> Floats:
+    """Quaternions (..., 4), xyzw, of `rot_p rot_q`: first `q`, then `p` in the same fixed axes."""
+    px, py, pz, pw = np.moveaxis(np.asarray(p, dtype=np.float64), -1, 0)
+    qx, qy, qz, qw = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
+    return np.stack(
+        [
+            pw * qx + px * qw + py * qz - pz * qy,
+            pw * qy - px * qz + py * qw + pz * qx,
+            pw * qz + px * qy - py * qx + pz * qw,
+            pw * qw - px * qx - py * qy - pz * qz,
+        ],
+        axis=-1,
+    )
+
+
+def conjugate(quat_xyzw: ArrayLike) -> Floats:
+    """Quaternions (..., 4) of the inverse rotations."""
+    inverse: Floats = np.asarray(quat_xyzw, dtype=np.float64) * [-1.0, -1.0, -1.0, 1.0]
+    return inverse
 
 
 def quaternion_from_roll_pitch_yaw(angles: ArrayLike) -> Floats:
@@ -63,10 +90,12 @@ def quaternion_from_roll_pitch_yaw(angles: ArrayLike) -> Floats:
 
 def roll_pitch_yaw(quat_xyzw: ArrayLike) -> Floats:
     """Angles (..., 3), rad, about the fixed x, then y, then z; ambiguous at pitch ±90 degrees."""
-    r = matrix_from_quaternion(quat_xyzw)
-    pitch = np.arctan2(-r[..., 2, 0], np.hypot(r[..., 0, 0], r[..., 1, 0]))
+    x, y, z, w = np.moveaxis(np.asarray(quat_xyzw, dtype=np.float64), -1, 0)
+    # Five entries of R; of its first column and last row.
+    r00, r10, r20 = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)
+    r21, r22 = 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
     return np.stack(
-        [np.arctan2(r[..., 2, 1], r[..., 2, 2]), pitch, np.arctan2(r[..., 1, 0], r[..., 0, 0])], axis=-1
+        [np.arctan2(r21, r22), np.arctan2(-r20, np.hypot(r00, r10)), np.arctan2(r10, r00)], axis=-1
     )
 
 
@@ -89,16 +118,20 @@ def local_orbital_axes(position: ArrayLike, velocity: ArrayLike) -> Floats:
 
 
 def has_local_frame(trace: Trace) -> bool:
-    """Whether the run has an orbit on which L is defined all along: it neither stands nor moves radially."""
-    if "position_eci" not in trace.columns():
-        return False
-    r, v = np.asarray(trace.position_eci), np.asarray(trace.velocity_eci)
-    momentum = np.linalg.norm(np.cross(r, v), axis=1)
-    return bool(np.all(momentum > 1e-10 * np.linalg.norm(r, axis=1) * np.linalg.norm(v, axis=1)))
+    """Whether the run has an orbit on which L is defined all along."""
+    return "position_eci" in trace.columns() and is_local_frame_defined(
+        trace.position_eci, trace.velocity_eci
+    )
+
+
+def is_local_frame_defined(position: ArrayLike, velocity: ArrayLike) -> bool:
+    """Whether an orbit (T, 3) neither stands nor moves radially at any time."""
+    r, v = np.asarray(position), np.asarray(velocity)
+    momentum = np.linalg.norm(np.cross(r, v), axis=-1)
+    return bool(np.all(momentum > 1e-10 * np.linalg.norm(r, axis=-1) * np.linalg.norm(v, axis=-1)))
 
 
 def attitude_in_orbit(quat_xyzw: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Floats:
     """Roll, pitch and yaw (T, 3), rad, unwrapped, of attitudes (T, 4) relative to L of an orbit (T, 3)."""
-    rot_li = np.swapaxes(local_orbital_axes(position, velocity), -1, -2)
-    rot_lb = rot_li @ matrix_from_quaternion(quat_xyzw)
-    return np.unwrap(roll_pitch_yaw(quaternion_from_matrix(rot_lb)), axis=0)
+    quat_il = quaternion_from_matrix(local_orbital_axes(position, velocity))
+    return np.unwrap(roll_pitch_yaw(product(conjugate(quat_il), quat_xyzw)), axis=0)

@@ -25,14 +25,15 @@ from onorbit_rs.output import (
     write_summary,
     write_trace,
 )
-from onorbit_rs.progress import doing, progress_bar
+from onorbit_rs.output.relay import Relay
+from onorbit_rs.progress import ProgressCallback, doing, progress_bar
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from onorbit_rs._core import Model, Trace
+    from onorbit_rs._core import Checkpoint, Model, Trace
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,7 @@ def run(
     *,
     force: bool = False,
     quiet: bool = False,
+    view: bool = False,
     checkpoint_every: float = CHECKPOINT_EVERY,
 ) -> Run:
     """Run a scenario and, if asked, write its folder.
@@ -73,6 +75,8 @@ def run(
         Replace the files of an earlier run in ``out``.
     quiet : bool
         No progress bar, even on a terminal.
+    view : bool
+        Watch it in the viewer while it runs; where there is no screen a warning says so.
     checkpoint_every : float
         Wall-clock time between two checkpoints in ``out``, s; :func:`resume` goes on from the last one.
 
@@ -90,14 +94,18 @@ def run(
     built = build(checked)
     folder = None if out is None else OutputFolder.claim(out, force=force)
     if folder is None:
-        return _go(built, None, quiet=quiet)
+        return _go(built, None, quiet=quiet, view=view)
     write_scenario(folder, checked)
     writer = CheckpointWriter(folder, fingerprint_of(with_absolute_paths(checked)))
-    return _go(built, folder, quiet=quiet, checkpoint=writer, checkpoint_every=checkpoint_every)
+    return _go(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=checkpoint_every)
 
 
 def resume(
-    out: str | os.PathLike[str], *, quiet: bool = False, checkpoint_every: float = CHECKPOINT_EVERY
+    out: str | os.PathLike[str],
+    *,
+    quiet: bool = False,
+    view: bool = False,
+    checkpoint_every: float = CHECKPOINT_EVERY,
 ) -> Run:
     """Go on with a run that was killed or interrupted, to the same bits as if it had not been.
 
@@ -107,6 +115,8 @@ def resume(
         The folder of the run: its ``scenario.yaml`` and its last checkpoint.
     quiet : bool
         No progress bar, even on a terminal.
+    view : bool
+        Watch it in the viewer, from its beginning.
     checkpoint_every : float
         Wall-clock time between two checkpoints, s.
 
@@ -126,17 +136,22 @@ def resume(
     checkpoint, rows = read_checkpoint(folder.path, fingerprint)
     writer = CheckpointWriter(folder, fingerprint, rows=rows)
     return _go(
-        build(scenario), folder, quiet=quiet,
+        build(scenario), folder, quiet=quiet, view=view,
         checkpoint=writer, checkpoint_every=checkpoint_every, resume=checkpoint,
     )  # fmt: skip
 
 
-def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints: Any) -> Run:
+def _go(
+    built: Built, folder: OutputFolder | None, *, quiet: bool, view: bool = False, **checkpoints: Any
+) -> Run:
     """Simulate, and write what came of it."""
     scenario, duration = built.scenario, built.scenario.simulation.duration
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
-            trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
+            if view:
+                trace = _watched(built, progress.move, **checkpoints)
+            else:
+                trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
             return _finish(trace, built, folder, progress.tell)
     except (SimulationError, RunInterrupted) as stop:
         with doing("stopped, writing what there is", quiet=quiet) as tell:
@@ -159,6 +174,38 @@ def _finish(trace: Trace, built: Built, folder: OutputFolder | None, tell: Calla
         write_pictures(folder, trace, summary, built, tell=tell)
         discard_checkpoint(folder)
     return Run(trace, summary, built.model, scenario, folder.path if folder else None)
+
+
+def _watched(
+    built: Built,
+    progress: ProgressCallback | None,
+    checkpoint: CheckpointWriter | None = None,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+    resume: Checkpoint | None = None,
+) -> Trace:
+    """Simulate while the viewer shows it."""
+    from onorbit_rs.viewer.live import LOOK_EVERY_S, open_live
+    from onorbit_rs.viewer.setting import Setting
+
+    duration = built.scenario.simulation.duration
+    live = open_live(Setting.of(built), duration)
+    if live is None:
+        return built.simulation.run(
+            duration, progress=progress, checkpoint=checkpoint, checkpoint_every=checkpoint_every,
+            resume=resume,
+        )  # fmt: skip
+    if resume is not None:
+        live.take(resume.columns)
+    relay = Relay(live, checkpoint, checkpoint_every)
+    trace = None
+    try:
+        trace = built.simulation.run(
+            duration, progress=progress, checkpoint=relay, checkpoint_every=LOOK_EVERY_S, resume=resume
+        )
+    finally:
+        relay.hand_on()
+        live.finish(trace)
+    return trace
 
 
 def _keep_rows(error: Exception, built: Built, folder: OutputFolder | None) -> None:

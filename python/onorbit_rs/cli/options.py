@@ -26,6 +26,7 @@ OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", he
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace the run that is in DIR.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="As data on stdout and nothing else.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar, no summary.")]
+ViewOption = Annotated[bool, typer.Option("--view", help="Watch it in the viewer while it runs.")]
 CheckpointOption = Annotated[
     float, typer.Option(metavar="SECONDS", help="Wall-clock time between checkpoints in DIR.")
 ]

@@ -13,6 +13,7 @@ from onorbit_rs.cli.options import (
     OutOption,
     QuietOption,
     ScenarioArgument,
+    ViewOption,
 )
 from onorbit_rs.exceptions import RunInterrupted
 
@@ -28,13 +29,16 @@ def run(
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
+    view: ViewOption = False,
     checkpoint_every: CheckpointOption = 30.0,
 ) -> None:
     """Run a scenario and certify its momentum and energy: exit code 1 where they do not hold."""
     from onorbit_rs.running import run as run_scenario
 
     _report(
-        lambda: run_scenario(scenario, out, force=force, quiet=quiet, checkpoint_every=checkpoint_every),
+        lambda: run_scenario(
+            scenario, out, force=force, quiet=quiet, view=view, checkpoint_every=checkpoint_every
+        ),
         quiet=quiet,
         as_json=as_json,
     )
@@ -44,13 +48,14 @@ def resume(
     folder: FolderArgument,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
+    view: ViewOption = False,
     checkpoint_every: CheckpointOption = 30.0,
 ) -> None:
     """Go on with a run that was killed or interrupted, to the same bits."""
     from onorbit_rs.running import resume as resume_run
 
     _report(
-        lambda: resume_run(folder, quiet=quiet, checkpoint_every=checkpoint_every),
+        lambda: resume_run(folder, quiet=quiet, view=view, checkpoint_every=checkpoint_every),
         quiet=quiet,
         as_json=as_json,
     )

@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import yaml
 
-from onorbit_rs.exceptions import OrbitError
 from onorbit_rs.output.folder import FIGURES, OutputFolder
-from onorbit_rs.scenario.earth import make_earth
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -65,25 +63,14 @@ def write_pictures(
     # Imported here: matplotlib and rerun take a second that a run without output should not pay.
     from onorbit_rs import figures, viewer
 
-    has_planet = built.orbit is not None and built.orbit.mu is not None
     if len(trace.time) > 1:
-        scenario = built.scenario
-        beside = scenario.file.parent if scenario.file else Path()
-        earth = make_earth(scenario, built.orbit, beside)
-        subject = figures.subject_of(trace, scenario, built.model, built.orbit, earth)
+        subject = figures.subject_of(trace, built.scenario, built.model, built.orbit, built.earth)
         with folder.refusals(FIGURES):
             figures.save_all(subject, folder.path / FIGURES, tell=lambda name: tell(f"drawing {name}"))
     tell("writing the recording")
     with folder.writing("run.rrd") as path:
-        viewer.write_recording(
-            path,
-            trace,
-            built.model,
-            title=built.scenario.name,
-            notes=notes(summary, built.scenario),
-            orbit_path=path_around_planet(built.orbit),
-            has_planet=has_planet,
-        )
+        setting = viewer.Setting.of(built)
+        viewer.write_recording(path, trace, setting, notes=notes(summary, built.scenario))
 
 
 def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
@@ -98,20 +85,6 @@ def notes(summary: dict[str, Any], scenario: Scenario) -> str:
     """The summary as Markdown."""
     rows = "\n".join(f"| {key} | {_short(value)} |" for key, value in summary.items())
     return f"# {scenario.name}\n\n{scenario.description}\n\n| | |\n|-|-|\n{rows}\n"
-
-
-def path_around_planet(orbit: Any, points: int = 361) -> Any:
-    """(k, 3) positions along a closed orbit or a whole path, m; None where there is none around a planet."""
-    if orbit is None or orbit.mu is None:
-        return None
-    period = getattr(orbit, "period", None)
-    start, end = getattr(orbit, "span", (0.0, period))
-    if end is None or not np.isfinite(end):
-        return None
-    try:
-        return np.asarray(orbit.state(np.linspace(start, end, points))[0])
-    except OrbitError:  # decays within its first revolution
-        return None
 
 
 def _short(value: Any) -> str:

@@ -47,6 +47,7 @@ class Built:
     scenario: Scenario
     model: _core.Model
     orbit: _core.Orbit | None
+    earth: _core.Earth | None
     q: Floats
     v: Floats
     simulation: _core.Simulation
@@ -108,7 +109,7 @@ def build(scenario: Scenario) -> Built:
             )  # fmt: skip
 
     _try_one_step(scenario, simulation())  # a controller in Python may remember it: the run gets another
-    return Built(scenario, model, orbit, q, v, simulation())
+    return Built(scenario, model, orbit, earth, q, v, simulation())
 
 
 def _controlled(scenario: Scenario, start: Start) -> tuple[Any, Any]:

@@ -48,6 +48,8 @@ class TargetMotion(Pose):
 
     velocity: Speed3 = Field(default_factory=lambda: list(ORIGIN))
     spin: AngularRate3 = Field(default_factory=lambda: list(ORIGIN))
+    size: Length3 | None = None
+    """Edges of the box that the viewer draws for it."""
 
 
 class TargetFrame(Part):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from onorbit_rs.viewer.blueprint import TIMELINE
 from onorbit_rs.viewer.recording import recorded_rows, write_recording
+from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.screenshot import take_screenshot
+from onorbit_rs.viewer.setting import Setting
 
-__all__ = ["TIMELINE", "recorded_rows", "take_screenshot", "write_recording"]
+__all__ = ["TIMELINE", "Setting", "recorded_rows", "take_screenshot", "write_recording"]

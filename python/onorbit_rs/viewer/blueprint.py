@@ -1,85 +1,93 @@
-"""How the viewer is laid out: the robot large, orbit and notes below it, the plots beside."""
+"""How the viewer is laid out: the robot large, orbit and notes below it, the plots beside in groups."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import rerun.blueprint as rrb
 
-from onorbit_rs.geometry import Shape, shapes
-from onorbit_rs.viewer.series import Series
+from onorbit_rs.viewer.frames import FOLLOW
+from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL, has_sun
+from onorbit_rs.viewer.rows import TIMELINE
+from onorbit_rs.viewer.scene import MOVES, TRAILS, on_path
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from onorbit_rs.viewer.rows import Rows
+    from onorbit_rs.viewer.series import Series
+    from onorbit_rs.viewer.setting import Setting
+    from onorbit_rs.viewer.stage import Stage
 
-    from onorbit_rs._core import Model, Trace
-
-    Floats = NDArray[np.float64]
-
-TIMELINE = "simulation_time"
 PLAYS_IN_S = 40.0
 """Longest wall-clock time a recording takes to play; shorter runs play in real time."""
 
 _FIRST = (
-    "plots/joint_torque",
     "plots/tool_position_error",
     "plots/tool_attitude_error",
+    "plots/joint_torque",
     "plots/base_attitude",
 )
 _FIRST_ADRIFT = (
     "plots/base_attitude_lvlh",
-    "plots/base_attitude",
-    "plots/joint_position",
+    "plots/base_rate",
+    "plots/drag/force",
+    "plots/gravity_gradient/torque",
     "plots/angular_momentum",
+    "plots/joint_position",
+    "plots/base_attitude",
     "plots/energy",
 )
-_BACKGROUND = (28, 31, 38)
+_MOST_IN_A_COLUMN = 4
+_FOR_LEGENDS = 1.24
+"""Plots go on for so much longer than the run, in units of it: legends stand there."""
+
+_BACKGROUND, _SPACE = (28, 31, 38), (12, 14, 20)
 _UNTIL_NOW = rrb.VisibleTimeRange(
     TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
 )
 
+_LARGE = ("arrows", "axes/base", "axes/inertial", "axes/lvlh")
+_TRAILS_UNTIL_NOW: dict[Any, Any] = dict.fromkeys(TRAILS.values(), rrb.VisibleTimeRanges([_UNTIL_NOW]))
 
-def layout(trace: Trace, model: Model, plots: Sequence[Series], *, has_notes: bool) -> rrb.Blueprint:
+
+def layout(
+    rows: Rows,
+    setting: Setting,
+    stage: Stage,
+    plots: Sequence[Series],
+    duration_s: float,
+    *,
+    has_notes: bool,
+    is_live: bool = False,
+) -> rrb.Blueprint:
     """The views of one run."""
-    center, size = _extent(trace, model)
-    seen_from = center + 1.2 * size * np.array([0.44, -0.84, 0.32])
-    eye = rrb.EyeControls3D(position=seen_from, look_target=center, eye_up=(0.0, 0.0, 1.0))
+    axes = "W (inertial axes)" if rows.quat_wl is None else "L (local orbital frame)"
     robot = rrb.Spatial3DView(
         origin="world",
-        name="Robot in W (inertial axes, m)",
-        eye_controls=eye,
+        name=f"{setting.model.name}: the eye follows the base, axes of {axes}",
+        spatial_information=rrb.SpatialInformation(FOLLOW, show_axes=False),
+        eye_controls=stage.eye(),
         background=_BACKGROUND,
         line_grid=False,
-        overrides={"world/tool/obtained/trail": rrb.VisibleTimeRanges([_UNTIL_NOW])},
+        overrides=_TRAILS_UNTIL_NOW,
     )
     below: list[rrb.View] = []
-    if "position_eci" in trace.columns():
-        below.append(
-            rrb.Spatial3DView(
-                origin="orbit", name="Orbit (inertial axes, km)", background=_BACKGROUND, line_grid=False
-            )
-        )
+    if "position_eci" in rows:
+        below.append(_orbit(rows, setting))
     if has_notes:
         below.append(rrb.TextDocumentView(origin="notes", name="Notes"))
-    left = rrb.Vertical(robot, rrb.Horizontal(*below), row_shares=[3, 1]) if below else robot
-    wanted = _FIRST if "position_error" in trace.columns() else _FIRST_ADRIFT
-    by_path = {plot.path: plot for plot in plots}
-    chosen = [by_path[path] for path in wanted if path in by_path][:4]
-    others = [plot for plot in plots if plot not in chosen]
-    whole = _duration(trace)
-    right = rrb.Vertical(
-        *(_plot(plot, whole) for plot in chosen), rrb.Tabs(*(_plot(plot, whole) for plot in others))
-    )
+    close_up = _close_up(rows, setting, stage) if "reference_pose" in rows and not is_live else None
+    top = robot if close_up is None else rrb.Tabs(robot, close_up, active_tab=0)
+    left = rrb.Vertical(top, rrb.Horizontal(*below), row_shares=[5, 3]) if below else top
     return rrb.Blueprint(
-        rrb.Horizontal(left, right, column_shares=[3, 2]),
+        rrb.Horizontal(left, _plots(plots, duration_s), column_shares=[3, 2]),
         rrb.TimePanel(
             state="collapsed",
             timeline=TIMELINE,
-            play_state="playing",
-            loop_mode="all",
-            playback_speed=max(1.0, whole / PLAYS_IN_S),
+            play_state="following" if is_live else "playing",
+            loop_mode="off" if is_live else "all",
+            playback_speed=max(1.0, duration_s / PLAYS_IN_S),
         ),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
@@ -87,11 +95,83 @@ def layout(trace: Trace, model: Model, plots: Sequence[Series], *, has_notes: bo
     )
 
 
+def _close_up(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
+    """The path of the tool from near, in the frame in which it is drawn; None where it goes nowhere."""
+    points, frame = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
+    low, high = points.min(axis=0), points.max(axis=0)
+    length = float(np.linalg.norm(high - low))
+    if length < MOVES * stage.size:
+        return None
+    center = (low + high) / 2.0
+    return rrb.Spatial3DView(
+        origin="world",
+        contents=["$origin/**", *(f"- /world/{part}/**" for part in _LARGE)],
+        name="Tool and its path",
+        spatial_information=rrb.SpatialInformation(frame, show_axes=False),
+        eye_controls=rrb.EyeControls3D(
+            position=center + 2.2 * length * np.array([0.5, -0.75, 0.45]), look_target=center,
+            eye_up=(0.0, 0.0, 1.0),
+        ),
+        background=_BACKGROUND,
+        line_grid=False,
+        overrides=_TRAILS_UNTIL_NOW,
+    )  # fmt: skip
+
+
+def _orbit(rows: Rows, setting: Setting) -> rrb.View:
+    """Looks at the planet near where the run starts, north up, from where all of the path is seen."""
+    position, earth = rows["position_eci"] / 1e3, setting.earth
+    if setting.orbit is not None and setting.orbit.mu is not None:
+        center, reach = np.zeros(3), max(float(np.linalg.norm(position, axis=1).max()), 6400.0)
+        start = position[0] / np.linalg.norm(position[0])
+        towards = start + [0.0, 0.0, 0.5] + 0.6 * np.cross([0.0, 0.0, 1.0], start)
+    else:
+        low, high = position.min(axis=0), position.max(axis=0)
+        center, reach = (low + high) / 2.0, max(float(np.linalg.norm(high - low)) / 2.0, 1e-3)
+        towards = np.array([0.5, -0.75, 0.45])
+    if earth is not None and has_sun(earth):  # half of it in the light
+        sun = np.asarray(earth.sun(0.0)).reshape(3)
+        towards -= 0.9 * (towards @ sun) / (sun @ sun) * sun
+    towards /= np.linalg.norm(towards)
+    return rrb.Spatial3DView(
+        origin="orbit",
+        name="Orbit (inertial axes, km)",
+        spatial_information=rrb.SpatialInformation(INERTIAL, show_axes=False),
+        eye_controls=rrb.EyeControls3D(
+            position=center + 3.1 * reach * towards, look_target=center, eye_up=(0.0, 0.0, 1.0)
+        ),
+        background=_SPACE,
+        line_grid=False,
+        overrides={ORBIT_TRAIL: rrb.VisibleTimeRanges([_UNTIL_NOW])},
+    )
+
+
+def _plots(plots: Sequence[Series], duration_s: float) -> rrb.Tabs:
+    """An overview, and a tab for each group."""
+    by_path = {plot.path: plot for plot in plots}
+    wanted = _FIRST if _FIRST[0] in by_path else _FIRST_ADRIFT
+    first = [by_path[path] for path in wanted if path in by_path][:_MOST_IN_A_COLUMN]
+    tabs = {"Overview": first}
+    for plot in plots:
+        tabs.setdefault(plot.group, []).append(plot)
+    return rrb.Tabs(
+        *(
+            rrb.Vertical(
+                *(_plot(plot, duration_s) for plot in group),
+                row_shares=[min(max(4, len(plot.names)), 9) for plot in group],
+                name=name,
+            )
+            for name, group in tabs.items()
+        ),
+        active_tab=0,
+    )
+
+
 def _plot(series: Series, duration_s: float) -> rrb.TimeSeriesView:
     """A plot that shows the whole run from the start."""
     whole = rrb.TimeRange(
         start=rrb.TimeRangeBoundary.absolute(seconds=0.0),
-        end=rrb.TimeRangeBoundary.absolute(seconds=duration_s),
+        end=rrb.TimeRangeBoundary.absolute(seconds=_FOR_LEGENDS * duration_s),
     )
     return rrb.TimeSeriesView(
         origin=series.path,
@@ -99,31 +179,3 @@ def _plot(series: Series, duration_s: float) -> rrb.TimeSeriesView:
         axis_x=rrb.TimeAxis(view_range=whole),
         plot_legend=rrb.PlotLegend(rrb.Corner2D.RightTop),
     )
-
-
-def _duration(trace: Trace) -> float:
-    return float(trace.time[-1])
-
-
-def _extent(trace: Trace, model: Model) -> tuple[Floats, float]:
-    """Where the robot is at the start, and how far the eye should be: m."""
-    q = np.asarray(trace.q)[0]
-    corners = np.vstack([_corners(model, q, shape) for shape in shapes(model)])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    return (low + high) / 2.0, max(float(np.linalg.norm(high - low)), 0.3)
-
-
-def _corners(model: Model, q: Floats, shape: Shape) -> Floats:
-    """(8, 3) corners of a box around a shape, W, m; a mesh counts as a small one."""
-    half = {
-        "box": np.array(shape.size) / 2.0,
-        "sphere": np.full(3, shape.size[0] if shape.size else 0.0),
-        "mesh": np.full(3, 0.1),
-    }.get(shape.kind)
-    if half is None:
-        radius, length = shape.size
-        half = np.array([radius, radius, length / 2.0 + (radius if shape.kind == "capsule" else 0.0)])
-    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    pose = np.asarray(model.frame_pose(q, shape.link)).reshape(4, 4) @ shape.pose
-    corners: Floats = signs * half @ pose[:3, :3].T + pose[:3, 3]
-    return corners

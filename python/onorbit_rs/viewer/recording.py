@@ -1,4 +1,4 @@
-"""``run.rrd``: the robot moving in W, its tool's path, the frames, the orbit apart, and the plots.
+"""``run.rrd``: the robot moving in named frames, its tool's path, arrows, the orbit apart, and the plots.
 
 W has the axes of the inertial frame and its origin on the reference orbit, so 32-bit graphics stay sharp at
 robot size. The orbit is drawn apart, in km; its exact state is there as 64-bit scalars.
@@ -13,37 +13,39 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.exceptions import OnOrbitError
-from onorbit_rs.geometry import shapes
-from onorbit_rs.viewer.blueprint import TIMELINE, layout
-from onorbit_rs.viewer.scene import send_frames, send_orbit, send_robot, send_tool
-from onorbit_rs.viewer.series import send_series, series_of
+from onorbit_rs.viewer.arrows import Arrows
+from onorbit_rs.viewer.axes import log_all_axes
+from onorbit_rs.viewer.blueprint import layout
+from onorbit_rs.viewer.encoded import Encoded
+from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames
+from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
+from onorbit_rs.viewer.rows import Rows
+from onorbit_rs.viewer.scene import (
+    MOST_TRAIL_PIECES,
+    log_path,
+    log_robot,
+    path_length,
+    send_desired,
+    send_trails,
+    tool_axes,
+)
+from onorbit_rs.viewer.series import Series, log_style, send_series, series_of
+from onorbit_rs.viewer.stage import Stage
+from onorbit_rs.viewer.targets import log_targets, send_targets
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Model, Trace
+    from onorbit_rs._core import Trace
+    from onorbit_rs.viewer.setting import Setting
 
     Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
 
-MOST_STEPS = 50_000
-"""Steps in a recording; a longer trace is thinned evenly, its last row kept."""
-
-FLUSH_TIMEOUT_S = 300.0
-"""Wall-clock time given to rerun's encoder, which needs seconds."""
+MOST_STEPS = 500_000
+"""Steps in a recording, which take half a gigabyte; a longer trace is thinned evenly, its last row kept."""
 
 
-def write_recording(
-    path: Path,
-    trace: Trace,
-    model: Model,
-    *,
-    title: str = "",
-    notes: str = "",
-    orbit_path: Floats | None = None,
-    has_planet: bool = True,
-) -> Path:
+def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = "") -> Path:
     """Write a recording of a run that ``rerun PATH`` opens.
 
     Parameters
@@ -51,56 +53,94 @@ def write_recording(
     path : Path
         The ``.rrd`` file.
     trace : Trace
-    model : Model
-    title : str
-        Name of the run.
+    setting : Setting
+        The robot and where it flies.
     notes : str
         Markdown shown beside the picture.
-    orbit_path : (k, 3) array, optional
-        One revolution of the reference orbit, inertial axes, m.
-    has_planet : bool
-        Whether the orbit, if any, is around a planet.
 
     Raises
     ------
     OSError
         The file cannot be written.
     """
-    robot = shapes(model)
-    plots = list(series_of(trace, model))
-    recording = rr.RecordingStream("onorbit", recording_id=uuid.uuid4(), send_properties=False)
-    stream = rr.binary_stream(recording)  # rerun's own file sink waits for ever where the disk is full
-    recording.set_log_time_enabled(False)  # simulation time alone: nothing here reads the wall clock
-    recording.set_log_tick_enabled(False)
-    recording.send_blueprint(layout(trace, model, plots, has_notes=bool(notes)))
-    if title:
-        recording.send_recording_name(title)
-    rows = recorded_rows(len(trace.time))
-    time = rr.TimeColumn(TIMELINE, duration=np.asarray(trace.time)[rows])
-    send_robot(recording, time, trace, model, robot, rows)
-    send_tool(recording, time, trace, rows)
-    send_frames(recording, time, trace, rows)
-    send_orbit(recording, time, trace, rows, orbit_path, has_planet)
+    chosen = recorded_rows(len(trace.time))
+    rows = Rows.of_trace(trace, slice(None) if len(chosen) == len(trace.time) else chosen)
+    if len(chosen) < len(trace.time):
+        notes += f"\n\nThe recording holds {len(chosen)} of the {len(trace.time)} rows of the trace.\n"
+    recording = new_recording(setting)
+    encoded = Encoded(recording)
+    plots = list(series_of(rows, setting.model))
+    stage = open_stage(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
     for series in plots:
-        send_series(recording, time, series, rows)
-    if notes:
-        recording.log(
-            "notes", rr.TextDocument(notes, media_type=rr.MediaType.MARKDOWN), static=True, strict=True
-        )
-    path.write_bytes(_encoded(stream))
-    recording.disconnect()
+        send_series(recording, rows, series)
+    send_rows(recording, rows, setting, stage)
+    if "reference_pose" in rows:
+        log_path(recording, rows, setting, stage.size)
+    if "tool_pose" in rows:
+        send_trails(recording, rows, setting, MOST_TRAIL_PIECES, "obtained")
+    if "position_eci" in rows:
+        log_path_flown(recording, rows)
+    Arrows(recording, setting, stage).send(rows)
+    encoded.write_to(path)
     return path
 
 
-def _encoded(stream: rr.BinaryStream) -> bytes:
-    """Everything sent so far, as the content of a ``.rrd``."""
-    try:
-        return stream.read(flush_timeout_sec=FLUSH_TIMEOUT_S) or b""
-    except RuntimeError as error:
-        raise OnOrbitError(f"rerun did not encode the recording: {error}") from error
+def new_recording(setting: Setting) -> rr.RecordingStream:
+    """Empty, on the time of the simulation alone: nothing here reads the wall clock."""
+    recording = rr.RecordingStream("onorbit", recording_id=uuid.uuid4(), send_properties=False)
+    recording.set_log_time_enabled(False)
+    recording.set_log_tick_enabled(False)
+    if setting.name:
+        recording.send_recording_name(setting.name)
+    return recording
 
 
-def recorded_rows(count: int) -> Rows:
+def open_stage(
+    recording: rr.RecordingStream,
+    rows: Rows,
+    setting: Setting,
+    plots: list[Series],
+    duration_s: float,
+    *,
+    notes: str = "",
+    is_live: bool = False,
+) -> Stage:
+    """The layout and all that does not move, from the first rows."""
+    stage = Stage.of(rows, setting)
+    views = layout(rows, setting, stage, plots, duration_s, has_notes=bool(notes), is_live=is_live)
+    recording.send_blueprint(views)
+    put_in(recording, "world", WORLD)
+    send_fixed_frames(recording, setting)
+    log_robot(recording, setting)
+    in_orbit = rows.quat_wl is not None
+    log_all_axes(
+        recording, setting, stage.size, (stage.inertial_at, stage.local_at),
+        tool_length=tool_axes(stage.size, path_length(rows, setting)), in_orbit=in_orbit,
+        has_reference="reference_pose" in rows,
+    )  # fmt: skip
+    log_targets(recording, setting, stage.size)
+    if "position_eci" in rows:
+        log_planet(recording, rows, setting)
+    for series in plots:
+        log_style(recording, series)
+    if notes:
+        text = rr.TextDocument(notes, media_type=rr.MediaType.MARKDOWN)
+        recording.log("notes", text, static=True, strict=True)
+    return stage
+
+
+def send_rows(recording: rr.RecordingStream, rows: Rows, setting: Setting, stage: Stage) -> None:
+    """All that moves, every row."""
+    send_moving_frames(recording, rows, setting, stage.inertial_at)
+    send_targets(recording, rows, setting)
+    if "reference_pose" in rows:
+        send_desired(recording, rows)
+    if "position_eci" in rows:
+        send_planet(recording, rows, setting)
+        send_spacecraft(recording, rows, setting)
+
+
+def recorded_rows(count: int) -> NDArray[np.int64]:
     """Rows of the trace that go into the recording."""
     stride = -(-count // MOST_STEPS)
     rows = np.arange(0, count, stride)

@@ -1,4 +1,4 @@
-"""The bodies, paths and axes that move in the 3-D views."""
+"""The robot and the path of its tool."""
 
 from __future__ import annotations
 
@@ -7,138 +7,132 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.geometry import Shape
-from onorbit_rs.rotations import has_local_frame, local_orbital_axes, quaternion_from_matrix
-from onorbit_rs.viewer.blueprint import TIMELINE
+from onorbit_rs.rotations import matrix_from_quaternion, quaternion_from_matrix
+from onorbit_rs.viewer.axes import log_axes
+from onorbit_rs.viewer.frames import (
+    DESIRED,
+    GOAL,
+    LOCAL,
+    WORLD,
+    fix_frame,
+    of_link,
+    put_in,
+    send_frame,
+)
+from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.solids import log_shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Model, Trace
+    from onorbit_rs.viewer.rows import Rows
+    from onorbit_rs.viewer.setting import Setting
 
     Floats = NDArray[np.float64]
-    Rows = NDArray[np.int64]
 
 MOST_TRAIL_PIECES = 1000
-EARTH_RADIUS_KM = 6378.137
-_DESIRED, _OBTAINED = (235, 235, 235), (235, 64, 52)
+MOVES = 0.02
+"""A tool that should go less far, in sizes of the robot, holds its pose."""
+
+COLORS = {"desired": (240, 240, 240), "obtained": (255, 96, 64)}
+TRAILS = {name: f"world/tool/{name}/trail" for name in COLORS}
+_POSES = {"desired": "reference_pose", "obtained": "tool_pose"}
 
 
-def send_robot(
+def log_robot(recording: rr.RecordingStream, setting: Setting) -> None:
+    """Its shapes, each in the frame of its link."""
+    for index, shape in enumerate(setting.shapes):
+        path = rr.new_entity_path(["world", "robot", shape.link, f"visual_{index}"])
+        if log_shape(recording, path, shape):
+            put_in(recording, path, of_link(shape.link))
+
+
+def send_desired(recording: rr.RecordingStream, rows: Rows) -> None:
+    """Where the tool should be."""
+    pose = rows["reference_pose"]
+    send_frame(recording, rows.times, WORLD, DESIRED, pose[:, :3, 3], quaternion_from_matrix(pose[:, :3, :3]))
+
+
+def path_length(rows: Rows, setting: Setting) -> float:
+    """Diagonal of the box around the path that the tool should take, m; 0 where it has none."""
+    if "reference_pose" not in rows:
+        return 0.0
+    points, _ = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def log_path(recording: rr.RecordingStream, rows: Rows, setting: Setting, size: float) -> None:
+    """The whole path that the tool should take, static, and as dim axes where it ends."""
+    points, frame = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
+    path, color = "world/tool/desired/path", COLORS["desired"]
+    put_in(recording, path, frame)
+    line = rr.LineStrips3D([_thinned(points)], colors=[color], radii=rr.Radius.ui_points(1.2))
+    recording.log(path, line, static=True, strict=True)
+    length = path_length(rows, setting)
+    if length > MOVES * size:
+        pose_wp = _pose_of_path_frame(rows, setting)
+        fix_frame(recording, frame, GOAL, np.linalg.inv(pose_wp) @ rows["reference_pose"][-1])
+        log_axes(recording, "world/tool/desired/goal", GOAL, tool_axes(size, length), brightness=0.6)
+
+
+def tool_axes(size: float, path_m: float) -> float:
+    """Length of the axes at a tool: small beside the robot and beside its path, m."""
+    return min(0.14 * size, 0.35 * path_m) if path_m > MOVES * size else 0.14 * size
+
+
+def send_trails(recording: rr.RecordingStream, rows: Rows, setting: Setting, most: int, *names: str) -> None:
+    """What the tool has drawn so far, ``obtained`` or ``desired``."""
+    for name in names:
+        points, frame = on_path(rows, rows[_POSES[name]][:, :3, 3], setting)
+        send_trail(recording, TRAILS[name], frame, rows, points, most, COLORS[name])
+
+
+def send_trail(
     recording: rr.RecordingStream,
-    time: rr.TimeColumn,
-    trace: Trace,
-    model: Model,
-    robot: list[Shape],
+    path: str,
+    frame: str,
     rows: Rows,
+    points: Floats,
+    most: int,
+    color: tuple[int, int, int],
 ) -> None:
-    """Static geometry under one moving transform per link."""
-    recording.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True, strict=True)
-    q = np.ascontiguousarray(np.asarray(trace.q)[rows])
-    base = model.body_names[0]
-    for link in dict.fromkeys([base, *(shape.link for shape in robot)]):
-        _send_poses(recording, time, f"world/robot/{link}", np.asarray(model.frame_pose(q, link)))
-    for index, shape in enumerate(robot):
-        log_shape(recording, f"world/robot/{shape.link}/visual_{index}", shape)
-    _log_axes(recording, f"world/robot/{base}/axes", 0.5, "B")
-
-
-def send_tool(recording: rr.RecordingStream, time: rr.TimeColumn, trace: Trace, rows: Rows) -> None:
-    """Paths of the tool, desired and obtained, and where it is on them."""
-    columns = trace.columns()
-    if "reference_pose" in columns:
-        desired = np.asarray(trace.reference_pose)[rows]
-        path = rr.LineStrips3D([desired[:, :3, 3]], colors=[_DESIRED], radii=[0.002])
-        recording.log("world/tool/desired/path", path, static=True, strict=True)
-        _send_poses(recording, time, "world/tool/desired/now", desired)
-        _log_axes(recording, "world/tool/desired/now", 0.06)
-    if "tool_pose" in columns:
-        obtained = np.asarray(trace.tool_pose)[rows]
-        _send_trail(recording, trace, rows, obtained[:, :3, 3])
-        _send_poses(recording, time, "world/tool/obtained/now", obtained)
-        _log_axes(recording, "world/tool/obtained/now", 0.1)
-
-
-def _send_trail(recording: rr.RecordingStream, trace: Trace, rows: Rows, path: Floats) -> None:
-    """What the tool has drawn so far: one short piece per moment, shown up to the present one."""
-    ends = np.unique(np.linspace(0, len(path) - 1, min(len(path), MOST_TRAIL_PIECES + 1)).astype(np.int64))
+    """Points (T, 3) as at most so many short pieces, one per moment: those up to now are shown."""
+    ends = np.unique(np.linspace(0, len(points) - 1, min(len(points), most + 1)).astype(np.int64))
     if len(ends) < 2:
         return
-    pieces = np.stack([path[ends[:-1]], path[ends[1:]]], axis=1)
+    put_in(recording, path, frame)
+    pieces = np.stack([points[ends[:-1]], points[ends[1:]]], axis=1)
     count = len(pieces)
-    time = rr.TimeColumn(TIMELINE, duration=np.asarray(trace.time)[rows][ends[1:]])
-    columns = rr.LineStrips3D.columns(strips=list(pieces), colors=[_OBTAINED] * count, radii=[0.005] * count)
-    recording.send_columns("world/tool/obtained/trail", [time], columns, strict=True)
-
-
-def send_frames(recording: rr.RecordingStream, time: rr.TimeColumn, trace: Trace, rows: Rows) -> None:
-    """Inertial axes, and where there is an orbit the local orbital frame."""
-    _log_axes(recording, "world/frames/inertial", 0.7, "I")
-    if not has_local_frame(trace):
-        return
-    _send_poses(recording, time, "world/frames/lvlh", _local_orbital_poses(trace, rows))
-    _log_axes(recording, "world/frames/lvlh", 0.6, "L")
-
-
-def send_orbit(
-    recording: rr.RecordingStream,
-    time: rr.TimeColumn,
-    trace: Trace,
-    rows: Rows,
-    orbit_path: Floats | None,
-    has_planet: bool,
-) -> None:
-    """The planet, the path flown, one revolution of the reference, and L at the spacecraft: km."""
-    if "position_eci" not in trace.columns():
-        return
-    position_km = np.asarray(trace.position_eci)[rows] / 1e3
-    planet = rr.Ellipsoids3D(
-        radii=[EARTH_RADIUS_KM], colors=[(60, 110, 170)], fill_mode=rr.components.FillMode.DenseWireframe
+    columns = rr.LineStrips3D.columns(
+        strips=list(pieces),
+        colors=[color] * count,
+        radii=[-2.5] * count,  # points of the screen
     )
-    if has_planet:
-        recording.log("orbit/planet", planet, static=True, strict=True)
-    path = rr.LineStrips3D([position_km], colors=[_OBTAINED], radii=rr.Radius.ui_points(1.5))
-    recording.log("orbit/path", path, static=True, strict=True)
-    if orbit_path is not None:
-        ring = rr.LineStrips3D([orbit_path / 1e3], colors=[(130, 130, 130)], radii=rr.Radius.ui_points(0.8))
-        recording.log("orbit/reference", ring, static=True, strict=True)
-    poses = np.tile(np.eye(4), (len(rows), 1, 1))
-    if has_local_frame(trace):
-        poses = _local_orbital_poses(trace, rows)
-    poses[:, :3, 3] = position_km
-    _send_poses(recording, time, "orbit/spacecraft", poses)
-    _log_axes(recording, "orbit/spacecraft", 1500.0)
-
-
-def _local_orbital_poses(trace: Trace, rows: Rows) -> Floats:
-    """(T, 4, 4) attitude of L at W's origin."""
-    position, velocity = np.asarray(trace.position_eci)[rows], np.asarray(trace.velocity_eci)[rows]
-    poses = np.tile(np.eye(4), (len(rows), 1, 1))
-    poses[:, :3, :3] = local_orbital_axes(position, velocity)
-    return poses
-
-
-def _send_poses(recording: rr.RecordingStream, time: rr.TimeColumn, path: str, poses: Floats) -> None:
-    """A transform per step, from (T, 4, 4) poses."""
-    columns = rr.Transform3D.columns(
-        translation=poses[:, :3, 3], quaternion=quaternion_from_matrix(poses[:, :3, :3])
-    )
+    time = rr.TimeColumn(TIMELINE, duration=rows["time"][ends[1:]])
     recording.send_columns(path, [time], columns, strict=True)
 
 
-def _log_axes(recording: rr.RecordingStream, path: str, length: float, name: str = "") -> None:
-    """Red x, green y, blue z of the entity's own frame; the tips carry the name of the frame, if any."""
-    colors = [(230, 70, 60), (70, 190, 90), (80, 130, 240)]
-    tips = np.eye(3) * length
-    arrows = rr.Arrows3D(vectors=tips, colors=colors, radii=[length / 120.0])
-    recording.log(path, arrows, static=True, strict=True)
-    if name:
-        labels = rr.Points3D(
-            1.06 * tips,
-            colors=colors,
-            radii=[length / 200.0],
-            labels=[f"{axis} {name}" for axis in "xyz"],
-            show_labels=True,
-        )
-        recording.log(f"{path}/names", labels, static=True, strict=True)
+def on_path(rows: Rows, position_w: Floats, setting: Setting) -> tuple[Floats, str]:
+    """Positions (T, 3) in the frame in which the path is drawn, m, and its name."""
+    if setting.path_frame == "lvlh" and rows.rot_wl is not None:
+        return np.einsum("tji,tj->ti", rows.rot_wl, position_w), LOCAL
+    if setting.path_frame == "base":
+        rot_wb = matrix_from_quaternion(rows["q"][:, 3:7])
+        return np.einsum("tji,tj->ti", rot_wb, position_w - rows["q"][:, :3]), of_link(setting.base)
+    return position_w, WORLD
+
+
+def _pose_of_path_frame(rows: Rows, setting: Setting) -> Floats:
+    """(4, 4), W, at the end."""
+    pose = np.eye(4)
+    if setting.path_frame == "lvlh" and rows.rot_wl is not None:
+        pose[:3, :3] = rows.rot_wl[-1]
+    elif setting.path_frame == "base":
+        q = rows["q"][-1]
+        pose[:3, :3], pose[:3, 3] = matrix_from_quaternion(q[3:7]), q[:3]
+    return pose
+
+
+def _thinned(points: Floats, most: int = 5000) -> Floats:
+    """At most so many of the points, first and last among them."""
+    return points[np.linspace(0, len(points) - 1, min(len(points), most)).astype(np.int64)]

@@ -8,7 +8,6 @@ Needs a Vulkan driver; Debian's ``mesa-vulkan-drivers`` and ``libegl1`` draw in 
 from __future__ import annotations
 
 import os
-import socket
 import subprocess
 import time
 from pathlib import Path
@@ -17,6 +16,8 @@ import rerun_cli  # type: ignore[import-untyped]  # ships no types
 from rerun.experimental import ViewerClient
 
 from onorbit_rs.exceptions import NotFoundError, OnOrbitError
+from onorbit_rs.viewer.rows import TIMELINE
+from onorbit_rs.viewer.screen import free_port, listens, url_of
 
 SETTLE_S = 3.0
 """Wall-clock time given to the viewer to load fonts and draw, before and after moving in time."""
@@ -47,7 +48,7 @@ def take_screenshot(
     """
     if not recording.is_file():
         raise NotFoundError(f"no such recording: {recording}", path=str(recording), kind="recording")
-    port = _free_port()
+    port = free_port()
     command = [
         *(str(Path(rerun_cli.__file__).with_name("rerun")), "--headless", "--hide-welcome-screen"),
         *("--bind", "127.0.0.1", "--port", str(port), "--window-size", f"{width}x{height}"),
@@ -60,7 +61,7 @@ def take_screenshot(
         try:
             client = _connect(port, viewer)
             time.sleep(SETTLE_S)
-            client.set_time("simulation_time", duration=at_s, play_state="paused")
+            _go_to(client, at_s)
             time.sleep(SETTLE_S)
             picture.write_bytes(client.take_screenshot())
         finally:
@@ -68,22 +69,28 @@ def take_screenshot(
     return picture
 
 
+def _go_to(client: ViewerClient, at_s: float, patience_s: float = 60.0) -> None:
+    """Move to a time, once the recording has been read."""
+    deadline = time.monotonic() + patience_s
+    while True:
+        try:
+            client.set_time(TIMELINE, duration=at_s, play_state="paused")
+            return
+        except OSError as error:  # no recording yet
+            if time.monotonic() > deadline:
+                raise OnOrbitError(f"the viewer does not show the recording: {error}") from error
+            time.sleep(0.2)
+
+
 def _connect(port: int, viewer: subprocess.Popen[str], patience_s: float = 30.0) -> ViewerClient:
     """A client of the viewer, once it listens."""
     deadline = time.monotonic() + patience_s
     while time.monotonic() < deadline and viewer.poll() is None:
-        with socket.socket() as probe:
-            if probe.connect_ex(("127.0.0.1", port)) == 0:
-                return ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
+        if listens(port):
+            return ViewerClient.connect(url_of(port))
         time.sleep(0.1)
     viewer.kill()
     printed = (viewer.stderr.read() if viewer.stderr else "").strip().splitlines()
     raise OnOrbitError(
         f"the headless viewer did not start: {printed[-1] if printed else 'it printed nothing'}"
     )
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])

@@ -1,4 +1,4 @@
-"""Columns of the trace as time series, in f64, with a name and a unit on every line."""
+"""Columns of the trace as time series, in f64, in groups, each plot with a unit and a name on every line."""
 
 from __future__ import annotations
 
@@ -9,24 +9,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.rotations import attitude_in_orbit, has_local_frame, roll_pitch_yaw
+from onorbit_rs.rotations import roll_pitch_yaw
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Model, Trace
+    from onorbit_rs._core import Model
+    from onorbit_rs.viewer.rows import Rows
 
     Floats = NDArray[np.float64]
 
-RED, GREEN, BLUE = (230, 92, 60), (60, 190, 130), (70, 150, 240)
-_COLORS = [(70, 150, 240), (230, 120, 40), (60, 190, 130), (215, 130, 180), (235, 180, 40), (120, 205, 240),
-           (170, 170, 170), (240, 230, 90)]  # fmt: skip
+_XYZ = [(240, 95, 75), (70, 200, 120), (85, 155, 250)]
+_COLORS = [(85, 155, 250), (240, 130, 50), (70, 200, 120), (220, 140, 190), (240, 190, 50), (130, 210, 245),
+           (180, 180, 180), (245, 235, 100)]  # fmt: skip
+_AXES, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
 
 @dataclass(frozen=True)
 class Series:
     """One plot: ``values`` (T, n), a name for each column, one unit for all."""
 
+    group: str
     path: str
     title: str
     unit: str
@@ -34,55 +37,90 @@ class Series:
     values: Floats
 
 
-def series_of(trace: Trace, model: Model) -> Iterator[Series]:
-    """Every plot this trace has the columns for."""
-    columns = set(trace.columns())
-    xyz = ("x", "y", "z")
-    if model.joint_names:
-        joints = tuple(model.joint_names)
-        yield Series("plots/joint_torque", "Joint torques", "N m", joints, np.asarray(trace.tau))
+def series_of(rows: Rows, model: Model, *, is_live: bool = False) -> Iterator[Series]:
+    """Every plot that these rows have the columns for; of effects that are over, what was not zero."""
+    yield from _of_tools(rows)
+    yield from _of_joints(rows, model)
+    yield from _of_base(rows)
+    yield from _of_balances(rows)
+    for effect, wrenches in rows.wrenches.items():
+        name, total = effect.replace("_", " ").capitalize(), wrenches.sum(axis=1)
+        parts = (("force", "net force", "N"), ("torque", "torques on all bodies", "N m"))
+        for values, (part, title, unit) in zip((total[:, :3], total[:, 3:]), parts, strict=True):
+            if is_live or values.any():
+                yield Series("Forces", f"plots/{effect}/{part}", f"{name}: {title}", unit, _AXES, values)
+
+
+def _of_tools(rows: Rows) -> Iterator[Series]:
+    if "position_error" in rows:
         yield Series(
-            "plots/joint_position", "Joint positions", "rad or m", joints, np.asarray(trace.q)[:, 7:]
+            "Tool", "plots/tool_position_error", "Tool position error", "m", _AXES, rows["position_error"]
         )
-        yield Series("plots/joint_rate", "Joint rates", "rad/s or m/s", joints, np.asarray(trace.v)[:, 6:])
-    if "position_error" in columns:
-        error = np.asarray(trace.position_error)
-        yield Series("plots/tool_position_error", "Tool position error", "m", xyz, error)
-        error = np.asarray(trace.attitude_error)
-        yield Series("plots/tool_attitude_error", "Tool attitude error", "rad", xyz, error)
-    momentum = np.asarray(trace.momentum)
-    yield Series("plots/linear_momentum", "Linear momentum", "N s", xyz, momentum[:, :3])
-    yield Series(
-        "plots/angular_momentum", "Angular momentum about the centre of mass", "N m s", xyz, momentum[:, 3:]
-    )
-    energy = np.column_stack([trace.kinetic_energy, trace.work])
-    yield Series("plots/energy", "Energy and work", "J", ("kinetic energy", "work done"), energy)
-    base = np.asarray(trace.q)
-    yield Series("plots/base_position", "Base position in W", "m", xyz, base[:, :3])
-    angles = np.degrees(np.unwrap(roll_pitch_yaw(base[:, 3:7]), axis=0))
-    yield Series("plots/base_attitude", "Base attitude in W", "deg", ("roll", "pitch", "yaw"), angles)
-    if "position_eci" in columns:
-        position, velocity = np.asarray(trace.position_eci), np.asarray(trace.velocity_eci)
-        if has_local_frame(trace):
-            angles = np.degrees(attitude_in_orbit(base[:, 3:7], position, velocity))
-            title = "Base attitude in the local orbital frame"
-            yield Series("plots/base_attitude_lvlh", title, "deg", ("roll", "pitch", "yaw"), angles)
-        yield Series("exact/position_eci", "Position of the base, inertial", "m", xyz, position)
-        yield Series("exact/velocity_eci", "Velocity of the base, inertial", "m/s", xyz, velocity)
+        yield Series(
+            "Tool", "plots/tool_attitude_error", "Tool attitude error", "rad", _AXES, rows["attitude_error"]
+        )
+    for name, errors in rows.tracking.items():
+        path = f"plots/tracking/{name}"
+        if errors.shape[1] == 6:
+            yield Series("Tool", f"{path}/position", f"{name}: position error", "m", _AXES, errors[:, :3])
+            yield Series("Tool", f"{path}/attitude", f"{name}: attitude error", "rad", _AXES, errors[:, 3:])
+        else:
+            names = tuple(f"joint {index + 1}" for index in range(errors.shape[1]))
+            yield Series("Joints", path, f"{name}: joint errors", "rad or m", names, errors)
 
 
-def send_series(
-    recording: rr.RecordingStream, time: rr.TimeColumn, series: Series, rows: NDArray[np.int64]
-) -> None:
-    """One entity holding all lines of a plot."""
+def _of_joints(rows: Rows, model: Model) -> Iterator[Series]:
+    names, kinds = tuple(model.joint_names), {joint.kind for joint in model.joints}
+    if not names:
+        return
+    angle, torque = ("rad", "N m") if kinds == {"revolute"} else ("m", "N") if kinds == {"prismatic"} else (
+        "rad or m", "N m or N")  # fmt: skip
+    rate = " or ".join(f"{unit}/s" for unit in angle.split(" or "))
+    yield Series("Joints", "plots/joint_torque", "Joint torques", torque, names, rows["tau"])
+    yield Series("Joints", "plots/joint_position", "Joint positions", angle, names, rows["q"][:, 7:])
+    yield Series("Joints", "plots/joint_rate", "Joint rates", rate, names, rows["v"][:, 6:])
+
+
+def _of_base(rows: Rows) -> Iterator[Series]:
+    q, v = rows["q"], rows["v"]
+    if rows.quat_lb is not None:
+        angles = np.degrees(np.unwrap(roll_pitch_yaw(rows.quat_lb), axis=0))
+        title = "Base attitude relative to L (local orbital frame)"
+        yield Series("Base", "plots/base_attitude_lvlh", title, "deg", ANGLES, angles)
+    angles = np.degrees(np.unwrap(roll_pitch_yaw(q[:, 3:7]), axis=0))
+    yield Series("Base", "plots/base_attitude", "Base attitude in W", "deg", ANGLES, angles)
+    yield Series("Base", "plots/base_rate", "Base angular velocity, body axes", "rad/s", _AXES, v[:, 3:6])
+    yield Series("Base", "plots/base_position", "Base position in W", "m", _AXES, q[:, :3])
+    if "position_eci" in rows:
+        r, rate = rows["position_eci"], rows["velocity_eci"]
+        yield Series("Orbit", "exact/position_eci", "Base position, inertial", "m", _AXES, r)
+        yield Series("Orbit", "exact/velocity_eci", "Base velocity, inertial", "m/s", _AXES, rate)
+
+
+def _of_balances(rows: Rows) -> Iterator[Series]:
+    momentum = rows["momentum"]
+    yield Series("Balance", "plots/linear_momentum", "Linear momentum in W", "N s", _AXES, momentum[:, :3])
+    title = "Angular momentum about the centre of mass"
+    yield Series("Balance", "plots/angular_momentum", title, "N m s", _AXES, momentum[:, 3:])
+    energy = np.column_stack([rows["kinetic_energy"], rows["work"]])
+    names = ("kinetic energy", "work done")
+    yield Series("Balance", "plots/energy", "Energy and work", "J", names, energy)
+
+
+def log_style(recording: rr.RecordingStream, series: Series) -> None:
+    """Names and colours of the lines of a plot."""
+    colors = _XYZ if series.names in (_AXES, ANGLES) else _COLORS
     count = len(series.names)
-    colors = (RED, GREEN, BLUE) if series.names in (("x", "y", "z"), ("roll", "pitch", "yaw")) else _COLORS
     style = rr.SeriesLines(
-        names=[f"{name} [{series.unit}]" for name in series.names],
+        names=list(series.names),
         colors=[colors[index % len(colors)] for index in range(count)],
         widths=[1.5] * count,
     )
     recording.log(series.path, style, static=True, strict=True)
-    values = series.values[rows]
-    columns = rr.Scalars.columns(scalars=values.reshape(-1))
-    recording.send_columns(series.path, [time], columns.partition([count] * len(values)), strict=True)
+
+
+def send_series(recording: rr.RecordingStream, rows: Rows, series: Series) -> None:
+    """One entity with all lines of a plot."""
+    columns = rr.Scalars.columns(scalars=series.values.reshape(-1))
+    lengths = np.full(len(series.values), len(series.names))
+    recording.send_columns(series.path, [rows.times], columns.partition(lengths), strict=True)

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
+import re
+import warnings
+
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.geometry import Shape
+from onorbit_rs.geometry import GREY, Shape
 from onorbit_rs.rotations import quaternion_from_matrix
 
-_MESHES = {".glb", ".gltf", ".obj", ".stl", ".dae"}
+MESHES = {
+    ".dae": "model/vnd.collada+xml",
+    ".glb": "model/gltf-binary",
+    ".gltf": "model/gltf+json",
+    ".obj": "model/obj",
+    ".stl": "model/stl",
+}
+"""Files that rerun draws, and their media types, which it guesses wrongly for Collada."""
+
+_HEAD_BYTES = 65_536
+"""Where a Collada file tells its unit."""
 
 
 def log_shape(recording: rr.RecordingStream, path: str, shape: Shape) -> bool:
-    """Log one shape, static, in the axes of its link; False where rerun cannot draw it."""
+    """Log one shape, static, in the axes of its link; False, with a warning, where rerun cannot draw it."""
     drawn = _archetype(shape)
     if drawn is None:
         return False
@@ -20,13 +33,26 @@ def log_shape(recording: rr.RecordingStream, path: str, shape: Shape) -> bool:
     if shape.kind == "capsule":  # rerun's capsule starts at its origin, URDF's is centred
         pose = pose.copy()
         pose[:3, 3] -= pose[:3, 2] * shape.size[1] / 2.0
-    placed = rr.Transform3D(
-        translation=pose[:3, 3],
-        quaternion=rr.Quaternion(xyzw=quaternion_from_matrix(pose[:3, :3])),
-        scale=shape.scale if shape.kind == "mesh" else None,
+    placed = rr.InstancePoses3D(
+        translations=[pose[:3, 3]],
+        quaternions=[rr.Quaternion(xyzw=quaternion_from_matrix(pose[:3, :3]))],
+        scales=[np.array(shape.scale) * _unit(shape)] if shape.kind == "mesh" else None,
     )
-    recording.log(path, placed, drawn, static=True, strict=True)
+    recording.log(path, drawn, placed, static=True, strict=True)
     return True
+
+
+def _unit(shape: Shape) -> float:
+    """Metres in the unit of a Collada file, which rerun passes over; other kinds of files are in metres."""
+    file = shape.filename
+    if file is None or file.suffix.lower() != ".dae":
+        return 1.0
+    with file.open("rb") as text:
+        found = re.search(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']([0-9.eE+-]+)", text.read(_HEAD_BYTES))
+    try:
+        return float(found[1]) if found else 1.0
+    except ValueError:
+        return 1.0
 
 
 def _archetype(shape: Shape) -> rr.AsComponents | None:
@@ -41,6 +67,20 @@ def _archetype(shape: Shape) -> rr.AsComponents | None:
         return rr.Cylinders3D(radii=[size[0]], lengths=[size[1]], colors=color, fill_mode=solid)
     if shape.kind == "capsule":
         return rr.Capsules3D(radii=[size[0]], lengths=[size[1]], colors=color, fill_mode=solid)
-    if shape.filename is not None and shape.filename.suffix.lower() in _MESHES and shape.filename.is_file():
-        return rr.Asset3D(path=shape.filename)
-    return None
+    return _mesh(shape)
+
+
+def _mesh(shape: Shape) -> rr.Asset3D | None:
+    """The file as it is; a colour of the robot's rules over those of the file."""
+    file = shape.filename
+    if file is None:
+        return None
+    media_type = MESHES.get(file.suffix.lower())
+    if media_type is None:
+        known = ", ".join(MESHES)
+        warnings.warn(
+            f"the mesh {file} of link {shape.link!r} is not drawn: the viewer reads {known}", stacklevel=2
+        )
+        return None
+    color = None if shape.rgba == GREY else list(shape.rgba)
+    return rr.Asset3D(contents=file.read_bytes(), media_type=media_type, albedo_factor=color)

@@ -1,0 +1,151 @@
+"""Forces, torques and momenta as arrows, each kind on a scale of its own that its label states."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import rerun as rr
+
+from onorbit_rs.viewer.frames import FOLLOW, WORLD, put_in
+from onorbit_rs.viewer.rows import TIMELINE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from onorbit_rs.viewer.rows import Rows
+    from onorbit_rs.viewer.setting import Setting
+    from onorbit_rs.viewer.stage import Stage
+
+    Floats = NDArray[np.float64]
+
+WORTH_SHOWING = 1e-3
+"""Least momentum, as a share of what the kinetic energy would give to one rigid body, to be drawn."""
+
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+_COLORS = {
+    "gravity": (150, 135, 255),
+    "gravity_gradient": (225, 130, 245),
+    "drag": (80, 220, 230),
+    "radiation_pressure": (255, 225, 90),
+}
+_OTHER_COLOR, _MOMENTUM_COLOR = (255, 150, 190), (255, 190, 60)
+
+
+@dataclass
+class Arrows:
+    """Sends arrows and beside the robot what they mean. Scales only grow, so that a run may come in parts."""
+
+    recording: rr.RecordingStream
+    setting: Setting
+    stage: Stage
+    _scales: dict[str, float] = field(default_factory=dict)
+
+    def send(self, rows: Rows) -> None:
+        """Momenta at the centre of mass and, where they are recorded, forces and torques of every effect."""
+        for name, vectors, unit in self._momenta(rows):
+            origins = rows["center_of_mass"][:, None, :]
+            path = f"world/arrows/{name.replace(' ', '_')}"
+            self._send(rows, path, name, unit, _MOMENTUM_COLOR, origins, vectors[:, None, :], 0.6)
+        if not rows.wrenches:
+            return
+        centers = _centers(rows, self.setting)
+        for effect, wrenches in rows.wrenches.items():
+            color, name = _COLORS.get(effect, _OTHER_COLOR), effect.replace("_", " ")
+            force, torque = wrenches[:, :, :3], wrenches[:, :, 3:]
+            path = f"world/arrows/{effect}"
+            self._send(rows, f"{path}/force", name, "N", color, centers, force, 0.7)
+            # About the centre of mass of the whole: Σ (r_k - r) × F_k + T_k.
+            lever = centers - rows["center_of_mass"][:, None, :]
+            total = (np.cross(lever, force) + torque).sum(axis=1, keepdims=True)
+            origin = rows["center_of_mass"][:, None, :]
+            self._send(rows, f"{path}/torque", f"{name} torque", "N m", color, origin, total, 0.6)
+
+    def _momenta(self, rows: Rows) -> Iterator[tuple[str, Floats, str]]:
+        """Those that are more than rounding and the pull of tides beside the motion of the joints."""
+        mass, energy = self.setting.model.mass, float(rows["kinetic_energy"].max())
+        radius = self.stage.size / 4.0
+        scale = math.sqrt(2.0 * mass * energy)
+        for name, vectors, unit, at_least in (
+            ("linear momentum", rows["momentum"][:, :3], "N s", scale),
+            ("angular momentum", rows["momentum"][:, 3:], "N m s", scale * radius),
+        ):
+            peak = _peak(vectors)
+            if peak > WORTH_SHOWING * at_least or f"world/arrows/{name.replace(' ', '_')}" in self._scales:
+                yield name, vectors, unit
+
+    def _send(
+        self,
+        rows: Rows,
+        path: str,
+        name: str,
+        unit: str,
+        color: tuple[int, int, int],
+        origins: Floats,
+        vectors: Floats,
+        longest: float,
+    ) -> None:
+        """Arrows (T, n, 3) at origins (T, n, 3), W, the longest so many times the robot's size."""
+        peak = _peak(vectors)
+        if peak == 0.0 and path not in self._scales:
+            return
+        scale = max(_round_up(peak / (longest * self.stage.size)), self._scales.get(path, 0.0))
+        count, each = vectors.shape[:2]
+        if scale != self._scales.get(path):
+            meaning = f"{path}/scale"
+            if path not in self._scales:
+                self._introduce(path, meaning, color)
+            self._scales[path] = scale
+            label = rr.Points3D.columns(labels=[f"{name}: 1 m = {with_prefix(scale, unit)}"])
+            self.recording.send_columns(
+                meaning, [rr.TimeColumn(TIMELINE, duration=rows["time"][:1])], label, strict=True
+            )
+        columns = rr.Arrows3D.columns(
+            vectors=(vectors / scale).reshape(-1, 3), origins=origins.reshape(-1, 3)
+        )
+        parts = columns.partition([each] * count)
+        self.recording.send_columns(path, [rows.times], parts, strict=True)
+
+    def _introduce(self, path: str, meaning: str, color: tuple[int, int, int]) -> None:
+        """The look of arrows, and the place of the line that tells their scale."""
+        put_in(self.recording, path, WORLD)
+        put_in(self.recording, meaning, FOLLOW)
+        look = rr.Arrows3D.from_fields(colors=[color], radii=[self.stage.size / 160.0])
+        self.recording.log(path, look, static=True, strict=True)
+        place = self.stage.place(0.86, 0.42 - 0.09 * len(self._scales))
+        line = rr.Points3D.from_fields(positions=[place], colors=[color], radii=[0.0], show_labels=True)
+        self.recording.log(meaning, line, static=True, strict=True)
+
+
+def _centers(rows: Rows, setting: Setting) -> Floats:
+    """(T, bodies, 3) centres of mass, W, m."""
+    q, model = np.ascontiguousarray(rows["q"]), setting.model
+    centers = np.empty((len(q), len(model.bodies), 3))
+    for index, body in enumerate(model.bodies):
+        pose = np.asarray(model.frame_pose(q, body.name))
+        centers[:, index] = pose[:, :3, :3] @ np.array(body.com) + pose[:, :3, 3]
+    return centers
+
+
+def _peak(vectors: Floats) -> float:
+    return float(np.sqrt(np.einsum("...i,...i->...", vectors, vectors).max(initial=0.0)))
+
+
+def _round_up(value: float) -> float:
+    """To 1, 2 or 5 times a power of ten."""
+    if value <= 0.0:
+        return 0.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= value * (1.0 - 1e-12))
+
+
+def with_prefix(value: float, unit: str) -> str:
+    """``2e-6``, ``N`` as ``2 µN``."""
+    exponent = 3 * math.floor(math.log10(value) / 3.0 + 1e-9) if value > 0.0 else 0
+    if exponent not in _PREFIXES:
+        return f"{value:.3g} {unit}"
+    return f"{value / 10.0**exponent:.3g} {_PREFIXES[exponent]}{unit}"

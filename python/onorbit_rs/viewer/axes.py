@@ -1,0 +1,80 @@
+"""Coordinate axes: red x, green y, blue z, named at their tips."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import rerun as rr
+
+from onorbit_rs.viewer.frames import COMPASS, DESIRED, FOLLOW, fix_frame, of_link, put_in
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs.viewer.setting import Setting
+
+    Floats = NDArray[np.float64]
+
+_COLORS = np.array([(235, 80, 70), (80, 200, 100), (90, 145, 250)])
+
+
+def log_axes(
+    recording: rr.RecordingStream,
+    path: str,
+    frame: str,
+    length: float,
+    names: tuple[str, ...] = (),
+    *,
+    origin: Floats | None = None,
+    brightness: float = 1.0,
+) -> None:
+    """Axes of a frame, static; the tips carry ``names``, if any; a single one stands at z."""
+    colors = (_COLORS * brightness).astype(np.uint8)
+    start = np.zeros(3) if origin is None else origin
+    put_in(recording, path, frame)
+    arrows = rr.Arrows3D(
+        vectors=np.eye(3) * length, origins=np.tile(start, (3, 1)), colors=colors, radii=[length / 70.0]
+    )
+    recording.log(path, arrows, static=True, strict=True)
+    if names:
+        put_in(recording, f"{path}/names", frame)
+        labels = rr.Points3D(
+            start + 1.1 * length * np.eye(3)[-len(names) :],
+            colors=colors[-len(names) :],
+            radii=[0.0],
+            labels=list(names),
+            show_labels=True,
+        )
+        recording.log(f"{path}/names", labels, static=True, strict=True)
+
+
+def log_all_axes(
+    recording: rr.RecordingStream,
+    setting: Setting,
+    size: float,
+    places: tuple[Floats, Floats],
+    *,
+    tool_length: float,
+    in_orbit: bool,
+    has_reference: bool,
+) -> None:
+    """Axes of the base, the tool and what it should be at, and beside the robot those of I and of L.
+
+    ``places`` are where the two are shown, in ``follow``, m.
+    """
+    log_axes(recording, "world/axes/base", of_link(setting.base), 0.45 * size, ("x B", "y B", "z B"))
+    if setting.tool is not None:
+        log_axes(recording, "world/axes/tool", of_link(setting.tool), tool_length, (setting.tool,))
+    if has_reference:
+        log_axes(recording, "world/axes/desired", DESIRED, tool_length, brightness=0.6)
+    inertial, local = places
+    if in_orbit:
+        log_axes(recording, "world/axes/inertial", COMPASS, 0.2 * size, ("x I", "y I", "z I"))
+        names = ("x L: out", "y L: along track", "z L: normal")
+        log_axes(recording, "world/axes/lvlh", FOLLOW, 0.2 * size, names, origin=local)
+    else:
+        pose = np.eye(4)
+        pose[:3, 3] = inertial
+        fix_frame(recording, FOLLOW, COMPASS, pose)
+        log_axes(recording, "world/axes/inertial", COMPASS, 0.2 * size, ("x I", "y I", "z I"))

@@ -1,0 +1,197 @@
+"""The view from afar, in km: the planet with its day and night, the orbit, the spacecraft on it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import rerun as rr
+
+from onorbit_rs._core import MU_EARTH
+from onorbit_rs.exceptions import OrbitError
+from onorbit_rs.rotations import quaternion_from_matrix
+from onorbit_rs.viewer.frames import ORIGIN, put_in, send_frame
+from onorbit_rs.viewer.land import world_map
+from onorbit_rs.viewer.rows import TIMELINE
+from onorbit_rs.viewer.scene import send_trail
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Earth, Orbit
+    from onorbit_rs.viewer.rows import Rows
+    from onorbit_rs.viewer.setting import Setting
+
+    Floats = NDArray[np.float64]
+
+INERTIAL, EARTH, SUN = "I", "earth", "sun"
+EARTH_RADIUS_KM, EARTH_FLATTENING = 6378.137, 1.0 / 298.257
+MEAN_DENSITY = 5.0e3
+"""Of a planet that is not the Earth: its size is not known, kg/m³."""
+
+MOST_TURNS = 2000
+"""Moments at which the Earth's attitude is recorded."""
+
+_GRAVITATION = 6.6743e-11
+_MOST_PATH_POINTS = 20_000
+_PATH, _SPACECRAFT, _RING = (255, 96, 64), (255, 220, 120), (150, 155, 165)
+
+
+def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
+    """The planet, one revolution of the reference, the Sun's direction: what does not wait for the run."""
+    orbit = setting.orbit
+    put_in(recording, "orbit", INERTIAL)
+    if orbit is None or orbit.mu is None:
+        return
+    is_earth = abs(orbit.mu / MU_EARTH - 1.0) < 1e-2
+    turns = is_earth and setting.earth is not None
+    radius = EARTH_RADIUS_KM if is_earth else _radius_km(orbit.mu, rows)
+    flat = np.array([1.0, 1.0, 1.0 - EARTH_FLATTENING if is_earth else 1.0])
+    put_in(recording, "orbit/planet", EARTH if turns else INERTIAL)
+    recording.log("orbit/planet", _globe(radius * flat, has_land=turns), static=True, strict=True)
+    if turns and has_sun(setting.earth):
+        for index, (depth, height) in enumerate(((-0.05, 1.004), (0.0, 1.006), (0.05, 1.008))):
+            path = f"orbit/night/{index}"
+            put_in(recording, path, SUN)
+            recording.log(path, _night(radius * height * flat, depth), static=True, strict=True)
+        put_in(recording, "orbit/sun", SUN)
+        far = max(radius, float(np.linalg.norm(rows["position_eci"], axis=1).max()) / 1e3)
+        arrow = rr.Arrows3D(
+            vectors=[[0.4 * far, 0.0, 0.0]], origins=[[1.3 * far, 0.0, 0.0]], radii=[far / 70.0],
+            colors=[(255, 225, 90)], labels=["to the Sun"], show_labels=True,
+        )  # fmt: skip
+        recording.log("orbit/sun", arrow, static=True, strict=True)
+    ring = path_around_planet(orbit)
+    if ring is not None:
+        line = rr.LineStrips3D([ring / 1e3], colors=[_RING], radii=rr.Radius.ui_points(1.0))
+        recording.log("orbit/reference", line, static=True, strict=True)
+        put_in(recording, "orbit/reference", INERTIAL)
+
+
+def has_sun(earth: Earth | None) -> bool:
+    """Whether it is known where the Sun is."""
+    return earth is not None and earth.epoch is not None
+
+
+def send_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
+    """How the Earth turns, and night with the Sun."""
+    earth = setting.earth
+    if earth is None or setting.orbit is None or setting.orbit.mu is None:
+        return
+    t = rows["time"]
+    t = t[np.unique(np.linspace(0, len(t) - 1, min(len(t), MOST_TURNS)).astype(np.int64))]
+    rot_fi = np.asarray(earth.rotation(t)).reshape(-1, 3, 3)
+    quat_if = quaternion_from_matrix(np.swapaxes(rot_fi, 1, 2))
+    times = rr.TimeColumn(TIMELINE, duration=t)
+    send_frame(recording, times, INERTIAL, EARTH, ORIGIN, quat_if)
+    if has_sun(earth):
+        quat_is = quaternion_from_matrix(_axes_towards(np.asarray(earth.sun(t)).reshape(-1, 3)))
+        send_frame(recording, times, INERTIAL, SUN, ORIGIN, quat_is)
+
+
+ORBIT_TRAIL = "orbit/trail"
+
+
+def send_orbit_trail(recording: rr.RecordingStream, rows: Rows, most: int) -> None:
+    """The path so far."""
+    send_trail(recording, ORBIT_TRAIL, INERTIAL, rows, rows["position_eci"] / 1e3, most, _PATH)
+
+
+def log_path_flown(recording: rr.RecordingStream, rows: Rows) -> None:
+    """The whole path of the robot."""
+    position = rows["position_eci"]
+    keep = np.linspace(0, len(position) - 1, min(len(position), _MOST_PATH_POINTS)).astype(np.int64)
+    path = rr.LineStrips3D([position[keep] / 1e3], colors=[_PATH], radii=rr.Radius.ui_points(2.0))
+    put_in(recording, "orbit/path", INERTIAL)
+    recording.log("orbit/path", path, static=True, strict=True)
+
+
+def send_spacecraft(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
+    """Where the robot is, under its name."""
+    path = "orbit/spacecraft"
+    put_in(recording, path, INERTIAL)
+    look = rr.Points3D.from_fields(
+        colors=[_SPACECRAFT], radii=rr.Radius.ui_points(7.0), labels=[setting.model.name], show_labels=True
+    )
+    recording.log(path, look, static=True, strict=True)
+    place = rr.Points3D.columns(positions=rows["position_eci"] / 1e3)
+    recording.send_columns(path, [rows.times], place, strict=True)
+
+
+def path_around_planet(orbit: Orbit | None, points: int = 361) -> Floats | None:
+    """(k, 3) positions along a closed orbit or a whole path, m; None where there is none around a planet."""
+    if orbit is None or orbit.mu is None:
+        return None
+    period = getattr(orbit, "period", None)
+    start, end = getattr(orbit, "span", (0.0, period))
+    if end is None or not np.isfinite(end):
+        return None
+    try:
+        return np.asarray(orbit.state(np.linspace(start, end, points))[0])
+    except OrbitError:  # decays within its first revolution
+        return None
+
+
+def _radius_km(mu: float, rows: Rows) -> float:
+    """Of a ball of a usual density, below the lowest point of the path."""
+    radius = (3.0 * mu / (4.0 * math.pi * _GRAVITATION * MEAN_DENSITY)) ** (1.0 / 3.0)
+    lowest = float(np.linalg.norm(rows["position_eci"], axis=1).min())
+    return float(min(radius, 0.95 * lowest)) / 1e3
+
+
+def _globe(radii: Floats, *, has_land: bool, rows: int = 60, columns: int = 120) -> rr.Mesh3D:
+    """An ellipsoid under a map whose middle is longitude zero, the x axis."""
+    v, u = (np.linspace(0.0, 1.0, count + 1) for count in (rows, columns))
+    colatitude, longitude = np.pi * v[:, None], 2.0 * np.pi * u[None, :] - np.pi
+    unit = _directions(colatitude, longitude)
+    corner = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).reshape(-1)
+    below = corner + columns + 1
+    triangles = np.concatenate(
+        [np.stack([corner, below, below + 1], axis=1), np.stack([corner, below + 1, corner + 1], axis=1)]
+    )
+    return rr.Mesh3D(
+        vertex_positions=(unit * radii).reshape(-1, 3),
+        vertex_normals=np.zeros((unit.shape[0] * unit.shape[1], 3)),  # the Sun is the light, not the viewer's
+        vertex_texcoords=np.stack(np.broadcast_arrays(u[None, :], v[:, None]), axis=-1).reshape(-1, 2),
+        triangle_indices=triangles,
+        albedo_texture=world_map(has_land),
+    )
+
+
+def _night(radii: Floats, depth: float, rows: int = 24, columns: int = 72) -> rr.Mesh3D:
+    """A dark veil over the half away from the x axis, where the Sun is ``depth`` rad below the horizon."""
+    away, around = np.meshgrid(
+        np.linspace(np.pi / 2 + depth, np.pi, rows + 1),
+        np.linspace(0.0, 2.0 * np.pi, columns + 1),
+        indexing="ij",
+    )
+    unit = np.stack([np.cos(away), np.sin(away) * np.cos(around), np.sin(away) * np.sin(around)], axis=-1)
+    corner = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).reshape(-1)
+    below = corner + columns + 1
+    triangles = np.concatenate(
+        [np.stack([corner, below, below + 1], axis=1), np.stack([corner, below + 1, corner + 1], axis=1)]
+    )
+    positions = (unit * radii).reshape(-1, 3)
+    return rr.Mesh3D(
+        vertex_positions=positions,
+        vertex_normals=np.zeros_like(positions),
+        triangle_indices=triangles,
+        albedo_factor=(4, 8, 20, 105),
+    )
+
+
+def _directions(colatitude: Floats, longitude: Floats) -> Floats:
+    """Unit vectors (rows, columns, 3)."""
+    parts = np.broadcast_arrays(
+        np.sin(colatitude) * np.cos(longitude), np.sin(colatitude) * np.sin(longitude), np.cos(colatitude)
+    )
+    return np.stack(parts, axis=-1)
+
+
+def _axes_towards(directions: Floats) -> Floats:
+    """(T, 3, 3) axes whose x points along (T, 3); y stays in the plane of the equator."""
+    x = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    y = np.cross([0.0, 0.0, 1.0], x)
+    y /= np.linalg.norm(y, axis=1, keepdims=True)
+    return np.stack([x, y, np.cross(x, y)], axis=-1)

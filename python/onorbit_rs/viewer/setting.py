@@ -1,0 +1,81 @@
+"""What the viewer must know of a run beside its rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from onorbit_rs.geometry import Shape, extent, shapes
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Earth, Model, Orbit
+    from onorbit_rs.scenario.build import Built
+
+    Floats = NDArray[np.float64]
+
+PathFrame = Literal["world", "lvlh", "base"]
+
+
+@dataclass(frozen=True)
+class Target:
+    """A spacecraft that nothing acts on: pose at time zero, constant velocity and spin; W axes, m, rad."""
+
+    position: Floats
+    quat_xyzw: Floats
+    velocity: Floats
+    spin: Floats
+    size: tuple[float, ...] = ()
+    """Edges of its box, m; axes alone are drawn where empty."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """The robot and where it flies.
+
+    ``tool`` is the frame whose pose the trace has; ``path_frame`` the one in whose axes its path is drawn.
+    """
+
+    model: Model
+    name: str = ""
+    tool: str | None = None
+    path_frame: PathFrame = "world"
+    orbit: Orbit | None = None
+    earth: Earth | None = None
+    targets: tuple[Target, ...] = ()
+
+    @classmethod
+    def of(cls, built: Built) -> Setting:
+        """Of a scenario."""
+        from onorbit_rs.viewer.targets import path_frame, targets
+
+        scenario = built.scenario
+        return cls(
+            built.model,
+            scenario.name,
+            scenario.tracked_tool,
+            path_frame(scenario),
+            built.orbit,
+            built.earth,
+            targets(scenario),
+        )
+
+    @cached_property
+    def shapes(self) -> list[Shape]:
+        """What there is to draw of the robot."""
+        return shapes(self.model)
+
+    @property
+    def base(self) -> str:
+        """The link that floats."""
+        return self.model.body_names[0]
+
+    def extent(self, q: Floats) -> tuple[Floats, float]:
+        """Centre and size of the robot in a configuration, axes of the base, m."""
+        at_origin = q.copy()
+        at_origin[:7] = [0, 0, 0, 0, 0, 0, 1]
+        return extent(self.model, self.shapes, at_origin)

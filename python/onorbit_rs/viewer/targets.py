@@ -1,0 +1,76 @@
+"""Target spacecraft of a scenario, and the frame in which the path of its tool is best seen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import rerun as rr
+
+from onorbit_rs.rotations import product
+from onorbit_rs.viewer.axes import log_axes
+from onorbit_rs.viewer.frames import WORLD, send_frame
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from onorbit_rs.scenario import Scenario
+    from onorbit_rs.viewer.rows import Rows
+    from onorbit_rs.viewer.setting import PathFrame, Setting, Target
+
+
+def path_frame(scenario: Scenario) -> PathFrame:
+    """That of the first reference of a tool; a moving target's path is drawn in W."""
+    frames: tuple[PathFrame, ...] = ("lvlh", "base")
+    first = next((reference.frame for reference in _references(scenario)), None)
+    return next((frame for frame in frames if frame == first), "world")
+
+
+def targets(scenario: Scenario) -> tuple[Target, ...]:
+    """Every target that a reference follows, once."""
+    from onorbit_rs.scenario.start import quaternion_of
+    from onorbit_rs.viewer.setting import Target
+
+    found: dict[str, Target] = {}
+    for reference in _references(scenario):
+        motion = getattr(reference.frame, "target", None)
+        if motion is not None:
+            found[repr(motion)] = Target(
+                np.array(motion.position), quaternion_of(motion.attitude),
+                np.array(motion.velocity), np.array(motion.spin), tuple(motion.size or ()),
+            )  # fmt: skip
+    return tuple(found.values())
+
+
+def _references(scenario: Scenario) -> Iterator[Any]:
+    """Those of tools."""
+    parts = [scenario.reference, *(control.reference for control in scenario.controllers or [])]
+    return (part for part in parts if hasattr(part, "frame"))
+
+
+def send_targets(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
+    """How they move."""
+    t = rows["time"]
+    for index, target in enumerate(setting.targets):
+        rate = float(np.linalg.norm(target.spin))
+        axis = target.spin / rate if rate > 0.0 else np.array([0.0, 0.0, 1.0])
+        half = rate * t[:, None] / 2.0
+        turned = np.hstack([np.sin(half) * axis, np.cos(half)])
+        position = target.position + np.outer(t, target.velocity)
+        send_frame(recording, rows.times, WORLD, _frame(index), position, product(turned, target.quat_xyzw))
+
+
+def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) -> None:
+    """Their axes, and their boxes where the scenario tells a size."""
+    for index, target in enumerate(setting.targets):
+        path = f"world/target/{index}"
+        log_axes(recording, path, _frame(index), 0.3 * size, ("x T", "y T", "z T"))
+        if target.size:
+            box = rr.Boxes3D(
+                sizes=[target.size], colors=[(205, 170, 90)], fill_mode=rr.components.FillMode.Solid
+            )
+            recording.log(path, box, static=True, strict=True)
+
+
+def _frame(index: int) -> str:
+    return f"target/{index}"

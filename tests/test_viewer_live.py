@@ -1,0 +1,166 @@
+"""Watching a run: every row comes to the viewer or is thinned, and nothing there stops or changes the run."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import rerun as rr
+from recordings import FrameTree, column, rows_by_entity
+
+import onorbit_rs as oo
+from onorbit_rs import viewer
+from onorbit_rs.output.relay import Relay
+from onorbit_rs.scenario import Scenario, load
+from onorbit_rs.scenario.build import Built, build
+from onorbit_rs.viewer import live, screen
+from onorbit_rs.viewer.live import LiveView
+from onorbit_rs.viewer.rows import Rows
+from onorbit_rs.viewer.series import ANGLES, Series
+
+
+def built_reach(**simulation: Any) -> Built:
+    data = load("humanoid_reach").resolved()
+    data["simulation"] |= {"duration": 4.0, "time_step": 1e-3} | simulation
+    return build(Scenario(**data))
+
+
+class Watched:
+    """A run under a live view whose viewer is a file."""
+
+    def __init__(self, folder: Path, built: Built, every_s: float = 0.05) -> None:
+        self.path, self.columns = folder / "live.rrd", []
+        recording = rr.RecordingStream("onorbit", send_properties=False)
+        recording.save(self.path)
+        self._live = LiveView(recording, viewer.Setting.of(built), 4.0)
+        duration = built.scenario.simulation.duration
+        self.trace = built.simulation.run(duration, checkpoint=self._take, checkpoint_every=every_s)
+        self._live.finish(self.trace)
+
+    def _take(self, checkpoint: oo.Checkpoint) -> None:
+        self.columns.append(checkpoint.columns)
+        self._live.take(checkpoint.columns)
+
+
+def test_a_short_run_is_seen_whole_at_its_end(tmp_path: Path) -> None:
+    built = built_reach(duration=0.3)
+    watched = Watched(tmp_path, built, every_s=1e3)
+    assert not watched.columns
+    moving, static = rows_by_entity(watched.path)
+    assert moving["/frames/robot/torso"] == moving["/plots/joint_torque"] == len(watched.trace) == 301
+    assert moving["/world/tool/obtained/trail"] == moving["/world/tool/desired/trail"] == 300
+    assert "/orbit/planet" in static and "/world/robot/torso/visual_0" in static
+    poses = FrameTree(watched.path).pose("robot/tool")
+    np.testing.assert_allclose(poses, watched.trace.tool_pose, atol=1e-6)
+
+
+def test_a_long_run_comes_in_parts_that_join(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live, "MOST_ROWS", 40)
+    watched = Watched(tmp_path, built_reach(duration=40.0, time_step=5e-4))
+    looks = len(watched.columns)
+    assert looks >= 2, "the run was over before a second look"
+    moving, _ = rows_by_entity(watched.path)
+    rows = moving["/frames/robot/torso"]
+    assert rows == moving["/plots/joint_torque"] <= 40 * (looks + 1)
+    times = column(watched.path, "/plots/joint_torque", "Scalars:scalars")
+    assert len(times) == rows
+    np.testing.assert_array_equal(times[-1], watched.trace.tau[-1])
+    strips = [strip[0] for strip in column(watched.path, "/world/tool/obtained/trail", "LineStrips3D:strips")]
+    for before, after in itertools.pairwise(strips):
+        assert before[1] == after[0]  # no gap between two looks
+
+
+def test_the_columns_of_checkpoints_are_those_of_the_trace(tmp_path: Path) -> None:
+    watched = Watched(tmp_path, built_reach(duration=20.0))
+    whole = Rows.of_trace(watched.trace)
+    assert watched.columns
+    part = Rows.of_checkpoint(watched.columns[0])
+    assert set(part.columns) == set(whole.columns)
+    for name, values in part.columns.items():
+        np.testing.assert_array_equal(values, whole[name][: len(part)])
+
+
+def test_angles_go_on_across_looks() -> None:
+    model = oo.Model.rigid_body(10.0, np.eye(3))
+    view = LiveView(rr.RecordingStream("onorbit"), viewer.Setting(model), 1.0)
+    sent = []
+    for first in (170.0, 350.0, 530.0):  # degrees; each look knows them within a turn alone
+        values = np.array([[first, 0.0, 0.0], [first + 90.0, 0.0, 0.0]])
+        values[:, 0] -= 360.0 * np.round(first / 360.0)
+        series = Series("Base", "plots/base_attitude", "Base attitude", "deg", ANGLES, values)
+        sent += list(view._continued(series).values[:, 0])
+    assert sent == [170.0, 260.0, 350.0, 440.0, 530.0, 620.0]
+
+
+def test_trouble_in_the_viewer_is_a_warning_and_the_run_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise RuntimeError("gone")
+
+    monkeypatch.setattr(live, "send_rows", refuse)
+    with pytest.warns(UserWarning, match="the viewer is gone, the run goes on without it: gone") as told:
+        watched = Watched(tmp_path, built_reach(duration=20.0))
+    assert len(told) == 1 and watched.trace.is_complete
+
+
+def test_the_writer_of_checkpoints_gets_every_row_and_state() -> None:
+    given: list[oo.Checkpoint] = []
+    trace = built_reach(duration=80.0).simulation.run(80.0, checkpoint=given.append, checkpoint_every=0.05)
+    assert len(given) > 2, "the run was over before a third look"
+
+    class Eye:
+        seen = 0
+
+        def take(self, columns: Any) -> None:
+            self.seen += len(columns["time"])
+
+    for every_s, expected in ((0.0, len(given)), (1e3, 1)):
+        eye, taken = Eye(), []
+        relay = Relay(eye, taken.append, every_s)  # type: ignore[arg-type]  # all that it needs of a view
+        for checkpoint in given:
+            relay(checkpoint)
+        relay.hand_on()
+        assert len(taken) == expected
+        columns = {name: np.concatenate([part.columns[name] for part in taken]) for name in taken[0].columns}
+        assert eye.seen == len(columns["time"])
+        stopped = oo.Checkpoint(taken[-1].state, columns, wall_s=taken[-1].wall_s)
+        again = built_reach(duration=80.0).simulation.run(80.0, resume=stopped)
+        np.testing.assert_array_equal(again.q, trace.q)
+
+
+def test_without_a_screen_it_is_said_and_the_run_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setattr(screen.sys, "platform", "linux")
+    data = load("humanoid_reach").resolved()
+    data["simulation"] |= {"duration": 0.1}
+    with pytest.warns(UserWarning, match="no screen here: the run goes on without the viewer"):
+        watched = oo.run(data, quiet=True, view=True)
+    np.testing.assert_array_equal(watched.trace.q, oo.run(data, quiet=True).trace.q)
+
+
+def test_the_viewer_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    commands = []
+
+    class Process:
+        def poll(self) -> int:
+            return 1
+
+        def kill(self) -> None:
+            commands.append("killed")
+
+    def popen(command: list[str], **_: object) -> Process:
+        commands.append(command)
+        return Process()
+
+    monkeypatch.setattr(screen.subprocess, "Popen", popen)
+    assert screen.open_viewer() is None  # it ended at once
+    screen.open_recording(Path("run.rrd"))
+    assert commands[1] == "killed"
+    for command in (commands[0], commands[2]):
+        assert command[command.index("--bind") + 1] == "127.0.0.1"
+    assert screen.url_of(9876) == "rerun+http://127.0.0.1:9876/proxy"

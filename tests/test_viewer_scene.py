@@ -1,0 +1,204 @@
+"""What is drawn: arrows on the scale they state, the Earth as it stands, meshes, targets."""
+
+from __future__ import annotations
+
+import struct
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from recordings import FrameTree, column, rows_by_entity
+
+import onorbit_rs as oo
+from onorbit_rs import viewer
+from onorbit_rs.scenario import Scenario
+from onorbit_rs.scenario.build import build
+from onorbit_rs.viewer.arrows import with_prefix
+from onorbit_rs.viewer.land import land, world_map
+
+EPOCH = "2026-03-20 12:00:00 UTC"
+ORBIT = {"semi_major_axis": "6878 km", "inclination": "97 deg"}
+
+
+def record(folder: Path, **parts: Any) -> tuple[Path, oo.Trace]:
+    scenario = Scenario(**{"simulation": {"duration": 2.0, "time_step": 0.05}} | parts)
+    built = build(scenario)
+    trace = built.simulation.run(scenario.simulation.duration)
+    return viewer.write_recording(folder / "run.rrd", trace, viewer.Setting.of(built)), trace
+
+
+def test_arrows_times_their_scale_are_the_wrenches(tmp_path: Path) -> None:
+    push = {"kind": "body_wrench", "body": "base", "force": [0, 3, 0], "torque": [0, 0, 0.02], "start": 1.0}
+    path, trace = record(
+        tmp_path,
+        robot={"rigid_body": {"mass": 50, "inertia": [4, 5, 6]}},
+        environment=[push],
+        simulation={"duration": 2.0, "time_step": 0.05, "record_wrenches": True},
+    )
+    effect = "/world/arrows/body_wrench"
+    for part, unit, columns in (("force", "N", slice(0, 3)), ("torque", "mN m", slice(3, 6))):
+        ((label,),) = column(path, f"{effect}/{part}/scale", "Points3D:labels")
+        text, amount = label.split(" = ")
+        assert text.startswith("body wrench") and text.endswith(": 1 m") and amount.endswith(f" {unit}")
+        scale = float(amount.split()[0]) * (1e-3 if unit == "mN m" else 1.0)
+        arrows = np.array(column(path, f"{effect}/{part}", "Arrows3D:vectors"))[:, 0]
+        np.testing.assert_allclose(arrows * scale, trace.wrenches["body_wrench"][:, 0, columns], rtol=1e-6)
+        origins = np.array(column(path, f"{effect}/{part}", "Arrows3D:origins"))[:, 0]
+        np.testing.assert_allclose(origins, trace.center_of_mass, atol=1e-6)
+    moving, _ = rows_by_entity(path)
+    assert {"/plots/body_wrench/force", "/plots/body_wrench/torque"} <= set(moving)
+    ((label,),) = column(path, "/world/arrows/angular_momentum/scale", "Points3D:labels")
+    scale = float(label.split(" = ")[1].split()[0]) * 1e-3
+    assert label.endswith("mN m s")
+    arrows = np.array(column(path, "/world/arrows/angular_momentum", "Arrows3D:vectors"))[:, 0]
+    np.testing.assert_allclose(arrows * scale, trace.momentum[:, 3:], rtol=1e-6, atol=1e-12)
+
+
+def test_no_arrows_for_momenta_that_nothing_has_given(tmp_path: Path) -> None:
+    model = oo.robots.load("humanoid_torso")
+    q, v = model.neutral(), np.zeros(model.nv)
+    swing = [
+        oo.BodyWrench(body, torque=sign * np.array([0, 0, 0.1]))
+        for body, sign in (("torso", 1), ("arm_link_1", -1))
+    ]
+    trace = oo.Simulation(model, q, v, environment=swing, time_step=0.01).run(0.1)
+    assert trace.kinetic_energy[-1] > 1e-6
+    path = viewer.write_recording(tmp_path / "run.rrd", trace, viewer.Setting(model))
+    assert not [entity for entity in rows_by_entity(path)[0] if entity.startswith("/world/arrows")]
+
+
+def test_amounts_are_told_with_prefixes() -> None:
+    told = [with_prefix(value, "N") for value in (2e-6, 5e-4, 0.01, 1.0, 2e4, 5e-12)]
+    assert told == ["2 µN", "500 µN", "10 mN", "1 N", "20 kN", "5e-12 N"]
+
+
+def test_the_map_has_land_where_there_is_land() -> None:
+    area = np.cos(np.radians(89.0 - 2.0 * np.arange(90)))
+    share = (land().mean(axis=1) * area).sum() / area.sum()
+    assert abs(share - 0.291) < 0.01  # of the Earth's surface (CIA World Factbook: 29.1 %)
+    places = {(52, 21): True, (0, 25): True, (-25, 135): True, (40, -100): True, (-85, 0): True}
+    places |= {(0, -30): False, (0, -150): False, (-40, 90): False, (40, 170): False}
+    for (latitude, longitude), expected in places.items():
+        assert land()[int((90 - latitude) // 2), int((longitude + 180) // 2)] == expected, (
+            latitude,
+            longitude,
+        )
+    colors = world_map(True, times=1, grid_deg=400.0)
+    assert colors.shape == (90, 180, 3)
+    warsaw, pacific = colors[19, 100], colors[45, 15]
+    assert warsaw[1] > warsaw[2] and pacific[2] > pacific[1]  # green, blue
+
+
+def test_the_earth_turns_and_night_is_away_from_the_sun(tmp_path: Path) -> None:
+    path, trace = record(
+        tmp_path,
+        robot={"rigid_body": {"mass": 50, "inertia": [4, 5, 6]}},
+        epoch=EPOCH,
+        orbit=ORBIT,
+        simulation={"duration": 3600.0, "time_step": 60.0},
+    )
+    tree, earth = FrameTree(path), oo.Earth(EPOCH)
+    earth_axes = np.swapaxes(earth.rotation(trace.time), 1, 2)
+    np.testing.assert_allclose(tree.pose("earth", "I")[:, :3, :3], earth_axes, atol=1e-6)
+    sun = earth.sun(trace.time)
+    to_sun = sun / np.linalg.norm(sun, axis=1, keepdims=True)
+    np.testing.assert_allclose(tree.pose("sun", "I")[:, :3, 0], to_sun, atol=1e-6)
+    # noon in Greenwich: the Sun stands over longitude zero within the equation of time (4 degrees)
+    noon = tree.pose("earth", "I")[0, :3, :3].T @ to_sun[0]
+    assert abs(np.degrees(np.arctan2(noon[1], noon[0]))) < 4.0
+    for layer in range(3):
+        (veil,) = column(path, f"/orbit/night/{layer}", "Mesh3D:vertex_positions", static=True)
+        assert np.array(veil)[:, 0].max() < 0.06 * 6378  # in axes whose x points to the Sun
+    place = np.array(column(path, "/orbit/spacecraft", "Points3D:positions"))[:, 0]
+    np.testing.assert_allclose(place, trace.position_eci / 1e3, rtol=1e-6)
+
+
+def test_without_an_epoch_the_earth_is_plain(tmp_path: Path) -> None:
+    path, _ = record(tmp_path, robot={"rigid_body": {"mass": 50, "inertia": [4, 5, 6]}}, orbit=ORBIT)
+    _, static = rows_by_entity(path)
+    assert "/orbit/planet" in static
+    assert not [entity for entity in static if entity.startswith(("/orbit/night", "/orbit/sun"))]
+
+
+COLLADA = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>
+<unit name="millimeter" meter="0.001"/><up_axis>Z_UP</up_axis></asset></COLLADA>"""
+
+
+def robot_with_meshes(folder: Path, *names: str) -> oo.Model:
+    visuals = "".join(
+        f'<visual><geometry><mesh filename="package://craft/{name}" scale="2 2 2"/></geometry>'
+        '<material name="gold"/></visual>'
+        for name in names
+    )
+    urdf = folder / "craft.urdf"
+    urdf.write_text(
+        '<robot name="craft"><material name="gold"><color rgba="0.8 0.6 0.2 1"/></material><link name="bus">'
+        '<inertial><mass value="6"/><inertia ixx="5" iyy="5" izz="5" ixy="0" ixz="0" iyz="0"/></inertial>'
+        f"{visuals}</link></robot>"
+    )
+    return oo.Model.from_urdf(urdf)
+
+
+def write_meshes(folder: Path) -> None:
+    folder.mkdir()
+    triangle = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
+    (folder / "a.stl").write_bytes(bytes(80) + struct.pack("<I", 1) + triangle)
+    (folder / "b.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (folder / "c.DAE").write_text(COLLADA)
+    (folder / "d.3ds").write_bytes(b"?")
+
+
+def test_meshes_are_in_the_recording_with_their_unit_and_the_colour_of_the_robot(tmp_path: Path) -> None:
+    write_meshes(tmp_path / "craft")
+    model = robot_with_meshes(tmp_path, "a.stl", "b.obj", "c.DAE", "d.3ds")
+    trace = oo.Simulation(model, model.neutral(), np.zeros(6), time_step=0.1).run(0.1)
+    with pytest.warns(UserWarning, match=r"d\.3ds of link 'bus' is not drawn: the viewer reads \.dae"):
+        path = viewer.write_recording(tmp_path / "run.rrd", trace, viewer.Setting(model))
+    types, scales = [], []
+    for index, name in enumerate(("a.stl", "b.obj", "c.DAE")):
+        entity = f"/world/robot/bus/visual_{index}"
+        ((blob,),) = column(path, entity, "Asset3D:blob", static=True)
+        assert bytes(blob) == (tmp_path / "craft" / name).read_bytes()
+        types += column(path, entity, "Asset3D:media_type", static=True)[0]
+        ((scale,),) = column(path, entity, "InstancePoses3D:scales", static=True)
+        scales.append(scale)
+        assert column(path, entity, "Asset3D:albedo_factor", static=True) == [[0xCC9933FF]]
+    assert types == ["model/stl", "model/obj", "model/vnd.collada+xml"]
+    np.testing.assert_allclose(scales, np.outer([2, 2, 2e-3], np.ones(3)), rtol=1e-6)
+    assert "/world/robot/bus/visual_3" not in rows_by_entity(path)[1]
+
+
+def test_a_mesh_that_is_not_there_is_a_warning_and_a_box(tmp_path: Path) -> None:
+    with pytest.warns(UserWarning, match="not found"):
+        model = robot_with_meshes(tmp_path, "gone.stl")
+    (box,) = viewer.Setting(model).shapes
+    assert (box.kind, box.link) == ("box", "bus")
+    np.testing.assert_allclose(box.size, np.sqrt(5.0))  # I = m a² / 6
+    trace = oo.Simulation(model, model.neutral(), np.zeros(6), time_step=0.1).run(0.1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        path = viewer.write_recording(tmp_path / "run.rrd", trace, viewer.Setting(model))
+    assert column(path, "/world/robot/bus/visual_0", "Boxes3D:half_sizes", static=True)
+
+
+def test_a_target_drifts_and_spins(tmp_path: Path) -> None:
+    motion = {"position": [0.5, 0, 0.9], "velocity": [0.1, 0, 0], "spin": [0, 0, 0.5], "size": [1, 2, 3]}
+    path, trace = record(
+        tmp_path,
+        robot="humanoid_torso",
+        tool="tool",
+        controller={"kind": "computed_torque", "kp": 100, "kd": 20},
+        reference={"kind": "hold", "frame": {"target": motion}},
+        initial={"joints": [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]},
+        simulation={"duration": 0.2, "time_step": 0.01},
+    )
+    pose = FrameTree(path).pose("target/0")
+    np.testing.assert_allclose(pose[-1, :3, 3], [0.5 + 0.1 * trace.time[-1], 0, 0.9], atol=1e-6)
+    turned = np.arctan2(pose[:, 1, 0], pose[:, 0, 0])
+    np.testing.assert_allclose(turned, 0.5 * trace.time, atol=1e-6)
+    assert column(path, "/world/target/0", "Boxes3D:half_sizes", static=True) == [[[0.5, 1.0, 1.5]]]
+    # what is held in the target's frame moves with it
+    held = np.linalg.inv(pose) @ trace.reference_pose
+    np.testing.assert_allclose(held, np.tile(held[0], (len(held), 1, 1)), atol=1e-6)
