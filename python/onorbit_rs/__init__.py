@@ -11,7 +11,7 @@ SI and radians everywhere; frames and layouts are those of ``docs/``: ``q = [p(3
 
 from __future__ import annotations
 
-from onorbit_rs import exceptions, layouts, relative, robots, scenarios
+from onorbit_rs import exceptions, layouts, plants, relative, robots, scenarios
 from onorbit_rs._core import (
     MU_EARTH,
     Atmosphere,
@@ -130,6 +130,7 @@ __all__ = [
     "build_info",
     "exceptions",
     "layouts",
+    "plants",
     "propagate",
     "relative",
     "resume",
