@@ -1,0 +1,94 @@
+"""``onorbit show``."""
+
+from __future__ import annotations
+
+import json
+import math
+import shlex
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from onorbit_rs.cli.options import FolderArgument
+from onorbit_rs.exceptions import InputError, NotFoundError, OnOrbitError, OutputFolderError, ReadError
+
+
+def show(
+    folder: FolderArgument,
+    viewer: Annotated[bool, typer.Option(help="Open the recording where there is a screen.")] = True,
+    picture: Annotated[Path | None, typer.Option(metavar="FILE", help="Save a PNG of the viewer.")] = None,
+    at: Annotated[float, typer.Option(metavar="SECONDS", help="Moment of the picture.")] = 0.0,
+) -> None:
+    """Print the summary of a run and open its recording, or save a picture of it."""
+    summary = print_run(folder)
+    if picture is not None:
+        save_picture(folder, picture, at, float(summary.get("simulated_s") or 0.0))
+    elif viewer:
+        open_viewer(folder)
+
+
+def print_run(folder: Path) -> dict[str, Any]:
+    """Print a finished run's summary, and return it.
+
+    Raises
+    ------
+    NotFoundError
+        No such folder, or no run in it.
+    ReadError
+        Its summary cannot be read.
+    """
+    from onorbit_rs.cli.printing import print_summary
+
+    file = folder / "summary.json"
+    try:
+        is_there = file.is_file()
+    except OSError as error:  # a name too long
+        raise ReadError(f"cannot read {file}: {error.strerror}", path=str(file), kind="summary") from error
+    if not is_there:
+        what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
+        raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
+    try:
+        summary = dict(json.loads(file.read_text(encoding="utf-8")))
+    except (ValueError, TypeError, OSError) as error:
+        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error
+    print_summary(summary, folder, is_new=False)
+    return summary
+
+
+def open_viewer(folder: Path) -> None:
+    """Open the recording of a run where there is a screen, or say how."""
+    from onorbit_rs.viewer.screen import has_screen, open_recording
+
+    recording = folder / "run.rrd"
+    if recording.is_file() and has_screen():
+        open_recording(recording)
+    elif recording.is_file():
+        typer.echo(f"no screen here; open the recording with: rerun {shlex.quote(str(recording))}")
+
+
+def save_picture(folder: Path, picture: Path, at_s: float, end_s: float) -> None:
+    """Save what the viewer shows at a moment of a run that lasted ``end_s``.
+
+    Raises
+    ------
+    InputError
+        The moment is outside the run.
+    OutputFolderError
+        The picture cannot be written.
+    """
+    from onorbit_rs import viewer
+
+    if not (math.isfinite(at_s) and 0.0 <= at_s <= end_s):
+        raise InputError(
+            f"--at {at_s:g} s is outside the run, which goes from 0 to {end_s:g} s",
+            name="at", got=at_s, expected=f"0 to {end_s:g} s",
+        )  # fmt: skip
+    try:
+        viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s)
+    except OSError as error:
+        if isinstance(error, OnOrbitError):
+            raise
+        reason = error.strerror or error
+        raise OutputFolderError(f"cannot write {picture}: {reason}", path=str(picture)) from error
+    typer.echo(f"picture: {picture}")
