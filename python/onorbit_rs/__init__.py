@@ -67,6 +67,7 @@ from onorbit_rs._core import (
     propagate,
     rollout,
 )
+from onorbit_rs.comparison import Comparison, compare
 from onorbit_rs.control import Controller
 from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.running import Run, resume, run
@@ -79,6 +80,7 @@ __all__ = [
     "Cannonball",
     "Checkpoint",
     "Circle",
+    "Comparison",
     "Compliance",
     "ComputedTorque",
     "ConstantAtmosphere",
@@ -128,6 +130,7 @@ __all__ = [
     "Trace",
     "Waypoints",
     "build_info",
+    "compare",
     "exceptions",
     "layouts",
     "plants",

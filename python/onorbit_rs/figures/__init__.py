@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
+from onorbit_rs.figures.differences import differences
 from onorbit_rs.figures.motion import base_motion, conservation
 from onorbit_rs.figures.orbit import orbit_overview
 from onorbit_rs.figures.tracking import joint_torques, tracking_errors
@@ -26,6 +27,7 @@ __all__ = [
     "base_motion",
     "conservation",
     "desired_trajectory",
+    "differences",
     "joint_torques",
     "obtained_trajectory",
     "orbit_overview",

@@ -1,8 +1,8 @@
 """Other physics engines that move the robot in the place of our own equations.
 
 Give one to :class:`onorbit_rs.Simulation` as ``plant=``, or say ``plant: mujoco`` in a scenario: robot,
-controller, environment, schedule, trace and certificate are those of every run, the motion is another engine's.
-This folder alone imports mujoco.
+controller, environment, schedule, trace and certificate are those of every run, the motion is another
+engine's. This folder alone imports mujoco.
 """
 
 from __future__ import annotations

@@ -26,10 +26,10 @@ _WEIGHTS = np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
 class Mujoco:
     """A robot that MuJoCo moves: ``onorbit_rs.Simulation(..., plant=Mujoco(model))``.
 
-    ``rk4`` is MuJoCo's own Runge-Kutta, with the environment's wrenches at every stage. It composes attitudes by
-    the plain exponential of averaged rates, so where the base turns it is of second order, and momentum drifts
-    accordingly. ``semi_implicit_euler`` is MuJoCo's ``Euler``, implicit in joint damping. Friction and stops are
-    MuJoCo's, soft, at their hardest; stops give nothing back.
+    ``rk4`` is MuJoCo's own Runge-Kutta, with the environment's wrenches at every stage. It composes attitudes
+    by the plain exponential of averaged rates, so where the base turns it is of second order, and momentum
+    drifts accordingly. ``semi_implicit_euler`` is MuJoCo's ``Euler``, implicit in joint damping. Friction and
+    stops are MuJoCo's, soft, at their hardest; stops give nothing back.
 
     Parameters
     ----------
