@@ -81,10 +81,17 @@ class Comparison:
             {name: _plain(getattr(difference, name)) for name in names} for difference in self.differences
         ]
         return {
-            "a": self.a, "b": self.b, "tolerance": self.tolerance, "agrees": self.agrees,
-            "parts_at": self.parts_at, "rows": len(self.time), "start": float(self.time[0]), "end": float(self.time[-1]),
-            "differences": measured, "notes": list(self.notes),
-        }  # fmt: skip
+            "a": self.a,
+            "b": self.b,
+            "tolerance": self.tolerance,
+            "agrees": self.agrees,
+            "parts_at": self.parts_at,
+            "rows": len(self.time),
+            "start": float(self.time[0]),
+            "end": float(self.time[-1]),
+            "differences": measured,
+            "notes": list(self.notes),
+        }
 
 
 def compare(
@@ -146,7 +153,8 @@ def _same_robot(a: Recorded, b: Recorded) -> list[str]:
     if a.columns["q"].shape[1] != b.columns["q"].shape[1]:
         joints = [run.columns["q"].shape[1] - 7 for run in (a, b)]
         raise CompareError(
-            f"{a.name} has a robot with {joints[0]} joints, {b.name} one with {joints[1]}: they are not one robot",
+            f"{a.name} has a robot with {joints[0]} joints, {b.name} one with {joints[1]}: only runs of one "
+            "robot compare",
             name="robot", got=joints[1], expected=joints[0],
         )  # fmt: skip
     if a.robot != b.robot:
