@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from onorbit_rs.comparison.measures import measures
-from onorbit_rs.comparison.recorded import Recorded, on_the_other_plant, recorded
+from onorbit_rs.comparison.recorded import Recorded, Source, on_the_other_plant, recorded
 from onorbit_rs.comparison.rows import common_rows
 from onorbit_rs.exceptions import CompareError, InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from onorbit_rs.running import Run
 
     Floats = NDArray[np.float64]
 
@@ -95,8 +92,8 @@ class Comparison:
 
 
 def compare(
-    a: str | os.PathLike[str] | Run,
-    b: str | os.PathLike[str] | Run | None = None,
+    a: Source,
+    b: Source | None = None,
     *,
     tolerance: float = TOLERANCE,
 ) -> Comparison:
@@ -104,9 +101,9 @@ def compare(
 
     Parameters
     ----------
-    a, b : str, path or Run
-        A folder that a run has written, a scenario (name or file), which is run now, or the
-        :class:`onorbit_rs.Run` itself. Without ``b``: the scenario of ``a`` on the other plant.
+    a, b : str, path, mapping, Scenario or Run
+        A folder that a run has written, a scenario (as :func:`onorbit_rs.run` takes it), which is run now, or
+        the :class:`onorbit_rs.Run` itself. Without ``b``: the scenario of ``a`` on the other plant.
     tolerance : float
         What counts as parted: a share of the largest value of a measure, or of 1 in its unit (m, rad, N m).
 

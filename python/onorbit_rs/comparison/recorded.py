@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,9 @@ from onorbit_rs.scenario import Scenario, load
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | Run
+"""A folder that a run has written, a scenario as :func:`onorbit_rs.run` takes it, or a run."""
 
 NEEDED = ("time", "q", "v", "tau", "momentum", "kinetic_energy")
 
@@ -35,7 +39,7 @@ class Recorded:
         return next(iter(named.values())) if len(named) == 1 else named
 
 
-def recorded(source: str | os.PathLike[str] | Run) -> Recorded:
+def recorded(source: Source) -> Recorded:
     """From a folder, a run, or a scenario that is run now.
 
     Raises
@@ -45,9 +49,8 @@ def recorded(source: str | os.PathLike[str] | Run) -> Recorded:
     """
     if isinstance(source, Run):
         return _of_run(source)
-    path = Path(source)
-    if path.is_dir():
-        return _of_folder(path)
+    if isinstance(source, (str, os.PathLike)) and Path(source).is_dir():
+        return _of_folder(Path(source))
     return _of_run(run(source))
 
 
