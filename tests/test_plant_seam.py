@@ -1,4 +1,4 @@
-"""Another engine in the place of our equations: what it is given, what comes of its errors, and that the loop stays ours."""
+"""Another engine in the place of our equations: what it is given, and what comes of its errors."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import onorbit_rs as oo
 from onorbit_rs.exceptions import RunInterrupted, ShapeError, SimulationError
 
 ORBIT = {"semi_major_axis": 6778e3, "eccentricity": 0.01, "inclination": 0.9}
+PUSH = oo.BodyWrench("torso", force=[0.0, 0.3, 0.1], start=0.0125, end=0.031)
 START = [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]
 
 
@@ -47,7 +48,7 @@ def reach(plant: Any = None, **settings: Any) -> oo.Simulation:
     q[7:] = START
     return oo.Simulation(
         model, q, np.zeros(model.nv), orbit=oo.Kepler(**ORBIT), plant=plant,
-        environment=[oo.GravityGradient(), oo.BodyWrench("torso", force=[0.0, 0.3, 0.1], start=0.0125, end=0.031)],
+        environment=[oo.GravityGradient(), PUSH],
         controller=oo.ComputedTorque(model, "tool", kp=100, kd=20, null_space_damping=2),
         reference=oo.LineParabola(model.frame_pose(q, "tool"), displacement=[0.2, 0, 0], duration=2.0),
         **({"time_step": 0.01, "record_wrenches": True} | settings),
@@ -123,7 +124,7 @@ def test_a_state_that_is_no_longer_finite_is_a_divergence(model: oo.Model) -> No
             q, v, *others = super().step(start, *rest)
             return (q, v * np.nan if start > 0.045 else v, *others)
 
-    with pytest.raises(SimulationError, match="diverged at t = 0.05") as caught:
+    with pytest.raises(SimulationError, match=r"diverged at t = 0\.05") as caught:
         reach(Lost(model)).run(1.0)
     assert np.isfinite(caught.value.q).all()
     assert caught.value.trace.time[-1] == pytest.approx(0.05)
@@ -132,7 +133,11 @@ def test_a_state_that_is_no_longer_finite_is_a_divergence(model: oo.Model) -> No
 @pytest.mark.parametrize(
     ("spoil", "error", "message"),
     [
-        (lambda left: (left[0][:-1], *left[1:]), ShapeError, r"the q that the plant returned has shape \(13,\)"),
+        (
+            lambda left: (left[0][:-1], *left[1:]),
+            ShapeError,
+            r"the q that the plant returned has shape \(13,\)",
+        ),
         (lambda left: left[:4], ValueError, "6"),
         (lambda left: None, TypeError, "None"),
     ],

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onorbit_rs.exceptions import CompareError
-from onorbit_rs.rotations import quaternion_from_matrix
+from onorbit_rs.rotations import angle_between, quaternion_from_matrix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -86,22 +86,31 @@ def _shared(time_a: Floats, time_b: Floats) -> tuple[NDArray[np.intp], NDArray[n
 
 
 def _between(rows: Rows, at: Floats) -> Rows:
-    """Straight between rows, quaternions too (they are normalised); torques are held."""
+    """Straight between rows, quaternions at a steady rate; torques are held."""
     time = rows["time"]
-    place = np.clip(np.searchsorted(time, at, side="right") - 1, 0, max(len(time) - 2, 0))
-    step = np.diff(time)[place] if len(time) > 1 else np.ones(len(at))
-    share = ((at - time[place]) / step)[:, None]
-    after = np.minimum(place + 1, len(time) - 1)
+    if len(time) == 1:
+        return {name: np.repeat(values, len(at), axis=0) for name, values in rows.items()}
+    before = np.clip(np.searchsorted(time, at, side="right") - 1, 0, len(time) - 2)
+    share = ((at - time[before]) / np.diff(time)[before])[:, None]
     made = {}
     for name, values in rows.items():
+        columns = values.reshape(len(values), -1)
+        first, second = columns[before], columns[before + 1]
         if name == "tau":
-            made[name] = values[np.where(share[:, 0] >= 1.0, after, place)]
-            continue
-        first, second = (values[k].reshape(len(at), -1) for k in (place, after))
-        if name.endswith("quat"):
-            second = np.where(np.sum(first * second, axis=1, keepdims=True) < 0.0, -second, second)
-        mixed = first + share * (second - first)
-        if name.endswith("quat"):
-            mixed /= np.linalg.norm(mixed, axis=1, keepdims=True)
+            mixed = np.where(share < 1.0, first, second)
+        elif name.endswith("quat"):
+            mixed = _turned(first, second, share)
+        else:
+            mixed = first + share * (second - first)
         made[name] = mixed.reshape(len(at), *values.shape[1:])
     return made
+
+
+def _turned(first: Floats, second: Floats, share: Floats) -> Floats:
+    """A share of the way from one attitude to another: `(sin (1 − s)θ a + sin sθ b) / sin θ`."""
+    second = np.where(np.sum(first * second, axis=1, keepdims=True) < 0.0, -second, second)
+    angle = angle_between(first, second)[:, None] / 2.0
+    with np.errstate(invalid="ignore", divide="ignore"):
+        a, b = np.sin((1.0 - share) * angle) / np.sin(angle), np.sin(share * angle) / np.sin(angle)
+    is_small = angle < 1e-8
+    return np.where(is_small, 1.0 - share, a) * first + np.where(is_small, share, b) * second

@@ -26,10 +26,10 @@ _WEIGHTS = np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
 class Mujoco:
     """A robot that MuJoCo moves: ``onorbit_rs.Simulation(..., plant=Mujoco(model))``.
 
-    ``rk4`` is MuJoCo's own Runge-Kutta, with the environment's wrenches at every stage. It composes attitudes
-    by the plain exponential of averaged rates, so where the base turns it is of second order, and momentum
-    drifts accordingly. ``semi_implicit_euler`` is MuJoCo's ``Euler``, implicit in joint damping. Friction and
-    stops are MuJoCo's, soft, at their hardest; stops give nothing back.
+    ``rk4`` is the Runge-Kutta of MuJoCo 4, with the environment's wrenches at every stage; nothing in it
+    carries momentum, which drifts with its fourth order. ``semi_implicit_euler`` is MuJoCo's ``Euler``,
+    implicit in joint damping. Friction and stops are MuJoCo's, soft, at their hardest; stops give hardly
+    anything back.
 
     Parameters
     ----------
@@ -95,9 +95,10 @@ class Mujoco:
         elif h > 0.0:
             rates = [first]
             for share in _STAGES[1:]:
-                rates.append(
-                    self._rate(start + share * h, *self._moved(qpos, qvel, share * h, rates[-1]), wrenches)
-                )
+                turn = share * h * rates[-1][3:6]
+                stage = self._moved(qpos, qvel, share * h, rates[-1])
+                rates.append(self._rate(start + share * h, *stage, wrenches))
+                rates[-1][3:6] = _turning(turn, rates[-1][3:6])
             mean = _WEIGHTS @ np.array(rates)
             qpos, qvel = self._moved(qpos, qvel, h, mean)
         done = h * mean[2 * nv :]
@@ -142,10 +143,23 @@ class Mujoco:
         """With `v = Rᵀ ṗ`: `v̇ = Rᵀ p̈ − w × v`."""
         nv, rot_wb = self._model.nv, self._rot_wb(qpos)
         a: Floats = rate[nv : 2 * nv][self._rates]
-        a[:3] = a[:3] @ rot_wb - np.cross(rate[3:6], rate[:3] @ rot_wb)
+        a[:3] = a[:3] @ rot_wb - _cross(rate[3:6], rate[:3] @ rot_wb)
         return a
 
     def _rot_wb(self, qpos: Floats) -> Any:
         flat = np.empty(9)
         self._mujoco.mju_quat2Mat(flat, qpos[3:7])
         return flat.reshape(3, 3)
+
+
+def _turning(turn: Floats, w: Floats) -> Floats:
+    """Rate of the rotation vector of a turn at `w` in its own axes: `w + u × w / 2 + u × (u × w) / 12`."""
+    across = _cross(turn, w)
+    rate: Floats = w + across / 2.0 + _cross(turn, across) / 12.0
+    return rate
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """As numpy's, which takes ten times as long for one pair."""
+    (a0, a1, a2), (b0, b1, b2) = a.tolist(), b.tolist()
+    return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])

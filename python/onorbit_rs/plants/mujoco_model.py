@@ -20,6 +20,10 @@ HARDEST = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 """Impedance of friction and stops, which in MuJoCo give way by a share ``1 - d`` of the acceleration."""
 
 
+DAMPING_RATIO = 10.0
+"""Of stops, which push but do not pull: a joint leaves one with `1 / (2ζ)²` of the rate it came with."""
+
+
 def engine() -> ModuleType:
     """The package ``mujoco``.
 
@@ -117,7 +121,8 @@ def _hang(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, enfo
     moving.type = kinds.mjJNT_HINGE if joint.kind == "revolute" else kinds.mjJNT_SLIDE
     moving.armature, moving.frictionloss = joint.rotor_inertia, joint.friction
     moving.damping = np.array([joint.damping, 0.0, 0.0])
-    moving.solref_friction = moving.solref_limit = np.array([2.0 * time_step, 1.0])
+    moving.solref_friction = np.array([2.0 * time_step, 1.0])
+    moving.solref_limit = np.array([2.0 * time_step, DAMPING_RATIO])
     moving.solimp_friction = moving.solimp_limit = np.array(HARDEST)
     lower, upper = (
         -np.inf if joint.lower is None else joint.lower,
