@@ -21,7 +21,7 @@ from onorbit_rs.scenario import load
 
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("onorbit_rs.running.write_pictures", lambda *_: None)
+    monkeypatch.setattr("onorbit_rs.running.write_pictures", lambda *_, **__: None)
 
 
 def scenario(name: str = "humanoid_reach", **simulation: Any) -> dict[str, Any]:
@@ -163,16 +163,13 @@ def test_a_diverged_run_parts_and_is_plain_data(tmp_path: Path) -> None:
 
 
 def test_folders_without_a_run_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(NotFoundError, match=r"no run in this folder \(no trace.npz\)"):
+    with pytest.raises(NotFoundError, match="no trace in this folder"):
         oo.compare(tmp_path, tmp_path)
     oo.run(spin(0.1), tmp_path / "out")
     for spoilt in (b"", b"no zip"):
         (tmp_path / "out" / "trace.npz").write_bytes(spoilt)
         with pytest.raises(ReadError, match="cannot read"):
             oo.compare(tmp_path / "out", tmp_path / "out")
-    np.savez(tmp_path / "out" / "trace.npz", time=np.arange(3.0))
-    with pytest.raises(CompareError, match="lacks q"):
-        oo.compare(tmp_path / "out", tmp_path / "out")
 
 
 def test_the_figure_has_a_panel_per_measure_and_marks_where_they_part() -> None:

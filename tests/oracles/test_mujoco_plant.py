@@ -8,6 +8,7 @@ compared while they are young.
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from pathlib import Path
 from typing import Any
@@ -17,9 +18,11 @@ import pytest
 from test_mujoco_joints import DAMPING, FRICTION, RATES, ROTOR, ours, start
 
 import onorbit_rs as oo
+from onorbit_rs import running
 from onorbit_rs.exceptions import ModelError, PlantError, ScenarioError
 from onorbit_rs.plants import Mujoco
 from onorbit_rs.plants.mujoco_model import mujoco_model
+from onorbit_rs.progress import Progress
 from onorbit_rs.scenario import load
 
 mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco")
@@ -199,23 +202,17 @@ def test_torques_are_held_for_the_period_of_control_and_switches_are_hit() -> No
 
 
 def test_a_resumed_run_has_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("onorbit_rs.running.write_pictures", lambda *_: None)
+    monkeypatch.setattr("onorbit_rs.running.write_pictures", lambda *_, **__: None)
     data = scenario("humanoid_reach", duration=0.5) | {"plant": "mujoco"}
     whole = oo.run(data)
-    from onorbit_rs import running
 
-    class Impatient:
-        def __enter__(self) -> Any:
-            return self
+    def impatient(t: float, _: float) -> None:
+        if t > 0.2:
+            raise KeyboardInterrupt
 
-        def __exit__(self, *_: object) -> None: ...
-
-        def __call__(self, t: float, _: float) -> None:
-            if t > 0.2:
-                raise KeyboardInterrupt
-
+    looked = contextlib.nullcontext(Progress(impatient))
     with monkeypatch.context() as patch:
-        patch.setattr(running, "progress_bar", lambda *_, **__: Impatient())
+        patch.setattr(running, "progress_bar", lambda *_, **__: looked)
         with pytest.raises(oo.exceptions.RunInterrupted):
             oo.run(data, tmp_path / "out", checkpoint_every=0.0)
     resumed = oo.resume(tmp_path / "out")

@@ -14,6 +14,8 @@ from onorbit_rs.cli.convert import convert
 from onorbit_rs.cli.failing import fail, leave_stdout, of_controller, show_warning
 from onorbit_rs.cli.info import info
 from onorbit_rs.cli.list import list_
+from onorbit_rs.cli.new import new
+from onorbit_rs.cli.report import report
 from onorbit_rs.cli.run import resume, run
 from onorbit_rs.cli.show import show
 from onorbit_rs.exceptions import OnOrbitError
@@ -25,7 +27,6 @@ app = typer.Typer(
     name="onorbit",
     help="Simulate free-floating robots in orbit.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
 
@@ -34,9 +35,11 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "run": run,
     "resume": resume,
     "list": list_,
+    "new": new,
     "check": check,
     "show": show,
     "compare": compare,
+    "report": report,
     "info": info,
     "convert": convert,
 }
@@ -67,7 +70,7 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = show_warning
-            code = app(arguments, standalone_mode=False)
+            code = app(arguments, standalone_mode=False, prog_name="onorbit")
             sys.stdout.flush()
     except OnOrbitError as error:
         fail(str(error), 2)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from onorbit_rs.cli.failing import fail
-from onorbit_rs.exceptions import OutputFolderError, RunInterrupted
+from onorbit_rs.cli.options import JsonOption
+from onorbit_rs.exceptions import InputError, OutputFolderError, RunInterrupted
 
 if TYPE_CHECKING:
     from rich.table import Table
 
     from onorbit_rs.comparison import Comparison
+
+PICTURES = (".png", ".pdf", ".svg")
 
 
 def compare(
@@ -28,21 +30,26 @@ def compare(
     tolerance: Annotated[
         float, typer.Option(metavar="X", help="Share of the largest value, or of 1 in a measure's unit.")
     ] = 1e-6,
-    as_json: Annotated[bool, typer.Option("--json", help="As data, for programs.")] = False,
+    as_json: JsonOption = False,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", metavar="FILE", help="Draw the differences: PNG, PDF or SVG."),
     ] = None,
 ) -> None:
     """Compare two runs and say where they part; exit code 1 if they do."""
+    from onorbit_rs.cli.printing import print_json
     from onorbit_rs.comparison import compare as compare_runs
 
+    if out is not None and out.suffix.lower() not in PICTURES:
+        raise InputError(
+            f"--out {out} is none of {', '.join(PICTURES)}", name="out", got=out.suffix, expected=PICTURES
+        )
     try:
         compared = compare_runs(a, b, tolerance=tolerance)
     except RunInterrupted as stop:  # caught here, as in run
         fail(str(stop), 130)
     if as_json:
-        typer.echo(json.dumps(compared.as_dict(), indent=1, allow_nan=False))
+        print_json(compared.as_dict())
     else:
         print_comparison(compared)
     if out is not None:
@@ -100,12 +107,12 @@ def save_figure(compared: Comparison, file: Path) -> None:
     Raises
     ------
     OutputFolderError
-        The file cannot be written, or its ending is none of a picture.
+        It cannot be written.
     """
-    from onorbit_rs.figures import differences
+    from onorbit_rs.figures import as_bytes, differences
 
     try:
-        differences(compared).savefig(file)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
+        file.write_bytes(as_bytes(differences(compared), file.suffix[1:].lower()))
+    except OSError as error:
+        reason = error.strerror or error
         raise OutputFolderError(f"cannot write {file}: {reason}", path=str(file)) from error

@@ -9,6 +9,8 @@ from typing import Any, NoReturn
 
 import typer
 
+RED, YELLOW = typer.colors.RED, typer.colors.YELLOW
+
 
 def of_controller(error: Exception) -> str:
     """What a controller of the user's raised, and where."""
@@ -20,7 +22,8 @@ def of_controller(error: Exception) -> str:
 
 def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
     """One line, without the place in our code."""
-    typer.echo(f"onorbit: warning: {' '.join(str(message).split())}", err=True)
+    said = _colored("onorbit: warning:", YELLOW)
+    typer.echo(f"{said} {' '.join(str(message).split())}", err=True)
 
 
 def leave_stdout() -> None:
@@ -31,5 +34,11 @@ def leave_stdout() -> None:
 def fail(message: str, code: int) -> NoReturn:
     """Say it on one line of stderr, and leave with this exit code."""
     if message:
-        typer.echo(f"onorbit: {' '.join(message.split())}", err=True)
+        typer.echo(f"{_colored('onorbit:', RED)} {' '.join(message.split())}", err=True)
     sys.exit(code)
+
+
+def _colored(word: str, color: str) -> str:
+    """In colour on a terminal, unless its user wants none (https://no-color.org)."""
+    wants_none = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return word if wants_none or not sys.stderr.isatty() else typer.style(word, fg=color, bold=True)

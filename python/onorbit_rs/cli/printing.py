@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 from pathlib import Path
 from typing import Any
 
+import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -25,6 +27,7 @@ _FILES = (
     ("summary.json", "these numbers and more"),
     ("trace.npz", "every column of the trace, for numpy"),
     ("figures", "the figures, PNG"),
+    ("report.html", "one page with everything, for a browser"),
     ("run.rrd", "the recording, for the rerun viewer"),
     ("scenario.yaml", "the scenario with every default; it runs again"),
 )
@@ -52,7 +55,12 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
         if (out / name).exists():
             console.print(f"  {text(out / name)}  [dim]{what}[/dim]", soft_wrap=True)
     if is_new:
-        console.print(f"next: onorbit show {text(shlex.quote(str(out)))}", soft_wrap=True)
+        folder = text(shlex.quote(str(out)))
+        console.print(f"next: onorbit show {folder}    [dim]opens the recording[/dim]", soft_wrap=True)
+        console.print(
+            f"      onorbit report {folder}  [dim]one page with everything, figures as PDF[/dim]",
+            soft_wrap=True,
+        )
 
 
 def _verdict(summary: dict[str, Any]) -> str:
@@ -73,9 +81,17 @@ def text(value: object) -> str:
     return escape(str(value))
 
 
+def print_json(data: object) -> None:
+    """Data, and nothing else, on stdout."""
+    typer.echo(json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False))
+
+
 def new_console() -> Console:
-    """Stdout, with no colours but ours."""
-    return Console(highlight=False)
+    """Stdout, with no colours but ours; lines are as long as they are where nobody looks."""
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console.width = 10_000
+    return console
 
 
 def new_table() -> Table:

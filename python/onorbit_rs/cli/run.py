@@ -9,6 +9,7 @@ from onorbit_rs.cli.options import (
     CheckpointOption,
     FolderArgument,
     ForceOption,
+    JsonOption,
     OutOption,
     QuietOption,
     ScenarioArgument,
@@ -26,6 +27,7 @@ def run(
     out: OutOption = None,
     force: ForceOption = False,
     quiet: QuietOption = False,
+    as_json: JsonOption = False,
     checkpoint_every: CheckpointOption = 30.0,
 ) -> None:
     """Run a scenario and certify its momentum and energy."""
@@ -34,21 +36,29 @@ def run(
     _report(
         lambda: run_scenario(scenario, out, force=force, quiet=quiet, checkpoint_every=checkpoint_every),
         quiet=quiet,
+        as_json=as_json,
     )
 
 
 def resume(
-    folder: FolderArgument, quiet: QuietOption = False, checkpoint_every: CheckpointOption = 30.0
+    folder: FolderArgument,
+    quiet: QuietOption = False,
+    as_json: JsonOption = False,
+    checkpoint_every: CheckpointOption = 30.0,
 ) -> None:
     """Go on with a run that was killed or interrupted, to the same bits."""
     from onorbit_rs.running import resume as resume_run
 
-    _report(lambda: resume_run(folder, quiet=quiet, checkpoint_every=checkpoint_every), quiet=quiet)
+    _report(
+        lambda: resume_run(folder, quiet=quiet, checkpoint_every=checkpoint_every),
+        quiet=quiet,
+        as_json=as_json,
+    )
 
 
-def _report(job: Callable[[], Run], *, quiet: bool) -> None:
+def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
     """Do it and print the summary."""
-    from onorbit_rs.cli.printing import print_summary
+    from onorbit_rs.cli.printing import print_json, print_summary
 
     try:
         result = job()
@@ -56,5 +66,7 @@ def _report(job: Callable[[], Run], *, quiet: bool) -> None:
         fail(str(stop), 130)
     except KeyboardInterrupt:  # the simulation was over
         fail("stopped by Ctrl-C while the results were written; run it again with --force", 130)
-    if not quiet:
+    if as_json:
+        print_json(result.summary)
+    elif not quiet:
         print_summary(result.summary, result.out)

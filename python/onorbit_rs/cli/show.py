@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import math
 import shlex
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from onorbit_rs.cli.options import FolderArgument
-from onorbit_rs.exceptions import InputError, NotFoundError, OnOrbitError, OutputFolderError, ReadError
+from onorbit_rs.cli.options import FolderArgument, JsonOption
+from onorbit_rs.exceptions import InputError, OnOrbitError, OutputFolderError
 
 
 def show(
@@ -19,41 +18,21 @@ def show(
     viewer: Annotated[bool, typer.Option(help="Open the recording where there is a screen.")] = True,
     picture: Annotated[Path | None, typer.Option(metavar="FILE", help="Save a PNG of the viewer.")] = None,
     at: Annotated[float, typer.Option(metavar="SECONDS", help="Moment of the picture.")] = 0.0,
+    as_json: JsonOption = False,
 ) -> None:
     """Print the summary of a run and open its recording, or save a picture of it."""
-    summary = print_run(folder)
+    from onorbit_rs.cli.printing import print_json, print_summary
+    from onorbit_rs.output.read import read_summary
+
+    summary = read_summary(folder)
+    if as_json:
+        print_json(summary)
+        return
+    print_summary(summary, folder, is_new=False)
     if picture is not None:
         save_picture(folder, picture, at, float(summary.get("simulated_s") or 0.0))
     elif viewer:
         open_viewer(folder)
-
-
-def print_run(folder: Path) -> dict[str, Any]:
-    """Print a finished run's summary, and return it.
-
-    Raises
-    ------
-    NotFoundError
-        No such folder, or no run in it.
-    ReadError
-        Its summary cannot be read.
-    """
-    from onorbit_rs.cli.printing import print_summary
-
-    file = folder / "summary.json"
-    try:
-        is_there = file.is_file()
-    except OSError as error:  # a name too long
-        raise ReadError(f"cannot read {file}: {error.strerror}", path=str(file), kind="summary") from error
-    if not is_there:
-        what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
-        raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
-    try:
-        summary = dict(json.loads(file.read_text(encoding="utf-8")))
-    except (ValueError, TypeError, OSError) as error:
-        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error
-    print_summary(summary, folder, is_new=False)
-    return summary
 
 
 def open_viewer(folder: Path) -> None:

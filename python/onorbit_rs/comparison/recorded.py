@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import CompareError, NotFoundError, ReadError
+from onorbit_rs.exceptions import NotFoundError
 from onorbit_rs.output import with_absolute_paths
+from onorbit_rs.output.read import read_trace
 from onorbit_rs.running import Run, run
 from onorbit_rs.scenario import Scenario, load
 
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
 
 Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | Run
 """A folder that a run has written, a scenario as :func:`onorbit_rs.run` takes it, or a run."""
-
-NEEDED = ("time", "q", "v", "tau", "momentum", "kinetic_energy")
 
 
 @dataclass(frozen=True)
@@ -69,18 +68,9 @@ def _of_run(made: Run) -> Recorded:
 
 
 def _of_folder(folder: Path) -> Recorded:
-    file = folder / "trace.npz"
-    for part in (file, folder / "scenario.yaml"):
-        if not part.is_file():
-            raise NotFoundError(
-                f"no run in this folder (no {part.name}): {folder}", path=str(folder), kind="run"
-            )
-    try:
-        with np.load(file, allow_pickle=False) as stored:
-            columns = {name: np.asarray(stored[name], dtype=np.float64) for name in stored.files}
-    except (OSError, ValueError, EOFError) as error:  # a zip that is none is a ValueError here
-        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="trace") from error
-    lacking = [name for name in NEEDED if name not in columns]
-    if lacking:
-        raise CompareError(f"{file} is no trace of a run: it lacks {', '.join(lacking)}", name=lacking[0])
-    return Recorded(str(folder), columns, load(folder / "scenario.yaml"))
+    trace = read_trace(folder)
+    file = folder / "scenario.yaml"
+    if not file.is_file():
+        raise NotFoundError(f"no run in this folder (no {file.name}): {folder}", path=str(folder), kind="run")
+    columns = {name: np.asarray(getattr(trace, name), dtype=np.float64) for name in trace.columns()}
+    return Recorded(str(folder), columns, load(file))

@@ -6,6 +6,7 @@ mod contacts;
 mod driver;
 mod engine;
 mod error;
+mod exchange;
 mod integrator;
 mod launch;
 mod pair;
