@@ -51,13 +51,15 @@ def _draw(axes: Axes, compared: Comparison, difference: Difference) -> None:
     values = np.where(np.isfinite(difference.values), difference.values, np.nan)
     axes.plot(*thin(compared.time, values), color=COLORS[0], linewidth=LINE)
     axes.axhline(difference.allowed, color=FAINT_INK, linewidth=0.8, linestyle="--")
-    label: Any = {"fontsize": SMALL, "color": FAINT_INK, "ha": "right", "va": "bottom"}
-    axes.text(1.0, difference.allowed, "allowed", transform=axes.get_yaxis_transform(), **label)
+    label: Any = {"fontsize": SMALL, "color": FAINT_INK, "va": "bottom"}
+    axes.text(0.01, difference.allowed, "allowed", transform=axes.get_yaxis_transform(), **label)
     if difference.parts_at is not None:
         axes.plot(difference.parts_at, difference.allowed, "o", color=COLORS[1], markersize=4)
     tidy(axes, "", f"[{difference.unit}]")
     axes.set_title(difference.name, loc="left", fontsize=NORMAL, color=INK)
     above = values[values > 0.0]
+    if not above.size:
+        axes.text(0.5, 0.5, "no difference", transform=axes.transAxes, ha="center", **label)
     least, top = (float(above.min()), float(above.max())) if above.size else (0.0, 0.0)
     top = max(difference.allowed, top)
     axes.set_yscale("log", nonpositive="mask")
