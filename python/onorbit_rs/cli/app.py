@@ -18,6 +18,7 @@ from onorbit_rs.cli.new import new
 from onorbit_rs.cli.report import report
 from onorbit_rs.cli.run import resume, run
 from onorbit_rs.cli.show import show
+from onorbit_rs.cli.validate import validate
 from onorbit_rs.exceptions import OnOrbitError
 
 if TYPE_CHECKING:
@@ -35,13 +36,14 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "run": run,
     "resume": resume,
     "list": list_,
-    "new": new,
     "check": check,
     "show": show,
     "compare": compare,
-    "report": report,
     "info": info,
     "convert": convert,
+    "new": new,
+    "report": report,
+    "validate": validate,
 }
 for name, command in COMMANDS.items():
     app.command(name=name)(command)
