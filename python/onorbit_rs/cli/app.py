@@ -38,11 +38,11 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "list": list_,
     "check": check,
     "show": show,
-    "compare": compare,
     "info": info,
     "convert": convert,
     "new": new,
     "report": report,
+    "compare": compare,
     "validate": validate,
 }
 for name, command in COMMANDS.items():
