@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from onorbit_rs.cli.completing import scenario_names
 from onorbit_rs.cli.failing import fail
 from onorbit_rs.cli.options import JsonOption
 from onorbit_rs.exceptions import InputError, OutputFolderError, RunInterrupted
@@ -21,11 +22,18 @@ PICTURES = (".png", ".pdf", ".svg")
 
 def compare(
     a: Annotated[
-        str, typer.Argument(metavar="A", help="A folder of a run, or a scenario, which is run now.")
+        str,
+        typer.Argument(
+            metavar="A", help="A folder of a run, or a scenario, run now.", autocompletion=scenario_names
+        ),
     ],
     b: Annotated[
         str | None,
-        typer.Argument(metavar="[B]", help="Another; left out: the scenario of A on the other plant."),
+        typer.Argument(
+            metavar="B",
+            help="Another; left out: A's scenario on the other plant.",
+            autocompletion=scenario_names,
+        ),
     ] = None,
     tolerance: Annotated[
         float, typer.Option(metavar="X", help="Share of the largest value, or of 1 in a measure's unit.")

@@ -29,7 +29,7 @@ class Mujoco:
     ``rk4`` is the Runge-Kutta of MuJoCo 4, with the environment's wrenches at every stage; nothing in it
     carries momentum, which drifts with its fourth order. ``semi_implicit_euler`` is MuJoCo's ``Euler``,
     implicit in joint damping. Friction and stops are MuJoCo's, soft, at their hardest; stops give hardly
-    anything back.
+    anything back. One simulation at a time may run on it.
 
     Parameters
     ----------
@@ -118,7 +118,10 @@ class Mujoco:
         outer = wrenches(t, *self._ours(qpos, qvel))
         data.qpos[:], data.qvel[:] = qpos, qvel
         data.xfrc_applied[self._bodies] = outer
-        self._mujoco.mj_forward(self._model, data)
+        try:
+            self._mujoco.mj_forward(self._model, data)
+        except self._mujoco.FatalError as error:
+            raise PlantError(f"MuJoCo gave up at t = {t:g} s: {error}", name="plant", got="mujoco") from error
         force, arm = outer[:, :3], data.xipos[self._bodies] - data.subtree_com[self._bodies[0]]
         moment = (
             outer[:, 3:] + arm[:, [1, 2, 0]] * force[:, [2, 0, 1]] - arm[:, [2, 0, 1]] * force[:, [1, 2, 0]]
