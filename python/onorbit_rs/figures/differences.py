@@ -17,7 +17,6 @@ from onorbit_rs.figures.style import (
     PAGE,
     SMALL,
     new_figure,
-    plain,
     thin,
     tidy,
 )
@@ -35,7 +34,7 @@ def differences(compared: Comparison) -> Figure:
     measured = compared.differences
     lines = -(-len(measured) // COLUMNS)
     figure = new_figure(PAGE, 0.5 + 1.15 * lines)
-    title = plain(f"{compared.b} against {compared.a}")
+    title = f"{compared.b} against {compared.a}".replace("$", r"\$")  # as it is: folders can be long
     figure.suptitle(title, x=0.01, ha="left", fontsize=NORMAL, color=INK)
     panels = figure.subplots(lines, COLUMNS, sharex=True, squeeze=False)
     for axes in panels.flat[len(measured) :]:
