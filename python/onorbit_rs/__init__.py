@@ -11,7 +11,7 @@ SI and radians everywhere; frames and layouts are those of ``docs/``: ``q = [p(3
 
 from __future__ import annotations
 
-from onorbit_rs import exceptions, layouts, relative, robots, scenarios
+from onorbit_rs import exceptions, layouts, plants, relative, robots, scenarios
 from onorbit_rs._core import (
     MU_EARTH,
     Atmosphere,
@@ -67,6 +67,7 @@ from onorbit_rs._core import (
     propagate,
     rollout,
 )
+from onorbit_rs.comparison import Comparison, compare
 from onorbit_rs.control import Controller
 from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.running import Run, resume, run
@@ -79,6 +80,7 @@ __all__ = [
     "Cannonball",
     "Checkpoint",
     "Circle",
+    "Comparison",
     "Compliance",
     "ComputedTorque",
     "ConstantAtmosphere",
@@ -128,8 +130,10 @@ __all__ = [
     "Trace",
     "Waypoints",
     "build_info",
+    "compare",
     "exceptions",
     "layouts",
+    "plants",
     "propagate",
     "relative",
     "resume",

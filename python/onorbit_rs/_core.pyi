@@ -23,6 +23,18 @@ _CertificateRow = tuple[str, float | None, float, bool]
 class _Controller(Protocol):
     def update(self, t: float, state: State, /) -> ArrayLike: ...
 
+class _Plant(Protocol):
+    def step(
+        self,
+        start: float,
+        end: float,
+        q: _Array,
+        v: _Array,
+        tau: _Array,
+        wrenches: Callable[[float, _Array, _Array], _Array],
+        /,
+    ) -> tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, float, float]: ...
+
 class _Result(TypedDict):
     name: str
     outcome: Literal["succeeded", "path_tolerance_violated", "goal_tolerance_violated", "unfinished"]
@@ -960,6 +972,7 @@ class Simulation:
         restitution: float = 0.0,
         record_wrenches: bool = False,
         rereference_beyond: float = 1e5,
+        plant: _Plant | None = None,
     ) -> Simulation: ...
     def run(
         self,

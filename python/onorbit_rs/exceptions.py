@@ -20,6 +20,8 @@ class                       built-in               fields
 ``GravityError``            ``ValueError``         ``name, got, expected, path, line``: a field, a file
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
+``PlantError``              ``ValueError``         ``name, got, expected``: another physics engine's limits
+``CompareError``            ``ValueError``         ``name, got, expected``: two runs that cannot be compared
 ``CheckpointError``         ``ValueError``         ``path``: broken, or of another run: no going on from it
 ``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or factorisation
 ``NotFoundError``           ``FileNotFoundError``  ``path, kind, suggestion``: no such file, robot or scenario
@@ -41,6 +43,7 @@ from typing import Any
 
 __all__ = [
     "CheckpointError",
+    "CompareError",
     "ControlError",
     "ConvergenceError",
     "DtypeError",
@@ -58,6 +61,7 @@ __all__ = [
     "OutputNotEmptyError",
     "OutputNotWritableError",
     "PathError",
+    "PlantError",
     "QuantityError",
     "ReadError",
     "RunInterrupted",
@@ -218,6 +222,22 @@ class SimulationError(OnOrbitError, ArithmeticError):
     q: Any = None
     v: Any = None
     trace: Any = None
+
+
+class PlantError(OnOrbitError, ValueError):
+    """Another physics engine that is not there, or that cannot do what it is asked for."""
+
+    name: Any = None
+    got: Any = None
+    expected: Any = None
+
+
+class CompareError(OnOrbitError, ValueError):
+    """Two runs that have nothing to compare: another robot, no time in common."""
+
+    name: Any = None
+    got: Any = None
+    expected: Any = None
 
 
 class CheckpointError(OnOrbitError, ValueError):

@@ -26,6 +26,7 @@ from onorbit_rs.output import (
     write_trace,
 )
 from onorbit_rs.output.relay import Relay
+from onorbit_rs.plants import versions
 from onorbit_rs.progress import ProgressCallback, doing, progress_bar
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
@@ -96,7 +97,7 @@ def run(
     if folder is None:
         return _go(built, None, quiet=quiet, view=view)
     write_scenario(folder, checked)
-    writer = CheckpointWriter(folder, fingerprint_of(with_absolute_paths(checked)))
+    writer = CheckpointWriter(folder, _fingerprint(checked))
     return _go(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=checkpoint_every)
 
 
@@ -132,13 +133,18 @@ def resume(
         what = "no run in this folder (no scenario.yaml)" if folder.path.is_dir() else "no such folder"
         raise NotFoundError(f"{what}: {folder.path}", path=str(folder.path), kind="run")
     scenario = load(folder.path / "scenario.yaml")
-    fingerprint = fingerprint_of(with_absolute_paths(scenario))
+    fingerprint = _fingerprint(scenario)
     checkpoint, rows = read_checkpoint(folder.path, fingerprint)
     writer = CheckpointWriter(folder, fingerprint, rows=rows)
     return _go(
         build(scenario), folder, quiet=quiet, view=view,
         checkpoint=writer, checkpoint_every=checkpoint_every, resume=checkpoint,
     )  # fmt: skip
+
+
+def _fingerprint(scenario: Scenario) -> str:
+    """Of the scenario, its files, and the plant: another version of it may round otherwise."""
+    return fingerprint_of(with_absolute_paths(scenario) | versions(scenario.plant))
 
 
 def _go(

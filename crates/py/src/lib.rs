@@ -14,6 +14,7 @@ mod kernels;
 mod model;
 mod orbit;
 mod output;
+mod plant;
 mod propagate;
 mod records;
 mod reference;

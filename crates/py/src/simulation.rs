@@ -9,6 +9,7 @@ use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
 use crate::gravity::gravity_of;
 use crate::model::PyModel;
 use crate::orbit::PyOrbit;
+use crate::plant::PythonPlant;
 use crate::reference;
 use crate::trace::PyTrace;
 use onorbit_core::control::{ControlError, ControlLaw};
@@ -37,7 +38,13 @@ pub(crate) const PACE: Duration = Duration::from_millis(50);
 /// ``enforce_limits`` puts rigid stops at the joints' position limits, which give back ``restitution`` (0 to 1) of the rate;
 /// ``record_wrenches`` keeps the wrench of every effect on every body in ``trace.wrenches``;
 /// a robot that nothing leads through W and whose base drifts more than ``rereference_beyond`` m from the reference is integrated about
-/// one of its own from there (``trace.rereferenced`` says when; its rows stay in W).
+/// one of its own from there (``trace.rereferenced`` says when; its rows stay in W);
+/// ``plant`` is another physics engine that moves the robot, such as ``onorbit_rs.plants.Mujoco``: an object with
+/// ``step(start, end, q, v, tau, wrenches)`` that returns ``(q, v)`` at the end, the acceleration at the start (nv,), the integral of
+/// external forces and of their moments about the centre of mass (6,), the work done on the robot less what its joints lost, and
+/// that loss, J. ``wrenches(t, q, v)`` (bodies, 6) is what the environment does to each body at a state: force through its centre of mass and
+/// torque about it, W axes. The plant integrates its own way and does not remember; ``integrator``, ``enforce_limits``, ``restitution`` and
+/// ``rereference_beyond`` are for our own.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     simulation: Mutex<Simulation>,
@@ -51,7 +58,7 @@ impl PySimulation {
         model, q, v, *, orbit=None, earth=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
         time_step=1e-3, control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
         tolerance=1e-9, enforce_limits=false, restitution=0.0, record_wrenches=false,
-        rereference_beyond=1e5,
+        rereference_beyond=1e5, plant=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -75,6 +82,7 @@ impl PySimulation {
         restitution: f64,
         record_wrenches: bool,
         rereference_beyond: f64,
+        plant: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
         let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
         let core = Arc::clone(&model.model);
@@ -144,6 +152,9 @@ impl PySimulation {
         simulation.rereference_beyond = rereference_beyond;
         simulation.stops = enforce_limits.then_some(restitution);
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
+        if let Some(plant) = plant {
+            simulation.engine = Some(Box::new(PythonPlant::new(plant, &simulation)?));
+        }
         Ok(Self { simulation: Mutex::new(simulation), model: core })
     }
 
@@ -235,9 +246,9 @@ impl PySimulation {
         {
             return other; // the progress callback raised
         }
-        // Ctrl-C arrives where Python runs: in a controller of the user's, or at the monitor
+        // Ctrl-C arrives where Python runs: in a controller of the user's, in another plant, or at the monitor
         let is_ctrl_c = match &error {
-            SimulationError::Control(ControlError::User(source)) => source
+            SimulationError::Control(ControlError::User(source)) | SimulationError::Engine(source) => source
                 .downcast_ref::<PyErr>()
                 .is_some_and(|error| error.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py)),
             _ => false,

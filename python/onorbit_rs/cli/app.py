@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from onorbit_rs.cli.check import check
+from onorbit_rs.cli.compare import compare
 from onorbit_rs.cli.convert import convert
 from onorbit_rs.cli.failing import fail, leave_stdout, of_controller, show_warning
 from onorbit_rs.cli.info import info
@@ -41,6 +42,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "convert": convert,
     "new": new,
     "report": report,
+    "compare": compare,
     "validate": validate,
 }
 for name, command in COMMANDS.items():

@@ -6,6 +6,7 @@ This folder alone imports matplotlib.
 
 from __future__ import annotations
 
+from onorbit_rs.figures.differences import differences
 from onorbit_rs.figures.drawings import Drawing, drawings
 from onorbit_rs.figures.forces import environment_forces
 from onorbit_rs.figures.ground_track import ground_track
@@ -30,6 +31,7 @@ __all__ = [
     "base_reaction",
     "control_errors",
     "desired_trajectory",
+    "differences",
     "drawings",
     "environment_forces",
     "ground_track",

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.plants import versions
 from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario.control import JOINT_LAWS
 
@@ -68,6 +69,7 @@ def summarize(
         | {"rereferenced": len(trace.rereferenced)}
         | {"simulated_s": simulated_s, "wall_s": trace.wall_s}
         | {"real_time_factor": simulated_s / max(trace.wall_s, 1e-9), "rows": len(trace.time)}
+        | versions(scenario.plant)
         | _settings(scenario)
         | _orbit(trace, scenario, orbit)
         | {"warnings": "; ".join(warnings)}

@@ -29,6 +29,7 @@ from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
 from onorbit_rs.scenario.make_orbit import integrated, make_orbit
 from onorbit_rs.scenario.place import dotted, file_and_line
+from onorbit_rs.scenario.plant import make_plant
 from onorbit_rs.scenario.reference import Start
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.start import initial_state
@@ -96,6 +97,8 @@ def build(scenario: Scenario) -> Built:
         tool_pose = None if tool is None else model.frame_pose(q, tool)
     start = Start(model, q, tool_pose, orbit, beside)
     _try_effects(scenario, effects, _Flight(model, q, v, orbit, earth))
+    with located(scenario, "plant"):
+        plant = make_plant(scenario, model)
     settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
     if settings["rereference_beyond"] == "never":
         settings["rereference_beyond"] = np.inf
@@ -105,7 +108,8 @@ def build(scenario: Scenario) -> Built:
         with located(scenario, "simulation"), _about_controllers(scenario):
             return _core.Simulation(
                 model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode,
-                environment=effects, controller=controller, reference=reference, tool=tool, **settings,
+                environment=effects, controller=controller, reference=reference, tool=tool,
+                plant=plant, **settings,
             )  # fmt: skip
 
     _try_one_step(scenario, simulation())  # a controller in Python may remember it: the run gets another

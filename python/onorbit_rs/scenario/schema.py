@@ -17,6 +17,7 @@ from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.path import Orbit
+from onorbit_rs.scenario.plant import check_plant
 from onorbit_rs.scenario.reference_parts import Reference
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import SimulationSettings
@@ -34,6 +35,8 @@ class Scenario(Part):
     name: str = "scenario"
     description: str = ""
     robot: Robot
+    plant: Literal["native", "mujoco"] = "native"
+    """Whose equations move the robot: ours, or MuJoCo's, as an independent check."""
     tool: str | None = None
     """The frame that is tracked and recorded."""
     epoch: Epoch | None = None
@@ -117,6 +120,7 @@ class Scenario(Part):
     @model_validator(mode="after")
     def _parts_fit(self) -> Scenario:
         check_control(self)
+        check_plant(self)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
                 if isinstance(effect, GravityGradientEffect | GravityFieldEffect | ThirdBodyEffect):

@@ -85,6 +85,9 @@ pub enum SimulationError {
     Gravity(#[from] GravityError),
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// What another engine raised, handed back untouched.
+    #[error(transparent)]
+    Engine(Box<dyn std::error::Error + Send + Sync>),
     #[error(transparent)]
     Control(#[from] ControlError),
 }

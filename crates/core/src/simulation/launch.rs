@@ -2,6 +2,7 @@
 
 use super::checkpoint::Checkpoint;
 use super::driver::Driver;
+use super::engine::Foreign;
 use super::error::{RunFailure, SimulationError};
 use super::integrator::{Integrator, Stages};
 use super::plant::Plant;
@@ -79,19 +80,13 @@ impl Simulation {
         let jumps = self.orbit.iter().filter(|_| falls).flat_map(|orbit| orbit.event_times());
         let events = effects.iter().flat_map(|effect| effect.event_times()).chain(jumps).collect();
         let names = if self.record_wrenches { column_names(&effects) } else { Vec::new() };
-        let may_rereference = falls && gravity.is_some() && !self.looks_at_world();
+        let may_rereference = falls && gravity.is_some() && self.engine.is_none() && !self.looks_at_world();
         let rereference_beyond = if may_rereference { self.rereference_beyond } else { f64::INFINITY };
         let schedule = self.schedule(duration, events);
-        let surroundings = Surroundings::new(
-            &model,
-            effects,
-            self.orbit.clone(),
-            gravity.clone(),
-            self.earth.clone(),
-            !falls,
-        );
+        let surroundings = self.surroundings();
         let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
-        let mut plant = Plant::<S, _>::new(&model, surroundings, self.stops);
+        let stops = self.stops.filter(|_| self.engine.is_none()); // an engine has its own
+        let mut plant = Plant::<S, _>::new(&model, surroundings, stops);
         let state = State::at(&model, &mut plant.data, numbers(&self.q), numbers(&self.v));
         let extras = Extras {
             tool: self.tool,
@@ -112,6 +107,7 @@ impl Simulation {
                 Stages::new(&model, &state, &Stepping { integrator: Integrator::Rk4, ..how }),
             ),
             probe: Probe::new(&state),
+            foreign: self.engine.as_deref_mut().map(|engine| Foreign::new(engine, &model)),
             state,
             plant,
             tracked: (self.tool, self.reference.as_ref()),
@@ -123,7 +119,7 @@ impl Simulation {
             rereference_beyond,
         };
         match from {
-            None => run.plant.settle(&mut run.state),
+            None => run.settle(),
             Some((checkpoint, trace)) => run.go_on_from(checkpoint, trace).map_err(fail)?,
         }
         let outcome = run.all(self.record_every, monitor);
@@ -165,6 +161,13 @@ impl Simulation {
         let schedule =
             Schedule::new(self.time_step, duration, period, events).switching(self.control.switch_times());
         if self.is_adaptive() { schedule.over_the_grid() } else { schedule }
+    }
+
+    /// All that acts on the bodies, to be evaluated.
+    pub(super) fn surroundings(&self) -> Surroundings {
+        let is_carried = self.reference_motion == ReferenceMotion::Carried;
+        let (orbit, earth) = (self.orbit.clone(), self.earth.clone());
+        Surroundings::new(&self.model, self.all_effects(), orbit, self.gravity(), earth, is_carried)
     }
 
     /// The effects of the scenario, and gravity where there is a planet.

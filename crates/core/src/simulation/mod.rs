@@ -4,6 +4,7 @@ mod certificate;
 mod checkpoint;
 mod contacts;
 mod driver;
+mod engine;
 mod error;
 mod exchange;
 mod integrator;
@@ -28,6 +29,7 @@ mod trace;
 
 pub use certificate::{Certificate, Check, certify};
 pub use checkpoint::{Checkpoint, CheckpointError};
+pub use engine::{Crossed, Crossing, Engine, Outside};
 pub use error::{RunFailure, SimulationError};
 pub use integrator::Integrator;
 pub(crate) use plant::{Nothing, Plant};

@@ -103,6 +103,12 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
         );
     }
 
+    /// Kinematics at a state that stays as it is.
+    pub(crate) fn look(&mut self, state: &State<S>) {
+        self.carried = Vec3::zero();
+        kinematics(self.model, &mut self.data, &state.q, &state.v);
+    }
+
     /// Goes over to the frame that moves with the base's origin as it does now; `v` and the
     /// velocities in `data` follow.
     ///

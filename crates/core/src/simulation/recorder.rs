@@ -207,6 +207,14 @@ impl Recorder {
         }
     }
 
+    /// Takes a row back that is not complete.
+    pub(super) fn drop_last(&mut self) {
+        let rows = self.trace.rows().saturating_sub(1);
+        for ((_, column), width) in self.trace.columns_mut().zip(&self.widths) {
+            column.truncate(rows * width);
+        }
+    }
+
     /// Completes the last row.
     pub(super) fn accelerated<S: Scalar>(&mut self, model: &Model, a: &[S]) {
         push(&mut self.trace.acceleration, a);

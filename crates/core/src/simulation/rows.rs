@@ -52,6 +52,9 @@ impl<S: Scalar> Run<'_, S> {
         let begun = self.begin(t, (t, t), self.schedule.is_control_tick());
         begun.map_err(|error| self.name_divergence(error, t))?;
         self.record(t)?;
+        if self.foreign.is_some() {
+            return self.step_foreign((t, t), true);
+        }
         let (_, stages) = &mut self.between;
         stages.accelerate(&mut self.plant, &self.state);
         self.recorder.accelerated(self.plant.model, stages.first_acceleration());

@@ -2,6 +2,7 @@
 
 use super::checkpoint::Checkpoint;
 use super::driver::Driver;
+use super::engine::Foreign;
 use super::error::SimulationError;
 use super::integrator::Stages;
 use super::plant::Plant;
@@ -54,6 +55,8 @@ pub(super) struct Run<'a, S> {
     /// For rows within a step.
     pub(super) between: (State<S>, Stages<S>),
     pub(super) probe: Probe<S>,
+    /// What moves the robot in the place of `stepper`.
+    pub(super) foreign: Option<Foreign<'a>>,
     pub(super) schedule: Schedule,
     pub(super) steps: usize,
     /// Distance of the base from W's origin at which the robot gets a reference of its own, m.
@@ -101,6 +104,9 @@ impl<S: Scalar> Run<'_, S> {
         is_row: bool,
         record_every: usize,
     ) -> Result<(), SimulationError> {
+        if self.foreign.is_some() {
+            return self.step_foreign(interval, is_row);
+        }
         let Self { state, plant, stepper, probe, recorder, .. } = self;
         if stepper.memory().is_none() {
             // a probe that fails is a step that will: the step tells
@@ -126,8 +132,11 @@ impl<S: Scalar> Run<'_, S> {
         Ok(())
     }
 
-    /// Says by how much the attitude may be wrong after the steps so far.
+    /// Says by how much the attitude may be wrong after the steps so far; nothing is known of another engine's.
     fn estimate(&mut self) {
+        if self.foreign.is_some() {
+            return;
+        }
         let doubling = || self.probe.estimate(self.steps);
         let estimate = self.stepper.memory().map_or_else(doubling, |memory| memory.turn);
         self.recorder.trace.attitude_step_doubling = Some(estimate);
@@ -172,7 +181,7 @@ impl<S: Scalar> Run<'_, S> {
         interval: (f64, f64),
         is_control_tick: bool,
     ) -> Result<(), SimulationError> {
-        self.plant.settle(&mut self.state);
+        self.settle();
         if !self.state.is_finite() {
             return Err(self.diverged(t));
         }
@@ -186,7 +195,9 @@ impl<S: Scalar> Run<'_, S> {
         if is_control_tick && driver.compensates() {
             driver.ask(t, state, plant)?;
         }
-        plant.decide(&state.q, &state.v);
+        if self.foreign.is_none() {
+            plant.decide(&state.q, &state.v);
+        }
         Ok(())
     }
 
@@ -203,7 +214,7 @@ impl<S: Scalar> Run<'_, S> {
     }
 
     /// The error that carries the last finite state.
-    fn diverged(&self, time: f64) -> SimulationError {
+    pub(super) fn diverged(&self, time: f64) -> SimulationError {
         let now = [&self.state.q, &self.state.v].map(|x| x.iter().map(|x| x.value()).collect());
         let [q, v] = if self.state.is_finite() { now } else { self.stepper.stages.start() };
         SimulationError::Diverged { time, q, v }

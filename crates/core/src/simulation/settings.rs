@@ -1,6 +1,7 @@
 //! What a run is made of, checked before it starts.
 
 use super::contacts::AT_LIMIT;
+use super::engine::Engine;
 use super::error::SimulationError;
 use super::integrator::Integrator;
 use super::start::{check_control_starts, check_start};
@@ -48,6 +49,9 @@ pub struct Simulation {
     pub time_step: f64,
     /// Time between two calls of the controller, s; every step if none.
     pub control_period: Option<f64>,
+    /// Another engine that moves the robot in the place of our own equations; it has its own integrator, friction and
+    /// stops, and stays about the reference of the run.
+    pub engine: Option<Box<dyn Engine>>,
     /// How to step.
     pub integrator: Integrator,
     /// Error that a step of the adaptive integrator may make, as a share: of a radian in attitude and
@@ -83,6 +87,7 @@ impl Simulation {
             reference_start_tolerance: [0.05, 0.1],
             time_step: 1e-3,
             control_period: None,
+            engine: None,
             integrator: Integrator::Rk4,
             tolerance: 1e-9,
             stops: None,

@@ -82,6 +82,13 @@ impl SimulationErrorExt for SimulationError {
                 raised
             }
             Self::Control(source) => source.into_python(py),
+            Self::Engine(source) => match source.downcast::<PyErr>() {
+                Ok(raised) => {
+                    let _ = raised.value(py).setattr("trace", trace);
+                    *raised // that very object, traceback included
+                }
+                Err(other) => plain(py, "SimulationError", &other.to_string()),
+            },
         }
     }
 }

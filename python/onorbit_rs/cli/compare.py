@@ -1,0 +1,126 @@
+"""``onorbit compare``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from onorbit_rs.cli.completing import scenario_names
+from onorbit_rs.cli.failing import fail
+from onorbit_rs.cli.options import JsonOption
+from onorbit_rs.exceptions import InputError, OutputFolderError, RunInterrupted
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from onorbit_rs.comparison import Comparison
+
+PICTURES = (".png", ".pdf", ".svg")
+
+
+def compare(
+    a: Annotated[
+        str,
+        typer.Argument(
+            metavar="A", help="A folder of a run, or a scenario, run now.", autocompletion=scenario_names
+        ),
+    ],
+    b: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="B",
+            help="Another; left out: A's scenario on the other plant.",
+            autocompletion=scenario_names,
+        ),
+    ] = None,
+    tolerance: Annotated[
+        float, typer.Option(metavar="X", help="Share of the largest value, or of 1 in a measure's unit.")
+    ] = 1e-6,
+    as_json: JsonOption = False,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", metavar="FILE", help="Draw the differences: PNG, PDF or SVG."),
+    ] = None,
+) -> None:
+    """Compare two runs and say where they part; exit code 1 if they do."""
+    from onorbit_rs.cli.printing import print_json
+    from onorbit_rs.comparison import compare as compare_runs
+
+    if out is not None and out.suffix.lower() not in PICTURES:
+        raise InputError(
+            f"--out {out} is none of {', '.join(PICTURES)}", name="out", got=out.suffix, expected=PICTURES
+        )
+    try:
+        compared = compare_runs(a, b, tolerance=tolerance)
+    except RunInterrupted as stop:  # caught here, as in run
+        fail(str(stop), 130)
+    if as_json:
+        print_json(compared.as_dict())
+    else:
+        print_comparison(compared)
+    if out is not None:
+        save_figure(compared, out)
+        if not as_json:
+            typer.echo(f"figure: {out}")
+    if not compared.agrees:
+        raise typer.Exit(1)
+
+
+def print_comparison(compared: Comparison) -> None:
+    """A table of the differences, and where the runs part."""
+    from onorbit_rs.cli.printing import new_console, text
+
+    console = new_console()
+    console.print(f"[bold]{text(compared.b)}[/bold] against [bold]{text(compared.a)}[/bold]", soft_wrap=True)
+    table = _table()
+    for difference in compared.differences:
+        parted = difference.parts_at
+        table.add_row(
+            difference.name,
+            f"{difference.largest:.1e}",
+            f"{difference.largest_at:.6g}",
+            f"{difference.final:.1e}",
+            f"{difference.allowed:.1e}",
+            "[green]nowhere[/green]" if parted is None else f"[red]{parted:.6g}[/red]",
+            difference.unit,
+        )
+    console.print(table)
+    for note in compared.notes:
+        console.print(f"[yellow]note[/yellow]: {text(note)}", soft_wrap=True)
+    rows = f"{len(compared.time)} rows from {compared.time[0]:g} to {compared.time[-1]:g} s"
+    if compared.agrees:
+        console.print(f"[green]they agree[/green] within {compared.tolerance:g} over {rows}", soft_wrap=True)
+    else:
+        verdict = f"[red]they part[/red] at t = {compared.parts_at:.6g} s by more than {compared.tolerance:g}"
+        console.print(f"{verdict}; {rows}", soft_wrap=True)
+
+
+def _table() -> Table:
+    from onorbit_rs.cli.printing import new_table
+
+    table = new_table()
+    table.show_header, table.header_style = True, "dim"
+    table.add_column("")
+    for name in ("largest", "at, s", "at the end", "allowed", "parts at, s"):
+        table.add_column(name, justify="right")
+    table.add_column("unit")
+    return table
+
+
+def save_figure(compared: Comparison, file: Path) -> None:
+    """Draw the differences over time.
+
+    Raises
+    ------
+    OutputFolderError
+        It cannot be written.
+    """
+    from onorbit_rs.figures import as_bytes, differences
+
+    try:
+        file.write_bytes(as_bytes(differences(compared), file.suffix[1:].lower()))
+    except OSError as error:
+        reason = error.strerror or error
+        raise OutputFolderError(f"cannot write {file}: {reason}", path=str(file)) from error

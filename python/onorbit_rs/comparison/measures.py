@@ -1,0 +1,67 @@
+"""Measures of what two runs differ by, each in one number per instant."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onorbit_rs.rotations import angle_between
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Rows = dict[str, Floats]
+
+Pick = Callable[["Rows"], "Floats"]
+
+# name, unit, column it needs, what is compared of it; a quaternion's difference is its angle
+_MEASURES: tuple[tuple[str, str, str, Pick], ...] = (
+    ("base position", "m", "q", lambda rows: rows["q"][:, :3]),
+    ("base attitude", "rad", "base_quat", lambda rows: rows["base_quat"]),
+    ("joints", "rad, m", "q", lambda rows: rows["q"][:, 7:]),
+    ("joint rates", "rad/s, m/s", "v", lambda rows: rows["v"][:, 6:]),
+    ("joint torques", "N m, N", "tau", lambda rows: rows["tau"]),
+    ("tool position", "m", "tool_position", lambda rows: rows["tool_position"]),
+    ("tool attitude", "rad", "tool_quat", lambda rows: rows["tool_quat"]),
+    ("linear momentum", "N s", "momentum", lambda rows: rows["momentum"][:, :3]),
+    ("angular momentum", "N m s", "momentum", lambda rows: rows["momentum"][:, 3:]),
+    ("kinetic energy", "J", "kinetic_energy", lambda rows: rows["kinetic_energy"][:, None]),
+)
+_BY_ENTRY = ("joints", "joint rates", "joint torques")
+"""Measured by the joint that is furthest off, not by the length of a vector of joints."""
+
+
+def measures(a: Rows, b: Rows) -> tuple[list[tuple[str, str, Floats, float]], list[str]]:
+    """Name, unit, difference (T,) and largest value of every measure that both have; and what one lacks."""
+    found, missing = [], []
+    for name, unit, column, pick in _MEASURES:
+        if (column in a) != (column in b):
+            missing.append(f"{name}: only one of the two has it")
+        if column not in a or column not in b:
+            continue
+        first, second = pick(a), pick(b)
+        if first.shape[1] == 0:
+            continue
+        found.append((name, unit, *_measured(name, column, first, second)))
+    return found, missing
+
+
+def _measured(name: str, column: str, first: Floats, second: Floats) -> tuple[Floats, float]:
+    if column.endswith("quat"):
+        return angle_between(first, second), 0.0  # no angle is larger than another
+    size = _largest_entry if name in _BY_ENTRY else _length
+    with np.errstate(over="ignore", invalid="ignore"):  # of runs that diverged
+        return size(first - second), float(max(size(first).max(), size(second).max()))
+
+
+def _length(rows: Floats) -> Floats:
+    length: Floats = np.linalg.norm(rows, axis=1)
+    return length
+
+
+def _largest_entry(rows: Floats) -> Floats:
+    largest: Floats = np.abs(rows).max(axis=1)
+    return largest

@@ -1,0 +1,76 @@
+"""What is compared: the columns of a run, read from its folder or made now."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.exceptions import NotFoundError
+from onorbit_rs.output import with_absolute_paths
+from onorbit_rs.output.read import read_trace
+from onorbit_rs.running import Run, run
+from onorbit_rs.scenario import Scenario, load
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | Run
+"""A folder that a run has written, a scenario as :func:`onorbit_rs.run` takes it, or a run."""
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Columns of a run by their names in ``trace.npz``, and what robot it was."""
+
+    name: str
+    columns: dict[str, NDArray[np.float64]]
+    scenario: Scenario
+
+    @property
+    def robot(self) -> Any:
+        """As the resolved scenario has it."""
+        named = with_absolute_paths(self.scenario)["robot"]
+        return next(iter(named.values())) if len(named) == 1 else named
+
+
+def recorded(source: Source) -> Recorded:
+    """From a folder, a run, or a scenario that is run now.
+
+    Raises
+    ------
+    NotFoundError, ReadError
+        No run in the folder, or one that cannot be read.
+    """
+    if isinstance(source, Run):
+        return _of_run(source)
+    if isinstance(source, (str, os.PathLike)) and Path(source).is_dir():
+        return _of_folder(Path(source))
+    return _of_run(run(source))
+
+
+def on_the_other_plant(first: Recorded) -> Recorded:
+    """The same scenario, moved by the other engine."""
+    scenario = first.scenario
+    other = {"native": "mujoco", "mujoco": "native"}[scenario.plant]
+    return _of_run(run(with_absolute_paths(scenario) | {"plant": other}))
+
+
+def _of_run(made: Run) -> Recorded:
+    trace = made.trace
+    columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
+    name = f"{made.scenario.name} ({made.scenario.plant})" if made.out is None else str(made.out)
+    return Recorded(name, columns, made.scenario)
+
+
+def _of_folder(folder: Path) -> Recorded:
+    trace = read_trace(folder)
+    file = folder / "scenario.yaml"
+    if not file.is_file():
+        raise NotFoundError(f"no run in this folder (no {file.name}): {folder}", path=str(folder), kind="run")
+    columns = {name: np.asarray(getattr(trace, name), dtype=np.float64) for name in trace.columns()}
+    return Recorded(str(folder), columns, load(file))

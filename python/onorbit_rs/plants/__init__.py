@@ -1,0 +1,25 @@
+"""Other physics engines that move the robot in the place of our own equations.
+
+Give one to :class:`onorbit_rs.Simulation` as ``plant=``, or say ``plant: mujoco`` in a scenario: robot,
+controller, environment, schedule, trace and certificate are those of every run, the motion is another
+engine's. This folder alone imports mujoco.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+
+from onorbit_rs.plants.mujoco import Mujoco
+from onorbit_rs.plants.mujoco_model import missing
+
+__all__ = ["Mujoco", "versions"]
+
+
+def versions(plant: str) -> dict[str, str]:
+    """The plant of a run, and the version of an engine that is not ours: ``mujoco_version``."""
+    if plant == "native":
+        return {"plant": plant}
+    try:
+        return {"plant": plant, f"{plant}_version": importlib.metadata.version(plant)}
+    except importlib.metadata.PackageNotFoundError:
+        raise missing() from None

@@ -1,0 +1,133 @@
+"""A robot of ours as a model of MuJoCo: bodies, joints and rotors, no gravity, no contacts."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.exceptions import ModelError, PlantError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Body, Joint, Model
+
+    Floats = NDArray[np.float64]
+
+HARDEST = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+"""Impedance of friction and stops, which in MuJoCo give way by a share ``1 - d`` of the acceleration."""
+
+
+DAMPING_RATIO = 10.0
+"""Of stops, which push but do not pull: a joint leaves one with `1 / (2ζ)²` of the rate it came with."""
+
+
+def engine() -> ModuleType:
+    """The package ``mujoco``.
+
+    Raises
+    ------
+    PlantError
+        It is not installed.
+    """
+    try:
+        import mujoco
+    except ImportError:
+        raise missing() from None
+    return mujoco  # type: ignore[no-any-return]
+
+
+def missing() -> PlantError:
+    """What is told where MuJoCo is not installed."""
+    message = "the plant 'mujoco' needs MuJoCo, which is not installed: pip install 'onorbit-rs[mujoco]'"
+    return PlantError(message, name="plant", got="mujoco")
+
+
+def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any:
+    """The ``mujoco.MjModel``: joints have their names, bodies those that :func:`link` gives.
+
+    Raises
+    ------
+    PlantError
+        MuJoCo is not installed.
+    ModelError
+        A body that MuJoCo cannot have: without mass or inertia.
+    """
+    mujoco = engine()
+    spec = mujoco.MjSpec()
+    spec.modelname = model.name
+    spec.compiler.degree = spec.compiler.alignfree = spec.compiler.autolimits = False
+    spec.option.gravity = np.zeros(3)
+    spec.option.timestep = time_step
+    spec.option.tolerance, spec.option.iterations = 1e-15, 200
+    bit = mujoco.mjtDisableBit
+    # what is left is a function of the state alone: a run goes on from a checkpoint to the same bits
+    spec.option.disableflags = int(bit.mjDSBL_WARMSTART | bit.mjDSBL_CONTACT | bit.mjDSBL_AUTORESET)
+    hung = {joint.child: joint for joint in model.joints}
+    made: dict[str, Any] = {}
+    moments: dict[str, Floats] = {}
+    for body in model.bodies:
+        joint = hung.get(body.name)
+        made[body.name] = new = (spec.worldbody if joint is None else made[joint.parent]).add_body()
+        new.name, new.mass = link(body.name), body.mass
+        new.ipos, new.explicitinertial = np.array(body.com), True
+        moments[body.name], new.iquat = _principal(mujoco, body)
+        new.inertia = np.full(3, moments[body.name].mean())
+        if joint is None:
+            new.add_freejoint().align = mujoco.mjtAlignFree.mjALIGNFREE_FALSE
+        else:
+            _hang(mujoco, new, joint, time_step=time_step, enforce_limits=enforce_limits)
+    try:
+        compiled = spec.compile()
+    except ValueError as error:
+        raise ModelError(f"MuJoCo does not take this robot: {' '.join(str(error).split())}") from error
+    # put in only now: its compiler refuses moments that no real body has, which published robots have
+    for name, moment in moments.items():
+        compiled.body(link(name)).inertia[:] = moment
+    mujoco.mj_setConst(compiled, mujoco.MjData(compiled))
+    return compiled
+
+
+def link(name: str) -> str:
+    """The name of a body there, where ``world`` is taken."""
+    return f"link {name}"
+
+
+def _principal(mujoco: ModuleType, body: Body) -> tuple[Floats, Floats]:
+    """Principal moments, and the quaternion (wxyz) of their axes."""
+    moments, axes = np.linalg.eigh(np.array(body.inertia))
+    if body.mass <= 0.0 or moments[0] <= 0.0:
+        raise ModelError(
+            f"link '{body.name}' has no mass, or no inertia: MuJoCo moves no such body; give "
+            "it a small mass and inertia (planar and ball joints have links without), or use plant: native",
+            link=body.name,
+        )
+    quat = np.empty(4)
+    mujoco.mju_mat2Quat(quat, (axes * np.sign(np.linalg.det(axes))).ravel())
+    return moments, quat
+
+
+def _hang(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, enforce_limits: bool) -> None:
+    """Place a body in its parent, and put the joint there."""
+    pose = np.array(joint.pose)
+    quat = np.empty(4)
+    mujoco.mju_mat2Quat(quat, pose[:3, :3].ravel())
+    body.pos, body.quat = pose[:3, 3], quat
+    kinds = mujoco.mjtJoint
+    moving = body.add_joint()
+    moving.name, moving.axis = joint.name, np.array(joint.axis)
+    moving.type = kinds.mjJNT_HINGE if joint.kind == "revolute" else kinds.mjJNT_SLIDE
+    moving.armature, moving.frictionloss = joint.rotor_inertia, joint.friction
+    moving.damping = np.array([joint.damping, 0.0, 0.0])
+    moving.solref_friction = np.array([2.0 * time_step, 1.0])
+    moving.solref_limit = np.array([2.0 * time_step, DAMPING_RATIO])
+    moving.solimp_friction = moving.solimp_limit = np.array(HARDEST)
+    lower, upper = (
+        -np.inf if joint.lower is None else joint.lower,
+        np.inf if joint.upper is None else joint.upper,
+    )
+    if enforce_limits and (np.isfinite(lower) or np.isfinite(upper)):
+        moving.limited = True
+        moving.range = np.clip([lower, upper], -1e9, 1e9)

@@ -1,0 +1,235 @@
+"""Two runs side by side: what they differ by, where they part, and what is said of the rest."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.comparison.recorded import Recorded
+from onorbit_rs.comparison.rows import common_rows
+from onorbit_rs.exceptions import CompareError, InputError, NotFoundError, ReadError
+from onorbit_rs.figures import differences
+from onorbit_rs.scenario import load
+
+
+@pytest.fixture(autouse=True)
+def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("onorbit_rs.running.write_pictures", lambda *_, **__: None)
+
+
+def scenario(name: str = "humanoid_reach", **simulation: Any) -> dict[str, Any]:
+    data = load(name).resolved()
+    data["simulation"] |= {"duration": 0.5, "time_step": 0.002} | simulation
+    return data
+
+
+def spin(rate: float, duration: float = 10.0, **simulation: Any) -> dict[str, Any]:
+    """A ball that turns about z at that rate and drifts along x at twice that."""
+    return {
+        "robot": {"rigid_body": {"mass": 2.0, "inertia": [[3, 0, 0], [0, 3, 0], [0, 0, 3]]}},
+        "initial": {"linear_velocity": [2.0 * rate, 0, 0], "angular_velocity": [0, 0, rate]},
+        "simulation": {"duration": duration, "time_step": 0.1} | simulation,
+    }
+
+
+def test_differences_are_those_of_the_closed_form() -> None:
+    """Rates of 0.1 and 0.11 rad/s: after 10 s 0.1 rad and 0.2 m apart, parted where 0.01 rad are passed."""
+    compared = oo.compare(spin(0.1), spin(0.11), tolerance=0.0105)
+    attitude, position = compared["base attitude"], compared["base position"]
+    np.testing.assert_allclose(attitude.values, 0.01 * compared.time, atol=1e-12)
+    np.testing.assert_allclose(position.values, 0.02 * compared.time, atol=1e-12)
+    assert attitude.largest == attitude.final == pytest.approx(0.1)
+    assert attitude.largest_at == 10.0
+    assert attitude.parts_at == pytest.approx(1.1)
+    # lengths grow to 2.2 m, and are allowed that share of it
+    assert position.allowed == pytest.approx(0.0105 * 2.2)
+    assert position.parts_at == pytest.approx(1.2)
+    assert compared["linear momentum"].largest == pytest.approx(2.0 * 0.02)
+    assert compared["angular momentum"].largest == pytest.approx(3.0 * 0.01)
+    # ½ m v² + ½ I w²
+    assert compared["kinetic energy"].largest == pytest.approx((4.0 + 1.5) * (0.11**2 - 0.1**2))
+    assert not compared.agrees
+    assert compared.parts_at == 0.0  # of the momentum, from the start
+    assert "joints" not in [difference.name for difference in compared.differences]
+
+
+def test_a_run_agrees_with_itself_and_with_its_folder(tmp_path: Path) -> None:
+    run = oo.run(scenario(), tmp_path / "out")
+    compared = oo.compare(run, str(tmp_path / "out"), tolerance=1e-300)
+    assert compared.agrees
+    assert compared.parts_at is None
+    assert compared.notes == ()
+    assert {difference.largest for difference in compared.differences} == {0.0}
+    assert len(compared.differences) == 10
+
+
+def test_gains_that_differ_are_seen_in_the_torque_first() -> None:
+    other = scenario()
+    other["controller"]["kp"] = 99.0
+    compared = oo.compare(scenario(), other, tolerance=1e-9)
+    parted = {difference.name: difference.parts_at for difference in compared.differences}
+    assert min(parted, key=lambda name: np.inf if parted[name] is None else parted[name]) == "joint torques"
+
+
+def test_control_a_finer_step_is_the_same_motion_at_common_instants() -> None:
+    """Every other row of the finer run is compared as it is: nothing is interpolated."""
+    settings: dict[str, Any] = {"control_period": 0.002}
+    compared = oo.compare(scenario(**settings), scenario(**settings, time_step=0.001))
+    assert compared.notes == ()
+    assert len(compared.time) == 251
+    assert compared["base attitude"].largest < 1e-10
+
+
+def test_rows_in_between_are_interpolated_and_that_is_told() -> None:
+    """Steps of 0.1 and 0.13 s have an instant in thirteen in common; straight motion interpolates exactly."""
+    compared = oo.compare(spin(0.1), spin(0.1, time_step=0.13))
+    assert compared.agrees
+    assert compared["base attitude"].largest < 1e-12
+    assert len(compared.time) == 101
+    assert any("interpolated" in note for note in compared.notes)
+
+
+def test_torques_are_held_between_rows() -> None:
+    settings: dict[str, Any] = {"control_period": 0.01, "duration": 0.4}
+    a, b = scenario(**settings, time_step=0.002), scenario(**settings, time_step=0.0033)
+    compared = oo.compare(a, b, tolerance=1e-3)
+    assert any("interpolated" in note for note in compared.notes)
+    assert compared["joint torques"].largest < 1e-6
+
+
+def test_runs_of_different_length_are_compared_while_both_last() -> None:
+    compared = oo.compare(spin(0.1), spin(0.1, duration=4.0))
+    assert compared.agrees
+    assert compared.time[-1] == 4.0
+    assert any("ends at 10 s" in note and "until 4 s" in note for note in compared.notes)
+
+
+def test_a_measure_that_one_run_lacks_is_told() -> None:
+    data = load("free_tumble").resolved()
+    data["simulation"] |= {"duration": 0.1}
+    bare = {name: value for name, value in data.items() if name != "tool"}
+    compared = oo.compare(data, bare)
+    assert compared.agrees
+    assert [note.split(":")[0] for note in compared.notes] == ["tool position", "tool attitude"]
+
+
+def test_another_robot_with_as_many_joints_is_told_one_with_others_refused() -> None:
+    heavy = spin(0.1)
+    heavy["robot"] = {"rigid_body": {"mass": 3.0, "inertia": [[3, 0, 0], [0, 3, 0], [0, 0, 3]]}}
+    compared = oo.compare(spin(0.1), heavy)
+    assert compared["base position"].largest < 1e-15
+    assert compared["linear momentum"].parts_at == 0.0
+    assert any("robots are not the same" in note for note in compared.notes)
+    with pytest.raises(CompareError, match=r"0 joints, .* 7"):
+        oo.compare(spin(0.1), scenario())
+
+
+def test_an_impact_counts_with_the_row_after_it() -> None:
+    time = np.array([0.0, 1.0, 1.0, 2.0])
+    columns = {"time": time, "q": np.eye(4, 7, 3), "tau": np.array([[0.0], [1], [2], [3]])}
+    run = Recorded("bounce", columns, load("humanoid_reach"))
+    rows, _, instants, _ = common_rows(run, run)
+    assert instants.tolist() == [0.0, 1.0, 2.0]
+    assert rows["tau"].ravel().tolist() == [0.0, 2.0, 3.0]
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_tolerance_that_is_none_is_refused(tolerance: float) -> None:
+    with pytest.raises(InputError, match="tolerance is"):
+        oo.compare(spin(0.1), spin(0.1), tolerance=tolerance)
+
+
+def test_an_unknown_measure_is_answered_with_those_there_are() -> None:
+    with pytest.raises(CompareError, match="'attitude'; there are: base position, base attitude"):
+        oo.compare(spin(0.1), spin(0.1))["attitude"]
+
+
+def test_a_diverged_run_parts_and_is_plain_data(tmp_path: Path) -> None:
+    run = oo.run(spin(0.1), tmp_path / "out")
+    broken = dict(np.load(tmp_path / "out" / "trace.npz"))
+    broken["q"] = np.where(np.arange(101)[:, None] < 50, broken["q"], np.nan)
+    np.savez(tmp_path / "out" / "trace.npz", **broken)
+    compared = oo.compare(run, tmp_path / "out")
+    assert compared["base position"].parts_at == pytest.approx(5.0)
+    text = json.dumps(compared.as_dict(), allow_nan=False)
+    assert json.loads(text)["differences"][0]["largest"] is None
+
+
+def test_folders_without_a_run_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(NotFoundError, match="no trace in this folder"):
+        oo.compare(tmp_path, tmp_path)
+    oo.run(spin(0.1), tmp_path / "out")
+    for spoilt in (b"", b"no zip"):
+        (tmp_path / "out" / "trace.npz").write_bytes(spoilt)
+        with pytest.raises(ReadError, match="cannot read"):
+            oo.compare(tmp_path / "out", tmp_path / "out")
+
+
+def test_the_figure_has_a_panel_per_measure_and_marks_where_they_part() -> None:
+    compared = oo.compare(spin(0.1), spin(0.11), tolerance=0.0105)
+    panels = [axes for axes in differences(compared).axes if axes.get_visible()]
+    assert [axes.get_title(loc="left") for axes in panels] == [one.name for one in compared.differences]
+    dots = [line for line in panels[1].lines if line.get_marker() == "o"]
+    assert [float(dot.get_xdata()[0]) for dot in dots] == [pytest.approx(1.1)]  # type: ignore[index]
+    same = differences(oo.compare(spin(0.1), spin(0.1)))
+    assert not any(line.get_marker() == "o" for axes in same.axes for line in axes.lines)
+
+
+def onorbit(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "onorbit_rs", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+
+
+def test_the_command_says_whether_and_where_they_part(tmp_path: Path) -> None:
+    files = []
+    for rate in (0.1, 0.11):
+        files.append(tmp_path / f"{rate}.yaml")
+        files[-1].write_text(json.dumps(spin(rate)))
+    picture = tmp_path / "apart.png"
+    done = onorbit("compare", files[0], files[1], "--out", picture)
+    assert done.returncode == 1, done.stderr
+    assert "they part at t = 0 s by more than 1e-06" in done.stdout
+    assert "base attitude" in done.stdout
+    assert picture.read_bytes()[:4] == b"\x89PNG"
+    same = onorbit("compare", files[0], files[0], "--tolerance", "1e-12")
+    assert same.returncode == 0
+    assert "they agree within 1e-12 over 101 rows from 0 to 10 s" in same.stdout
+    as_json = onorbit("compare", files[0], files[1], "--json")
+    assert as_json.returncode == 1
+    data = json.loads(as_json.stdout)
+    assert not data["agrees"]
+    assert data["differences"][1]["name"] == "base attitude"
+    assert data["differences"][1]["largest"] == pytest.approx(0.1)
+
+
+def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
+    file = tmp_path / "ball.yaml"
+    file.write_text(json.dumps(spin(0.1)))
+    for arguments in (
+        ("no_such_scenario", file),
+        (file, tmp_path),
+        (file, file, "--tolerance", "0"),
+        (file, file, "--out", tmp_path / "none" / "apart.png"),
+        (file, file, "--out", tmp_path / "apart.xyz"),
+        (file, "humanoid_reach"),
+    ):
+        done = onorbit("compare", *arguments)
+        assert done.returncode == 2, done
+        assert len(done.stderr.splitlines()) == 1, done.stderr
+        assert "Traceback" not in done.stderr
+
+
+def test_without_a_second_run_it_is_the_other_plant(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco", reason="the second plant is in the extra: pip install 'onorbit-rs[mujoco]'")
+    file = tmp_path / "reach.yaml"
+    file.write_text(json.dumps(scenario()))
+    done = onorbit("compare", file, "--tolerance", "1e-10")
+    assert done.returncode == 0, done
+    assert "humanoid_reach (mujoco) against humanoid_reach (native)" in done.stdout
