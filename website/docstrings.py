@@ -1,0 +1,50 @@
+"""Docstrings of the engine's module for the pages of the API: types are in the stub, words in the module itself."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import re
+from typing import Any
+
+import griffe
+
+ROLE = re.compile(r":(?:class|meth|func|mod|attr):`~?([\w.]+)`")
+SESSION = re.compile(r"^>>> .*?(?=\n\n|\Z)", re.MULTILINE | re.DOTALL)
+TABLE = re.compile(r"^=+  +=.*?^=+ .*?^=+ .*?$", re.MULTILINE | re.DOTALL)
+
+
+class EngineDocstrings(griffe.Extension):
+    """Puts docstrings where the stub has none, and writes in Markdown what Sphinx writes another way."""
+
+    def on_package(self, *, pkg: griffe.Module, **_: Any) -> None:
+        """Once everything is read."""
+        fill(pkg["_core"], importlib.import_module("onorbit_rs._core"))
+        tidy(pkg)
+
+
+def fill(stub: griffe.Module | griffe.Class, live: Any) -> None:
+    """Docstrings of ``live`` and its members go to ``stub``."""
+    for name, signatures in stub.overloads.items():
+        if name not in stub.members:
+            signatures[-1].overloads = list(signatures)
+            stub.set_member(name, signatures[-1])
+    for name, member in stub.members.items():
+        there = getattr(live, name, None)
+        if member.is_alias or not (callable(there) or inspect.isdatadescriptor(there)):
+            continue
+        member.docstring = griffe.Docstring(inspect.getdoc(there) or "", parent=member, parser="numpy")
+        if member.is_class:
+            fill(member, there)
+
+
+def tidy(thing: griffe.Object) -> None:
+    """Markdown has no roles, and sessions and tables look otherwise."""
+    if thing.docstring:
+        text = ROLE.sub(r"`\1`", thing.docstring.value)
+        if "\nExamples\n---" not in text:
+            text = SESSION.sub(lambda found: f"```pycon\n{found[0]}\n```", text)
+        thing.docstring.value = TABLE.sub(lambda found: f"```text\n{found[0]}\n```", text)
+    for member in thing.members.values():
+        if not member.is_alias:
+            tidy(member)
