@@ -1,4 +1,4 @@
-"""Docstrings of the engine's module for the pages of the API: types are in the stub, words in the module itself."""
+"""Docstrings of the engine's module for the pages of the API: its stub has types, the module itself words."""
 
 from __future__ import annotations
 

@@ -25,7 +25,8 @@ class Blocks(Preprocessor):
         """The same lines with a placeholder for each equation."""
 
         def stash(found: re.Match[str]) -> str:
-            return "\n" + self.md.htmlStash.store(f'<div class="equation">{mathml(found[1], "block")}</div>') + "\n"
+            equation = self.md.htmlStash.store(f'<div class="equation">{mathml(found[1], "block")}</div>')
+            return f"\n{equation}\n"
 
         return BLOCK.sub(stash, "\n".join(lines)).split("\n")
 
@@ -49,7 +50,7 @@ class Equations(Extension):
     """Registers both."""
 
     def extendMarkdown(self, md: Markdown) -> None:
-        """After code in fences was taken away (25), before lists and paragraphs; inline after code in ticks (190)."""
+        """After fenced code was taken away (25), before paragraphs; in a line after code in ticks (190)."""
         md.preprocessors.register(Blocks(md), "equations", 24)
         md.inlinePatterns.register(Inline(INLINE, md), "equation", 185)
 
