@@ -36,6 +36,14 @@ def fill(stub: griffe.Module | griffe.Class, live: Any) -> None:
         member.docstring = griffe.Docstring(inspect.getdoc(there) or "", parent=member, parser="numpy")
         if member.is_class:
             fill(member, there)
+            if "__new__" in member.members:  # how the class is called stands beside its name
+                member.set_member("__init__", called(member.members.pop("__new__")))
+
+
+def called(new: Any) -> Any:
+    """A constructor under the name that a class is documented with; its words are those of the class."""
+    new.name, new.docstring = "__init__", None
+    return new
 
 
 def tidy(thing: griffe.Object) -> None:
