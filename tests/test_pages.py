@@ -1,4 +1,4 @@
-"""What the documentation shows works: files, Python, commands, scenarios, scripts, names, and the way to each page."""
+"""What the documentation shows works: files, Python, commands, scenarios, scripts, names, the way to a page."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def missing(text: str, roots: dict[str, Any]) -> list[str]:
 
 
 def exists(name: str, roots: dict[str, Any]) -> bool:
-    """Whether it begins otherwise, is a file, or leads to something; what is None in these has no more parts."""
+    """Whether it begins otherwise, is a file, or leads to something."""
     root, *parts = name.split(".")
     if root not in roots or parts[-1:] == ["npz"]:
         return True
