@@ -1,4 +1,4 @@
-"""A progress bar on a terminal, nothing elsewhere."""
+"""What a run is doing, on a terminal alone: simulated time and real-time factor, then what is written."""
 
 from __future__ import annotations
 
@@ -6,33 +6,78 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
 
 ProgressCallback = Callable[[float, float], None]
 """Called with the time reached and the duration, both in seconds of simulation."""
 
 
+@dataclass(frozen=True)
+class Progress:
+    """``move`` is for the simulation loop, None where nobody looks; ``tell`` says what is done after it."""
+
+    move: ProgressCallback | None = None
+    tell: Callable[[str], None] = lambda doing: None
+
+
 @contextmanager
-def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[ProgressCallback | None]:
-    """A callback that moves a bar on the terminal, or None where there is no terminal."""
+def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progress]:
+    """A bar on the terminal that is gone at the end."""
     if quiet or not sys.stderr.isatty():
-        yield None
+        yield Progress()
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
 
     columns = (
         TextColumn("{task.description}", markup=False),
         BarColumn(),
-        TextColumn("{task.fields[reached]}", markup=False),
+        TextColumn("{task.fields[doing]}", markup=False),
         TimeRemainingColumn(),
     )
-    started = time.perf_counter()
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(name, total=duration_s, reached="")
+    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(name, total=duration_s, doing="starting", start=False)
+        yield Progress(_Mover(bar, task), lambda doing: bar.update(task, completed=duration_s, doing=doing))
 
-        def move(reached_s: float, total_s: float) -> None:
-            elapsed = max(time.perf_counter() - started, 1e-9)
-            where = f"t = {reached_s:.4g} / {total_s:.4g} s, {reached_s / elapsed:.3g}x real time"
-            bar.update(task, completed=reached_s, reached=where)
 
-        yield move
+@contextmanager
+def doing(name: str, *, quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Something that takes seconds: says on a terminal what, and what part of it."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda part: None
+        return
+    from rich.console import Console
+    from rich.markup import escape
+
+    with Console(stderr=True).status(escape(name)) as status:
+        yield lambda part: status.update(escape(f"{name}: {part}"))
+
+
+class _Mover:
+    """Moves the bar; a resumed run begins where it was stopped, and what came before counts for no speed."""
+
+    def __init__(self, bar: Any, task: Any) -> None:
+        self._bar, self._task = bar, task
+        self._first: tuple[float, float] | None = None
+
+    def __call__(self, reached_s: float, total_s: float) -> None:
+        now = time.perf_counter()
+        if self._first is None:
+            self._first = now, reached_s
+            self._bar.reset(self._task, completed=reached_s, total=total_s, start=True)
+        factor = real_time_factor(*self._first, now, reached_s)
+        self._bar.update(self._task, completed=reached_s, doing=where(reached_s, total_s, factor))
+
+
+def real_time_factor(began: float, began_at_s: float, now: float, reached_s: float) -> float | None:
+    """Seconds of simulation per second of wall clock since ``began``; None before anything can be said."""
+    elapsed = now - began
+    return (reached_s - began_at_s) / elapsed if elapsed > 1e-3 else None
+
+
+def where(reached_s: float, total_s: float, factor: float | None) -> str:
+    """``t = 12.3 / 60 s, 45x real time``."""
+    speed = "" if factor is None else f", {factor:.3g}x real time"
+    return f"t = {reached_s:.4g} / {total_s:.4g} s{speed}"

@@ -30,6 +30,8 @@ from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from onorbit_rs._core import Model, Trace
 
 
@@ -134,18 +136,26 @@ def _go(built: Built, folder: OutputFolder | None, *, quiet: bool, **checkpoints
     scenario, duration = built.scenario, built.scenario.simulation.duration
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
-            trace = built.simulation.run(duration, progress=progress, **checkpoints)
+            trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
+            return _finish(trace, built, folder, progress.tell)
     except (SimulationError, RunInterrupted) as stop:
         _keep(stop, built, folder)
         raise
     except Exception as error:  # raised by a controller of the user's, or where orbit or environment end
         _keep_rows(error, built, folder)
         raise
+
+
+def _finish(trace: Trace, built: Built, folder: OutputFolder | None, tell: Callable[[str], None]) -> Run:
+    """Certify a run that came to its end, and write its folder."""
+    tell("certificate")
+    scenario = built.scenario
     summary = summarize(trace, scenario, built.orbit, warnings=built.model.warnings)
     if folder is not None:
+        tell("writing the trace")
         write_trace(folder, trace)
         write_summary(folder, summary)
-        write_pictures(folder, trace, summary, built)
+        write_pictures(folder, trace, summary, built, tell=tell)
         discard_checkpoint(folder)
     return Run(trace, summary, built.model, scenario, folder.path if folder else None)
 

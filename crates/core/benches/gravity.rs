@@ -11,7 +11,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::{
-    BodyState, DifferentialGravity, Effect, GravityGradient, Instant, Reference, Scene, Wrench,
+    Bodies, BodyState, DifferentialGravity, Effect, GravityGradient, Instant, Reference, Scene, Wrenches,
 };
 use onorbit_core::gravity::{Gravity, GravityField};
 use onorbit_core::orbit::OrbitState;
@@ -44,7 +44,7 @@ fn field(c: &mut Criterion) {
 
 fn effects(c: &mut Criterion) {
     let com = Vector3::new(0.3, 0.2, 0.1);
-    let bodies = [BodyState {
+    let body = BodyState {
         mass: 10.0,
         inertia: Matrix3::new(2.0, 0.1, 0.2, 0.1, 3.0, 0.3, 0.2, 0.3, 4.0),
         com,
@@ -52,8 +52,9 @@ fn effects(c: &mut Criterion) {
         origin: com,
         velocity: Vector3::zeros(),
         angular_velocity: Vector3::zeros(),
-    }; 8];
-    let mut wrenches = [Wrench::default(); 8];
+    };
+    let bodies = Bodies::from_iter([body; 8]);
+    let mut wrenches = Wrenches::new(8);
     for (name, field) in fields() {
         let earth = Some(Arc::new(Earth::about_z(0.0, 7.292e-5)));
         let gravity = Gravity::of_field(Arc::new(field), earth).expect("an earth");

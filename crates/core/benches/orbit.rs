@@ -9,7 +9,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::environment::{
-    BodyState, DifferentialGravity, Effect, GravityGradient, Instant, Reference, Scene, Wrench,
+    Bodies, BodyState, DifferentialGravity, Effect, GravityGradient, Instant, Reference, Scene, Wrenches,
 };
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{Elements, Kepler, Orbit, Size, states};
@@ -65,8 +65,8 @@ fn effects(c: &mut Criterion) {
         velocity: Vector3::zeros(),
         angular_velocity: Vector3::zeros(),
     };
-    let bodies = [body; 8];
-    let mut wrenches = [Wrench::default(); 8];
+    let bodies = Bodies::from_iter([body; 8]);
+    let mut wrenches = Wrenches::new(8);
     let gravity = orbit.mu().map(Gravity::point_mass);
     let reference = Some(Reference { state, gravity: gravity.as_ref(), falls_freely: false });
     let instant = Instant::default();

@@ -7,7 +7,7 @@ use common::humanoid::{humanoid, start};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use onorbit_core::control::{Compliance, ComputedTorque, Control, ControlLaw, Law};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
-use onorbit_core::environment::{Effect, EnvironmentError, Scene, Wrench};
+use onorbit_core::environment::{Effect, EnvironmentError, Scene, Wrench, Wrenches};
 use onorbit_core::reference::{Hold, ReferenceFrame, TaskReference};
 use onorbit_core::simulation::{Simulation, Trace};
 use std::ops::ControlFlow;
@@ -100,12 +100,11 @@ impl Effect for Pair {
     fn name(&self) -> &str {
         "pair"
     }
-    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-        let arm = scene.bodies[self.body].com - scene.bodies[0].com;
-        wrenches[self.body].force += self.force;
-        wrenches[0].force -= self.force;
-        wrenches[0].torque -= arm.cross(&self.force);
-        Ok(())
+    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
+        let com = |body| scene.bodies.get(body).expect("a body of the robot").com;
+        let (force, arm) = (self.force, com(self.body) - com(0));
+        wrenches.add(self.body, Wrench { force, torque: Vector3::zeros() })?;
+        wrenches.add(0, Wrench { force: -force, torque: -arm.cross(&force) })
     }
 }
 

@@ -1,7 +1,9 @@
 //! A timed wrench: its frame, its lever, its switches, its refusals.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use onorbit_core::environment::{BodyState, BodyWrench, Effect, EnvironmentError, Instant, Scene, Wrench};
+use onorbit_core::environment::{
+    Bodies, BodyState, BodyWrench, Effect, EnvironmentError, Instant, Scene, Wrench, Wrenches,
+};
 
 /// A body turned a quarter about z, its centre of mass off the link's origin.
 fn body() -> BodyState {
@@ -17,11 +19,11 @@ fn body() -> BodyState {
 }
 
 fn act(effect: &BodyWrench, interval: (f64, f64)) -> Result<[Wrench; 2], EnvironmentError> {
-    let mut wrenches = [Wrench::default(); 2];
-    let (bodies, instant) = ([body(), body()], Instant::default());
+    let mut wrenches = Wrenches::new(2);
+    let (bodies, instant) = (Bodies::from_iter([body(), body()]), Instant::default());
     let scene = Scene::new(interval, interval.0, &bodies, &instant);
     effect.add_wrenches(&scene, &mut wrenches)?;
-    Ok(wrenches)
+    Ok([0, 1].map(|k| wrenches.get(k).expect("a body there")))
 }
 
 fn close(a: Vector3<f64>, b: Vector3<f64>) -> bool {

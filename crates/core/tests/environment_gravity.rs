@@ -4,8 +4,8 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::environment::{
-    BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Instant, Place, Reference,
-    ReferenceMotion, Scene, Wrench,
+    Bodies, BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Instant, Place,
+    Reference, ReferenceMotion, Scene, Wrench, Wrenches,
 };
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{Kepler, MU_EARTH, Orbit, OrbitState};
@@ -67,11 +67,11 @@ fn wrench(
     reference: Option<Reference<'_>>,
     body: BodyState,
 ) -> Result<Wrench, EnvironmentError> {
-    let mut wrenches = [Wrench::default()];
-    let (bodies, instant) = ([body], Instant::default());
+    let mut wrenches = Wrenches::new(1);
+    let (bodies, instant) = (Bodies::from_iter([body]), Instant::default());
     let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
     effect.add_wrenches(&scene, &mut wrenches)?;
-    Ok(wrenches[0])
+    Ok(wrenches.get(0).expect("one body"))
 }
 
 const CARRIED: DifferentialGravity = DifferentialGravity { motion: ReferenceMotion::Carried };
@@ -125,15 +125,17 @@ fn a_reference_that_does_not_obey_gravity_is_fallen_away_from() {
 #[test]
 fn force_scales_with_mass_and_adds_to_what_is_there() {
     let heavy = BodyState { mass: 3.0, ..body(Vector3::x()) };
-    let bodies = [body(Vector3::x()), heavy];
+    let bodies = Bodies::from_iter([body(Vector3::x()), heavy]);
     let there = Wrench { force: Vector3::new(1.0, 2.0, 3.0), torque: Vector3::y() };
-    let mut wrenches = [Wrench::default(), there];
+    let mut wrenches = Wrenches::new(2);
+    wrenches.add(1, there).expect("two bodies");
     let reference = Some(reference(ORIGIN, MU_EARTH));
     let instant = Instant::default();
     let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
     CARRIED.add_wrenches(&scene, &mut wrenches).expect("outside");
-    assert_eq!(wrenches[1].force, there.force + wrenches[0].force * 3.0);
-    assert_eq!(wrenches[1].torque, there.torque);
+    let [light, heavy] = [0, 1].map(|k| wrenches.get(k).expect("two bodies"));
+    assert_eq!(heavy.force, there.force + light.force * 3.0);
+    assert_eq!(heavy.torque, there.torque);
 }
 
 /// NASA/TM-2015-218675 cases 10A and 10C (JEOD's logs): position (m), inertial to body (row
@@ -236,9 +238,9 @@ fn gravity_is_refused_around_no_planet_and_inside_one() {
 
 #[test]
 fn one_wrench_per_body_is_needed() {
-    let (bodies, instant) = ([body(Vector3::zeros())], Instant::default());
+    let (bodies, instant) = (Bodies::from_iter([body(Vector3::zeros())]), Instant::default());
     let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(Some(reference(ORIGIN, MU_EARTH)));
-    let mut two = [Wrench::default(); 2];
+    let mut two = Wrenches::new(2);
     for effect in [&TRUE as &dyn Effect, &GravityGradient] {
         let error = effect.add_wrenches(&scene, &mut two).expect_err("one too many");
         assert_eq!(error, EnvironmentError::WrongLength { expected: 1, got: 2 });

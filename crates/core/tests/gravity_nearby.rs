@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::{
-    BodyState, DifferentialGravity, Effect, Instant, Reference, ReferenceMotion, Scene, Wrench,
+    Bodies, BodyState, DifferentialGravity, Effect, Instant, Reference, ReferenceMotion, Scene, Wrenches,
 };
 use onorbit_core::gravity::{Gravity, GravityField};
 use onorbit_core::orbit::OrbitState;
@@ -66,11 +66,11 @@ fn force(
     let velocity = Vector3::from(VELOCITY);
     let state = OrbitState { position: at.1, velocity, acceleration: Vector3::zeros() };
     let reference = Some(Reference { state, gravity: Some(gravity), falls_freely: false });
-    let (bodies, instant) = ([b], Instant::default());
+    let (bodies, instant) = (Bodies::from_iter([b]), Instant::default());
     let scene = Scene::new((at.0, at.0 + step), at.0, &bodies, &instant).beside(reference);
-    let mut wrenches = [Wrench::default()];
+    let mut wrenches = Wrenches::new(1);
     DifferentialGravity { motion }.add_wrenches(&scene, &mut wrenches).unwrap();
-    wrenches[0].force
+    wrenches.get(0).unwrap().force
 }
 
 /// m/s

@@ -6,7 +6,9 @@ mod common;
 use common::humanoid::{humanoid, start};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::control::{ControlError, ControlLaw, Controller, Observation};
-use onorbit_core::environment::{BodyWrench, Effect, EnvironmentError, GravityGradient, Scene, Wrench};
+use onorbit_core::environment::{
+    BodyWrench, Effect, EnvironmentError, GravityGradient, Scene, Wrench, Wrenches,
+};
 use onorbit_core::model::{Model, difference, neutral};
 use onorbit_core::orbit::{Kepler, MU_EARTH};
 use onorbit_core::simulation::{Integrator, Simulation, SimulationError, Trace, certify};
@@ -62,7 +64,7 @@ impl Effect for Counter {
         "counter"
     }
 
-    fn add_wrenches(&self, scene: &Scene<'_>, _: &mut [Wrench]) -> Result<(), EnvironmentError> {
+    fn add_wrenches(&self, scene: &Scene<'_>, _: &mut Wrenches) -> Result<(), EnvironmentError> {
         self.0.lock().unwrap().push(scene.interval);
         Ok(())
     }
@@ -228,9 +230,10 @@ impl Effect for Noise {
         "noise"
     }
 
-    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         if scene.time > 0.3 {
-            wrenches[0].torque.x += 1e9 * f64::from((scene.time.to_bits() % 7) as u8);
+            let torque = Vector3::x() * (1e9 * f64::from((scene.time.to_bits() % 7) as u8));
+            wrenches.add(0, Wrench { force: Vector3::zeros(), torque })?;
         }
         Ok(())
     }

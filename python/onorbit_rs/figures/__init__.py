@@ -1,4 +1,4 @@
-"""Figures of a run: the paper's Fig. 4-7, the motion of the base, conservation, the orbit.
+"""Figures of a run: the paper's Fig. 4-7, how the base reacts, the ledger, the environment, the orbit.
 
 Each is a function that takes a trace and returns a ``matplotlib.figure.Figure``; nothing global is touched.
 This folder alone imports matplotlib.
@@ -6,78 +6,39 @@ This folder alone imports matplotlib.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from pathlib import Path
-from typing import TYPE_CHECKING
-
-import numpy as np
-from matplotlib.figure import Figure
-
-from onorbit_rs.figures.motion import base_motion, conservation
+from onorbit_rs.figures.drawings import Drawing, drawings
+from onorbit_rs.figures.forces import environment_forces
+from onorbit_rs.figures.ground_track import ground_track
+from onorbit_rs.figures.ledger import ledger
+from onorbit_rs.figures.manipulability import manipulability
+from onorbit_rs.figures.motion import base_motion, base_reaction
 from onorbit_rs.figures.orbit import orbit_overview
-from onorbit_rs.figures.tracking import joint_torques, tracking_errors
+from onorbit_rs.figures.save import as_bytes, save_all
+from onorbit_rs.figures.style import COLUMN, PAGE
+from onorbit_rs.figures.subject import Subject, Tool, subject_of
+from onorbit_rs.figures.tracking import control_errors, joint_torques, tracking_errors
 from onorbit_rs.figures.trajectory import desired_trajectory, obtained_trajectory
-from onorbit_rs.rotations import has_local_frame
-
-if TYPE_CHECKING:
-    from onorbit_rs._core import Model, Trace
 
 __all__ = [
+    "COLUMN",
+    "PAGE",
+    "Drawing",
+    "Subject",
+    "Tool",
+    "as_bytes",
     "base_motion",
-    "conservation",
+    "base_reaction",
+    "control_errors",
     "desired_trajectory",
+    "drawings",
+    "environment_forces",
+    "ground_track",
     "joint_torques",
+    "ledger",
+    "manipulability",
     "obtained_trajectory",
     "orbit_overview",
     "save_all",
+    "subject_of",
     "tracking_errors",
 ]
-
-WORTH_AN_ORBIT_DEG = 5.0
-"""Angle flown around the planet from which the orbit is drawn."""
-
-
-def save_all(trace: Trace, model: Model, folder: Path, *, has_planet: bool = True) -> list[Path]:
-    """Write every figure that this trace has the columns for.
-
-    Parameters
-    ----------
-    trace : Trace
-    model : Model
-    folder : Path
-        Made where missing.
-    has_planet : bool
-        Whether the orbit, if any, is around a planet: else it is not drawn around one.
-
-    Returns
-    -------
-    list of Path
-        The PNG files.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    files = []
-    for name, draw in _fitting(trace, model, has_planet):
-        files.append(folder / f"{name}.png")
-        draw().savefig(files[-1])
-    return files
-
-
-def _fitting(trace: Trace, model: Model, has_planet: bool) -> Iterator[tuple[str, Callable[[], Figure]]]:
-    columns = set(trace.columns())
-    if "reference_pose" in columns:
-        yield "fig4_desired_trajectory", lambda: desired_trajectory(trace, model)
-        yield "fig5_obtained_trajectory", lambda: obtained_trajectory(trace)
-        yield "fig6_tracking_errors", lambda: tracking_errors(trace)
-    if model.joint_names and np.any(trace.tau):
-        yield "fig7_joint_torques", lambda: joint_torques(trace, model)
-    yield "base_motion", lambda: base_motion(trace)
-    yield "conservation", lambda: conservation(trace)
-    if has_planet and has_local_frame(trace) and _angle_flown_deg(trace) > WORTH_AN_ORBIT_DEG:
-        yield "orbit", lambda: orbit_overview(trace)
-
-
-def _angle_flown_deg(trace: Trace) -> float:
-    """Largest angle (degrees) between the first direction from the planet's centre and any other."""
-    direction = np.asarray(trace.position_eci)
-    direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
-    return float(np.degrees(np.arccos(np.clip(direction @ direction[0], -1.0, 1.0)).max()))

@@ -1,78 +1,69 @@
-"""How the base moves, and what is conserved while it does."""
+"""How the base that nothing holds moves: where it goes, and how it turns as the arm pushes it."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from onorbit_rs.figures.style import (
-    COLORS,
-    FAINT_INK,
+    COLUMN,
     INK,
     XYZ_COLORS,
-    legend_beside,
+    clock,
+    legend_above,
     new_figure,
     plot_lines,
     tidy,
     with_prefix,
 )
-from onorbit_rs.rotations import roll_pitch_yaw
+from onorbit_rs.rotations import angle_between, roll_pitch_yaw
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from onorbit_rs._core import Trace
 
-    Floats = NDArray[np.float64]
+STEEPEST_DEG = 80.0
+"""Pitch from which roll and yaw say little."""
 
 
 def base_motion(trace: Trace) -> Figure:
-    """Position and attitude of the base that nothing holds, in W."""
+    """Position and attitude of the base in W: three angles, or the quaternion where these would jump."""
+    time, label = clock(trace)
     position = np.asarray(trace.q)[:, :3]
-    angles = np.degrees(np.unwrap(roll_pitch_yaw(np.asarray(trace.q)[:, 3:7]), axis=0))
-    figure = new_figure(8.0, 5.0, "Motion of the free base")
+    quat = np.asarray(trace.q)[:, 3:7]
+    angles = np.degrees(np.unwrap(roll_pitch_yaw(quat), axis=0))
+    figure = new_figure(COLUMN, 3.3)
     panels = figure.subplots(2, 1, sharex=True)
     factor, unit = with_prefix(float(np.abs(position).max()), "m")
-    plot_lines(panels[0], trace.time, factor * position, ("x", "y", "z"), XYZ_COLORS)
-    plot_lines(panels[1], trace.time, angles, ("roll", "pitch", "yaw"), XYZ_COLORS)
-    tidy(panels[0], "", f"base position [{unit}]")
-    tidy(panels[1], "time [s]", "base attitude [deg]")
+    plot_lines(panels[0], time, factor * position, ("x", "y", "z"), XYZ_COLORS)
+    tidy(panels[0], "", f"position [{unit}]")
+    if np.abs(angles[:, 1]).max() < STEEPEST_DEG:
+        plot_lines(panels[1], time, angles, ("roll", "pitch", "yaw"), XYZ_COLORS)
+        tidy(panels[1], label, "attitude [deg]")
+    else:
+        plot_lines(panels[1], time, quat, ("x", "y", "z", "w"), (*XYZ_COLORS, INK))
+        tidy(panels[1], label, "quaternion [1]")
     for axes in panels:
-        legend_beside(axes)
+        legend_above(axes)
     return figure
 
 
-def conservation(trace: Trace) -> Figure:
-    """What the certificate checks: momentum less the impulse of external wrenches, energy less the work done.
-
-    In W it is `P - ∫ΣF dt` and `L_com - ∫ΣT dt` that stay, and `K - ∫ power dt`.
-    """
-    momentum = np.asarray(trace.momentum) - np.asarray(trace.impulse)
-    drift = np.abs(momentum - momentum[0])
-    balance = np.asarray(trace.kinetic_energy) - np.asarray(trace.work)
-    energy = np.column_stack([trace.kinetic_energy, np.abs(balance - balance[0])])
-    figure = new_figure(8.0, 6.4, "Conservation: change of what should not change")
-    panels = figure.subplots(3, 1, sharex=True)
-    rows = [
-        (drift[:, :3], ("x", "y", "z"), XYZ_COLORS, "linear momentum\n[N s]"),
-        (drift[:, 3:], ("x", "y", "z"), XYZ_COLORS, "angular momentum\n[N m s]"),
-        (energy, ("kinetic energy", "its change less\nthe work done"), (FAINT_INK, COLORS[0]), "energy\n[J]"),
-    ]
-    for axes, (columns, names, colors, y_label) in zip(panels, rows, strict=True):
-        plot_lines(axes, trace.time, columns, names, colors)
-        tidy(axes, "", y_label)
-        _log_scale(axes, columns)
-        legend_beside(axes)
-    panels[-1].set_xlabel("time [s]", fontsize=9, color=INK)
+def base_reaction(trace: Trace) -> Figure:
+    """Angle that the base has turned by since the start, and its angular velocity in its own axes."""
+    time, label = clock(trace)
+    quat = np.asarray(trace.q)[:, 3:7]
+    turned = np.degrees(angle_between(quat, quat[0]))[:, None]
+    rate = np.degrees(np.asarray(trace.v)[:, 3:6])
+    figure = new_figure(COLUMN, 3.1)
+    panels = figure.subplots(2, 1, sharex=True)
+    factor, unit = with_prefix(float(turned.max()), "deg")
+    factor, unit = (factor, unit) if turned.max() < 0.01 else (1.0, "deg")
+    plot_lines(panels[0], time, factor * turned, ("turned",), (INK,))
+    tidy(panels[0], "", f"turned by [{unit}]")
+    factor, unit = with_prefix(float(np.abs(rate).max()), "deg/s")
+    factor, unit = (factor, unit) if np.abs(rate).max() < 0.01 else (1.0, "deg/s")
+    plot_lines(panels[1], time, factor * rate, ("x", "y", "z"), XYZ_COLORS)
+    tidy(panels[1], label, f"turn rate [{unit}]")
+    legend_above(panels[1])
     return figure
-
-
-def _log_scale(axes: Axes, values: Floats) -> None:
-    """Logarithmic where anything is above zero; at most 17 decades."""
-    above = values[values > 0.0]
-    if above.size:
-        axes.set_yscale("log", nonpositive="mask")
-        axes.set_ylim(max(float(above.min()), float(above.max()) * 1e-17) / 3.0, float(above.max()) * 3.0)

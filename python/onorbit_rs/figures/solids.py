@@ -44,6 +44,14 @@ def robot_polygons(model: Model, q: Floats) -> tuple[list[Floats], list[tuple[fl
     return faces, colors
 
 
+def robot_skeleton(model: Model, q: Floats) -> Floats:
+    """Segments (k, 2, 3), W, m, from each joint to the next: the robot where it has only meshes."""
+    origin = {name: np.asarray(model.frame_pose(q, name)).reshape(4, 4)[:3, 3] for name in model.body_names}
+    ends = [(origin[joint.parent], origin[joint.child]) for joint in model.joints
+            if joint.parent in origin and joint.child in origin]  # fmt: skip
+    return np.array(ends).reshape(-1, 2, 3)
+
+
 def _faces(shape: Shape) -> list[Floats]:
     """Faces of one shape, in its own axes."""
     size = shape.size

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]  # ships no types
 
-from onorbit_rs.figures.style import FAINT, INK
+from onorbit_rs.figures.style import FAINT, INK, NORMAL, SMALL
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,31 +17,39 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-def add_space(figure: Figure, *place: Any, elevation: float = 18.0, azimuth: float = -62.0) -> Axes3D:
-    """3-D axes in a figure; ``place`` is as in ``Figure.add_subplot``, angles in degrees."""
-    axes: Axes3D = figure.add_subplot(*place, projection="3d")
+def add_space(
+    figure: Figure,
+    place: tuple[float, float, float, float],
+    *,
+    elevation: float = 18.0,
+    azimuth: float = -62.0,
+) -> Axes3D:
+    """3-D axes in a part of a figure (left, bottom, width, height from 0 to 1); angles in degrees."""
+    axes: Axes3D = figure.add_axes(place, projection="3d")
+    axes.set_in_layout(False)
+    axes.patch.set_visible(False)  # beside others, whose labels it would cover
     axes.view_init(elev=elevation, azim=azimuth)
-    axes.tick_params(labelsize=7, colors=INK, pad=-1)
+    axes.tick_params(labelsize=SMALL, colors=INK, pad=-2)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        axis.set_major_locator(MaxNLocator(4))
+        axis.set_major_locator(MaxNLocator(4, min_n_ticks=2))
         axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
-        axis._axinfo["grid"].update(color=FAINT, linewidth=0.5)
+        axis._axinfo["grid"].update(color=FAINT, linewidth=0.4)
+        axis.line.set_linewidth(0.6)
     return axes
 
 
-def label(axes: Axes3D, unit: str, frame: str = "") -> None:
-    """Names the three axes with their unit."""
-    where = f" {frame}" if frame else ""
-    axes.set_xlabel(f"x{where} [{unit}]", fontsize=8, labelpad=-2)
-    axes.set_ylabel(f"y{where} [{unit}]", fontsize=8, labelpad=-2)
-    axes.set_zlabel(f"z{where} [{unit}]", fontsize=8, labelpad=-2)
+def label(axes: Axes3D, unit: str, pad: float = -5.0, change: str = "") -> None:
+    """Names the three axes with their unit, ``Δx`` where they show a change."""
+    axes.set_xlabel(f"{change}x [{unit}]", fontsize=NORMAL, labelpad=pad)
+    axes.set_ylabel(f"{change}y [{unit}]", fontsize=NORMAL, labelpad=pad)
+    axes.set_zlabel(f"{change}z [{unit}]", fontsize=NORMAL, labelpad=pad)
 
 
 def fit(axes: Axes3D, points: Floats, *, least: float = 0.0, zoom: float = 1.0) -> None:
     """Limits around (k, 3) points, one metre equally long along all three axes.
 
     ``least`` keeps a flat direction from vanishing: the smallest side as a part of the largest. ``zoom``
-    fills the frame.
+    fills the frame. A side that is short beside the longest gets fewer ticks: their labels stay apart.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     largest = max(float((high - low).max()), 1e-9)
@@ -51,3 +59,5 @@ def fit(axes: Axes3D, points: Floats, *, least: float = 0.0, zoom: float = 1.0) 
     axes.set_ylim(center[1] - half[1], center[1] + half[1])
     axes.set_zlim(center[2] - half[2], center[2] + half[2])
     axes.set_box_aspect(tuple(half), zoom=zoom)
+    for axis, share in zip((axes.xaxis, axes.yaxis, axes.zaxis), half / half.max(), strict=True):
+        axis.set_major_locator(MaxNLocator(4 if share > 0.7 else 3 if share > 0.45 else 2, min_n_ticks=1))

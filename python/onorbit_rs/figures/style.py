@@ -1,9 +1,11 @@
-"""One look for every figure: colours safe for colour-blind readers, units in every label, no global state."""
+"""One look for every figure: sizes of a two-column paper, colours safe for colour-blind readers, units in
+every label, no global state, no titles (a caption belongs to the page around it).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,61 +15,79 @@ from matplotlib.figure import Figure
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from onorbit_rs._core import Trace
+
     Floats = NDArray[np.float64]
 
-# Okabe and Ito, "Color Universal Design", 2008.
-COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7F7F7F", "#F0E442", "#000000")
+# Okabe and Ito, "Color Universal Design", 2008; their yellow is too pale for a line on white.
+COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7F7F7F", "#000000")
+DASHES = ("-", (0, (4, 1.2)), (0, (1.2, 1.2)))
+"""After all colours are used up, again with the next."""
 XYZ_COLORS = ("#D55E00", "#009E73", "#0072B2")
-DESIRED, OBTAINED = "#000000", "#D62728"
+DESIRED, OBTAINED = "#000000", "#D55E00"
 INK, FAINT_INK, FAINT = "#222222", "#8A8A8A", "#D9D9D9"
 
-DPI = 150
-MOST_POINTS = 20_000
-"""Of one line; longer ones keep the extremes of each stretch."""
+COLUMN, PAGE = 3.5, 7.16
+"""Inches: one column and the full width of a two-column page (IEEE)."""
+SMALL, NORMAL = 7, 8
+"""Points, as printed."""
+LINE = 1.1
+DPI = 300
+MOST_POINTS = 4_000
+"""Of one line; longer ones keep the extremes of each stretch. A column of print has 1050 dots at 300 dpi."""
+MOST_LINES = 16
+"""In one plot: as many as can be told apart."""
 
 _PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"), (1e6, "M"))
+_CLOCK = ((4 * 86400.0, 86400.0, "d"), (3 * 3600.0, 3600.0, "h"), (1200.0, 60.0, "min"))
 
 
-def new_figure(width: float, height: float, title: str) -> Figure:
-    """An empty figure that draws to memory, without pyplot.
-
-    Parameters
-    ----------
-    width, height : float
-        Inches.
-    title : str
-        Above everything, on the left.
-    """
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of this size in inches that draws to memory, without pyplot."""
     figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
-    figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=INK)
     return figure
 
 
 def tidy(axes: Axes, x_label: str, y_label: str) -> None:
     """Quiet frame, light grid, labels."""
-    axes.set_xlabel(x_label, fontsize=9, color=INK)
-    axes.set_ylabel(y_label, fontsize=9, color=INK)
-    axes.tick_params(labelsize=8, colors=INK, length=3)
-    axes.grid(True, color=FAINT, linewidth=0.6)
+    axes.set_xlabel(x_label, fontsize=NORMAL, color=INK)
+    axes.set_ylabel(y_label, fontsize=NORMAL, color=INK)
+    axes.tick_params(labelsize=SMALL, colors=INK, length=2.5, width=0.6)
+    axes.grid(True, color=FAINT, linewidth=0.5)
     axes.set_axisbelow(True)
     axes.margins(x=0.0)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
-    axes.yaxis.get_offset_text().set_fontsize(8)
+    for side in ("left", "bottom"):
+        axes.spines[side].set_linewidth(0.6)
+    axes.yaxis.get_offset_text().set_fontsize(SMALL)
 
 
-def legend_beside(axes: Axes, **options: Any) -> None:
-    """Legend to the right of the axes, where it covers nothing."""
+def legend_above(axes: Axes, width: float = COLUMN - 0.5) -> None:
+    """Legend above the axes, where it covers nothing, in as many columns as go into ``width`` inches."""
+    handles, names = axes.get_legend_handles_labels()
     axes.legend(
-        loc="upper left",
-        bbox_to_anchor=(1.01, 1.0),
-        frameon=False,
-        fontsize=8,
-        borderaxespad=0.0,
-        handlelength=1.4,
-        **options,
-    )
+        handles, names, loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False, fontsize=SMALL,
+        borderaxespad=0.15, borderpad=0.1, handlelength=1.6, handletextpad=0.5, columnspacing=1.0,
+        labelspacing=0.25, ncols=_columns(names, width),
+    )  # fmt: skip
+
+
+def legend_height(names: Sequence[str], width: float = COLUMN - 0.5) -> float:
+    """Inches that :func:`legend_above` takes."""
+    return 0.13 * -(-len(names) // _columns(names, width))
+
+
+def _columns(names: Sequence[str], width: float) -> int:
+    entry = 0.34 + SMALL * 0.55 / 72.0 * max((len(name) for name in names), default=0)
+    return max(1, min(len(names), int(width / entry)))
+
+
+def plain(name: str) -> str:
+    """A name of the user's, in which matplotlib must see no formula, and that no legend leaves out."""
+    name = name.replace("$", r"\$")
+    return f" {name}" if name.startswith("_") else name
 
 
 def with_prefix(peak: float, unit: str) -> tuple[float, str]:
@@ -79,13 +99,47 @@ def with_prefix(peak: float, unit: str) -> tuple[float, str]:
     return 1.0 / scale, prefix + unit
 
 
+def clock(trace: Trace) -> tuple[Floats, str]:
+    """The time of each row, in a unit that fits the run, and the label of the axis."""
+    time = np.asarray(trace.time)
+    span = float(time[-1] - time[0])
+    scale, unit = next(((scale, unit) for least, scale, unit in _CLOCK if span >= least), (1.0, "s"))
+    return time / scale, f"time [{unit}]"
+
+
 def plot_lines(
-    axes: Axes, time: Floats, columns: Floats, names: Sequence[str], colors: Sequence[str]
+    axes: Axes, time: Floats, columns: Floats, names: Sequence[str], colors: Sequence[str] = COLORS
 ) -> None:
     """One line per column of ``columns`` (T, n)."""
     for index, name in enumerate(names):
         x, y = thin(time, columns[:, index])
-        axes.plot(x, y, color=colors[index % len(colors)], linewidth=1.3, label=name)
+        dashes = DASHES[index // len(colors) % len(DASHES)]
+        color = colors[index % len(colors)]
+        axes.plot(x, y, color=color, linewidth=LINE, linestyle=dashes, label=plain(name))
+
+
+def plot_largest(axes: Axes, time: Floats, columns: Floats, names: Sequence[str]) -> list[str]:
+    """The largest of many columns by name, the others in grey; returns what the legend says."""
+    names = list(names)
+    if len(names) <= MOST_LINES:
+        plot_lines(axes, time, columns, names)
+        return names
+    peaks = np.abs(columns).max(axis=0)
+    largest = np.sort(np.argsort(-peaks)[: MOST_LINES - 1])
+    others = np.setdiff1d(np.arange(len(names)), largest)
+    for index in others:
+        x, y = thin(time, columns[:, index])
+        axes.plot(x, y, color=FAINT_INK, linewidth=0.5, alpha=0.6, label="_nolegend_")
+    rest = others_of(len(others))
+    axes.lines[-1].set_label(rest)
+    chosen = [names[index] for index in largest]
+    plot_lines(axes, time, columns[:, largest], chosen)
+    return [rest, *chosen]
+
+
+def others_of(count: int) -> str:
+    """What the legend says of lines without a colour of their own."""
+    return f"{count} other{'s' if count > 1 else ''}, smaller"
 
 
 def thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:

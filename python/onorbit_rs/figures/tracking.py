@@ -5,54 +5,88 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from onorbit_rs.figures.style import (
-    COLORS,
+    COLUMN,
     INK,
+    LINE,
     XYZ_COLORS,
-    legend_beside,
+    clock,
+    legend_above,
+    legend_height,
     new_figure,
+    plot_largest,
     plot_lines,
     tidy,
     with_prefix,
 )
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from onorbit_rs._core import Model, Trace
+
+    Floats = NDArray[np.float64]
 
 
 def tracking_errors(trace: Trace) -> Figure:
     """Fig. 6: desired minus obtained position and attitude (rotation vector) of the tool, W axes."""
-    figure = new_figure(8.0, 5.0, "Tracking error of the tool (Fig. 6)")
+    time, label = clock(trace)
+    figure = new_figure(COLUMN, 3.3)
     panels = figure.subplots(2, 1, sharex=True)
-    rows = [
-        (trace.position_error, "m", "a) position error"),
-        (trace.attitude_error, "rad", "b) attitude error"),
-    ]
-    for axes, (column, unit, name) in zip(panels, rows, strict=True):
-        error = np.asarray(column)
-        norm = np.linalg.norm(error, axis=1)
-        factor, scaled_unit = with_prefix(float(norm.max()), unit)
-        plot_lines(axes, trace.time, factor * error, ("x", "y", "z"), XYZ_COLORS)
-        plot_lines(axes, trace.time, factor * norm[:, None], ("norm",), (INK,))
-        axes.lines[-1].set(linestyle="--", linewidth=1.0)
-        tidy(axes, "", f"{name} [{scaled_unit}]")
-        legend_beside(axes)
-    panels[-1].set_xlabel("time [s]", fontsize=9, color=INK)
+    _plot_error(panels[0], time, np.asarray(trace.position_error), "m", "position error")
+    _plot_error(panels[1], time, np.asarray(trace.attitude_error), "rad", "attitude error")
+    tidy(panels[1], label, panels[1].get_ylabel())
     return figure
+
+
+def control_errors(trace: Trace, name: str, joints: list[str]) -> Figure:
+    """The errors of one of several controllers: of its tool as in Fig. 6, or of each of its joints."""
+    time, label = clock(trace)
+    errors = np.asarray(trace.tracking[name])
+    if not joints:
+        figure = new_figure(COLUMN, 3.3)
+        panels = figure.subplots(2, 1, sharex=True)
+        _plot_error(panels[0], time, errors[:, :3], "m", "position error")
+        _plot_error(panels[1], time, errors[:, 3:], "rad", "attitude error")
+        tidy(panels[1], label, panels[1].get_ylabel())
+        return figure
+    return _many(time, label, errors, joints, "joint error", "rad")
 
 
 def joint_torques(trace: Trace, model: Model) -> Figure:
     """Fig. 7: the torque of every joint, held over each control step."""
-    tau = np.asarray(trace.tau)
-    figure = new_figure(8.0, 3.8, "Control action: joint torques (Fig. 7)")
+    time, label = clock(trace)
+    units = {joint.kind for joint in model.joints}
+    what = "torque" if "prismatic" not in units else "effort"
+    unit = {"torque": "N m"}.get(what, "N m, N" if "revolute" in units else "N")
+    return _many(time, label, np.asarray(trace.tau), list(model.joint_names), what, unit)
+
+
+def _many(time: Floats, label: str, columns: Floats, names: list[str], what: str, unit: str) -> Figure:
+    """One plot of a line for each joint, symmetric about zero."""
+    peak = max(float(np.abs(columns).max()), 1e-12)
+    factor, scaled = with_prefix(peak, unit) if peak < 0.1 or peak >= 1e3 else (1.0, unit)
+    if ", " in unit:  # two units take no common prefix
+        factor, scaled = 1.0, unit
+    figure = new_figure(COLUMN, 2.2)
     axes = figure.subplots()
-    peak = max(float(np.abs(tau).max()), 1e-12)
-    factor, unit = with_prefix(peak, "N m") if peak < 0.1 else (1.0, "N m")
-    plot_lines(axes, trace.time, factor * tau, list(model.joint_names), COLORS)
+    shown = plot_largest(axes, time, factor * columns, names)
     axes.set_ylim(-1.08 * factor * peak, 1.08 * factor * peak)
-    axes.axhline(0.0, color=INK, linewidth=0.6, zorder=0)
-    tidy(axes, "time [s]", f"torque [{unit}]")
-    legend_beside(axes, ncols=1 + len(model.joint_names) // 15)
+    axes.axhline(0.0, color=INK, linewidth=0.5, zorder=0)
+    tidy(axes, label, f"{what} [{scaled}]")
+    legend_above(axes)
+    figure.set_figheight(2.0 + legend_height(shown))
     return figure
+
+
+def _plot_error(axes: Axes, time: Floats, error: Floats, unit: str, what: str) -> None:
+    norm = np.linalg.norm(error, axis=1)
+    factor, scaled_unit = with_prefix(float(norm.max()), unit)
+    plot_lines(axes, time, factor * error, ("x", "y", "z"), XYZ_COLORS)
+    plot_lines(axes, time, factor * norm[:, None], ("norm",), (INK,))
+    axes.lines[-1].set(linestyle=(0, (3, 1.5)), linewidth=0.8 * LINE)
+    tidy(axes, "", f"{what} [{scaled_unit}]")
+    legend_above(axes)

@@ -16,7 +16,8 @@ from onorbit_rs.exceptions import (
     OutputNotWritableError,
 )
 
-OURS = ("scenario.yaml", "trace.npz", "summary.json", "run.rrd")
+REPORT = "report.html"
+OURS = ("scenario.yaml", "trace.npz", "summary.json", "run.rrd", REPORT)
 FIGURES = "figures"
 CHECKPOINT = "checkpoint"
 
@@ -119,7 +120,12 @@ class OutputFolder:
             checkpoint / "state.json",
             *checkpoint.glob("*.f64"),
         ]  # the state first: rows alone count nothing
-        for file in [*(self.path / name for name in OURS), *figures.glob("*.png"), *rows]:
+        for file in [
+            *(self.path / name for name in OURS),
+            *figures.glob("*.png"),
+            *figures.glob("*.pdf"),
+            *rows,
+        ]:
             try:
                 file.unlink(missing_ok=True)
             except OSError as error:

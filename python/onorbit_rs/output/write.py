@@ -11,8 +11,11 @@ import yaml
 
 from onorbit_rs.exceptions import OrbitError
 from onorbit_rs.output.folder import FIGURES, OutputFolder
+from onorbit_rs.scenario.earth import make_earth
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from onorbit_rs._core import Trace
     from onorbit_rs.scenario import Scenario
     from onorbit_rs.scenario.build import Built
@@ -50,15 +53,27 @@ def write_summary(folder: OutputFolder, summary: dict[str, Any]) -> None:
         path.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def write_pictures(folder: OutputFolder, trace: Trace, summary: dict[str, Any], built: Built) -> None:
-    """Figures and recording."""
+def write_pictures(
+    folder: OutputFolder,
+    trace: Trace,
+    summary: dict[str, Any],
+    built: Built,
+    *,
+    tell: Callable[[str], None] = lambda doing: None,
+) -> None:
+    """Figures and recording; ``tell`` is called with what is being written."""
     # Imported here: matplotlib and rerun take a second that a run without output should not pay.
     from onorbit_rs import figures, viewer
 
     has_planet = built.orbit is not None and built.orbit.mu is not None
     if len(trace.time) > 1:
+        scenario = built.scenario
+        beside = scenario.file.parent if scenario.file else Path()
+        earth = make_earth(scenario, built.orbit, beside)
+        subject = figures.subject_of(trace, scenario, built.model, built.orbit, earth)
         with folder.refusals(FIGURES):
-            figures.save_all(trace, built.model, folder.path / FIGURES, has_planet=has_planet)
+            figures.save_all(subject, folder.path / FIGURES, tell=lambda name: tell(f"drawing {name}"))
+    tell("writing the recording")
     with folder.writing("run.rrd") as path:
         viewer.write_recording(
             path,

@@ -73,7 +73,7 @@ def build(scenario: Scenario) -> Built:
     """
     beside = scenario.file.parent if scenario.file else Path()
     with located(scenario, "robot"):
-        model = _robot(scenario)
+        model = make_robot(scenario)
     with located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, beside)
     with located(scenario, "epoch" if scenario.earth is None else "earth"):
@@ -186,7 +186,8 @@ def located(scenario: Scenario, *at: str | int) -> Iterator[None]:
         raise
 
 
-def _robot(scenario: Scenario) -> _core.Model:
+def make_robot(scenario: Scenario) -> _core.Model:
+    """The robot of a scenario."""
     robot = scenario.robot
     if robot.rigid_body is not None:
         return _core.Model.rigid_body(robot.rigid_body.mass, np.array(robot.rigid_body.inertia))

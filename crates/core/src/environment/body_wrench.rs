@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Effect, EnvironmentError, Scene, Wrench};
+use super::{Effect, EnvironmentError, Scene, Wrench, Wrenches};
 use crate::model::Model;
 
 /// Constant force and torque in a body's own axes, on from `start` until `end`.
@@ -99,18 +99,18 @@ impl Effect for BodyWrench {
     }
 
     /// # Errors
-    /// [`EnvironmentError::UnknownBody`] and [`EnvironmentError::WrongLength`].
-    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+    /// [`EnvironmentError::UnknownBody`].
+    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let count = scene.bodies.len();
         let unknown = EnvironmentError::UnknownBody { body: self.body, count };
-        let (body, wrench) = scene.paired(wrenches)?.nth(self.body).ok_or(unknown)?;
+        let body = scene.bodies.get(self.body).ok_or(unknown)?;
         let middle = scene.middle();
         if self.start <= middle && middle < self.end {
             // F = R f,  T = R τ + (o + R p - c) × F
             let force = body.rot_wk * self.force;
             let arm = body.origin + body.rot_wk * self.point - body.com;
-            wrench.force += force;
-            wrench.torque += body.rot_wk * self.torque + arm.cross(&force);
+            let torque = body.rot_wk * self.torque + arm.cross(&force);
+            wrenches.add(self.body, Wrench { force, torque })?;
         }
         Ok(())
     }

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::lanes::{OnLanes, add_force};
-use super::{Effect, EnvironmentError, Reference, Scene, Wrench};
+use super::rows::on_lanes;
+use super::wrenches::Push;
+use super::{Effect, EnvironmentError, Reference, Scene, Wrenches};
 use crate::gravity::{point_mass, tide};
 use crate::spatial::{Real, Vec3};
 
@@ -65,13 +66,13 @@ impl Effect for DifferentialGravity {
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::InsidePlanet`] where the
     /// reference or a body comes nearer to the centre than any planet of that mass allows, and
     /// [`EnvironmentError::Gravity`].
-    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-        self.add_on_widest(scene, wrenches)
+    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
+        on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }
 }
 
-impl OnLanes for DifferentialGravity {
-    fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+impl DifferentialGravity {
+    fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let planet = scene.planet(NAME)?;
         let state = &planet.reference;
         let differs = planet.falls_freely || self.motion == ReferenceMotion::Carried;
@@ -82,22 +83,21 @@ impl OnLanes for DifferentialGravity {
         };
         let field = scene.nearby(&planet, differs)?;
         let (origin, residual) = (Vec3::from(state.position), Vec3::from(residual));
-        S::enter(
+        scene.push::<S>(
+            wrenches,
             #[inline(always)]
-            || {
-                for (group, wrenches) in scene.groups::<S>(wrenches)? {
-                    let com = group.vectors::<S>(|body| &body.com);
-                    let (tide, distance) = tide(planet.mu, &origin, com);
-                    planet.all_outside(&group, distance)?;
-                    let beyond = match field {
-                        Some(field) if differs => field.difference(com)?,
-                        Some(field) => field.acceleration(com)?,
-                        None => Vec3::zero(),
-                    };
-                    // F = m [(g(r) - g(R)) + (g(R) - r̈_ref) + gp], g here that of the point mass
-                    add_force(wrenches, (tide + Vec3::of(&residual) + beyond) * group.masses());
-                }
-                Ok(())
+            |group| {
+                let com = group.coms();
+                let (tide, distance) = tide(planet.mu, &origin, com);
+                planet.all_outside(group, distance)?;
+                let beyond = match field {
+                    Some(field) if differs => field.difference(com)?,
+                    Some(field) => field.acceleration(com)?,
+                    None => Vec3::zero(),
+                };
+                // F = m [(g(r) - g(R)) + (g(R) - r̈_ref) + gp], g here that of the point mass
+                let force = (tide + Vec3::of(&residual) + beyond) * group.masses();
+                Ok(Push { force, torque: Vec3::zero() })
             },
         )
     }

@@ -1,11 +1,12 @@
 //! Drag of the air that turns with the Earth.
 
 use super::atmosphere::{AirPlace, Atmosphere, AtmosphereError, LocalAir};
-use super::lanes::{OneByOne, add_push};
+use super::rows::on_lanes;
 use super::surfaces::Surfaces;
-use super::{Effect, EnvironmentError, Scene, Wrench};
+use super::wrenches::Push;
+use super::{Effect, EnvironmentError, Scene, Wrenches};
 use crate::earth::Earth;
-use crate::spatial::{Scalar, Vec3};
+use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -66,36 +67,34 @@ impl Effect for Drag {
 
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], what the atmosphere refuses.
-    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-        self.add_one_by_one(scene, wrenches)
+    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
+        on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }
 }
 
-impl OneByOne for Drag {
-    fn add<S: Scalar>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+impl Drag {
+    fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
-        let near = scene.bodies.first().map_or_else(Vector3::zeros, |body| body.com);
-        let air = self.local(earth, scene.time, &(reference.position + near))?;
+        let base = reference.position + scene.bodies.com_of_base();
+        let air = self.local(earth, scene.time, &base)?;
         let afresh = |r: Vector3<f64>| -> Result<f64, EnvironmentError> {
             Ok(self.atmosphere.density(&AirPlace::new(earth, scene.time, &r)?)?)
         };
         let (origin, velocity) = (Vec3::from(reference.position), Vec3::from(reference.velocity));
         let spin = Vec3::<S>::of(&air.spin.into());
-        S::enter(
+        scene.push::<S>(
+            wrenches,
             #[inline(always)]
-            || {
-                for (group, wrenches) in scene.groups::<S>(wrenches)? {
-                    let Some(surface) = self.surfaces.of_body(group.first) else { continue };
-                    let r = Vec3::<S>::of(&origin) + group.vectors(|body| &body.com);
-                    let density = air.densities(r, afresh)?;
-                    // v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
-                    let v = Vec3::<S>::of(&velocity) + group.vectors(|body| &body.velocity) - spin.cross(r);
-                    let w = group.vectors(|body| &body.angular_velocity) - spin;
-                    let rot_wk = group.rot_wk::<S>();
-                    let push = surface.blow(rot_wk.transpose_mul(v), rot_wk.transpose_mul(w));
-                    add_push(wrenches, push.turned(&rot_wk) * density);
-                }
-                Ok(())
+            |group| {
+                let Some(surfaces) = self.surfaces.around(group.first) else { return Ok(Push::nothing()) };
+                let r = Vec3::<S>::of(&origin) + group.coms();
+                let density = air.densities(r, afresh)?;
+                // v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
+                let [linear, angular] = group.velocities();
+                let (v, w) = (Vec3::<S>::of(&velocity) + linear - spin.cross(r), angular - spin);
+                let rot_wk = group.rot_wk::<S>();
+                let push = surfaces.blow(group.offset(), rot_wk.transpose_mul(v), rot_wk.transpose_mul(w));
+                Ok(push.turned(&rot_wk) * density)
             },
         )
     }

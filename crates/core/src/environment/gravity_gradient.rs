@@ -1,7 +1,8 @@
 //! Torque of the field on each extended body.
 
-use super::lanes::{OnLanes, add_torque};
-use super::{Effect, EnvironmentError, Scene, Wrench};
+use super::rows::on_lanes;
+use super::wrenches::Push;
+use super::{Effect, EnvironmentError, Scene, Wrenches};
 use crate::spatial::{Real, Sym3, Vec3};
 
 /// Gravity-gradient torque of each body about its own centre of mass, at its own position.
@@ -32,42 +33,40 @@ impl Effect for GravityGradient {
 
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::InsidePlanet`] and [`EnvironmentError::Gravity`].
-    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-        self.add_on_widest(scene, wrenches)
+    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
+        on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }
 }
 
-impl OnLanes for GravityGradient {
-    fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+impl GravityGradient {
+    fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let planet = scene.planet(NAME)?;
         let field = scene.nearby(&planet, planet.falls_freely)?;
         let origin = Vec3::from(planet.reference.position);
-        S::enter(
+        scene.push::<S>(
+            wrenches,
             #[inline(always)]
-            || {
-                for (group, wrenches) in scene.groups::<S>(wrenches)? {
-                    let com = group.vectors::<S>(|body| &body.com);
-                    let r = Vec3::<S>::of(&origin) + com;
-                    let distance = r.norm();
-                    planet.all_outside(&group, distance)?;
-                    // G = (3μ/r³) r̂ r̂ᵀ + Gp;  what is left out, -(μ/r³) 1, turns nothing;  T = (3μ/r³) r̂ × I r̂ of the first
-                    let inverse = S::of(1.0) / distance;
-                    let up = r * inverse;
-                    let rate = S::of(3.0 * planet.mu) * inverse * inverse * inverse;
-                    let (rot_wk, inertia) = (group.rot_wk(), group.inertias());
-                    let torque_k = match field {
-                        Some(field) => {
-                            let g = field.gradient(com)?.add_outer(up, rate);
-                            torque(&g.rotate(&rot_wk.transpose()), &inertia)
-                        }
-                        None => {
-                            let up_k = rot_wk.transpose_mul(up);
-                            up_k.cross(inertia * up_k) * rate
-                        }
-                    };
-                    add_torque(wrenches, rot_wk * torque_k);
-                }
-                Ok(())
+            |group| {
+                let com = group.coms();
+                let r = Vec3::<S>::of(&origin) + com;
+                let distance = r.norm();
+                planet.all_outside(group, distance)?;
+                // G = (3μ/r³) r̂ r̂ᵀ + Gp;  what is left out, -(μ/r³) 1, turns nothing;  T = (3μ/r³) r̂ × I r̂ of the first
+                let inverse = S::of(1.0) / distance;
+                let up = r * inverse;
+                let rate = S::of(3.0 * planet.mu) * inverse * inverse * inverse;
+                let (rot_wk, inertia) = (group.rot_wk(), group.inertias());
+                let torque_k = match field {
+                    Some(field) => {
+                        let g = field.gradient(com)?.add_outer(up, rate);
+                        torque(&g.rotate(&rot_wk.transpose()), &inertia)
+                    }
+                    None => {
+                        let up_k = rot_wk.transpose_mul(up);
+                        up_k.cross(inertia * up_k) * rate
+                    }
+                };
+                Ok(Push { force: Vec3::zero(), torque: rot_wk * torque_k })
             },
         )
     }

@@ -4,30 +4,36 @@
 //! `W` has inertial axes and its origin on the reference orbit.
 
 pub mod atmosphere;
+mod bodies;
 mod body_wrench;
 mod differential_gravity;
 mod drag;
 mod error;
 mod gravity_gradient;
-mod lanes;
 mod radiation_pressure;
+mod rows;
 mod scene;
 mod shadow;
 pub mod surfaces;
+mod wrenches;
 
+pub(crate) use bodies::BodyMotion;
+pub use bodies::{Bodies, BodyState};
 pub use body_wrench::BodyWrench;
 pub use differential_gravity::{DifferentialGravity, ReferenceMotion};
 pub use drag::Drag;
 pub use error::{EnvironmentError, Place};
 pub use gravity_gradient::GravityGradient;
 pub use radiation_pressure::{RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX};
-pub use scene::{BodyState, Instant, Reference, Scene, Wrench};
+pub(crate) use rows::on_lanes;
+pub use scene::{Instant, Reference, Scene};
 pub use shadow::sunlit;
+pub use wrenches::{Wrench, Wrenches};
 
 /// Something that pulls, pushes or turns the bodies of a robot.
 ///
 /// ```
-/// use onorbit_core::environment::{Effect, EnvironmentError, Scene, Wrench};
+/// use onorbit_core::environment::{Effect, EnvironmentError, Scene, Wrench, Wrenches};
 /// use nalgebra::Vector3;
 ///
 /// /// Linear damping towards rest in `W`: every body feels `-c v`.
@@ -38,9 +44,10 @@ pub use shadow::sunlit;
 ///     fn name(&self) -> &str {
 ///         "honey"
 ///     }
-///     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-///         for (body, wrench) in scene.paired(wrenches)? {
-///             wrench.force -= body.velocity * self.0;
+///     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
+///         for (k, body) in scene.bodies.iter().enumerate() {
+///             let force = body.velocity * -self.0;
+///             wrenches.add(k, Wrench { force, torque: Vector3::zeros() })?;
 ///         }
 ///         Ok(())
 ///     }
@@ -71,9 +78,9 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
         false
     }
 
-    /// Add this effect's wrench on each body to what `wrenches` holds, one per body; allocates nothing.
+    /// Add this effect's wrench on each body to what `wrenches` holds; allocates nothing.
     ///
     /// # Errors
     /// [`EnvironmentError`] where the effect is not defined in this scene.
-    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError>;
+    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError>;
 }

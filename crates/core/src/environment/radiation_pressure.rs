@@ -1,10 +1,11 @@
 //! The push of sunlight.
 
-use super::lanes::{OneByOne, add_push};
+use super::rows::on_lanes;
 use super::shadow::sunlit;
 use super::surfaces::{SurfaceError, Surfaces, not_negative};
-use super::{Effect, EnvironmentError, Scene, Wrench};
-use crate::spatial::{Scalar, Vec3};
+use super::wrenches::Push;
+use super::{Effect, EnvironmentError, Scene, Wrenches};
+use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 
 /// Radiation pressure on every covered body, with its torque, and the Earth's shadow.
@@ -55,7 +56,7 @@ impl RadiationPressure {
     }
 
     /// The light at `r`, with the Sun at `sun`, both from the Earth's centre, m.
-    fn light(&self, r: &Vector3<f64>, sun: &Vector3<f64>) -> Light {
+    fn light(&self, r: &Vector3<f64>, sun: &Vector3<f64>) -> Light<f64> {
         let to_sun = sun - r;
         let distance = to_sun.norm();
         let share = self.earth_radius.map_or(1.0, |radius| sunlit(r, sun, radius));
@@ -87,9 +88,17 @@ impl RadiationPressure {
 
 /// Unit vector to the Sun, and what its light presses with, N/m².
 #[derive(Clone, Copy)]
-struct Light {
-    to_sun: Vec3<f64>,
-    pressure: f64,
+struct Light<S> {
+    to_sun: Vec3<S>,
+    pressure: S,
+}
+
+impl<S: Real> Light<S> {
+    /// Another one on each body.
+    #[inline(always)]
+    fn from_lanes(light: impl Fn(usize) -> Light<f64>) -> Self {
+        Self { to_sun: Vec3::from_lanes(|i| light(i).to_sun), pressure: S::from_lanes(|i| light(i).pressure) }
+    }
 }
 
 fn a_planets(radius: f64) -> Result<f64, SurfaceError> {
@@ -119,34 +128,33 @@ impl Effect for RadiationPressure {
 
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], and an Earth without epoch.
-    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
-        self.add_one_by_one(scene, wrenches)
+    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
+        on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }
 }
 
-impl OneByOne for RadiationPressure {
-    fn add<S: Scalar>(&self, scene: &Scene<'_>, wrenches: &mut [Wrench]) -> Result<(), EnvironmentError> {
+impl RadiationPressure {
+    fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
-        let sun = scene.sun(earth)?;
-        let Some(base) = scene.bodies.first().map(|body| body.com) else { return Ok(()) };
+        let (sun, base) = (scene.sun(earth)?, scene.bodies.com_of_base());
         let at_base = self.light(&(reference.position + base), &sun);
-        S::enter(
+        let base = Vec3::<S>::of(&base.into());
+        let on_each = |coms: Vec3<S>| {
+            let light = |i: usize| self.light(&(reference.position + coms.lane(i).to_nalgebra()), &sun);
+            Light::<S>::from_lanes(light)
+        };
+        scene.push::<S>(
+            wrenches,
             #[inline(always)]
-            || {
-                for (group, wrenches) in scene.groups::<S>(wrenches)? {
-                    let Some(surface) = self.surfaces.of_body(group.first) else { continue };
-                    let com = &group.bodies[0].com;
-                    let light = match (com - base).norm_squared() <= REACH * REACH {
-                        true => at_base,
-                        false => self.light(&(reference.position + com), &sun),
-                    };
-                    if light.pressure > 0.0 {
-                        let rot_wk = group.rot_wk::<S>();
-                        let push = surface.shine(rot_wk.transpose_mul(Vec3::of(&light.to_sun)));
-                        add_push(wrenches, push.turned(&rot_wk) * S::of(light.pressure));
-                    }
-                }
-                Ok(())
+            |group| {
+                let Some(surfaces) = self.surfaces.around(group.first) else { return Ok(Push::nothing()) };
+                let com = group.coms::<S>();
+                let offset = com - base;
+                let is_far = S::any(S::of(REACH * REACH).less(offset.dot(offset)));
+                let light = if is_far { on_each(com) } else { Light::from_lanes(|_| at_base) };
+                let rot_wk = group.rot_wk::<S>();
+                let push = surfaces.shine(group.offset(), rot_wk.transpose_mul(light.to_sun));
+                Ok(push.turned(&rot_wk) * light.pressure)
             },
         )
     }

@@ -1,34 +1,16 @@
 //! What an effect sees of the robot and of the orbit at one instant.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use super::EnvironmentError;
+use super::bodies::{Bodies, Group};
 use super::error::Place;
-use super::lanes::Group;
+use super::wrenches::{Push, Wrenches};
 use crate::earth::Earth;
 use crate::gravity::{Gravity, Nearby, Sky, Station, smallest_radius_cubed};
 use crate::orbit::OrbitState;
 use crate::spatial::Real;
 use std::cell::OnceCell;
-
-/// One body of the robot, in `W`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyState {
-    /// Mass, kg.
-    pub mass: f64,
-    /// Inertia about the centre of mass in the body's own axes, kg m².
-    pub inertia: Matrix3<f64>,
-    /// Centre of mass, m.
-    pub com: Vector3<f64>,
-    /// Takes components in the body's own axes (those of its [`Node`](crate::model::Node)) to `W`.
-    pub rot_wk: Matrix3<f64>,
-    /// Origin of the body's axes, m.
-    pub origin: Vector3<f64>,
-    /// Velocity of the centre of mass, m/s; zero unless an effect [reads it](super::Effect::reads_velocities).
-    pub velocity: Vector3<f64>,
-    /// Angular velocity, `W` axes, rad/s; likewise.
-    pub angular_velocity: Vector3<f64>,
-}
 
 /// The reference orbit at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -60,24 +42,15 @@ pub struct Scene<'a> {
     /// How the Earth turns, where the run says so.
     pub earth: Option<&'a Earth>,
     /// The robot's bodies now.
-    pub bodies: &'a [BodyState],
+    pub bodies: &'a Bodies,
     instant: &'a Instant,
     /// What effects look at one after the other: the field by itself, and where differences are asked for.
     near: [OnceCell<Nearby<'a>>; 2],
 }
 
-/// Force through a body's centre of mass and torque about it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wrench {
-    /// Force, `W` axes, N.
-    pub force: Vector3<f64>,
-    /// Torque about the centre of mass, `W` axes, N m.
-    pub torque: Vector3<f64>,
-}
-
 impl<'a> Scene<'a> {
     /// The bodies at `time` in a step over `interval`; no orbit, no Earth. `instant` is one for each time and reference.
-    pub fn new(interval: (f64, f64), time: f64, bodies: &'a [BodyState], instant: &'a Instant) -> Self {
+    pub fn new(interval: (f64, f64), time: f64, bodies: &'a Bodies, instant: &'a Instant) -> Self {
         Self { interval, time, reference: None, earth: None, bodies, instant, near: Default::default() }
     }
 
@@ -98,37 +71,29 @@ impl<'a> Scene<'a> {
         0.5 * (self.interval.0 + self.interval.1)
     }
 
-    /// Refuses any but one wrench per body.
-    fn check_length(&self, wrenches: &[Wrench]) -> Result<(), EnvironmentError> {
-        let (expected, got) = (self.bodies.len(), wrenches.len());
-        if expected == got { Ok(()) } else { Err(EnvironmentError::WrongLength { expected, got }) }
-    }
-
-    /// Each body with its wrench.
+    /// Adds what acts on the bodies, found for as many at once as `S` has lanes.
     ///
     /// # Errors
-    /// [`EnvironmentError::WrongLength`] when there is not one wrench per body.
-    pub fn paired<'w>(
-        &self,
-        wrenches: &'w mut [Wrench],
-    ) -> Result<impl Iterator<Item = (&'a BodyState, &'w mut Wrench)>, EnvironmentError> {
-        self.check_length(wrenches)?;
-        Ok(self.bodies.iter().zip(wrenches.iter_mut()))
-    }
-
-    /// Bodies and their wrenches in groups of as many as `S` has lanes.
-    ///
-    /// # Errors
-    /// [`EnvironmentError::WrongLength`] when there is not one wrench per body.
+    /// [`EnvironmentError::WrongLength`] when there is not one wrench per body, and what `push` says.
     #[inline(always)]
-    pub(super) fn groups<'w, S: Real>(
+    pub(super) fn push<S: Real>(
         &self,
-        wrenches: &'w mut [Wrench],
-    ) -> Result<impl Iterator<Item = (Group<'a>, &'w mut [Wrench])>, EnvironmentError> {
-        self.check_length(wrenches)?;
-        let groups = self.bodies.chunks(S::LANES).enumerate();
-        let groups = groups.map(|(k, bodies)| Group { first: k * S::LANES, bodies });
-        Ok(groups.zip(wrenches.chunks_mut(S::LANES)))
+        wrenches: &mut Wrenches,
+        push: impl Fn(&Group<'a>) -> Result<Push<S>, EnvironmentError>,
+    ) -> Result<(), EnvironmentError> {
+        let (expected, got) = (self.bodies.len(), wrenches.len());
+        if expected != got {
+            return Err(EnvironmentError::WrongLength { expected, got });
+        }
+        S::enter(
+            #[inline(always)]
+            || {
+                for group in self.bodies.groups::<S>() {
+                    wrenches.add_lanes(group.first, push(&group)?);
+                }
+                Ok(())
+            },
+        )
     }
 
     /// State of the reference around its planet, and how the Earth turns.
@@ -151,12 +116,6 @@ impl<'a> Scene<'a> {
         Ok(planet)
     }
 
-    /// Whether the planet's point mass is all that pulls.
-    pub(super) fn is_around_point_mass(&self) -> bool {
-        let gravity = self.reference.and_then(|reference| reference.gravity);
-        gravity.is_some_and(Gravity::is_point_mass)
-    }
-
     /// Gravity without the planet's point mass, around the robot; none where that is all there is.
     pub(super) fn nearby(
         &self,
@@ -169,7 +128,7 @@ impl<'a> Scene<'a> {
         let near = || -> Result<Nearby<'a>, EnvironmentError> {
             let OrbitState { position, velocity, .. } = planet.reference;
             let travel = velocity.norm() * (self.interval.1 - self.interval.0);
-            let (time, origin, com) = (self.time, position.into(), center_of_mass(self.bodies).into());
+            let (time, origin, com) = (self.time, position.into(), self.bodies.center_of_mass());
             let sky = found(&self.instant.sky, || planet.gravity.sky(time, origin))?;
             let station = Station { time, origin, com, travel };
             Ok(planet.gravity.nearby(&station, sky, differs)?)
@@ -191,12 +150,6 @@ fn found<T, E>(cell: &OnceCell<T>, find: impl FnOnce() -> Result<T, E>) -> Resul
     }
 }
 
-/// Centre of mass of a robot in `W`, m: `c = Σ mₖ cₖ / Σ mₖ`.
-fn center_of_mass(bodies: &[BodyState]) -> Vector3<f64> {
-    let moment: Vector3<f64> = bodies.iter().map(|body| body.com * body.mass).sum();
-    moment / bodies.iter().map(|body| body.mass).sum::<f64>()
-}
-
 /// The planet of a scene, as one effect sees it.
 pub(super) struct Planet<'a> {
     effect: &'static str,
@@ -216,7 +169,7 @@ impl Planet<'_> {
         distance: S,
     ) -> Result<(), EnvironmentError> {
         if S::any((distance * distance * distance).less(S::of(self.minimum_cubed))) {
-            for (i, k) in (group.first..).take(group.bodies.len()).enumerate() {
+            for (i, k) in (group.first..).take(group.count).enumerate() {
                 self.outside(Place::Body(k), distance.lane(i))?;
             }
         }

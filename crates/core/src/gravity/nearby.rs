@@ -175,7 +175,12 @@ impl Nearby<'_> {
     /// The expansion of the planet's field that reaches all these places.
     #[inline(always)]
     fn expansion<S: Real>(&self, at: Vec3<S>) -> Option<&Expansion> {
-        self.places.iter().flatten().find(|expansion| expansion.reaches(at))
+        // by hand: an iterator would be left out of line
+        let [first, second] = &self.places;
+        match first {
+            Some(first) if first.reaches(at) => Some(first),
+            _ => second.as_ref().filter(|second| second.reaches(at)),
+        }
     }
 
     /// The planet's field at one place.

@@ -5,6 +5,7 @@ mod checkpoint;
 mod contacts;
 mod driver;
 mod error;
+mod exchange;
 mod integrator;
 mod launch;
 mod pair;

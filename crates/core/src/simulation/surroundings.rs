@@ -1,16 +1,19 @@
 //! From the effects of the environment to wrenches on the bodies.
 
 use super::error::SimulationError;
+use super::exchange::{Base, bodies_of};
 use super::plant::World;
 use super::rereference::{OwnReference, Shift};
 use crate::dynamics::{Data, base_rotation};
 use crate::earth::Earth;
-use crate::environment::{BodyState, DifferentialGravity, Effect, Instant, Reference, Scene, Wrench};
+use crate::environment::{
+    Bodies, DifferentialGravity, Effect, EnvironmentError, Instant, Reference, Scene, Wrench, Wrenches,
+};
 use crate::gravity::Gravity;
-use crate::model::{Model, Node};
+use crate::model::Model;
 use crate::orbit::{Numerical, Orbit, OrbitState};
-use crate::spatial::{Force, Mat3, Scalar, Vec3};
-use nalgebra::{Matrix3, Vector3};
+use crate::spatial::{Scalar, Vec3};
+use nalgebra::Vector3;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -30,10 +33,10 @@ pub(super) struct Surroundings {
     interval: (f64, f64),
     /// The last instants asked for: the stages of a step share them.
     known: [Known; 3],
-    bodies: Vec<BodyState>,
-    wrenches: Vec<Wrench>,
+    bodies: Bodies,
+    wrenches: Wrenches,
     /// Of effects that a reference which carries the robot along has in its own motion.
-    shared: Vec<Wrench>,
+    shared: Wrenches,
     is_carried: bool,
 }
 
@@ -64,15 +67,7 @@ impl Surroundings {
         earth: Option<Arc<Earth>>,
         is_carried: bool,
     ) -> Self {
-        let at_rest = |node: &Node| BodyState {
-            mass: node.mass,
-            inertia: node.about_com.to_nalgebra(),
-            com: Vector3::zeros(),
-            rot_wk: Matrix3::identity(),
-            origin: Vector3::zeros(),
-            velocity: Vector3::zeros(),
-            angular_velocity: Vector3::zeros(),
-        };
+        let count = model.nodes().len();
         Self {
             reads_velocities: effects.iter().any(|effect| effect.reads_velocities()),
             effects,
@@ -83,9 +78,9 @@ impl Surroundings {
             earth,
             interval: (f64::NAN, f64::NAN),
             known: Known::nothing(),
-            bodies: model.nodes().iter().map(at_rest).collect(),
-            wrenches: vec![Wrench::default(); model.nodes().len()],
-            shared: vec![Wrench::default(); model.nodes().len()],
+            bodies: bodies_of(model),
+            wrenches: Wrenches::new(count),
+            shared: Wrenches::new(count),
             is_carried,
         }
     }
@@ -158,9 +153,9 @@ impl Surroundings {
     /// Adds up what these effects do at `t` to the bodies that were looked at last.
     fn feel(&mut self, t: f64, effects: Range<usize>) -> Result<(), SimulationError> {
         self.look_up(t)?;
-        self.wrenches.fill(Wrench::default());
+        self.wrenches.clear();
         if self.is_carried {
-            self.shared.fill(Wrench::default());
+            self.shared.clear();
         }
         let falls_freely = self.falls_freely();
         let Known { state, instant, .. } = &self.known[0];
@@ -177,52 +172,27 @@ impl Surroundings {
                 .map_err(|source| SimulationError::Environment { time: t, source })?;
         }
         if self.is_carried {
-            self.leave_out_what_is_shared();
+            self.leave_out_what_is_shared()
+                .map_err(|source| SimulationError::Environment { time: t, source })?;
         }
         Ok(())
     }
 
     /// Adds the shared wrenches less the acceleration they give the whole robot: `Fₖ − mₖ ΣF/Σm`.
-    fn leave_out_what_is_shared(&mut self) {
+    fn leave_out_what_is_shared(&mut self) -> Result<(), EnvironmentError> {
         let total: Vector3<f64> = self.shared.iter().map(|wrench| wrench.force).sum();
         let acceleration = total / self.bodies.iter().map(|body| body.mass).sum::<f64>();
-        for ((to, from), body) in self.wrenches.iter_mut().zip(&self.shared).zip(&self.bodies) {
-            to.force += from.force - acceleration * body.mass;
-            to.torque += from.torque;
+        for (k, (wrench, body)) in self.shared.iter().zip(self.bodies.iter()).enumerate() {
+            let force = wrench.force - acceleration * body.mass;
+            self.wrenches.add(k, Wrench { force, ..wrench })?;
         }
+        Ok(())
     }
 
     /// The wrench of one effect on each body, as they were looked at last, at `t`.
-    pub(super) fn wrenches_of(&mut self, effect: usize, t: f64) -> Result<&[Wrench], SimulationError> {
+    pub(super) fn wrenches_of(&mut self, effect: usize, t: f64) -> Result<&Wrenches, SimulationError> {
         self.feel(t, effect..effect + 1)?;
         Ok(&self.wrenches)
-    }
-
-    /// Fills in what the effects see; returns `R_wb`.
-    #[inline(always)]
-    fn look<S: Scalar>(&mut self, data: &Data<S>, q: &[S], carried: Vec3<S>) -> Mat3<S> {
-        let (rot_wb, origin) = (base_rotation(q), Vec3::from_slice(q));
-        for (seen, body) in self.bodies.iter_mut().zip(&data.bodies) {
-            seen.com = (rot_wb * body.com_b + origin).to_nalgebra();
-            seen.rot_wk = (rot_wb * body.rot_bk).to_nalgebra();
-            seen.origin = (rot_wb * body.pos_b + origin).to_nalgebra();
-            if self.reads_velocities {
-                seen.velocity = (rot_wb * body.velocity.at(body.com_b) + carried).to_nalgebra();
-                seen.angular_velocity = (rot_wb * body.velocity.angular).to_nalgebra();
-            }
-        }
-        rot_wb
-    }
-
-    /// Turns the wrenches to base axes and adds them to the bodies.
-    #[inline(always)]
-    fn hand_over<S: Scalar>(&self, data: &mut Data<S>, rot_wb: &Mat3<S>) {
-        let vector = |v: &Vector3<f64>| Vec3::new(S::of(v.x), S::of(v.y), S::of(v.z));
-        for (body, wrench) in data.bodies.iter_mut().zip(&self.wrenches) {
-            let force = rot_wb.transpose_mul(vector(&wrench.force));
-            let torque = rot_wb.transpose_mul(vector(&wrench.torque));
-            body.external = Force::at(force, torque, body.com_b);
-        }
     }
 }
 
@@ -247,16 +217,11 @@ impl<S: Scalar> World<S> for Surroundings {
         if self.effects.is_empty() {
             return Ok(());
         }
-        let rot_wb = S::enter(
-            #[inline(always)]
-            || self.look(data, q, carried),
-        );
+        let base = Base { rot_wb: base_rotation(q), origin: Vec3::from_slice(q), carried };
+        base.look(data, self.reads_velocities, &mut self.bodies);
         self.interval = interval;
         self.feel(t, 0..self.effects.len())?;
-        S::enter(
-            #[inline(always)]
-            || self.hand_over(data, &rot_wb),
-        );
+        base.hand_over(&self.bodies, &self.wrenches, data);
         Ok(())
     }
 }

@@ -16,6 +16,14 @@ pub struct Mat3<S> {
     pub z: Vec3<S>,
 }
 
+impl<S> Mat3<S> {
+    /// `f` of each entry.
+    #[inline(always)]
+    pub fn map<T>(&self, f: impl Fn(&S) -> T) -> Mat3<T> {
+        Mat3 { x: self.x.map(&f), y: self.y.map(&f), z: self.z.map(&f) }
+    }
+}
+
 impl<S: Real> Mat3<S> {
     /// The matrix with these columns.
     #[inline(always)]

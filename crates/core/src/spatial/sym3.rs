@@ -23,6 +23,15 @@ pub struct Sym3<S> {
     pub yz: S,
 }
 
+impl<S> Sym3<S> {
+    /// `f` of each entry.
+    #[inline(always)]
+    pub fn map<T>(&self, f: impl Fn(&S) -> T) -> Sym3<T> {
+        let Self { xx, yy, zz, xy, xz, yz } = self;
+        Sym3 { xx: f(xx), yy: f(yy), zz: f(zz), xy: f(xy), xz: f(xz), yz: f(yz) }
+    }
+}
+
 impl<S: Real> Sym3<S> {
     /// The matrix with these entries.
     #[inline(always)]

@@ -15,6 +15,14 @@ pub struct Vec3<S> {
     pub z: S,
 }
 
+impl<S> Vec3<S> {
+    /// `f` of each component.
+    #[inline(always)]
+    pub fn map<T>(&self, f: impl Fn(&S) -> T) -> Vec3<T> {
+        Vec3 { x: f(&self.x), y: f(&self.y), z: f(&self.z) }
+    }
+}
+
 impl<S: Real> Vec3<S> {
     /// The vector `(x, y, z)`.
     #[inline(always)]

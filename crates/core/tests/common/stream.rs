@@ -3,7 +3,9 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::surfaces::{Covering, Surface, Surfaces};
-use onorbit_core::environment::{BodyState, Effect, EnvironmentError, Instant, Reference, Scene, Wrench};
+use onorbit_core::environment::{
+    Bodies, BodyState, Effect, EnvironmentError, Instant, Reference, Scene, Wrench, Wrenches,
+};
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{MU_EARTH, OrbitState};
 
@@ -37,12 +39,12 @@ pub fn wrenches(
 ) -> Result<Vec<Wrench>, EnvironmentError> {
     let gravity = Gravity::point_mass(MU_EARTH);
     let state = OrbitState { position: r, velocity: v, acceleration: Vector3::zeros() };
-    let mut wrenches = vec![Wrench::default(); bodies.len()];
+    let (mut wrenches, bodies) = (Wrenches::new(bodies.len()), bodies.iter().copied().collect::<Bodies>());
     let (reference, instant) =
         (Reference { state, gravity: Some(&gravity), falls_freely: true }, Instant::default());
-    let scene = Scene::new((0.0, 1.0), 0.0, bodies, &instant).beside(Some(reference)).above(earth);
+    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(Some(reference)).above(earth);
     effect.add_wrenches(&scene, &mut wrenches)?;
-    Ok(wrenches)
+    Ok(wrenches.iter().collect())
 }
 
 /// `Σ f(plate)` where `f` is the force on a plate at its centroid: force and torque about the origin.

@@ -1,34 +1,40 @@
 //! Surfaces on the bodies of a robot.
 
+use super::ball::Ball;
+use super::block::Block;
 use super::error::{SurfaceError, not_negative};
 use super::from_shapes::parts_of_body;
-use super::part::{Ball, Optics, Plate, Tube};
-use super::push::{Pressed, Push, Swept};
+use super::optics::Optics;
+use super::plate::Plate;
+use super::slab::Slab;
+use super::tube::Tube;
+use crate::environment::rows::WIDTH;
 use crate::model::{Frame, Model};
-use crate::spatial::{Real, Vec3};
+use crate::spatial::Vec3;
 use nalgebra::Vector3;
 
 /// How a body meets wind and light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
-    parts: Parts,
+    pub(super) parts: Parts,
     /// `C_D` on the area that faces the stream.
-    drag_coefficient: f64,
+    pub(super) drag_coefficient: f64,
     /// What light does.
-    optics: Optics,
+    pub(super) optics: Optics,
 }
 
 /// The outside of a body; axes of the body, positions from its centre of mass.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Parts {
-    pub(super) plates: Vec<Plate>,
-    pub(super) tubes: Vec<Tube>,
-    pub(super) balls: Vec<Ball>,
+    pub(super) plates: Vec<Plate<f64>>,
+    pub(super) slabs: Vec<Slab<f64>>,
+    pub(super) tubes: Vec<Tube<f64>>,
+    pub(super) balls: Vec<Ball<f64>>,
 }
 
 impl Parts {
     fn is_empty(&self) -> bool {
-        self.plates.is_empty() && self.tubes.is_empty() && self.balls.is_empty()
+        self.plates.is_empty() && self.slabs.is_empty() && self.tubes.is_empty() && self.balls.is_empty()
     }
 }
 
@@ -45,7 +51,8 @@ pub struct Covering {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfaces {
     /// By body.
-    surfaces: Vec<Option<Surface>>,
+    is_covered: Vec<bool>,
+    blocks: Vec<Block>,
 }
 
 impl Surface {
@@ -122,28 +129,6 @@ impl Surface {
         let drag_coefficient = not_negative("drag_coefficient", drag_coefficient)?;
         Ok(Self { parts, drag_coefficient, optics })
     }
-
-    /// Force (N for a density of 1) and torque of the air, axes of the body.
-    ///
-    /// `v` and `w` are velocity of the centre of mass and turn relative to the air, axes of the body.
-    #[inline(always)]
-    pub(in crate::environment) fn blow<S: Real>(&self, v: Vec3<S>, w: Vec3<S>) -> Push<S> {
-        let (mut swept, Parts { plates, tubes, balls }) = (Swept::nothing(), &self.parts);
-        plates.iter().for_each(|plate| plate.blow(v, w, &mut swept));
-        tubes.iter().for_each(|tube| tube.blow(v, w, &mut swept));
-        balls.iter().for_each(|ball| ball.blow(v, w, &mut swept));
-        swept.push(v, w) * S::of(0.5 * self.drag_coefficient)
-    }
-
-    /// Force (N for a pressure of 1) and torque of light from the direction `to_sun`, axes of the body.
-    #[inline(always)]
-    pub(in crate::environment) fn shine<S: Real>(&self, to_sun: Vec3<S>) -> Push<S> {
-        let (mut pressed, Parts { plates, tubes, balls }) = (Pressed::nothing(), &self.parts);
-        plates.iter().for_each(|plate| plate.shine(to_sun, &self.optics, &mut pressed));
-        tubes.iter().for_each(|tube| tube.shine(to_sun, &self.optics, &mut pressed));
-        balls.iter().for_each(|ball| ball.shine(&mut pressed));
-        pressed.push(to_sun)
-    }
 }
 
 impl Surfaces {
@@ -162,7 +147,8 @@ impl Surfaces {
                 return Err(SurfaceError::Twice { body });
             }
         }
-        Ok(Self { surfaces })
+        let is_covered = surfaces.iter().map(Option::is_some).collect();
+        Ok(Self { is_covered, blocks: surfaces.chunks(WIDTH).map(Block::new).collect() })
     }
 
     /// Every body with the faces of its own shapes; bodies that look like nothing feel nothing.
@@ -186,12 +172,15 @@ impl Surfaces {
 
     /// Names of the bodies with mass that are not covered: they feel nothing.
     pub fn bare<'a>(&self, model: &'a Model) -> Vec<&'a str> {
-        let is_bare = |body: &usize| model.nodes()[*body].mass > 0.0 && self.of_body(*body).is_none();
+        let is_bare = |body: &usize| {
+            model.nodes()[*body].mass > 0.0 && !self.is_covered.get(*body).is_some_and(|is| *is)
+        };
         (0..model.nodes().len()).filter(is_bare).map(|body| model.body_frame(body).name.as_str()).collect()
     }
 
-    /// What covers a body.
-    pub(in crate::environment) fn of_body(&self, body: usize) -> Option<&Surface> {
-        self.surfaces.get(body)?.as_ref()
+    /// What covers the eight bodies among which body number `first` is; `None` where nothing does.
+    #[inline(always)]
+    pub(in crate::environment) fn around(&self, first: usize) -> Option<&Block> {
+        self.blocks.get(first / WIDTH).filter(|block| !block.is_bare())
     }
 }

@@ -1,8 +1,12 @@
 //! Faces from the visual geometry of links.
 
+use super::ball::Ball;
 use super::covering::Parts;
 use super::error::SurfaceError;
-use super::part::{Ball, Optics, Plate, Tube};
+use super::optics::Optics;
+use super::plate::Plate;
+use super::slab::Slab;
+use super::tube::Tube;
 use crate::model::{Frame, Geometry, Model, Visual};
 use crate::spatial::{Mat3, Vec3};
 use std::f64::consts::PI;
@@ -75,13 +79,10 @@ impl Place {
 
     /// The two faces across axis `k`, `distance` apart.
     fn pair(&self, k: usize, area: f64, distance: f64, parts: &mut Parts) {
-        for side in [-0.5, 0.5] {
-            let centroid = self.pos + self.axis(k) * (side * distance);
-            parts.plates.push(Plate::new(area, self.axis(k) * side.signum(), centroid));
-        }
+        parts.slabs.push(Slab::new(area, distance, self.axis(k), self.pos));
     }
 
-    fn tube(&self, radius: f64, length: f64) -> Tube {
+    fn tube(&self, radius: f64, length: f64) -> Tube<f64> {
         Tube { radius, length, axis: self.axis(2), centre: self.pos }
     }
 

@@ -2,14 +2,18 @@
 //!
 //! No part shadows another: where faces overlap as the stream sees them, both are hit.
 
+mod ball;
+mod block;
 mod covering;
 mod error;
 mod from_shapes;
-mod part;
-mod push;
+mod optics;
+mod plate;
+mod slab;
+mod sums;
+mod tube;
 
 pub use covering::{Covering, Surface, Surfaces};
 pub use error::SurfaceError;
 pub(super) use error::not_negative;
-pub use part::Optics;
-pub(super) use push::Push;
+pub use optics::Optics;

@@ -76,7 +76,11 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn from_lanes(f: impl Fn(usize) -> f64) -> Self {
-                Self(register::$register::from_array(std::array::from_fn(f)))
+                let mut numbers = [0.0; $width];
+                for (i, number) in numbers.iter_mut().enumerate() {
+                    *number = f(i); // not by array::from_fn, which is left out of line where f is long
+                }
+                Self(register::$register::from_array(numbers))
             }
             #[inline(always)]
             fn lane(self, i: usize) -> f64 {

@@ -1,30 +1,7 @@
 //! Sums over the parts of a surface, and the push they make.
 
-use crate::spatial::{Mat3, Real, Sym3, Vec3};
-use std::ops::Mul;
-
-/// A force through the centre of mass and a torque about it, axes of the body.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::environment) struct Push<S> {
-    pub(in crate::environment) force: Vec3<S>,
-    pub(in crate::environment) torque: Vec3<S>,
-}
-
-impl<S: Real> Push<S> {
-    /// In the axes that `rot` leads to.
-    #[inline(always)]
-    pub(in crate::environment) fn turned(self, rot: &Mat3<S>) -> Self {
-        Self { force: *rot * self.force, torque: *rot * self.torque }
-    }
-}
-
-impl<S: Real> Mul<S> for Push<S> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, s: S) -> Self {
-        Self { force: self.force * s, torque: self.torque * s }
-    }
-}
+use crate::environment::wrenches::Push;
+use crate::spatial::{Real, Sym3, Vec3};
 
 /// What the wind meets: every part at `c` feels `-a u`, `u = v + w × c`, where it sweeps `a` (an area by a speed).
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +10,7 @@ pub(super) struct Swept<S> {
     sum: S,
     /// `Σ a c`
     first: Vec3<S>,
-    /// `Σ a (c² 1 - c cᵀ)`
+    /// `Σ a c cᵀ`
     second: Sym3<S>,
     /// Torque of parts whose push is not at `c`.
     pub(super) torque: Vec3<S>,
@@ -46,21 +23,24 @@ impl<S: Real> Swept<S> {
         Self { sum: o, first: Vec3::zero(), second: Sym3::diagonal(o), torque: Vec3::zero() }
     }
 
+    /// A part that sweeps `a` at `c`.
     #[inline(always)]
-    pub(super) fn add(&mut self, a: S, c: &Vec3<f64>) {
-        let c = Vec3::of(c);
+    pub(super) fn add(&mut self, a: S, c: Vec3<S>) {
         let moment = c * a;
         self.sum += a;
         self.first += moment;
-        self.second = self.second.shift(moment, c);
+        self.second = self.second.add_parallel(c, moment);
     }
 
     /// `F = -Σ a (v + w × c)`, `T = -Σ a c × (v + w × c)`.
     #[inline(always)]
     pub(super) fn push(&self, v: Vec3<S>, w: Vec3<S>) -> Push<S> {
+        // c × (w × c) = (c·c) w - (c·w) c
+        let Sym3 { xx, yy, zz, .. } = self.second;
+        let turning = w * (xx + yy + zz) - self.second * w;
         Push {
             force: -(v * self.sum + w.cross(self.first)),
-            torque: self.torque - self.first.cross(v) - self.second * w,
+            torque: self.torque - self.first.cross(v) - turning,
         }
     }
 }
@@ -85,10 +65,18 @@ impl<S: Real> Pressed<S> {
         Self { sum: S::of(0.0), first: none, force: none, torque: none }
     }
 
+    /// A part that absorbs `a` of it at `c`.
     #[inline(always)]
-    pub(super) fn add(&mut self, a: S, c: &Vec3<f64>) {
+    pub(super) fn absorb(&mut self, a: S, c: Vec3<S>) {
         self.sum += a;
-        self.first += Vec3::of(c) * a;
+        self.first = c.scale_add(a, self.first);
+    }
+
+    /// A face that sends back `b` of it along its normal; `moment` is `c × n`.
+    #[inline(always)]
+    pub(super) fn send_back(&mut self, b: S, normal: Vec3<S>, moment: Vec3<S>) {
+        self.force = normal.scale_add(-b, self.force);
+        self.torque = moment.scale_add(-b, self.torque);
     }
 
     /// `F = -Σ a ŝ + …`, `T = -Σ a c × ŝ + …`.

@@ -1,0 +1,217 @@
+//! The bodies of a robot as effects see them, side by side.
+
+use super::rows::{Row, WIDTH, store};
+use crate::spatial::{Mat3, Real, Sym3, Vec3};
+use nalgebra::{Matrix3, Vector3};
+
+/// One body of the robot, in `W`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Inertia about the centre of mass in the body's own axes, kg m².
+    pub inertia: Matrix3<f64>,
+    /// Centre of mass, m.
+    pub com: Vector3<f64>,
+    /// Takes components in the body's own axes (those of its [`Node`](crate::model::Node)) to `W`.
+    pub rot_wk: Matrix3<f64>,
+    /// Origin of the body's axes, m.
+    pub origin: Vector3<f64>,
+    /// Velocity of the centre of mass, m/s; zero unless an effect [reads it](super::Effect::reads_velocities).
+    pub velocity: Vector3<f64>,
+    /// Angular velocity, `W` axes, rad/s; likewise.
+    pub angular_velocity: Vector3<f64>,
+}
+
+/// The bodies of a robot, base first.
+#[derive(Clone, Debug)]
+pub struct Bodies {
+    count: usize,
+    blocks: Vec<Block>,
+}
+
+/// Eight bodies; where there are fewer, the last one again, without mass.
+#[derive(Clone, Debug)]
+struct Block {
+    mass: Row,
+    inertia: Sym3<Row>,
+    motion: BodyMotion<Row>,
+}
+
+/// Where bodies are and how they move, `W`.
+#[derive(Clone, Debug)]
+pub(crate) struct BodyMotion<T> {
+    pub(crate) com: Vec3<T>,
+    pub(crate) rot_wk: Mat3<T>,
+    pub(crate) origin: Vec3<T>,
+    /// Linear, of the centre of mass, and angular.
+    pub(crate) velocity: [Vec3<T>; 2],
+}
+
+impl Bodies {
+    /// Puts bodies where `motion` says: as many at once as `S` has lanes, from body number `first` on.
+    #[inline(always)]
+    pub(crate) fn put<S: Real>(&mut self, moves: bool, motion: impl Fn(usize) -> BodyMotion<S>) {
+        for first in (0..self.count).step_by(S::LANES) {
+            let (to, offset) = (&mut self.blocks[first / WIDTH].motion, first % WIDTH);
+            let BodyMotion { com, rot_wk, origin, velocity: [linear, angular] } = motion(first);
+            store(&mut to.com, offset, com);
+            store(&mut to.rot_wk.x, offset, rot_wk.x);
+            store(&mut to.rot_wk.y, offset, rot_wk.y);
+            store(&mut to.rot_wk.z, offset, rot_wk.z);
+            store(&mut to.origin, offset, origin);
+            if moves {
+                store(&mut to.velocity[0], offset, linear);
+                store(&mut to.velocity[1], offset, angular);
+            }
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// One of them, base first.
+    pub fn get(&self, body: usize) -> Option<BodyState> {
+        let (block, i) = (self.blocks.get(body / WIDTH).filter(|_| body < self.count)?, body % WIDTH);
+        let vector = |rows: &Vec3<Row>| rows.map(|row| row.get(i)).to_nalgebra();
+        let BodyMotion { com, rot_wk, origin, velocity: [velocity, angular_velocity] } = &block.motion;
+        Some(BodyState {
+            mass: block.mass.get(i),
+            inertia: block.inertia.map(|row| row.get(i)).to_nalgebra(),
+            com: vector(com),
+            rot_wk: rot_wk.map(|row| row.get(i)).to_nalgebra(),
+            origin: vector(origin),
+            velocity: vector(velocity),
+            angular_velocity: vector(angular_velocity),
+        })
+    }
+
+    /// All of them, base first.
+    pub fn iter(&self) -> impl Iterator<Item = BodyState> {
+        (0..self.count).filter_map(|body| self.get(body))
+    }
+
+    /// Centres of mass of as many as `S` has lanes, from body number `first` on.
+    #[inline(always)]
+    pub(crate) fn coms<S: Real>(&self, first: usize) -> Vec3<S> {
+        self.blocks[first / WIDTH].motion.com.map(|row| row.load(first % WIDTH))
+    }
+
+    /// Centre of mass of the base; the origin where there is none.
+    pub(super) fn com_of_base(&self) -> Vector3<f64> {
+        let first = |block: &Block| block.motion.com.map(|row| row.get(0)).to_nalgebra();
+        self.blocks.first().map_or_else(Vector3::zeros, first)
+    }
+
+    /// Centre of mass of a robot in `W`, m: `c = Σ mₖ cₖ / Σ mₖ`.
+    pub(super) fn center_of_mass(&self) -> Vec3<f64> {
+        let (mut moment, mut mass) = (Vec3::zero(), 0.0);
+        for Block { mass: masses, motion, .. } in &self.blocks {
+            for i in 0..WIDTH {
+                moment += motion.com.map(|row| row.get(i)) * masses.get(i);
+                mass += masses.get(i);
+            }
+        }
+        moment * (1.0 / mass)
+    }
+
+    /// Groups of as many as `S` has lanes.
+    #[inline(always)]
+    pub(super) fn groups<S: Real>(&self) -> impl Iterator<Item = Group<'_>> {
+        let group = |first| Group {
+            first,
+            count: (self.count - first).min(S::LANES),
+            block: &self.blocks[first / WIDTH],
+        };
+        (0..self.count).step_by(S::LANES).map(group)
+    }
+}
+
+impl FromIterator<BodyState> for Bodies {
+    fn from_iter<I: IntoIterator<Item = BodyState>>(bodies: I) -> Self {
+        let bodies: Vec<_> = bodies.into_iter().collect();
+        let block = |bodies: &[BodyState]| {
+            let body = |i: usize| &bodies[i.min(bodies.len() - 1)];
+            let vectors = |of: fn(&BodyState) -> &Vector3<f64>| Row::vectors(|i| (*of(body(i))).into());
+            let rot = |j: usize| Row::vectors(|i| body(i).rot_wk.column(j).into_owned().into());
+            let inertia = |j: usize, k: usize| Row::of(|i| body(i).inertia[(j, k)]);
+            Block {
+                mass: Row::of(|i| bodies.get(i).map_or(0.0, |body| body.mass)),
+                inertia: Sym3 {
+                    xx: inertia(0, 0),
+                    yy: inertia(1, 1),
+                    zz: inertia(2, 2),
+                    xy: inertia(0, 1),
+                    xz: inertia(0, 2),
+                    yz: inertia(1, 2),
+                },
+                motion: BodyMotion {
+                    com: vectors(|body| &body.com),
+                    rot_wk: Mat3 { x: rot(0), y: rot(1), z: rot(2) },
+                    origin: vectors(|body| &body.origin),
+                    velocity: [vectors(|body| &body.velocity), vectors(|body| &body.angular_velocity)],
+                },
+            }
+        };
+        Self { count: bodies.len(), blocks: bodies.chunks(WIDTH).map(block).collect() }
+    }
+}
+
+/// As many bodies as there are lanes, or the rest of them: the last one then fills the lanes left over.
+#[derive(Clone, Copy)]
+pub(super) struct Group<'a> {
+    /// Index of the first.
+    pub(super) first: usize,
+    /// How many there are.
+    pub(super) count: usize,
+    block: &'a Block,
+}
+
+impl Group<'_> {
+    /// Where it stands in its block.
+    #[inline(always)]
+    pub(super) fn offset(&self) -> usize {
+        self.first % WIDTH
+    }
+
+    #[inline(always)]
+    fn load<S: Real>(&self) -> impl Fn(&Row) -> S {
+        let offset = self.offset();
+        move |row| row.load(offset)
+    }
+
+    #[inline(always)]
+    pub(super) fn masses<S: Real>(&self) -> S {
+        self.load()(&self.block.mass)
+    }
+
+    #[inline(always)]
+    pub(super) fn inertias<S: Real>(&self) -> Sym3<S> {
+        self.block.inertia.map(self.load())
+    }
+
+    /// Centres of mass.
+    #[inline(always)]
+    pub(super) fn coms<S: Real>(&self) -> Vec3<S> {
+        self.block.motion.com.map(self.load())
+    }
+
+    #[inline(always)]
+    pub(super) fn rot_wk<S: Real>(&self) -> Mat3<S> {
+        self.block.motion.rot_wk.map(self.load())
+    }
+
+    /// Velocities of the centres of mass, and angular velocities.
+    #[inline(always)]
+    pub(super) fn velocities<S: Real>(&self) -> [Vec3<S>; 2] {
+        let [linear, angular] = &self.block.motion.velocity;
+        [linear.map(self.load()), angular.map(self.load())]
+    }
+}

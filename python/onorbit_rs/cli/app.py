@@ -1,0 +1,96 @@
+"""The app and its commands, and the entry point."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from onorbit_rs.cli.check import check
+from onorbit_rs.cli.convert import convert
+from onorbit_rs.cli.failing import fail, leave_stdout, of_controller, show_warning
+from onorbit_rs.cli.info import info
+from onorbit_rs.cli.list import list_
+from onorbit_rs.cli.new import new
+from onorbit_rs.cli.report import report
+from onorbit_rs.cli.run import resume, run
+from onorbit_rs.cli.show import show
+from onorbit_rs.exceptions import OnOrbitError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+app = typer.Typer(
+    name="onorbit",
+    help="Simulate free-floating robots in orbit.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+
+# in the order of the help; a command loads what it needs when it is called
+COMMANDS: dict[str, Callable[..., None]] = {
+    "run": run,
+    "resume": resume,
+    "list": list_,
+    "new": new,
+    "check": check,
+    "show": show,
+    "report": report,
+    "info": info,
+    "convert": convert,
+}
+for name, command in COMMANDS.items():
+    app.command(name=name)(command)
+
+
+def _print_version(is_asked: bool) -> None:
+    if is_asked:
+        from onorbit_rs import __version__
+
+        typer.echo(f"onorbit {__version__}")
+        raise typer.Exit
+
+
+VersionOption = Annotated[
+    bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+]
+
+
+@app.callback()
+def onorbit(version: VersionOption = False) -> None:
+    """Simulate free-floating robots in orbit."""
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Entry point: an error is one line on stderr and exit code 2, Ctrl-C is 130."""
+    try:
+        with warnings.catch_warnings():
+            warnings.showwarning = show_warning
+            code = app(arguments, standalone_mode=False, prog_name="onorbit")
+            sys.stdout.flush()
+    except OnOrbitError as error:
+        fail(str(error), 2)
+    except (KeyboardInterrupt, typer.Abort):
+        fail("stopped by Ctrl-C", 130)
+    except typer.TyperException as error:
+        fail(_with_commands(error.format_message()), 2)
+    except BrokenPipeError:
+        leave_stdout()
+        sys.exit(0)
+    except OSError as error:  # printing: the disk behind stdout is full
+        leave_stdout()
+        fail(f"cannot write: {error.strerror or error}", 2)
+    except Exception as error:
+        if not hasattr(error, "trace"):
+            raise
+        fail(of_controller(error), 2)
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _with_commands(message: str) -> str:
+    """An unknown command is answered with those there are."""
+    if not message.startswith("No such command"):
+        return message
+    return f"{message} Commands are: {', '.join(COMMANDS)}"

@@ -1,0 +1,61 @@
+"""``onorbit check``."""
+
+from __future__ import annotations
+
+import shlex
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.build import Built
+
+
+def check(scenario: ScenarioArgument, quiet: QuietOption = False, as_json: JsonOption = False) -> None:
+    """Check a scenario and everything it names, without running it."""
+    from onorbit_rs.cli.printing import print_json
+    from onorbit_rs.scenario import load
+    from onorbit_rs.scenario.build import build
+
+    built = build(load(scenario))
+    if as_json:
+        print_json(described(built))
+    elif not quiet:
+        print_checked(built)
+        typer.echo(f"next: onorbit run {shlex.quote(scenario)} --out DIR")
+
+
+def described(built: Built) -> dict[str, Any]:
+    """What would run, as data."""
+    scenario, model = built.scenario, built.model
+    return {
+        "ok": True,
+        "scenario": scenario.name,
+        "robot": model.name,
+        "joints": list(model.joint_names),
+        "mass_kg": model.mass,
+        "tool": scenario.tracked_tool,
+        "orbit": scenario.orbit.kind if scenario.orbit else None,
+        "environment": [effect.kind for effect in scenario.environment],
+        "controllers": [law.kind for law in scenario.laws],
+        "duration_s": scenario.simulation.duration,
+        "time_step_s": scenario.simulation.time_step,
+        "integrator": scenario.simulation.integrator,
+        "warnings": list(model.warnings),
+    }
+
+
+def print_checked(built: Built) -> None:
+    """What would run."""
+    scenario, model = built.scenario, built.model
+    settings = scenario.simulation
+    parts = [
+        f"{model.name} ({len(model.joint_names)} joints, {model.mass:.4g} kg)",
+        f"orbit {scenario.orbit.kind}" if scenario.orbit else "no orbit",
+        *(effect.kind for effect in scenario.environment),
+        ", ".join(law.kind for law in scenario.laws) or "no controller",
+        f"{settings.duration:g} s at {settings.time_step:g} s with {settings.integrator}",
+    ]
+    typer.echo(f"ok: {scenario.name}: {', '.join(parts)}")

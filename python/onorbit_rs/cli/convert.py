@@ -1,0 +1,49 @@
+"""``onorbit convert``."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError
+
+
+def convert(
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="YAML files of OnOrbitROS, and the robot's URDF.")
+    ],
+    out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write it here.")] = None,
+    controller: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Which of several controllers.")
+    ] = None,
+    keep_going: Annotated[bool, typer.Option("--keep-going", help="Pass over unknown keys.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
+) -> None:
+    """Make a scenario of OnOrbitROS' YAML files, and say what became of every line."""
+    from onorbit_rs.interop.onorbitros import convert as convert_files
+    from onorbit_rs.interop.write_scenario import scenario_text
+    from onorbit_rs.scenario.load import check as check_scenario
+
+    if out is not None and out.exists() and not force:
+        raise OutputNotEmptyError(f"{out} is there already; replace it with --force", path=str(out))
+    done = convert_files(
+        files, controller=controller, keep_going=keep_going, beside=out.parent if out else None
+    )
+    check_scenario(done.scenario, None, {})
+    for note in done.notes:
+        typer.echo(str(note), err=True)
+    made_of = ", ".join(file.name for file in files)
+    text = scenario_text(
+        done.scenario, done.comments, f"Made by onorbit convert of {made_of}. SI and radians."
+    )
+    if out is None:
+        typer.echo(text, nl=False)
+        return
+    try:
+        out.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OutputFolderError(f"cannot write {out}: {error.strerror or error}", path=str(out)) from error
+    typer.echo(f"scenario: {out}\nnext: onorbit check {shlex.quote(str(out))}")

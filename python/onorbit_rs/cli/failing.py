@@ -1,0 +1,44 @@
+"""How a command ends that cannot go on: one line on stderr, and an exit code."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from typing import Any, NoReturn
+
+import typer
+
+RED, YELLOW = typer.colors.RED, typer.colors.YELLOW
+
+
+def of_controller(error: Exception) -> str:
+    """What a controller of the user's raised, and where."""
+    frames = traceback.extract_tb(error.__traceback__)
+    where = f" ({frames[-1].filename}:{frames[-1].lineno})" if frames else ""
+    notes = "".join(f"; {note}" for note in getattr(error, "__notes__", ()))
+    return f"the controller raised {type(error).__name__}{where}: {error}{notes}"
+
+
+def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    """One line, without the place in our code."""
+    said = _colored("onorbit: warning:", YELLOW)
+    typer.echo(f"{said} {' '.join(str(message).split())}", err=True)
+
+
+def leave_stdout() -> None:
+    """Nothing more goes to a stdout that is closed or full, not even when Python exits."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def fail(message: str, code: int) -> NoReturn:
+    """Say it on one line of stderr, and leave with this exit code."""
+    if message:
+        typer.echo(f"{_colored('onorbit:', RED)} {' '.join(message.split())}", err=True)
+    sys.exit(code)
+
+
+def _colored(word: str, color: str) -> str:
+    """In colour on a terminal, unless its user wants none (https://no-color.org)."""
+    wants_none = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return word if wants_none or not sys.stderr.isatty() else typer.style(word, fg=color, bold=True)

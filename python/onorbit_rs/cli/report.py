@@ -1,0 +1,31 @@
+"""``onorbit report``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from onorbit_rs.cli.options import FolderArgument, JsonOption, QuietOption
+
+
+def report(
+    folder: FolderArgument,
+    pdf: Annotated[bool, typer.Option(help="Also write every figure into DIR/figures as PDF.")] = True,
+    quiet: QuietOption = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Write one HTML page of a run with everything in it: figures, numbers, certificate, scenario."""
+    from onorbit_rs.cli.printing import print_json
+    from onorbit_rs.progress import doing
+    from onorbit_rs.report import write_report
+
+    with doing("report", quiet=quiet) as tell:
+        page = write_report(folder, pdf=pdf, tell=tell)
+    if as_json:
+        print_json({"report": str(page), "bytes": page.stat().st_size})
+    elif not quiet:
+        typer.echo(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB, needs no other file)")
+        if pdf:
+            typer.echo(f"figures: {folder / 'figures'}, as PDF")
+        typer.echo("next: open it in a browser, or send it")

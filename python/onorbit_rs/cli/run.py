@@ -1,0 +1,72 @@
+"""``onorbit run`` and ``onorbit resume``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from onorbit_rs.cli.failing import fail
+from onorbit_rs.cli.options import (
+    CheckpointOption,
+    FolderArgument,
+    ForceOption,
+    JsonOption,
+    OutOption,
+    QuietOption,
+    ScenarioArgument,
+)
+from onorbit_rs.exceptions import RunInterrupted
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from onorbit_rs.running import Run
+
+
+def run(
+    scenario: ScenarioArgument,
+    out: OutOption = None,
+    force: ForceOption = False,
+    quiet: QuietOption = False,
+    as_json: JsonOption = False,
+    checkpoint_every: CheckpointOption = 30.0,
+) -> None:
+    """Run a scenario and certify its momentum and energy."""
+    from onorbit_rs.running import run as run_scenario
+
+    _report(
+        lambda: run_scenario(scenario, out, force=force, quiet=quiet, checkpoint_every=checkpoint_every),
+        quiet=quiet,
+        as_json=as_json,
+    )
+
+
+def resume(
+    folder: FolderArgument,
+    quiet: QuietOption = False,
+    as_json: JsonOption = False,
+    checkpoint_every: CheckpointOption = 30.0,
+) -> None:
+    """Go on with a run that was killed or interrupted, to the same bits."""
+    from onorbit_rs.running import resume as resume_run
+
+    _report(
+        lambda: resume_run(folder, quiet=quiet, checkpoint_every=checkpoint_every),
+        quiet=quiet,
+        as_json=as_json,
+    )
+
+
+def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
+    """Do it and print the summary."""
+    from onorbit_rs.cli.printing import print_json, print_summary
+
+    try:
+        result = job()
+    except RunInterrupted as stop:  # caught here: typer would swallow a KeyboardInterrupt and its message
+        fail(str(stop), 130)
+    except KeyboardInterrupt:  # the simulation was over
+        fail("stopped by Ctrl-C while the results were written; run it again with --force", 130)
+    if as_json:
+        print_json(result.summary)
+    elif not quiet:
+        print_summary(result.summary, result.out)

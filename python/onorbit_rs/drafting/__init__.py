@@ -1,0 +1,7 @@
+"""A first scenario for a robot: which arm, from where, whereto; tried before it is handed out."""
+
+from __future__ import annotations
+
+from onorbit_rs.drafting.write import Draft, draft
+
+__all__ = ["Draft", "draft"]

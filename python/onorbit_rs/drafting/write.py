@@ -1,0 +1,164 @@
+"""A scenario for a robot, tried before it is handed out."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import yaml
+
+from onorbit_rs import robots
+from onorbit_rs.drafting.arm import ENOUGH, Arm, find_arm
+from onorbit_rs.drafting.motion import home, lines, time_step, turns, within
+from onorbit_rs.drafting.text import Plan, scenario_text
+from onorbit_rs.exceptions import FrameError, OnOrbitError, ScenarioError
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import build
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model
+
+NEAR_ENOUGH_M = 1e-3
+"""Largest distance of the tool from its line in a trial."""
+
+
+@dataclass(frozen=True)
+class Draft:
+    """The text of a scenario, and what was chosen."""
+
+    text: str
+    tool: str | None
+    joints: list[str]
+
+
+def draft(
+    robot: str,
+    *,
+    tool: str | None = None,
+    beside: Path | None = None,
+    package_paths: Sequence[Path] | None = None,
+    xacro_arguments: Mapping[str, str] | None = None,
+    command: str = "onorbit new",
+) -> Draft:
+    """A commented scenario in which the robot's arm moves; it has run with its certificate green.
+
+    Parameters
+    ----------
+    robot : str
+        A bundled name, a URDF or a xacro file.
+    tool : str, optional
+        The frame to move; the one that looks most like a tool where not given.
+    beside : Path, optional
+        The folder that the scenario will lie in: paths are written from there. Absolute where not given.
+    package_paths, xacro_arguments
+        As for :func:`onorbit_rs.robots.load`; they go into the scenario.
+    command : str
+        Written into the first comment.
+
+    Raises
+    ------
+    OnOrbitError
+        The robot cannot be read, has no such frame, or nothing that was tried runs.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # said when the scenario is checked
+        model = robots.load(robot, package_paths=package_paths, xacro_arguments=xacro_arguments)
+        if tool is not None:
+            model.frame_pose(model.neutral(), tool)  # says which frames there are
+        arm = find_arm(model, tool)
+        if tool is not None and arm is None:
+            raise FrameError(
+                f"no joint moves the frame {tool!r}; name another with --tool",
+                name=tool, kind="frame", known=list(model.frame_names), suggestion=None,
+            )  # fmt: skip
+        plan = _settled(model, arm, _robot(robot, None, package_paths, xacro_arguments), _name(robot, model))
+    written = replace(plan, robot=_robot(robot, beside, package_paths, xacro_arguments))
+    return Draft(scenario_text(written, command), plan.tool, plan.arm)
+
+
+def _settled(model: Model, arm: Arm | None, robot: Any, name: str) -> Plan:
+    """The first plan that runs as it should."""
+    last: OnOrbitError | None = None
+    for plan in _plans(model, arm, Plan(name, robot)):
+        try:
+            if _runs(plan):
+                return plan
+        except OnOrbitError as error:
+            last = error
+    if last is not None:
+        raise last
+    raise ScenarioError(
+        f"no motion of {name} that was tried stays within its joints' limits and certifies; write one by "
+        "hand, beginning with 'onorbit info'",
+        file=None, path=None, line=None,
+    )  # fmt: skip
+
+
+def _plans(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Plan]:
+    if arm is None:
+        yield replace(plan, duration_s=60.0, time_step_s=1e-2)
+        return
+    pose = home(model, arm)
+    others = [name for name in model.joint_names if name not in arm.joints]
+    for joint in model.joints:  # zero may be out of bounds, or at one
+        if joint.name in others and within(joint, 0.0) != 0.0:
+            pose[joint.name] = float(f"{within(joint, 0.0):.3g}")
+    plan = replace(
+        plan, tool=arm.tool, arm=arm.joints, others=others, home=pose, time_step_s=time_step(model),
+        friction=max(joint.friction for joint in model.joints if joint.name in arm.joints),
+    )  # fmt: skip
+    if len(arm.joints) >= ENOUGH:
+        for displacement, seconds in lines(model, arm, pose):
+            yield replace(plan, displacement=displacement, move_s=seconds, duration_s=1.5 * seconds)
+    for goal in turns(model, arm, {name: pose[name] for name in arm.joints}):
+        yield replace(plan, goal=goal)
+
+
+def _runs(plan: Plan) -> bool:
+    """Whether it certifies, keeps its joints within their limits and, where none sticks, tracks its line."""
+    built = build(load(yaml.safe_load(scenario_text(plan, "trial"))))
+    trace = built.simulation.run(plan.duration_s)
+    watched = set(plan.arm if plan.friction else built.model.joint_names)
+    if not all(passed for *_, passed in trace.certificate()) or watched & set(trace.joint_limits_exceeded()):
+        return False
+    if plan.displacement is None or plan.friction:
+        return True
+    error = np.linalg.norm(np.asarray(trace.position_error), axis=1)
+    return bool(error.max() < NEAR_ENOUGH_M)
+
+
+def _name(robot: str, model: Model) -> str:
+    return f"{Path(robot).name.split('.')[0] if robots.is_file(robot) else model.name}_first"
+
+
+def _robot(
+    robot: str, beside: Path | None, packages: Sequence[Path] | None, arguments: Mapping[str, str] | None
+) -> dict[str, Any] | str:
+    """As a scenario writes it."""
+    if not robots.is_file(robot):
+        return robot
+    if not packages and not arguments:
+        return _path(Path(robot), beside)
+    written: dict[str, Any] = {"urdf": _path(Path(robot), beside)}
+    if packages:
+        written["package_paths"] = [_path(Path(package), beside) for package in packages]
+    if arguments:
+        written["xacro_arguments"] = dict(arguments)
+    return written
+
+
+def _path(path: Path, beside: Path | None) -> str:
+    """From the scenario's folder where that is near, else absolute."""
+    if beside is not None:
+        try:
+            relative = os.path.relpath(path.resolve(), beside.resolve())
+        except ValueError:  # another drive
+            return str(path.resolve())
+        if relative.count("..") <= 2:
+            return relative if "/" in relative or os.sep in relative else f"./{relative}"
+    return str(path.resolve())

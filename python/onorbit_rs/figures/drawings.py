@@ -1,0 +1,133 @@
+"""Which figures fit a run, under which name, with which words beneath."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from onorbit_rs._core import MU_EARTH
+from onorbit_rs.figures.forces import environment_forces
+from onorbit_rs.figures.ground_track import ground_track
+from onorbit_rs.figures.ledger import ledger
+from onorbit_rs.figures.manipulability import manipulability
+from onorbit_rs.figures.motion import base_motion, base_reaction
+from onorbit_rs.figures.orbit import orbit_overview
+from onorbit_rs.figures.tracking import control_errors, joint_torques, tracking_errors
+from onorbit_rs.figures.trajectory import desired_trajectory, obtained_trajectory
+from onorbit_rs.rotations import has_local_frame
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Trace
+    from onorbit_rs.figures.subject import Subject
+
+WORTH_AN_ORBIT_DEG = 5.0
+"""Angle flown around the planet from which the orbit is drawn."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure yet to be drawn; ``name`` is that of its file."""
+
+    name: str
+    caption: str
+    draw: Callable[[], Figure]
+
+
+def drawings(subject: Subject) -> Iterator[Drawing]:
+    """Every figure that this run has the columns for; those of the paper's run carry the paper's numbers."""
+    for number, drawing in _all(subject):
+        if number and subject.is_the_papers:
+            named = f"fig{number}_{drawing.name}"
+            yield Drawing(named, f"The paper's Fig. {number}. {drawing.caption}", drawing.draw)
+        else:
+            yield drawing
+
+
+def _all(subject: Subject) -> Iterator[tuple[int, Drawing]]:
+    """With the number of the paper's figure of the same kind, or 0."""
+    yield from _of_the_arm(subject)
+    for drawing in _of_the_base(subject):
+        yield 0, drawing
+
+
+def _of_the_arm(subject: Subject) -> Iterator[tuple[int, Drawing]]:
+    trace, model = subject.trace, subject.model
+    if "reference_pose" in trace.columns():
+        if model is not None:
+            about = "The desired path of the tool (black) and the robot at its start, middle and end, in W."
+            yield 4, Drawing("desired_trajectory", about, partial(desired_trajectory, trace, model))
+        about = "The path of the tool, desired (black) and obtained (orange), in W."
+        yield 5, Drawing("obtained_trajectory", about, partial(obtained_trajectory, trace))
+    if "position_error" in trace.columns() and len(subject.tools) < 2:
+        about = "Desired minus obtained pose of the tool, W axes; the attitude's error as a rotation vector."
+        yield 6, Drawing("tracking_errors", about, partial(tracking_errors, trace))
+    if model is not None and model.joint_names and np.any(trace.tau):
+        about = "Effort of every joint, held over each control step."
+        yield 7, Drawing("joint_torques", about, partial(joint_torques, trace, model))
+    for drawing in _of_the_controls(subject):
+        yield 0, drawing
+
+
+def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
+    trace, model = subject.trace, subject.model
+    for tool in subject.tools:
+        if tool.control in trace.tracking and len(subject.tools) > 1:
+            about = f"Tracking errors of the controller {tool.control}, which moves {tool.frame}; W axes."
+            name = f"tracking_errors_{_word(tool.control)}"
+            yield Drawing(name, about, partial(control_errors, trace, tool.control, []))
+    for control, joints in (subject.joint_controls or {}).items():
+        if control in trace.tracking and joints and np.any(trace.tracking[control]):
+            about = f"Desired minus obtained positions of the joints of the controller {control}."
+            name = f"joint_errors_{_word(control)}"
+            yield Drawing(name, about, partial(control_errors, trace, control, joints))
+    if model is None:
+        return
+    for tool in subject.tools:
+        if len(tool.joints) >= 3:
+            about = (
+                f"Manipulability of {tool.frame} along its path, √det(J Jᵀ), with the base free (generalized "
+                "Jacobian) and held; at zero some direction is out of reach."
+            )
+            name = "manipulability" + (f"_{_word(tool.control)}" if len(subject.tools) > 1 else "")
+            yield Drawing(name, about, partial(manipulability, trace, model, tool.frame, tool.joints))
+
+
+def _of_the_base(subject: Subject) -> Iterator[Drawing]:
+    trace, model = subject.trace, subject.model
+    yield Drawing("base_motion", "Position and attitude of the base in W.", partial(base_motion, trace))
+    about = "The base's reaction: the angle it has turned by, and its angular velocity in its own axes."
+    yield Drawing("base_reaction", about, partial(base_reaction, trace))
+    about = (
+        "Momentum and energy in W, and what of their change neither impulse nor work explains; angular "
+        "momentum is about the centre of mass."
+    )
+    yield Drawing("ledger", about, partial(ledger, trace))
+    if trace.wrenches and model is not None:
+        about = "Force and torque of every effect on every body; torques are about the body's centre of mass."
+        yield Drawing("environment_forces", about, partial(environment_forces, trace, model.body_names))
+    if subject.mu is None or not has_local_frame(trace) or _angle_flown_deg(trace) <= WORTH_AN_ORBIT_DEG:
+        return
+    is_earth = abs(subject.mu / MU_EARTH - 1.0) < 1e-3
+    about = "The orbit to scale in inertial axes, its distance, and the attitude of the base relative to L."
+    yield Drawing("orbit", about, partial(orbit_overview, trace, is_earth=is_earth))
+    earth = subject.earth
+    if is_earth and earth is not None:
+        about = "The ground track, geodetic, and the height above the ellipsoid."
+        yield Drawing("ground_track", about, partial(ground_track, trace, earth))
+
+
+def _word(name: str) -> str:
+    """A name of the user's as a part of a file's."""
+    return "".join(char if char.isalnum() or char in "-_" else "_" for char in name)[:60]
+
+
+def _angle_flown_deg(trace: Trace) -> float:
+    """Largest angle (degrees) between the first direction from the planet's centre and any other."""
+    direction = np.asarray(trace.position_eci)
+    direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
+    return float(np.degrees(np.arccos(np.clip(direction @ direction[0], -1.0, 1.0)).max()))

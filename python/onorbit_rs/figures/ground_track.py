@@ -1,0 +1,59 @@
+"""Where on the Earth the run passes over."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from onorbit_rs.figures.style import (
+    COLORS,
+    INK,
+    LINE,
+    OBTAINED,
+    PAGE,
+    clock,
+    legend_above,
+    new_figure,
+    tidy,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Earth, Trace
+
+    Floats = NDArray[np.float64]
+
+_MOST_ROWS = 3_000
+
+
+def ground_track(trace: Trace, earth: Earth) -> Figure:
+    """Geodetic longitude and latitude under the base, on a plain grid, and its height above the ellipsoid."""
+    time, label = clock(trace)
+    rows = np.unique(np.linspace(0, len(time) - 1, _MOST_ROWS).astype(int))
+    position = np.ascontiguousarray(np.asarray(trace.position_eci)[rows])
+    latitude, longitude, height = earth.geodetic(np.ascontiguousarray(trace.time[rows]), position)
+    lat, lon = np.degrees(latitude), (np.degrees(longitude) + 180.0) % 360.0 - 180.0
+    figure = new_figure(PAGE, 2.6)
+    world, profile = figure.subplots(1, 2, width_ratios=(2.0, 1.0))
+    world.plot(*_broken_at_the_date_line(lon, lat), color=COLORS[0], linewidth=LINE)
+    world.plot(lon[0], lat[0], "o", color="white", markeredgecolor=INK, markersize=4, label="start")
+    world.plot(lon[-1], lat[-1], "s", color=OBTAINED, markersize=4, label="end")
+    tidy(world, "longitude, east [deg]", "geodetic latitude [deg]")
+    world.set(xlim=(-180.0, 180.0), ylim=(-90.0, 90.0), aspect="equal")
+    world.set_xticks(range(-180, 181, 60))
+    world.set_yticks(range(-90, 91, 30))
+    world.axhline(0.0, color=INK, linewidth=0.5)
+    legend_above(world)
+    profile.plot(time[rows], height / 1e3, color=COLORS[0], linewidth=LINE)
+    tidy(profile, label, "height [km]")
+    profile.ticklabel_format(axis="y", useOffset=False)
+    return figure
+
+
+def _broken_at_the_date_line(lon: Floats, lat: Floats) -> tuple[Floats, Floats]:
+    """The track with a gap where it leaves the map on one side and comes in on the other."""
+    at = np.flatnonzero(np.abs(np.diff(lon)) > 180.0) + 1
+    return np.insert(lon, at, np.nan), np.insert(lat, at, np.nan)

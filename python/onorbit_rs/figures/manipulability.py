@@ -1,0 +1,74 @@
+"""How well the tool can be moved along its path, and what the free base costs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from onorbit_rs.figures.style import (
+    COLORS,
+    COLUMN,
+    clock,
+    legend_above,
+    new_figure,
+    plot_lines,
+    tidy,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Model, Trace
+
+    Floats = NDArray[np.float64]
+
+_MOST_ROWS = 2_000
+
+
+def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] | None = None) -> Figure:
+    """Yoshikawa's measure `w = √det(J Jᵀ)` with the base free (`J = Jg`) and held (`J = Jm`).
+
+    Above of the tool's velocity and rate together where six joints or more drive it, below of its velocity
+    alone; both in m³ where every joint turns. At zero the tool cannot be moved in some direction.
+
+    Parameters
+    ----------
+    trace : Trace
+    model : Model
+    tool : str
+        The frame.
+    joints : sequence of str, optional
+        Those that drive it; all where not given.
+
+    Source: Yoshikawa, Int. J. Robotics Research 4(2), 1985; with `Jg` Umetani and Yoshida, 1989.
+    """
+    columns = [list(model.joint_names).index(name) for name in joints or model.joint_names]
+    time, label = clock(trace)
+    rows = np.unique(np.linspace(0, len(time) - 1, _MOST_ROWS).astype(int))
+    q, v = np.ascontiguousarray(trace.q[rows]), np.ascontiguousarray(trace.v[rows])
+    free = np.asarray(model.free_floating(q, v, tool).jacobian)[:, :, columns]
+    held = np.asarray(model.frame_jacobian(q, tool))[:, :, 6:][:, :, columns]
+    slides = any(model.joints[index].kind == "prismatic" for index in columns)
+    unit = "SI" if slides else "m³"
+    parts = [("w, pose", slice(0, 6))] if len(columns) >= 6 else []
+    parts.append(("w, position", slice(0, 3)))
+    figure = new_figure(COLUMN, 0.5 + 1.4 * len(parts))
+    panels = figure.subplots(len(parts), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, (what, part) in zip(panels, parts, strict=True):
+        measures = np.column_stack([_measure(free[:, part]), _measure(held[:, part])])
+        plot_lines(axes, time[rows], measures, ("base free", "base held"), COLORS)
+        axes.lines[1].set_linestyle((0, (3, 1.5)))
+        axes.set_ylim(0.0, 1.08 * float(max(measures.max(), 1e-12)))
+        tidy(axes, label if axes is panels[-1] else "", f"{what} [{unit}]")
+    legend_above(panels[0])
+    return figure
+
+
+def _measure(jacobian: Floats) -> Floats:
+    """`√det(J Jᵀ)` of (k, m, n) Jacobians: the product of their singular values."""
+    product: Floats = np.linalg.svd(jacobian, compute_uv=False).prod(axis=-1)
+    return product

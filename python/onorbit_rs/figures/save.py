@@ -1,0 +1,65 @@
+"""Figures as files: PNG to look at, PDF for a paper, SVG for a page."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+from onorbit_rs.figures.drawings import drawings
+
+if TYPE_CHECKING:
+    from onorbit_rs.figures.subject import Subject
+
+FORMATS = ("png",)
+"""Of a run; the PDF for a paper take as long again, and come with the report."""
+# Publishers refuse Type 3 fonts, 42 is TrueType; equal figures give equal files.
+_SETTINGS: Any = {"pdf.fonttype": 42, "svg.hashsalt": "onorbit", "path.simplify_threshold": 0.2}
+_NO_DATE: dict[str, dict[str, Any]] = {
+    "png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None},
+}  # fmt: skip
+
+
+def save_all(
+    subject: Subject,
+    folder: Path,
+    *,
+    formats: Sequence[str] = FORMATS,
+    tell: Callable[[str], None] | None = None,
+) -> list[Path]:
+    """Write every figure that fits a run; returns the files.
+
+    Parameters
+    ----------
+    subject : Subject
+    folder : Path
+        Made where missing.
+    formats : sequence of str
+        Of ``png``, ``pdf`` and ``svg``.
+    tell : callable, optional
+        Called with the name of each figure before it is drawn.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    files = []
+    for drawing in drawings(subject):
+        if tell is not None:
+            tell(drawing.name)
+        figure = drawing.draw()
+        for kind in formats:
+            files.append(folder / f"{drawing.name}.{kind}")
+            files[-1].write_bytes(as_bytes(figure, kind))
+    return files
+
+
+def as_bytes(figure: Figure, kind: str) -> bytes:
+    """A figure in one of the formats."""
+    content = io.BytesIO()
+    with warnings.catch_warnings(), mpl.rc_context(_SETTINGS):
+        warnings.filterwarnings("ignore", message="Glyph .* missing")  # a name in another script
+        figure.savefig(content, format=kind, metadata=_NO_DATE[kind])
+    return content.getvalue()

@@ -1,0 +1,88 @@
+"""A run read back from its folder."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from onorbit_rs.exceptions import NotFoundError, ReadError
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Trace
+
+
+@dataclass(frozen=True)
+class _Saved:
+    """Columns under their names, as a :class:`onorbit_rs.Trace` has them."""
+
+    arrays: Mapping[str, Any]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or name not in self.arrays:
+            raise AttributeError(f"the trace has no column {name!r}")
+        return self.arrays[name]
+
+    def columns(self) -> list[str]:
+        return [name for name in self.arrays if not name.startswith(("tracking_", "wrench_", "rereferenced"))]
+
+    @property
+    def tracking(self) -> dict[str, Any]:
+        return self._named("tracking_")
+
+    @property
+    def wrenches(self) -> dict[str, Any]:
+        return self._named("wrench_")
+
+    def _named(self, kind: str) -> dict[str, Any]:
+        return {name.removeprefix(kind): rows for name, rows in self.arrays.items() if name.startswith(kind)}
+
+
+def read_trace(folder: Path) -> Trace:
+    """The columns in ``trace.npz``; what a trace computes on request (its certificate) is not there.
+
+    Raises
+    ------
+    NotFoundError, ReadError
+        No such file, or not one of ours.
+    """
+    file = folder / "trace.npz"
+    try:
+        with np.load(file, allow_pickle=False) as stored:
+            arrays = {name: stored[name] for name in stored.files}
+        if not {"time", "q", "v", "momentum"} <= set(arrays):
+            raise ValueError("columns are missing")
+    except FileNotFoundError as error:
+        raise NotFoundError(f"no trace in this folder: {file}", path=str(file), kind="trace") from error
+    except (ValueError, EOFError, OSError, TypeError, AttributeError, zipfile.BadZipFile) as error:
+        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="trace") from error
+    return cast("Trace", _Saved(arrays))
+
+
+def read_summary(folder: Path) -> dict[str, Any]:
+    """``summary.json`` of a run.
+
+    Raises
+    ------
+    NotFoundError
+        No such folder, or no run in it.
+    ReadError
+        It cannot be read.
+    """
+    file = folder / "summary.json"
+    try:
+        is_there = file.is_file()
+    except OSError as error:  # a name too long
+        raise ReadError(f"cannot read {file}: {error.strerror}", path=str(file), kind="summary") from error
+    if not is_there:
+        what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
+        raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
+    try:
+        return dict(json.loads(file.read_text(encoding="utf-8")))
+    except (ValueError, TypeError, OSError) as error:
+        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error

@@ -1,0 +1,97 @@
+"""The summary of a run in words: what a key means, its unit, and its number as a person reads it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from onorbit_rs.figures.style import with_prefix
+from onorbit_rs.output.summary import CHECKS
+
+# longest first: `_rad_s` ends in `_s` too
+_UNITS = (
+    ("_rad_s", "rad/s"), ("_m_s2", "m/s²"), ("_nm", "N m"), ("_rad", "rad"), ("_rel", "relative"),
+    ("_m", "m"), ("_s", "s"), ("_j", "J"),
+)  # fmt: skip
+_SCALED = ("m", "rad", "N m", "J", "m/s²", "rad/s")
+_NAMES = {
+    "wall_s": "wall clock of the loop",
+    "real_time_factor": "times real time",
+    "rows": "rows of the trace",
+    "rereferenced": "times given another reference",
+    "velocity_eci_source": "inertial velocity from",
+    "onorbit_rs_version": "onorbit_rs",
+    "python_version": "Python",
+    "numpy_version": "numpy",
+}
+_GROUPS = (
+    ("Tracking", ("tracking_", "control_")),
+    ("Motion", ("joint_", "base_")),
+    ("Orbit", ("inertial_axes", "velocity_eci", "gravity_mode", "reference_residual", "rereferenced")),
+    (
+        "Simulation",
+        ("simulated_s", "wall_s", "real_time_factor", "rows", "time_step_s", "integrator", "plant"),
+    ),
+    ("Versions", ("onorbit_rs_version", "instruction_set", "python_version", "numpy_version")),
+)
+_ELSEWHERE = ("scenario", "status", "warnings", *CHECKS)
+
+
+class Row(NamedTuple):
+    """A line of a table; ``shown`` is ``value`` as a person reads it."""
+
+    key: str
+    name: str
+    value: Any
+    shown: str
+    unit: str
+
+
+def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
+    """Every entry of a summary that the page does not show elsewhere, under a heading."""
+    left = {key: value for key, value in summary.items()
+            if key not in _ELSEWHERE and not key.startswith("certificate_")}  # fmt: skip
+    found = []
+    for title, starts in _GROUPS:
+        rows = [row(key, value) for key, value in left.items() if key.startswith(starts)]
+        left = {key: value for key, value in left.items() if not key.startswith(starts)}
+        found.append((title, rows))
+    found.append(("Other", [row(key, value) for key, value in left.items()]))
+    return [(title, rows) for title, rows in found if rows]
+
+
+def row(key: str, value: Any) -> Row:
+    """One entry with its unit, which its key ends in."""
+    ending, unit = next(((ending, unit) for ending, unit in _UNITS if key.endswith(ending)), ("", ""))
+    words = _NAMES.get(key) or key.removesuffix(ending).replace("_", " ")
+    shown = value
+    if unit in _SCALED and isinstance(value, float) and value != 0.0:
+        factor, unit = with_prefix(abs(value), unit)
+        shown = factor * value
+    text = _shown(shown)
+    if unit == "rad" or (unit == "mrad" and abs(value) > 0.01):
+        text += f" ({math.degrees(value):.3g}°)" if isinstance(value, float) and value else ""
+    return Row(key, words, value, text, "" if unit == "relative" else unit)
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return "not finite"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if not isinstance(value, float):
+        return str(value) if value != "" else "none"
+    return f"{value:.4g}"
+
+
+def checks(summary: dict[str, Any]) -> list[tuple[Row, bool | None]]:
+    """Every line of the certificate, and whether it holds; None where it does not apply to the run."""
+    failed = {name.strip() for name in str(summary.get("certificate_failures") or "").split(",")}
+    absent = {name.strip() for name in str(summary.get("certificate_not_evaluated") or "").split(",")}
+    rows: list[tuple[Row, bool | None]] = []
+    for name in CHECKS:
+        if name in summary:
+            rows.append((row(name, summary[name]), name not in failed))
+        elif name in absent:
+            rows.append((Row(name, row(name, None).name, None, "not evaluated", ""), None))
+    return rows

@@ -1,0 +1,118 @@
+"""The page: a template, and text of the user's that stays text."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from string import Template
+from typing import Any
+
+from onorbit_rs.report.numbers import Row, checks, groups
+
+_TEMPLATE = Path(__file__).with_name("page.html")
+_TYPES = {"svg": "image/svg+xml", "png": "image/png"}
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawn figure; ``kind`` is svg or png."""
+
+    name: str
+    caption: str
+    kind: str
+    content: bytes
+    is_wide: bool
+
+
+def page(
+    summary: dict[str, Any],
+    *,
+    description: str,
+    scenario: str,
+    pictures: Sequence[Picture],
+    remarks: Sequence[str],
+    again: str,
+    version: str,
+) -> str:
+    """HTML of a report; nothing in it refers to anything outside."""
+    name = str(summary.get("scenario") or "run")
+    return Template(_TEMPLATE.read_text(encoding="utf-8")).substitute(
+        title=escape(f"{name}: onorbit report"),
+        name=escape(name),
+        description=escape(description),
+        verdict=_verdict(summary),
+        remarks=_remarks(summary, remarks),
+        tables="\n".join(_table(title, rows) for title, rows in groups(summary)),
+        checks=_checks(summary),
+        figures="\n".join(_figure(picture) for picture in pictures) or "<p>There is nothing to draw.</p>",
+        scenario=escape(scenario),
+        again=escape(again),
+        version=escape(version),
+        footer=escape(f"Written by onorbit_rs {version}."),
+    )
+
+
+def _verdict(summary: dict[str, Any]) -> str:
+    """Green or red, and whether the run came to its end."""
+    status = str(summary.get("status") or "unknown")
+    is_whole = status == "complete"
+    has_passed = bool(summary.get("certificate_passed"))
+    simulated = summary.get("simulated_s")
+    said = f"Run {status}" + (f", {simulated:g} s simulated" if isinstance(simulated, (int, float)) else "")
+    failures = escape(str(summary.get("certificate_failures") or ""))
+    certificate = "Certificate passed" if has_passed else f"Certificate FAILED: {failures}"
+    kind = "passed" if has_passed and is_whole else "failed" if not has_passed else "warned"
+    return (
+        f'<div class="verdict {kind}" id="verdict"><strong>{certificate}</strong><p>{escape(said)}.</p></div>'
+    )
+
+
+def _remarks(summary: dict[str, Any], remarks: Sequence[str]) -> str:
+    """Warnings of the robot's file, and what the page had to leave out."""
+    said = [str(summary["warnings"])] if summary.get("warnings") else []
+    exceeded = str(summary.get("joint_limits_exceeded") or "")
+    said += [f"joint limits were exceeded: {exceeded}"] if exceeded else []
+    items = "".join(f"<li>{escape(text)}</li>" for text in (*said, *remarks))
+    return (
+        f'<div class="verdict warned" id="warnings"><strong>Warnings</strong><ul>{items}</ul></div>'
+        if items
+        else ""
+    )
+
+
+def _table(title: str, rows: Sequence[Row]) -> str:
+    lines = "\n".join(
+        f'<tr><td>{escape(row.name)}</td><td class="number">{_data(row)}</td>'
+        f'<td class="unit">{escape(row.unit)}</td></tr>'
+        for row in rows
+    )
+    return f"<section><h3>{escape(title)}</h3><table>{lines}</table></section>"
+
+
+def _data(row: Row) -> str:
+    """The number as a person reads it, and as ``summary.json`` has it."""
+    return f'<data id="{escape(row.key)}" value="{escape(str(row.value))}">{escape(row.shown)}</data>'
+
+
+def _checks(summary: dict[str, Any]) -> str:
+    words = {True: ("passed", "holds"), False: ("failed", "BROKEN"), None: ("faint", "does not apply")}
+    lines = "\n".join(
+        f'<tr><td>{escape(row.name)}</td><td class="number">{_data(row)}</td><td class="unit">'
+        f'{escape(row.unit)}</td><td class="{words[holds][0]}">{words[holds][1]}</td></tr>'
+        for row, holds in checks(summary)
+    )
+    return f'<table class="checks">{lines}</table>' if lines else "<p>This run carries no certificate.</p>"
+
+
+def _figure(picture: Picture) -> str:
+    content = base64.b64encode(picture.content).decode("ascii")
+    name, caption = escape(picture.name), escape(picture.caption)
+    kind = ' class="wide"' if picture.is_wide else ""
+    source = f"data:{_TYPES[picture.kind]};base64,{content}"
+    return (
+        f'<figure id="figure-{name}"{kind}><div class="scroll"><img alt="{caption}" src="{source}"></div>'
+        f"<figcaption>{caption} <code>{name}</code></figcaption></figure>"
+    )

@@ -1,0 +1,131 @@
+"""``report.html`` of a run, from the files in its folder."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from onorbit_rs import _core
+from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError
+from onorbit_rs.output.folder import FIGURES, REPORT, OutputFolder
+from onorbit_rs.output.read import read_summary, read_trace
+from onorbit_rs.report.page import Picture, page
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import make_robot
+from onorbit_rs.scenario.earth import make_earth
+from onorbit_rs.scenario.make_orbit import make_orbit
+
+if TYPE_CHECKING:
+    from onorbit_rs.figures import Subject
+    from onorbit_rs.scenario import Scenario
+
+LARGEST_SVG = 600_000
+"""Bytes; a figure of more polygons than that becomes a PNG."""
+
+
+def write_report(
+    folder: str | os.PathLike[str],
+    *,
+    pdf: bool = False,
+    tell: Callable[[str], None] = lambda doing: None,
+) -> Path:
+    """Write ``report.html`` beside a run's other files; one page with everything in it.
+
+    Parameters
+    ----------
+    folder : str or path
+        What ``out=`` of :func:`onorbit_rs.run` was.
+    pdf : bool
+        Whether to write each figure into ``figures/`` as PDF too.
+    tell : callable
+        Called with what is being done.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    NotFoundError, ReadError
+        No run in this folder, or its files cannot be read.
+    OutputFolderError
+        The page cannot be written.
+    """
+    out = OutputFolder(Path(folder))
+    summary = read_summary(out.path)
+    text, scenario = _scenario(out.path / "scenario.yaml")
+    remarks: list[str] = []
+    subject = _subject(out.path, scenario, remarks)
+    pictures = list(_pictures(subject, out, pdf, tell)) if len(subject.trace.time) > 1 else []
+    tell("writing the page")
+    version = str(_core.build_info()["version"])
+    content = page(
+        summary,
+        description=scenario.description,
+        scenario=text,
+        pictures=pictures,
+        remarks=remarks,
+        again=f"onorbit run {shlex.quote('scenario.yaml')}",
+        version=version,
+    )
+    with out.writing(REPORT) as file:
+        file.write_text(content, encoding="utf-8")
+    return out.path / REPORT
+
+
+def _scenario(file: Path) -> tuple[str, Scenario]:
+    try:
+        text = file.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise NotFoundError(f"no scenario in this folder: {file}", path=str(file), kind="scenario") from error
+    except (OSError, ValueError) as error:
+        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="scenario") from error
+    return text, load(file)
+
+
+def _subject(folder: Path, scenario: Scenario, remarks: list[str]) -> Subject:
+    """What there is to draw; a robot, an orbit or an Earth whose files are gone is a remark."""
+    from onorbit_rs import figures
+
+    trace = read_trace(folder)
+    model = orbit = earth = None
+    with _remarked(remarks, "the robot could not be read, figures that show it are left out"):
+        model = make_robot(scenario)
+    with _remarked(remarks, "the orbit could not be read, figures that show it are left out"):
+        orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, folder)
+        earth = make_earth(scenario, orbit, folder)
+    return figures.subject_of(trace, scenario, model, orbit, earth)
+
+
+@contextmanager
+def _remarked(remarks: list[str], what: str) -> Iterator[None]:
+    try:
+        yield
+    except OnOrbitError as error:
+        remarks.append(f"{what}: {error}")
+
+
+def _pictures(
+    subject: Subject, out: OutputFolder, pdf: bool, tell: Callable[[str], None]
+) -> Iterator[Picture]:
+    from onorbit_rs import figures
+
+    if pdf:
+        with out.refusals(FIGURES):
+            (out.path / FIGURES).mkdir(exist_ok=True)
+    for drawing in figures.drawings(subject):
+        tell(f"drawing {drawing.name}")
+        figure = drawing.draw()
+        kind, content = "svg", figures.as_bytes(figure, "svg")
+        if len(content) > LARGEST_SVG:
+            kind, content = "png", figures.as_bytes(figure, "png")
+        if pdf:
+            with out.writing(f"{FIGURES}/{drawing.name}.pdf") as file:
+                file.write_bytes(figures.as_bytes(figure, "pdf"))
+        is_wide = figure.get_figwidth() > figures.COLUMN
+        yield Picture(drawing.name, drawing.caption, kind, content, is_wide)
