@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+import typer
 import yaml
 
 import onorbit_rs as oo
 from onorbit_rs import _core, cli
-from onorbit_rs.cli.app import COMMANDS
+from onorbit_rs.cli.app import COMMANDS, app
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -168,6 +169,9 @@ def test_every_command_is_told() -> None:
     text = (DOCS / "cli.md").read_text()
     for name in COMMANDS:
         assert f"`onorbit {name}" in text, name
+    group = typer.main.get_command(app)
+    known = {option for command in group.commands.values() for part in command.params for option in part.opts}  # type: ignore[attr-defined]
+    assert set(re.findall(r"`(--[a-z-]+)", text)) <= known
 
 
 @pages

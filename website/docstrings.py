@@ -11,7 +11,8 @@ import griffe
 
 ROLE = re.compile(r":(?:class|meth|func|mod|attr):`~?([\w.]+)`")
 SESSION = re.compile(r"^>>> .*?(?=\n\n|\Z)", re.MULTILINE | re.DOTALL)
-TABLE = re.compile(r"^=+  +=.*?^=+ .*?^=+ .*?$", re.MULTILINE | re.DOTALL)
+TABLE = re.compile(r"^(=+(?:  +=+)+)\n(.*)\n\1\n(.*?)\n\1$", re.MULTILINE | re.DOTALL)
+TYPE = re.compile(r"^\w[\w, ]* : .*$", re.MULTILINE)
 
 
 class EngineDocstrings(griffe.Extension):
@@ -46,13 +47,23 @@ def called(new: Any) -> Any:
     return new
 
 
+def table(ruler: str, head: str, body: str) -> str:
+    """A table of reStructuredText in Markdown; the ruler says where columns begin."""
+    starts = [found.start() for found in re.finditer("=+", ruler)]
+    ends = [*starts[1:], None]
+    lines = [head, ruler.replace("=", "-"), *body.split("\n")]
+    cells = [[line[start:end].strip() for start, end in zip(starts, ends, strict=True)] for line in lines]
+    return "\n".join("| " + " | ".join(row) + " |" for row in cells)
+
+
 def tidy(thing: griffe.Object) -> None:
     """Markdown has no roles, and sessions and tables look otherwise."""
     if thing.docstring:
         text = ROLE.sub(r"`\1`", thing.docstring.value)
         if "\nExamples\n---" not in text:
             text = SESSION.sub(lambda found: f"```pycon\n{found[0]}\n```", text)
-        thing.docstring.value = TABLE.sub(lambda found: f"```text\n{found[0]}\n```", text)
+        text = TYPE.sub(lambda found: found[0].replace("``", ""), text)  # shown as code already
+        thing.docstring.value = TABLE.sub(lambda found: table(*found.groups()), text)
     for member in thing.members.values():
         if not member.is_alias:
             tidy(member)

@@ -15,6 +15,7 @@ from markdown.inlinepatterns import InlineProcessor
 from markdown.preprocessors import Preprocessor
 
 BLOCK = re.compile(r"^\$\$\n(.*?)\n\$\$$", re.MULTILINE | re.DOTALL)
+NUMBER = r"(\d\.?\d*e-\d+)"
 INLINE = r"(?<![\\$\w])\$(?!\s)([^$\n]+?)(?<!\s)\$(?![$\w])"
 
 
@@ -39,6 +40,16 @@ class Inline(InlineProcessor):
         return self.md.htmlStash.store(mathml(m[1], "inline")), m.start(0), m.end(0)
 
 
+class Number(InlineProcessor):
+    """``1e-7`` stays on one line."""
+
+    def handleMatch(self, m: re.Match[str], data: str) -> tuple[Element | str, int, int]:  # type: ignore[override]
+        """In a span of its own."""
+        span = Element("span", {"class": "number"})
+        span.text = m[1]
+        return span, m.start(0), m.end(0)
+
+
 def mathml(tex: str, display: str) -> str:
     """One equation; TeX that is not understood would come out as its own name and is refused."""
     if unknown := re.findall(r"<m[io]>(\\\w+)</m[io]>", converted := convert(tex.strip(), display=display)):
@@ -47,12 +58,13 @@ def mathml(tex: str, display: str) -> str:
 
 
 class Equations(Extension):
-    """Registers both."""
+    """Registers them."""
 
     def extendMarkdown(self, md: Markdown) -> None:
         """After fenced code was taken away (25), before paragraphs; in a line after code in ticks (190)."""
         md.preprocessors.register(Blocks(md), "equations", 24)
         md.inlinePatterns.register(Inline(INLINE, md), "equation", 185)
+        md.inlinePatterns.register(Number(NUMBER, md), "number", 5)
 
 
 def makeExtension(**options: Any) -> Equations:
