@@ -51,10 +51,7 @@ $(VENV)/.documented: pyproject.toml | $(VENV)/.built
 	@touch $@
 
 docs: $(VENV)/.built $(VENV)/.documented ## the documentation: built with warnings as errors, its links checked
-	rm -rf out/docs
-	$(BIN)/python -m zensical build --strict --clean
-	$(BIN)/python website/links.py out/docs
-	@echo 'open file://$(CURDIR)/out/docs/index.html'
+	$(BIN)/python website/build.py
 
 $(VENV)/.benched: pyproject.toml | $(VENV)/.tested
 	$(MATURIN) --extras bench

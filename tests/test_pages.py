@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import re
 import shlex
 import subprocess
@@ -17,7 +18,7 @@ import typer
 import yaml
 
 import onorbit_rs as oo
-from onorbit_rs import _core, cli
+from onorbit_rs import _core, cli, figures
 from onorbit_rs.cli.app import COMMANDS, app
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -157,12 +158,21 @@ def test_every_page_is_in_the_navigation() -> None:
 
 def test_every_public_name_has_its_place_in_the_api() -> None:
     text = "\n".join(page.read_text() for page in (DOCS / "api").glob("*.md"))
-    shown = set(re.findall(r"^::: onorbit_rs\.([\w.]+)$", text, re.MULTILINE))
+    shown = set(re.findall(r"^::: onorbit_rs\.(?!figures)([\w.]+)$", text, re.MULTILINE))
     relative = {f"_core.{name}" for name in oo.relative.__all__}
     engine = {f"_core.{name}" for name in _core.__all__ if name not in ("__version__", "Effect")}
     known = {f"_core.{name}" for name in oo.__all__} | relative
-    wanted = (set(oo.__all__) - {"OnOrbitError"}) | (engine - known)
+    wanted = (set(oo.__all__) - {"OnOrbitError"}) | (engine - known) | {"report"}
     assert shown == wanted
+
+
+def test_every_figure_has_its_place_in_the_api() -> None:
+    shown = set(
+        re.findall(r"^::: onorbit_rs\.figures.*?(\w+)$", (DOCS / "api" / "figures.md").read_text(), re.M)
+    )
+    functions = {name for name in figures.__all__ if inspect.isfunction(getattr(figures, name))}
+    drawn = {name for name in functions if getattr(figures, name).__annotations__["return"] == "Figure"}
+    assert shown == drawn
 
 
 def test_every_command_is_told() -> None:

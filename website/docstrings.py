@@ -12,6 +12,7 @@ import griffe
 ROLE = re.compile(r":(?:class|meth|func|mod|attr):`~?([\w.]+)`")
 SESSION = re.compile(r"^>>> .*?(?=\n\n|\Z)", re.MULTILINE | re.DOTALL)
 TABLE = re.compile(r"^(=+(?:  +=+)+)\n(.*)\n\1\n(.*?)\n\1$", re.MULTILINE | re.DOTALL)
+PRIVATE = re.compile(r"\b_[A-Z]\w*")
 TYPE = re.compile(r"^\w[\w, ]* : .*$", re.MULTILINE)
 
 
@@ -20,7 +21,10 @@ class EngineDocstrings(griffe.Extension):
 
     def on_package(self, *, pkg: griffe.Module, **_: Any) -> None:
         """Once everything is read."""
-        fill(pkg["_core"], importlib.import_module("onorbit_rs._core"))
+        engine = pkg["_core"]
+        fill(engine, importlib.import_module("onorbit_rs._core"))
+        own = {name: it for name, it in engine.members.items() if not it.is_alias and it.is_attribute}
+        unfold(engine, {name: str(it.value) for name, it in own.items() if PRIVATE.fullmatch(name)})
         tidy(pkg)
 
 
@@ -39,6 +43,29 @@ def fill(stub: griffe.Module | griffe.Class, live: Any) -> None:
             fill(member, there)
             if "__new__" in member.members:  # how the class is called stands beside its name
                 member.set_member("__init__", called(member.members.pop("__new__")))
+
+
+def unfold(thing: Any, aliases: dict[str, str]) -> None:
+    """Types by what they stand for: names that begin with an underscore are the stub's own."""
+
+    def unfolded(annotation: Any) -> Any:
+        text = str(annotation)
+        while any(name in aliases for name in PRIVATE.findall(text)):
+            text = PRIVATE.sub(lambda found: aliases.get(found[0], found[0]), text)
+        text = text.replace("_Controller", "Controller")
+        return annotation if text == str(annotation) else text
+
+    for member in thing.members.values():
+        if member.is_alias:
+            continue
+        if member.is_function:
+            member.returns = unfolded(member.returns)
+            for parameter in member.parameters:
+                parameter.annotation = unfolded(parameter.annotation)
+        elif member.is_attribute:
+            member.annotation = unfolded(member.annotation)
+        elif member.is_class:
+            unfold(member, aliases)
 
 
 def called(new: Any) -> Any:
