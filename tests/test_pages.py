@@ -20,6 +20,7 @@ import yaml
 import onorbit_rs as oo
 from onorbit_rs import _core, cli, figures
 from onorbit_rs.cli.app import COMMANDS, app
+from onorbit_rs.scenario.part import Part
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -173,6 +174,25 @@ def test_every_figure_has_its_place_in_the_api() -> None:
     functions = {name for name in figures.__all__ if inspect.isfunction(getattr(figures, name))}
     drawn = {name for name in functions if getattr(figures, name).__annotations__["return"] == "Figure"}
     assert shown == drawn
+
+
+def kinds(part: type[Part]) -> set[type[Part]]:
+    """Classes of a scenario that a ``kind`` chooses."""
+    below = {kind for child in part.__subclasses__() for kind in kinds(child)}
+    return below | ({part} if "kind" in part.model_fields else set())
+
+
+def test_every_kind_of_a_scenario_has_its_keys_told() -> None:
+    told = re.findall(r"^::keys ([\w.]+)$", (DOCS / "scenario.md").read_text(), re.MULTILINE)
+    for path in told:
+        module, name = path.rsplit(".", 1)
+        assert hasattr(importlib.import_module(module), name), path
+    wanted = {f"{kind.__module__}.{kind.__name__}" for kind in kinds(Part)}
+    combined = {
+        name for name in wanted if name.startswith("onorbit_rs.scenario.controls.")
+    }  # a law and a group
+    assert len(wanted - combined) > 20
+    assert wanted - combined <= set(told)
 
 
 def test_every_command_is_told() -> None:
