@@ -1,4 +1,7 @@
-"""Drag through the public ``Simulation``: NASA's run 6A, a decaying circle, the energy that the air takes."""
+"""Drag through the public ``Simulation``: the energy that the air takes, surfaces, refusals.
+
+NASA's run 6A and a decaying circle are in ``onorbit_rs.validation``.
+"""
 
 from __future__ import annotations
 
@@ -9,76 +12,24 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import EarthError, EffectError, FrameError, NotFoundError, ShapeError
+from onorbit_rs.rotations import matrix_from_quaternion
+from onorbit_rs.validation.nasa import ELLIPTICAL, MU, simulate, sphere
 
-MU = 3.986004415e14
-ELLIPTICAL = ((-4315967.74, 960356.20, 5167269.53), (129.091037, -7491.513855, 1452.515654))
-# NASA/TM-2015-218675, run 6A at 28 800 s (JEOD's SIM_dyncomp): position, velocity, acceleration of the air
-POSITION = np.array([-1050804.04499561, -6116991.169519112, 2625679.545008392])
-VELOCITY = np.array([4747.834867748902, -3013.507407025143, -5262.878619425998])
+# NASA/TM-2015-218675, run 6A at 28 800 s (JEOD's SIM_dyncomp): acceleration of the air
 DRAG = np.array([-4.459432204135286e-07, 3.04449896012702e-07, 5.455748606342244e-07])
-RATE = 7.292115146706388e-5
 
-SPHERE = oo.Model.rigid_body(1.0, 0.4 * np.eye(3))
+SPHERE = sphere()
 BALL = oo.Cannonball(1.0, drag_coefficient=0.02)
 AIR = oo.ConstantAtmosphere(1.4e-12)
 
 
-def run_6a(earth: oo.Earth, effects: Any = None) -> oo.Trace:
-    orbit = oo.Kepler.from_state(*ELLIPTICAL, mu=MU)
-    environment = [oo.Drag(AIR, surfaces=BALL)] if effects is None else effects
-    sim = oo.Simulation(
-        SPHERE, SPHERE.neutral(), np.zeros(6), orbit=orbit, earth=earth, environment=environment,
-        time_step=1.0, record_every=28_800,
-    )  # fmt: skip
-    return sim.run(28_800.0)
-
-
-def test_nasa_6a_to_a_millimetre() -> None:
-    trace = run_6a(oo.Earth(rotation="about_z", rate=RATE))
-    position, velocity = np.array(trace.position_eci[-1]), np.array(trace.velocity_eci[-1])
-    print("6A:", np.linalg.norm(position - POSITION), "m", np.linalg.norm(velocity - VELOCITY), "m/s")
-    assert np.linalg.norm(position - POSITION) < 1e-3
-    assert np.linalg.norm(velocity - VELOCITY) < 1e-6
-    # the air's part of the acceleration at the end is NASA's
+def test_the_air_of_6a_pushes_as_nasas_does() -> None:
+    trace = simulate("6A")
     q, v, r = np.array(trace.q[-1]), np.array(trace.acceleration[-1]), np.array(trace.position_eci[-1])
     origin = r - q[:3]
     gravity = -MU * r / np.linalg.norm(r) ** 3 + MU * origin / np.linalg.norm(origin) ** 3
-    assert np.abs(v[:3] - gravity - DRAG).max() < 1e-11  # half of that is where the end is off by
-
-
-def test_air_at_rest_or_about_another_pole_misses_6a() -> None:
-    still = np.array(run_6a(oo.Earth(rotation="about_z", rate=0.0)).position_eci[-1])
-    assert 60.0 < np.linalg.norm(still - POSITION) < 100.0  # NASA's number: 80 m
-    pole = oo.Earth("2007-11-20T00:00:00 UTC", ut1_minus_utc=-0.469)
-    precessed = np.array(run_6a(pole).position_eci[-1])
-    assert 0.05 < np.linalg.norm(precessed - POSITION) < 0.12  # 8 cm
-    without = np.array(run_6a(pole, []).position_eci[-1])
-    assert np.linalg.norm(without - POSITION) > 900.0
-
-
-def test_a_circle_decays_as_the_closed_form_says() -> None:
-    # dr = -C_D (A/m) rho sqrt(mu r) dt; Fitzpatrick, An Introduction to Celestial Mechanics, 2012, eq. 10.148
-    radius = 6_378_136.6 + 250e3
-    density = 7.248e-11  # at 250 km, Vallado's table
-    ratio = np.pi / 400.0
-    orbit = oo.Kepler(
-        semi_major_axis=radius, eccentricity=0.0, inclination=0.0, raan=0.0, argument_of_periapsis=0.0,
-        mean_anomaly=0.0, mu=oo.MU_EARTH,
-    )  # fmt: skip
-    ball = oo.Cannonball(ratio, drag_coefficient=2.2)
-    sim = oo.Simulation(
-        SPHERE, SPHERE.neutral(), np.zeros(6), orbit=orbit, earth=oo.Earth(rotation="about_z", rate=0.0),
-        environment=[oo.Drag(oo.ConstantAtmosphere(density), surfaces=ball)],
-        time_step=10.0, record_every=10_000,
-    )  # fmt: skip
-    trace = sim.run(100_000.0)
-    lost = np.linalg.norm(trace.position_eci[-1]) - radius
-    expected = -2.2 * ratio * density * np.sqrt(oo.MU_EARTH * radius) * 1e5
-    assert lost == pytest.approx(expected, rel=0.01)
-    sma = 1.0 / (
-        2.0 / np.linalg.norm(trace.position_eci[-1]) - np.sum(np.square(trace.velocity_eci[-1])) / oo.MU_EARTH
-    )
-    assert sma - radius == pytest.approx(expected, rel=0.003)
+    in_w = matrix_from_quaternion(q[3:7]) @ (v[:3] + np.cross(trace.v[-1, 3:], trace.v[-1, :3]))
+    assert np.abs(in_w - gravity - DRAG).max() < 1e-11  # half of that is where the end is off by
 
 
 def test_the_energy_that_goes_is_what_the_air_took() -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import warnings
+from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +15,8 @@ from matplotlib.figure import Figure
 import onorbit_rs as oo
 from onorbit_rs import figures
 from onorbit_rs.figures.style import MOST_POINTS, thin, with_prefix
-from onorbit_rs.scenario import load
+from onorbit_rs.scenario import Scenario, load
+from onorbit_rs.scenario.make_orbit import make_orbit
 
 
 @pytest.fixture(scope="module")
@@ -21,6 +24,20 @@ def reach() -> oo.Run:
     data = load("humanoid_reach").resolved()
     data["simulation"] |= {"time_step": 5e-3}
     return oo.run(data, quiet=True)
+
+
+@pytest.fixture(scope="module")
+def tumble() -> oo.Run:
+    data = load("leo_drag_tumble").resolved()
+    data["simulation"] |= {"duration": 600.0, "time_step": 1.0}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the inertia of a link
+        return oo.run(data, quiet=True)
+
+
+def subject(run: oo.Run, scenario: Scenario | None = None) -> figures.Subject:
+    orbit = None if run.scenario.orbit is None else make_orbit(run.scenario.orbit, Path())
+    return figures.subject_of(run.trace, scenario or run.scenario, run.model, orbit, None)
 
 
 def labels(figure: Figure) -> list[str]:
@@ -57,26 +74,109 @@ def test_every_axis_of_every_figure_has_a_unit(reach: oo.Run) -> None:
         figures.tracking_errors(trace),
         figures.joint_torques(trace, model),
         figures.base_motion(trace),
-        figures.conservation(trace),
+        figures.base_reaction(trace),
+        figures.ledger(trace),
+        figures.manipulability(trace, model, "tool"),
     ]
     for figure in drawn:
         assert labels(figure) and all("[" in label for label in labels(figure)), labels(figure)
 
 
 def test_saving_writes_pictures_of_some_content(reach: oo.Run, tmp_path: Path) -> None:
-    files = figures.save_all(reach.trace, reach.model, tmp_path / "figures")
-    assert len(files) == 6
-    for file in files:
-        assert file.read_bytes().startswith(b"\x89PNG")
-        assert file.stat().st_size > 10_000
+    told: list[str] = []
+    files = figures.save_all(subject(reach), tmp_path / "figures", formats=("png", "pdf"), tell=told.append)
+    assert [file.name for file in files[::2]] == [f"{name}.png" for name in told]
+    assert len(told) == 8
+    for png, pdf in zip(files[::2], files[1::2], strict=True):
+        assert png.read_bytes().startswith(b"\x89PNG") and png.stat().st_size > 10_000
+        content = pdf.read_bytes()
+        assert content.startswith(b"%PDF") and b"/Type3" not in content  # which publishers refuse
+
+
+def test_only_the_papers_run_carries_the_papers_numbers(reach: oo.Run) -> None:
+    names = {drawing.name for drawing in figures.drawings(subject(reach))}
+    assert {"fig4_desired_trajectory", "fig7_joint_torques"} <= names
+    data = reach.scenario.resolved() | {"description": "mine"}
+    assert subject(reach, load(data)).is_the_papers  # words and steps change no experiment
+    data["reference"]["displacement"] = [0.4, 0.0, 0.0]
+    mine = list(figures.drawings(subject(reach, load(data))))
+    assert {"desired_trajectory", "joint_torques"} <= {drawing.name for drawing in mine}
+    assert not any("fig" in drawing.name or "paper" in drawing.caption for drawing in mine)
+
+
+def test_equal_runs_give_equal_files(reach: oo.Run) -> None:
+    for kind in ("svg", "pdf"):
+        assert figures.as_bytes(figures.base_motion(reach.trace), kind) == figures.as_bytes(
+            figures.base_motion(reach.trace), kind
+        )
+
+
+def test_figures_have_the_size_of_a_column_or_a_page(reach: oo.Run) -> None:
+    for drawing in figures.drawings(subject(reach)):
+        figure = drawing.draw()
+        assert figure.get_figwidth() in (figures.COLUMN, figures.PAGE), drawing.name
+        for axes in figure.axes:
+            texts = [*axes.get_xticklabels(), *axes.get_yticklabels(), axes.xaxis.label, axes.yaxis.label]
+            assert all(text.get_fontsize() >= 7 for text in texts), drawing.name
+
+
+def test_manipulability_is_the_root_of_the_determinant(reach: oo.Run) -> None:
+    figure = figures.manipulability(reach.trace, reach.model, "tool")
+    pose, position = figure.axes
+    q, v = reach.trace.q[0], reach.trace.v[0]
+    free = np.asarray(reach.model.free_floating(q, v, "tool").jacobian)
+    held = np.asarray(reach.model.frame_jacobian(q, "tool"))[:, 6:]
+    for axes, rows in ((pose, 6), (position, 3)):
+        for line, jacobian in zip(axes.lines, (free[:rows], held[:rows]), strict=True):
+            assert line.get_ydata()[0] == pytest.approx(
+                np.sqrt(np.linalg.det(jacobian @ jacobian.T)), rel=1e-9
+            )
+
+
+def test_forces_are_those_of_the_wrenches(tumble: oo.Run) -> None:
+    figure = figures.environment_forces(tumble.trace, tumble.model.body_names)
+    effects = list(tumble.trace.wrenches)
+    assert len(figure.axes) == 2 * len(effects)
+    drag = figure.axes[2 * effects.index("drag")]
+    names = list(tumble.model.body_names)
+    drawn = {line.get_label(): line.get_ydata() for line in drag.lines}
+    for name, values in drawn.items():
+        force = np.linalg.norm(tumble.trace.wrenches["drag"][:, names.index(name), :3], axis=1)
+        np.testing.assert_array_equal(values, force)
+    assert "drag\nforce [N]" in labels(figure) and "torque [N m]" in labels(figure)
+
+
+def test_the_ground_track_is_where_the_earth_says(tumble: oo.Run) -> None:
+    earth = oo.Earth(tumble.scenario.epoch)
+    world, profile = figures.ground_track(tumble.trace, earth).axes
+    latitude, longitude, height = earth.geodetic(tumble.trace.time[0], tumble.trace.position_eci[0])
+    lon, lat = world.lines[0].get_data()
+    assert (lon[0], lat[0]) == pytest.approx((np.degrees(longitude), np.degrees(latitude)), abs=1e-9)
+    assert profile.lines[0].get_ydata()[0] == pytest.approx(height / 1e3, rel=1e-9)
+    assert np.nanmax(np.abs(lat)) < 36.0  # the orbit's inclination is 35 degrees, geodetic a little more
+
+
+def test_names_in_the_users_words_are_no_formulas_and_are_not_left_out(reach: oo.Run) -> None:
+    names = ["$x^{", "_hidden", "<script>", "a & b", "関節", "$a$", "x" * 80]
+    urdf = oo.robots.path("humanoid_torso").read_text()
+    for number, name in enumerate(names, start=1):
+        urdf = urdf.replace(f'"arm_joint_{number}"', f'"{escape(name)}"')
+    model = oo.Model.from_urdf_string(urdf)
+    assert list(model.joint_names) == names
+    figure = figures.joint_torques(reach.trace, model)
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    figures.as_bytes(figure, "png")
+    shown = [text.get_text().strip().replace(r"\$", "$") for text in legend.get_texts()]
+    assert shown == [*names[:-1], "x" * 16 + "…" + "x" * 16]
 
 
 def test_an_orbit_flown_is_drawn(tmp_path: Path) -> None:
     data = load("kepler_orbit").resolved()
     data["simulation"] = {"duration": 600.0, "time_step": 2.0}
     result = oo.run(data, quiet=True)
-    names = {file.stem for file in figures.save_all(result.trace, result.model, tmp_path)}
-    assert names == {"base_motion", "conservation", "orbit"}
+    names = {file.stem for file in figures.save_all(subject(result), tmp_path)}
+    assert names == {"base_motion", "base_reaction", "ledger", "orbit"}
 
 
 def test_nothing_global_is_touched() -> None:
@@ -105,7 +205,7 @@ def test_prefixes(peak: float, factor: float, unit: str) -> None:
 def test_thinning_keeps_a_spike() -> None:
     time = np.linspace(0.0, 1.0, 10 * MOST_POINTS)
     values = np.zeros_like(time)
-    values[123_456] = -7.0
+    values[12_345] = -7.0
     x, y = thin(time, values)
     assert len(x) <= MOST_POINTS + 2
-    assert y.min() == -7.0 and x[y.argmin()] == time[123_456]
+    assert y.min() == -7.0 and x[y.argmin()] == time[12_345]

@@ -16,36 +16,15 @@ import pytest
 from numpy.polynomial import chebyshev, legendre, polynomial
 
 import onorbit_rs as oo
+from onorbit_rs.validation import nasa
+from onorbit_rs.validation.case import table
+from onorbit_rs.validation.fields import MU, RADIUS
+from onorbit_rs.validation.fields import field as of_table
+from onorbit_rs.validation.nasa import TYPICAL
 
-MU, RADIUS = 3.986004415e14, 6378136.3
-TYPICAL = ((-4292653.41, 955168.47, 5139356.57), (109.649663, -7527.726490, 1484.521489))
 # GGM02C (Center for Space Research, University of Texas, 2004), fully normalised, zero-tide: n, m, C, S
-# fmt: off
-GGM02C = [
-    (2, 0, -4.8416938905481e-04, 0), (2, 1, -2.0458338184745e-10, 1.3968195379551e-09),
-    (2, 2, 2.4393233001191e-06, -1.4002662003867e-06), (3, 0, 9.5718508415439e-07, 0),
-    (3, 1, 2.0304752656064e-06, 2.4817416903031e-07), (3, 2, 9.0480066975068e-07, -6.1900441427103e-07),
-    (3, 3, 7.2128924247650e-07, 1.4143556434052e-06), (4, 0, 5.3999143526074e-07, 0),
-    (4, 1, -5.3617583789434e-07, -4.7356802287476e-07), (4, 2, 3.5051159931087e-07, 6.6243944849186e-07),
-    (4, 3, 9.9085503541734e-07, -2.0097529442342e-07), (4, 4, -1.8846750474516e-07, 3.0882228278756e-07),
-    (5, 0, 6.8715981001179e-08, 0), (5, 1, -6.2904051380481e-08, -9.4373263356928e-08),
-    (5, 2, 6.5210393080303e-07, -3.2334838450788e-07), (5, 3, -4.5187965449909e-07, -2.1500140801223e-07),
-    (5, 4, -2.9533633996919e-07, 4.9817834613976e-08), (5, 5, 1.7479367861529e-07, -6.6937444851133e-07),
-    (6, 0, -1.4994011973125e-07, 0), (6, 1, -7.5903534713091e-08, 2.6516969820404e-08),
-    (6, 2, 4.8671477410889e-08, -3.7379063632786e-07), (6, 3, 5.7235251140830e-08, 8.9355908317172e-09),
-    (6, 4, -8.6024306020762e-08, -4.7142492778928e-07), (6, 5, -2.6717044535375e-07, -5.3648870593762e-07),
-    (6, 6, 9.4667858117668e-09, -2.3740563878695e-07), (7, 0, 9.0504630229132e-08, 0),
-    (7, 1, 2.8088898145081e-07, 9.5119644062781e-08), (7, 2, 3.3041560746535e-07, 9.2985239787248e-08),
-    (7, 3, 2.5045166263142e-07, -2.1714748211003e-07), (7, 4, -2.7498938059553e-07, -1.2406704411494e-07),
-    (7, 5, 1.6601317328580e-09, 1.7933888039325e-08), (7, 6, -3.5880775879961e-07, 1.5179454735699e-07),
-    (7, 7, 1.5062884219099e-09, 2.4116259277940e-08), (8, 0, 4.9481334104780e-08, 0),
-    (8, 1, 2.3159979727734e-08, 5.8896665124862e-08), (8, 2, 8.0015152191272e-08, 6.5278835020898e-08),
-    (8, 3, -1.9378833774969e-08, -8.5977473175173e-08), (8, 4, -2.4436744168468e-07, 6.9808169573661e-08),
-    (8, 5, -2.5695381020603e-08, 8.9195503483206e-08), (8, 6, -6.5962471839471e-08, 3.0894479673499e-07),
-    (8, 7, 6.7261439849585e-08, 7.4875670873080e-08), (8, 8, -1.2403873503204e-07, 1.2055330686769e-07),
-]
-# fmt: on
-EARTH = oo.Earth("2007-11-20T00:00:32 TAI", ut1_minus_utc=33.0 - 32.469)  # TAI-UT1 is 32.469 s
+GGM02C = [(int(row["n"]), int(row["m"]), float(row["C"]), float(row["S"])) for row in table("ggm02c")]
+EARTH = nasa.turning_earth()
 HOURS_8 = 28_800.0
 
 
@@ -105,19 +84,13 @@ def integrate(degree: int, segment: float = 600.0, nodes: int = 25) -> tuple[Any
 
 
 def field(degree: int) -> oo.GravityField:
-    c, s = np.zeros((degree + 1, degree + 1)), np.zeros((degree + 1, degree + 1))
-    for n, m, a, b in GGM02C:
-        if n <= degree:
-            c[n, m], s[n, m] = a, b
-    return oo.GravityField.from_coefficients(c, s, mu=MU, radius=RADIUS)
+    return of_table("ggm02c", degree)
 
 
 @cache
 def simulated(degree: int) -> tuple[Any, Any]:
     """NASA's station about its Kepler reference, 8 h at 1 s."""
-    station = oo.Model.rigid_body(
-        400_000.0, [[1.02e8, -6.96e6, -5.48e6], [-6.96e6, 0.91e8, 5.9e5], [-5.48e6, 5.9e5, 1.64e8]]
-    )
+    station = nasa.iss()
     trace = oo.Simulation(
         station, station.neutral(), np.zeros(6), orbit=oo.Kepler.from_state(*TYPICAL, mu=MU), earth=EARTH,
         environment=[field(degree)], time_step=1.0, record_every=28_800,
@@ -148,9 +121,8 @@ def test_the_8x8_sibling_of_nasa_3a() -> None:
 
 def test_the_independent_integration_lands_on_nasa_3a() -> None:
     """NASA/TM-2015-218675, 3A (JEOD), to the 1.5 m by which NASA's simulators differ."""
-    nasa = np.array([-1254745.169789463, -6089581.989971695, 2656347.933147136])
     position, _ = integrate(4)
-    off = np.linalg.norm(position - nasa)
+    off = np.linalg.norm(position - nasa.rows("3A")[-1].position)
     print(f"4 x 4: {off:.3f} m from NASA's 3A")
     assert off < 1.5
     assert np.linalg.norm(simulated(4)[0] - position) < 1e-3

@@ -1,11 +1,11 @@
-"""Two-body motion from Python: textbooks, GMAT, scalars and arrays, and the local orbital frame.
+"""Two-body motion from Python: scalars and arrays, and the local orbital frame.
 
-Numbers typed from ``../shared/validation``, folders ``kepler_textbook`` and ``gmat_reference``.
+Textbooks and GMAT are in ``onorbit_rs.validation.kepler``.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,78 +13,9 @@ import pytest
 import onorbit_rs as oo
 
 
-class Flight(NamedTuple):
-    """From ``r0, v0`` through ``dt`` to ``r, v``; km, km/s, s."""
-
-    mu: float
-    dt: float
-    r0: tuple[float, ...]
-    v0: tuple[float, ...]
-    r: tuple[float, ...]
-    v: tuple[float, ...]
-    tol_km: float
-
-
-# fmt: off
-FLIGHTS = {
-    # Vallado, Fundamentals of Astrodynamics, example 2-4; printed to 1e-4 km
-    "vallado_2_4": Flight(
-        398600.4418, 2400.0, (1131.340, -2282.343, 6672.423), (-5.64305, 4.30333, 2.42879),
-        (-4219.7527, 4363.0292, -3958.7666), (3.689866, -1.916735, -6.112511), 1e-4,
-    ),
-    # CelesTrak/fundamentals-of-astrodynamics, Python tests; reproduced to 1.2e-11 km
-    "valladopy_kepler": Flight(
-        398600.4415, 120.0, (-6518.1083, -2403.8479, -22.1722), (2.604057, -7.105717, -0.263218),
-        (-6150.8180772417, -3233.5647020192746, -53.47890911642744),
-        (3.5085906394995146, -6.703227854017405, -0.2578170063354219), 1e-9,
-    ),
-    # Curtis, example 3.7, recomputed to seven digits
-    "curtis_3_7": Flight(
-        398600.0, 3600.0, (7000.0, -12124.0, 0.0), (2.6679, 4.6210, 0.0),
-        (-3297.7686, 7413.3966, 0.0), (-8.2976030, -0.9640449, 0.0), 1e-4,
-    ),
-    # GMAT, two bodies over a day: itself 4e-9 km from the exact solution; the issue's gate is 1e-5 m
-    "gmat_two_body": Flight(
-        398600.4415, 86400.0, (-2436.45, -2436.45, 6891.037), (5.088611, -5.088611, 0.0),
-        (-5971.194191670676, 3945.506653225158, 2864.6366184134445),
-        (0.04909695762999346, -4.185093318475795, 5.848940867748944), 1e-8,
-    ),
-}
-# fmt: on
-
-
-def kepler(flight: Flight) -> oo.Kepler:
-    return oo.Kepler.from_state(np.array(flight.r0) * 1e3, np.array(flight.v0) * 1e3, mu=flight.mu * 1e9)
-
-
-@pytest.mark.parametrize("name", FLIGHTS)
-def test_a_known_flight(name: str) -> None:
-    flight = FLIGHTS[name]
-    r, v = kepler(flight).state(flight.dt)
-    off_r = np.abs(r / 1e3 - flight.r).max()
-    off_v = np.abs(v / 1e3 - flight.v).max()
-    print(f"{name}: off by {off_r * 1e3:.1e} m, {off_v * 1e3:.1e} m/s")
-    assert off_r < flight.tol_km
-    assert off_v < max(flight.tol_km * 1e-2, 1e-11)  # seconds per radian are hundreds or more
-
-
-def test_curtis_3_5_a_hyperbola_by_its_size() -> None:
+def test_a_hyperbola_has_no_period() -> None:
     orbit = oo.Kepler.from_state([6678137.0, 0, 0], [0, 15000.0, 0], mu=3.986e14)
     assert orbit.semi_major_axis < 0 and orbit.eccentricity > 1 and orbit.period is None
-    r, v = orbit.state(14941.0)
-    assert np.linalg.norm(r) == pytest.approx(163180e3, rel=1e-4)
-    assert np.linalg.norm(v) == pytest.approx(10.51e3, rel=1e-3)
-
-
-def test_curtis_4_7_a_hyperbola_by_its_elements() -> None:
-    # h = 80000 km²/s, e = 1.4: p = h²/mu; recomputed to eleven digits
-    orbit = oo.Kepler(
-        semi_latus_rectum=80000.0**2 / 398600 * 1e3, eccentricity=1.4, inclination=np.radians(30),
-        raan=np.radians(40), argument_of_periapsis=np.radians(60), true_anomaly=np.radians(30), mu=3.986e14,
-    )  # fmt: skip
-    r, v = orbit.state(0.0)
-    np.testing.assert_allclose(r / 1e3, [-4039.8959232, 4814.5604802, 3628.6247022], rtol=0, atol=1e-7)
-    np.testing.assert_allclose(v / 1e3, [-10.3859876, -4.7719216, 1.7438750], rtol=0, atol=1e-7)
 
 
 ORBITS = {

@@ -32,7 +32,7 @@ def test_the_folder_holds_what_the_design_names(reach: oo.Run) -> None:
     assert {"summary.json", "trace.npz", "run.rrd", "scenario.yaml"} <= names
     assert {f"figures/{name}.png" for name in (
         "fig4_desired_trajectory", "fig5_obtained_trajectory", "fig6_tracking_errors", "fig7_joint_torques",
-        "base_motion", "conservation",
+        "manipulability", "base_motion", "base_reaction", "ledger",
     )} <= names  # fmt: skip
     assert not any("partial" in name for name in names)
 

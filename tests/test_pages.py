@@ -35,7 +35,7 @@ pages = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relativ
 def command(line: str) -> None:
     """``onorbit …`` as a reader types it; it must not fail."""
     with pytest.raises(SystemExit) as stop:
-        cli.main(shlex.split(line)[1:])
+        cli.main(shlex.split(line, comments=True)[1:])
     assert stop.value.code in (0, None), line
 
 

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 import pin_robot
 import pinocchio as pin  # type: ignore[import-untyped]
-from trees import TOOL, build, random_state, random_tree
+
+from onorbit_rs.validation.trees import TOOL, build, random_state, random_tree
 
 FILE = Path(__file__).parents[1] / "fixtures" / "pinocchio_tables.json"
 SEEDS = (301, 302, 303)

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin  # type: ignore[import-untyped]
-from trees import BASE, TOOL, Array, Part, State, Tree
 
 import onorbit_rs as oo
+from onorbit_rs.validation.trees import BASE, TOOL, Array, Part, State, Tree
 
 W_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 

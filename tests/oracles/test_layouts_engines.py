@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trees import Array, build, deviation, random_tree, urdf
 
 import onorbit_rs as oo
 from onorbit_rs import layouts
+from onorbit_rs.validation.trees import Array, build, deviation, random_tree, urdf
 
 GATE = 1e-13
 TABLES = json.loads((Path(__file__).parents[1] / "fixtures" / "layouts.json").read_text())
@@ -76,7 +76,7 @@ def test_pinocchio_s_order_matters() -> None:
 @pytest.mark.parametrize("seed", range(8))
 def test_mujoco(seed: int) -> None:
     mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco")
-    from test_mujoco import mjcf
+    from onorbit_rs.validation.against_mujoco import mjcf
 
     tree = random_tree(seed)
     model, theirs = build(tree), mujoco.MjModel.from_xml_string(mjcf(tree))

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trees import TOOL, State, build, deviation, random_state, random_tree
 
 import onorbit_rs as oo
+from onorbit_rs.validation.trees import TOOL, State, build, deviation, random_state, random_tree
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
 import pin_robot  # noqa: E402

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from trees import TOOL, build, deviation, random_state, random_tree, urdf
 
 import onorbit_rs as oo
+from onorbit_rs.validation.trees import TOOL, build, deviation, random_state, random_tree, urdf
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
 import pin_robot  # noqa: E402

@@ -11,6 +11,8 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import Sgp4Error
+from onorbit_rs.validation.against_sgp4 import published
+from onorbit_rs.validation.sgp4 import CODES, codes, sets
 
 sgp4_api = pytest.importorskip("sgp4.api", reason="PyPI's sgp4 is in the test extra")
 
@@ -37,17 +39,9 @@ class Case(NamedTuple):
 
 
 def cases() -> Iterator[Case]:
-    folder = resources.files("sgp4")
-    lines = [line for line in (folder / "SGP4-VER.TLE").read_text().splitlines() if line[:1] in ("1", "2")]
-    blocks: list[list[list[float]]] = []
-    for line in (folder / "tcppver.out").read_text().splitlines():
-        if line.endswith("xx"):
-            blocks.append([])
-        else:
-            blocks[-1].append([float(number) for number in line.split()[:7]])
-    assert len(blocks) == 33 and len(lines) == 66
-    for line1, line2, rows in zip(lines[::2], lines[1::2], blocks, strict=True):
-        yield Case(line1[:69], line2[:69], np.array(rows))
+    for elements, (satellite, rows) in zip(sets(), published(), strict=True):
+        assert satellite == elements.line1[2:7]
+        yield Case(elements.line1, elements.line2, rows)
 
 
 CASES = list(cases())
@@ -119,18 +113,17 @@ def test_resonance_can_stop_the_mean_motion(line2: str) -> None:
 
 def test_the_errors_of_the_whole_set_in_file_order() -> None:
     """As python-sgp4's own test has them: each block's run of times ends at its first error."""
-    codes = []
-    lines = (resources.files("sgp4") / "SGP4-VER.TLE").read_text().splitlines()
-    spans = [[float(x) for x in line[69:].split()] for line in lines if line.startswith("2 ")]
-    for case, (start, stop, step) in zip(CASES, spans, strict=True):
-        try:
-            orbit = case.orbit()
-            orbit.state(0.0)
-            for minutes in np.arange(start, stop + step, step):
-                orbit.state(60.0 * min(minutes, stop))
-        except Sgp4Error as error:
-            codes.append(error.code)
-    assert codes == [1, 1, 6, 6, 4, 3, 6]
+    assert list(codes()) == CODES
+
+
+def test_the_packages_table_is_the_published_one() -> None:
+    """First, middle and last row of each set, and every set."""
+    lines = [line.rstrip() for line in (resources.files("sgp4") / "SGP4-VER.TLE").read_text().splitlines()]
+    for case, elements in zip(CASES, sets(), strict=True):
+        assert f"{case.line1}" in lines and any(line.startswith(case.line2) for line in lines)
+        published = case.rows.tolist()
+        assert all(row in published for row in elements.rows)
+        assert bool(elements.rows) is is_sound(case)
 
 
 @pytest.mark.parametrize("gravity", ["wgs72old", "wgs72", "wgs84"])

@@ -17,6 +17,7 @@ from onorbit_rs.cli.new import new
 from onorbit_rs.cli.report import report
 from onorbit_rs.cli.run import resume, run
 from onorbit_rs.cli.show import show
+from onorbit_rs.cli.validate import validate
 from onorbit_rs.exceptions import OnOrbitError
 
 if TYPE_CHECKING:
@@ -34,12 +35,13 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "run": run,
     "resume": resume,
     "list": list_,
-    "new": new,
     "check": check,
     "show": show,
-    "report": report,
     "info": info,
     "convert": convert,
+    "new": new,
+    "report": report,
+    "validate": validate,
 }
 for name, command in COMMANDS.items():
     app.command(name=name)(command)

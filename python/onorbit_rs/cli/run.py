@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.cli.failing import fail
 from onorbit_rs.cli.options import (
@@ -30,7 +30,7 @@ def run(
     as_json: JsonOption = False,
     checkpoint_every: CheckpointOption = 30.0,
 ) -> None:
-    """Run a scenario and certify its momentum and energy."""
+    """Run a scenario and certify its momentum and energy: exit code 1 where they do not hold."""
     from onorbit_rs.running import run as run_scenario
 
     _report(
@@ -70,3 +70,14 @@ def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
         print_json(result.summary)
     elif not quiet:
         print_summary(result.summary, result.out)
+    if not result.summary["certificate_passed"]:
+        fail(_uncertified(result.summary), 1)
+
+
+def _uncertified(summary: dict[str, Any]) -> str:
+    """What a run whose balances do not hold says last, and the way out."""
+    is_adaptive = summary["integrator"] == "dormand_prince"
+    way_out = (
+        "a smaller tolerance" if is_adaptive else f"a time_step shorter than {summary['time_step_s']:g} s"
+    )
+    return f"the certificate failed ({summary['certificate_failures']}): try {way_out}"

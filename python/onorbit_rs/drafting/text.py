@@ -60,7 +60,7 @@ orbit:                          # with an orbit the planet pulls on every link, 
   argument_of_periapsis: 0 deg
   mean_anomaly: 0 deg           # where on the ellipse it starts
 
-environment:
+environment:                    # what acts beside the planet's pull
   - kind: gravity_gradient      # torque of gravity on every link, N m
 # - kind: drag                  # the air; needs 'epoch: 2026-03-20 12:00:00 UTC' above
 #   atmosphere: {kind: nrlmsise00, f107: 150, f107a: 150, ap: 15}

@@ -14,6 +14,7 @@ from onorbit_rs.figures.style import (
     PAGE,
     SMALL,
     clock,
+    legend_columns,
     legend_height,
     new_figure,
     others_of,
@@ -56,10 +57,9 @@ def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
             name = f"{plain(effect.replace('_', ' '))}\n" if column == 0 else ""
             tidy(axes, label if is_last else "", f"{name}{what} [{unit}]")
     handles, names = panels[0, 0].get_legend_handles_labels()
-    columns = max(1, min(len(names), int((PAGE - 0.6) / (0.35 + 0.06 * max(map(len, names))))))
     figure.legend(
-        handles, names, loc="outside upper left", frameon=False, fontsize=SMALL, ncols=columns,
-        handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
+        handles, names, loc="outside upper left", frameon=False, fontsize=SMALL,
+        ncols=legend_columns(names, PAGE - 0.6), handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
     )  # fmt: skip
     figure.set_figheight(0.5 + 1.35 * len(wrenches) + legend_height(names, PAGE - 0.6))
     return figure

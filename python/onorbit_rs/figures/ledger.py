@@ -65,7 +65,7 @@ def ledger(trace: Trace) -> Figure:
         plot_lines(panels[row, 0], time, factor * columns, names, COLORS if row == 2 else XYZ_COLORS)
         if row == 2:
             panels[row, 0].lines[1].set_linestyle((0, (3, 1.5)))  # it may lie upon the kinetic energy
-        _zero_in_sight(panels[row, 0])
+        _zero_in_sight(panels[row, 0], factor)
         tidy(panels[row, 0], label if row == 2 else "", f"{what} [{scaled}]")
         legend_above(panels[row, 0])
         drift = np.linalg.norm(unexplained[row] - unexplained[row][0], axis=1)
@@ -74,9 +74,9 @@ def ledger(trace: Trace) -> Figure:
     return figure
 
 
-def _zero_in_sight(axes: Axes) -> None:
-    """Three lines of zeros are drawn about zero, not on the frame."""
-    if not any(np.any(line.get_ydata()) for line in axes.lines):
+def _zero_in_sight(axes: Axes, factor: float) -> None:
+    """Lines of zeros, and of rounding below all prefixes, are drawn as what they are."""
+    if all(np.abs(line.get_ydata()).max() < (1.0 if factor > 1.0 else 1e-12) for line in axes.lines):
         axes.set_ylim(-1.0, 1.0)
 
 

@@ -19,6 +19,7 @@ from onorbit_rs.figures.style import (
     plot_lines,
     thin,
     tidy,
+    with_prefix,
 )
 from onorbit_rs.rotations import attitude_in_orbit
 
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 EARTH_RADIUS_KM = 6378.137
+NEARLY_ROUND = 1e-5
+"""Change of the distance, as a share of it, below which the change alone is drawn."""
 
 
 def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
@@ -42,10 +45,14 @@ def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
     grid = figure.add_gridspec(2, 2, width_ratios=(0.8, 1.0))
     _draw_path(figure, position / 1e3, is_earth)
     upper, lower = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
-    plot_lines(upper, time, distance_km, ("distance",), COLORS)
+    whose = f"distance from the\n{'Earth' if is_earth else 'planet'}'s centre"
+    if np.ptp(distance_km) < NEARLY_ROUND * distance_km[0, 0]:  # or the ticks would have a dozen digits
+        whose, distance_km = f"distance less\n{distance_km[0, 0]:.3f} km", distance_km - distance_km[0, 0]
+    factor, unit = with_prefix(1e3 * float(np.abs(distance_km).max()), "m")
+    factor, unit = (1e-3, "km") if "less" not in whose else (factor, unit)
+    plot_lines(upper, time, 1e3 * factor * distance_km, ("distance",), COLORS)
     plot_lines(lower, time, angles, ("roll", "pitch", "yaw"), XYZ_COLORS)
-    whose = "Earth" if is_earth else "planet"
-    tidy(upper, "", f"distance from the\n{whose}'s centre [km]")
+    tidy(upper, "", f"{whose} [{unit}]")
     tidy(lower, clock_label, "attitude\nrelative to L [deg]")
     upper.ticklabel_format(axis="y", useOffset=False)
     upper.tick_params(labelbottom=False)
@@ -55,7 +62,7 @@ def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
 
 
 def _draw_path(figure: Figure, position_km: Floats, is_earth: bool) -> None:
-    axes = add_space(figure, (0.0, 0.09, 0.40, 0.9), elevation=24.0, azimuth=35.0)
+    axes = add_space(figure, (0.035, 0.07, 0.385, 0.92), elevation=24.0, azimuth=35.0)
     longitude, latitude = np.meshgrid(np.linspace(0, 2 * np.pi, 37), np.linspace(-np.pi / 2, np.pi / 2, 19))
     radius = EARTH_RADIUS_KM if is_earth else 0.05 * float(np.linalg.norm(position_km, axis=1).max())
     sphere = radius * np.stack(
@@ -70,8 +77,8 @@ def _draw_path(figure: Figure, position_km: Floats, is_earth: bool) -> None:
     axes.plot(*path.T, color=OBTAINED, linewidth=0.6, linestyle=":", zorder=2)
     axes.scatter(*path[0], color=OBTAINED, s=16, depthshade=False, zorder=4)
     everything = np.vstack([sphere.reshape(3, -1).T, path])
-    fit(axes, everything, zoom=0.92)
-    label(axes, "km", pad=-1.0)
+    fit(axes, everything, room=(1.38, 1.5), least=0.4)
+    label(axes, "km", pad=0.0)
 
 
 def _is_behind(

@@ -45,11 +45,12 @@ def label(axes: Axes3D, unit: str, pad: float = -5.0, change: str = "") -> None:
     axes.set_zlabel(f"{change}z [{unit}]", fontsize=NORMAL, labelpad=pad)
 
 
-def fit(axes: Axes3D, points: Floats, *, least: float = 0.0, zoom: float = 1.0) -> None:
+def fit(axes: Axes3D, points: Floats, *, room: tuple[float, float], least: float = 0.0) -> None:
     """Limits around (k, 3) points, one metre equally long along all three axes.
 
-    ``least`` keeps a flat direction from vanishing: the smallest side as a part of the largest. ``zoom``
-    fills the frame. A side that is short beside the longest gets fewer ticks: their labels stay apart.
+    ``room`` is the width and height that the box may take as it is seen, in units that make the space
+    diagonal of a box 2; ``least`` keeps a flat direction from vanishing: the smallest side as a part of the
+    largest. A side that is short beside the longest gets fewer ticks: their labels stay apart.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     largest = max(float((high - low).max()), 1e-9)
@@ -58,6 +59,17 @@ def fit(axes: Axes3D, points: Floats, *, least: float = 0.0, zoom: float = 1.0) 
     axes.set_xlim(center[0] - half[0], center[0] + half[0])
     axes.set_ylim(center[1] - half[1], center[1] + half[1])
     axes.set_zlim(center[2] - half[2], center[2] + half[2])
-    axes.set_box_aspect(tuple(half), zoom=zoom)
+    width, height = _seen(half / np.linalg.norm(half), axes.elev, axes.azim)
+    axes.set_box_aspect(tuple(half), zoom=min(room[0] / width, room[1] / height))
     for axis, share in zip((axes.xaxis, axes.yaxis, axes.zaxis), half / half.max(), strict=True):
         axis.set_major_locator(MaxNLocator(4 if share > 0.7 else 3 if share > 0.45 else 2, min_n_ticks=1))
+
+
+def _seen(half: Floats, elevation_deg: float, azimuth_deg: float) -> tuple[float, float]:
+    """Width and height of a box with these half sides, from far away."""
+    elevation, azimuth = np.radians([elevation_deg, azimuth_deg])
+    right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+    up = np.array(
+        [-np.sin(elevation) * np.cos(azimuth), -np.sin(elevation) * np.sin(azimuth), np.cos(elevation)]
+    )
+    return float(2.0 * np.abs(half * right).sum()), float(2.0 * np.abs(half * up).sum())

@@ -35,6 +35,8 @@ LINE = 1.1
 DPI = 300
 MOST_POINTS = 4_000
 """Of one line; longer ones keep the extremes of each stretch. A column of print has 1050 dots at 300 dpi."""
+LONGEST_NAME = 32
+"""Letters of a name in a legend."""
 MOST_LINES = 16
 """In one plot: as many as can be told apart."""
 
@@ -70,22 +72,29 @@ def legend_above(axes: Axes, width: float = COLUMN - 0.5) -> None:
     axes.legend(
         handles, names, loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False, fontsize=SMALL,
         borderaxespad=0.15, borderpad=0.1, handlelength=1.6, handletextpad=0.5, columnspacing=1.0,
-        labelspacing=0.25, ncols=_columns(names, width),
+        labelspacing=0.25, ncols=legend_columns(names, width),
     )  # fmt: skip
 
 
 def legend_height(names: Sequence[str], width: float = COLUMN - 0.5) -> float:
     """Inches that :func:`legend_above` takes."""
-    return 0.13 * -(-len(names) // _columns(names, width))
+    return 0.13 * -(-len(names) // legend_columns(names, width))
 
 
-def _columns(names: Sequence[str], width: float) -> int:
-    entry = 0.34 + SMALL * 0.55 / 72.0 * max((len(name) for name in names), default=0)
+def legend_columns(names: Sequence[str], width: float) -> int:
+    """How many names go side by side into ``width`` inches."""
+    longest = min(max((len(name) for name in names), default=0), LONGEST_NAME)
+    entry = 0.34 + SMALL * 0.55 / 72.0 * longest
     return max(1, min(len(names), int(width / entry)))
 
 
 def plain(name: str) -> str:
-    """A name of the user's, in which matplotlib must see no formula, and that no legend leaves out."""
+    """A name of the user's, in which matplotlib must see no formula, and that no legend leaves out.
+
+    The middle of a long one is left out.
+    """
+    half = LONGEST_NAME // 2
+    name = name if len(name) <= LONGEST_NAME else f"{name[:half]}…{name[-half:]}"
     name = name.replace("$", r"\$")
     return f" {name}" if name.startswith("_") else name
 

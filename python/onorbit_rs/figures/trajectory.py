@@ -57,7 +57,7 @@ def desired_trajectory(trace: Trace, model: Model) -> Figure:
         axes.scatter(*path[row], color=OBTAINED, s=14, depthshade=False, zorder=12)
         where = f"{('start', 'middle', 'end')[place]}, t = {time[row]:.4g} {unit[6:-1]}"
         figure.text(0.17 + place * 0.325, 0.945, where, fontsize=NORMAL, ha="center", color=INK)
-        fit(axes, corners, zoom=1.08)
+        fit(axes, corners, room=(1.38, 1.86))
         label(axes, "m")
     return figure
 
@@ -81,7 +81,7 @@ def obtained_trajectory(trace: Trace) -> Figure:
         *desired[0], color="white", edgecolor=DESIRED, s=22, depthshade=False, label="start", zorder=10
     )
     axes.scatter(*desired[-1], color=DESIRED, s=22, depthshade=False, label="end", zorder=10)
-    fit(axes, np.vstack([desired, obtained]), least=0.4, zoom=1.1)
+    fit(axes, np.vstack([desired, obtained]), room=(1.9, 1.75), least=0.4)
     label(axes, unit, pad=-4.0, change="Δ" if is_small else "")
     figure.legend(
         *axes.get_legend_handles_labels(), loc="upper center", frameon=False, fontsize=SMALL, ncols=4,

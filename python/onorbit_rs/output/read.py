@@ -53,7 +53,7 @@ def read_trace(folder: Path) -> Trace:
     """
     file = folder / "trace.npz"
     try:
-        with np.load(file, allow_pickle=False) as stored:
+        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in stored.files}
         if not {"time", "q", "v", "momentum"} <= set(arrays):
             raise ValueError("columns are missing")

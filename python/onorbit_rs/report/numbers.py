@@ -13,6 +13,8 @@ _UNITS = (
     ("_rad_s", "rad/s"), ("_m_s2", "m/s²"), ("_nm", "N m"), ("_rad", "rad"), ("_rel", "relative"),
     ("_m", "m"), ("_s", "s"), ("_j", "J"),
 )  # fmt: skip
+_LEAST_SCALED = 1e-9
+"""Smaller is rounding, and reads better as a power of ten."""
 _SCALED = ("m", "rad", "N m", "J", "m/s²", "rad/s")
 _NAMES = {
     "wall_s": "wall clock of the loop",
@@ -65,12 +67,12 @@ def row(key: str, value: Any) -> Row:
     ending, unit = next(((ending, unit) for ending, unit in _UNITS if key.endswith(ending)), ("", ""))
     words = _NAMES.get(key) or key.removesuffix(ending).replace("_", " ")
     shown = value
-    if unit in _SCALED and isinstance(value, float) and value != 0.0:
+    if unit in _SCALED and isinstance(value, float) and _LEAST_SCALED <= abs(value) < 0.5:
         factor, unit = with_prefix(abs(value), unit)
         shown = factor * value
     text = _shown(shown)
-    if unit == "rad" or (unit == "mrad" and abs(value) > 0.01):
-        text += f" ({math.degrees(value):.3g}°)" if isinstance(value, float) and value else ""
+    if unit in ("rad", "mrad") and isinstance(value, float) and abs(value) > 0.01:
+        text += f" ({math.degrees(value):.3g}°)"
     return Row(key, words, value, text, "" if unit == "relative" else unit)
 
 

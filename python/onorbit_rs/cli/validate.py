@@ -1,0 +1,65 @@
+"""``onorbit validate``."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from onorbit_rs.cli.failing import fail
+from onorbit_rs.cli.options import JsonOption
+
+if TYPE_CHECKING:
+    from onorbit_rs.validation import Case, Verdict
+
+OnlyOption = Annotated[
+    list[str] | None,
+    typer.Option("--only", metavar="WORD", help="Cases whose family or name holds it; may be repeated."),
+]
+ListOption = Annotated[bool, typer.Option("--list", help="Cases with sources and gates, without running.")]
+AllOption = Annotated[bool, typer.Option("--all", help="Every number, not each case's nearest to its gate.")]
+
+
+def validate(
+    only: OnlyOption = None,
+    as_list: ListOption = False,
+    in_full: AllOption = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Run the published cases and compare: exit code 0 if none fails, else 1."""
+    from onorbit_rs.cli.printing import print_json
+    from onorbit_rs.cli.verdicts import print_cases, print_count, print_verdicts
+    from onorbit_rs.validation import select
+
+    cases = select(only or ())
+    started = time.perf_counter()
+    verdicts = [case.not_run() for case in cases] if as_list else _run(cases)
+    if as_json:
+        print_json([verdict.plain() for verdict in verdicts])
+    elif as_list:
+        print_cases(cases)
+    else:
+        print_verdicts(verdicts, in_full=in_full)
+        print_count(verdicts, time.perf_counter() - started)
+    if any(verdict.passed is False for verdict in verdicts):
+        raise typer.Exit(1)
+
+
+def _run(cases: Sequence[Case]) -> list[Verdict]:
+    """With a bar where there is a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+    from onorbit_rs.validation import run
+
+    columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
+    console, is_quiet = Console(stderr=True), not sys.stderr.isatty()
+    try:
+        with Progress(*columns, console=console, transient=True, disable=is_quiet) as bar:
+            task = bar.add_task("", total=len(cases))
+            return run(cases, each=lambda case: bar.update(task, advance=1, description=case.name))
+    except KeyboardInterrupt:  # caught here: typer would swallow it
+        fail("stopped by Ctrl-C", 130)

@@ -1,0 +1,82 @@
+"""Our SGP4 against the reference code, PyPI's ``sgp4``, over the times of every published set."""
+
+from __future__ import annotations
+
+import importlib
+from importlib import resources
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.exceptions import Sgp4Error
+from onorbit_rs.validation.case import Case, Gate
+from onorbit_rs.validation.sgp4 import SOURCE, ElementSet, sets
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+TIMES = 60
+
+
+def compare(elements: ElementSet) -> tuple[float, float]:
+    """Largest difference, km and km/s, and how often only one of both refuses or for another reason."""
+    api: Any = importlib.import_module("sgp4.api")
+    peer, orbit = api.Satrec.twoline2rv(elements.line1, elements.line2), elements.orbit()
+    stop = elements.rows[-1][0]
+    worst, disagreements = 0.0, 0
+    for seconds in 60.0 * np.linspace(-stop, stop + 200.0, TIMES):
+        code, r, v = peer.sgp4_tsince(seconds / 60.0)
+        try:
+            ours = orbit.state(seconds)
+        except Sgp4Error as error:
+            disagreements += error.code != code
+            continue
+        disagreements += code != 0
+        worst = max(worst, float(np.abs(np.array(ours) / 1e3 - (r, v)).max()))
+    return worst, float(disagreements)
+
+
+def published() -> list[tuple[str, Floats]]:
+    """Satellite and rows (min, km, km/s) of each set of the report, from the files in that package."""
+    folder = resources.files("sgp4")
+    lines = (folder / "SGP4-VER.TLE").read_text(encoding="utf-8").splitlines()
+    blocks: list[list[list[float]]] = []
+    for line in (folder / "tcppver.out").read_text(encoding="utf-8").splitlines():
+        if line.endswith("xx"):
+            blocks.append([])
+        else:
+            blocks[-1].append([float(number) for number in line.split()[:7]])
+    satellites = [line[2:7] for line in lines if line.startswith("1 ")]
+    return [(name, np.array(rows)) for name, rows in zip(satellites, blocks, strict=True)]
+
+
+def every_row() -> tuple[float, float]:
+    """Largest components of the error over all published rows, km and km/s."""
+    worst = np.zeros(2)
+    for elements, (_, rows) in zip(sets(), published(), strict=True):
+        if elements.rows:
+            r, v = elements.orbit().state(60.0 * rows[:, 0])
+            off = np.abs(r / 1e3 - rows[:, 1:4]).max(), np.abs(v / 1e3 - rows[:, 4:]).max()
+            worst = np.maximum(worst, off)
+    return worst[0], worst[1]
+
+
+def all_sets() -> Any:
+    """Over the sets that make sense: the largest difference, and all disagreements."""
+    found = np.array([compare(elements) for elements in sets() if elements.rows])
+    return found[:, 0].max(), found[:, 1].sum()
+
+
+CASES = (
+    Case(
+        "engines", "SGP4: every published row of 30 sets", f"{SOURCE}, files in PyPI's sgp4",
+        (Gate("position", 2e-7, "km"), Gate("velocity", 2e-7, "km/s")), every_row, needs="sgp4",
+    ),
+    Case(
+        "engines", f"SGP4: 30 sets, {TIMES} times each", "PyPI's sgp4, the reference code",
+        (Gate("position and velocity", 1e-8, "km, km/s"), Gate("refusals that differ", 0.0)),
+        all_sets, needs="sgp4",
+    ),
+)  # fmt: skip

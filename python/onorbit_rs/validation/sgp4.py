@@ -1,0 +1,103 @@
+"""SGP4 on the sets of its verification report. km, km/s and minutes, as published."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+import onorbit_rs as oo
+from onorbit_rs.exceptions import Sgp4Error
+from onorbit_rs.validation.case import Case, Gate, table
+
+SOURCE = "Vallado and others, Revisiting Spacetrack Report 3, AIAA 2006-6753"
+GRAVITY = "wgs72"
+CODES = [1, 1, 6, 6, 4, 3, 6]
+"""Errors at which sets end, in the order of the file (as python-sgp4's own test has them)."""
+
+
+class ElementSet(NamedTuple):
+    """Two lines, the times that the report asks for (start, stop, step, min), and rows of its output."""
+
+    regime: str
+    span: tuple[float, float, float]
+    line1: str
+    line2: str
+    rows: list[list[float]]
+
+    def orbit(self) -> oo.Sgp4:
+        """Sets that provoke errors have checksums that are wrong."""
+        is_sound = self.regime != "refused"
+        return oo.Sgp4(self.line1, self.line2, gravity=GRAVITY, check_checksum=is_sound)  # type: ignore[arg-type]
+
+
+def sets() -> list[ElementSet]:
+    """All 33; first, middle and last row of each."""
+    rows: dict[int, list[list[float]]] = {}
+    for row in table("sgp4_states"):
+        number, *values = row.values()
+        rows.setdefault(int(number), []).append([float(value) for value in values])
+    return [
+        ElementSet(
+            row["regime"], (float(row["start_min"]), float(row["stop_min"]), float(row["step_min"])),
+            row["line1"], row["line2"], rows.get(index, []),
+        )
+        for index, row in enumerate(table("sgp4_sets"))
+    ]  # fmt: skip
+
+
+def of_regime(regime: str) -> tuple[float, float]:
+    """Largest components of the error, km and km/s."""
+    worst = np.zeros(2)
+    for elements in sets():
+        if elements.regime == regime:
+            rows = np.array(elements.rows)
+            r, v = elements.orbit().state(60.0 * rows[:, 0])
+            off = np.abs(r / 1e3 - rows[:, 1:4]).max(), np.abs(v / 1e3 - rows[:, 4:]).max()
+            worst = np.maximum(worst, off)
+    return worst[0], worst[1]
+
+
+def codes() -> Iterator[int]:
+    """What ends each set's times, where something does."""
+    for elements in sets():
+        start, stop, step = elements.span
+        try:
+            orbit = elements.orbit()
+            orbit.state(0.0)
+            for minutes in np.arange(start, stop + step, step):
+                orbit.state(60.0 * min(minutes, stop))
+        except Sgp4Error as error:
+            yield error.code
+
+
+def wrong_codes() -> tuple[float]:
+    """How many errors differ from those expected, or are missing."""
+    found = list(codes())
+    wrong = sum(a != b for a, b in zip(found, CODES, strict=False))
+    return (float(wrong + abs(len(found) - len(CODES))),)
+
+
+REGIMES = {
+    "near Earth": "5 sets near the Earth",
+    "low perigee and decay": "4 sets with a low perigee, decaying",
+    "half a day": "6 sets of half a day",
+    "a day": "7 sets of a day",
+    "deep space": "8 other sets in deep space",
+}
+
+CASES = (
+    *(
+        Case(
+            "sgp4", f"{name}, three rows each", SOURCE,
+            (Gate("position", 2e-7, "km"), Gate("velocity", 2e-7, "km/s")), partial(of_regime, regime),
+        )
+        for regime, name in REGIMES.items()
+    ),
+    Case(
+        "sgp4", "33 sets: which are refused, and why", f"{SOURCE}; brandon-rhodes/python-sgp4, tests",
+        (Gate("wrong error codes", 0.0),), wrong_codes,
+    ),
+)  # fmt: skip

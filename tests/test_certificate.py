@@ -1,0 +1,89 @@
+"""A run that breaks its certificate says so: on the terminal in red, in its summary, by its exit code.
+
+That every bundled scenario passes every check is in ``test_scenario_bundled``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.scenario import load
+
+RED, GREEN = "\x1b[31m", "\x1b[32m"
+BROKEN: dict[str, tuple[str, dict[str, Any], str, str]] = {
+    "energy": ("free_tumble", {"duration": 10.0, "time_step": 0.1}, "energy_balance_error_rel", "0.1 s"),
+    "attitude": ("kepler_orbit", {"time_step": 400.0}, "attitude_consistency", "400 s"),
+    "step": ("kepler_orbit", {"time_step": 100.0}, "attitude_step_doubling_rad", "100 s"),
+    "orbit": ("sgp4_orbit", {"time_step": 300.0}, "energy_balance_error_rel", "300 s"),
+    "tolerance": (
+        "free_tumble", {"duration": 10.0, "integrator": "dormand_prince", "tolerance": 1e-3},
+        "center_of_mass_error_rel", "a smaller tolerance",
+    ),
+}  # fmt: skip
+
+
+def run(scenario: Path, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "onorbit_rs", "run", scenario, *arguments]
+    colours = {key: value for key, value in os.environ.items() if key != "NO_COLOR"} | {"FORCE_COLOR": "1"}
+    return subprocess.run(
+        list(map(str, command)), capture_output=True, text=True, timeout=120, check=False, env=colours
+    )
+
+
+def written(folder: Path, name: str, change: dict[str, Any]) -> Path:
+    data = load(name).resolved()
+    data["simulation"] |= change
+    file = folder / "mine.yaml"
+    file.write_text(json.dumps(data))  # JSON is YAML
+    return file
+
+
+@pytest.mark.parametrize("what", BROKEN)
+def test_a_broken_run_is_red_everywhere(what: str, tmp_path: Path) -> None:
+    name, change, check, way_out = BROKEN[what]
+    out = tmp_path / "out"
+    done = run(written(tmp_path, name, change), "--out", out)
+    assert done.returncode == 1
+    assert f"{RED}certificate FAILED" in done.stdout and check in done.stdout
+    assert "certificate passed" not in done.stdout
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("onorbit: the certificate failed (") and check in line
+    assert line.endswith(way_out)
+    # its results are kept, and say so as well
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["certificate_passed"] is False and check in summary["certificate_failures"]
+    assert summary["status"] == "complete" and (out / "trace.npz").is_file()
+
+
+def test_a_quiet_run_fails_as_loudly(tmp_path: Path) -> None:
+    name, change, *_ = BROKEN["energy"]
+    done = run(written(tmp_path, name, change), "--quiet")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "the certificate failed" in done.stderr
+
+
+def test_the_same_run_at_its_own_step_is_green(tmp_path: Path) -> None:
+    done = run(written(tmp_path, "free_tumble", {"duration": 10.0}))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f"{GREEN}certificate passed" in done.stdout
+
+
+def test_the_summary_names_every_check_that_failed() -> None:
+    name, change, *_ = BROKEN["attitude"]
+    data = load(name).resolved()
+    data["simulation"] |= change
+    result = oo.run(data, quiet=True)
+    failed = {check for check, _, _, passed in result.trace.certificate() if not passed}
+    assert failed and set(result.summary["certificate_failures"].split(", ")) == failed
+    assert result.summary["certificate_passed"] is False
+    for check, value, gate, passed in result.trace.certificate():
+        assert result.summary[check] == value
+        assert passed is (value is not None and value <= gate)

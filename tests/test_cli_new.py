@@ -1,0 +1,171 @@
+"""``onorbit new``: what it writes passes ``onorbit check`` and runs with its certificate green."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from test_cli import onorbit, refusal
+
+import onorbit_rs as oo
+from onorbit_rs.drafting import draft
+from onorbit_rs.drafting.arm import find_arm
+from onorbit_rs.scenario import load
+
+INERTIAL = (
+    '<inertial><origin xyz="0 0 0.1"/><mass value="{mass}"/>'
+    '<inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial>'
+)
+
+
+def arm(joints: list[tuple[str, str, str]], *, limits: str = 'lower="-2" upper="2"', names: str = "") -> str:
+    """A chain of (name, type, axis) joints on a base of 100 kg, links of 0.2 m; ends in ``names``."""
+    parts = [f'<link name="base">{INERTIAL.format(mass=100, i=20)}</link>']
+    parent = "base"
+    for index, (name, kind, axis) in enumerate(joints):
+        last = index == len(joints) - 1
+        link = names if last and names else f"link_{index}"
+        limit = f'<limit {limits} effort="100" velocity="1"/>' if kind != "continuous" else ""
+        parts += [
+            f'<link name="{link}">{INERTIAL.format(mass=3, i=0.05)}</link>',
+            f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{link}"/>'
+            f'<origin xyz="0 0 0.2"/><axis xyz="{axis}"/>{limit}</joint>',
+        ]
+        parent = link
+    return f'<robot name="r">{"".join(parts)}</robot>'
+
+
+SEVEN = [(f"j{index}", "revolute", "0 0 1" if index % 2 else "0 1 0") for index in range(7)]
+
+
+def ran(file: Path) -> dict[str, Any]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the robot's file
+        run = oo.run(file, quiet=True)
+    assert run.summary["certificate_passed"], run.summary["certificate_failures"]
+    return run.summary
+
+
+@pytest.mark.parametrize("robot", oo.robots.names())
+def test_every_bundled_robot_gets_a_scenario_that_certifies(robot: str, tmp_path: Path) -> None:
+    done = onorbit("new", robot, "--out", "mine.yaml", cwd=tmp_path)
+    assert done.returncode == 0, done
+    assert done.stdout.endswith("next: onorbit check mine.yaml\n")
+    checked = onorbit("check", "mine.yaml", cwd=tmp_path)
+    assert checked.returncode == 0 and "ok: " in checked.stdout, checked
+    summary = ran(tmp_path / "mine.yaml")
+    assert summary["control_arm_result"] == "succeeded"
+    assert summary["tracking_position_error_max_m"] < 1e-3
+    assert summary["joint_limits_exceeded"] == ""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name",
+    [
+        "drake_kuka_iiwa14_benchmark.urdf",
+        "pinocchio_baxter_simple.urdf",
+        "rbdjl_atlas.urdf",
+        "rbdl_tiago_dual.urdf",
+        "ets_vii_onorbitros.xacro",
+        "spaceros_SSRMS_Canadarm2.urdf.xacro",
+    ],
+)
+def test_robots_of_others_get_one_too(shared: Path, name: str, tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(draft(str(shared / "models" / name), beside=tmp_path).text)
+    ran(file)
+
+
+@pytest.mark.parametrize(
+    ("urdf", "kind", "moves"),
+    [
+        (arm(SEVEN, names="tool"), "computed_torque", "tool along a line"),
+        (arm(SEVEN[:3]), "joint_computed_torque", "joints"),
+        (
+            arm([("slide", "prismatic", "1 0 0")], limits='lower="0" upper="0.5"'),
+            "joint_computed_torque",
+            "joints",
+        ),
+        (arm([("spin", "continuous", "0 0 1")]), "joint_computed_torque", "joints"),
+        (arm([]), None, "turns freely"),
+        (
+            arm([("- {a: b}", "revolute", "0 1 0"), ("#true", "revolute", "0 0 1")]),
+            "joint_computed_torque",
+            "joints",
+        ),
+    ],
+)
+def test_arms_of_every_kind(urdf: str, kind: str | None, moves: str, tmp_path: Path) -> None:
+    (tmp_path / "mine.urdf").write_text(urdf)
+    file = tmp_path / "mine.yaml"
+    file.write_text(draft(str(tmp_path / "mine.urdf"), beside=tmp_path).text)
+    scenario = load(file)
+    assert [law.kind for law in scenario.laws] == ([kind] if kind else [])
+    assert moves in scenario.description
+    assert scenario.robot.urdf == Path("mine.urdf")
+    ran(file)
+
+
+def test_every_section_and_number_has_a_comment() -> None:
+    text = draft("humanoid_dual_arm").text
+    data = yaml.safe_load(text)
+    lines = text.splitlines()
+    for section in ("orbit", "environment", "controllers", "initial", "robot", "tool"):
+        line = next(line for line in lines if line.startswith(f"{section}:"))
+        assert "# " in line, line
+    for words in ("semi_major_axis: 6778 km", "kp: 25 ", "displacement: ", "duration: ", "time_step: "):
+        line = next(line for line in lines if words in line)
+        assert "# " in line or line.rstrip().endswith(" s"), line
+    assert {control["name"] for control in data["controllers"]} == {"arm", "hold"}
+    assert all(len(line) <= 110 for line in lines)
+
+
+def test_the_tool_is_found_or_told() -> None:
+    model = oo.Model.from_urdf_string(arm(SEVEN, names="gripper"))
+    found = find_arm(model)
+    assert found is not None and (found.tool, found.joints) == ("gripper", [name for name, *_ in SEVEN])
+    told = find_arm(model, "link_2")
+    assert told is not None and told.joints == ["j0", "j1", "j2"]
+    assert find_arm(model, "base") is None
+    dual = draft("humanoid_dual_arm", tool="left_tool")
+    assert dual.tool == "left_tool" and all(name.startswith("left") for name in dual.joints)
+
+
+def test_joints_that_cannot_be_at_zero_start_within_their_limits(tmp_path: Path) -> None:
+    urdf = arm(SEVEN, limits='lower="0.3" upper="1.5"', names="tool")
+    (tmp_path / "mine.urdf").write_text(urdf)
+    data = yaml.safe_load(draft(str(tmp_path / "mine.urdf")).text)
+    positions = np.array(list(data["initial"]["joints"].values()))
+    assert np.all((positions > 0.3) & (positions < 1.5))
+
+
+def test_a_file_that_is_there_stays(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("mine")
+    assert "--force" in refusal("new", "ets_vii", "--out", file)
+    assert file.read_text() == "mine"
+    done = onorbit("new", "humanoid_torso", "--out", file, "--force", "--quiet")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert load(file).name == "humanoid_torso_first"
+
+
+def test_without_a_file_the_scenario_is_all_there_is_on_stdout() -> None:
+    done = onorbit("new", "humanoid_torso")
+    assert done.returncode == 0 and load(yaml.safe_load(done.stdout)).tool == "tool"
+
+
+def test_bad_input_is_one_line(tmp_path: Path) -> None:
+    assert "did you mean 'ets_vii'" in refusal("new", "ets_vi")
+    assert "missing.urdf" in refusal("new", tmp_path / "missing.urdf")
+    assert "no such folder" in refusal("new", "ets_vii", "--out", tmp_path / "nowhere" / "a.yaml")
+    assert "did you mean 'tool'" in refusal("new", "humanoid_torso", "--tool", "toool")
+    assert "no joint moves the frame 'torso'" in refusal("new", "humanoid_torso", "--tool", "torso")
+    (tmp_path / "bad.urdf").write_text("<robot")
+    assert "bad.urdf" in refusal("new", tmp_path / "bad.urdf")
+    (tmp_path / "light.urdf").write_text('<robot name="x"><link name="a"/></robot>')
+    assert "no mass" in refusal("new", tmp_path / "light.urdf")

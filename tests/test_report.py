@@ -1,0 +1,231 @@
+"""The report page: whole in itself, its numbers those of the summary, and text of the user's is text."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import warnings
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.exceptions import NotFoundError, OutputFolderError, ReadError
+from onorbit_rs.output.read import read_trace
+from onorbit_rs.report import write_report
+from onorbit_rs.report.numbers import row
+from onorbit_rs.scenario import load
+
+HOSTILE = '<script>alert("x")</script> & </pre><img src=x onerror=alert(1)>'
+VOID = {"meta", "img", "br", "hr", "link", "input"}
+
+
+class Page(HTMLParser):
+    """Every tag with its attributes, the text of each ``<data>``, and whether all tags close."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.data: dict[str, str] = {}
+        self.words: list[str] = []
+        self.open: list[str] = []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "data":
+            values = dict(attrs)
+            self.data[values["id"] or ""] = values["value"] or ""
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.words.append(data)
+
+    def having(self, name: str) -> list[str]:
+        return [
+            value or "" for _, attributes in self.tags for key, value in attributes.items() if key == name
+        ]
+
+    @property
+    def text(self) -> str:
+        return "".join(self.words)
+
+
+def short_reach(**changed: Any) -> dict[str, Any]:
+    data = load("humanoid_reach").resolved()
+    data["simulation"] |= {"duration": 0.5, "time_step": 5e-3}
+    return data | changed
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("report") / "out"
+    oo.run(short_reach(name=HOSTILE, description=HOSTILE), out=out, quiet=True)
+    return out
+
+
+@pytest.fixture(scope="module")
+def page(folder: Path) -> Page:
+    return Page(write_report(folder, pdf=True).read_text())
+
+
+def test_nothing_refers_outside(page: Page, folder: Path) -> None:
+    text = (folder / "report.html").read_text()
+    assert not {tag for tag, _ in page.tags} & {"script", "link", "iframe", "object", "embed", "base", "a"}
+    assert all(source.startswith("data:image/") for source in page.having("src"))
+    for name in ("href", "srcset", "action", "data", "poster", "background"):
+        assert page.having(name) == []
+    assert not re.search(r"url\(|@import|https?://", text)
+    (policy,) = [value for value in page.having("content") if "default-src" in value]
+    assert "default-src 'none'" in policy
+    assert len(text) < 3_000_000
+
+
+def test_every_figure_is_there_and_none_reaches_outside(page: Page, folder: Path) -> None:
+    drawn = {file.stem for file in (folder / "figures").glob("*.png")}
+    assert {f"figure-{name}" for name in drawn} == {i for i in page.having("id") if i.startswith("figure-")}
+    assert drawn == {file.stem for file in (folder / "figures").glob("*.pdf")}
+    sources = page.having("src")
+    assert len(sources) == len(drawn) == len(page.having("alt"))
+    for source in sources:
+        kind, content = source.removeprefix("data:image/").split(";base64,")
+        picture = base64.b64decode(content, validate=True)
+        assert picture.startswith(b"\x89PNG" if kind == "png" else b"<?xml")
+        if kind != "png":
+            links = re.findall(rb'(?:href|src)="([^"]*)"', picture)
+            assert all(link.startswith((b"#", b"data:")) for link in links)
+            assert b"<script" not in picture
+
+
+def test_every_number_is_the_summarys(page: Page, folder: Path) -> None:
+    summary = json.loads((folder / "summary.json").read_text())
+    assert set(page.data) == {
+        key for key in summary if key not in ("scenario", "status", "warnings")
+        and not (key.startswith("certificate_"))
+    }  # fmt: skip
+    for key, value in page.data.items():
+        assert value == str(summary[key]), key
+
+
+def test_hostile_words_are_inert_and_shown_as_they_are(page: Page, folder: Path) -> None:
+    assert HOSTILE in page.text
+    assert "<script" not in (folder / "report.html").read_text()
+    assert page.having("onerror") == []
+    assert page.text.count(HOSTILE) >= 2  # as name and as description
+    scenario = (folder / "scenario.yaml").read_text()
+    assert scenario.strip() in page.text
+
+
+def test_the_certificate_is_green_or_red(folder: Path, tmp_path: Path) -> None:
+    verdict = verdict_of(folder)
+    assert verdict == ("verdict passed", "Certificate passed")
+    broken = json.loads((folder / "summary.json").read_text())
+    broken |= {"certificate_passed": False, "certificate_failures": "energy_balance_error_rel"}
+    for name in ("trace.npz", "scenario.yaml"):
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
+    (tmp_path / "summary.json").write_text(json.dumps(broken))
+    assert verdict_of(tmp_path) == ("verdict failed", "Certificate FAILED: energy_balance_error_rel")
+    assert "BROKEN" in Page((tmp_path / "report.html").read_text()).text
+
+
+def verdict_of(folder: Path) -> tuple[str | None, str]:
+    page = Page(write_report(folder).read_text())
+    (kind,) = [attributes["class"] for _, attributes in page.tags if attributes.get("id") == "verdict"]
+    return kind, next(words for words in page.words if words.startswith("Certificate "))
+
+
+def test_a_robot_that_is_gone_costs_only_its_figures(tmp_path: Path) -> None:
+    urdf = tmp_path / "mine.urdf"
+    urdf.write_text(oo.robots.path("humanoid_torso").read_text())
+    oo.run(short_reach(robot=str(urdf)), out=tmp_path / "out", quiet=True)
+    urdf.unlink()
+    page = Page(write_report(tmp_path / "out").read_text())
+    assert "the robot could not be read" in page.text
+    shown = {name.removeprefix("figure-") for name in page.having("id") if name.startswith("figure-")}
+    assert "obtained_trajectory" in shown and "desired_trajectory" not in shown
+
+
+def test_a_body_without_joints_and_without_orbit_has_a_page(tmp_path: Path) -> None:
+    body = {"rigid_body": {"mass": 10.0, "inertia": [1.0, 2.0, 3.0]}}
+    scenario = {"robot": body, "simulation": {"duration": 1.0, "time_step": 0.01}}
+    oo.run(scenario, out=tmp_path / "out", quiet=True)
+    page = Page(write_report(tmp_path / "out").read_text())
+    assert {"figure-base_motion", "figure-ledger"} <= set(page.having("id"))
+
+
+def test_warnings_of_the_robot_are_on_the_page(tmp_path: Path) -> None:
+    data = load("leo_drag_tumble").resolved()
+    data["simulation"] |= {"duration": 400.0, "time_step": 1.0}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        oo.run(data, out=tmp_path / "out", quiet=True)
+        page = Page(write_report(tmp_path / "out").read_text())
+    assert "triangle inequality" in page.text
+    assert {"figure-environment_forces", "figure-ground_track", "figure-orbit"} <= set(page.having("id"))
+
+
+def test_what_is_no_run_is_refused(tmp_path: Path, folder: Path) -> None:
+    with pytest.raises(NotFoundError, match="no such folder"):
+        write_report(tmp_path / "nowhere")
+    with pytest.raises(NotFoundError, match="no run in this folder"):
+        write_report(tmp_path)
+    (tmp_path / "summary.json").write_text("{}")
+    with pytest.raises(NotFoundError, match=r"no scenario in this folder.*scenario\.yaml"):
+        write_report(tmp_path)
+    (tmp_path / "scenario.yaml").write_bytes((folder / "scenario.yaml").read_bytes())
+    with pytest.raises(NotFoundError, match="no trace in this folder"):
+        write_report(tmp_path)
+    for content in (b"", b"PK\x03\x04 broken", b"no zip"):
+        (tmp_path / "trace.npz").write_bytes(content)
+        with pytest.raises(ReadError, match=r"cannot read .*trace\.npz"):
+            write_report(tmp_path)
+    np.savez(tmp_path / "trace.npz", time=np.zeros(3))
+    with pytest.raises(ReadError, match="columns are missing"):
+        write_report(tmp_path)
+
+
+def test_a_page_that_cannot_be_written_is_said(folder: Path, tmp_path: Path) -> None:
+    for name in ("trace.npz", "scenario.yaml", "summary.json"):
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
+    (tmp_path / "report.html").mkdir()
+    with pytest.raises(OutputFolderError, match=r"cannot write .*report\.html"):
+        write_report(tmp_path)
+
+
+def test_a_saved_trace_is_the_trace(folder: Path) -> None:
+    trace = read_trace(folder)
+    with np.load(folder / "trace.npz") as stored:
+        assert set(trace.columns()) == set(stored.files)
+        np.testing.assert_array_equal(trace.q, stored["q"])
+    with pytest.raises(AttributeError, match="no column 'nothing'"):
+        _ = trace.nothing  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "shown", "unit"),
+    [
+        ("tracking_position_error_max_m", 1.335e-5, "13.35", "µm"),
+        ("base_rotation_max_rad", 0.1913, "191.3 (11°)", "mrad"),
+        ("tracking_position_error_final_m", 7e-15, "7e-15", "m"),
+        ("joint_torque_max_nm", 0.9908, "0.9908", "N m"),
+        ("joint_rate_final_max_rad_s", 4.2e-5, "42", "µrad/s"),
+        ("reference_residual_max_m_s2", 0.0, "0", "m/s²"),
+        ("energy_balance_error_rel", 3e-14, "3e-14", ""),
+        ("joint_limits_exceeded", "", "none", ""),
+        ("base_displacement_max_m", None, "not finite", "m"),
+        ("rows", 6001, "6001", ""),
+    ],
+)
+def test_numbers_read_well(key: str, value: Any, shown: str, unit: str) -> None:
+    found = row(key, value)
+    assert (found.shown, found.unit, found.value) == (shown, unit, value)

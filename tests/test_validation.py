@@ -1,0 +1,251 @@
+"""``onorbit validate``: every case passes, each family can fail, and what the command says about it."""
+
+from __future__ import annotations
+
+import _thread
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.cli import main
+from onorbit_rs.exceptions import InputError
+from onorbit_rs.validation import (
+    CASES,
+    Case,
+    against_mujoco,
+    against_pinocchio,
+    air_and_light,
+    bodies,
+    conservation,
+    earth,
+    gravity,
+    kepler,
+    nasa,
+    order,
+    relative,
+    robots,
+    rotation,
+    secular,
+    select,
+    sgp4,
+)  # fmt: skip
+
+# ETS-VII's numbers are as published
+pytestmark = pytest.mark.filterwarnings("ignore:the inertia of link 'link_5'")
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.family}: {case.name} ({case.source})")
+def test_a_case(case: Case) -> None:
+    verdict = case.judge()
+    if verdict.passed is None:
+        pytest.skip(verdict.note)
+    for check in verdict.checks:
+        print(f"{check.quantity}: {check.error} {check.unit}, gate {check.gate}")
+    assert verdict.passed, verdict
+
+
+def test_there_are_enough_cases_each_with_a_name_a_source_and_a_gate() -> None:
+    assert len(CASES) >= 40
+    assert len({(case.family, case.name, case.source) for case in CASES}) == len(CASES)
+    for case in CASES:
+        assert case.name and case.source and case.gates, case
+        assert all(gate.limit >= 0.0 and gate.quantity for gate in case.gates), case
+
+
+# Negative controls: one constant or method wrong, which case must be red.
+
+J_SIGNS = [[1.02e8, 6.96e6, 5.48e6], [6.96e6, 0.91e8, -5.9e5], [5.48e6, -5.9e5, 1.64e8]]
+
+
+def of_wgs84(name: str) -> dict[str, Any]:
+    return kepler.FLIGHTS | {name: kepler.FLIGHTS[name]._replace(mu=398600.4418)}
+
+
+def by_euler(_: Any, steps: int, end: Callable[..., Any] = order.end) -> Any:
+    return end("semi_implicit_euler", steps)
+
+
+def without_rotors(tree: Any, build: Callable[..., Any] = against_mujoco.build) -> Any:
+    return build(replace(tree, parts=[replace(part, rotor_inertia=0.0) for part in tree.parts]))
+
+
+def with_long_steps(name: str, run: Callable[..., Any] = oo.run, **settings: Any) -> Any:
+    data = oo.scenario.load(name).resolved()
+    data["simulation"] |= {"duration": 10.0, "time_step": 0.1}
+    return run(data, **settings)
+
+
+CONTROLS: list[tuple[str, str, Any, str, Any]] = [
+    ("kepler", "a low orbit, one day", kepler, "FLIGHTS", of_wgs84("a low orbit, one day")),
+    ("kepler", "a hyperbola by its elements", kepler, "HYPERBOLA_MU", oo.MU_EARTH),
+    ("sgp4", "5 sets near the Earth, three rows each", sgp4, "GRAVITY", "wgs84"),
+    ("nasa", "run 2: the station turns freely", nasa, "MU", oo.MU_EARTH),
+    ("nasa", "run 2: the station turns freely", nasa, "ISS_INERTIA", J_SIGNS),
+    ("nasa", "run 6A: drag on a sphere", nasa, "EARTH_RATE", 0.0),
+    ("rotation", "a brick that tumbles, 30 s", rotation, "BRICK", [0.0019, 0.0062, 0.0072]),
+    ("rotation", "small libration in the plane of the orbit", rotation, "CYLINDER", (500, 12250, 12200)),
+    ("earth", "celestial to terrestrial axes, 2007-04-05", earth, "UT1_MINUS_UTC", 0.0),
+    ("gravity", "J2 about the pole of J2000, one day", gravity, "MONTE_C20", -0.00048412),
+    ("gravity", "EGM96 of degree 2, Sun and Moon, two days", gravity, "EGM96_C2", [-0.48416e-3, 0.0, 0.0]),
+    ("gravity", "node and periapsis under J2, 48 h", secular, "CURTIS_J2", 1.05e-3),
+    ("gravity", "what J3 adds in ten days, inclination 90 deg", secular, "QI_J3", -2.0e-6),
+    ("light", "high circle, 24 days", air_and_light, "REFLECTIVITY", 1.81),
+    ("light", "low circle with 356 eclipses, along track, 24 days", air_and_light, "RADIUS", 6.44e6),
+    ("light", "the node of a balloon, the first 200 of 600 days", air_and_light, "BALLOON_PRESSURE", 4.3e-6),
+    ("air", "decay of a circle at 250 km in 1e5 s", air_and_light, "AIR_RATE", nasa.EARTH_RATE),
+    ("relative", "300 s of free flight", relative, "MU", oo.MU_EARTH),
+    ("bodies", "two links on a held base", bodies, "GRAVITY", 9.80665),
+    ("bodies", "points of a floating body", bodies, "POINT", [-1.9, -1.8, 1e-12]),
+    ("bodies", "the flange of an iiwa 14", bodies, "IIWA_DEGREES", [60, 30, 60, 30, 60, 30, 60.0001]),
+    ("robots", "the paper's reach in 10 s", robots, "KP", 10.0),
+    ("certificates", "free_tumble", oo, "run", with_long_steps),
+    ("conservation", "100 s of free motion of the humanoid", conservation, "STEP", 0.02),
+    ("conservation", "the humanoid on a circular orbit, 300 s", oo, "MU_EARTH", 1.01 * oo.MU_EARTH),
+    ("order", "a tree of eight links by RK4, half the step", order, "end", by_euler),
+    ("engines", "humanoid_torso, 4 states", against_pinocchio, "GRAVITY", np.array([0.0, 0.0, -9.81])),
+    ("engines", "8 random trees with rotors, 4 states each", against_mujoco, "build", without_rotors),
+    ("engines", "SGP4: 30 sets, 60 times each", sgp4, "GRAVITY", "wgs84"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("family", "name", "module", "constant", "wrong"), CONTROLS,
+    ids=[f"{family}: {constant}" for family, _, _, constant, _ in CONTROLS],
+)  # fmt: skip
+def test_a_wrong_constant_is_red(
+    family: str, name: str, module: Any, constant: str, wrong: Any,
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    (case, *_) = [case for case in CASES if (case.family, case.name) == (family, name)]
+    if case.needs:
+        pytest.importorskip(case.needs)
+    monkeypatch.setattr(module, constant, wrong)
+    with pytest.raises(SystemExit) as done:
+        main(["validate", "--only", name, "--json"])
+    assert done.value.code == 1
+    (verdict, *_) = [one for one in json.loads(capsys.readouterr().out) if one["family"] == family]
+    assert verdict["passed"] is False and verdict["note"] == "", verdict
+    assert verdict["error"] > verdict["gate"]
+
+
+def test_every_family_has_a_control() -> None:
+    assert {family for family, *_ in CONTROLS} == {case.family for case in CASES}
+
+
+def test_the_whole_of_it_is_green_in_under_a_minute_and_json_is_all_there_is() -> None:
+    command = [sys.executable, "-m", "onorbit_rs", "validate", "--json"]
+    started = time.perf_counter()
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    took = time.perf_counter() - started
+    assert (done.returncode, done.stderr) == (0, "")
+    verdicts = json.loads(done.stdout)
+    assert len(verdicts) == len(CASES)
+    for verdict in verdicts:
+        assert {"family", "case", "source", "quantity", "unit", "error", "gate", "passed"} <= set(verdict)
+        if verdict["passed"] is None:
+            assert "pip install" in verdict["note"]
+        else:
+            assert verdict["passed"] is True and verdict["error"] <= verdict["gate"]
+    print(f"{took:.1f} s")
+    assert took < 60.0
+
+
+KEPLER = next(case for case in CASES if case.family == "kepler")
+
+
+@pytest.mark.parametrize(
+    ("measure", "note"),
+    [
+        (lambda: [float("nan"), 0.0], ""),
+        (lambda: [0.0], "ValueError: zip"),
+        (lambda: [1.0 / 0.0, 0.0], "ZeroDivisionError"),
+        (lambda: oo.Kepler(semi_major_axis=-1.0).state(0.0), "OrbitError"),
+    ],
+)
+def test_what_breaks_has_failed(measure: Any, note: str) -> None:
+    verdict = replace(KEPLER, measure=measure).judge()
+    assert verdict.passed is False and note in verdict.note
+    assert verdict.plain()["passed"] is False and verdict.plain()["error"] is None
+    json.dumps(verdict.plain(), allow_nan=False)
+
+
+def onorbit(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as done:
+        main(["validate", *arguments])
+    return int(done.value.code or 0)
+
+
+def test_an_engine_that_is_not_there_is_skipped_not_passed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import importlib.util
+
+    there = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name, *rest: None if name == "mujoco" else there(name, *rest)
+    )
+    cases = [case for case in CASES if case.needs == "mujoco"]
+    assert cases and all(case.judge().passed is None for case in cases)
+    assert onorbit("--only", "with rotors") == 0
+    out = capsys.readouterr().out
+    assert "skipped" in out and "pip install mujoco" in out
+    assert "0 passed, 0 failed, 1 skipped" in out
+
+
+def test_the_table_says_what_failed_and_how_many(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert onorbit("--only", "run 2", "--only", "run 8A") == 0
+    out = capsys.readouterr().out
+    assert "NASA/TM-2015-218675" in out and "≤ 1e-07 m/s" in out and "FAIL" not in out
+    assert out.splitlines()[-1].startswith("2 passed, 0 failed, 0 skipped in ")
+    monkeypatch.setattr(nasa, "ISS_INERTIA", J_SIGNS)
+    assert onorbit("--only", "run 2", "--only", "run 8A") == 1
+    out = capsys.readouterr().out
+    assert out.count("FAIL") == 2  # rate and attitude; position and velocity are as they were
+    assert out.splitlines()[-1].startswith("1 passed, 1 failed, 0 skipped in ")
+    assert onorbit("--only", "run 8A", "--all") == 0
+    assert capsys.readouterr().out.count("pass ") == len(nasa.CASES[0].gates)
+
+
+def test_the_list_runs_nothing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(Case, "judge", None)
+    assert onorbit("--list") == 0
+    out = capsys.readouterr().out
+    for case in CASES:
+        assert case.name in out and case.source in out
+    assert onorbit("--list", "--json") == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert len(listed) == len(CASES) and all(one["passed"] is None for one in listed)
+
+
+def test_ctrl_c_stops_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    begun: list[str] = []
+
+    def interrupted(case: Case) -> None:
+        begun.append(case.name)
+        time.sleep(0.05)
+        if len(begun) == 3:
+            _thread.interrupt_main()
+
+    monkeypatch.setattr(Case, "judge", interrupted)
+    assert onorbit() == 130
+    said = capsys.readouterr()
+    assert (said.out, said.err) == ("", "onorbit: stopped by Ctrl-C\n")
+    assert len(begun) < len(CASES) / 2  # what had not begun did not begin
+
+
+def test_a_word_that_no_case_has_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert {case.family for case in select(["nasa"])} >= {"nasa"}
+    with pytest.raises(InputError, match="families are kepler, sgp4, nasa"):
+        select(["nasty"])
+    assert onorbit("--only", "nasty") == 2
+    assert "no case is called 'nasty'" in capsys.readouterr().err
