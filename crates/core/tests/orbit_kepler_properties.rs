@@ -56,6 +56,15 @@ fn apart(a: &Kepler, b: &Kepler, t: f64) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4000, rng_seed: proptest::test_runner::RngSeed::Fixed(2), failure_persistence: None, ..ProptestConfig::default() })]
 
+    /// Side by side as one at a time, bit for bit: a run that goes on from a checkpoint asks for one alone.
+    #[test]
+    fn two_states_are_those_of_one_at_a_time(orbit in orbit(), t in -1e6..1e6f64, step in 1e-4..1e3f64) {
+        if let Some(two) = orbit.two_states([t, t + step]) {
+            prop_assert_eq!(two, [orbit.state(t).unwrap(), orbit.state(t + step).unwrap()]);
+        }
+        prop_assert!(orbit.two_states([t, f64::NAN]).is_none() && orbit.two_states([f64::INFINITY, t]).is_none());
+    }
+
     #[test]
     fn a_state_gives_its_orbit_back(orbit in orbit()) {
         let s = at(&orbit, 0.0);

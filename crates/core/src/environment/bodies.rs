@@ -35,6 +35,8 @@ pub struct Bodies {
 struct Block {
     mass: Row,
     inertia: Sym3<Row>,
+    /// Centres of mass from the origins of the bodies' axes, body axes, m.
+    com_k: Vec3<Row>,
     motion: BodyMotion<Row>,
 }
 
@@ -43,7 +45,6 @@ struct Block {
 pub(crate) struct BodyMotion<T> {
     pub(crate) com: Vec3<T>,
     pub(crate) rot_wk: Mat3<T>,
-    pub(crate) origin: Vec3<T>,
     /// Linear, of the centre of mass, and angular.
     pub(crate) velocity: [Vec3<T>; 2],
 }
@@ -54,12 +55,11 @@ impl Bodies {
     pub(crate) fn put<S: Real>(&mut self, moves: bool, motion: impl Fn(usize) -> BodyMotion<S>) {
         for first in (0..self.count).step_by(S::LANES) {
             let (to, offset) = (&mut self.blocks[first / WIDTH].motion, first % WIDTH);
-            let BodyMotion { com, rot_wk, origin, velocity: [linear, angular] } = motion(first);
+            let BodyMotion { com, rot_wk, velocity: [linear, angular] } = motion(first);
             store(&mut to.com, offset, com);
             store(&mut to.rot_wk.x, offset, rot_wk.x);
             store(&mut to.rot_wk.y, offset, rot_wk.y);
             store(&mut to.rot_wk.z, offset, rot_wk.z);
-            store(&mut to.origin, offset, origin);
             if moves {
                 store(&mut to.velocity[0], offset, linear);
                 store(&mut to.velocity[1], offset, angular);
@@ -81,13 +81,14 @@ impl Bodies {
     pub fn get(&self, body: usize) -> Option<BodyState> {
         let (block, i) = (self.blocks.get(body / WIDTH).filter(|_| body < self.count)?, body % WIDTH);
         let vector = |rows: &Vec3<Row>| rows.map(|row| row.get(i)).to_nalgebra();
-        let BodyMotion { com, rot_wk, origin, velocity: [velocity, angular_velocity] } = &block.motion;
+        let BodyMotion { com, rot_wk, velocity: [velocity, angular_velocity] } = &block.motion;
+        let (com, rot_wk) = (vector(com), rot_wk.map(|row| row.get(i)).to_nalgebra());
         Some(BodyState {
             mass: block.mass.get(i),
             inertia: block.inertia.map(|row| row.get(i)).to_nalgebra(),
-            com: vector(com),
-            rot_wk: rot_wk.map(|row| row.get(i)).to_nalgebra(),
-            origin: vector(origin),
+            com,
+            rot_wk,
+            origin: com - rot_wk * vector(&block.com_k),
             velocity: vector(velocity),
             angular_velocity: vector(angular_velocity),
         })
@@ -152,10 +153,10 @@ impl FromIterator<BodyState> for Bodies {
                     xz: inertia(0, 2),
                     yz: inertia(1, 2),
                 },
+                com_k: Row::vectors(|i| body(i).rot_wk.tr_mul(&(body(i).com - body(i).origin)).into()),
                 motion: BodyMotion {
                     com: vectors(|body| &body.com),
                     rot_wk: Mat3 { x: rot(0), y: rot(1), z: rot(2) },
-                    origin: vectors(|body| &body.origin),
                     velocity: [vectors(|body| &body.velocity), vectors(|body| &body.angular_velocity)],
                 },
             }

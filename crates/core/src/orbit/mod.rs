@@ -60,6 +60,11 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// [`OrbitError`] where the orbit is not defined, such as at a time that is not finite.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError>;
 
+    /// States at two instants, where a kind can work out both at little more than the cost of one; the same bits.
+    fn two_states(&self, _: [f64; 2]) -> Option<[OrbitState; 2]> {
+        None
+    }
+
     /// Position and velocity alone, m and m/s: what [`Orbit::state`] says of them.
     ///
     /// # Errors

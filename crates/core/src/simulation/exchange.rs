@@ -7,12 +7,12 @@ use crate::model::{Model, Node};
 use crate::spatial::{Force, Mat3, Motion, Real, Scalar, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
-/// The bodies of a robot at rest, all in the same place.
+/// The bodies of a robot at rest, the origins of all in the same place.
 pub(super) fn bodies_of(model: &Model) -> Bodies {
     let at_rest = |node: &Node| BodyState {
         mass: node.mass,
         inertia: node.about_com.to_nalgebra(),
-        com: Vector3::zeros(),
+        com: node.com.to_nalgebra(),
         rot_wk: Matrix3::identity(),
         origin: Vector3::zeros(),
         velocity: Vector3::zeros(),
@@ -39,10 +39,10 @@ impl<S: Scalar> Base<S> {
 
     #[inline(always)]
     fn look_on<L: Real>(&self, data: &Data<S>, moves: bool, bodies: &mut Bodies) {
-        let Base { rot_wb, origin, carried } = self.on_lanes::<L>();
         L::enter(
             #[inline(always)]
             || {
+                let Base { rot_wb, origin, carried } = self.on_lanes::<L>();
                 bodies.put(
                     moves,
                     #[inline(always)]
@@ -63,7 +63,6 @@ impl<S: Scalar> Base<S> {
                         BodyMotion {
                             com: rot_wb * com_b + origin,
                             rot_wk: rot_wb * rot_bk,
-                            origin: rot_wb * vectors(|body| &body.pos_b) + origin,
                             velocity: if moves { velocity() } else { [Vec3::zero(); 2] },
                         }
                     },
@@ -79,10 +78,10 @@ impl<S: Scalar> Base<S> {
 
     #[inline(always)]
     fn hand_over_on<L: Real>(&self, bodies: &Bodies, wrenches: &Wrenches, data: &mut Data<S>) {
-        let Base { rot_wb, origin, .. } = self.on_lanes::<L>();
         L::enter(
             #[inline(always)]
             || {
+                let Base { rot_wb, origin, .. } = self.on_lanes::<L>();
                 for (k, bodies_of_group) in data.bodies.chunks_mut(L::LANES).enumerate() {
                     let push = wrenches.lanes::<L>(k * L::LANES);
                     let arm = bodies.coms(k * L::LANES) - origin;

@@ -32,7 +32,7 @@ pub(super) struct Surroundings {
     /// The step being integrated.
     interval: (f64, f64),
     /// The last instants asked for: the stages of a step share them.
-    known: [Known; 3],
+    known: [Box<Known>; 5],
     bodies: Bodies,
     wrenches: Wrenches,
     /// Of effects that a reference which carries the robot along has in its own motion.
@@ -53,8 +53,8 @@ impl Known {
         Self { time, state, instant: Instant::default() }
     }
 
-    fn nothing() -> [Self; 3] {
-        std::array::from_fn(|_| Self::new(f64::NAN, None))
+    fn nothing() -> [Box<Self>; 5] {
+        std::array::from_fn(|_| Box::new(Self::new(f64::NAN, None)))
     }
 }
 
@@ -128,11 +128,26 @@ impl Surroundings {
             self.known[..=place].rotate_right(1);
             return Ok(());
         }
-        let state = self.orbit.as_ref().map(|orbit| orbit.state(t)).transpose();
-        let state = state.map_err(|source| SimulationError::Orbit { time: t, source })?;
-        self.known.rotate_right(1);
-        self.known[0] = Known::new(t, state);
+        let Some(orbit) = &self.orbit else {
+            self.remember(t, None);
+            return Ok(());
+        };
+        // the end of the step is asked for next: two cost little more than one
+        let end = self.interval.1;
+        let is_ahead = t < end && self.known.iter().all(|known| known.time != end);
+        if let Some([now, then]) = is_ahead.then(|| orbit.two_states([t, end])).flatten() {
+            self.remember(end, Some(then));
+            self.remember(t, Some(now));
+            return Ok(());
+        }
+        let state = orbit.state(t).map_err(|source| SimulationError::Orbit { time: t, source })?;
+        self.remember(t, Some(state));
         Ok(())
+    }
+
+    fn remember(&mut self, t: f64, state: Option<OrbitState>) {
+        self.known.rotate_right(1);
+        *self.known[0] = Known::new(t, state);
     }
 
     /// Whether the reference obeys the very gravity of the run.
@@ -158,7 +173,7 @@ impl Surroundings {
             self.shared.clear();
         }
         let falls_freely = self.falls_freely();
-        let Known { state, instant, .. } = &self.known[0];
+        let Known { state, instant, .. } = &*self.known[0];
         let gravity = self.gravity.as_deref();
         let reference = state.map(|state| Reference { state, gravity, falls_freely });
         let scene = Scene::new(self.interval, t, &self.bodies, instant)

@@ -94,9 +94,17 @@ impl Orbit for Kepler {
         }
         let s = self.fused(dt);
         let s = s.unwrap_or_else(|| self.conic.in_plane(&self.shape, self.conic.advance(self.phase, dt)));
-        let position = self.p_i * s.x + self.q_i * s.y;
-        let velocity = self.p_i * s.vx + self.q_i * s.vy;
-        Ok(OrbitState { position, velocity, acceleration: point_mass(self.mu, &position) })
+        Ok(self.out_of_plane(&s))
+    }
+
+    fn two_states(&self, t: [f64; 2]) -> Option<[OrbitState; 2]> {
+        let (dt, limit) = (t.map(|t| t - self.epoch), self.conic.longest_time());
+        let is_there =
+            InstructionSet::current() > InstructionSet::Baseline && dt.iter().all(|dt| dt.abs() <= limit);
+        let s = is_there.then(|| self.two(dt)).flatten()?;
+        Some([0, 1].map(|i| {
+            self.out_of_plane(&InPlane { x: s.x.lane(i), y: s.y.lane(i), vx: s.vx.lane(i), vy: s.vy.lane(i) })
+        }))
     }
 
     fn fill(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
@@ -109,6 +117,23 @@ impl Orbit for Kepler {
 }
 
 impl Kepler {
+    fn out_of_plane(&self, s: &InPlane) -> OrbitState {
+        let position = self.p_i * s.x + self.q_i * s.y;
+        let velocity = self.p_i * s.vx + self.q_i * s.vy;
+        OrbitState { position, velocity, acceleration: point_mass(self.mu, &position) }
+    }
+
+    /// Two states in the plane of an ellipse, side by side.
+    fn two(&self, [first, second]: [f64; 2]) -> Option<InPlane<Lanes4>> {
+        Lanes4::enter(
+            #[inline(always)]
+            || {
+                let dt = Lanes4::from_lanes(|i| if i == 0 { first } else { second });
+                self.conic.several(&self.shape, self.phase, dt)
+            },
+        )
+    }
+
     /// State in the plane of an ellipse, `dt` s after the epoch, on a processor with fused multiply-add.
     fn fused(&self, dt: f64) -> Option<InPlane> {
         if InstructionSet::current() == InstructionSet::Baseline {
