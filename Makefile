@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint bench bench-quick bench-rust bench-orbits bench-everything clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -42,9 +42,16 @@ lint: $(VENV)/.built $(VENV)/.tested ## formatting, lints as errors, types
 	cargo fmt --all --check
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps -p onorbit-core
-	$(BIN)/ruff format --check python tests benches
-	$(BIN)/ruff check python tests benches
+	$(BIN)/ruff format --check python tests benches examples website
+	$(BIN)/ruff check python tests benches examples website
 	$(BIN)/mypy
+
+$(VENV)/.documented: pyproject.toml | $(VENV)/.built
+	$(MATURIN) --extras docs
+	@touch $@
+
+docs: $(VENV)/.built $(VENV)/.documented ## the documentation: built with warnings as errors, its links checked
+	$(BIN)/python website/build.py
 
 $(VENV)/.benched: pyproject.toml | $(VENV)/.tested
 	$(MATURIN) --extras bench

@@ -10,7 +10,6 @@ import pkgutil
 import re
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import pytest
 
@@ -50,10 +49,6 @@ def test_the_package_has_an_example() -> None:
     assert examples("onorbit_rs")
 
 
-def blocks(file: Path) -> list[str]:
-    return re.findall(r"```python\n(.*?)```", file.read_text(), re.DOTALL)
-
-
 PAGES = [
     *sorted(REPOSITORY.glob("*.md")),
     *sorted((REPOSITORY / "docs").rglob("*.md")),
@@ -83,14 +78,6 @@ def test_code_in_the_documents_ends(file: Path) -> None:
     # negative control: the same page with one closing fence lost
     for lost in re.finditer(r"^```\n", text, re.MULTILINE):
         assert unbalanced(text[: lost.start()] + text[lost.end() :]) is not None
-
-
-@pytest.mark.parametrize("file", PAGES, ids=lambda file: file.name)
-def test_python_in_the_documents_runs(file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    names: dict[str, Any] = {}
-    for block in blocks(file):
-        exec(compile(block, str(file), "exec"), names)
 
 
 def public(kind: type) -> list[str]:

@@ -14,3 +14,7 @@ pub mod orbit;
 pub mod reference;
 pub mod simulation;
 pub mod spatial;
+
+#[cfg(doctest)] // its examples run with those of the crate
+#[doc = include_str!("../../../docs/api/rust.md")]
+mod documentation {}

@@ -35,6 +35,8 @@ def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] 
     Above of the tool's velocity and rate together where six joints or more drive it, below of its velocity
     alone; both in m³ where every joint turns. At zero the tool cannot be moved in some direction.
 
+    Source: Yoshikawa, Int. J. Robotics Research 4(2), 1985; with `Jg` Umetani and Yoshida, 1989.
+
     Parameters
     ----------
     trace : Trace
@@ -43,8 +45,6 @@ def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] 
         The frame.
     joints : sequence of str, optional
         Those that drive it; all where not given.
-
-    Source: Yoshikawa, Int. J. Robotics Research 4(2), 1985; with `Jg` Umetani and Yoshida, 1989.
     """
     columns = [list(model.joint_names).index(name) for name in joints or model.joint_names]
     time, label = clock(trace)

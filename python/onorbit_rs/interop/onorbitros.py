@@ -94,7 +94,7 @@ class Source:
         for key in self.data:
             if key in known:
                 continue
-            hint = did_you_mean(key, known) or "; see docs/onorbitros.md"
+            hint = did_you_mean(key, known) or "; see docs/coming_from/onorbitros.md"
             if not self.keep_going:
                 way_out = "correct or remove it, or go on without it: --keep-going"
                 raise self.fail(key, f"no key of OnOrbitROS{hint} ({way_out})")

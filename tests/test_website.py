@@ -1,0 +1,38 @@
+"""The check of the built site sees what is wrong with one."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+spec = importlib.util.spec_from_file_location("links", ROOT / "website" / "links.py")
+assert spec is not None and spec.loader is not None
+links = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(links)
+
+
+def site(folder: Path, body: str) -> tuple[list[str], set[str]]:
+    (folder / "sub").mkdir()
+    (folder / "sub" / "other.html").write_text('<h1 id="here">other</h1><a href="../index.html#top">back</a>')
+    (folder / "index.html").write_text(f'<h1 id="top">first</h1>{body}')
+    found: tuple[list[str], set[str]] = links.complaints(folder)
+    return found
+
+
+def test_a_site_that_hangs_together(tmp_path: Path) -> None:
+    inside = '<a href="sub/other.html#here">a</a> <a href="#top">b</a> <a href=".">c</a>'
+    assert site(tmp_path, inside + '<a href="https://rerun.io">d</a>') == ([], {"https://rerun.io"})
+
+
+def test_what_is_wrong_is_seen(tmp_path: Path) -> None:
+    wrong = {
+        '<a href="sub/others.html">': "index.html: sub/others.html is not there",
+        '<a href="sub/other.html#there">': "index.html: sub/other.html#there has no such place",
+        '<img src="picture.png">': "index.html: picture.png is not there",
+        '<script src="https://unpkg.com/x"></script>': "index.html: loads https://unpkg.com/x",
+        '<link rel="stylesheet" href="https://fonts.example/x">': "index.html: loads https://fonts.example/x",
+        "<p>$$ M </p>": "index.html: an equation was not read",
+    }
+    found, _ = site(tmp_path, " ".join(wrong))
+    assert sorted(found) == sorted(wrong.values())
