@@ -131,7 +131,9 @@ def imports(file: Path) -> Iterator[tuple[str, bool]]:
         yield from ((name, id(node) in for_types) for name in names)
 
 
-@pytest.mark.parametrize(("module", "home"), [("rerun", "viewer"), ("matplotlib", "figures"), ("mujoco", "plants")])
+@pytest.mark.parametrize(
+    ("module", "home"), [("rerun", "viewer"), ("matplotlib", "figures"), ("mujoco", "plants")]
+)
 def test_one_folder_alone_imports_it(module: str, home: str) -> None:
     users = {
         file.relative_to(PACKAGE).parts[0]
