@@ -49,10 +49,11 @@ impl GravityGradient {
             |group| {
                 let com = group.coms();
                 let r = Vec3::<S>::of(&origin) + com;
-                let distance = r.norm();
+                let square = r.dot(r);
+                let distance = square.sqrt();
                 planet.all_outside(group, distance)?;
                 // G = (3μ/r³) r̂ r̂ᵀ + Gp;  what is left out, -(μ/r³) 1, turns nothing;  T = (3μ/r³) r̂ × I r̂ of the first
-                let inverse = S::of(1.0) / distance;
+                let inverse = distance * (S::of(1.0) / square); // root and quotient at the same time
                 let up = r * inverse;
                 let rate = S::of(3.0 * planet.mu) * inverse * inverse * inverse;
                 let (rot_wk, inertia) = (group.rot_wk(), group.inertias());
