@@ -118,10 +118,8 @@ impl Bodies {
     pub(super) fn center_of_mass(&self) -> Vec3<f64> {
         let (mut moment, mut mass) = (Vec3::zero(), 0.0);
         for Block { mass: masses, motion, .. } in &self.blocks {
-            for i in 0..WIDTH {
-                moment += motion.com.map(|row| row.get(i)) * masses.get(i);
-                mass += masses.get(i);
-            }
+            moment += motion.com.map(|row| row.dot(masses));
+            mass += masses.dot(&Row::of(|_| 1.0));
         }
         moment * (1.0 / mass)
     }

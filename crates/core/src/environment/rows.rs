@@ -26,6 +26,12 @@ impl Row {
         self.0[i]
     }
 
+    /// `Σ aᵢ bᵢ`, in four sums.
+    pub(super) fn dot(&self, other: &Self) -> f64 {
+        let pair = |i: usize| self.0[i] * other.0[i] + self.0[i + WIDTH / 2] * other.0[i + WIDTH / 2];
+        (pair(0) + pair(1)) + (pair(2) + pair(3))
+    }
+
     /// As many numbers as `S` has lanes, from number `offset` on.
     #[inline(always)]
     pub(super) fn load<S: Real>(&self, offset: usize) -> S {

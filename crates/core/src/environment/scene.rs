@@ -30,6 +30,14 @@ pub struct Instant {
     sun: OnceCell<Vector3<f64>>,
 }
 
+impl Instant {
+    /// Nothing is known any more: it stands for another time or place.
+    pub fn forget(&mut self) {
+        self.sky.take();
+        self.sun.take();
+    }
+}
+
 /// All that an effect may look at.
 #[derive(Clone, Debug)]
 pub struct Scene<'a> {

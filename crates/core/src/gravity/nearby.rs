@@ -41,7 +41,7 @@ pub struct Nearby<'a> {
     gravity: &'a Gravity,
     time: f64,
     origin: Vec3<f64>,
-    sky: Sky,
+    sky: &'a Sky,
     /// The planet's field about the robot, and about the reference where that lies elsewhere and is asked for.
     places: [Option<Expansion>; 2],
 }
@@ -64,9 +64,14 @@ impl Gravity {
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`].
-    pub fn nearby(&self, station: &Station, sky: &Sky, differs: bool) -> Result<Nearby<'_>, GravityError> {
+    pub fn nearby<'a>(
+        &'a self,
+        station: &Station,
+        sky: &'a Sky,
+        differs: bool,
+    ) -> Result<Nearby<'a>, GravityError> {
         let Station { time, origin, com, travel } = *station;
-        let mut near = Nearby { gravity: self, time, origin, sky: *sky, places: [None; 2] };
+        let mut near = Nearby { gravity: self, time, origin, sky, places: [None; 2] };
         if let Some(field) = &self.field {
             let share = if differs && is_near(com, Vec3::zero()) { 0.5 } else { 1.0 };
             let about = |at| self.about(field, &sky.rot_fi, at, travel);

@@ -147,7 +147,9 @@ impl Surroundings {
 
     fn remember(&mut self, t: f64, state: Option<OrbitState>) {
         self.known.rotate_right(1);
-        *self.known[0] = Known::new(t, state);
+        let Known { time, state: place, instant } = &mut *self.known[0];
+        (*time, *place) = (t, state);
+        instant.forget();
     }
 
     /// Whether the reference obeys the very gravity of the run.
