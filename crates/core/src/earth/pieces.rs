@@ -46,7 +46,7 @@ impl<const N: usize> Pieces<N> {
         // Clenshaw: b_k = c_k + 2x b_{k+1} - b_{k+2},  f = c_0 + x b_1 - b_2
         let (mut b1, mut b2) = (Vector3::zeros(), Vector3::zeros());
         for c in piece[1..].iter().rev() {
-            (b1, b2) = (c + b1 * (2.0 * x) - b2, b1);
+            (b1, b2) = ((c - b2) + b1 * (2.0 * x), b1);
         }
         piece[0] + b1 * x - b2
     }

@@ -4,6 +4,7 @@ use super::expansion::{Expansion, is_near};
 use super::point_mass::{point_mass_gradient, tide};
 use super::{Gravity, GravityError, GravityField};
 use crate::spatial::{Mat3, Real, Sym3, Vec3};
+use std::cell::OnceCell;
 
 /// Pitch of the points, fixed in the planet, about which a dear field is expanded for short steps, m: a robot in a low orbit
 /// passes one every third step of 1 ms. No place is farther than 28 m from one; on the way from one to the next what the
@@ -24,9 +25,11 @@ pub struct Station {
 }
 
 /// How the planet and the bodies beyond it stand at one instant.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Sky {
     rot_fi: Mat3<f64>,
+    /// The point of the grid that was asked for first, and the field about it in axes of `I`: stages share it.
+    first: OnceCell<(Vec3<f64>, Expansion)>,
     /// What third bodies do, about the reference: over 40 m linear to 1e-7 of the Moon's tide.
     third: Option<Expansion>,
 }
@@ -54,7 +57,7 @@ impl Gravity {
     pub fn sky(&self, time: f64, origin: Vec3<f64>) -> Result<Sky, GravityError> {
         let rot_fi = self.rot_fi(time).map_or_else(Mat3::identity, Mat3::from);
         let third = (!self.third_bodies.is_empty()).then(|| self.third_bodies_about(time, origin));
-        Ok(Sky { rot_fi, third: third.transpose()? })
+        Ok(Sky { rot_fi, first: OnceCell::new(), third: third.transpose()? })
     }
 
     /// All but the planet's point mass around a robot, under the [sky](Self::sky) of that instant and origin.
@@ -74,7 +77,7 @@ impl Gravity {
         let mut near = Nearby { gravity: self, time, origin, sky, places: [None; 2] };
         if let Some(field) = &self.field {
             let share = if differs && is_near(com, Vec3::zero()) { 0.5 } else { 1.0 };
-            let about = |at| self.about(field, &sky.rot_fi, at, travel);
+            let about = |at| self.about(field, sky, at, travel);
             near.places[0] = Some(about(origin + com * share)?);
             if differs && near.expansion(origin).is_none() {
                 near.places[1] = Some(about(origin)?);
@@ -98,20 +101,22 @@ impl Gravity {
     fn about(
         &self,
         field: &GravityField,
-        rot_fi: &Mat3<f64>,
+        sky: &Sky,
         at: Vec3<f64>,
         travel: f64,
     ) -> Result<Expansion, GravityError> {
-        let here = *rot_fi * at;
+        let here = sky.rot_fi * at;
+        if field.is_closed() {
+            return Ok(Expansion::of(field, here)?.turned_back(&sky.rot_fi));
+        }
         let next = |x: f64| (x / PITCH).round() * PITCH;
-        let expansion = if field.is_closed() {
-            Expansion::of(field, here)?
-        } else if travel > PITCH {
-            self.memo.about(field, here)?
-        } else {
-            self.memo.about(field, Vec3::new(next(here.x), next(here.y), next(here.z)))?
-        };
-        Ok(expansion.turned_back(rot_fi))
+        let point = if travel > PITCH { here } else { here.map(|x| next(*x)) };
+        if let Some((_, expansion)) = sky.first.get().filter(|(first, _)| *first == point) {
+            return Ok(*expansion);
+        }
+        let expansion = self.memo.about(field, point)?.turned_back(&sky.rot_fi);
+        let _ = sky.first.set((point, expansion)); // the first stays
+        Ok(expansion)
     }
 }
 

@@ -178,9 +178,8 @@ impl Surroundings {
         let Known { state, instant, .. } = &*self.known[0];
         let gravity = self.gravity.as_deref();
         let reference = state.map(|state| Reference { state, gravity, falls_freely });
-        let scene = Scene::new(self.interval, t, &self.bodies, instant)
-            .beside(reference)
-            .above(self.earth.as_deref());
+        let mut scene = Scene::new(self.interval, t, &self.bodies, instant);
+        (scene.reference, scene.earth) = (reference, self.earth.as_deref()); // in place: it is large
         for effect in &self.effects[effects] {
             let is_shared = self.is_carried && effect.acts_on_reference();
             let wrenches = if is_shared { &mut self.shared } else { &mut self.wrenches };
