@@ -10,7 +10,7 @@ import statistics
 import onorbit_rs as oo
 from onorbit_rs.scenario import Scenario, load
 
-ROUNDS = 7
+ROUNDS = 15
 EVERYTHING = [
     {"kind": "gravity_field", "model": "egm2008", "degree": 36},
     {"kind": "gravity_gradient"},

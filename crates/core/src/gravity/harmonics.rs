@@ -83,69 +83,37 @@ impl Harmonics {
     }
 
     /// The first `L` series at `r`, in units of `μ`, `R`.
+    ///
+    /// `hnm = anm (z R/r²) hn-1,m - bnm (R/r)² hn-2,m`
+    ///
+    /// Source: Holmes and Featherstone, J. Geodesy 76, 279-299, 2002, equations 11 and 12 (forward column).
     #[inline(always)]
     fn sum<S: Real, const L: usize>(&self, r: &Vector3<f64>) -> [S; L] {
         let inverse = self.radius / r.norm_squared();
         let [x, y, z] = [r.x, r.y, r.z].map(|x| S::of(x * inverse));
         let square = S::of(self.radius * inverse);
         let (mut v, mut w) = (S::of((self.radius * inverse).sqrt() / TINY), S::of(0.0));
-        let (mut total, mut rest) = ([S::of(0.0); L], &self.terms[..]);
-        // two orders side by side: each step of the recursion waits for the one before
-        for (half, pair) in self.orders.chunks(2).enumerate() {
-            let mut along = [Order::<S, L>::start(), Order::start()];
-            let [first, second] = [0, 1].map(|k| {
-                let (terms, after) = rest.split_at(pair.get(k).map_or(0, |(_, count)| *count));
-                rest = after;
-                terms
-            });
-            for (one, other) in first.iter().zip(second) {
-                along[0].add(one, z, square);
-                along[1].add(other, z, square);
+        let (mut total, mut terms) = ([S::of(0.0); L], self.terms.iter());
+        for (m, (f, count)) in self.orders.iter().enumerate() {
+            if m > 0 {
+                let f = S::of(*f);
+                (v, w) = (f * (x * v - y * w), f * (y * v + x * w));
             }
-            first[second.len()..].iter().for_each(|term| along[0].add(term, z, square));
-            for (m, ((f, _), order)) in (2 * half..).zip(pair.iter().zip(&along)) {
-                if m > 0 {
-                    let f = S::of(*f);
-                    (v, w) = (f * (x * v - y * w), f * (y * v + x * w));
-                }
+            let (mut h, mut before) = (S::of(TINY), S::of(0.0));
+            let (mut c, mut s) = ([S::of(0.0); L], [S::of(0.0); L]);
+            for term in terms.by_ref().take(*count) {
                 for i in 0..L {
-                    total[i] = v.mul_add(order.c[i], w.mul_add(order.s[i], total[i]));
+                    c[i] = h.mul_add(S::of(term.c[i]), c[i]);
+                    s[i] = h.mul_add(S::of(term.s[i]), s[i]);
                 }
+                let [a, b] = term.next.map(S::of);
+                (h, before) = ((a * z).mul_add(h, -(b * square * before)), h);
+            }
+            for i in 0..L {
+                total[i] = v.mul_add(c[i], w.mul_add(s[i], total[i]));
             }
         }
         total
-    }
-}
-
-/// The sums over the degrees of one order.
-#[derive(Clone, Copy)]
-struct Order<S, const L: usize> {
-    /// `hnm`, and `hn-1,m`.
-    h: [S; 2],
-    c: [S; L],
-    s: [S; L],
-}
-
-impl<S: Real, const L: usize> Order<S, L> {
-    #[inline(always)]
-    fn start() -> Self {
-        Self { h: [S::of(TINY), S::of(0.0)], c: [S::of(0.0); L], s: [S::of(0.0); L] }
-    }
-
-    /// Adds a degree and goes to the next.
-    ///
-    /// `hnm = anm (z R/r²) hn-1,m - bnm (R/r)² hn-2,m`
-    ///
-    /// Source: Holmes and Featherstone, J. Geodesy 76, 279-299, 2002, equations 11 and 12 (forward column).
-    #[inline(always)]
-    fn add(&mut self, term: &Term, z: S, square: S) {
-        let [h, before] = self.h;
-        for i in 0..L {
-            self.c[i] = h.mul_add(S::of(term.c[i]), self.c[i]);
-            self.s[i] = h.mul_add(S::of(term.s[i]), self.s[i]);
-        }
-        let [a, b] = term.next.map(S::of);
-        self.h = [(a * z).mul_add(h, -(b * square * before)), h];
     }
 }
 
