@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.exceptions import RunInterrupted, ShapeError, SimulationError
+from onorbit_rs.exceptions import InputError, PlantError, RunInterrupted, ShapeError, SimulationError
 
 ORBIT = {"semi_major_axis": 6778e3, "eccentricity": 0.01, "inclination": 0.9}
 PUSH = oo.BodyWrench("torso", force=[0.0, 0.3, 0.1], start=0.0125, end=0.031)
@@ -177,3 +177,37 @@ def test_a_run_goes_on_from_a_checkpoint_to_the_same_bits(model: oo.Model) -> No
     resumed = reach(Euler(model), time_step=0.0005).run(1.0, resume=halfway)
     for name in whole.columns():
         np.testing.assert_array_equal(getattr(whole, name), getattr(resumed, name))
+
+
+class Spoilt(Euler):
+    """The same with one of its answers changed."""
+
+    def __init__(self, model: oo.Model, which: int, change: Any) -> None:
+        super().__init__(model)
+        self.which, self.change = which, change
+
+    def step(self, *now: Any) -> Any:
+        answer = list(super().step(*now))
+        answer[self.which] = self.change(answer[self.which])
+        return tuple(answer)
+
+
+def test_an_attitude_that_is_none_is_refused(model: oo.Model) -> None:
+    longer = Spoilt(model, 0, lambda q: np.concatenate([q[:3], 1.5 * q[3:7], q[7:]]))
+    with pytest.raises(PlantError, match=r"length 1\.5.*normalise"):
+        reach(longer).run(0.05)
+
+
+@pytest.mark.parametrize("which", range(6))
+def test_nothing_that_is_not_finite_is_taken_over(model: oo.Model, which: int) -> None:
+    with pytest.raises(SimulationError, match="no longer finite"):
+        reach(Spoilt(model, which, lambda x: x * np.nan)).run(0.05)
+
+
+def test_wrenches_are_told_at_states_only(model: oo.Model) -> None:
+    class Lost(Euler):
+        def step(self, start: float, end: float, q: Any, v: Any, tau: Any, wrenches: Any) -> Any:
+            return wrenches(start, q * np.nan, v)
+
+    with pytest.raises(InputError, match="q holds NaN"):
+        reach(Lost(model)).run(0.05)

@@ -5,7 +5,7 @@ mod common;
 
 use common::stream::{alone, attitudes, ball, body, strips, summed, wrenches};
 use nalgebra::{Isometry3, Matrix3, Vector3};
-use onorbit_core::earth::{Earth, Geodetic, WGS84};
+use onorbit_core::earth::{Earth, Epoch, Geodetic, WGS84};
 use onorbit_core::environment::atmosphere::{
     AirPlace, Atmosphere, AtmosphereError, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer,
     LocalAir,
@@ -311,4 +311,23 @@ fn the_same_step_gives_the_same_bits_whatever_was_asked_before() {
     ask(&used, 6.8e6);
     assert_eq!(ask(&fresh, 6.9e6), ask(&used, 6.9e6));
     assert_ne!(ask(&used, 6.8e6), ask(&used, 6.9e6));
+}
+
+/// A bare link above the end of a model asks nothing of it, a covered one does.
+#[test]
+fn air_is_asked_for_where_something_meets_it() {
+    let far = BodyState { com: Vector3::x() * 9e5, ..body(Matrix3::identity(), STILL, STILL) };
+    let states = [body(Matrix3::identity(), STILL, STILL), far];
+    let on = |bodies: &[usize]| {
+        let surface = || Surface::cannonball(1.0, 2.2, 1.0).expect("positive");
+        let coverings = bodies.iter().map(|&body| Covering { body, surface: surface() }).collect();
+        let surfaces = Surfaces::new(coverings, 2).expect("two bodies");
+        let air = HarrisPriester::new(3.0, 0.5).expect("an exponent");
+        let earth = Earth::about_z(0.0, 7.3e-5)
+            .with_epoch(Epoch::parse("2024-01-03T00:00:00 UTC").expect("an instant"));
+        wrenches(&Drag::new(Arc::new(air), surfaces), Some(&earth), (RADIUS, Vector3::y() * 7.6e3), &states)
+    };
+    let felt = on(&[0]).expect("only the base meets air");
+    assert!(felt[0].force.norm() > 0.0 && felt[1] == Wrench::default());
+    assert!(on(&[0, 1]).is_err(), "above the table");
 }

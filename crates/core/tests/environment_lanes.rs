@@ -4,15 +4,18 @@
 mod common;
 
 use common::Random;
-use common::stream::{attitudes, body, wrenches};
+use common::stream::{attitudes, body};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use onorbit_core::earth::{Earth, Epoch};
 use onorbit_core::environment::atmosphere::ExponentialAtmosphere;
 use onorbit_core::environment::surfaces::{Covering, Optics, Surface, Surfaces};
 use onorbit_core::environment::{
-    BodyState, DifferentialGravity, Drag, Effect, GravityGradient, RadiationPressure, Wrench,
+    Bodies, BodyState, DifferentialGravity, Drag, Effect, EnvironmentError, GravityGradient, Instant, Place,
+    RadiationPressure, Reference, Scene, Wrench, Wrenches,
 };
+use onorbit_core::gravity::{Gravity, GravityField};
 use onorbit_core::model::{Geometry, Inertial, Link, Model, ModelBuilder, Visual};
+use onorbit_core::orbit::{MU_EARTH, OrbitState};
 use onorbit_core::spatial::InstructionSet;
 use std::sync::Arc;
 
@@ -46,12 +49,13 @@ fn coverings(count: usize) -> Surfaces {
     Surfaces::new(covered.map(|body| Covering { body, surface: surface(body) }).collect(), count).unwrap()
 }
 
-fn bodies(count: usize) -> Vec<BodyState> {
+/// Strewn over `spread` m.
+fn bodies(count: usize, spread: f64) -> Vec<BodyState> {
     let mut random = Random::new(count as u64);
     let state = |k: usize| BodyState {
         mass: 1.0 + k as f64,
         inertia: Matrix3::new(2.0, 0.1, 0.2, 0.1, 3.0, 0.3, 0.2, 0.3, 4.0) * (1.0 + k as f64),
-        com: random.vector() * 3.0,
+        com: random.vector() * spread,
         ..body(attitudes()[k % 6], random.vector(), random.vector() * 0.1)
     };
     (0..count).map(state).collect()
@@ -67,27 +71,59 @@ fn largest_difference(a: &[Wrench], b: &[Wrench]) -> f64 {
     a.iter().zip(b).map(apart).fold(0.0, f64::max)
 }
 
+/// What an effect does beside a reference that falls in this gravity.
+fn wrenches(
+    effect: &dyn Effect,
+    (gravity, earth): (&Gravity, &Earth),
+    bodies: &[BodyState],
+) -> Result<Vec<Wrench>, EnvironmentError> {
+    let position = Vector3::new(4.1e6, -4.9e6, 2.2e6);
+    let (velocity, acceleration) = (Vector3::new(5.6e3, 3.1e3, -4.0e3), Vector3::zeros());
+    let state = OrbitState { position, velocity, acceleration };
+    let reference = Reference { state, gravity: Some(gravity), falls_freely: true };
+    let (mut wrenches, bodies) = (Wrenches::new(bodies.len()), bodies.iter().copied().collect::<Bodies>());
+    let instant = Instant::default();
+    let scene = Scene::new((0.0, 1e-3), 0.0, &bodies, &instant).beside(Some(reference)).above(Some(earth));
+    effect.add_wrenches(&scene, &mut wrenches)?;
+    Ok(wrenches.iter().collect())
+}
+
+fn on_each_level<T>(job: impl Fn() -> T) -> [T; 3] {
+    InstructionSet::ALL.map(|level| {
+        InstructionSet::limit(level);
+        job()
+    })
+}
+
+const COUNTS: [usize; 13] = [1, 2, 3, 4, 5, 7, 8, 9, 12, 13, 16, 17, 23];
+
+/// Near each other, beyond what a field, light and air are taken about, and farther: everywhere near and far are mixed.
+const SPREADS: [f64; 4] = [3.0, 40.0, 200.0, 2e4];
+
 #[test]
 fn every_instruction_set_gives_the_same_wrenches() {
     let earth = Earth::about_z(0.3, 7.29e-5).with_epoch(Epoch::parse("2024-01-03T00:00:00 UTC").unwrap());
-    let at = (Vector3::new(4.1e6, -4.9e6, 2.2e6), Vector3::new(5.6e3, 3.1e3, -4.0e3));
-    for count in [1, 2, 3, 4, 5, 7, 8, 9, 12, 13, 16, 17, 23] {
-        let (bodies, surfaces) = (bodies(count), coverings(count));
+    let field = |field| Gravity::of_field(Arc::new(field), Some(Arc::new(earth.clone()))).unwrap();
+    let gravities = [
+        Gravity::point_mass(MU_EARTH),
+        field(GravityField::zonal(4).unwrap()),
+        field(GravityField::bundled("egm2008", 8, 8).unwrap()),
+    ];
+    for (count, spread) in COUNTS.iter().flat_map(|count| SPREADS.map(|spread| (*count, spread))) {
+        let (bodies, surfaces) = (bodies(count, spread), coverings(count));
         let effects: [&dyn Effect; 4] = [
             &DifferentialGravity::default(),
             &GravityGradient,
             &Drag::new(Arc::new(ExponentialAtmosphere::table()), surfaces.clone()),
-            &RadiationPressure::new(surfaces).with_shadow(None).unwrap(),
+            &RadiationPressure::new(surfaces),
         ];
-        for effect in effects {
-            let on = |level| {
-                InstructionSet::limit(level);
-                wrenches(effect, Some(&earth), at, &bodies).unwrap()
-            };
-            let [one_by_one, four, eight] = InstructionSet::ALL.map(on);
+        for (effect, gravity) in effects.iter().flat_map(|effect| gravities.iter().map(move |g| (*effect, g)))
+        {
+            let [one_by_one, four, eight] =
+                on_each_level(|| wrenches(effect, (gravity, &earth), &bodies).unwrap());
             for lanes in [four, eight] {
                 let apart = largest_difference(&one_by_one, &lanes);
-                assert!(apart < 1e-13, "{} on {count} bodies: {apart:e}", effect.name());
+                assert!(apart < 1e-12, "{} on {count} bodies over {spread} m: {apart:e}", effect.name());
             }
             // every body has a wrench of its own: two changed places would be seen
             let last = one_by_one.len() - 1;
@@ -95,5 +131,11 @@ fn every_instruction_set_gives_the_same_wrenches() {
             changed.swap(0, last);
             assert!(last == 0 || largest_difference(&one_by_one, &changed) > 1e-6, "{}", effect.name());
         }
+    }
+    // whoever is inside the planet is named, in whatever lane
+    let mut bodies = bodies(11, 3.0);
+    bodies[9].com = -Vector3::new(4.1e6, -4.9e6, 2.2e6);
+    for error in on_each_level(|| wrenches(&GravityGradient, (&gravities[0], &earth), &bodies).unwrap_err()) {
+        assert!(matches!(error, EnvironmentError::InsidePlanet { what: Place::Body(9), .. }), "{error}");
     }
 }

@@ -1,7 +1,7 @@
 //! A robot moved by an engine that is spoken to in Python.
 
 use crate::arrays::{Input, array_of, wrong_shape};
-use crate::errors::SimulationErrorExt;
+use crate::errors::{SimulationErrorExt, fields, raise};
 use onorbit_core::simulation::{Crossed, Crossing, Engine, Outside, Simulation, SimulationError};
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -41,10 +41,15 @@ impl PyWrenches {
 
 fn vector<'py>(value: &Bound<'py, PyAny>, name: &str, n: usize) -> PyResult<Input<'py>> {
     let input = Input::new(value, name)?;
-    if input.shape() == [n] {
-        return Ok(input);
+    let py = value.py();
+    if input.shape() != [n] {
+        return Err(wrong_shape(py, name, &format!("({n},)"), input.shape()));
     }
-    Err(wrong_shape(value.py(), name, &format!("({n},)"), input.shape()))
+    if let Some(x) = input.data().iter().find(|x| !x.is_finite()) {
+        let message = format!("{name} holds {x}, it must be finite");
+        return Err(raise(py, "InputError", &message, &fields!(py, "name": name, "got": *x)));
+    }
+    Ok(input)
 }
 
 /// A Python object with ``step(start, end, q, v, tau, wrenches)``, in the native loop.

@@ -88,7 +88,8 @@ impl Drag {
             |group| {
                 let Some(surfaces) = self.surfaces.around(group.first) else { return Ok(Push::nothing()) };
                 let r = Vec3::<S>::of(&origin) + group.coms();
-                let density = air.densities(r, afresh)?;
+                let counts = |i: usize| i < group.count && self.surfaces.cover(group.first + i);
+                let density = air.densities(r, counts, afresh)?;
                 // v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
                 let [linear, angular] = group.velocities();
                 let (v, w) = (Vec3::<S>::of(&velocity) + linear - spin.cross(r), angular - spin);

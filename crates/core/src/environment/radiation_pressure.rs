@@ -138,10 +138,12 @@ impl RadiationPressure {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
         let (sun, base) = (scene.sun(earth)?, scene.bodies.com_of_base());
         let at_base = self.light(&(reference.position + base), &sun);
-        let base = Vec3::<S>::of(&base.into());
+        let near = |com: Vector3<f64>| (com - base).norm_squared() <= REACH * REACH;
         let on_each = |coms: Vec3<S>| {
-            let light = |i: usize| self.light(&(reference.position + coms.lane(i).to_nalgebra()), &sun);
-            Light::<S>::from_lanes(light)
+            Light::<S>::from_lanes(|i| match coms.lane(i).to_nalgebra() {
+                com if near(com) => at_base,
+                com => self.light(&(reference.position + com), &sun),
+            })
         };
         scene.push::<S>(
             wrenches,
@@ -149,7 +151,7 @@ impl RadiationPressure {
             |group| {
                 let Some(surfaces) = self.surfaces.around(group.first) else { return Ok(Push::nothing()) };
                 let com = group.coms::<S>();
-                let offset = com - base;
+                let offset = com - Vec3::of(&base.into());
                 let is_far = S::any(S::of(REACH * REACH).less(offset.dot(offset)));
                 let light = if is_far { on_each(com) } else { Light::from_lanes(|_| at_base) };
                 let rot_wk = group.rot_wk::<S>();

@@ -35,6 +35,9 @@ pub struct Crossing<'a> {
     pub tau: &'a [f64],
 }
 
+/// How far from one the length of the quaternion may be that an engine leaves.
+const UNIT: f64 = 1e-9;
+
 /// What an engine made of a step.
 #[derive(Clone, Debug)]
 pub struct Crossed {
@@ -59,7 +62,13 @@ impl Crossed {
     }
 
     fn is_finite(&self) -> bool {
-        self.q.iter().chain(&self.v).all(|x| x.is_finite())
+        let done = self.impulse.iter().chain([&self.work, &self.dissipated]);
+        self.q.iter().chain(&self.v).chain(&self.acceleration).chain(done).all(|x| x.is_finite())
+    }
+
+    /// Length of the attitude's quaternion, which must be one.
+    fn length_of_attitude(&self) -> f64 {
+        self.q[3..7].iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 }
 
@@ -120,6 +129,10 @@ impl<S: Scalar> Run<'_, S> {
         let Some(Foreign { crossed, .. }) = foreign else { return Ok(()) };
         if !crossed.is_finite() {
             return Err(self.diverged(t));
+        }
+        let length = crossed.length_of_attitude();
+        if (length - 1.0).abs() > UNIT {
+            return Err(SimulationError::EngineAttitude { time: t, length });
         }
         for (to, from) in [(&mut state.q, &crossed.q), (&mut state.v, &crossed.v)] {
             to.iter_mut().zip(from).for_each(|(to, from)| *to = S::of(*from));

@@ -88,6 +88,11 @@ pub enum SimulationError {
     /// What another engine raised, handed back untouched.
     #[error(transparent)]
     Engine(Box<dyn std::error::Error + Send + Sync>),
+    #[error(
+        "the plant left an attitude q[3:7] of length {length} after the step from t = {time} s, a quaternion has length 1: \
+         normalise it at the end of each step"
+    )]
+    EngineAttitude { time: f64, length: f64 },
     #[error(transparent)]
     Control(#[from] ControlError),
 }

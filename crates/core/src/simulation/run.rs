@@ -83,7 +83,9 @@ impl<S: Scalar> Run<'_, S> {
             if !self.state.is_finite() {
                 return Err(self.diverged(stretch.start));
             }
-            if self.steps.is_multiple_of(MONITOR_EVERY) && self.look(monitor).is_break() {
+            // another engine may take its time
+            let is_time = self.foreign.is_some() || self.steps.is_multiple_of(MONITOR_EVERY);
+            if is_time && self.look(monitor).is_break() {
                 let time = self.schedule.now();
                 self.end(time)?;
                 return Err(SimulationError::Interrupted { time });

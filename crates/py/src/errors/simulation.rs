@@ -82,6 +82,10 @@ impl SimulationErrorExt for SimulationError {
                 raised
             }
             Self::Control(source) => source.into_python(py),
+            Self::EngineAttitude { time, length } => {
+                let fields = fields!(py, "name": "q", "got": length, "expected": 1.0);
+                with_trace(py, raise(py, "PlantError", &message, &fields), time, trace)
+            }
             Self::Engine(source) => match source.downcast::<PyErr>() {
                 Ok(raised) => {
                     let _ = raised.value(py).setattr("trace", trace);

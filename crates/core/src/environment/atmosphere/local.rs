@@ -52,17 +52,18 @@ impl LocalAir {
         Ok(Self { time, centre: *centre, up: place.up, density, decay, spin })
     }
 
-    /// Density at places `r`, axes of `I`, m, kg/m³; found `afresh` where one is beyond 160 m from the centre.
+    /// Density at places `r`, axes of `I`, m, kg/m³; found `afresh` where one that counts is beyond 160 m from the centre.
     #[inline(always)]
     pub(in crate::environment) fn densities<S: Real, E>(
         &self,
         r: Vec3<S>,
+        counts: impl Fn(usize) -> bool,
         afresh: impl Fn(Vector3<f64>) -> Result<f64, E>,
     ) -> Result<S, E> {
         let offset = r - Vec3::of(&self.centre.into());
         if S::any(S::of(TRUST * TRUST).less(offset.dot(offset))) {
             let mut found = [0.0; Lanes8::LANES];
-            for (i, density) in found.iter_mut().enumerate().take(S::LANES) {
+            for (i, density) in found.iter_mut().enumerate().take(S::LANES).filter(|(i, _)| counts(*i)) {
                 let r = r.lane(i).to_nalgebra();
                 *density = self.density(&r).map_or_else(|| afresh(r), Ok)?;
             }

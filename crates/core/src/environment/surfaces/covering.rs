@@ -172,10 +172,13 @@ impl Surfaces {
 
     /// Names of the bodies with mass that are not covered: they feel nothing.
     pub fn bare<'a>(&self, model: &'a Model) -> Vec<&'a str> {
-        let is_bare = |body: &usize| {
-            model.nodes()[*body].mass > 0.0 && !self.is_covered.get(*body).is_some_and(|is| *is)
-        };
+        let is_bare = |body: &usize| model.nodes()[*body].mass > 0.0 && !self.cover(*body);
         (0..model.nodes().len()).filter(is_bare).map(|body| model.body_frame(body).name.as_str()).collect()
+    }
+
+    /// Whether they cover a body.
+    pub(in crate::environment) fn cover(&self, body: usize) -> bool {
+        self.is_covered.get(body).is_some_and(|is| *is)
     }
 
     /// What covers the eight bodies among which body number `first` is; `None` where nothing does.
