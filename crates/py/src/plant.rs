@@ -29,7 +29,7 @@ impl PyWrenches {
         v: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let [nq, nv, bodies] = self.sizes;
-        let (q, v) = (vector(q, "q", nq)?, vector(v, "v", nv)?);
+        let (q, v) = (state(q, "q", nq)?, state(v, "v", nv)?);
         let mut out = vec![0.0; 6 * bodies];
         let (outside, interval) = &mut *self.lock();
         outside
@@ -41,10 +41,15 @@ impl PyWrenches {
 
 fn vector<'py>(value: &Bound<'py, PyAny>, name: &str, n: usize) -> PyResult<Input<'py>> {
     let input = Input::new(value, name)?;
-    let py = value.py();
-    if input.shape() != [n] {
-        return Err(wrong_shape(py, name, &format!("({n},)"), input.shape()));
+    if input.shape() == [n] {
+        return Ok(input);
     }
+    Err(wrong_shape(value.py(), name, &format!("({n},)"), input.shape()))
+}
+
+/// One that is finite.
+fn state<'py>(value: &Bound<'py, PyAny>, name: &str, n: usize) -> PyResult<Input<'py>> {
+    let (py, input) = (value.py(), vector(value, name, n)?);
     if let Some(x) = input.data().iter().find(|x| !x.is_finite()) {
         let message = format!("{name} holds {x}, it must be finite");
         return Err(raise(py, "InputError", &message, &fields!(py, "name": name, "got": *x)));
