@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import onorbit_rs as oo
@@ -87,3 +88,39 @@ def test_the_summary_names_every_check_that_failed() -> None:
     for check, value, gate, passed in result.trace.certificate():
         assert result.summary[check] == value
         assert passed is (value is not None and value <= gate)
+
+
+@pytest.mark.parametrize("time_step", [1.0, 0.1])
+def test_what_stays_at_rest_is_not_measured_by_its_own_rounding(time_step: float) -> None:
+    """A body that looks alike from all sides feels no gradient: its energy is rounding and nothing else."""
+    model = oo.Model.rigid_body(100.0, np.diag([10.0, 10.0, 10.0]))
+    orbit = oo.Kepler(semi_major_axis=6778e3, eccentricity=0.0, inclination=0.5)
+    at_rest = oo.Simulation(
+        model, model.neutral(), np.zeros(6), orbit=orbit, environment=[oo.GravityGradient()],
+        time_step=time_step,
+    )  # fmt: skip
+    assert all(passed for *_, passed in at_rest.run(600.0).certificate())
+
+
+SLIDER = """<robot name="slider">
+  <link name="bus"><inertial><mass value="10"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="rod"><inertial><mass value="1"/>
+    <inertia ixx=".1" iyy=".1" izz=".1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="s" type="prismatic"><parent link="bus"/><child link="rod"/><axis xyz="{axis}"/>
+    <limit lower="-5" upper="5" effort="9" velocity="9"/></joint>
+</robot>"""
+
+
+@pytest.mark.parametrize("axis", ["0 1 0", "0 1 1", "1 2 3", "0.3 0.5 0.2"])
+@pytest.mark.parametrize("time_step", [1e-2, 1e-4])
+def test_what_slides_through_the_centre_of_mass_turns_nothing(
+    axis: str, time_step: float, tmp_path: Path
+) -> None:
+    file = tmp_path / "slider.urdf"
+    file.write_text(SLIDER.format(axis=axis))
+    model = oo.Model.from_urdf(file)
+    v = np.zeros(7)
+    v[6] = 0.1
+    trace = oo.Simulation(model, model.neutral(), v, time_step=time_step).run(2.0)
+    assert all(passed for *_, passed in trace.certificate())

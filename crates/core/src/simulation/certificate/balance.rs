@@ -21,11 +21,15 @@ pub(super) struct Balance {
     worked: f64,
     energy_about_com: f64,
     energy_w: f64,
+    mass: f64,
+    /// Since the first row, s.
+    duration: f64,
 }
 
 /// What the balances start from.
 #[derive(Clone, Copy)]
 struct First {
+    time: f64,
     momentum: Momentum<f64>,
     impulse: Momentum<f64>,
     /// Energy less work, J.
@@ -35,8 +39,12 @@ struct First {
 impl Balance {
     pub(super) fn add(&mut self, now: &Instant<'_>) {
         let open = now.kinetic_energy - now.work;
-        let first =
-            *self.first.get_or_insert(First { momentum: now.momentum, impulse: now.impulse, energy: open });
+        let first = *self.first.get_or_insert(First {
+            time: now.time,
+            momentum: now.momentum,
+            impulse: now.impulse,
+            energy: open,
+        });
         let drift = |h: Vec3<f64>, h0: Vec3<f64>, j: Vec3<f64>, j0: Vec3<f64>| ((h - h0) - (j - j0)).norm();
         let (h, h0, j, j0) = (&now.momentum, &first.momentum, &now.impulse, &first.impulse);
         self.linear = worst(self.linear, drift(h.linear, h0.linear, j.linear, j0.linear));
@@ -48,6 +56,7 @@ impl Balance {
         self.spin = self.spin.max(now.spin);
         self.angular_scale = self.angular_scale.max(now.angular);
         self.size = self.size.max(now.size);
+        (self.mass, self.duration) = (now.mass, now.time - first.time);
         self.worked += (now.work - self.last_work).abs();
         self.last_work = now.work;
         // E_com = E − P²/2m
@@ -68,16 +77,22 @@ impl Balance {
         relative(self.linear, among.max(self.momentum))
     }
 
-    /// Scale: `Σ |Lₖ|`; where nothing turns, the rounding of moments of what moves on.
+    /// Scale: `Σ |Lₖ|`; where nothing turns, the rounding of moments of what moves on, or of what slides within.
     pub(super) fn angular(&self) -> f64 {
         const ROUNDING: f64 = 1e-4;
-        relative(self.angular, self.angular_scale.max(ROUNDING * self.size * self.momentum))
+        let passing = ROUNDING * self.size * self.momentum.max(self.relative_momentum);
+        relative(self.angular, self.angular_scale.max(passing))
     }
 
     /// Scale: all work done, whatever its sign, and the energy that does not depend on how fast W
-    /// sees the robot pass; of that which does only a share, for its rounding.
+    /// sees the robot pass; of that which does only a share, for its rounding. What would move the robot by less than a
+    /// millionth of its size in the whole run is rest.
     pub(super) fn energy(&self, work_done: f64) -> f64 {
         const ROUNDING: f64 = 1e-3;
-        relative(self.energy, self.worked.max(work_done) + self.energy_about_com + ROUNDING * self.energy_w)
+        const REST: f64 = 1e-6;
+        let creep = REST * self.size / self.duration.max(f64::MIN_POSITIVE);
+        let rest = self.mass * creep * creep;
+        let moved = self.worked.max(work_done) + self.energy_about_com + ROUNDING * self.energy_w;
+        relative(self.energy, moved.max(rest))
     }
 }

@@ -14,6 +14,8 @@ pub(super) struct BaseRows {
     forces: Vec<f64>,
     residual: [f64; 2],
     scale: [f64; 2],
+    /// `Σ |m v|` by the step, N.
+    momentum: f64,
     truncation: f64,
 }
 
@@ -27,6 +29,7 @@ impl BaseRows {
             forces: zeros,
             residual: [0.0; 2],
             scale: [0.0; 2],
+            momentum: 0.0,
             truncation: 0.0,
         }
     }
@@ -58,6 +61,8 @@ impl BaseRows {
             self.residual[i] = worst(self.residual[i], open[i]);
             self.scale[i] = self.scale[i].max(scale[i]);
         }
+        let momenta = self.data.bodies.iter().map(|body| body.inertia.momentum(body.velocity).linear.norm());
+        self.momentum = self.momentum.max(momenta.sum::<f64>() / h);
         self.truncation = self.truncation.max(truncation(h, before.v, before.a));
     }
 
@@ -82,10 +87,11 @@ impl BaseRows {
         sum
     }
 
-    /// `size`, m, is the robot's: moments below a billionth of its forces at that arm are rounding.
+    /// `size`, m, is the robot's: moments below a billionth of its forces at that arm, or of those that would stop its
+    /// bodies in a step, are rounding.
     pub(super) fn residual(&self, size: f64) -> f64 {
         let [linear, angular] = self.scale;
-        let angular = angular.max(1e-9 * size * linear);
+        let angular = angular.max(1e-9 * size * linear.max(self.momentum));
         worst(relative(self.residual[0], linear), relative(self.residual[1], angular))
     }
 
