@@ -13,7 +13,7 @@ from recordings import FrameTree, column, rows_by_entity
 
 import onorbit_rs as oo
 from onorbit_rs import viewer
-from onorbit_rs.scenario import Scenario
+from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
 from onorbit_rs.viewer.arrows import with_prefix
 from onorbit_rs.viewer.land import land, world_map
@@ -113,6 +113,21 @@ def test_the_earth_turns_and_night_is_away_from_the_sun(tmp_path: Path) -> None:
         assert np.array(veil)[:, 0].max() < 0.06 * 6378  # in axes whose x points to the Sun
     place = np.array(column(path, "/orbit/spacecraft", "Points3D:positions"))[:, 0]
     np.testing.assert_allclose(place, trace.position_eci / 1e3, rtol=1e-6)
+
+
+def test_the_earth_beneath_an_element_set_is_in_its_axes(tmp_path: Path) -> None:
+    data = load("sgp4_orbit").resolved() | {"simulation": {"duration": 600.0, "time_step": 30.0}}
+    path, trace = record(tmp_path, **data)
+    earth = build(Scenario(**data)).earth
+    assert earth is not None and earth.axes == "TEME" and earth.epoch is not None
+    teme, gcrf = oo.Earth(earth.epoch, axes="TEME"), oo.Earth(earth.epoch)
+    tree = FrameTree(path)
+    earth_axes = np.swapaxes(teme.rotation(trace.time), 1, 2)
+    np.testing.assert_allclose(tree.pose("earth", "I")[:, :3, :3], earth_axes, atol=1e-6)
+    assert np.abs(np.swapaxes(gcrf.rotation(trace.time), 1, 2) - earth_axes).max() > 1e-3  # can fail
+    sun = teme.sun(trace.time)
+    to_sun = sun / np.linalg.norm(sun, axis=1, keepdims=True)
+    np.testing.assert_allclose(tree.pose("sun", "I")[:, :3, 0], to_sun, atol=1e-6)
 
 
 def test_without_an_epoch_the_earth_is_plain(tmp_path: Path) -> None:
