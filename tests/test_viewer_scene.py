@@ -13,6 +13,7 @@ from recordings import FrameTree, column, rows_by_entity
 
 import onorbit_rs as oo
 from onorbit_rs import viewer
+from onorbit_rs.rotations import local_orbital_axes
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
 from onorbit_rs.viewer.arrows import with_prefix
@@ -128,6 +129,33 @@ def test_the_earth_beneath_an_element_set_is_in_its_axes(tmp_path: Path) -> None
     sun = teme.sun(trace.time)
     to_sun = sun / np.linalg.norm(sun, axis=1, keepdims=True)
     np.testing.assert_allclose(tree.pose("sun", "I")[:, :3, 0], to_sun, atol=1e-6)
+
+
+def test_a_path_in_l_far_from_the_origin_stands_still_in_l(tmp_path: Path) -> None:
+    data: dict[str, Any] = {
+        "robot": "humanoid_torso",
+        "tool": "tool",
+        "orbit": ORBIT,
+        "controller": {"kind": "computed_torque", "kp": 100, "kd": 20},
+        "reference": {"kind": "hold", "frame": "lvlh"},
+        "initial": {
+            "frame": "lvlh",
+            "position": [0, 10e3, 0],
+            "joints": [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974],
+        },
+        "simulation": {"duration": 0.5, "time_step": 0.01},
+    }
+    path, trace = record(tmp_path, **data)
+    orbit = build(Scenario(**data)).orbit
+    assert orbit is not None
+    rot_wl, _ = orbit.lvlh(trace.time)
+    np.testing.assert_allclose(FrameTree(path).pose("L")[:, :3, :3], rot_wl, atol=1e-6)
+    held = np.einsum("tji,tj->ti", rot_wl, trace.reference_pose[:, :3, 3])
+    (strip,) = column(path, "/world/tool/desired/path", "LineStrips3D:strips", static=True)
+    np.testing.assert_allclose(np.array(strip[0]), np.tile(held[0], (len(held), 1)), atol=2e-3)  # 32 bits
+    of_base = local_orbital_axes(trace.position_eci, trace.velocity_eci)
+    off = np.einsum("tji,tj->ti", of_base, trace.reference_pose[:, :3, 3]) - held
+    assert np.linalg.norm(off, axis=1).min() > 5.0  # the L of the base puts it elsewhere
 
 
 def test_without_an_epoch_the_earth_is_plain(tmp_path: Path) -> None:
