@@ -16,7 +16,7 @@ from onorbit_rs import viewer
 from onorbit_rs.rotations import local_orbital_axes
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
-from onorbit_rs.viewer.arrows import with_prefix
+from onorbit_rs.viewer.arrows import _round_up, with_prefix
 from onorbit_rs.viewer.land import land, world_map
 
 EPOCH = "2026-03-20 12:00:00 UTC"
@@ -73,6 +73,12 @@ def test_no_arrows_for_momenta_that_nothing_has_given(tmp_path: Path) -> None:
 def test_amounts_are_told_with_prefixes() -> None:
     told = [with_prefix(value, "N") for value in (2e-6, 5e-4, 0.01, 1.0, 2e4, 5e-12)]
     assert told == ["2 µN", "500 µN", "10 mN", "1 N", "20 kN", "5e-12 N"]
+
+
+def test_every_number_has_a_scale() -> None:
+    rounded = [_round_up(value) for value in (-1.0, 0.0, 5e-324, 0.003, 7.0, 1.5e308, np.inf)]
+    assert rounded == [0.0, 0.0, 5e-324, 0.005, 10.0, 1.5e308, np.inf]
+    assert np.isnan(_round_up(np.nan))
 
 
 def test_the_map_has_land_where_there_is_land() -> None:

@@ -91,9 +91,9 @@ class Arrows:
     ) -> None:
         """Arrows (T, n, 3) at origins (T, n, 3), W, the longest so many times the robot's size."""
         peak = _peak(vectors)
-        if peak == 0.0 and path not in self._scales:
-            return
         scale = max(_round_up(peak / (longest * self.stage.size)), self._scales.get(path, 0.0))
+        if scale == 0.0 or not np.isfinite(scale):
+            return
         count, each = vectors.shape[:2]
         if scale != self._scales.get(path):
             meaning = f"{path}/scale"
@@ -136,11 +136,12 @@ def _peak(vectors: Floats) -> float:
 
 
 def _round_up(value: float) -> float:
-    """To 1, 2 or 5 times a power of ten."""
-    if value <= 0.0:
-        return 0.0
+    """To 1, 2 or 5 times a power of ten; what has no such number above it stays as it is."""
+    if not 0.0 < value < math.inf:
+        return 0.0 if value <= 0.0 else value
     power = 10.0 ** math.floor(math.log10(value))
-    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= value * (1.0 - 1e-12))
+    steps = (step * power for step in (1.0, 2.0, 5.0, 10.0))
+    return next((step for step in steps if value * (1.0 - 1e-12) <= step < math.inf), value)
 
 
 def with_prefix(value: float, unit: str) -> str:
