@@ -217,6 +217,33 @@ def test_errors_of_several_controllers_are_those_of_the_trace() -> None:
     np.testing.assert_allclose(drawn, ratio * error, rtol=1e-9, atol=1e-12)
 
 
+def test_errors_of_joints_that_slide_are_in_metres(reach: oo.Run) -> None:
+    urdf = oo.robots.path("humanoid_torso").read_text()
+    names = list(reach.model.joint_names)
+    slider = re.compile(rf'(<joint name="{names[0]}" type=)"[a-z]+"')
+    model = oo.Model.from_urdf_string(slider.sub(r'\1"prismatic"', urdf))
+    assert [joint.kind == "prismatic" for joint in model.joints] == [True, *[False] * 6]
+    errors = np.linspace(0.0, 2e-3, 7 * 5).reshape(5, 7)
+
+    class Trace:
+        time, tau = np.linspace(0.0, 1.0, 5), errors
+
+        def __init__(self, columns: int | slice) -> None:
+            self.tracking = {"posture": errors[:, columns]}
+
+    def drawn(columns: slice, given: oo.Model | None) -> list[str]:
+        trace: Any = Trace(columns)
+        return labels(figures.control_errors(trace, "posture", names[columns], given))
+
+    assert drawn(slice(0, 1), model) == ["time [s]", "joint error [mm]"]
+    assert drawn(slice(1, 3), model) == ["time [s]", "joint error [mrad]"]
+    assert drawn(slice(0, 7), model) == ["time [s]", "joint error [rad or m]"]
+    assert drawn(slice(0, 7), reach.model) == ["time [s]", "joint error [mrad]"]
+    assert drawn(slice(0, 7), None) == ["time [s]", "joint error [rad or m]"]
+    torques: Any = Trace(slice(0, 7))
+    assert labels(figures.joint_torques(torques, model)) == ["time [s]", "effort [N m or N]"]
+
+
 def test_names_in_the_users_words_are_no_formulas_and_are_not_left_out(reach: oo.Run) -> None:
     names = ["$x^{", "_hidden", "<script>", "a & b", "関節", "$a$", "x" * 80]
     urdf = oo.robots.path("humanoid_torso").read_text()

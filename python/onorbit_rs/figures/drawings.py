@@ -86,7 +86,7 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
             whose = "." if is_alone else f" of the controller {control}."
             about = f"Desired minus obtained positions of the joints{whose}"
             name = "joint_errors" if is_alone else f"joint_errors_{_word(control)}"
-            yield Drawing(name, about, partial(control_errors, trace, control, joints))
+            yield Drawing(name, about, partial(control_errors, trace, control, joints, model))
     if model is None:
         return
     for tool in subject.tools:
