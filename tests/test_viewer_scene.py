@@ -57,6 +57,25 @@ def test_arrows_times_their_scale_are_the_wrenches(tmp_path: Path) -> None:
     np.testing.assert_allclose(arrows * scale, trace.momentum[:, 3:], rtol=1e-6, atol=1e-12)
 
 
+def test_the_torque_plotted_is_the_one_the_arrow_shows(tmp_path: Path) -> None:
+    push = {"kind": "body_wrench", "body": "arm_link_7", "force": [0, 3, 0], "torque": [0, 0, 0.02]}
+    path, trace = record(
+        tmp_path,
+        robot="humanoid_torso",
+        environment=[push],
+        simulation={"duration": 0.2, "time_step": 0.01, "record_wrenches": True},
+    )
+    effect = "/world/arrows/body_wrench/torque"
+    ((label,),) = column(path, f"{effect}/scale", "Points3D:labels")
+    amount, unit = label.split(" = ")[1].split(" ", 1)
+    arrows = np.array(column(path, effect, "Arrows3D:vectors"))[:, 0]
+    shown = arrows * float(amount) * {"N m": 1.0, "mN m": 1e-3}[unit]
+    plotted = np.array(column(path, "/plots/body_wrench/torque", "Scalars:scalars"))
+    np.testing.assert_allclose(plotted, shown, rtol=1e-6, atol=1e-6)
+    alone = trace.wrenches["body_wrench"][:, :, 3:].sum(axis=1)
+    assert np.abs(plotted - alone).max() > 0.1  # the lever is most of it
+
+
 def test_no_arrows_for_momenta_that_nothing_has_given(tmp_path: Path) -> None:
     model = oo.robots.load("humanoid_torso")
     q, v = model.neutral(), np.zeros(model.nv)

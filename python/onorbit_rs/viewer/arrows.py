@@ -11,6 +11,7 @@ import rerun as rr
 
 from onorbit_rs.viewer.frames import FOLLOW, WORLD, put_in
 from onorbit_rs.viewer.rows import TIMELINE
+from onorbit_rs.viewer.wrenches import centers_of_bodies, torque_about_center
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -53,15 +54,13 @@ class Arrows:
             self._send(rows, path, name, unit, _MOMENTUM_COLOR, origins, vectors[:, None, :], 0.6)
         if not rows.wrenches:
             return
-        centers = _centers(rows, self.setting)
+        centers = centers_of_bodies(rows, self.setting.model)
         for effect, wrenches in rows.wrenches.items():
             color, name = _COLORS.get(effect, _OTHER_COLOR), effect.replace("_", " ")
-            force, torque = wrenches[:, :, :3], wrenches[:, :, 3:]
+            force = wrenches[:, :, :3]
             path = f"world/arrows/{effect}"
             self._send(rows, f"{path}/force", name, "N", color, centers, force, 0.7)
-            # About the centre of mass of the whole: Σ (r_k - r) × F_k + T_k.
-            lever = centers - rows["center_of_mass"][:, None, :]
-            total = (np.cross(lever, force) + torque).sum(axis=1, keepdims=True)
+            total = torque_about_center(rows, centers, wrenches)[:, None, :]
             origin = rows["center_of_mass"][:, None, :]
             self._send(rows, f"{path}/torque", f"{name} torque", "N m", color, origin, total, 0.6)
 
@@ -119,16 +118,6 @@ class Arrows:
         place = self.stage.place(0.86, 0.42 - 0.09 * len(self._scales))
         line = rr.Points3D.from_fields(positions=[place], colors=[color], radii=[0.0], show_labels=True)
         self.recording.log(meaning, line, static=True, strict=True)
-
-
-def _centers(rows: Rows, setting: Setting) -> Floats:
-    """(T, bodies, 3) centres of mass, W, m."""
-    q, model = np.ascontiguousarray(rows["q"]), setting.model
-    centers = np.empty((len(q), len(model.bodies), 3))
-    for index, body in enumerate(model.bodies):
-        pose = np.asarray(model.frame_pose(q, body.name))
-        centers[:, index] = pose[:, :3, :3] @ np.array(body.com) + pose[:, :3, 3]
-    return centers
 
 
 def _peak(vectors: Floats) -> float:

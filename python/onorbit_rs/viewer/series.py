@@ -11,6 +11,7 @@ import rerun as rr
 
 from onorbit_rs.rotations import roll_pitch_yaw
 from onorbit_rs.units import joint_units
+from onorbit_rs.viewer.wrenches import centers_of_bodies, torque_about_center
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,10 +45,21 @@ def series_of(rows: Rows, model: Model, *, is_live: bool = False) -> Iterator[Se
     yield from _of_joints(rows, model)
     yield from _of_base(rows)
     yield from _of_balances(rows)
+    yield from _of_effects(rows, model, is_live=is_live)
+
+
+def _of_effects(rows: Rows, model: Model, *, is_live: bool) -> Iterator[Series]:
+    if not rows.wrenches:
+        return
+    centers = centers_of_bodies(rows, model)
     for effect, wrenches in rows.wrenches.items():
-        name, total = effect.replace("_", " ").capitalize(), wrenches.sum(axis=1)
-        parts = (("force", "net force", "N"), ("torque", "torques on all bodies", "N m"))
-        for values, (part, title, unit) in zip((total[:, :3], total[:, 3:]), parts, strict=True):
+        name = effect.replace("_", " ").capitalize()
+        force, torque = wrenches[:, :, :3].sum(axis=1), torque_about_center(rows, centers, wrenches)
+        parts = (
+            ("force", "net force", "N", force),
+            ("torque", "torque about the centre of mass", "N m", torque),
+        )
+        for part, title, unit, values in parts:
             if is_live or values.any():
                 yield Series("Forces", f"plots/{effect}/{part}", f"{name}: {title}", unit, _AXES, values)
 
