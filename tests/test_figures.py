@@ -18,10 +18,11 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 import onorbit_rs as oo
 from onorbit_rs import figures
 from onorbit_rs.figures.solids import robot_polygons, robot_skeleton
-from onorbit_rs.figures.style import MOST_POINTS, thin, with_prefix
+from onorbit_rs.figures.style import MOST_POINTS, thin
 from onorbit_rs.output.read import SavedTrace
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.make_orbit import make_orbit
+from onorbit_rs.units import with_prefix
 
 
 @pytest.fixture(scope="module")

@@ -13,10 +13,12 @@ from recordings import FrameTree, column, rows_by_entity
 
 import onorbit_rs as oo
 from onorbit_rs import viewer
+from onorbit_rs.planet import is_earth
 from onorbit_rs.rotations import local_orbital_axes
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
-from onorbit_rs.viewer.arrows import _round_up, with_prefix
+from onorbit_rs.units import amount
+from onorbit_rs.viewer.arrows import _round_up
 from onorbit_rs.viewer.land import land, world_map
 
 EPOCH = "2026-03-20 12:00:00 UTC"
@@ -90,8 +92,8 @@ def test_no_arrows_for_momenta_that_nothing_has_given(tmp_path: Path) -> None:
 
 
 def test_amounts_are_told_with_prefixes() -> None:
-    told = [with_prefix(value, "N") for value in (2e-6, 5e-4, 0.01, 1.0, 2e4, 5e-12)]
-    assert told == ["2 µN", "500 µN", "10 mN", "1 N", "20 kN", "5e-12 N"]
+    told = [amount(value, "N") for value in (2e-6, 5e-4, 0.01, 1.0, 2e4, 5e-12, 10.0 * 1e-7)]
+    assert told == ["2 µN", "500 µN", "10 mN", "1 N", "20 kN", "5 pN", "1 µN"]
 
 
 def test_every_number_has_a_scale() -> None:
@@ -181,6 +183,14 @@ def test_a_path_in_l_far_from_the_origin_stands_still_in_l(tmp_path: Path) -> No
     of_base = local_orbital_axes(trace.position_eci, trace.velocity_eci)
     off = np.einsum("tji,tj->ti", of_base, trace.reference_pose[:, :3, 3]) - held
     assert np.linalg.norm(off, axis=1).min() > 5.0  # the L of the base puts it elsewhere
+
+
+@pytest.mark.parametrize(
+    ("mu", "expected"),
+    [(3.986e14, True), (4e14, True), (oo.MU_EARTH, True), (3.2486e14, False), (None, False)],
+)
+def test_the_earth_is_told_from_other_planets(mu: float | None, expected: bool) -> None:
+    assert is_earth(mu) == expected
 
 
 def test_without_an_epoch_the_earth_is_plain(tmp_path: Path) -> None:

@@ -1,12 +1,30 @@
-"""Units as labels tell them: those of joints by their kind."""
+"""Units as labels tell them: prefixes that fit the number, those of joints by their kind."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
+_PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"), (1e6, "M"))
+
 OR = " or "
 """Between two units of one label, which take no common prefix."""
+
+
+def with_prefix(peak: float, unit: str) -> tuple[float, str]:
+    """Factor and unit such that values up to ``peak`` read between 1 and 1000: ``(1e6, "µm")``."""
+    scale, prefix = 1.0, ""
+    if math.isfinite(peak) and peak > 0.0:
+        fitting = [entry for entry in _PREFIXES if entry[0] <= peak * (1.0 + 1e-9)] or [_PREFIXES[0]]
+        scale, prefix = fitting[-1]
+    return 1.0 / scale, prefix + unit
+
+
+def amount(value: float, unit: str) -> str:
+    """``2e-6``, ``N`` as ``2 µN``."""
+    factor, scaled = with_prefix(value, unit)
+    return f"{factor * value:.3g} {scaled}"
 
 
 class JointUnits(NamedTuple):

@@ -19,9 +19,10 @@ from onorbit_rs.figures.style import (
     plot_lines,
     thin,
     tidy,
-    with_prefix,
 )
+from onorbit_rs.planet import EARTH_RADIUS_KM
 from onorbit_rs.rotations import attitude_in_orbit, reference_motion_of
+from onorbit_rs.units import with_prefix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-EARTH_RADIUS_KM = 6378.137
 NEARLY_ROUND = 1e-5
 """Change of the distance, as a share of it, below which the change alone is drawn."""
 

@@ -20,9 +20,8 @@ from onorbit_rs.figures.style import (
     plot_largest,
     plot_lines,
     tidy,
-    with_prefix,
 )
-from onorbit_rs.units import OR, joint_units
+from onorbit_rs.units import OR, joint_units, with_prefix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

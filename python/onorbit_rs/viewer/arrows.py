@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from onorbit_rs.units import amount
 from onorbit_rs.viewer.frames import FOLLOW, WORLD, put_in
 from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.wrenches import centers_of_bodies, torque_about_center
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 WORTH_SHOWING = 1e-3
 """Least momentum, as a share of what the kinetic energy would give to one rigid body, to be drawn."""
 
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _COLORS = {
     "gravity": (150, 135, 255),
     "gravity_gradient": (225, 130, 245),
@@ -99,7 +99,7 @@ class Arrows:
             if path not in self._scales:
                 self._introduce(path, meaning, color)
             self._scales[path] = scale
-            label = rr.Points3D.columns(labels=[f"{name}: 1 m = {with_prefix(scale, unit)}"])
+            label = rr.Points3D.columns(labels=[f"{name}: 1 m = {amount(scale, unit)}"])
             self.recording.send_columns(
                 meaning, [rr.TimeColumn(TIMELINE, duration=rows["time"][:1])], label, strict=True
             )
@@ -131,11 +131,3 @@ def _round_up(value: float) -> float:
     power = 10.0 ** math.floor(math.log10(value))
     steps = (step * power for step in (1.0, 2.0, 5.0, 10.0))
     return next((step for step in steps if value * (1.0 - 1e-12) <= step < math.inf), value)
-
-
-def with_prefix(value: float, unit: str) -> str:
-    """``2e-6``, ``N`` as ``2 µN``."""
-    exponent = 3 * math.floor(math.log10(value) / 3.0 + 1e-9) if value > 0.0 else 0
-    if exponent not in _PREFIXES:
-        return f"{value:.3g} {unit}"
-    return f"{value / 10.0**exponent:.3g} {_PREFIXES[exponent]}{unit}"
