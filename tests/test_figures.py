@@ -188,6 +188,31 @@ def test_the_ground_track_is_where_the_earth_says(tumble: oo.Run) -> None:
     assert np.nanmax(np.abs(lat)) < 36.0  # the orbit's inclination is 35 degrees, geodetic a little more
 
 
+def test_a_month_of_ground_track_is_dots_and_says_so() -> None:
+    earth = oo.Earth("2026-03-20 12:00:00 UTC")
+    orbit = oo.Kepler(semi_major_axis=6878e3, inclination=0.9)
+
+    class Trace:
+        def __init__(self, days: float, rows: int) -> None:
+            self.time = np.linspace(0.0, days * 86400.0, rows)
+            self.position_eci, self.velocity_eci = orbit.state(self.time)
+
+    def drawn(days: float, rows: int) -> tuple[list[str], list[str]]:
+        trace: Any = Trace(days, rows)
+        world, profile = figures.ground_track(trace, earth).axes
+        legend = world.get_legend()
+        assert legend is not None
+        styles = [axes.lines[0].get_linestyle() for axes in (world, profile)]
+        return styles, [text.get_text() for text in legend.get_texts()]
+
+    styles, told = drawn(30.0, 50_000)
+    assert styles == ["None", "None"] and told == ["a dot every 14.4 min", "start", "end"]
+    styles, told = drawn(4.0, 50_000)  # 50 points for each of 61 revolutions
+    assert styles == ["-", "-"] and told == ["start", "end"]
+    styles, told = drawn(0.5, 9)  # whatever left the rows so far apart
+    assert styles == ["None", "None"] and told[0] == "a dot every 90 min"
+
+
 def test_a_robot_of_meshes_is_drawn_as_its_skeleton(reach: oo.Run, tmp_path: Path) -> None:
     urdf = oo.robots.path("humanoid_torso").read_text()
     urdf = re.sub(r"<(box|sphere|cylinder|capsule)\b[^>]*/>", '<mesh filename="mesh.stl"/>', urdf)
