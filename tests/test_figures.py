@@ -18,10 +18,11 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 import onorbit_rs as oo
 from onorbit_rs import figures
 from onorbit_rs.figures.solids import robot_polygons, robot_skeleton
-from onorbit_rs.figures.style import MOST_POINTS, thin, with_prefix
+from onorbit_rs.figures.style import MOST_POINTS, thin
 from onorbit_rs.output.read import SavedTrace
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.make_orbit import make_orbit
+from onorbit_rs.units import with_prefix
 
 
 @pytest.fixture(scope="module")
@@ -187,6 +188,31 @@ def test_the_ground_track_is_where_the_earth_says(tumble: oo.Run) -> None:
     assert np.nanmax(np.abs(lat)) < 36.0  # the orbit's inclination is 35 degrees, geodetic a little more
 
 
+def test_a_month_of_ground_track_is_dots_and_says_so() -> None:
+    earth = oo.Earth("2026-03-20 12:00:00 UTC")
+    orbit = oo.Kepler(semi_major_axis=6878e3, inclination=0.9)
+
+    class Trace:
+        def __init__(self, days: float, rows: int) -> None:
+            self.time = np.linspace(0.0, days * 86400.0, rows)
+            self.position_eci, self.velocity_eci = orbit.state(self.time)
+
+    def drawn(days: float, rows: int) -> tuple[list[str], list[str]]:
+        trace: Any = Trace(days, rows)
+        world, profile = figures.ground_track(trace, earth).axes
+        legend = world.get_legend()
+        assert legend is not None
+        styles = [axes.lines[0].get_linestyle() for axes in (world, profile)]
+        return styles, [text.get_text() for text in legend.get_texts()]
+
+    styles, told = drawn(30.0, 50_000)
+    assert styles == ["None", "None"] and told == ["a dot every 14.4 min", "start", "end"]
+    styles, told = drawn(4.0, 50_000)  # 50 points for each of 61 revolutions
+    assert styles == ["-", "-"] and told == ["start", "end"]
+    styles, told = drawn(0.5, 9)  # whatever left the rows so far apart
+    assert styles == ["None", "None"] and told[0] == "a dot every 90 min"
+
+
 def test_a_robot_of_meshes_is_drawn_as_its_skeleton(reach: oo.Run, tmp_path: Path) -> None:
     urdf = oo.robots.path("humanoid_torso").read_text()
     urdf = re.sub(r"<(box|sphere|cylinder|capsule)\b[^>]*/>", '<mesh filename="mesh.stl"/>', urdf)
@@ -215,6 +241,33 @@ def test_errors_of_several_controllers_are_those_of_the_trace() -> None:
     error = np.asarray(run.trace.tracking["left"])[:, :3]
     ratio = np.abs(drawn).max() / np.abs(error).max()
     np.testing.assert_allclose(drawn, ratio * error, rtol=1e-9, atol=1e-12)
+
+
+def test_errors_of_joints_that_slide_are_in_metres(reach: oo.Run) -> None:
+    urdf = oo.robots.path("humanoid_torso").read_text()
+    names = list(reach.model.joint_names)
+    slider = re.compile(rf'(<joint name="{names[0]}" type=)"[a-z]+"')
+    model = oo.Model.from_urdf_string(slider.sub(r'\1"prismatic"', urdf))
+    assert [joint.kind == "prismatic" for joint in model.joints] == [True, *[False] * 6]
+    errors = np.linspace(0.0, 2e-3, 7 * 5).reshape(5, 7)
+
+    class Trace:
+        time, tau = np.linspace(0.0, 1.0, 5), errors
+
+        def __init__(self, columns: int | slice) -> None:
+            self.tracking = {"posture": errors[:, columns]}
+
+    def drawn(columns: slice, given: oo.Model | None) -> list[str]:
+        trace: Any = Trace(columns)
+        return labels(figures.control_errors(trace, "posture", names[columns], given))
+
+    assert drawn(slice(0, 1), model) == ["time [s]", "joint error [mm]"]
+    assert drawn(slice(1, 3), model) == ["time [s]", "joint error [mrad]"]
+    assert drawn(slice(0, 7), model) == ["time [s]", "joint error [rad or m]"]
+    assert drawn(slice(0, 7), reach.model) == ["time [s]", "joint error [mrad]"]
+    assert drawn(slice(0, 7), None) == ["time [s]", "joint error [rad or m]"]
+    torques: Any = Trace(slice(0, 7))
+    assert labels(figures.joint_torques(torques, model)) == ["time [s]", "effort [N m or N]"]
 
 
 def test_names_in_the_users_words_are_no_formulas_and_are_not_left_out(reach: oo.Run) -> None:

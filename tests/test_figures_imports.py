@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -23,6 +25,12 @@ def test_a_drawing_library_stays_in_its_folder(owner: str, roots: set[str]) -> N
         if roots & _imported(node)
     }
     assert importers == {owner}
+
+
+@pytest.mark.parametrize("module", ["onorbit_rs.report", "onorbit_rs.report.numbers", "onorbit_rs.units"])
+def test_a_report_loads_no_drawing_library_before_it_draws(module: str) -> None:
+    program = f"import sys, {module}; assert not {{'matplotlib', 'rerun'}} & set(sys.modules)"
+    subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def _imported(node: ast.AST) -> set[str]:

@@ -6,14 +6,19 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+import onorbit_rs as oo
 from onorbit_rs.rotations import (
     angle_between,
+    has_local_frame,
     local_orbital_axes,
     matrix_from_quaternion,
     quaternion_from_matrix,
     quaternion_from_roll_pitch_yaw,
+    reference_motion_of,
     roll_pitch_yaw,
 )
+from onorbit_rs.scenario import Scenario, load
+from onorbit_rs.scenario.build import build
 
 quaternions = (
     st.lists(st.floats(-1.0, 1.0), min_size=4, max_size=4)
@@ -61,6 +66,30 @@ def test_angle_between_is_exact_even_when_small(angle: float, axis: np.ndarray) 
     identity = np.array([0.0, 0.0, 0.0, 1.0])
     assert abs(angle_between(turned, identity) - angle) <= 4e-16 * max(angle, 1.0) * 4
     assert abs(angle_between(-turned, identity) - angle) <= 4e-16 * max(angle, 1.0) * 4
+
+
+def test_the_reference_is_the_orbit_whatever_it_is_integrated_about() -> None:
+    data = load("hill_relative").resolved() | {"controller": None, "reference": None}
+    data["initial"] |= {"linear_velocity": [0.0, 40.0, 0.0]}
+    data["simulation"] |= {"duration": 200.0, "rereference_beyond": 2000.0}
+    built = build(Scenario(**data))
+    trace = built.simulation.run(200.0)
+    assert len(trace.rereferenced) == 1 and built.orbit is not None
+    r, v = reference_motion_of(trace)
+    position, velocity = built.orbit.state(trace.time)
+    np.testing.assert_allclose(r, position, rtol=0, atol=4e-9)  # four units in the last place of 7000 km
+    np.testing.assert_allclose(v, velocity, rtol=0, atol=4e-12)
+
+
+def test_a_reference_that_stands_has_no_local_frame() -> None:
+    model = oo.Model.rigid_body(10.0, np.eye(3))
+    orbit = oo.FixedFrame(position=[7e6, 0.0, 0.0])
+    q = model.neutral()
+    q[3:7] = [0.1, 0.2, 0.3, 0.92736185]
+    q[3:7] /= np.linalg.norm(q[3:7])
+    v = np.array([0.01, 0.02, 0.03, 0.1, 0.2, 0.3])
+    trace = oo.Simulation(model, q, v, orbit=orbit, time_step=0.1).run(1.0)
+    assert not has_local_frame(trace)
 
 
 def test_local_orbital_axes_are_radial_along_track_and_normal() -> None:

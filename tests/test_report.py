@@ -138,6 +138,18 @@ def test_the_certificate_is_green_or_red(folder: Path, tmp_path: Path) -> None:
     assert "BROKEN" in Page((tmp_path / "report.html").read_text()).text
 
 
+@pytest.mark.parametrize("left", [{}, {"certificate_passed": None}])
+def test_a_run_without_a_certificate_has_not_failed(
+    left: dict[str, None], folder: Path, tmp_path: Path
+) -> None:
+    summary = json.loads((folder / "summary.json").read_text())
+    kept = {key: value for key, value in summary.items() if not key.startswith("certificate_")} | left
+    for name in ("trace.npz", "scenario.yaml"):
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
+    (tmp_path / "summary.json").write_text(json.dumps(kept))
+    assert verdict_of(tmp_path) == ("verdict neutral", "Certificate absent: nothing was checked")
+
+
 def verdict_of(folder: Path) -> tuple[str | None, str]:
     page = Page(write_report(folder).read_text())
     (kind,) = [attributes["class"] for _, attributes in page.tags if attributes.get("id") == "verdict"]

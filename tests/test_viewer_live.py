@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from recordings import FrameTree, column, rows_by_entity
 import onorbit_rs as oo
 from onorbit_rs import viewer
 from onorbit_rs.output.relay import Relay
+from onorbit_rs.running import _watched
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
 from onorbit_rs.viewer import live, screen
@@ -105,6 +107,59 @@ def test_trouble_in_the_viewer_is_a_warning_and_the_run_goes_on(
     with pytest.warns(UserWarning, match="the viewer is gone, the run goes on without it: gone") as told:
         watched = Watched(tmp_path, built_reach(duration=20.0))
     assert len(told) == 1 and watched.trace.is_complete
+
+
+@pytest.mark.parametrize("error", [KeyError("q"), ZeroDivisionError(), OverflowError(), StopIteration()])
+def test_no_kind_of_trouble_in_the_viewer_stops_the_run(
+    error: Exception, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(live, "send_rows", refuse)
+    with pytest.warns(UserWarning, match="the viewer is gone"):
+        watched = Watched(tmp_path, built_reach(duration=0.1), every_s=0.0)
+    assert watched.trace.is_complete
+
+
+def test_rows_that_the_viewer_cannot_read_are_a_warning() -> None:
+    model = oo.Model.rigid_body(10.0, np.eye(3))
+    view = LiveView(rr.RecordingStream("onorbit"), viewer.Setting(model), 1.0)
+    with pytest.warns(UserWarning, match="the viewer is gone"):
+        view.take({"time": np.zeros((2, 1)), "tool_pose": np.zeros((2, 7))})
+    view.take({})  # and no second one
+
+
+def test_the_error_of_the_run_is_told_where_its_last_rows_cannot_be_written(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ended = []
+
+    class Eye:
+        def take(self, columns: Any) -> None:
+            pass
+
+        def finish(self, trace: object) -> None:
+            ended.append(trace)
+
+    class Simulation:
+        def run(self, _duration: float, *, checkpoint: Any, **_: object) -> None:
+            checkpoint(given[0])
+            raise oo.exceptions.SimulationError("diverged")
+
+    def full(_: oo.Checkpoint) -> None:
+        raise OSError("disk full")
+
+    given: list[oo.Checkpoint] = []
+    built = built_reach(duration=20.0)
+    built.simulation.run(20.0, checkpoint=given.append, checkpoint_every=0.01)
+    assert given, "the run was over before a look"
+    monkeypatch.setattr(live, "open_live", lambda *_: Eye())
+    failing = replace(built, simulation=Simulation())  # type: ignore[arg-type]  # all that is asked of it
+    with pytest.raises(oo.exceptions.SimulationError, match="diverged") as told:
+        _watched(failing, None, full, checkpoint_every=1e3)  # type: ignore[arg-type]  # any writer
+    assert any("disk full" in note for note in told.value.__notes__)
+    assert ended == [None]
 
 
 def test_the_writer_of_checkpoints_gets_every_row_and_state() -> None:

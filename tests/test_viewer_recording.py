@@ -17,6 +17,8 @@ from onorbit_rs import viewer
 from onorbit_rs.geometry import shapes
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
+from onorbit_rs.viewer.rows import Rows
+from onorbit_rs.viewer.series import series_of
 
 STEPS = 51
 SINGLE = 1e-6
@@ -113,6 +115,9 @@ def test_sliding_joints_slide(tmp_path: Path) -> None:
     model = oo.Model.from_urdf_string(text)
     rates = np.array([0, 0, 0, 0.1, 0.2, 0.3, 0.4, 0.5])
     trace = oo.Simulation(model, model.neutral(), rates, time_step=0.1).run(1.0)
+    plots = {plot.path: plot.unit for plot in series_of(Rows.of_trace(trace), model)}
+    units = [plots[f"plots/joint_{name}"] for name in ("torque", "position", "rate")]
+    assert units == ["N m or N", "rad or m", "rad/s or m/s"]
     tree = FrameTree(viewer.write_recording(tmp_path / "run.rrd", trace, viewer.Setting(model)))
     for link in model.body_names:
         np.testing.assert_allclose(tree.pose(f"robot/{link}"), model.frame_pose(trace.q, link), atol=SINGLE)

@@ -13,9 +13,12 @@ from recordings import FrameTree, column, rows_by_entity
 
 import onorbit_rs as oo
 from onorbit_rs import viewer
-from onorbit_rs.scenario import Scenario
+from onorbit_rs.planet import is_earth
+from onorbit_rs.rotations import local_orbital_axes
+from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
-from onorbit_rs.viewer.arrows import with_prefix
+from onorbit_rs.units import amount
+from onorbit_rs.viewer.arrows import _round_up
 from onorbit_rs.viewer.land import land, world_map
 
 EPOCH = "2026-03-20 12:00:00 UTC"
@@ -56,6 +59,25 @@ def test_arrows_times_their_scale_are_the_wrenches(tmp_path: Path) -> None:
     np.testing.assert_allclose(arrows * scale, trace.momentum[:, 3:], rtol=1e-6, atol=1e-12)
 
 
+def test_the_torque_plotted_is_the_one_the_arrow_shows(tmp_path: Path) -> None:
+    push = {"kind": "body_wrench", "body": "arm_link_7", "force": [0, 3, 0], "torque": [0, 0, 0.02]}
+    path, trace = record(
+        tmp_path,
+        robot="humanoid_torso",
+        environment=[push],
+        simulation={"duration": 0.2, "time_step": 0.01, "record_wrenches": True},
+    )
+    effect = "/world/arrows/body_wrench/torque"
+    ((label,),) = column(path, f"{effect}/scale", "Points3D:labels")
+    amount, unit = label.split(" = ")[1].split(" ", 1)
+    arrows = np.array(column(path, effect, "Arrows3D:vectors"))[:, 0]
+    shown = arrows * float(amount) * {"N m": 1.0, "mN m": 1e-3}[unit]
+    plotted = np.array(column(path, "/plots/body_wrench/torque", "Scalars:scalars"))
+    np.testing.assert_allclose(plotted, shown, rtol=1e-6, atol=1e-6)
+    alone = trace.wrenches["body_wrench"][:, :, 3:].sum(axis=1)
+    assert np.abs(plotted - alone).max() > 0.1  # the lever is most of it
+
+
 def test_no_arrows_for_momenta_that_nothing_has_given(tmp_path: Path) -> None:
     model = oo.robots.load("humanoid_torso")
     q, v = model.neutral(), np.zeros(model.nv)
@@ -70,8 +92,14 @@ def test_no_arrows_for_momenta_that_nothing_has_given(tmp_path: Path) -> None:
 
 
 def test_amounts_are_told_with_prefixes() -> None:
-    told = [with_prefix(value, "N") for value in (2e-6, 5e-4, 0.01, 1.0, 2e4, 5e-12)]
-    assert told == ["2 µN", "500 µN", "10 mN", "1 N", "20 kN", "5e-12 N"]
+    told = [amount(value, "N") for value in (2e-6, 5e-4, 0.01, 1.0, 2e4, 5e-12, 10.0 * 1e-7)]
+    assert told == ["2 µN", "500 µN", "10 mN", "1 N", "20 kN", "5 pN", "1 µN"]
+
+
+def test_every_number_has_a_scale() -> None:
+    rounded = [_round_up(value) for value in (-1.0, 0.0, 5e-324, 0.003, 7.0, 1.5e308, np.inf)]
+    assert rounded == [0.0, 0.0, 5e-324, 0.005, 10.0, 1.5e308, np.inf]
+    assert np.isnan(_round_up(np.nan))
 
 
 def test_the_map_has_land_where_there_is_land() -> None:
@@ -113,6 +141,56 @@ def test_the_earth_turns_and_night_is_away_from_the_sun(tmp_path: Path) -> None:
         assert np.array(veil)[:, 0].max() < 0.06 * 6378  # in axes whose x points to the Sun
     place = np.array(column(path, "/orbit/spacecraft", "Points3D:positions"))[:, 0]
     np.testing.assert_allclose(place, trace.position_eci / 1e3, rtol=1e-6)
+
+
+def test_the_earth_beneath_an_element_set_is_in_its_axes(tmp_path: Path) -> None:
+    data = load("sgp4_orbit").resolved() | {"simulation": {"duration": 600.0, "time_step": 30.0}}
+    path, trace = record(tmp_path, **data)
+    earth = build(Scenario(**data)).earth
+    assert earth is not None and earth.axes == "TEME" and earth.epoch is not None
+    teme, gcrf = oo.Earth(earth.epoch, axes="TEME"), oo.Earth(earth.epoch)
+    tree = FrameTree(path)
+    earth_axes = np.swapaxes(teme.rotation(trace.time), 1, 2)
+    np.testing.assert_allclose(tree.pose("earth", "I")[:, :3, :3], earth_axes, atol=1e-6)
+    assert np.abs(np.swapaxes(gcrf.rotation(trace.time), 1, 2) - earth_axes).max() > 1e-3  # can fail
+    sun = teme.sun(trace.time)
+    to_sun = sun / np.linalg.norm(sun, axis=1, keepdims=True)
+    np.testing.assert_allclose(tree.pose("sun", "I")[:, :3, 0], to_sun, atol=1e-6)
+
+
+def test_a_path_in_l_far_from_the_origin_stands_still_in_l(tmp_path: Path) -> None:
+    data: dict[str, Any] = {
+        "robot": "humanoid_torso",
+        "tool": "tool",
+        "orbit": ORBIT,
+        "controller": {"kind": "computed_torque", "kp": 100, "kd": 20},
+        "reference": {"kind": "hold", "frame": "lvlh"},
+        "initial": {
+            "frame": "lvlh",
+            "position": [0, 10e3, 0],
+            "joints": [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974],
+        },
+        "simulation": {"duration": 0.5, "time_step": 0.01},
+    }
+    path, trace = record(tmp_path, **data)
+    orbit = build(Scenario(**data)).orbit
+    assert orbit is not None
+    rot_wl, _ = orbit.lvlh(trace.time)
+    np.testing.assert_allclose(FrameTree(path).pose("L")[:, :3, :3], rot_wl, atol=1e-6)
+    held = np.einsum("tji,tj->ti", rot_wl, trace.reference_pose[:, :3, 3])
+    (strip,) = column(path, "/world/tool/desired/path", "LineStrips3D:strips", static=True)
+    np.testing.assert_allclose(np.array(strip[0]), np.tile(held[0], (len(held), 1)), atol=2e-3)  # 32 bits
+    of_base = local_orbital_axes(trace.position_eci, trace.velocity_eci)
+    off = np.einsum("tji,tj->ti", of_base, trace.reference_pose[:, :3, 3]) - held
+    assert np.linalg.norm(off, axis=1).min() > 5.0  # the L of the base puts it elsewhere
+
+
+@pytest.mark.parametrize(
+    ("mu", "expected"),
+    [(3.986e14, True), (4e14, True), (oo.MU_EARTH, True), (3.2486e14, False), (None, False)],
+)
+def test_the_earth_is_told_from_other_planets(mu: float | None, expected: bool) -> None:
+    assert is_earth(mu) == expected
 
 
 def test_without_an_epoch_the_earth_is_plain(tmp_path: Path) -> None:

@@ -117,11 +117,36 @@ def local_orbital_axes(position: ArrayLike, velocity: ArrayLike) -> Floats:
     return np.stack([x, np.cross(z, x), z], axis=-1)
 
 
+def reference_motion(
+    q: ArrayLike, v: ArrayLike, position_eci: ArrayLike, velocity_eci: ArrayLike
+) -> tuple[Floats, Floats]:
+    """Positions and velocities (T, 3) of W's origin, inertial axes, from columns of a trace.
+
+    `r_w = r - p`, `v_w = ṙ - R v_b`: the trace's `q` stays relative to the reference orbit of the run,
+    whatever orbit it was integrated about. What is left of rounding where the reference stands is zero.
+    """
+    configuration, rates = np.asarray(q), np.asarray(v)
+    rot_wb = matrix_from_quaternion(configuration[:, 3:7])
+    r, rate = np.asarray(position_eci), np.asarray(velocity_eci)
+    r_w = r - configuration[:, :3]
+    v_w = rate - np.einsum("tij,tj->ti", rot_wb, rates[:, :3])
+    return _without_rounding(r_w, r), _without_rounding(v_w, rate)
+
+
+def _without_rounding(difference: Floats, of: Floats) -> Floats:
+    """Rows (T, 3) that are no more than rounding of what they were taken from become zero."""
+    small = np.linalg.norm(difference, axis=-1) <= 1e-12 * np.linalg.norm(of, axis=-1)
+    return np.where(small[:, None], 0.0, difference)
+
+
+def reference_motion_of(trace: Trace) -> tuple[Floats, Floats]:
+    """As :func:`reference_motion`, of a run in orbit."""
+    return reference_motion(trace.q, trace.v, trace.position_eci, trace.velocity_eci)
+
+
 def has_local_frame(trace: Trace) -> bool:
-    """Whether the run has an orbit on which L is defined all along."""
-    return "position_eci" in trace.columns() and is_local_frame_defined(
-        trace.position_eci, trace.velocity_eci
-    )
+    """Whether the run has a reference orbit on which L is defined all along."""
+    return "position_eci" in trace.columns() and is_local_frame_defined(*reference_motion_of(trace))
 
 
 def is_local_frame_defined(position: ArrayLike, velocity: ArrayLike) -> bool:

@@ -205,11 +205,18 @@ def _watched(
     relay = Relay(live, checkpoint, checkpoint_every)
     trace = None
     try:
-        trace = built.simulation.run(
-            duration, progress=progress, checkpoint=relay, checkpoint_every=LOOK_EVERY_S, resume=resume
-        )
-    finally:
+        try:
+            trace = built.simulation.run(
+                duration, progress=progress, checkpoint=relay, checkpoint_every=LOOK_EVERY_S, resume=resume
+            )
+        except BaseException as own:
+            try:
+                relay.hand_on()
+            except Exception as error:  # the run's own error is the one to tell
+                own.add_note(f"its last rows could not be written either: {error}")
+            raise
         relay.hand_on()
+    finally:
         live.finish(trace)
     return trace
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from onorbit_rs._core import MU_EARTH
 from onorbit_rs.figures.forces import environment_forces
 from onorbit_rs.figures.ground_track import ground_track
 from onorbit_rs.figures.ledger import ledger
@@ -19,6 +18,7 @@ from onorbit_rs.figures.motion import base_motion, base_reaction
 from onorbit_rs.figures.orbit import orbit_overview
 from onorbit_rs.figures.tracking import control_errors, joint_torques, tracking_errors
 from onorbit_rs.figures.trajectory import desired_trajectory, obtained_trajectory
+from onorbit_rs.planet import is_earth
 from onorbit_rs.rotations import has_local_frame
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
             whose = "." if is_alone else f" of the controller {control}."
             about = f"Desired minus obtained positions of the joints{whose}"
             name = "joint_errors" if is_alone else f"joint_errors_{_word(control)}"
-            yield Drawing(name, about, partial(control_errors, trace, control, joints))
+            yield Drawing(name, about, partial(control_errors, trace, control, joints, model))
     if model is None:
         return
     for tool in subject.tools:
@@ -114,11 +114,11 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
         yield Drawing("environment_forces", about, partial(environment_forces, trace, model.body_names))
     if subject.mu is None or not has_local_frame(trace) or _angle_flown_deg(trace) <= WORTH_AN_ORBIT_DEG:
         return
-    is_earth = abs(subject.mu / MU_EARTH - 1.0) < 1e-3
+    about_earth = is_earth(subject.mu)
     about = "The orbit to scale in inertial axes, its distance, and the attitude of the base relative to L."
-    yield Drawing("orbit", about, partial(orbit_overview, trace, is_earth=is_earth))
+    yield Drawing("orbit", about, partial(orbit_overview, trace, is_earth=about_earth))
     earth = subject.earth
-    if is_earth and earth is not None:
+    if about_earth and earth is not None:
         about = "The ground track, geodetic, and the height above the ellipsoid."
         yield Drawing("ground_track", about, partial(ground_track, trace, earth))
 

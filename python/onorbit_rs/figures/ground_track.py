@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -27,10 +27,16 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _MOST_ROWS = 3_000
+LEAST_PER_REVOLUTION = 40
+"""Points of one revolution that make a line; fewer would be chords, and are drawn as dots."""
 
 
 def ground_track(trace: Trace, earth: Earth) -> Figure:
-    """Geodetic longitude and latitude under the base, on a plain grid, and its height above the ellipsoid."""
+    """Geodetic longitude and latitude under the base, on a plain grid, and its height above the ellipsoid.
+
+    A line; dots, and so the legend, where a long run has fewer than :data:`LEAST_PER_REVOLUTION` points for
+    each revolution.
+    """
     time, label = clock(trace)
     rows = np.unique(np.linspace(0, len(time) - 1, _MOST_ROWS).astype(int))
     position = np.ascontiguousarray(np.asarray(trace.position_eci)[rows])
@@ -38,7 +44,13 @@ def ground_track(trace: Trace, earth: Earth) -> Figure:
     lat, lon = np.degrees(latitude), (np.degrees(longitude) + 180.0) % 360.0 - 180.0
     figure = new_figure(PAGE, 2.6)
     world, profile = figure.subplots(1, 2, width_ratios=(2.0, 1.0))
-    world.plot(*_broken_at_the_date_line(lon, lat), color=COLORS[0], linewidth=LINE)
+    look: dict[str, Any] = {"color": COLORS[0], "linewidth": LINE}
+    if len(rows) < LEAST_PER_REVOLUTION * _revolutions(trace):
+        apart = float(trace.time[rows[-1]] - trace.time[rows[0]]) / (len(rows) - 1)
+        look = {"color": COLORS[0], "linestyle": "none", "marker": ".", "markersize": 1.5}
+        world.plot(lon, lat, label=f"a dot every {_span(apart)}", **look)
+    else:
+        world.plot(*_broken_at_the_date_line(lon, lat), **look)
     world.plot(lon[0], lat[0], "o", color="white", markeredgecolor=INK, markersize=4, label="start")
     world.plot(lon[-1], lat[-1], "s", color=OBTAINED, markersize=4, label="end")
     tidy(world, "longitude, east [deg]", "geodetic latitude [deg]")
@@ -47,10 +59,22 @@ def ground_track(trace: Trace, earth: Earth) -> Figure:
     world.set_yticks(range(-90, 91, 30))
     world.axhline(0.0, color=INK, linewidth=0.5)
     legend_above(world)
-    profile.plot(time[rows], height / 1e3, color=COLORS[0], linewidth=LINE)
+    profile.plot(time[rows], height / 1e3, **look)
     tidy(profile, label, "height [km]")
     profile.ticklabel_format(axis="y", useOffset=False)
     return figure
+
+
+def _revolutions(trace: Trace) -> float:
+    """Times around the planet, from the rate `|r × v| / r²` along the way: rows may be revolutions apart."""
+    r, v = np.asarray(trace.position_eci), np.asarray(trace.velocity_eci)
+    rate = np.linalg.norm(np.cross(r, v), axis=1) / np.einsum("ti,ti->t", r, r)
+    return float(np.trapezoid(rate, trace.time)) / (2.0 * np.pi)
+
+
+def _span(seconds: float) -> str:
+    """As a person reads it."""
+    return f"{seconds:.3g} s" if seconds < 120.0 else f"{seconds / 60.0:.3g} min"
 
 
 def _broken_at_the_date_line(lon: Floats, lat: Floats) -> tuple[Floats, Floats]:

@@ -19,8 +19,8 @@ from onorbit_rs.figures.style import (
     new_figure,
     plot_lines,
     tidy,
-    with_prefix,
 )
+from onorbit_rs.units import with_prefix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

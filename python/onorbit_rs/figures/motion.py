@@ -16,9 +16,9 @@ from onorbit_rs.figures.style import (
     new_figure,
     plot_lines,
     tidy,
-    with_prefix,
 )
 from onorbit_rs.rotations import angle_between, roll_pitch_yaw
+from onorbit_rs.units import with_prefix
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Trace

@@ -19,9 +19,10 @@ from onorbit_rs.figures.style import (
     plot_lines,
     thin,
     tidy,
-    with_prefix,
 )
-from onorbit_rs.rotations import attitude_in_orbit
+from onorbit_rs.planet import EARTH_RADIUS_KM
+from onorbit_rs.rotations import attitude_in_orbit, reference_motion_of
+from onorbit_rs.units import with_prefix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,15 +31,17 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-EARTH_RADIUS_KM = 6378.137
 NEARLY_ROUND = 1e-5
 """Change of the distance, as a share of it, below which the change alone is drawn."""
 
 
 def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
-    """The path around the planet (inertial axes, to scale), distance, attitude of the base relative to L."""
-    position, velocity = np.asarray(trace.position_eci), np.asarray(trace.velocity_eci)
-    angles = np.degrees(attitude_in_orbit(np.asarray(trace.q)[:, 3:7], position, velocity))
+    """The path around the planet (inertial axes, to scale), distance, attitude of the base relative to L.
+
+    L is that of the reference orbit.
+    """
+    position = np.asarray(trace.position_eci)
+    angles = np.degrees(attitude_in_orbit(np.asarray(trace.q)[:, 3:7], *reference_motion_of(trace)))
     distance_km = np.linalg.norm(position, axis=1)[:, None] / 1e3
     time, clock_label = clock(trace)
     figure = new_figure(PAGE, 3.2)

@@ -40,7 +40,6 @@ LONGEST_NAME = 32
 MOST_LINES = 16
 """In one plot: as many as can be told apart."""
 
-_PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"), (1e6, "M"))
 _CLOCK = ((4 * 86400.0, 86400.0, "d"), (3 * 3600.0, 3600.0, "h"), (1200.0, 60.0, "min"))
 
 
@@ -97,15 +96,6 @@ def plain(name: str) -> str:
     name = name if len(name) <= LONGEST_NAME else f"{name[:half]}…{name[-half:]}"
     name = name.replace("$", r"\$")
     return f" {name}" if name.startswith("_") else name
-
-
-def with_prefix(peak: float, unit: str) -> tuple[float, str]:
-    """Factor and unit such that values up to ``peak`` read between 1 and 1000: ``(1e6, "µm")``."""
-    scale, prefix = 1.0, ""
-    if np.isfinite(peak) and peak > 0.0:
-        fitting = [entry for entry in _PREFIXES if entry[0] <= peak] or [_PREFIXES[0]]
-        scale, prefix = fitting[-1]
-    return 1.0 / scale, prefix + unit
 
 
 def clock(trace: Trace) -> tuple[Floats, str]:

@@ -20,8 +20,8 @@ from onorbit_rs.figures.style import (
     plot_largest,
     plot_lines,
     tidy,
-    with_prefix,
 )
+from onorbit_rs.units import OR, joint_units, with_prefix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,8 +42,11 @@ def tracking_errors(trace: Trace) -> Figure:
     return figure
 
 
-def control_errors(trace: Trace, name: str, joints: list[str]) -> Figure:
-    """The errors of one of several controllers: of its tool as in Fig. 6, or of each of its joints."""
+def control_errors(trace: Trace, name: str, joints: list[str], model: Model | None = None) -> Figure:
+    """The errors of one of several controllers: of its tool as in Fig. 6, or of each of its joints.
+
+    ``model`` tells which joints slide: their errors are in m, those of the others in rad.
+    """
     time, label = clock(trace)
     errors = np.asarray(trace.tracking[name])
     if not joints:
@@ -53,15 +56,16 @@ def control_errors(trace: Trace, name: str, joints: list[str]) -> Figure:
         _plot_error(panels[1], time, errors[:, 3:], "rad", "attitude error")
         tidy(panels[1], label, panels[1].get_ylabel())
         return figure
-    return _many(time, label, errors, joints, "joint error", "rad")
+    kinds = {} if model is None else {joint.name: joint.kind for joint in model.joints}
+    unit = joint_units(kinds[joint] for joint in joints if joint in kinds).position
+    return _many(time, label, errors, joints, "joint error", unit)
 
 
 def joint_torques(trace: Trace, model: Model) -> Figure:
     """Fig. 7: the torque of every joint, held over each control step."""
     time, label = clock(trace)
-    units = {joint.kind for joint in model.joints}
-    what = "torque" if "prismatic" not in units else "effort"
-    unit = {"torque": "N m"}.get(what, "N m, N" if "revolute" in units else "N")
+    unit = joint_units(joint.kind for joint in model.joints).effort
+    what = "torque" if unit == "N m" else "effort"
     return _many(time, label, np.asarray(trace.tau), list(model.joint_names), what, unit)
 
 
@@ -69,7 +73,7 @@ def _many(time: Floats, label: str, columns: Floats, names: list[str], what: str
     """One plot of a line for each joint, symmetric about zero."""
     peak = max(float(np.abs(columns).max()), 1e-12)
     factor, scaled = with_prefix(peak, unit) if peak < 0.1 or peak >= 1e3 else (1.0, unit)
-    if ", " in unit:  # two units take no common prefix
+    if OR in unit:
         factor, scaled = 1.0, unit
     figure = new_figure(COLUMN, 2.2)
     axes = figure.subplots()

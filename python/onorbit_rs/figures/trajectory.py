@@ -22,8 +22,8 @@ from onorbit_rs.figures.style import (
     SMALL,
     clock,
     new_figure,
-    with_prefix,
 )
+from onorbit_rs.units import with_prefix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from onorbit_rs.figures.style import with_prefix
 from onorbit_rs.output.summary import CHECKS
+from onorbit_rs.units import with_prefix
 
 # longest first: `_rad_s` ends in `_s` too
 _UNITS = (

@@ -56,15 +56,19 @@ def page(
 
 
 def _verdict(summary: dict[str, Any]) -> str:
-    """Green or red, and whether the run came to its end."""
+    """Green, red, or neither where the run carries no certificate, and whether it came to its end."""
     status = str(summary.get("status") or "unknown")
     is_whole = status == "complete"
-    has_passed = bool(summary.get("certificate_passed"))
+    has_passed = summary.get("certificate_passed")
     simulated = summary.get("simulated_s")
     said = f"Run {status}" + (f", {simulated:g} s simulated" if isinstance(simulated, (int, float)) else "")
-    failures = escape(str(summary.get("certificate_failures") or ""))
-    certificate = "Certificate passed" if has_passed else f"Certificate FAILED: {failures}"
-    kind = "passed" if has_passed and is_whole else "failed" if not has_passed else "warned"
+    failures = escape(str(summary.get("certificate_failures") or "it is not said what"))
+    if has_passed is None:
+        certificate, kind = "Certificate absent: nothing was checked", "neutral"
+    elif has_passed:
+        certificate, kind = "Certificate passed", "passed" if is_whole else "warned"
+    else:
+        certificate, kind = f"Certificate FAILED: {failures}", "failed"
     return (
         f'<div class="verdict {kind}" id="verdict"><strong>{certificate}</strong><p>{escape(said)}.</p></div>'
     )

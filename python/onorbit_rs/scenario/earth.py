@@ -56,19 +56,23 @@ class EarthPart(Part):
 
 
 def make_earth(scenario: Scenario, orbit: _core.Orbit | None, beside: Path) -> _core.Earth | None:
-    """The Earth of a run; its epoch is that of the element set where the scenario has none."""
+    """The Earth of a run, in the axes of its orbit; its epoch is the element set's where there is no other.
+
+    SGP4's positions are in TEME, 37 km on the ground from GCRF in 2024.
+    """
+    axes: Any = "GCRF" if orbit is None else orbit.axes
     epoch = scenario.epoch
     if epoch is None and isinstance(orbit, _core.Sgp4) and orbit.epoch >= FIRST_UTC:
         epoch = orbit.epoch
     if scenario.earth is None:
-        return None if epoch is None else _core.Earth(epoch)
+        return None if epoch is None else _core.Earth(epoch, axes=axes)
     given: dict[str, Any] = scenario.earth.model_dump(exclude_none=True)
     if scenario.earth.polar_motion is not None:
         given["polar_motion"] = np.array(scenario.earth.polar_motion)
     for name in ("eop", "ephemeris"):
         if name in given:
             given[name] = beside / given[name]
-    return _core.Earth(epoch, **given)
+    return _core.Earth(epoch, axes=axes, **given)
 
 
 FIRST_UTC = "1972"

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from onorbit_rs.units import amount
 from onorbit_rs.viewer.frames import FOLLOW, WORLD, put_in
 from onorbit_rs.viewer.rows import TIMELINE
+from onorbit_rs.viewer.wrenches import centers_of_bodies, torque_about_center
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,7 +28,6 @@ if TYPE_CHECKING:
 WORTH_SHOWING = 1e-3
 """Least momentum, as a share of what the kinetic energy would give to one rigid body, to be drawn."""
 
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _COLORS = {
     "gravity": (150, 135, 255),
     "gravity_gradient": (225, 130, 245),
@@ -53,15 +54,13 @@ class Arrows:
             self._send(rows, path, name, unit, _MOMENTUM_COLOR, origins, vectors[:, None, :], 0.6)
         if not rows.wrenches:
             return
-        centers = _centers(rows, self.setting)
+        centers = centers_of_bodies(rows, self.setting.model)
         for effect, wrenches in rows.wrenches.items():
             color, name = _COLORS.get(effect, _OTHER_COLOR), effect.replace("_", " ")
-            force, torque = wrenches[:, :, :3], wrenches[:, :, 3:]
+            force = wrenches[:, :, :3]
             path = f"world/arrows/{effect}"
             self._send(rows, f"{path}/force", name, "N", color, centers, force, 0.7)
-            # About the centre of mass of the whole: Σ (r_k - r) × F_k + T_k.
-            lever = centers - rows["center_of_mass"][:, None, :]
-            total = (np.cross(lever, force) + torque).sum(axis=1, keepdims=True)
+            total = torque_about_center(rows, centers, wrenches)[:, None, :]
             origin = rows["center_of_mass"][:, None, :]
             self._send(rows, f"{path}/torque", f"{name} torque", "N m", color, origin, total, 0.6)
 
@@ -91,16 +90,16 @@ class Arrows:
     ) -> None:
         """Arrows (T, n, 3) at origins (T, n, 3), W, the longest so many times the robot's size."""
         peak = _peak(vectors)
-        if peak == 0.0 and path not in self._scales:
-            return
         scale = max(_round_up(peak / (longest * self.stage.size)), self._scales.get(path, 0.0))
+        if scale == 0.0 or not np.isfinite(scale):
+            return
         count, each = vectors.shape[:2]
         if scale != self._scales.get(path):
             meaning = f"{path}/scale"
             if path not in self._scales:
                 self._introduce(path, meaning, color)
             self._scales[path] = scale
-            label = rr.Points3D.columns(labels=[f"{name}: 1 m = {with_prefix(scale, unit)}"])
+            label = rr.Points3D.columns(labels=[f"{name}: 1 m = {amount(scale, unit)}"])
             self.recording.send_columns(
                 meaning, [rr.TimeColumn(TIMELINE, duration=rows["time"][:1])], label, strict=True
             )
@@ -121,31 +120,14 @@ class Arrows:
         self.recording.log(meaning, line, static=True, strict=True)
 
 
-def _centers(rows: Rows, setting: Setting) -> Floats:
-    """(T, bodies, 3) centres of mass, W, m."""
-    q, model = np.ascontiguousarray(rows["q"]), setting.model
-    centers = np.empty((len(q), len(model.bodies), 3))
-    for index, body in enumerate(model.bodies):
-        pose = np.asarray(model.frame_pose(q, body.name))
-        centers[:, index] = pose[:, :3, :3] @ np.array(body.com) + pose[:, :3, 3]
-    return centers
-
-
 def _peak(vectors: Floats) -> float:
     return float(np.sqrt(np.einsum("...i,...i->...", vectors, vectors).max(initial=0.0)))
 
 
 def _round_up(value: float) -> float:
-    """To 1, 2 or 5 times a power of ten."""
-    if value <= 0.0:
-        return 0.0
+    """To 1, 2 or 5 times a power of ten; what has no such number above it stays as it is."""
+    if not 0.0 < value < math.inf:
+        return 0.0 if value <= 0.0 else value
     power = 10.0 ** math.floor(math.log10(value))
-    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= value * (1.0 - 1e-12))
-
-
-def with_prefix(value: float, unit: str) -> str:
-    """``2e-6``, ``N`` as ``2 µN``."""
-    exponent = 3 * math.floor(math.log10(value) / 3.0 + 1e-9) if value > 0.0 else 0
-    if exponent not in _PREFIXES:
-        return f"{value:.3g} {unit}"
-    return f"{value / 10.0**exponent:.3g} {_PREFIXES[exponent]}{unit}"
+    steps = (step * power for step in (1.0, 2.0, 5.0, 10.0))
+    return next((step for step in steps if value * (1.0 - 1e-12) <= step < math.inf), value)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,7 @@ from onorbit_rs.viewer.screen import has_screen, open_viewer
 from onorbit_rs.viewer.series import ANGLES, Series, send_series, series_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from numpy.typing import NDArray
 
@@ -37,8 +38,6 @@ MOST_ROWS = 500
 GOODBYE_S = 5.0
 """Wall-clock time given to the viewer to take the last rows."""
 
-_TROUBLE = (RuntimeError, ValueError, TypeError, OSError)
-
 
 class LiveView:
     """Sends rows of a run that lasts ``duration_s`` into a recording; trouble there never stops the run."""
@@ -54,27 +53,33 @@ class LiveView:
 
     def take(self, columns: Mapping[str, Floats]) -> None:
         """New rows, as a checkpoint holds them."""
-        self._show(Rows.of_checkpoint(columns))
+        with self._trouble():
+            self._show(Rows.of_checkpoint(columns))
 
     def finish(self, trace: Trace | None) -> None:
         """The rows that no look has seen, and goodbye."""
-        if trace is not None:
-            self._show(Rows.of_trace(trace, slice(self._count, None)))
-        if not self._is_lost:
-            try:
+        with self._trouble():
+            if trace is not None:
+                self._show(Rows.of_trace(trace, slice(self._count, None)))
+        with self._trouble():
+            if not self._is_lost:
                 self._recording.flush(timeout_sec=GOODBYE_S)
-            except _TROUBLE as error:
-                self._lose(error)
-        self._recording.disconnect()
+        with self._trouble():
+            self._recording.disconnect()
+
+    @contextmanager
+    def _trouble(self) -> Iterator[None]:
+        """Whatever goes wrong within costs the view, not the run."""
+        try:
+            yield
+        except Exception as error:
+            self._lose(error)
 
     def _show(self, rows: Rows) -> None:
         self._count += len(rows)
         if self._is_lost or len(rows) == 0:
             return
-        try:
-            self._send(rows.thinned(MOST_ROWS))
-        except _TROUBLE as error:
-            self._lose(error)
+        self._send(rows.thinned(MOST_ROWS))
 
     def _send(self, rows: Rows) -> None:
         recording, setting = self._recording, self._setting
@@ -107,6 +112,8 @@ class LiveView:
         return replace(series, values=values)
 
     def _lose(self, error: Exception) -> None:
+        if self._is_lost:
+            return
         self._is_lost = True
         warnings.warn(f"the viewer is gone, the run goes on without it: {error}", stacklevel=2)
 
@@ -120,6 +127,10 @@ def open_live(setting: Setting, duration_s: float) -> LiveView | None:
     if url is None:
         warnings.warn("the viewer did not start: the run goes on without it", stacklevel=2)
         return None
-    recording = new_recording(setting)
-    recording.connect_grpc(url)
+    try:
+        recording = new_recording(setting)
+        recording.connect_grpc(url)
+    except Exception as error:
+        warnings.warn(f"the viewer cannot be reached: the run goes on without it: {error}", stacklevel=2)
+        return None
     return LiveView(recording, setting, duration_s)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs._core import MU_EARTH
 from onorbit_rs.exceptions import OrbitError
+from onorbit_rs.planet import EARTH_FLATTENING, EARTH_RADIUS_KM, is_earth
 from onorbit_rs.rotations import quaternion_from_matrix
 from onorbit_rs.viewer.frames import ORIGIN, put_in, send_frame
 from onorbit_rs.viewer.land import world_map
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 INERTIAL, EARTH, SUN = "I", "earth", "sun"
-EARTH_RADIUS_KM, EARTH_FLATTENING = 6378.137, 1.0 / 298.257
 MEAN_DENSITY = 5.0e3
 """Of a planet that is not the Earth: its size is not known, kg/m³."""
 
@@ -44,10 +43,10 @@ def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> N
     put_in(recording, "orbit", INERTIAL)
     if orbit is None or orbit.mu is None:
         return
-    is_earth = abs(orbit.mu / MU_EARTH - 1.0) < 1e-2
-    turns = is_earth and setting.earth is not None
-    radius = EARTH_RADIUS_KM if is_earth else _radius_km(orbit.mu, rows)
-    flat = np.array([1.0, 1.0, 1.0 - EARTH_FLATTENING if is_earth else 1.0])
+    about_earth = is_earth(orbit.mu)
+    turns = about_earth and setting.earth is not None
+    radius = EARTH_RADIUS_KM if about_earth else _radius_km(orbit.mu, rows)
+    flat = np.array([1.0, 1.0, 1.0 - EARTH_FLATTENING if about_earth else 1.0])
     put_in(recording, "orbit/planet", EARTH if turns else INERTIAL)
     recording.log("orbit/planet", _globe(radius * flat, has_land=turns), static=True, strict=True)
     if turns and has_sun(setting.earth):

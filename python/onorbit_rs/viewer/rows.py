@@ -16,6 +16,7 @@ from onorbit_rs.rotations import (
     local_orbital_axes,
     product,
     quaternion_from_matrix,
+    reference_motion,
 )
 
 if TYPE_CHECKING:
@@ -104,10 +105,10 @@ class Rows:
 
     @cached_property
     def rot_wl(self) -> Floats | None:
-        """(T, 3, 3), L to W; None where there is no orbit, or one on which L is undefined."""
+        """(T, 3, 3), L of the reference orbit to W; None where there is no orbit or L is undefined on it."""
         if "position_eci" not in self:
             return None
-        r, v = self["position_eci"], self["velocity_eci"]
+        r, v = reference_motion(self["q"], self["v"], self["position_eci"], self["velocity_eci"])
         return local_orbital_axes(r, v) if is_local_frame_defined(r, v) else None
 
     @cached_property

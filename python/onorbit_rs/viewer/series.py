@@ -10,6 +10,8 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.rotations import roll_pitch_yaw
+from onorbit_rs.units import joint_units
+from onorbit_rs.viewer.wrenches import centers_of_bodies, torque_about_center
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,19 +41,30 @@ class Series:
 
 def series_of(rows: Rows, model: Model, *, is_live: bool = False) -> Iterator[Series]:
     """Every plot that these rows have the columns for; of effects that are over, what was not zero."""
-    yield from _of_tools(rows)
+    yield from _of_tools(rows, model)
     yield from _of_joints(rows, model)
     yield from _of_base(rows)
     yield from _of_balances(rows)
+    yield from _of_effects(rows, model, is_live=is_live)
+
+
+def _of_effects(rows: Rows, model: Model, *, is_live: bool) -> Iterator[Series]:
+    if not rows.wrenches:
+        return
+    centers = centers_of_bodies(rows, model)
     for effect, wrenches in rows.wrenches.items():
-        name, total = effect.replace("_", " ").capitalize(), wrenches.sum(axis=1)
-        parts = (("force", "net force", "N"), ("torque", "torques on all bodies", "N m"))
-        for values, (part, title, unit) in zip((total[:, :3], total[:, 3:]), parts, strict=True):
+        name = effect.replace("_", " ").capitalize()
+        force, torque = wrenches[:, :, :3].sum(axis=1), torque_about_center(rows, centers, wrenches)
+        parts = (
+            ("force", "net force", "N", force),
+            ("torque", "torque about the centre of mass", "N m", torque),
+        )
+        for part, title, unit, values in parts:
             if is_live or values.any():
                 yield Series("Forces", f"plots/{effect}/{part}", f"{name}: {title}", unit, _AXES, values)
 
 
-def _of_tools(rows: Rows) -> Iterator[Series]:
+def _of_tools(rows: Rows, model: Model) -> Iterator[Series]:
     if "position_error" in rows:
         yield Series(
             "Tool", "plots/tool_position_error", "Tool position error", "m", _AXES, rows["position_error"]
@@ -66,19 +79,18 @@ def _of_tools(rows: Rows) -> Iterator[Series]:
             yield Series("Tool", f"{path}/attitude", f"{name}: attitude error", "rad", _AXES, errors[:, 3:])
         else:
             names = tuple(f"joint {index + 1}" for index in range(errors.shape[1]))
-            yield Series("Joints", path, f"{name}: joint errors", "rad or m", names, errors)
+            unit = joint_units(joint.kind for joint in model.joints).position
+            yield Series("Joints", path, f"{name}: joint errors", unit, names, errors)
 
 
 def _of_joints(rows: Rows, model: Model) -> Iterator[Series]:
-    names, kinds = tuple(model.joint_names), {joint.kind for joint in model.joints}
+    names, units = tuple(model.joint_names), joint_units(joint.kind for joint in model.joints)
     if not names:
         return
-    angle, torque = ("rad", "N m") if kinds == {"revolute"} else ("m", "N") if kinds == {"prismatic"} else (
-        "rad or m", "N m or N")  # fmt: skip
-    rate = " or ".join(f"{unit}/s" for unit in angle.split(" or "))
-    yield Series("Joints", "plots/joint_torque", "Joint torques", torque, names, rows["tau"])
-    yield Series("Joints", "plots/joint_position", "Joint positions", angle, names, rows["q"][:, 7:])
-    yield Series("Joints", "plots/joint_rate", "Joint rates", rate, names, rows["v"][:, 6:])
+    title = "Joint torques" if units.effort == "N m" else "Joint efforts"
+    yield Series("Joints", "plots/joint_torque", title, units.effort, names, rows["tau"])
+    yield Series("Joints", "plots/joint_position", "Joint positions", units.position, names, rows["q"][:, 7:])
+    yield Series("Joints", "plots/joint_rate", "Joint rates", units.rate, names, rows["v"][:, 6:])
 
 
 def _of_base(rows: Rows) -> Iterator[Series]:

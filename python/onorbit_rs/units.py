@@ -1,0 +1,45 @@
+"""Units as labels tell them: prefixes that fit the number, those of joints by their kind."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+_PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"), (1e6, "M"))
+
+OR = " or "
+"""Between two units of one label, which take no common prefix."""
+
+
+def with_prefix(peak: float, unit: str) -> tuple[float, str]:
+    """Factor and unit such that values up to ``peak`` read between 1 and 1000: ``(1e6, "µm")``."""
+    scale, prefix = 1.0, ""
+    if math.isfinite(peak) and peak > 0.0:
+        fitting = [entry for entry in _PREFIXES if entry[0] <= peak * (1.0 + 1e-9)] or [_PREFIXES[0]]
+        scale, prefix = fitting[-1]
+    return 1.0 / scale, prefix + unit
+
+
+def amount(value: float, unit: str) -> str:
+    """``2e-6``, ``N`` as ``2 µN``."""
+    factor, scaled = with_prefix(value, unit)
+    return f"{factor * value:.3g} {scaled}"
+
+
+class JointUnits(NamedTuple):
+    """Of joints: positions and their errors, rates, efforts."""
+
+    position: str
+    rate: str
+    effort: str
+
+
+_OF_KINDS = (JointUnits("rad", "rad/s", "N m"), JointUnits("m", "m/s", "N"))
+
+
+def joint_units(kinds: Iterable[str]) -> JointUnits:
+    """Of joints of these kinds: rad, m where they slide, ``rad or m`` where both or none is known."""
+    slides = {kind == "prismatic" for kind in kinds} or {False, True}
+    found = [_OF_KINDS[index] for index in sorted(slides)]
+    return JointUnits(*(OR.join(parts) for parts in zip(*found, strict=True)))
