@@ -38,7 +38,8 @@ pub struct Certificate {
     pub linear_momentum_drift_rel: f64,
     /// `max |L − L₀ − ∫T dt|` over the peak of `Σ |Lₖ|`, all about the system's centre of mass.
     pub angular_momentum_drift_rel: f64,
-    /// `max |E − E₀ − W|` over `Σ |ΔW|` and the peak of the energy in the centre-of-mass frame.
+    /// `max |E − E₀ − W|` over `Σ |ΔW|` and the peak of the energy in the centre-of-mass frame; what would move the robot
+    /// by less than a millionth of its size in the whole run is rest.
     pub energy_balance_error_rel: f64,
     /// Distance of the centre of mass from the integral of `P/m`, over its path and the robot's size.
     pub center_of_mass_error_rel: Option<f64>,
