@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.exceptions import Sgp4Error
-from onorbit_rs.validation.case import Case, Gate
+from onorbit_rs.validation.case import Case, Gate, worst
 from onorbit_rs.validation.sgp4 import SOURCE, ElementSet, sets
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def compare(elements: ElementSet) -> tuple[float, float]:
     api: Any = importlib.import_module("sgp4.api")
     peer, orbit = api.Satrec.twoline2rv(elements.line1, elements.line2), elements.orbit()
     stop = elements.rows[-1][0]
-    worst, disagreements = 0.0, 0
+    found, disagreements = [], 0
     for seconds in 60.0 * np.linspace(-stop, stop + 200.0, TIMES):
         code, r, v = peer.sgp4_tsince(seconds / 60.0)
         try:
@@ -34,8 +34,8 @@ def compare(elements: ElementSet) -> tuple[float, float]:
             disagreements += error.code != code
             continue
         disagreements += code != 0
-        worst = max(worst, float(np.abs(np.array(ours) / 1e3 - (r, v)).max()))
-    return worst, float(disagreements)
+        found.append(np.abs(np.array(ours) / 1e3 - (r, v)).max())
+    return float(worst(found)), float(disagreements)
 
 
 def published() -> list[tuple[str, Floats]]:
@@ -65,8 +65,8 @@ def every_row() -> tuple[float, float]:
 
 def all_sets() -> Any:
     """Over the sets that make sense: the largest difference, and all disagreements."""
-    found = np.array([compare(elements) for elements in sets() if elements.rows])
-    return found[:, 0].max(), found[:, 1].sum()
+    off, disagreements = zip(*(compare(elements) for elements in sets() if elements.rows), strict=True)
+    return worst(off), sum(disagreements)
 
 
 CASES = (
