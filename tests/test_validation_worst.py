@@ -17,6 +17,7 @@ from onorbit_rs.validation import (
     against_pinocchio,
     against_sgp4,
     conservation,
+    nasa,
     order,
     robots,
     sgp4,
@@ -126,3 +127,33 @@ def test_an_attitude_at_one_tolerance_that_is_no_number_is_red(monkeypatch: pyte
     monkeypatch.setattr(order.oo.Model, "difference", lambda *given: spoilt(*given), raising=True)
     verdict = judged("order", "Dormand and Prince's pair, tolerances 1e-4 to 1e-9")
     assert verdict.passed is False and verdict.note == "", verdict
+
+
+@pytest.mark.parametrize(
+    ("measure", "table"),
+    [
+        (lambda: sgp4.of_regime("a day"), "sgp4_sets"),
+        (lambda: sgp4.of_regime("dip space"), ""),
+        (against_sgp4.every_row, "sgp4_states"),
+        (against_sgp4.all_sets, "sgp4_states"),
+        (lambda: nasa.off("8A"), "nasa_states"),
+    ],
+)
+def test_a_table_without_rows_is_no_agreement(
+    measure: Callable[[], Any], table: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("sgp4")
+    whole = sgp4.table
+    for module in (sgp4, nasa):
+        monkeypatch.setattr(module, "table", lambda name: [] if name == table else whole(name))
+    monkeypatch.setattr(against_sgp4, "published", lambda: [("", np.zeros((1, 7)))] * len(sgp4.sets()))
+    with pytest.raises(ValueError, match="nothing to compare"):
+        measure()
+
+
+def test_the_tables_of_sgp4_have_the_sets_that_the_cases_count() -> None:
+    sets = sgp4.sets()
+    for regime, name in sgp4.REGIMES.items():
+        rows = [len(one.rows) for one in sets if one.regime == regime]
+        assert name.startswith(f"{len(rows)} ") and set(rows) == {3}, (name, rows)
+    assert (len(sets), sum(bool(one.rows) for one in sets)) == (33, 30)
