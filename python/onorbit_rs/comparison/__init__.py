@@ -33,7 +33,7 @@ class Difference:
     """Time of the largest, s."""
     final: float
     allowed: float
-    """The tolerance times the largest value of either run, which counts as 1 at least."""
+    """The tolerance times the largest finite value of either run, which counts as 1 at least."""
     parts_at: float | None
     """First time beyond what is allowed, s; None where there is none."""
 
@@ -137,7 +137,7 @@ def _difference(
     name: str, unit: str, values: Floats, largest: float, time: Floats, tolerance: float
 ) -> Difference:
     allowed = tolerance * max(1.0, largest)
-    beyond = np.flatnonzero(~(values <= allowed))  # what is not a number is beyond
+    beyond = np.flatnonzero(~(np.isfinite(values) & (values <= allowed)))
     worst = int(np.argmax(np.where(np.isnan(values), np.inf, values)))
     parts_at = float(time[beyond[0]]) if beyond.size else None
     return Difference(
