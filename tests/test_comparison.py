@@ -132,6 +132,42 @@ def test_another_robot_with_as_many_joints_is_told_one_with_others_refused() -> 
         oo.compare(spin(0.1), scenario())
 
 
+def hinged(folder: Path, *joints: str, mass: float = 1.0) -> dict[str, Any]:
+    """A base with links on it, one per joint."""
+    moments = "<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
+    body = f"<inertial><mass value='{mass}'/>{moments}</inertial>"
+    links = [f"<link name='{name}'>{body}</link>" for name in ("base", *(f"of_{joint}" for joint in joints))]
+    hinges = [
+        f"<joint name='{joint}' type='continuous'><parent link='base'/><child link='of_{joint}'/></joint>"
+        for joint in joints
+    ]
+    file = folder / f"{'_'.join(joints)}_{mass}.urdf"
+    file.write_text(f"<robot name='hinged'>{''.join(links + hinges)}</robot>")
+    return spin(0.1, duration=0.5) | {"robot": {"urdf": str(file)}}
+
+
+def test_joints_of_other_names_or_another_order_are_refused(tmp_path: Path) -> None:
+    one, other = hinged(tmp_path, "j"), hinged(tmp_path, "k")
+    with pytest.raises(CompareError, match=r"joints j, .* one with k: only runs of one robot") as refused:
+        oo.compare(one, other)
+    assert (refused.value.got, refused.value.expected) == (["k"], ["j"])
+    oo.run(other, tmp_path / "out")
+    with pytest.raises(CompareError, match=r"joints j, .* with k:"):
+        oo.compare(one, tmp_path / "out")
+    with pytest.raises(CompareError, match=r"joints j, k, .* with k, j:"):
+        oo.compare(hinged(tmp_path, "j", "k"), hinged(tmp_path, "k", "j"))
+    heavy = oo.compare(one, hinged(tmp_path, "j", mass=2.0))
+    assert [note.split(":")[0] for note in heavy.notes] == ["the robots are not the same"]
+
+
+def test_a_folder_whose_robot_is_gone_compares_with_a_note(tmp_path: Path) -> None:
+    one, other = hinged(tmp_path, "j"), hinged(tmp_path, "j", mass=2.0)
+    oo.run(other, tmp_path / "out")
+    Path(other["robot"]["urdf"]).unlink()
+    compared = oo.compare(one, tmp_path / "out")
+    assert any("nobody knows whether their joints are the same" in note for note in compared.notes)
+
+
 def test_an_impact_counts_with_the_row_after_it() -> None:
     time = np.array([0.0, 1.0, 1.0, 2.0])
     columns = {"time": time, "q": np.eye(4, 7, 3), "tau": np.array([[0.0], [1], [2], [3]])}
