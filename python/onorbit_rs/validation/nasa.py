@@ -149,7 +149,7 @@ def simulate(run: str, flown: Flown | None = None, duration: float = HOURS_8) ->
 
 
 def off(run: str, flown: Flown | None = None) -> Any:
-    """Largest errors over the rows: distances in m and m/s, components in rad/s, the angle in degrees."""
+    """Largest errors over the rows, of six runs the end alone: m, m/s, rad/s by component, degrees."""
     trace = simulate(run, flown)
     assert trace.position_eci is not None and trace.velocity_eci is not None
     errors = []
