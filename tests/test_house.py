@@ -171,6 +171,12 @@ def test_importing_the_package_loads_neither_viewer_nor_plots() -> None:
     assert result.stdout.split() == []
 
 
+@pytest.mark.parametrize("words", ["is there already", "cannot write {"])
+def test_one_file_of_the_commands_says_why_nothing_is_written(words: str) -> None:
+    users = {file.name for file in (PACKAGE / "cli").glob("*.py") if words in file.read_text()}
+    assert users == {"writing.py"}
+
+
 def test_every_public_name_is_there() -> None:
     assert len(set(oo.__all__)) == len(oo.__all__)
     for name in oo.__all__:
