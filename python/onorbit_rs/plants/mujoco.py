@@ -30,7 +30,8 @@ class Mujoco:
     ``rk4`` is the Runge-Kutta of MuJoCo 4, with the environment's wrenches at every stage; nothing in it
     carries momentum, which drifts with its fourth order. ``semi_implicit_euler`` is MuJoCo's ``Euler``,
     implicit in joint damping. Friction and stops are MuJoCo's, soft, at their hardest; stops give hardly
-    anything back. One simulation at a time may run on it; a second one is refused.
+    anything back. One simulation at a time may run on it; a step that meets
+    another is refused.
 
     Parameters
     ----------
