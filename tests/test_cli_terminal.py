@@ -79,6 +79,15 @@ def test_json_of_list_and_check(reach: Path) -> None:
     assert checked["ok"] is True
     assert (checked["orbit"], checked["environment"]) == ("kepler", ["gravity_gradient"])
     assert checked["duration_s"] == 0.1 and len(checked["joints"]) == 7
+    assert checked["plant"] == "native"
+
+
+def test_check_says_which_plant_would_run(reach: Path) -> None:
+    assert onorbit("check", reach).stdout.splitlines()[0].endswith("s with rk4")
+    pytest.importorskip("mujoco", reason="the second plant is in the extra: pip install 'onorbit-rs[mujoco]'")
+    reach.write_text(reach.read_text() + "\nplant: mujoco\n")
+    assert onorbit("check", reach).stdout.splitlines()[0].endswith("s with rk4 on mujoco")
+    assert json.loads(onorbit("check", reach, "--json").stdout)["plant"] == "mujoco"
 
 
 def test_an_error_leaves_stdout_empty_for_programs(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs.comparison.measures import _length
 from onorbit_rs.comparison.recorded import Recorded
 from onorbit_rs.comparison.rows import common_rows
 from onorbit_rs.exceptions import CompareError, InputError, NotFoundError, ReadError
@@ -131,6 +132,42 @@ def test_another_robot_with_as_many_joints_is_told_one_with_others_refused() -> 
         oo.compare(spin(0.1), scenario())
 
 
+def hinged(folder: Path, *joints: str, mass: float = 1.0) -> dict[str, Any]:
+    """A base with links on it, one per joint."""
+    moments = "<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
+    body = f"<inertial><mass value='{mass}'/>{moments}</inertial>"
+    links = [f"<link name='{name}'>{body}</link>" for name in ("base", *(f"of_{joint}" for joint in joints))]
+    hinges = [
+        f"<joint name='{joint}' type='continuous'><parent link='base'/><child link='of_{joint}'/></joint>"
+        for joint in joints
+    ]
+    file = folder / f"{'_'.join(joints)}_{mass}.urdf"
+    file.write_text(f"<robot name='hinged'>{''.join(links + hinges)}</robot>")
+    return spin(0.1, duration=0.5) | {"robot": {"urdf": str(file)}}
+
+
+def test_joints_of_other_names_or_another_order_are_refused(tmp_path: Path) -> None:
+    one, other = hinged(tmp_path, "j"), hinged(tmp_path, "k")
+    with pytest.raises(CompareError, match=r"joints j, .* one with k: only runs of one robot") as refused:
+        oo.compare(one, other)
+    assert (refused.value.got, refused.value.expected) == (["k"], ["j"])
+    oo.run(other, tmp_path / "out")
+    with pytest.raises(CompareError, match=r"joints j, .* with k:"):
+        oo.compare(one, tmp_path / "out")
+    with pytest.raises(CompareError, match=r"joints j, k, .* with k, j:"):
+        oo.compare(hinged(tmp_path, "j", "k"), hinged(tmp_path, "k", "j"))
+    heavy = oo.compare(one, hinged(tmp_path, "j", mass=2.0))
+    assert [note.split(":")[0] for note in heavy.notes] == ["the robots are not the same"]
+
+
+def test_a_folder_whose_robot_is_gone_compares_with_a_note(tmp_path: Path) -> None:
+    one, other = hinged(tmp_path, "j"), hinged(tmp_path, "j", mass=2.0)
+    oo.run(other, tmp_path / "out")
+    Path(other["robot"]["urdf"]).unlink()
+    compared = oo.compare(one, tmp_path / "out")
+    assert any("nobody knows whether their joints are the same" in note for note in compared.notes)
+
+
 def test_an_impact_counts_with_the_row_after_it() -> None:
     time = np.array([0.0, 1.0, 1.0, 2.0])
     columns = {"time": time, "q": np.eye(4, 7, 3), "tau": np.array([[0.0], [1], [2], [3]])}
@@ -160,6 +197,45 @@ def test_a_diverged_run_parts_and_is_plain_data(tmp_path: Path) -> None:
     assert compared["base position"].parts_at == pytest.approx(5.0)
     text = json.dumps(compared.as_dict(), allow_nan=False)
     assert json.loads(text)["differences"][0]["largest"] is None
+
+
+@pytest.mark.parametrize(
+    ("ours", "theirs", "parts_at"),
+    [
+        (1e200, 2e200, 5.0),  # squares overflow
+        (1.5e308, -1.5e308, 5.0),  # the difference overflows
+        (np.inf, np.inf, 5.0),
+        (np.inf, 0.0, 5.0),
+        (1e200, 1e200, None),
+        (1e200, 1.0000001e200, None),
+    ],
+)
+def test_runs_that_overflowed_do_not_agree(
+    ours: float, theirs: float, parts_at: float | None, tmp_path: Path
+) -> None:
+    """Their lengths are infinite, and so was what was allowed."""
+    for name, value in (("a", ours), ("b", theirs)):
+        oo.run(spin(0.1), tmp_path / name)
+        broken = dict(np.load(tmp_path / name / "trace.npz"))
+        for column in ("q", "momentum"):
+            broken[column][50:, :3] = value
+        broken["kinetic_energy"][50:] = value
+        np.savez(tmp_path / name / "trace.npz", **broken)
+    compared = oo.compare(tmp_path / "a", tmp_path / "b")
+    assert np.isfinite([one.allowed for one in compared.differences]).all()
+    for measure in ("base position", "linear momentum", "kinetic energy"):
+        assert compared[measure].parts_at == (None if parts_at is None else pytest.approx(parts_at)), measure
+    json.dumps(compared.as_dict(), allow_nan=False)
+    assert differences(compared).axes
+
+
+def test_lengths_are_those_of_numpy_and_do_not_overflow() -> None:
+    rows = np.random.default_rng(1).normal(size=(50, 3))
+    np.testing.assert_array_equal(_length(rows), np.linalg.norm(rows, axis=1))
+    for size in (2.0**1020, 2.0**-1060):
+        np.testing.assert_allclose(_length(rows[:5] * size) / size, _length(rows[:5]), rtol=1e-4)
+    assert _length(np.zeros((2, 3))).tolist() == [0.0, 0.0]
+    assert not np.isfinite(_length(np.array([[np.inf, 0, 0], [0, np.nan, 0]]))).any()
 
 
 def test_folders_without_a_run_are_refused(tmp_path: Path) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,9 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs import running
 from onorbit_rs.exceptions import OutputNotEmptyError, RunInterrupted, SimulationError
+from onorbit_rs.output.summary import summarize
 from onorbit_rs.scenario import load
 
 
@@ -35,6 +39,13 @@ def test_the_folder_holds_what_the_design_names(reach: oo.Run) -> None:
         "manipulability", "base_motion", "base_reaction", "ledger",
     )} <= names  # fmt: skip
     assert not any("partial" in name for name in names)
+
+
+def test_every_status_that_is_written_is_documented() -> None:
+    written = set(re.findall(r'"(\w+)"', "".join(re.findall(r"_write_rows\(.*", inspect.getsource(running)))))
+    assert written >= {"failed", "diverged", "interrupted"}
+    for status in written | {"complete"}:
+        assert f"``{status}``" in str(summarize.__doc__), status
 
 
 def test_the_trace_file_is_the_trace(reach: oo.Run) -> None:

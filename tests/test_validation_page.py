@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from onorbit_rs.validation import CASES, Gate, Verdict, run
+from onorbit_rs.validation import CASES, Gate, Verdict, nasa, run
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "validation.md"
 TITLES = {
@@ -75,6 +75,13 @@ def test_the_page_counts_them() -> None:
         len(CASES),
         sum(len(case.gates) for case in CASES),
     ]
+
+
+def test_the_page_says_what_is_compared_at_its_end_alone() -> None:
+    counted = re.search(r"(\d+) runs (\d+) are compared at their end alone", split()[0])
+    assert counted is not None
+    rows = [len(nasa.rows(run)) for run in nasa.RUNS]
+    assert [int(number) for number in counted.groups()] == [len(rows), rows.count(1)]
 
 
 if __name__ == "__main__":

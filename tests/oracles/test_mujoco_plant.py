@@ -92,6 +92,23 @@ def test_its_runge_kutta_is_mujocos_own() -> None:
     assert np.abs(reached_v - v).max() < 1e-12
 
 
+def test_a_second_simulation_at_a_time_is_refused() -> None:
+    """A step that begins within another would go on from its data."""
+    model = oo.robots.load("humanoid_torso")
+    plant, nothing = Mujoco(model), np.zeros((8, 6))
+    given = (0.0, 1e-3, model.neutral(), np.zeros(model.nv), np.zeros(7))
+
+    def intrude(*_: Any) -> Any:
+        plant.step(*given, lambda *_: nothing)
+        return nothing
+
+    with pytest.raises(PlantError, match="another simulation is running on this plant"):
+        plant.step(*given, intrude)
+    again = plant.step(*given, lambda *_: nothing)  # it is free after what went wrong
+    shapes = [np.shape(part) for part in again]
+    assert shapes == [(model.nq,), (model.nv,), (model.nv,), (6,), (), ()]
+
+
 def test_the_certificate_of_its_runs_sees_what_its_integrator_loses() -> None:
     run = oo.run(scenario("free_tumble", duration=5.0) | {"plant": "mujoco"})
     summary = run.summary

@@ -43,6 +43,7 @@ def described(built: Built) -> dict[str, Any]:
         "duration_s": scenario.simulation.duration,
         "time_step_s": scenario.simulation.time_step,
         "integrator": scenario.simulation.integrator,
+        "plant": scenario.plant,
         "warnings": list(model.warnings),
     }
 
@@ -51,11 +52,12 @@ def print_checked(built: Built) -> None:
     """What would run."""
     scenario, model = built.scenario, built.model
     settings = scenario.simulation
+    plant = "" if scenario.plant == "native" else f" on {scenario.plant}"
     parts = [
         f"{model.name} ({len(model.joint_names)} joints, {model.mass:.4g} kg)",
         f"orbit {scenario.orbit.kind}" if scenario.orbit else "no orbit",
         *(effect.kind for effect in scenario.environment),
         ", ".join(law.kind for law in scenario.laws) or "no controller",
-        f"{settings.duration:g} s at {settings.time_step:g} s with {settings.integrator}",
+        f"{settings.duration:g} s at {settings.time_step:g} s with {settings.integrator}{plant}",
     ]
     typer.echo(f"ok: {scenario.name}: {', '.join(parts)}")

@@ -10,7 +10,8 @@ import typer
 from onorbit_rs.cli.completing import scenario_names
 from onorbit_rs.cli.failing import fail
 from onorbit_rs.cli.options import JsonOption
-from onorbit_rs.exceptions import InputError, OutputFolderError, RunInterrupted
+from onorbit_rs.cli.writing import claim, writing
+from onorbit_rs.exceptions import InputError, RunInterrupted
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -52,6 +53,7 @@ def compare(
         raise InputError(
             f"--out {out} is none of {', '.join(PICTURES)}", name="out", got=out.suffix, expected=PICTURES
         )
+    claim(out, force=True)
     try:
         compared = compare_runs(a, b, tolerance=tolerance)
     except RunInterrupted as stop:  # caught here, as in run
@@ -119,8 +121,5 @@ def save_figure(compared: Comparison, file: Path) -> None:
     """
     from onorbit_rs.figures import as_bytes, differences
 
-    try:
+    with writing(file):
         file.write_bytes(as_bytes(differences(compared), file.suffix[1:].lower()))
-    except OSError as error:
-        reason = error.strerror or error
-        raise OutputFolderError(f"cannot write {file}: {reason}", path=str(file)) from error

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError
+from onorbit_rs.cli.writing import claim, writing
 
 
 def convert(
@@ -27,8 +27,7 @@ def convert(
     from onorbit_rs.interop.write_scenario import scenario_text
     from onorbit_rs.scenario.load import check as check_scenario
 
-    if out is not None and out.exists() and not force:
-        raise OutputNotEmptyError(f"{out} is there already; replace it with --force", path=str(out))
+    claim(out, force=force)
     done = convert_files(
         files, controller=controller, keep_going=keep_going, beside=out.parent if out else None
     )
@@ -42,8 +41,6 @@ def convert(
     if out is None:
         typer.echo(text, nl=False)
         return
-    try:
+    with writing(out):
         out.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise OutputFolderError(f"cannot write {out}: {error.strerror or error}", path=str(out)) from error
     typer.echo(f"scenario: {out}\nnext: onorbit check {shlex.quote(str(out))}")

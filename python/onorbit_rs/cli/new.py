@@ -15,7 +15,7 @@ from onorbit_rs.cli.options import (
     RobotArgument,
     as_mapping,
 )
-from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError
+from onorbit_rs.cli.writing import claim, writing
 
 
 def new(
@@ -30,10 +30,7 @@ def new(
     quiet: QuietOption = False,
 ) -> None:
     """Write a commented scenario in which a robot's arm moves in orbit, tried before it is written."""
-    if out is not None and out.exists() and not force:
-        raise OutputNotEmptyError(f"{out} is there already; replace it with --force", path=str(out))
-    if out is not None and not out.absolute().parent.is_dir():
-        raise OutputFolderError(f"cannot write {out}: no such folder", path=str(out))
+    claim(out, force=force)
     from onorbit_rs.drafting import draft
     from onorbit_rs.progress import doing
 
@@ -48,10 +45,8 @@ def new(
     if out is None:
         typer.echo(made.text, nl=False)
         return
-    try:
+    with writing(out):
         out.write_text(made.text, encoding="utf-8")
-    except OSError as error:
-        raise OutputFolderError(f"cannot write {out}: {error.strerror or error}", path=str(out)) from error
     if not quiet:
         moved = f"{made.tool}, moved by {len(made.joints)} joints" if made.tool else "a body without joints"
         typer.echo(f"scenario: {out} ({moved})\nnext: onorbit check {shlex.quote(str(out))}")

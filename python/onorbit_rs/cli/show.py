@@ -10,7 +10,8 @@ from typing import Annotated
 import typer
 
 from onorbit_rs.cli.options import FolderArgument, JsonOption
-from onorbit_rs.exceptions import InputError, OnOrbitError, OutputFolderError
+from onorbit_rs.cli.writing import writing
+from onorbit_rs.exceptions import InputError
 
 
 def show(
@@ -63,11 +64,6 @@ def save_picture(folder: Path, picture: Path, at_s: float, end_s: float) -> None
             f"--at {at_s:g} s is outside the run, which goes from 0 to {end_s:g} s",
             name="at", got=at_s, expected=f"0 to {end_s:g} s",
         )  # fmt: skip
-    try:
+    with writing(picture):
         viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s)
-    except OSError as error:
-        if isinstance(error, OnOrbitError):
-            raise
-        reason = error.strerror or error
-        raise OutputFolderError(f"cannot write {picture}: {reason}", path=str(picture)) from error
     typer.echo(f"picture: {picture}")

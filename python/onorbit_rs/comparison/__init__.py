@@ -10,7 +10,7 @@ import numpy as np
 from onorbit_rs.comparison.measures import measures
 from onorbit_rs.comparison.recorded import Recorded, Source, on_the_other_plant, recorded
 from onorbit_rs.comparison.rows import common_rows
-from onorbit_rs.exceptions import CompareError, InputError
+from onorbit_rs.exceptions import CompareError, InputError, OnOrbitError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,7 +33,7 @@ class Difference:
     """Time of the largest, s."""
     final: float
     allowed: float
-    """The tolerance times the largest value of either run, which counts as 1 at least."""
+    """The tolerance times the largest finite value of either run, which counts as 1 at least."""
     parts_at: float | None
     """First time beyond what is allowed, s; None where there is none."""
 
@@ -116,7 +116,7 @@ def compare(
     Raises
     ------
     CompareError
-        Robots with other joints, or runs without a time in common.
+        Robots whose joints are others, by number, name or order, or runs without a time in common.
     OnOrbitError
         As :func:`onorbit_rs.run`, and for folders without a run.
     """
@@ -137,7 +137,7 @@ def _difference(
     name: str, unit: str, values: Floats, largest: float, time: Floats, tolerance: float
 ) -> Difference:
     allowed = tolerance * max(1.0, largest)
-    beyond = np.flatnonzero(~(values <= allowed))  # what is not a number is beyond
+    beyond = np.flatnonzero(~(np.isfinite(values) & (values <= allowed)))
     worst = int(np.argmax(np.where(np.isnan(values), np.inf, values)))
     parts_at = float(time[beyond[0]]) if beyond.size else None
     return Difference(
@@ -154,9 +154,21 @@ def _same_robot(a: Recorded, b: Recorded) -> list[str]:
             "robot compare",
             name="robot", got=joints[1], expected=joints[0],
         )  # fmt: skip
-    if a.robot != b.robot:
-        return [f"the robots are not the same: {a.robot} and {b.robot}"]
-    return []
+    if a.robot == b.robot:
+        return []
+    notes = [f"the robots are not the same: {a.robot} and {b.robot}"]
+    try:
+        names = a.joint_names(), b.joint_names()
+    except OnOrbitError as error:  # a folder whose robot has moved away: the rows are still there
+        return [*notes, f"nobody knows whether their joints are the same: {error}"]
+    if names[0] != names[1]:
+        ours, theirs = map(", ".join, names)
+        raise CompareError(
+            f"{a.name} has a robot with the joints {ours}, {b.name} one with {theirs}: only runs of one "
+            "robot compare",
+            name="robot", got=names[1], expected=names[0],
+        )  # fmt: skip
+    return notes
 
 
 def _plain(value: Any) -> Any:

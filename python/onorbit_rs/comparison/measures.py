@@ -54,11 +54,16 @@ def _measured(name: str, column: str, first: Floats, second: Floats) -> tuple[Fl
         return angle_between(first, second), 0.0  # no angle is larger than another
     size = _largest_entry if name in _BY_ENTRY else _length
     with np.errstate(over="ignore", invalid="ignore"):  # of runs that diverged
-        return size(first - second), float(max(size(first).max(), size(second).max()))
+        sizes = np.concatenate([size(first), size(second)])
+        # what is not finite is beyond any tolerance, and no scale for the others
+        return size(first - second), float(sizes.max(where=np.isfinite(sizes), initial=0.0))
 
 
 def _length(rows: Floats) -> Floats:
-    length: Floats = np.linalg.norm(rows, axis=1)
+    """Of each row, also where squares are beyond the range of floats: `s |x / s|`, `s` a power of two."""
+    _, exponent = np.frexp(np.abs(rows).max(axis=1))
+    scale = np.ldexp(1.0, exponent - 1)  # exact: the digits stay as they are
+    length: Floats = scale * np.linalg.norm(rows / scale[:, None], axis=1)
     return length
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,9 +16,12 @@ from onorbit_rs.output import with_absolute_paths
 from onorbit_rs.output.read import read_trace
 from onorbit_rs.running import Run, run
 from onorbit_rs.scenario import Scenario, load
+from onorbit_rs.scenario.build import make_robot
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from onorbit_rs._core import Model
 
 Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | Run
 """A folder that a run has written, a scenario as :func:`onorbit_rs.run` takes it, or a run."""
@@ -30,12 +34,28 @@ class Recorded:
     name: str
     columns: dict[str, NDArray[np.float64]]
     scenario: Scenario
+    model: Model | None = None
+    """Of a run that is in memory."""
 
     @property
     def robot(self) -> Any:
         """As the resolved scenario has it."""
         named = with_absolute_paths(self.scenario)["robot"]
         return next(iter(named.values())) if len(named) == 1 else named
+
+    def joint_names(self) -> list[str]:
+        """In the order of the columns; those of a folder's run by its scenario's robot, read again.
+
+        Raises
+        ------
+        OnOrbitError
+            It is no longer there, or cannot be read.
+        """
+        if self.model is not None:
+            return list(self.model.joint_names)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what the file is like was told when it ran
+            return list(make_robot(self.scenario).joint_names)
 
 
 def recorded(source: Source) -> Recorded:
@@ -64,7 +84,7 @@ def _of_run(made: Run) -> Recorded:
     trace = made.trace
     columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
     name = f"{made.scenario.name} ({made.scenario.plant})" if made.out is None else str(made.out)
-    return Recorded(name, columns, made.scenario)
+    return Recorded(name, columns, made.scenario, made.model)
 
 
 def _of_folder(folder: Path) -> Recorded:

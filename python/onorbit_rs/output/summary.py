@@ -49,7 +49,8 @@ def summarize(
     orbit : Orbit, optional
         What it flew on.
     status : str
-        ``complete``, ``interrupted`` or ``diverged``.
+        ``complete``, ``interrupted`` (Ctrl-C), ``diverged``, or ``failed`` where a controller of the user's
+        raised, or orbit or environment ended.
     warnings : sequence of str
         What was said about the robot when it was read.
 

@@ -2,7 +2,7 @@
 
 Give one to :class:`onorbit_rs.Simulation` as ``plant=``, or say ``plant: mujoco`` in a scenario: robot,
 controller, environment, schedule, trace and certificate are those of every run, the motion is another
-engine's. This folder alone imports mujoco.
+engine's. Beside this folder only ``validation`` imports mujoco: an oracle that shares nothing with the plant.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -29,7 +30,8 @@ class Mujoco:
     ``rk4`` is the Runge-Kutta of MuJoCo 4, with the environment's wrenches at every stage; nothing in it
     carries momentum, which drifts with its fourth order. ``semi_implicit_euler`` is MuJoCo's ``Euler``,
     implicit in joint damping. Friction and stops are MuJoCo's, soft, at their hardest; stops give hardly
-    anything back. One simulation at a time may run on it.
+    anything back. One simulation at a time may run on it; a step that meets
+    another is refused.
 
     Parameters
     ----------
@@ -73,6 +75,7 @@ class Mujoco:
         # their quaternion is wxyz
         self._places = np.array([0, 1, 2, 4, 5, 6, 3, *(joint.qposadr[0] for joint in joints)])
         self._rates = np.array([*range(6), *self._dofs])
+        self._stepping = threading.Lock()
 
     @property
     def version(self) -> str:
@@ -82,7 +85,56 @@ class Mujoco:
     def step(
         self, start: float, end: float, q: Floats, v: Floats, tau: Floats, wrenches: Wrenches
     ) -> tuple[Floats, Floats, Floats, Floats, float, float]:
-        """Across a step under held torques; see :class:`onorbit_rs.Simulation` for what comes and goes."""
+        """Across a step under held torques; one of no length gives the acceleration alone.
+
+        Parameters
+        ----------
+        start, end : float
+            s.
+        q : (nq,) array
+            m, quaternion xyzw, joints in rad or m.
+        v : (nv,) array
+            Base in its own axes, linear first, m/s and rad/s; joint rates.
+        tau : (nv - 6,) array
+            Held at the joints over the step, N m or N.
+        wrenches : callable
+            ``wrenches(t, q, v)``, (bodies, 6): the environment's force and torque about the centre of mass of
+            each body, axes of W, N and N m.
+
+        Returns
+        -------
+        q : (nq,) array
+            At the end.
+        v : (nv,) array
+            At the end.
+        acceleration : (nv,) array
+            ``v̇`` at the start, m/s² and rad/s², rad/s² or m/s².
+        impulse : (6,) array
+            Integral of the environment's force, then of its torque about the centre of mass of the whole;
+            axes of W, N s and N m s.
+        work : float
+            Of motors and environment, less what the joints lost, J.
+        loss : float
+            At the joints, by damping, friction and stops, J.
+
+        Raises
+        ------
+        PlantError
+            Another simulation is in a step of it, or MuJoCo gave up.
+        """
+        if not self._stepping.acquire(blocking=False):
+            raise PlantError(
+                "another simulation is running on this plant: give each its own Mujoco(model)",
+                name="plant", got="mujoco",
+            )  # fmt: skip
+        try:
+            return self._step(start, end, q, v, tau, wrenches)
+        finally:
+            self._stepping.release()
+
+    def _step(
+        self, start: float, end: float, q: Floats, v: Floats, tau: Floats, wrenches: Wrenches
+    ) -> tuple[Floats, Floats, Floats, Floats, float, float]:
         h, nv = end - start, self._model.nv
         qpos, qvel = self._theirs(q, v)
         self._data.qfrc_applied[self._dofs] = tau

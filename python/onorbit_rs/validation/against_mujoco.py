@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 import onorbit_rs as oo
-from onorbit_rs.validation.case import Case, Gate
+from onorbit_rs.validation.case import Case, Gate, worst
 from onorbit_rs.validation.trees import Array, Part, Tree, build, deviation, random_state, random_tree
 
 SEEDS, STATES = range(200, 208), 4
@@ -130,30 +130,31 @@ class MujocoRobot:
         return np.concatenate([linear, data.qacc[3:6], data.qacc[self.at_v]])
 
 
-def compare(model: oo.Model, tree: Tree, seed: int) -> tuple[float, float]:
+def compare(model: oo.Model, tree: Tree, seed: int) -> Any:
     """Largest deviations of accelerations, and of those of the arm by the reduced model alone."""
     robot = MujocoRobot(tree, model.joint_names)
     rng = np.random.default_rng(seed)
-    whole = arm = 0.0
+    found = []
     for _ in range(STATES):
         state = random_state(model, rng, frames=1)
         theirs = robot.acceleration(state.q, state.v, state.tau)
-        whole = max(whole, deviation(model.forward_dynamics(state.q, state.v, state.tau), theirs))
+        whole = deviation(model.forward_dynamics(state.q, state.v, state.tau), theirs)
         # M* q̈ + c* = τ: the base reacts freely
         free = np.concatenate([np.zeros(6), state.tau[6:]])
         reduced = model.free_floating(state.q, state.v, model.body_names[-1])
         alone = np.linalg.solve(reduced.inertia, state.tau[6:] - reduced.bias)
-        arm = max(arm, deviation(alone, robot.acceleration(state.q, state.v, free)[6:]))
-    return whole, arm
+        arm = deviation(alone, robot.acceleration(state.q, state.v, free)[6:])
+        found.append((whole, arm))
+    return worst(found)
 
 
 def trees() -> Any:
     """Robots with branches, skew axes, rotors and joints of every kind."""
     made = ((random_tree(seed), seed) for seed in SEEDS)
-    return np.max([compare(build(tree), tree, seed) for tree, seed in made], axis=0)
+    return worst(compare(build(tree), tree, seed) for tree, seed in made)
 
 
-def bundled(name: str) -> tuple[float, float]:
+def bundled(name: str) -> Any:
     """A robot of ours."""
     return compare(oo.robots.load(name), tree_of(oo.robots.path(name)), 1)
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 import onorbit_rs as oo
-from onorbit_rs.validation.case import Case, Gate
+from onorbit_rs.validation.case import Case, Gate, worst
 from onorbit_rs.validation.trees import deviation, random_state, random_tree, urdf
 
 SEEDS, STATES = range(8), 4
@@ -75,18 +75,17 @@ def compare(text: str, tool: str, seed: int) -> Any:
         warnings.simplefilter("ignore")
         model = oo.Model.from_urdf_string(text)
     rng = np.random.default_rng(seed)
-    worst = np.zeros(len(KERNELS))
+    found = []
     for _ in range(STATES):
         state = random_state(model, rng, frames=1)
         pairs = zip(ours(model, state, tool), theirs(text, model, state, tool), strict=True)
-        worst = np.maximum(worst, [deviation(mine, other) for mine, other in pairs])
-    return worst
+        found.append([deviation(mine, other) for mine, other in pairs])
+    return worst(found)
 
 
 def trees() -> Any:
     """Robots with branches, skew axes and joints of every kind."""
-    found = [compare(urdf(random_tree(seed, rotors=False)), "tool", 1000 + seed) for seed in SEEDS]
-    return np.max(found, axis=0)
+    return worst(compare(urdf(random_tree(seed, rotors=False)), "tool", 1000 + seed) for seed in SEEDS)
 
 
 def bundled(name: str) -> Any:

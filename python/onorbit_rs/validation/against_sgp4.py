@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.exceptions import Sgp4Error
-from onorbit_rs.validation.case import Case, Gate
-from onorbit_rs.validation.sgp4 import SOURCE, ElementSet, sets
+from onorbit_rs.validation.case import Case, Gate, worst
+from onorbit_rs.validation.sgp4 import SOURCE, ElementSet, off, sets
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,7 +25,7 @@ def compare(elements: ElementSet) -> tuple[float, float]:
     api: Any = importlib.import_module("sgp4.api")
     peer, orbit = api.Satrec.twoline2rv(elements.line1, elements.line2), elements.orbit()
     stop = elements.rows[-1][0]
-    worst, disagreements = 0.0, 0
+    found, disagreements = [], 0
     for seconds in 60.0 * np.linspace(-stop, stop + 200.0, TIMES):
         code, r, v = peer.sgp4_tsince(seconds / 60.0)
         try:
@@ -34,8 +34,8 @@ def compare(elements: ElementSet) -> tuple[float, float]:
             disagreements += error.code != code
             continue
         disagreements += code != 0
-        worst = max(worst, float(np.abs(np.array(ours) / 1e3 - (r, v)).max()))
-    return worst, float(disagreements)
+        found.append(np.abs(np.array(ours) / 1e3 - (r, v)).max())
+    return float(worst(found)), float(disagreements)
 
 
 def published() -> list[tuple[str, Floats]]:
@@ -52,21 +52,16 @@ def published() -> list[tuple[str, Floats]]:
     return [(name, np.array(rows)) for name, rows in zip(satellites, blocks, strict=True)]
 
 
-def every_row() -> tuple[float, float]:
+def every_row() -> Any:
     """Largest components of the error over all published rows, km and km/s."""
-    worst = np.zeros(2)
-    for elements, (_, rows) in zip(sets(), published(), strict=True):
-        if elements.rows:
-            r, v = elements.orbit().state(60.0 * rows[:, 0])
-            off = np.abs(r / 1e3 - rows[:, 1:4]).max(), np.abs(v / 1e3 - rows[:, 4:]).max()
-            worst = np.maximum(worst, off)
-    return worst[0], worst[1]
+    pairs = zip(sets(), published(), strict=True)
+    return worst(off(elements, rows) for elements, (_, rows) in pairs if elements.rows)
 
 
 def all_sets() -> Any:
     """Over the sets that make sense: the largest difference, and all disagreements."""
-    found = np.array([compare(elements) for elements in sets() if elements.rows])
-    return found[:, 0].max(), found[:, 1].sum()
+    found = [compare(elements) for elements in sets() if elements.rows]
+    return worst(difference for difference, _ in found), sum(refusals for _, refusals in found)
 
 
 CASES = (

@@ -5,10 +5,12 @@ from __future__ import annotations
 import csv
 import importlib.util
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 INSTALL = {"pinocchio": "pip install pin", "mujoco": "pip install mujoco", "sgp4": "pip install sgp4"}
 """How to get the engines that some cases ask; none is needed to use the package."""
@@ -113,6 +115,20 @@ class Case:
     def _without_errors(self, passed: bool | None, note: str) -> Verdict:
         checks = [Check(gate.quantity, gate.unit, None, gate.limit, passed) for gate in self.gates]
         return Verdict(self.family, self.name, self.source, passed, tuple(checks), note)
+
+
+def worst(errors: Iterable[Any]) -> Any:
+    """Largest of some errors, or of each column of rows of them; a NaN among them is the largest.
+
+    Raises
+    ------
+    ValueError
+        There is none: what was compared with nothing agrees with anything.
+    """
+    found = np.array(list(errors), dtype=np.float64)
+    if not found.size:
+        raise ValueError("there was nothing to compare")
+    return found.max(axis=0)  # Python's max(0.0, nan) is 0.0
 
 
 def table(name: str) -> list[dict[str, str]]:

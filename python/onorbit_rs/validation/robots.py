@@ -9,7 +9,7 @@ import numpy as np
 
 import onorbit_rs as oo
 from onorbit_rs.rotations import roll_pitch_yaw
-from onorbit_rs.validation.case import Case, Gate
+from onorbit_rs.validation.case import Case, Gate, worst
 from onorbit_rs.validation.conservation import humanoid
 
 KP, KD = 100.0, 20.0
@@ -46,9 +46,12 @@ def reach(duration: float, expected: dict[str, Any]) -> list[float]:
 
 
 def certificate(scenario: str) -> tuple[float]:
-    """The check that comes nearest to its gate, as a share of it."""
-    rows = oo.run(scenario, quiet=True).trace.certificate()
-    return (max(float("inf") if value is None else value / gate for _, value, gate, _ in rows),)
+    """The check that comes nearest to its gate, as a share of it; what is broken is beyond it."""
+    shares = []
+    for _, value, gate, passed in oo.run(scenario, quiet=True).trace.certificate():
+        share = float("inf") if value is None else value / gate
+        shares.append(share if passed or share > 1.0 else float("inf"))
+    return (worst(shares),)
 
 
 CASES = (

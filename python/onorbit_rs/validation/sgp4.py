@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import Sgp4Error
-from onorbit_rs.validation.case import Case, Gate, table
+from onorbit_rs.validation.case import Case, Gate, table, worst
 
 SOURCE = "Vallado and others, Revisiting Spacetrack Report 3, AIAA 2006-6753"
 GRAVITY = "wgs72"
@@ -48,16 +48,15 @@ def sets() -> list[ElementSet]:
     ]  # fmt: skip
 
 
-def of_regime(regime: str) -> tuple[float, float]:
-    """Largest components of the error, km and km/s."""
-    worst = np.zeros(2)
-    for elements in sets():
-        if elements.regime == regime:
-            rows = np.array(elements.rows)
-            r, v = elements.orbit().state(60.0 * rows[:, 0])
-            off = np.abs(r / 1e3 - rows[:, 1:4]).max(), np.abs(v / 1e3 - rows[:, 4:]).max()
-            worst = np.maximum(worst, off)
-    return worst[0], worst[1]
+def off(elements: ElementSet, rows: Any) -> tuple[float, float]:
+    """Largest components of the error at some rows (min, km, km/s), km and km/s."""
+    r, v = elements.orbit().state(60.0 * rows[:, 0])
+    return np.abs(r / 1e3 - rows[:, 1:4]).max(), np.abs(v / 1e3 - rows[:, 4:]).max()
+
+
+def of_regime(regime: str) -> Any:
+    """Largest components of the error over the sets of a regime, km and km/s."""
+    return worst(off(elements, np.array(elements.rows)) for elements in sets() if elements.regime == regime)
 
 
 def codes() -> Iterator[int]:

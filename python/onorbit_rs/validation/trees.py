@@ -173,7 +173,12 @@ def _text(numbers: list[float] | tuple[float, ...]) -> str:
 
 
 def deviation(ours: Any, theirs: Any) -> float:
-    """Largest difference over the largest entry of ``theirs``."""
+    """Largest difference over the largest entry of ``theirs``; where these are all zero, 0 or infinite."""
     ours, theirs = np.asarray(ours), np.asarray(theirs)
     assert ours.shape == theirs.shape, (ours.shape, theirs.shape)
-    return float(np.abs(ours - theirs).max() / np.abs(theirs).max()) if theirs.size else 0.0
+    if not theirs.size:
+        return 0.0  # a Jacobian of no joints
+    off, size = float(np.abs(ours - theirs).max()), float(np.abs(theirs).max())
+    if size == 0.0:
+        return off if off == 0.0 or np.isnan(off) else float("inf")
+    return off / size
