@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+import shutil
 import warnings
 from html.parser import HTMLParser
 from pathlib import Path
@@ -220,6 +221,32 @@ def test_a_saved_trace_is_the_trace(folder: Path) -> None:
         np.testing.assert_array_equal(trace.q, stored["q"])
     with pytest.raises(AttributeError, match="no column 'nothing'"):
         _ = trace.nothing  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("name", "cut"),
+    [
+        ("q", lambda q: q[:10]),
+        ("q", lambda q: q[:, :4]),
+        ("q", lambda q: q[0, 0]),
+        ("v", lambda v: v[:, :-1]),
+        ("tool_pose", lambda pose: pose.reshape(-1, 16)),
+        ("momentum", lambda h: h[:-1]),
+        ("time", lambda t: t[:, None]),
+        ("time", lambda t: t[:5]),
+    ],
+)
+def test_a_column_that_was_cut_is_named_with_its_shape(
+    folder: Path, tmp_path: Path, name: str, cut: Any
+) -> None:
+    shutil.copytree(folder, tmp_path / "cut")
+    columns = dict(np.load(folder / "trace.npz"))
+    np.savez(tmp_path / "cut" / "trace.npz", **(columns | {name: cut(columns[name])}))
+    said = r"column '\w+' has shape \(.*\), expected \("
+    with pytest.raises(ReadError, match=said):
+        write_report(tmp_path / "cut")
+    with pytest.raises(ReadError, match=said):
+        oo.compare(tmp_path / "cut", folder)
 
 
 @pytest.mark.parametrize(
