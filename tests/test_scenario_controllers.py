@@ -23,6 +23,7 @@ from onorbit_rs.exceptions import (
 )
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
+from onorbit_rs.scenario.make_control import group
 
 REST = [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]
 TASK_GAINS = {"kp": 100, "kd": 20, "null_space_damping": 2}
@@ -173,6 +174,13 @@ def test_a_single_controller_of_joints_tells_their_errors_as_in_a_list(
     for unit in ("rad", "m"):
         assert alone[f"tracking_joint_error_max_{unit}"] > 1e-4
         assert alone[f"tracking_joint_error_max_{unit}"] == several[f"tracking_arm_joint_error_max_{unit}"]
+
+
+def test_a_name_in_brackets_is_a_name_before_it_is_a_pattern() -> None:
+    joints = ["a[x]", "ax", "b*", "bc"]
+    assert group(["a[x]"], joints) == ["a[x]"]
+    assert group(["b*"], joints) == ["b*"]
+    assert group(["a[xy]", "?c"], joints) == ["ax", "bc"]
 
 
 def test_joints_that_no_controller_drives_are_free() -> None:
