@@ -16,7 +16,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import NotFoundError, OutputFolderError, ReadError, SimulationError
-from onorbit_rs.output.read import read_trace
+from onorbit_rs.output.read import read_summary, read_trace
 from onorbit_rs.report import write_report
 from onorbit_rs.report.numbers import row
 from onorbit_rs.scenario import load
@@ -221,6 +221,17 @@ def test_a_saved_trace_is_the_trace(folder: Path) -> None:
         np.testing.assert_array_equal(trace.q, stored["q"])
     with pytest.raises(AttributeError, match="no column 'nothing'"):
         _ = trace.nothing  # type: ignore[attr-defined]
+
+
+def test_a_run_that_was_killed_is_to_be_resumed(folder: Path, tmp_path: Path) -> None:
+    """What kill -9 leaves: the scenario and a checkpoint."""
+    killed = tmp_path / "my run"
+    (killed / "checkpoint").mkdir(parents=True)
+    (killed / "checkpoint" / "state.json").write_text("{}")
+    shutil.copy(folder / "scenario.yaml", killed)
+    for ask in (write_report, read_summary, oo.compare):
+        with pytest.raises(NotFoundError, match=r"go on with: onorbit resume '.*/my run'"):
+            ask(killed)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from onorbit_rs.exceptions import NotFoundError, ReadError
+from onorbit_rs.output.checkpoint import has_checkpoint
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Trace
@@ -63,10 +65,18 @@ def read_trace(folder: Path) -> Trace:
             raise ValueError("columns are missing")
         _check_shapes(arrays)
     except FileNotFoundError as error:
-        raise NotFoundError(f"no trace in this folder: {file}", path=str(file), kind="trace") from error
+        message = f"no trace in this folder: {file}{_way_out(folder)}"
+        raise NotFoundError(message, path=str(file), kind="trace") from error
     except (ValueError, EOFError, OSError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="trace") from error
     return cast("Trace", SavedTrace(arrays))
+
+
+def _way_out(folder: Path) -> str:
+    """How to go on with a run that was killed."""
+    if not has_checkpoint(folder):
+        return ""
+    return f"; its run was stopped before its end, go on with: onorbit resume {shlex.quote(str(folder))}"
 
 
 def _check_shapes(arrays: Mapping[str, Any]) -> None:
@@ -111,7 +121,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
         raise ReadError(f"cannot read {file}: {error.strerror}", path=str(file), kind="summary") from error
     if not is_there:
         what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
-        raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
+        raise NotFoundError(f"{what}: {folder}{_way_out(folder)}", path=str(folder), kind="run")
     try:
         return dict(json.loads(file.read_text(encoding="utf-8")))
     except (ValueError, TypeError, OSError) as error:
