@@ -68,7 +68,43 @@ def test_a_run_agrees_with_itself_and_with_its_folder(tmp_path: Path) -> None:
     assert compared.parts_at is None
     assert compared.notes == ()
     assert {difference.largest for difference in compared.differences} == {0.0}
-    assert len(compared.differences) == 10
+    assert len(compared.differences) == 11
+
+
+def orbiting(radius: float, **simulation: Any) -> dict[str, Any]:
+    orbit = {"kind": "kepler", "semi_major_axis": radius, "inclination": 1.7}
+    data = spin(0.1, 100.0, **({"time_step": 1.0} | simulation)) | {"orbit": orbit}
+    return data | {"initial": {"angular_velocity": [0.01, 0.02, 0.0]}}
+
+
+def test_runs_on_other_orbits_part_although_they_are_the_same_in_w() -> None:
+    compared = oo.compare(orbiting(7.0e6), orbiting(9.0e6))
+    assert compared["base position"].largest < 1e-3
+    assert compared["inertial position"].values[0] == pytest.approx(2.0e6)
+    assert not compared.agrees
+    assert "orbit.semi_major_axis differs: 7000000 and 9000000" in compared.notes
+
+
+def test_an_orbit_is_interpolated_along_its_bend() -> None:
+    """A chord of 20 s is 400 m off the arc; the cubic is `h⁴ n⁴ r / 384 < 1 cm` off."""
+    compared = oo.compare(orbiting(7.0e6, record_every=7), orbiting(7.0e6, record_every=20))
+    assert any("interpolated" in note for note in compared.notes)
+    assert compared["inertial position"].largest < 0.01
+
+
+def test_settings_that_differ_are_noted_and_many_are_counted() -> None:
+    a, b = scenario(), scenario()
+    b["controller"]["kp"] = 99.0
+    b["environment"] = []
+    b["simulation"]["time_step"] = 0.001
+    notes = oo.compare(a, b).notes
+    assert any(note.startswith("controller.kp differs: ") and note.endswith(" and 99") for note in notes)
+    assert "time_step differs: 0.002 and 0.001" in notes
+    settings = scenario(), scenario()
+    for one in settings:
+        one["environment"] = []
+    del settings[1]["orbit"]
+    assert "orbit differs: kepler and none" in oo.compare(*settings).notes
 
 
 def test_gains_that_differ_are_seen_in_the_torque_first() -> None:
@@ -83,7 +119,7 @@ def test_control_a_finer_step_is_the_same_motion_at_common_instants() -> None:
     """Every other row of the finer run is compared as it is: nothing is interpolated."""
     settings: dict[str, Any] = {"control_period": 0.002}
     compared = oo.compare(scenario(**settings), scenario(**settings, time_step=0.001))
-    assert compared.notes == ()
+    assert compared.notes == ("time_step differs: 0.002 and 0.001",)
     assert len(compared.time) == 251
     assert compared["base attitude"].largest < 1e-10
 

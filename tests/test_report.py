@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+import shutil
 import warnings
 from html.parser import HTMLParser
 from pathlib import Path
@@ -15,7 +16,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import NotFoundError, OutputFolderError, ReadError, SimulationError
-from onorbit_rs.output.read import read_trace
+from onorbit_rs.output.read import read_summary, read_trace
 from onorbit_rs.report import write_report
 from onorbit_rs.report.numbers import row
 from onorbit_rs.scenario import load
@@ -234,6 +235,43 @@ def test_a_saved_trace_is_the_trace(folder: Path) -> None:
         _ = trace.nothing  # type: ignore[attr-defined]
 
 
+def test_a_run_that_was_killed_is_to_be_resumed(folder: Path, tmp_path: Path) -> None:
+    """What kill -9 leaves: the scenario and a checkpoint."""
+    killed = tmp_path / "my run"
+    (killed / "checkpoint").mkdir(parents=True)
+    (killed / "checkpoint" / "state.json").write_text("{}")
+    shutil.copy(folder / "scenario.yaml", killed)
+    for ask in (write_report, read_summary, oo.compare):
+        with pytest.raises(NotFoundError, match=r"go on with: onorbit resume '.*/my run'"):
+            ask(killed)
+
+
+@pytest.mark.parametrize(
+    ("name", "cut"),
+    [
+        ("q", lambda q: q[:10]),
+        ("q", lambda q: q[:, :4]),
+        ("q", lambda q: q[0, 0]),
+        ("v", lambda v: v[:, :-1]),
+        ("tool_pose", lambda pose: pose.reshape(-1, 16)),
+        ("momentum", lambda h: h[:-1]),
+        ("time", lambda t: t[:, None]),
+        ("time", lambda t: t[:5]),
+    ],
+)
+def test_a_column_that_was_cut_is_named_with_its_shape(
+    folder: Path, tmp_path: Path, name: str, cut: Any
+) -> None:
+    shutil.copytree(folder, tmp_path / "cut")
+    columns = dict(np.load(folder / "trace.npz"))
+    np.savez(tmp_path / "cut" / "trace.npz", **(columns | {name: cut(columns[name])}))
+    said = r"column '\w+' has shape \(.*\), expected \("
+    with pytest.raises(ReadError, match=said):
+        write_report(tmp_path / "cut")
+    with pytest.raises(ReadError, match=said):
+        oo.compare(tmp_path / "cut", folder)
+
+
 @pytest.mark.parametrize(
     ("key", "value", "shown", "unit"),
     [
@@ -242,6 +280,9 @@ def test_a_saved_trace_is_the_trace(folder: Path) -> None:
         ("tracking_position_error_final_m", 7e-15, "7e-15", "m"),
         ("joint_torque_max_nm", 0.9908, "0.9908", "N m"),
         ("joint_rate_final_max_rad_s", 4.2e-5, "42", "µrad/s"),
+        ("joint_force_max_n", 0.9908, "0.9908", "N"),
+        ("joint_rate_final_max_m_s", 4.2e-5, "42", "µm/s"),
+        ("tracking_arm_joint_error_max_m", 4.2e-5, "42", "µm"),
         ("reference_residual_max_m_s2", 0.0, "0", "m/s²"),
         ("energy_balance_error_rel", 3e-14, "3e-14", ""),
         ("joint_limits_exceeded", "", "none", ""),

@@ -14,6 +14,7 @@ import yaml
 from test_output_checkpoint import scenario_file, stopped_run
 
 import onorbit_rs as oo
+from onorbit_rs.cli.printing import print_summary
 from onorbit_rs.exceptions import (
     ControlError,
     NotFoundError,
@@ -22,6 +23,7 @@ from onorbit_rs.exceptions import (
 )
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
+from onorbit_rs.scenario.make_control import group
 
 REST = [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]
 TASK_GAINS = {"kp": 100, "kd": 20, "null_space_damping": 2}
@@ -120,6 +122,65 @@ def test_groups_move_side_by_side_and_apart_in_the_summary(tmp_path: Path) -> No
     with np.load(tmp_path / "run" / "trace.npz") as columns:
         assert columns["tracking_right"].shape == (len(result.trace.time), 7)
     assert "control_left_result" in (tmp_path / "run" / "summary.json").read_text()
+
+
+SLIDER = """<robot name="crane">
+<link name="bus"><inertial><mass value="10"/><inertia ixx="1"
+iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="turn" type="revolute"><parent link="bus"/><child link="boom"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="9" velocity="9"/></joint>
+<link name="boom"><inertial><mass value="1"/><inertia ixx=".1"
+iyy=".1" izz=".1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="slide" type="prismatic"><parent link="boom"/><child link="rod"/><axis xyz="0 1 0"/>
+<limit lower="0" upper="1" effort="9" velocity="9"/></joint>
+<link name="rod"><inertial><mass value="1"/><inertia ixx=".1"
+iyy=".1" izz=".1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+</robot>"""
+
+
+def crane(folder: Path, **parts: Any) -> dict[str, Any]:
+    (folder / "crane.urdf").write_text(SLIDER)
+    start = {"initial": {"joints": {"turn": 0.1, "slide": 0.2}}}
+    return one(**start, robot=str(folder / "crane.urdf"), **parts)
+
+
+def test_what_slides_is_in_metres_and_newtons_what_turns_in_radians(tmp_path: Path) -> None:
+    path = {"kind": "joint_waypoints", "points": [{"slide": 0.3}], "times": [0.3]}
+    control = {"name": "arm", "joints": ["slide", "turn"], "reference": path} | JOINT
+    result = run(crane(tmp_path, controllers=[control]))
+    summary, trace = result.summary, result.trace
+    tau, errors = np.abs(trace.tau).max(axis=0), np.abs(trace.tracking["arm"]).max(axis=0)
+    assert (summary["joint_torque_max_nm"], summary["joint_force_max_n"]) == tuple(tau)
+    assert summary["joint_rate_final_max_m_s"] == abs(trace.v[-1, 7])
+    assert summary["joint_rate_final_max_rad_s"] == abs(trace.v[-1, 6])
+    assert summary["tracking_arm_joint_error_max_m"] == errors[0]
+    assert summary["tracking_arm_joint_error_max_rad"] == errors[1]
+
+
+@pytest.mark.parametrize("has_reference", [True, False])
+def test_a_single_controller_of_joints_tells_their_errors_as_in_a_list(
+    tmp_path: Path, has_reference: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = {"kind": "joint_waypoints", "points": [{"slide": 0.3, "turn": 0.3}], "times": [0.3]}
+    tracked = {"reference": path} if has_reference else {}
+    push = [{"kind": "body_wrench", "body": "rod", "force": [5, 5, 0], "end": 0.1}]
+    soft = {"kind": "joint_pid", "p": 9, "d": 3}
+    alone = run(crane(tmp_path, controller=soft, environment=push, **tracked)).summary
+    listed = {"name": "arm"} | soft | tracked
+    several = run(crane(tmp_path, controllers=[listed], environment=push)).summary
+    print_summary(alone, None)
+    printed = capsys.readouterr().out
+    assert "\njoint error, largest" in printed and "\nerror of a sliding joint, largest" in printed
+    for unit in ("rad", "m"):
+        assert alone[f"tracking_joint_error_max_{unit}"] > 1e-4
+        assert alone[f"tracking_joint_error_max_{unit}"] == several[f"tracking_arm_joint_error_max_{unit}"]
+
+
+def test_a_name_in_brackets_is_a_name_before_it_is_a_pattern() -> None:
+    joints = ["a[x]", "ax", "b*", "bc"]
+    assert group(["a[x]"], joints) == ["a[x]"]
+    assert group(["b*"], joints) == ["b*"]
+    assert group(["a[xy]", "?c"], joints) == ["ax", "bc"]
 
 
 def test_joints_that_no_controller_drives_are_free() -> None:

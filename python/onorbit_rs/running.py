@@ -172,7 +172,7 @@ def _finish(trace: Trace, built: Built, folder: OutputFolder | None, tell: Calla
     """Certify a run that came to its end, and write its folder."""
     tell("certificate")
     scenario = built.scenario
-    summary = summarize(trace, scenario, built.orbit, warnings=built.model.warnings)
+    summary = summarize(trace, built)
     if folder is not None:
         tell("writing the trace")
         write_trace(folder, trace)
@@ -258,7 +258,7 @@ def _keep(
 def _write_rows(trace: Trace, status: str, built: Built, folder: OutputFolder) -> dict[str, Any]:
     """Trace and summary of a run, whole or not; returns the summary."""
     with np.errstate(all="ignore"):  # of one that diverged: numbers near the end of the range of floats
-        summary = summarize(trace, built.scenario, built.orbit, status=status, warnings=built.model.warnings)
+        summary = summarize(trace, built, status=status)
     write_trace(folder, trace)
     write_summary(folder, summary)
     return summary

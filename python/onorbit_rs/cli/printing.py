@@ -17,7 +17,10 @@ from onorbit_rs.output.summary import CHECKS
 _ROWS = (
     ("tracking_position_error_max_m", "tool position error, largest", "m"),
     ("tracking_attitude_error_max_rad", "tool attitude error, largest", "rad"),
+    ("tracking_joint_error_max_rad", "joint error, largest", "rad"),
+    ("tracking_joint_error_max_m", "error of a sliding joint, largest", "m"),
     ("joint_torque_max_nm", "joint torque, largest", "N m"),
+    ("joint_force_max_n", "force of a sliding joint, largest", "N"),
     ("base_rotation_max_rad", "base rotation, largest", "rad"),
     ("simulated_s", "simulated", "s"),
     ("wall_s", "wall clock of the simulation loop", "s"),

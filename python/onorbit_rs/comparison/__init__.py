@@ -10,6 +10,7 @@ import numpy as np
 from onorbit_rs.comparison.measures import measures
 from onorbit_rs.comparison.recorded import Recorded, Source, on_the_other_plant, recorded
 from onorbit_rs.comparison.rows import common_rows
+from onorbit_rs.comparison.settings import settings_apart
 from onorbit_rs.exceptions import CompareError, InputError, OnOrbitError
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ class Comparison:
     """Instants at which they are compared, (T,), s."""
     differences: tuple[Difference, ...]
     notes: tuple[str, ...]
-    """What could not be compared, and why."""
+    """What could not be compared, and why; which settings are not the same."""
 
     @property
     def agrees(self) -> bool:
@@ -124,7 +125,7 @@ def compare(
         raise InputError(f"tolerance is {tolerance}, it must be positive", name="tolerance", got=tolerance)
     first = recorded(a)
     second = on_the_other_plant(first) if b is None else recorded(b)
-    notes = [*_same_robot(first, second)]
+    notes = [*_same_robot(first, second), *settings_apart(first.scenario, second.scenario)]
     rows_a, rows_b, time, remarks = common_rows(first, second)
     found, missing = measures(rows_a, rows_b)
     differences = tuple(

@@ -21,6 +21,7 @@ Pick = Callable[["Rows"], "Floats"]
 _MEASURES: tuple[tuple[str, str, str, Pick], ...] = (
     ("base position", "m", "q", lambda rows: rows["q"][:, :3]),
     ("base attitude", "rad", "base_quat", lambda rows: rows["base_quat"]),
+    ("inertial position", "m", "position_eci", lambda rows: rows["position_eci"]),
     ("joints", "rad, m", "q", lambda rows: rows["q"][:, 7:]),
     ("joint rates", "rad/s, m/s", "v", lambda rows: rows["v"][:, 6:]),
     ("joint torques", "N m, N", "tau", lambda rows: rows["tau"]),

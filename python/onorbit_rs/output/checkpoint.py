@@ -58,6 +58,11 @@ class CheckpointWriter:
             _to_disk(stream)
 
 
+def has_checkpoint(folder: Path) -> bool:
+    """Whether a run that was stopped left something to go on from."""
+    return (folder / CHECKPOINT / _STATE).is_file()
+
+
 def read_checkpoint(folder: Path, fingerprint: str) -> tuple[Checkpoint, int]:
     """The checkpoint in an output folder, and how many rows it has.
 
@@ -67,7 +72,7 @@ def read_checkpoint(folder: Path, fingerprint: str) -> tuple[Checkpoint, int]:
         There is none, it is broken, or it was left by another scenario, robot or controller.
     """
     path = folder / CHECKPOINT
-    if not (path / _STATE).is_file():
+    if not has_checkpoint(folder):
         raise _refused(
             f"no checkpoint in {folder}: the run ended, or was stopped before it left one; "
             "run the scenario again",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from onorbit_rs.exceptions import NotFoundError, ReadError
+from onorbit_rs.output.checkpoint import has_checkpoint
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Trace
@@ -61,11 +63,45 @@ def read_trace(folder: Path) -> Trace:
             arrays = {name: stored[name] for name in stored.files}
         if not {"time", "q", "v", "momentum"} <= set(arrays):
             raise ValueError("columns are missing")
+        _check_shapes(arrays)
     except FileNotFoundError as error:
-        raise NotFoundError(f"no trace in this folder: {file}", path=str(file), kind="trace") from error
+        message = f"no trace in this folder: {file}{_way_out(folder)}"
+        raise NotFoundError(message, path=str(file), kind="trace") from error
     except (ValueError, EOFError, OSError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="trace") from error
     return cast("Trace", SavedTrace(arrays))
+
+
+def _way_out(folder: Path) -> str:
+    """How to go on with a run that was killed."""
+    if not has_checkpoint(folder):
+        return ""
+    return f"; its run was stopped before its end, go on with: onorbit resume {shlex.quote(str(folder))}"
+
+
+def _check_shapes(arrays: Mapping[str, Any]) -> None:
+    """Every column has a row per instant, and is as wide as the robot: (7 + n) and (6 + n) for n joints."""
+    rows, n = np.shape(arrays["time"]), max((np.shape(arrays["q"]) or (7,))[-1] - 7, 0)
+    if len(rows) != 1 or rows[0] == 0:
+        raise ValueError(f"column 'time' has shape {rows}, expected (T,) with a row at least")
+    widths = {name: width for name, width in _widths(n).items() if name in arrays}
+    for name, values in arrays.items():
+        if name.startswith("rereferenced"):
+            continue
+        shape, expected = np.shape(values), (*rows, *widths.get(name, np.shape(values)[1:]))
+        if shape != expected:
+            raise ValueError(f"column {name!r} has shape {shape}, expected {expected}")
+
+
+def _widths(n: int) -> dict[str, tuple[int, ...]]:
+    """Shapes of a row of the columns, for ``n`` joints."""
+    three, six, pose = (3,), (6,), (4, 4)
+    return {
+        "q": (7 + n,), "v": (6 + n,), "acceleration": (6 + n,), "tau": (n,), "momentum": six, "impulse": six,
+        "kinetic_energy": (), "work": (), "dissipated": (), "center_of_mass": three,
+        "tool_pose": pose, "reference_pose": pose, "position_error": three, "attitude_error": three,
+        "position_eci": three, "velocity_eci": three, "reference_residual": three,
+    }  # fmt: skip
 
 
 def read_summary(folder: Path) -> dict[str, Any]:
@@ -85,7 +121,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
         raise ReadError(f"cannot read {file}: {error.strerror}", path=str(file), kind="summary") from error
     if not is_there:
         what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
-        raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
+        raise NotFoundError(f"{what}: {folder}{_way_out(folder)}", path=str(folder), kind="run")
     try:
         return dict(json.loads(file.read_text(encoding="utf-8")))
     except (ValueError, TypeError, OSError) as error:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 import platform
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.output.joints import joint_errors, joint_loads, single_errors
 from onorbit_rs.plants import versions
 from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario.control import JOINT_LAWS
@@ -17,6 +17,7 @@ from onorbit_rs.scenario.control import JOINT_LAWS
 if TYPE_CHECKING:
     from onorbit_rs._core import Orbit, Trace
     from onorbit_rs.scenario import Scenario
+    from onorbit_rs.scenario.build import Built
 
 Summary = dict[str, Any]
 
@@ -34,37 +35,34 @@ CHECKS = (
 
 def summarize(
     trace: Trace,
-    scenario: Scenario,
-    orbit: Orbit | None = None,
+    built: Built,
     *,
     status: str = "complete",
-    warnings: Sequence[str] = (),
 ) -> Summary:
     """Everything a reader wants to know of a run without opening its trace.
 
     Parameters
     ----------
     trace : Trace
-    scenario : Scenario
-    orbit : Orbit, optional
-        What it flew on.
+    built : Built
+        What was run.
     status : str
         ``complete``, ``interrupted`` (Ctrl-C), ``diverged``, or ``failed`` where a controller of the user's
         raised, or orbit or environment ended.
-    warnings : sequence of str
-        What was said about the robot when it was read.
 
     Returns
     -------
     dict
         As in ``summary.json``; a number that is not finite is None. ``wall_s`` is the simulation loop alone.
     """
+    scenario = built.scenario
     simulated_s = float(trace.time[-1] - trace.time[0])
     summary = (
         {"scenario": scenario.name, "status": status}
         | _tracking(trace)
-        | _controls(trace, scenario)
-        | _motion(trace)
+        | single_errors(trace, built)
+        | _controls(trace, built)
+        | _motion(trace, built)
         | _losses(trace)
         | _certificate(trace)
         | {"rereferenced": len(trace.rereferenced)}
@@ -72,8 +70,8 @@ def summarize(
         | {"real_time_factor": simulated_s / max(trace.wall_s, 1e-9), "rows": len(trace.time)}
         | versions(scenario.plant)
         | _settings(scenario)
-        | _orbit(trace, scenario, orbit)
-        | {"warnings": "; ".join(warnings)}
+        | _orbit(trace, scenario, built.orbit)
+        | {"warnings": "; ".join(built.model.warnings)}
         | _versions()
     )
     return {key: _plain(value) for key, value in summary.items()}
@@ -104,8 +102,9 @@ def _tracking(trace: Trace) -> Summary:
     }
 
 
-def _controls(trace: Trace, scenario: Scenario) -> Summary:
+def _controls(trace: Trace, built: Built) -> Summary:
     """The largest errors of each of several controllers, and what came of their goals."""
+    scenario = built.scenario
     if scenario.controllers is None:
         return {}
     summary: Summary = {}
@@ -115,7 +114,7 @@ def _controls(trace: Trace, scenario: Scenario) -> Summary:
             continue
         key = f"tracking_{control.name}"
         if isinstance(control, JOINT_LAWS):
-            summary[f"{key}_joint_error_max_rad"] = np.abs(errors).max()
+            summary |= joint_errors(key, errors, built, control.joints)
         else:
             summary[f"{key}_position_error_max_m"] = np.linalg.norm(errors[:, :3], axis=1).max()
             summary[f"{key}_attitude_error_max_rad"] = np.linalg.norm(errors[:, 3:], axis=1).max()
@@ -125,12 +124,9 @@ def _controls(trace: Trace, scenario: Scenario) -> Summary:
     return summary | results
 
 
-def _motion(trace: Trace) -> Summary:
-    q, v, tau = np.asarray(trace.q), np.asarray(trace.v), np.asarray(trace.tau)
-    motion: Summary = {}
-    if tau.size:
-        motion["joint_torque_max_nm"] = np.abs(tau).max()
-        motion["joint_rate_final_max_rad_s"] = np.abs(v[-1, 6:]).max()
+def _motion(trace: Trace, built: Built) -> Summary:
+    q = np.asarray(trace.q)
+    motion = joint_loads(trace, built)
     motion["base_rotation_max_rad"] = angle_between(q[:, 3:7], q[0, 3:7]).max()
     motion["base_displacement_max_m"] = np.linalg.norm(q[:, :3] - q[0, :3], axis=1).max()
     return motion

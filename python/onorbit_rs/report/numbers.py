@@ -10,12 +10,12 @@ from onorbit_rs.units import with_prefix
 
 # longest first: `_rad_s` ends in `_s` too
 _UNITS = (
-    ("_rad_s", "rad/s"), ("_m_s2", "m/s²"), ("_nm", "N m"), ("_rad", "rad"), ("_rel", "relative"),
-    ("_m", "m"), ("_s", "s"), ("_j", "J"),
+    ("_rad_s", "rad/s"), ("_m_s2", "m/s²"), ("_m_s", "m/s"), ("_nm", "N m"), ("_rad", "rad"),
+    ("_rel", "relative"), ("_m", "m"), ("_s", "s"), ("_j", "J"), ("_n", "N"),
 )  # fmt: skip
 _LEAST_SCALED = 1e-9
 """Smaller is rounding, and reads better as a power of ten."""
-_SCALED = ("m", "rad", "N m", "J", "m/s²", "rad/s")
+_SCALED = ("m", "rad", "N m", "N", "J", "m/s²", "rad/s", "m/s")
 _NAMES = {
     "wall_s": "wall clock of the loop",
     "real_time_factor": "times real time",

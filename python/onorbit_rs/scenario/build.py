@@ -52,6 +52,8 @@ class Built:
     q: Floats
     v: Floats
     simulation: _core.Simulation
+    reference: _core.Reference | _core.JointReference | None
+    """What a single controller tracks."""
 
 
 @dataclass(frozen=True)
@@ -103,17 +105,18 @@ def build(scenario: Scenario) -> Built:
     if settings["rereference_beyond"] == "never":
         settings["rereference_beyond"] = np.inf
 
-    def simulation() -> _core.Simulation:
+    def simulation() -> tuple[_core.Simulation, Any]:
         controller, reference = _controlled(scenario, start)
         with located(scenario, "simulation"), _about_controllers(scenario):
-            return _core.Simulation(
+            made = _core.Simulation(
                 model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode,
                 environment=effects, controller=controller, reference=reference, tool=tool,
                 plant=plant, **settings,
             )  # fmt: skip
+        return made, reference
 
-    _try_one_step(scenario, simulation())  # a controller in Python may remember it: the run gets another
-    return Built(scenario, model, orbit, earth, q, v, simulation())
+    _try_one_step(scenario, simulation()[0])  # a controller in Python may remember it: the run gets another
+    return Built(scenario, model, orbit, earth, q, v, *simulation())
 
 
 def _controlled(scenario: Scenario, start: Start) -> tuple[Any, Any]:

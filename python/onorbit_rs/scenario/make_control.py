@@ -39,7 +39,7 @@ def tool_of(part: Any, tool: str | None) -> str | None:
 
 
 def group(wanted: list[str], joints: list[str]) -> list[str]:
-    """Joints by name or pattern, in the order of the robot within a pattern.
+    """Joints by name or pattern, in the order of the robot within a pattern; names come first.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def group(wanted: list[str], joints: list[str]) -> list[str]:
     """
     found: list[str] = []
     for name in wanted:
-        is_pattern = any(sign in name for sign in "*?[")
+        is_pattern = name not in joints and any(sign in name for sign in "*?[")
         fitting = [joint for joint in joints if (fnmatchcase(joint, name) if is_pattern else joint == name)]
         if not fitting:
             what = f"no joint fits {name!r}" if is_pattern else f"no joint is named {name!r}"

@@ -1,0 +1,68 @@
+"""What the joints did, for the summary: those that turn apart from those that slide, each in its unit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.control import JOINT_LAWS, JointPidController
+from onorbit_rs.scenario.make_control import group
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Trace
+    from onorbit_rs.scenario.build import Built
+
+    Floats = NDArray[np.float64]
+
+Summary = dict[str, Any]
+
+
+def joint_loads(trace: Trace, built: Built) -> Summary:
+    """Largest torque and force, and how fast the joints still are at the end."""
+    tau, rates = np.abs(np.asarray(trace.tau)), np.abs(np.asarray(trace.v)[-1, 6:])
+    loads: Summary = {}
+    for is_sliding, load, rate in (
+        (False, "joint_torque_max_nm", "joint_rate_final_max_rad_s"),
+        (True, "joint_force_max_n", "joint_rate_final_max_m_s"),
+    ):
+        columns = _slides(built, None) == is_sliding
+        if columns.any():
+            loads |= {load: tau[:, columns].max(), rate: rates[columns].max()}
+    return loads
+
+
+def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | None = None) -> Summary:
+    """``KEY_joint_error_max_rad``, ``…_m`` of errors (T, joints); ``wanted`` are names or patterns."""
+    slides = _slides(built, wanted)
+    units = {"rad": ~slides, "m": slides}
+    return {
+        f"{key}_joint_error_max_{unit}": np.abs(errors[:, columns]).max()
+        for unit, columns in units.items()
+        if columns.any()
+    }
+
+
+def single_errors(trace: Trace, built: Built) -> Summary:
+    """The largest errors of the joints under the one ``controller`` of a scenario, where it has positions."""
+    law = built.scenario.controller
+    has_positions = not isinstance(law, JointPidController) or law.interface == "position"
+    if not isinstance(law, JOINT_LAWS) or not has_positions or not built.model.joints:
+        return {}
+    joints = np.asarray(trace.q)[:, 7:]
+    desired = joints[0]  # held where they start
+    if isinstance(built.reference, _core.JointReference):
+        desired, _, _ = built.reference.sample(np.asarray(trace.time))
+    return joint_errors("tracking", desired - joints, built)
+
+
+def _slides(built: Built, wanted: list[str] | None) -> NDArray[np.bool_]:
+    """Whether each joint is prismatic, in the order of the robot, or of a controller's group."""
+    kinds = {joint.name: joint.kind for joint in built.model.joints}
+    names = list(built.model.joint_names)
+    return np.array(
+        [kinds[name] == "prismatic" for name in (names if wanted is None else group(wanted, names))]
+    )
