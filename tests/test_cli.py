@@ -117,6 +117,13 @@ def test_text_in_brackets_is_no_markup(tmp_path: Path) -> None:
         assert "outside the run" in refusal_of_show(tmp_path, "o [x]", "--picture", "p.png", "--at", moment)
 
 
+@pytest.mark.parametrize("name", ["x.jpg", "x", "x.png.svg"])
+def test_a_picture_that_would_be_no_png_is_refused(tmp_path: Path, name: str) -> None:
+    (tmp_path / "summary.json").write_text('{"simulated_s": 1.0}')
+    assert f"--picture {name} is no .png" in refusal("show", ".", "--picture", name, cwd=tmp_path)
+    assert not (tmp_path / name).exists()
+
+
 def refusal_of_show(cwd: Path, *arguments: str) -> str:
     done = onorbit("show", *arguments, cwd=cwd)
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done
