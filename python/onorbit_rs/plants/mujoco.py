@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -83,6 +85,12 @@ class Mujoco:
         self, start: float, end: float, q: Floats, v: Floats, tau: Floats, wrenches: Wrenches
     ) -> tuple[Floats, Floats, Floats, Floats, float, float]:
         """Across a step under held torques; see :class:`onorbit_rs.Simulation` for what comes and goes."""
+        with _unlogged(self._mujoco), np.errstate(all="ignore"):  # of a run that diverges, which is told
+            return self._step(start, end, q, v, tau, wrenches)
+
+    def _step(
+        self, start: float, end: float, q: Floats, v: Floats, tau: Floats, wrenches: Wrenches
+    ) -> tuple[Floats, Floats, Floats, Floats, float, float]:
         h, nv = end - start, self._model.nv
         qpos, qvel = self._theirs(q, v)
         self._data.qfrc_applied[self._dofs] = tau
@@ -153,6 +161,18 @@ class Mujoco:
         flat = np.empty(9)
         self._mujoco.mju_quat2Mat(flat, qpos[3:7])
         return flat.reshape(3, 3)
+
+
+@contextmanager
+def _unlogged(mujoco: Any) -> Iterator[None]:
+    """MuJoCo's warnings, of matrices near singular, go neither to stderr nor to MUJOCO_LOG.TXT."""
+    settings, loud = mujoco.MjLogConfig.get(), mujoco.MjLogConfig.get()
+    settings.logto_console = settings.logto_file = 0
+    settings.set()
+    try:
+        yield
+    finally:
+        loud.set()
 
 
 def _turning(turn: Floats, w: Floats) -> Floats:
