@@ -117,6 +117,13 @@ def test_text_in_brackets_is_no_markup(tmp_path: Path) -> None:
         assert "outside the run" in refusal_of_show(tmp_path, "o [x]", "--picture", "p.png", "--at", moment)
 
 
+@pytest.mark.parametrize("name", ["x.jpg", "x", "x.png.svg"])
+def test_a_picture_that_would_be_no_png_is_refused(tmp_path: Path, name: str) -> None:
+    (tmp_path / "summary.json").write_text('{"simulated_s": 1.0}')
+    assert f"--picture {name} is no .png" in refusal("show", ".", "--picture", name, cwd=tmp_path)
+    assert not (tmp_path / name).exists()
+
+
 def refusal_of_show(cwd: Path, *arguments: str) -> str:
     done = onorbit("show", *arguments, cwd=cwd)
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done
@@ -196,3 +203,19 @@ def test_a_warning_is_one_line_and_in_the_summary(tmp_path: Path) -> None:
     assert done.stderr.startswith("onorbit: warning: the inertia of link 'a'")
     assert (done.returncode, len(done.stderr.splitlines())) == (0, 1)
     assert "triangle inequality" in (tmp_path / "out" / "summary.json").read_text()
+
+
+def test_a_run_that_diverges_on_mujoco_leaves_no_log_behind(tmp_path: Path) -> None:
+    """Neither warnings of MuJoCo's and numpy's on stderr, nor MUJOCO_LOG.TXT in the folder of the user's."""
+    mujoco = pytest.importorskip("mujoco", reason="the extra: pip install 'onorbit-rs[mujoco]'")
+    loud = mujoco.MjLogConfig.get()
+    assert loud.logto_file  # as MuJoCo is
+    (tmp_path / "blow.yaml").write_text(
+        "robot: humanoid_torso\nplant: mujoco\ncontroller: {kind: joint_pid, p: 100000, d: 3000}\n"
+        "reference: {kind: joint_waypoints, points: [[1,1,1,1,1,1,1]], times: [1 s]}\n"
+        "simulation: {duration: 5 s, time_step: 10 ms}\n"
+    )
+    done = onorbit("run", "blow.yaml", "--out", "out", "--quiet", cwd=tmp_path)
+    assert done.returncode != 0
+    assert len(done.stderr.splitlines()) == 1, done.stderr
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["blow.yaml", "out"]

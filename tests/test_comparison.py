@@ -15,7 +15,7 @@ import onorbit_rs as oo
 from onorbit_rs.comparison.measures import _length
 from onorbit_rs.comparison.recorded import Recorded
 from onorbit_rs.comparison.rows import common_rows
-from onorbit_rs.exceptions import CompareError, InputError, NotFoundError, ReadError
+from onorbit_rs.exceptions import CompareError, DtypeError, InputError, NotFoundError, ReadError
 from onorbit_rs.figures import differences
 from onorbit_rs.scenario import load
 
@@ -272,6 +272,22 @@ def test_lengths_are_those_of_numpy_and_do_not_overflow() -> None:
         np.testing.assert_allclose(_length(rows[:5] * size) / size, _length(rows[:5]), rtol=1e-4)
     assert _length(np.zeros((2, 3))).tolist() == [0.0, 0.0]
     assert not np.isfinite(_length(np.array([[np.inf, 0, 0], [0, np.nan, 0]]))).any()
+
+
+def test_what_is_no_run_is_refused_by_its_kind() -> None:
+    trace = oo.run(spin(0.1)).trace
+    for kind, source in (("Trace", trace), ("int", 3), ("list", [])):
+        with pytest.raises(DtypeError, match=f"a {kind} cannot be compared; give a folder of a run"):
+            oo.compare(source)  # type: ignore[arg-type]
+
+
+def test_a_comparison_prints_as_the_command_does() -> None:
+    lines = str(oo.compare(spin(0.1), spin(0.11), tolerance=0.0105)).splitlines()
+    assert lines[0] == "scenario (native) against scenario (native)"
+    assert lines[1].split("  ")[-1] == "unit"
+    assert lines[2].split() == ["base", "position", "2.0e-01", "10", "2.0e-01", "2.3e-02", "1.2", "m"]
+    assert lines[-1] == "they part at t = 0 s by more than 0.0105; 101 rows from 0 to 10 s"
+    assert "they agree within 1e-06 over 101 rows" in str(oo.compare(spin(0.1), spin(0.1)))
 
 
 def test_folders_without_a_run_are_refused(tmp_path: Path) -> None:

@@ -25,6 +25,11 @@ def show(
     from onorbit_rs.cli.printing import print_json, print_summary
     from onorbit_rs.output.read import read_summary
 
+    if picture is not None and picture.suffix.lower() != ".png":
+        raise InputError(
+            f"--picture {picture} is no .png, the one kind of picture there is",
+            name="picture", got=picture.suffix, expected=".png",
+        )  # fmt: skip
     summary = read_summary(folder)
     if as_json:
         print_json(summary)

@@ -11,6 +11,7 @@ from onorbit_rs.comparison.measures import measures
 from onorbit_rs.comparison.recorded import Recorded, Source, on_the_other_plant, recorded
 from onorbit_rs.comparison.rows import common_rows
 from onorbit_rs.comparison.settings import settings_apart
+from onorbit_rs.comparison.words import as_text
 from onorbit_rs.exceptions import CompareError, InputError, OnOrbitError
 
 if TYPE_CHECKING:
@@ -72,6 +73,10 @@ class Comparison:
             f"nothing compared is named {name!r}; there are: {known}", name=name, expected=known
         )
 
+    def __str__(self) -> str:
+        """As ``onorbit compare`` prints it."""
+        return as_text(self)
+
     def as_dict(self) -> dict[str, Any]:
         """Plain data without the rows, as ``onorbit compare --json`` prints it."""
         names = ("name", "unit", "largest", "largest_at", "final", "allowed", "parts_at")
@@ -118,6 +123,8 @@ def compare(
     ------
     CompareError
         Robots whose joints are others, by number, name or order, or runs without a time in common.
+    DtypeError
+        What is none of these, such as a trace without its run.
     OnOrbitError
         As :func:`onorbit_rs.run`, and for folders without a run.
     """

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import NotFoundError
+from onorbit_rs.exceptions import DtypeError, NotFoundError
 from onorbit_rs.output import with_absolute_paths
 from onorbit_rs.output.read import read_trace
 from onorbit_rs.running import Run, run
@@ -63,6 +63,8 @@ def recorded(source: Source) -> Recorded:
 
     Raises
     ------
+    DtypeError
+        It is none of these, such as a trace without its run.
     NotFoundError, ReadError
         No run in the folder, or one that cannot be read.
     """
@@ -70,6 +72,12 @@ def recorded(source: Source) -> Recorded:
         return _of_run(source)
     if isinstance(source, (str, os.PathLike)) and Path(source).is_dir():
         return _of_folder(Path(source))
+    if not isinstance(source, (str, os.PathLike, Mapping, Scenario)):
+        kind = type(source).__name__
+        raise DtypeError(
+            f"a {kind} cannot be compared; give a folder of a run, a scenario, or what run returned",
+            name="source", got=kind, expected="folder, scenario or Run",
+        )  # fmt: skip
     return _of_run(run(source))
 
 

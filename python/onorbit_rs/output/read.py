@@ -123,6 +123,27 @@ def read_summary(folder: Path) -> dict[str, Any]:
         what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
         raise NotFoundError(f"{what}: {folder}{_way_out(folder)}", path=str(folder), kind="run")
     try:
-        return dict(json.loads(file.read_text(encoding="utf-8")))
-    except (ValueError, TypeError, OSError) as error:
+        return _checked(json.loads(file.read_text(encoding="utf-8")))
+    except OSError as error:
         raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error
+    except (ValueError, TypeError) as error:
+        here = shlex.quote(str(folder))
+        again = f"run it again: onorbit run {shlex.quote(str(folder / 'scenario.yaml'))} --out {here} --force"
+        raise ReadError(f"cannot read {file}: {error}; {again}", path=str(file), kind="summary") from error
+
+
+_KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
+    "status": (str, "a word"),
+    "certificate_passed": (bool, "true or false"),
+    "simulated_s": ((int, float, type(None)), "a number"),
+}
+"""What entries that decide what is said must be."""
+
+
+def _checked(summary: Any) -> dict[str, Any]:
+    if not isinstance(summary, dict):
+        raise TypeError(f"it holds a {type(summary).__name__}, not a mapping")
+    for name, (kind, words) in _KINDS.items():
+        if name in summary and not isinstance(summary[name], kind):
+            raise TypeError(f"{name} is {summary[name]!r}, expected {words}")
+    return summary

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -128,7 +130,8 @@ class Mujoco:
                 name="plant", got="mujoco",
             )  # fmt: skip
         try:
-            return self._step(start, end, q, v, tau, wrenches)
+            with _unlogged(self._mujoco), np.errstate(all="ignore"):  # of a run that diverges, which is told
+                return self._step(start, end, q, v, tau, wrenches)
         finally:
             self._stepping.release()
 
@@ -205,6 +208,18 @@ class Mujoco:
         flat = np.empty(9)
         self._mujoco.mju_quat2Mat(flat, qpos[3:7])
         return flat.reshape(3, 3)
+
+
+@contextmanager
+def _unlogged(mujoco: Any) -> Iterator[None]:
+    """MuJoCo's warnings, of matrices near singular, go neither to stderr nor to MUJOCO_LOG.TXT."""
+    settings, loud = mujoco.MjLogConfig.get(), mujoco.MjLogConfig.get()
+    settings.logto_console = settings.logto_file = 0
+    settings.set()
+    try:
+        yield
+    finally:
+        loud.set()
 
 
 def _turning(turn: Floats, w: Floats) -> Floats:

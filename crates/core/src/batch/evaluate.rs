@@ -30,7 +30,8 @@ impl Evaluator {
     /// Checks the inputs and computes one state on the calling thread.
     ///
     /// # Errors
-    /// [`InputError`]; the outputs are untouched then, but for [`InputError::Singular`].
+    /// [`InputError`]; the outputs are untouched then, but for [`InputError::Singular`] and
+    /// [`InputError::Overflow`].
     pub fn single(
         &mut self,
         kernel: Kernel,
@@ -124,9 +125,17 @@ fn fault(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
     for wrenches in call.external {
         check_finite("external wrench", wrenches.rows, 6)?;
     }
-    // the mass matrix is singular
-    match outputs[0].iter().position(|x| !x.is_finite()) {
-        Some(index) => Err(InputError::Singular { state: index / call.kernel.outputs(call.model)[0] }),
-        None => Ok(()),
+    // the mass matrix is singular, or products overflow
+    for (out, width) in outputs.iter().zip(call.kernel.outputs(call.model)) {
+        if let Some(index) = out.iter().position(|x| !x.is_finite()) {
+            let state = index / width;
+            let divides = call.kernel.divides();
+            return Err(if divides {
+                InputError::Singular { state }
+            } else {
+                InputError::Overflow { state }
+            });
+        }
     }
+    Ok(())
 }

@@ -34,6 +34,8 @@ pub enum InputError {
          around it an inertia or the joint a rotor (or its numbers are so large that their products overflow)"
     )]
     Singular { state: usize },
+    #[error("the numbers of state {state} are so large that their products overflow: are their units right?")]
+    Overflow { state: usize },
     #[error(
         "a rollout steps all states alike: take 'rk4' or 'semi_implicit_euler', or simulate states one by one"
     )]

@@ -42,11 +42,14 @@ pub(super) struct Space<S> {
     work: Work<S>,
     inputs: [Vec<S>; 3],
     outputs: [Vec<S>; 5],
+    /// Whether no input is so large that products of it may overflow.
+    is_tame: bool,
 }
 
 impl<S: Real> Space<S> {
     pub(super) fn new(model: &Model) -> Self {
-        Self { work: Work::new(model), inputs: Default::default(), outputs: Default::default() }
+        let (inputs, outputs) = (Default::default(), Default::default());
+        Self { work: Work::new(model), inputs, outputs, is_tame: true }
     }
 
     /// Computes the states `range` (at most one per lane) into rows of their own; whether inputs and outputs are
@@ -76,7 +79,10 @@ impl<S: Real> Space<S> {
                 for (out, space) in outputs.iter_mut().zip(&self.outputs) {
                     scatter(space, Places { first: 0, stride: space.len(), count: range.len() }, out);
                 }
-                !kernel.divides() || is_finite(&self.outputs[0])
+                match self.is_tame {
+                    true => !kernel.divides() || is_finite(&self.outputs[0]),
+                    false => self.outputs.iter().all(|out| is_finite(out)),
+                }
             },
         )
     }
@@ -85,10 +91,13 @@ impl<S: Real> Space<S> {
     #[inline(always)]
     fn read(&mut self, call: &Call<'_>, range: &Range<usize>) -> bool {
         let mut is_fine = true;
+        self.is_tame = true;
         for ((to, from), name) in self.inputs.iter_mut().zip(call.inputs).zip(call.kernel.inputs()) {
             to.resize(from.width, S::of(0.0));
             gather(from.data, places(from.width, range), to);
-            is_fine &= is_finite(to);
+            let is_tame = is_tame(to);
+            self.is_tame &= is_tame;
+            is_fine &= is_tame || is_finite(to);
             if name.starts_with('q') {
                 is_fine &= normalise(&mut to[3..7]);
             }
@@ -98,7 +107,9 @@ impl<S: Real> Space<S> {
             let mut numbers = [S::of(0.0); 6];
             let range = if rows.len() == 6 { &(0..1) } else { range }; // one for all
             gather(rows, places(6, range), &mut numbers);
-            is_fine &= is_finite(&numbers);
+            let is_tame = is_tame(&numbers);
+            self.is_tame &= is_tame;
+            is_fine &= is_tame || is_finite(&numbers);
             let wrench = Force::from_slice(&numbers);
             self.work.external.push(FrameWrench { frame: *frame, wrench });
         }
@@ -113,10 +124,21 @@ fn places(width: usize, range: &Range<usize>) -> Places {
 /// Whether all numbers are.
 #[inline(always)]
 fn is_finite<S: Real>(numbers: &[S]) -> bool {
+    is_finite_times(S::of(1.0), numbers)
+}
+
+/// Whether all numbers are small enough, below 1e58, that no kernel's products overflow.
+#[inline(always)]
+fn is_tame<S: Real>(numbers: &[S]) -> bool {
+    is_finite_times(S::of(1e250), numbers)
+}
+
+#[inline(always)]
+fn is_finite_times<S: Real>(factor: S, numbers: &[S]) -> bool {
     // 0 · x is 0 for a finite x alone; four sums, since one would wait for itself
     let mut sums = [S::of(0.0); 4];
     for (i, x) in numbers.iter().enumerate() {
-        sums[i % 4] = x.mul_add(S::of(0.0), sums[i % 4]);
+        sums[i % 4] = (*x * factor).mul_add(S::of(0.0), sums[i % 4]);
     }
     let sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
     !S::any(S::less(S::of(0.0), S::select(S::less(sum, S::of(1.0)), S::of(0.0), S::of(1.0))))

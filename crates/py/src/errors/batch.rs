@@ -15,7 +15,7 @@ impl IntoPython for InputError {
             Self::NotFinite { name, value, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
             }
-            Self::Singular { .. } => plain(py, "ConvergenceError", &message),
+            Self::Singular { .. } | Self::Overflow { .. } => plain(py, "ConvergenceError", &message),
             Self::Adaptive => {
                 let fields = fields!(py, "name": "integrator", "got": "dormand_prince");
                 raise(py, "InputError", &message, &fields)
