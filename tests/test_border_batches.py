@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs.exceptions import ConvergenceError
 
 MODEL = oo.robots.load("humanoid_dual_arm")
 NQ, NV = MODEL.nq, MODEL.nv
@@ -265,3 +266,23 @@ def test_an_older_processor_gets_the_same_numbers(tmp_path: Any) -> None:
         assert off < 1e-12, (name, off)
         different += off > 0
     assert different > 3, "both ran the same instructions"
+
+
+@pytest.mark.parametrize("count", [None, 1, 9])
+def test_numbers_whose_products_overflow_are_told(count: int | None) -> None:
+    """Finite numbers in, NaN out: it would travel."""
+    model = oo.robots.load("humanoid_torso")
+    q, v = model.neutral(), np.full(model.nv, 1e200)
+    if count is not None:
+        q, v = np.tile(q, (count, 1)), np.tile(v, (count, 1))
+    for kernel in (
+        lambda: model.bias_forces(q, v),
+        lambda: model.inverse_dynamics(q, v, v),
+        lambda: model.free_floating(q, v, "tool"),
+        lambda: model.kinetic_energy(q, v),
+        lambda: model.integrate(q, v),
+    ):
+        with pytest.raises(ConvergenceError, match="state 0 are so large that their products overflow"):
+            kernel()
+    assert np.isfinite(model.momentum(q, v)).all()  # it has no products of large numbers
+    assert np.isfinite(model.bias_forces(q, v * 1e-140)).all()
