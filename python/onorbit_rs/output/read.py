@@ -134,7 +134,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
 
 _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "status": (str, "a word"),
-    "certificate_passed": (bool, "true or false"),
+    "certificate_passed": ((bool, type(None)), "true or false"),
     "simulated_s": ((int, float, type(None)), "a number"),
 }
 """What entries that decide what is said must be."""
