@@ -124,14 +124,18 @@ pub(crate) fn fixed<const N: usize>(
     let input = Input::new(value, name)?;
     match <[f64; N]>::try_from(input.data()) {
         Ok(numbers) if input.shape() == shape => {
-            if let Some(x) = numbers.iter().find(|x| !x.is_finite()) {
-                let message = format!("{name} holds {x}, it must be finite");
-                return Err(raise(py, "InputError", &message, &fields!(py, "name": name, "got": *x)));
-            }
+            finite(py, name, &numbers)?;
             Ok(numbers)
         }
         _ => Err(wrong_shape(py, name, &shape_text(shape), input.shape())),
     }
+}
+
+/// Refuses what is not finite.
+pub(crate) fn finite(py: Python<'_>, name: &str, numbers: &[f64]) -> PyResult<()> {
+    let Some(x) = numbers.iter().find(|x| !x.is_finite()) else { return Ok(()) };
+    let message = format!("{name} holds {x}, it must be finite");
+    Err(raise(py, "InputError", &message, &fields!(py, "name": name, "got": *x)))
 }
 
 /// The error for an array of the wrong shape.

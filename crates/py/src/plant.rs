@@ -1,7 +1,7 @@
 //! A robot moved by an engine that is spoken to in Python.
 
-use crate::arrays::{Input, array_of, wrong_shape};
-use crate::errors::{SimulationErrorExt, fields, raise};
+use crate::arrays::{Input, array_of, finite, wrong_shape};
+use crate::errors::SimulationErrorExt;
 use onorbit_core::simulation::{Crossed, Crossing, Engine, Outside, Simulation, SimulationError};
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -49,11 +49,8 @@ fn vector<'py>(value: &Bound<'py, PyAny>, name: &str, n: usize) -> PyResult<Inpu
 
 /// One that is finite.
 fn state<'py>(value: &Bound<'py, PyAny>, name: &str, n: usize) -> PyResult<Input<'py>> {
-    let (py, input) = (value.py(), vector(value, name, n)?);
-    if let Some(x) = input.data().iter().find(|x| !x.is_finite()) {
-        let message = format!("{name} holds {x}, it must be finite");
-        return Err(raise(py, "InputError", &message, &fields!(py, "name": name, "got": *x)));
-    }
+    let input = vector(value, name, n)?;
+    finite(value.py(), name, input.data())?;
     Ok(input)
 }
 

@@ -18,6 +18,7 @@ from onorbit_rs.figures.style import (
     new_figure,
     tidy,
 )
+from onorbit_rs.thinning import evenly
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,7 +39,7 @@ def ground_track(trace: Trace, earth: Earth) -> Figure:
     each revolution.
     """
     time, label = clock(trace)
-    rows = np.unique(np.linspace(0, len(time) - 1, _MOST_ROWS).astype(int))
+    rows = evenly(len(time), _MOST_ROWS)
     position = np.ascontiguousarray(np.asarray(trace.position_eci)[rows])
     latitude, longitude, height = earth.geodetic(np.ascontiguousarray(trace.time[rows]), position)
     lat, lon = np.degrees(latitude), (np.degrees(longitude) + 180.0) % 360.0 - 180.0

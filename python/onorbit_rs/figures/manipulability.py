@@ -16,6 +16,7 @@ from onorbit_rs.figures.style import (
     plot_lines,
     tidy,
 )
+from onorbit_rs.thinning import evenly
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,7 +49,7 @@ def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] 
     """
     columns = [list(model.joint_names).index(name) for name in joints or model.joint_names]
     time, label = clock(trace)
-    rows = np.unique(np.linspace(0, len(time) - 1, _MOST_ROWS).astype(int))
+    rows = evenly(len(time), _MOST_ROWS)
     q, v = np.ascontiguousarray(trace.q[rows]), np.ascontiguousarray(trace.v[rows])
     free = np.asarray(model.free_floating(q, v, tool).jacobian)[:, :, columns]
     held = np.asarray(model.frame_jacobian(q, tool))[:, :, 6:][:, :, columns]

@@ -11,6 +11,7 @@ import rerun as rr
 from onorbit_rs.exceptions import OrbitError
 from onorbit_rs.planet import EARTH_FLATTENING, EARTH_RADIUS_KM, is_earth
 from onorbit_rs.rotations import quaternion_from_matrix
+from onorbit_rs.thinning import evenly
 from onorbit_rs.viewer.frames import ORIGIN, put_in, send_frame
 from onorbit_rs.viewer.land import world_map
 from onorbit_rs.viewer.rows import TIMELINE
@@ -79,7 +80,7 @@ def send_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> 
     if earth is None or setting.orbit is None or setting.orbit.mu is None:
         return
     t = rows["time"]
-    t = t[np.unique(np.linspace(0, len(t) - 1, min(len(t), MOST_TURNS)).astype(np.int64))]
+    t = t[evenly(len(t), MOST_TURNS)]
     rot_fi = np.asarray(earth.rotation(t)).reshape(-1, 3, 3)
     quat_if = quaternion_from_matrix(np.swapaxes(rot_fi, 1, 2))
     times = rr.TimeColumn(TIMELINE, duration=t)
@@ -100,7 +101,7 @@ def send_orbit_trail(recording: rr.RecordingStream, rows: Rows, most: int) -> No
 def log_path_flown(recording: rr.RecordingStream, rows: Rows) -> None:
     """The whole path of the robot."""
     position = rows["position_eci"]
-    keep = np.linspace(0, len(position) - 1, min(len(position), _MOST_PATH_POINTS)).astype(np.int64)
+    keep = evenly(len(position), _MOST_PATH_POINTS)
     path = rr.LineStrips3D([position[keep] / 1e3], colors=[_PATH], radii=rr.Radius.ui_points(2.0))
     put_in(recording, "orbit/path", INERTIAL)
     recording.log("orbit/path", path, static=True, strict=True)

@@ -18,6 +18,7 @@ from onorbit_rs.rotations import (
     quaternion_from_matrix,
     reference_motion,
 )
+from onorbit_rs.thinning import evenly
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -84,7 +85,7 @@ class Rows:
         """At most so many, evenly, the last one among them."""
         if len(self) <= most:
             return self
-        chosen = np.linspace(0, len(self) - 1, most).astype(np.int64)
+        chosen = evenly(len(self), most)
         parts = (self.columns, self.wrenches, self.tracking)
         return Rows(*({name: values[chosen] for name, values in part.items()} for part in parts))
 

@@ -8,6 +8,7 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.rotations import matrix_from_quaternion, quaternion_from_matrix
+from onorbit_rs.thinning import evenly
 from onorbit_rs.viewer.axes import log_axes
 from onorbit_rs.viewer.frames import (
     DESIRED,
@@ -97,7 +98,7 @@ def send_trail(
     color: tuple[int, int, int],
 ) -> None:
     """Points (T, 3) as at most so many short pieces, one per moment: those up to now are shown."""
-    ends = np.unique(np.linspace(0, len(points) - 1, min(len(points), most + 1)).astype(np.int64))
+    ends = evenly(len(points), most + 1)
     if len(ends) < 2:
         return
     put_in(recording, path, frame)
@@ -135,4 +136,4 @@ def _pose_of_path_frame(rows: Rows, setting: Setting) -> Floats:
 
 def _thinned(points: Floats, most: int = 5000) -> Floats:
     """At most so many of the points, first and last among them."""
-    return points[np.linspace(0, len(points) - 1, min(len(points), most)).astype(np.int64)]
+    return points[evenly(len(points), most)]

@@ -95,9 +95,7 @@ impl<S: Real> Space<S> {
         for ((to, from), name) in self.inputs.iter_mut().zip(call.inputs).zip(call.kernel.inputs()) {
             to.resize(from.width, S::of(0.0));
             gather(from.data, places(from.width, range), to);
-            let is_tame = is_tame(to);
-            self.is_tame &= is_tame;
-            is_fine &= is_tame || is_finite(to);
+            is_fine &= is_usable(to, &mut self.is_tame);
             if name.starts_with('q') {
                 is_fine &= normalise(&mut to[3..7]);
             }
@@ -107,9 +105,7 @@ impl<S: Real> Space<S> {
             let mut numbers = [S::of(0.0); 6];
             let range = if rows.len() == 6 { &(0..1) } else { range }; // one for all
             gather(rows, places(6, range), &mut numbers);
-            let is_tame = is_tame(&numbers);
-            self.is_tame &= is_tame;
-            is_fine &= is_tame || is_finite(&numbers);
+            is_fine &= is_usable(&numbers, &mut self.is_tame);
             let wrench = Force::from_slice(&numbers);
             self.work.external.push(FrameWrench { frame: *frame, wrench });
         }
@@ -131,6 +127,14 @@ fn is_finite<S: Real>(numbers: &[S]) -> bool {
 #[inline(always)]
 fn is_tame<S: Real>(numbers: &[S]) -> bool {
     is_finite_times(S::of(1e250), numbers)
+}
+
+/// Whether all numbers are finite; `all_tame` stays so if they are small, too.
+#[inline(always)]
+fn is_usable<S: Real>(numbers: &[S], all_tame: &mut bool) -> bool {
+    let is_tame = is_tame(numbers);
+    *all_tame &= is_tame;
+    is_tame || is_finite(numbers)
 }
 
 #[inline(always)]
