@@ -36,7 +36,7 @@ test-rust: ## the engine alone; needs no Python
 	cargo test --workspace --exclude onorbit-py
 
 test-python: $(VENV)/.built $(VENV)/.tested ## the package, against independent engines
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --maxprocesses 8 --dist worksteal
 
 lint: $(VENV)/.built $(VENV)/.tested ## formatting, lints as errors, types
 	cargo fmt --all --check
