@@ -1,6 +1,6 @@
 //! Many orbits at many times.
 
-use super::input::InputError;
+use super::input::{InputError, check_whole};
 use super::threads::for_each;
 use crate::orbit::{Orbit, OrbitError, Rows};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,7 +19,7 @@ pub enum Times<'a> {
 /// On `threads` threads (all cores if `None`); the bits do not depend on their number.
 ///
 /// # Errors
-/// [`InputError::NoThreads`], [`InputError::WrongLength`], and [`InputError::Orbit`] for the first orbit that is
+/// [`InputError::NoThreads`], [`InputError::WrongLength`], [`InputError::Ragged`], and [`InputError::Orbit`] for the first orbit that is
 /// refused.
 pub fn propagate(
     orbits: &[Arc<dyn Orbit>],
@@ -30,7 +30,10 @@ pub fn propagate(
 ) -> Result<(), InputError> {
     let count = match times {
         Times::Common(times) => times.len(),
-        Times::Each(times) => times.len() / orbits.len().max(1),
+        Times::Each(times) => {
+            check_whole("times", times, orbits.len())?;
+            times.len() / orbits.len().max(1)
+        }
     };
     let expected = 3 * orbits.len() * count;
     for (name, got) in [("positions", positions.len()), ("velocities", velocities.len())] {

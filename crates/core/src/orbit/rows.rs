@@ -30,9 +30,28 @@ impl<'a> Rows<'a> {
     }
 
     /// Writes row `index`.
-    pub fn set(&mut self, index: usize, position: &Vector3<f64>, velocity: &Vector3<f64>) {
+    ///
+    /// # Errors
+    /// [`OrbitError::WrongLength`] for a row beyond the last.
+    pub fn set(
+        &mut self,
+        index: usize,
+        position: &Vector3<f64>,
+        velocity: &Vector3<f64>,
+    ) -> Result<(), OrbitError> {
+        let (count, end) = (self.positions.len() / 3, index.saturating_add(1));
+        if end > count {
+            return Err(OrbitError::WrongLength { name: "rows", expected: end, got: count });
+        }
         self.positions[3 * index..][..3].copy_from_slice(position.as_slice());
         self.velocities[3 * index..][..3].copy_from_slice(velocity.as_slice());
+        Ok(())
+    }
+
+    /// Refuses another number of rows than there are `times`.
+    fn check(&self, times: &[f64]) -> Result<(), OrbitError> {
+        let (expected, got) = (times.len(), self.positions.len() / 3);
+        if expected == got { Ok(()) } else { Err(OrbitError::WrongLength { name: "rows", expected, got }) }
     }
 
     #[inline(always)]
@@ -51,9 +70,10 @@ pub(super) fn one_by_one(
     times: &[f64],
     mut rows: Rows<'_>,
 ) -> Result<(), OrbitError> {
+    rows.check(times)?;
     for (index, &t) in times.iter().enumerate() {
         let (position, velocity) = orbit.position_velocity(t)?;
-        rows.set(index, &position, &velocity);
+        rows.set(index, &position, &velocity)?;
     }
     Ok(())
 }
@@ -65,6 +85,7 @@ pub(super) fn in_lanes<S: Real>(
     mut rows: Rows<'_>,
     kernel: impl Fn(S) -> Option<(Vec3<S>, Vec3<S>)>,
 ) -> Result<(), OrbitError> {
+    rows.check(times)?;
     let mut done = 0;
     while done < times.len() {
         // as far as the lanes go, within their instruction set
@@ -85,7 +106,7 @@ pub(super) fn in_lanes<S: Real>(
         );
         for index in done..times.len().min(done + S::LANES) {
             let (position, velocity) = orbit.position_velocity(times[index])?;
-            rows.set(index, &position, &velocity);
+            rows.set(index, &position, &velocity)?;
         }
         done = times.len().min(done + S::LANES);
     }
