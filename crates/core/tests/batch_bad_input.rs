@@ -9,7 +9,7 @@ use onorbit_core::batch::{
 };
 use onorbit_core::control::ComputedTorque;
 use onorbit_core::model::Model;
-use onorbit_core::orbit::{Elements, Kepler, Orbit, OrbitError, Rows as OrbitRows, Size};
+use onorbit_core::orbit::{Elements, Kepler, Orbit, OrbitError, Size, StateRows};
 use onorbit_core::reference::{Hold, TaskReference};
 use onorbit_core::simulation::Integrator;
 use onorbit_core::spatial::{Fused, Real};
@@ -139,7 +139,7 @@ fn orbits_refuse_ragged_rows() {
     assert_eq!(error, InputError::Ragged { name: "times", width: 2, got: 3 });
     // an orbit is asked for more instants than there are rows, and fewer
     for times in [&[0.0, 1.0, 2.0][..], &[0.0]] {
-        let rows = OrbitRows::new(2, &mut r, &mut v).unwrap();
+        let rows = StateRows::new(2, &mut r, &mut v).unwrap();
         let error = orbit.fill(times, rows).unwrap_err();
         assert_eq!(error, OrbitError::WrongLength { name: "rows", expected: times.len(), got: 2 });
     }

@@ -4,8 +4,8 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::environment::{
-    Bodies, BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Instant, Place,
-    Reference, ReferenceMotion, Scene, Wrench, Wrenches,
+    Bodies, BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Place, Reference,
+    ReferenceMotion, Scene, Wrench, Wrenches,
 };
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{Kepler, MU_EARTH, Orbit, OrbitState};
@@ -68,9 +68,9 @@ fn wrench(
     body: BodyState,
 ) -> Result<Wrench, EnvironmentError> {
     let mut wrenches = Wrenches::new(1);
-    let (bodies, instant) = (Bodies::from_iter([body]), Instant::default());
-    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
-    effect.add_wrenches(&scene, &mut wrenches)?;
+    let bodies = Bodies::from_iter([body]);
+    let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
+    Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, act)?;
     Ok(wrenches.get(0).expect("one body"))
 }
 
@@ -130,9 +130,8 @@ fn force_scales_with_mass_and_adds_to_what_is_there() {
     let mut wrenches = Wrenches::new(2);
     wrenches.add(1, there).expect("two bodies");
     let reference = Some(reference(ORIGIN, MU_EARTH));
-    let instant = Instant::default();
-    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
-    CARRIED.add_wrenches(&scene, &mut wrenches).expect("outside");
+    let act = |scene: &Scene<'_>| CARRIED.add_wrenches(scene, &mut wrenches);
+    Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, act).expect("outside");
     let [light, heavy] = [0, 1].map(|k| wrenches.get(k).expect("two bodies"));
     assert_eq!(heavy.force, there.force + light.force * 3.0);
     assert_eq!(heavy.torque, there.torque);
@@ -238,11 +237,11 @@ fn gravity_is_refused_around_no_planet_and_inside_one() {
 
 #[test]
 fn one_wrench_per_body_is_needed() {
-    let (bodies, instant) = (Bodies::from_iter([body(Vector3::zeros())]), Instant::default());
-    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(Some(reference(ORIGIN, MU_EARTH)));
-    let mut two = Wrenches::new(2);
+    let (bodies, mut two) = (Bodies::from_iter([body(Vector3::zeros())]), Wrenches::new(2));
     for effect in [&TRUE as &dyn Effect, &GravityGradient] {
-        let error = effect.add_wrenches(&scene, &mut two).expect_err("one too many");
+        let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut two);
+        let reference = Some(reference(ORIGIN, MU_EARTH));
+        let error = Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, act).expect_err("one too many");
         assert_eq!(error, EnvironmentError::WrongLength { expected: 1, got: 2 });
     }
 }

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::{
-    Bodies, BodyState, DifferentialGravity, Effect, Instant, Reference, ReferenceMotion, Scene, Wrenches,
+    Bodies, BodyState, DifferentialGravity, Effect, Reference, ReferenceMotion, Scene, Wrenches,
 };
 use onorbit_core::gravity::{Gravity, GravityField};
 use onorbit_core::orbit::OrbitState;
@@ -66,10 +66,9 @@ fn force(
     let velocity = Vector3::from(VELOCITY);
     let state = OrbitState { position: at.1, velocity, acceleration: Vector3::zeros() };
     let reference = Some(Reference { state, gravity: Some(gravity), falls_freely: false });
-    let (bodies, instant) = (Bodies::from_iter([b]), Instant::default());
-    let scene = Scene::new((at.0, at.0 + step), at.0, &bodies, &instant).beside(reference);
-    let mut wrenches = Wrenches::new(1);
-    DifferentialGravity { motion }.add_wrenches(&scene, &mut wrenches).unwrap();
+    let (mut wrenches, bodies) = (Wrenches::new(1), Bodies::from_iter([b]));
+    let act = |scene: &Scene<'_>| DifferentialGravity { motion }.add_wrenches(scene, &mut wrenches);
+    Scene::show((at.0, at.0 + step), at.0, &bodies, reference, None, act).unwrap();
     wrenches.get(0).unwrap().force
 }
 

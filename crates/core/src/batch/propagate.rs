@@ -2,7 +2,7 @@
 
 use super::input::{InputError, check_whole};
 use super::threads::for_each;
-use crate::orbit::{Orbit, OrbitError, Rows};
+use crate::orbit::{Orbit, OrbitError, StateRows};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Instants at which to look, s of simulation.
@@ -56,7 +56,8 @@ pub fn propagate(
                 Times::Common(times) => times,
                 Times::Each(times) => &times[index * count..][..count],
             };
-            let filled = Rows::new(count, positions, velocities).and_then(|rows| orbit.fill(instants, rows));
+            let filled =
+                StateRows::new(count, positions, velocities).and_then(|rows| orbit.fill(instants, rows));
             if let Err(error) = filled {
                 let mut first = first.lock().unwrap_or_else(PoisonError::into_inner);
                 if first.as_ref().is_none_or(|(known, _)| index < *known) {

@@ -6,12 +6,12 @@ use nalgebra::Vector3;
 
 /// Where positions and velocities go, m and m/s, axes of `I`: rows of three numbers, row after row.
 #[derive(Debug)]
-pub struct Rows<'a> {
+pub struct StateRows<'a> {
     positions: &'a mut [f64],
     velocities: &'a mut [f64],
 }
 
-impl<'a> Rows<'a> {
+impl<'a> StateRows<'a> {
     /// Room for `count` rows.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl<'a> Rows<'a> {
 pub(super) fn one_by_one(
     orbit: &(impl Orbit + ?Sized),
     times: &[f64],
-    mut rows: Rows<'_>,
+    mut rows: StateRows<'_>,
 ) -> Result<(), OrbitError> {
     rows.check(times)?;
     for (index, &t) in times.iter().enumerate() {
@@ -82,7 +82,7 @@ pub(super) fn one_by_one(
 pub(super) fn in_lanes<S: Real>(
     orbit: &impl Orbit,
     times: &[f64],
-    mut rows: Rows<'_>,
+    mut rows: StateRows<'_>,
     kernel: impl Fn(S) -> Option<(Vec3<S>, Vec3<S>)>,
 ) -> Result<(), OrbitError> {
     rows.check(times)?;

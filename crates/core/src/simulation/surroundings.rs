@@ -7,7 +7,7 @@ use super::rereference::{OwnReference, Shift};
 use crate::dynamics::{Data, base_rotation};
 use crate::earth::Earth;
 use crate::environment::{
-    Bodies, DifferentialGravity, Effect, EnvironmentError, Instant, Reference, Scene, Wrench, Wrenches,
+    Bodies, DifferentialGravity, Effect, EnvironmentError, Heavens, Reference, Scene, Wrench, Wrenches,
 };
 use crate::gravity::Gravity;
 use crate::model::Model;
@@ -45,12 +45,12 @@ pub(super) struct Surroundings {
 struct Known {
     time: f64,
     state: Option<OrbitState>,
-    instant: Instant,
+    heavens: Heavens,
 }
 
 impl Known {
     fn new(time: f64, state: Option<OrbitState>) -> Self {
-        Self { time, state, instant: Instant::default() }
+        Self { time, state, heavens: Heavens::default() }
     }
 
     fn nothing() -> [Box<Self>; 5] {
@@ -147,9 +147,9 @@ impl Surroundings {
 
     fn remember(&mut self, t: f64, state: Option<OrbitState>) {
         self.known.rotate_right(1);
-        let Known { time, state: place, instant } = &mut *self.known[0];
+        let Known { time, state: place, heavens } = &mut *self.known[0];
         (*time, *place) = (t, state);
-        instant.forget();
+        heavens.forget();
     }
 
     /// Whether the reference obeys the very gravity of the run.
@@ -175,10 +175,10 @@ impl Surroundings {
             self.shared.clear();
         }
         let falls_freely = self.falls_freely();
-        let Known { state, instant, .. } = &*self.known[0];
+        let Known { state, heavens, .. } = &*self.known[0];
         let gravity = self.gravity.as_deref();
         let reference = state.map(|state| Reference { state, gravity, falls_freely });
-        let mut scene = Scene::new(self.interval, t, &self.bodies, instant);
+        let mut scene = Scene::new(self.interval, t, &self.bodies, heavens);
         (scene.reference, scene.earth) = (reference, self.earth.as_deref()); // in place: it is large
         for effect in &self.effects[effects] {
             let is_shared = self.is_carried && effect.acts_on_reference();
