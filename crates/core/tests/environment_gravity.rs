@@ -14,8 +14,8 @@ use onorbit_core::orbit::{Kepler, MU_EARTH, Orbit, OrbitState};
 const ORIGIN: [f64; 3] = [-4292653.41, 955168.47, 5139356.57];
 
 /// Offset ρ from the reference (m) and the tide g(R + ρ) - g(R) there (m/s²): radial, skew and
-/// across, 1 mm to 10 000 km, then the far side of the Earth and 1000 km below.
-/// mpmath 1.3.0, 60 digits, the definition as it stands, every input taken as the double it
+/// across, 1 mm to 10 000 km, then the far side of the Earth and 300 km below.
+/// mpmath 1.3.0 (the last row Python's decimal), 60 digits, the definition as it stands, every input taken as the double it
 /// is, mu 3.986004418e14; 2026-11-21.
 #[rustfmt::skip]
 const TIDES: [([f64; 3], [f64; 3]); 17] = [
@@ -35,7 +35,7 @@ const TIDES: [([f64; 3], [f64; 3]); 17] = [
     ([3600000.0, -4800000.0, 8000000.0], [-5.4217987920362126, 1.8252541556468583, 4.5862394503020483]),
     ([1129702.1238863163, 9635866.852669885, -847276.5929147372], [-4.7727291114874025, -1.302034864119109, 5.5933192566401883]),
     ([8585306.82, -1910335.94, -10278713.14], [-1.1057973645903682e+1, 2.4605345996641143, 1.3239100407121372e+1]),
-    ([634628.8412326936, -141212.76548578954, -759806.0204680561], [2.0848570096457606, -4.6390646760184547e-1, -2.4960840176550601]),
+    ([190388.64, -42363.83, -227941.81], [5.25116542505289564e-1, -1.16844920120231902e-1, -6.28692973018048241e-1]),
 ];
 
 fn body(com: Vector3<f64>) -> BodyState {
