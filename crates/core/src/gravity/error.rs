@@ -51,7 +51,7 @@ pub enum GravityError {
     #[error("{file}:{line}: '{got}' is no row of coefficients, 'gfc degree order C S' is needed")]
     Row { file: String, line: usize, got: String },
     #[error(
-        "{file}:{line}: the file ends within '{got}', whose last number may be cut: get it again, or end the line if it is \
+        "{file}:{line}: the file ends within '{got}', whose last number may be cut short: get it again, or end the line if it is \
          whole"
     )]
     CutRow { file: String, line: usize, got: String },

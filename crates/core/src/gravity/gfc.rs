@@ -42,8 +42,9 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
         if n > degree {
             continue;
         }
-        // errors behind the coefficients, or the end of the line, say that S is whole
-        if words.len() == 5 && is_cut && line == last {
+        // where no error and no end of the line follows it, S may be cut; an exponent that is cut shows by its size
+        let is_plain = m > 0 && !words[4].contains(['e', 'E', 'd', 'D']);
+        if is_cut && line == last && words.len() == 5 && is_plain {
             return Err(GravityError::CutRow { file: file.to_owned(), line, got: text.trim().to_owned() });
         }
         if std::mem::replace(&mut is_given[n * (n + 1) / 2 + m], true) {
@@ -169,12 +170,14 @@ mod tests {
         let broken = GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7");
         assert!(matches!(refused(&broken, None), GravityError::Row { line: 19, .. }));
         // within its last number, which then reads as another; what stands behind it may be missing
-        for cut in ["7e-7 1.4e-6", "7e-7 1.4", "7e-7 1"] {
+        for cut in ["7e-7 0.0000014", "7e-7 0.00", "7e-7 1.4"] {
             let cut = refused(&GOOD.replace("7e-7 1.4e-6 0 0\n", cut), None);
             assert!(matches!(cut, GravityError::CutRow { line: 19, .. }), "{cut}");
         }
         assert!(read("tiny.gfc", GOOD.trim_end(), None).is_ok());
-        assert!(read("tiny.gfc", &GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7 1.4e-6\n"), None).is_ok());
+        for whole in ["7e-7 0.0000014\n", "7e-7 1.4e-6", "7e-7 0.0000014 0"] {
+            assert!(read("tiny.gfc", &GOOD.replace("7e-7 1.4e-6 0 0\n", whole), None).is_ok(), "{whole}");
+        }
         assert!(read("tiny.gfc", &GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7 1.4"), Some(2)).is_ok());
         for (from, to) in
             [("2D-10", "2DD10"), ("gfc 2 1", "gfc 2 5"), ("2.4e-6", "nan"), ("gfc 3 0", "foo 3 0")]
