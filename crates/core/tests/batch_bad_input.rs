@@ -133,7 +133,7 @@ fn orbits_refuse_ragged_rows() {
         assert_eq!(error, InputError::Ragged { name: "positions", width: 3, got: length });
     }
     let orbit = Kepler::new(&Elements::new(Size::SemiMajorAxis(7e6), 0.0)).unwrap();
-    let orbits: Vec<Arc<dyn Orbit>> = vec![Arc::new(orbit.clone()), Arc::new(orbit.clone())];
+    let orbits: Vec<Arc<dyn Orbit>> = vec![Arc::new(orbit), Arc::new(orbit)];
     let (mut r, mut v) = ([0.0; 6], [0.0; 6]);
     let error = propagate(&orbits, Times::Each(&[0.0, 1.0, 2.0]), &mut r, &mut v, Some(1)).unwrap_err();
     assert_eq!(error, InputError::Ragged { name: "times", width: 2, got: 3 });

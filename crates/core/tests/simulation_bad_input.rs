@@ -217,7 +217,7 @@ fn the_rows_before_the_ground_are_kept() {
     let mut simulation = Simulation::new(Arc::clone(&model), neutral(&model), vec![0.0; 6]);
     let start = Elements { phase: Phase::TrueAnomaly(-1.0), ..Elements::new(Size::SemiMajorAxis(7e6), 0.1) };
     let orbit = Kepler::new(&start).unwrap();
-    simulation.orbit = Some(Arc::new(orbit.clone()));
+    simulation.orbit = Some(Arc::new(orbit));
     simulation.time_step = 1.0;
     let failure = simulation.run(3000.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
     let SimulationError::Environment { time, .. } = failure.error else { panic!("{failure}") };

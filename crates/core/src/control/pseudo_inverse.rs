@@ -121,7 +121,7 @@ impl<S: Real> PseudoInverse<S> {
             feel(self.rows, jacobian, y, &mut self.x);
             transpose_apply(self.rows, factor, jacobian, &mut self.x, out);
         }
-        lost.iter_mut().zip(kept).for_each(|(lost, kept)| *lost = *lost - *kept);
+        lost.iter_mut().zip(kept).for_each(|(lost, kept)| *lost -= *kept);
     }
 }
 
