@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import shlex
 from collections.abc import Mapping
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import NotFoundError, RunInterrupted, SimulationError
+from onorbit_rs.exceptions import InputError, NotFoundError, RunInterrupted, SimulationError
 from onorbit_rs.output import (
     CheckpointWriter,
     OutputFolder,
@@ -25,6 +26,7 @@ from onorbit_rs.output import (
     write_summary,
     write_trace,
 )
+from onorbit_rs.output.divergence import divergence
 from onorbit_rs.output.relay import Relay
 from onorbit_rs.plants import versions
 from onorbit_rs.progress import ProgressCallback, doing, progress_bar
@@ -91,6 +93,7 @@ def run(
     RunInterrupted
         Ctrl-C; its trace so far is in the exception and in ``out``.
     """
+    _check_period(checkpoint_every)
     checked = load(scenario)
     built = build(checked)
     folder = None if out is None else OutputFolder.claim(out, force=force)
@@ -128,6 +131,7 @@ def resume(
     OnOrbitError
         As :func:`run`.
     """
+    _check_period(checkpoint_every)
     folder = OutputFolder(Path(out))
     if not (folder.path / "scenario.yaml").is_file():
         what = "no run in this folder (no scenario.yaml)" if folder.path.is_dir() else "no such folder"
@@ -140,6 +144,15 @@ def resume(
         build(scenario), folder, quiet=quiet, view=view,
         checkpoint=writer, checkpoint_every=checkpoint_every, resume=checkpoint,
     )  # fmt: skip
+
+
+def _check_period(checkpoint_every: float) -> None:
+    """Before anything is written, and also where nothing is."""
+    if not checkpoint_every >= 0.0 or checkpoint_every == math.inf:
+        raise InputError(
+            f"checkpoint_every is {checkpoint_every} s of wall clock, it must be finite, zero or positive",
+            name="checkpoint_every", got=checkpoint_every, expected=">= 0",
+        )  # fmt: skip
 
 
 def _fingerprint(scenario: Scenario) -> str:
@@ -238,7 +251,9 @@ def _keep(
 ) -> None:
     """Write what there is of a run that stopped early, and say where."""
     diverged = isinstance(stop, SimulationError)
-    if not diverged:
+    if diverged:
+        stop.message = divergence(stop, built)
+    else:
         duration = built.scenario.simulation.duration
         stop.message = f"stopped by Ctrl-C at t = {stop.time:g} s of {duration:g} s"
     if folder is None:

@@ -11,7 +11,7 @@ import typer
 from onorbit_rs.cli.check import check
 from onorbit_rs.cli.compare import compare
 from onorbit_rs.cli.convert import convert
-from onorbit_rs.cli.failing import fail, leave_stdout, of_controller, show_warning
+from onorbit_rs.cli.failing import encode_all, fail, leave_stdout, of_controller, show_warning
 from onorbit_rs.cli.info import info
 from onorbit_rs.cli.list import list_
 from onorbit_rs.cli.new import new
@@ -69,6 +69,7 @@ def onorbit(version: VersionOption = False) -> None:
 
 def main(arguments: list[str] | None = None) -> None:
     """Entry point: an error is one line on stderr and exit code 2, Ctrl-C is 130."""
+    encode_all()
     try:
         with warnings.catch_warnings():
             warnings.showwarning = show_warning

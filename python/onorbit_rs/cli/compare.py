@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from onorbit_rs.cli.completing import scenario_names
-from onorbit_rs.cli.failing import fail
+from onorbit_rs.cli.failing import fail, say
 from onorbit_rs.cli.options import JsonOption
 from onorbit_rs.cli.writing import claim, writing
 from onorbit_rs.exceptions import InputError, RunInterrupted
@@ -44,6 +44,7 @@ def compare(
         Path | None,
         typer.Option("--out", "-o", metavar="FILE", help="Draw the differences: PNG, PDF or SVG."),
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the figure that is there.")] = False,
 ) -> None:
     """Compare two runs and say where they part; exit code 1 if they do."""
     from onorbit_rs.cli.printing import print_json
@@ -53,7 +54,7 @@ def compare(
         raise InputError(
             f"--out {out} is none of {', '.join(PICTURES)}", name="out", got=out.suffix, expected=PICTURES
         )
-    claim(out, force=True)
+    claim(out, force=force)
     try:
         compared = compare_runs(a, b, tolerance=tolerance)
     except RunInterrupted as stop:  # caught here, as in run
@@ -65,7 +66,7 @@ def compare(
     if out is not None:
         save_figure(compared, out)
         if not as_json:
-            typer.echo(f"figure: {out}")
+            say(f"figure: {out}")
     if not compared.agrees:
         raise typer.Exit(1)
 
@@ -80,7 +81,7 @@ def print_comparison(compared: Comparison) -> None:
     for difference in compared.differences:
         parted = difference.parts_at
         table.add_row(
-            difference.name,
+            text(difference.name),
             f"{difference.largest:.1e}",
             f"{difference.largest_at:.6g}",
             f"{difference.final:.1e}",
@@ -102,9 +103,7 @@ def print_comparison(compared: Comparison) -> None:
 def _table() -> Table:
     from onorbit_rs.cli.printing import new_table
 
-    table = new_table()
-    table.show_header, table.header_style = True, "dim"
-    table.add_column("")
+    table = new_table("")
     for name in ("largest", "at, s", "at the end", "allowed", "parts at, s"):
         table.add_column(name, justify="right")
     table.add_column("unit")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from onorbit_rs.cli.failing import say
 from onorbit_rs.cli.writing import claim, writing
+from onorbit_rs.printable import printable, shell_word
 
 
 def convert(
@@ -33,7 +34,7 @@ def convert(
     )
     check_scenario(done.scenario, None, {})
     for note in done.notes:
-        typer.echo(str(note), err=True)
+        typer.echo(printable(note), err=True)
     made_of = ", ".join(file.name for file in files)
     text = scenario_text(
         done.scenario, done.comments, f"Made by onorbit convert of {made_of}. SI and radians."
@@ -43,4 +44,5 @@ def convert(
         return
     with writing(out):
         out.write_text(text, encoding="utf-8")
-    typer.echo(f"scenario: {out}\nnext: onorbit check {shlex.quote(str(out))}")
+    say(f"scenario: {out}")
+    say(f"next: onorbit check {shell_word(out)}")

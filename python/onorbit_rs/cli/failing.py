@@ -1,7 +1,8 @@
-"""How a command ends that cannot go on: one line on stderr, and an exit code."""
+"""What a command says in one line, and how it ends that cannot go on: on stderr, with an exit code."""
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 import traceback
@@ -9,7 +10,26 @@ from typing import Any, NoReturn
 
 import typer
 
+from onorbit_rs.printable import LACKING, printable
+
 RED, YELLOW = typer.colors.RED, typer.colors.YELLOW
+
+
+def say(line: str) -> None:
+    """A line on stdout, whatever names of files and robots it holds."""
+    typer.echo(printable(line))
+
+
+def in_one_line(message: object) -> str:
+    """What is said, with nothing in it that steers a terminal."""
+    return printable(" ".join(str(message).split()))
+
+
+def encode_all() -> None:
+    """A stream whose encoding lacks a letter of ours gets one it has: no ``UnicodeEncodeError`` in ``LC_ALL=C``."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors=LACKING)
 
 
 def of_controller(error: Exception) -> str:
@@ -23,7 +43,7 @@ def of_controller(error: Exception) -> str:
 def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
     """One line, without the place in our code."""
     said = _colored("onorbit: warning:", YELLOW)
-    typer.echo(f"{said} {' '.join(str(message).split())}", err=True)
+    typer.echo(f"{said} {in_one_line(message)}", err=True)
 
 
 def leave_stdout() -> None:
@@ -34,7 +54,7 @@ def leave_stdout() -> None:
 def fail(message: str, code: int) -> NoReturn:
     """Say it on one line of stderr, and leave with this exit code."""
     if message:
-        typer.echo(f"{_colored('onorbit:', RED)} {' '.join(message.split())}", err=True)
+        typer.echo(f"{_colored('onorbit:', RED)} {in_one_line(message)}", err=True)
     sys.exit(code)
 
 

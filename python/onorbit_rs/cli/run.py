@@ -15,7 +15,7 @@ from onorbit_rs.cli.options import (
     ScenarioArgument,
     ViewOption,
 )
-from onorbit_rs.exceptions import RunInterrupted
+from onorbit_rs.exceptions import InputError, RunInterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,15 +30,20 @@ def run(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
     view: ViewOption = False,
-    checkpoint_every: CheckpointOption = 30.0,
+    checkpoint_every: CheckpointOption = None,
 ) -> None:
     """Run a scenario and certify its momentum and energy: exit code 1 where they do not hold."""
+    from onorbit_rs.running import CHECKPOINT_EVERY
     from onorbit_rs.running import run as run_scenario
 
+    if checkpoint_every is not None and out is None:
+        raise InputError(
+            "--checkpoint-every leaves checkpoints in the folder of the run: add --out DIR",
+            name="checkpoint_every", got=checkpoint_every,
+        )  # fmt: skip
+    every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     _report(
-        lambda: run_scenario(
-            scenario, out, force=force, quiet=quiet, view=view, checkpoint_every=checkpoint_every
-        ),
+        lambda: run_scenario(scenario, out, force=force, quiet=quiet, view=view, checkpoint_every=every),
         quiet=quiet,
         as_json=as_json,
     )
@@ -49,13 +54,15 @@ def resume(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
     view: ViewOption = False,
-    checkpoint_every: CheckpointOption = 30.0,
+    checkpoint_every: CheckpointOption = None,
 ) -> None:
     """Go on with a run that was killed or interrupted, to the same bits."""
+    from onorbit_rs.running import CHECKPOINT_EVERY
     from onorbit_rs.running import resume as resume_run
 
+    every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     _report(
-        lambda: resume_run(folder, quiet=quiet, view=view, checkpoint_every=checkpoint_every),
+        lambda: resume_run(folder, quiet=quiet, view=view, checkpoint_every=every),
         quiet=quiet,
         as_json=as_json,
     )
@@ -63,7 +70,8 @@ def resume(
 
 def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
     """Do it and print the summary."""
-    from onorbit_rs.cli.printing import print_json, print_summary
+    from onorbit_rs.cli.printing import print_json
+    from onorbit_rs.cli.summary import print_summary
 
     try:
         result = job()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from onorbit_rs.output.summary import CHECKS
+from onorbit_rs.output.checks import CHECKS
 from onorbit_rs.units import with_prefix
 
 # longest first: `_rad_s` ends in `_s` too
@@ -20,7 +20,7 @@ _NAMES = {
     "wall_s": "wall clock of the loop",
     "real_time_factor": "times real time",
     "rows": "rows of the trace",
-    "rereferenced": "times given another reference",
+    "rereferenced": "new reference orbits taken, having drifted too far off",
     "velocity_eci_source": "inertial velocity from",
     "onorbit_rs_version": "onorbit_rs",
     "python_version": "Python",
@@ -36,6 +36,8 @@ _GROUPS = (
     ),
     ("Versions", ("onorbit_rs_version", "instruction_set", "python_version", "numpy_version")),
 )
+_ONLY_IF_ANY = ("rereferenced", "joint_dissipation_j")
+"""Say nothing where they are 0."""
 _ELSEWHERE = ("scenario", "status", "warnings", *CHECKS)
 
 
@@ -55,7 +57,11 @@ def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
             if key not in _ELSEWHERE and not key.startswith("certificate_")}  # fmt: skip
     found = []
     for title, starts in _GROUPS:
-        rows = [row(key, value) for key, value in left.items() if key.startswith(starts)]
+        rows = [
+            row(key, value)
+            for key, value in left.items()
+            if key.startswith(starts) and not (key in _ONLY_IF_ANY and value == 0)
+        ]
         left = {key: value for key, value in left.items() if not key.startswith(starts)}
         found.append((title, rows))
     found.append(("Other", [row(key, value) for key, value in left.items()]))
@@ -83,16 +89,3 @@ def _shown(value: Any) -> str:
     if not isinstance(value, float):
         return str(value) if value != "" else "none"
     return f"{value:.4g}"
-
-
-def checks(summary: dict[str, Any]) -> list[tuple[Row, bool | None]]:
-    """Every line of the certificate, and whether it holds; None where it does not apply to the run."""
-    failed = {name.strip() for name in str(summary.get("certificate_failures") or "").split(",")}
-    absent = {name.strip() for name in str(summary.get("certificate_not_evaluated") or "").split(",")}
-    rows: list[tuple[Row, bool | None]] = []
-    for name in CHECKS:
-        if name in summary:
-            rows.append((row(name, summary[name]), name not in failed))
-        elif name in absent:
-            rows.append((Row(name, row(name, None).name, None, "not evaluated", ""), None))
-    return rows
