@@ -29,7 +29,7 @@ class Progress:
 @contextmanager
 def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progress]:
     """A bar on the terminal that is gone at the end."""
-    if quiet or not sys.stderr.isatty():
+    if quiet or not _is_watched():
         yield Progress()
         return
     with _bar() as bar:
@@ -40,12 +40,17 @@ def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progr
 @contextmanager
 def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None]]:
     """A bar on the terminal for work in parts: told which part begins, and what share of all is done."""
-    if quiet or not sys.stderr.isatty():
+    if quiet or not _is_watched():
         yield lambda part, done: None
         return
     with _bar() as bar:
         task = bar.add_task(printable(name), total=1.0, doing="starting")
         yield lambda part, done: bar.update(task, completed=done, doing=printable(part))
+
+
+def _is_watched() -> bool:
+    """Whether stderr is a terminal; it may be closed."""
+    return sys.stderr is not None and sys.stderr.isatty()
 
 
 def _bar() -> Bar:
@@ -64,7 +69,7 @@ def _bar() -> Bar:
 @contextmanager
 def doing(name: str, *, quiet: bool) -> Iterator[Callable[[str], None]]:
     """Something that takes seconds: says on a terminal what, and what part of it."""
-    if quiet or not sys.stderr.isatty():
+    if quiet or not _is_watched():
         yield lambda part: None
         return
     from rich.console import Console

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def check(scenario: ScenarioArgument, quiet: QuietOption = False, as_json: JsonOption = False) -> None:
-    """Check a scenario and everything it names, without running it."""
+    """Check a scenario and all it names, without running it."""
     from onorbit_rs.cli.printing import print_json
     from onorbit_rs.scenario import load
     from onorbit_rs.scenario.build import build

@@ -23,7 +23,10 @@ def convert(
     keep_going: Annotated[bool, typer.Option("--keep-going", help="Pass over unknown keys.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
 ) -> None:
-    """Make a scenario of OnOrbitROS' YAML files, and say what became of every line."""
+    """Make a scenario of OnOrbitROS' YAML files.
+
+    Says on standard error what became of every line; without --out the scenario goes to standard output.
+    """
     from onorbit_rs.interop.onorbitros import convert as convert_files
     from onorbit_rs.interop.write_scenario import scenario_text
     from onorbit_rs.scenario.load import check as check_scenario

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import os
 import sys
 import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, NoReturn
 
 import typer
 
+from onorbit_rs.exceptions import RunInterrupted
 from onorbit_rs.printable import LACKING, printable
 
 RED, YELLOW = typer.colors.RED, typer.colors.YELLOW
@@ -42,8 +46,37 @@ def of_controller(error: Exception) -> str:
 
 def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
     """One line, without the place in our code."""
-    said = _colored("onorbit: warning:", YELLOW)
-    typer.echo(f"{said} {in_one_line(message)}", err=True)
+    if sys.stderr is not None:
+        said = _colored("onorbit: warning:", YELLOW)
+        typer.echo(f"{said} {in_one_line(message)}", err=True)
+
+
+def ending_well(command: Callable[..., None]) -> Callable[..., None]:
+    """The command, with what typer would end in its own way: Ctrl-C, and a pipe that was closed."""
+
+    @functools.wraps(command)
+    def guarded(*arguments: Any, **options: Any) -> None:
+        try:
+            command(*arguments, **options)
+        except RunInterrupted as stop:
+            fail(str(stop), 130)
+        except KeyboardInterrupt:
+            fail("stopped by Ctrl-C", 130)
+        except BrokenPipeError:
+            leave_stdout()
+
+    return guarded
+
+
+@contextmanager
+def as_far_as_read() -> Iterator[None]:
+    """Around what is printed by a command that does more: ``| head`` ends the printing, not the command."""
+    try:
+        yield
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        leave_stdout()
 
 
 def leave_stdout() -> None:
@@ -53,7 +86,7 @@ def leave_stdout() -> None:
 
 def fail(message: str, code: int) -> NoReturn:
     """Say it on one line of stderr, and leave with this exit code."""
-    if message:
+    if message and sys.stderr is not None:
         typer.echo(f"{_colored('onorbit:', RED)} {in_one_line(message)}", err=True)
     sys.exit(code)
 
@@ -61,4 +94,5 @@ def fail(message: str, code: int) -> NoReturn:
 def _colored(word: str, color: str) -> str:
     """In colour on a terminal, unless its user wants none (https://no-color.org)."""
     wants_none = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
-    return word if wants_none or not sys.stderr.isatty() else typer.style(word, fg=color, bold=True)
+    is_terminal = sys.stderr is not None and sys.stderr.isatty()
+    return word if wants_none or not is_terminal else typer.style(word, fg=color, bold=True)

@@ -21,7 +21,7 @@ def info(
     arguments: ArgumentsOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Print a robot's tree, masses, joints, frames and what was odd."""
+    """Print a robot's tree, masses, joints, frames, oddities."""
     from onorbit_rs import robots
     from onorbit_rs.cli.printing import new_console, print_json
     from onorbit_rs.robots.describe import describe, print_info

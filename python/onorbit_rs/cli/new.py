@@ -31,7 +31,10 @@ def new(
     force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
     quiet: QuietOption = False,
 ) -> None:
-    """Write a commented scenario in which a robot's arm moves in orbit, tried before it is written."""
+    """Write a commented scenario that moves a robot's arm.
+
+    In orbit, tried before it is written; without --out it goes to standard output.
+    """
     given = of_file(robot, packages, arguments)
     claim(out, force=force)
     from onorbit_rs.drafting import draft

@@ -64,7 +64,9 @@ def of_file(robot: str, packages: list[Path] | None, arguments: list[str] | None
                 f"--package-path {folder}: there is no such folder", name="package_path", got=str(folder)
             )
     if arguments and not _may_be_xacro(Path(robot)):
-        raise InputError(f"--arg is for a xacro, and {robot} holds none: leave it out", name="arg", got=arguments)
+        raise InputError(
+            f"--arg is for a xacro, and {robot} holds none: leave it out", name="arg", got=arguments
+        )
     return {"package_paths": packages, "xacro_arguments": as_mapping(arguments)}
 
 

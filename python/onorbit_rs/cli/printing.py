@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import json
 import sys
+from typing import TYPE_CHECKING
 
 import typer
 from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
+from rich.table import Column, Table
 
 from onorbit_rs.printable import printable
+
+if TYPE_CHECKING:
+    from rich.console import JustifyMethod
 
 
 def text(value: object) -> str:
@@ -33,17 +37,39 @@ def _escaped(char: str) -> str:
     return json.dumps(char)[1:-1]
 
 
+class _Console(Console):
+    """Leaves a pipe that was closed to the command, which may have more to do; rich's ends with exit code 1."""
+
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError
+
+
 def new_console() -> Console:
     """Stdout, with no colours but ours; lines are as long as they are where nobody looks."""
-    console = Console(highlight=False)
+    console = _Console(highlight=False)
     if not console.is_terminal:
         console.width = 10_000
     return console
 
 
 def new_table(*header: str) -> Table:
-    """Columns side by side, no lines; numbers below a header stand to the right."""
+    """Columns side by side, no lines; without a header two, of which the second is broken where it is long."""
     table = Table(show_header=bool(header), box=None, padding=(0, 2, 0, 0), header_style="dim")
-    for name in header:
-        table.add_column(name, justify="right" if name in ("value", "gate") else "left")
+    for number, name in enumerate(header):
+        justify: JustifyMethod = "left" if name in ("", "unit") else "right"
+        table.add_column(name, justify=justify, no_wrap=number > 0)
     return table
+
+
+def print_table(console: Console, table: Table) -> None:
+    """Whole also on a narrow terminal, which then breaks the lines: no number and no name is cut."""
+    width = console.width
+    console.width = max(width, sum(_least(console, column) + 2 for column in table.columns))
+    console.print(table, crop=False)
+    console.width = width
+
+
+def _least(console: Console, column: Column) -> int:
+    """Words may be broken between, not within."""
+    sizes = [console.measure(text) for text in (column.header, *column.cells)]
+    return max(size.maximum if column.no_wrap else size.minimum for size in sizes)

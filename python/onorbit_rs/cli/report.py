@@ -16,7 +16,10 @@ def report(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Write one HTML page of a run with everything in it: figures, numbers, certificate, scenario."""
+    """Write one HTML page of a run, with everything in it.
+
+    Figures, numbers, certificate and scenario; the figures also as PDF.
+    """
     from onorbit_rs.cli.printing import print_json
     from onorbit_rs.progress import parts_bar
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.cli.failing import fail
+from onorbit_rs.cli.failing import as_far_as_read, fail
 from onorbit_rs.cli.options import (
     CheckpointOption,
     FolderArgument,
@@ -32,7 +32,10 @@ def run(
     view: ViewOption = False,
     checkpoint_every: CheckpointOption = None,
 ) -> None:
-    """Run a scenario and certify its momentum and energy: exit code 1 where they do not hold."""
+    """Run a scenario and certify its momentum and energy.
+
+    Exit code 1 where the certificate fails, 2 for errors, 130 after Ctrl-C.
+    """
     from onorbit_rs.running import CHECKPOINT_EVERY
     from onorbit_rs.running import run as run_scenario
 
@@ -56,7 +59,10 @@ def resume(
     view: ViewOption = False,
     checkpoint_every: CheckpointOption = None,
 ) -> None:
-    """Go on with a run that was killed or interrupted, to the same bits."""
+    """Go on with a run that was stopped, to the same bits.
+
+    Killed or interrupted: it left a checkpoint in DIR. Exit codes are those of onorbit run.
+    """
     from onorbit_rs.running import CHECKPOINT_EVERY
     from onorbit_rs.running import resume as resume_run
 
@@ -75,14 +81,15 @@ def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
 
     try:
         result = job()
-    except RunInterrupted as stop:  # caught here: typer would swallow a KeyboardInterrupt and its message
-        fail(str(stop), 130)
+    except RunInterrupted:
+        raise
     except KeyboardInterrupt:  # the simulation was over
         fail("stopped by Ctrl-C while the results were written; run it again with --force", 130)
-    if as_json:
-        print_json(result.summary)
-    elif not quiet:
-        print_summary(result.summary, result.out)
+    with as_far_as_read():
+        if as_json:
+            print_json(result.summary)
+        elif not quiet:
+            print_summary(result.summary, result.out)
     if not result.summary["certificate_passed"]:
         fail(_uncertified(result.summary), 1)
 

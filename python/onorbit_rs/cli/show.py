@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from onorbit_rs.cli.failing import say
+from onorbit_rs.cli.failing import as_far_as_read, say
 from onorbit_rs.cli.options import FolderArgument, JsonOption
 from onorbit_rs.cli.writing import claim, writing
 from onorbit_rs.exceptions import InputError
@@ -25,7 +25,10 @@ def show(
     force: Annotated[bool, typer.Option("--force", help="Replace the picture that is there.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Print the summary of a run and open its recording, or save a picture of it."""
+    """Print a run's summary and open its recording.
+
+    Or save a picture of it with --picture.
+    """
     from onorbit_rs.cli.printing import print_json
     from onorbit_rs.cli.summary import print_summary
     from onorbit_rs.output.read import read_summary
@@ -40,10 +43,11 @@ def show(
     summary = read_summary(folder)
     _check_moment(at or 0.0, float(summary.get("simulated_s") or 0.0))
     claim(picture, force=force)
-    if as_json:
-        print_json(summary)
-    else:
-        print_summary(summary, folder, is_new=False)
+    with as_far_as_read():
+        if as_json:
+            print_json(summary)
+        else:
+            print_summary(summary, folder, is_new=False)
     if picture is not None:
         save_picture(folder, picture, at or 0.0)
         if not as_json:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.cli.printing import new_console, new_table, text
+from onorbit_rs.cli.printing import new_console, new_table, print_table, text
 from onorbit_rs.output.checks import Check, checks
 from onorbit_rs.printable import shell_word
 
@@ -46,14 +46,14 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
     table = new_table()
     for name, value in (*_errors(summary), *_goals(summary), *_numbers(summary)):
         table.add_row(text(name), text(value))
-    console.print(table)
+    print_table(console, table)
     if summary.get("joint_limits_exceeded"):
         exceeded = text(summary["joint_limits_exceeded"])
         console.print(f"[yellow]joint limits were exceeded[/yellow]: {exceeded}", soft_wrap=True)
     console.print(_verdict(summary), soft_wrap=True)
     lines = checks(summary)
     if lines:
-        console.print(_certificate(lines))
+        print_table(console, _certificate(lines))
     if out is None:
         console.print("nothing was written; keep the results with --out DIR", soft_wrap=True)
         return
@@ -87,7 +87,10 @@ def _goals(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """What came of the goals of controllers."""
     for key, value in summary.items():
         if key.startswith("control_") and key.endswith("_result"):
-            yield f"{key.removeprefix('control_').removesuffix('_result')}: goal", str(value).replace("_", " ")
+            yield (
+                f"{key.removeprefix('control_').removesuffix('_result')}: goal",
+                str(value).replace("_", " "),
+            )
 
 
 def _numbers(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:

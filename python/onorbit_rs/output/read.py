@@ -121,6 +121,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
         raise ReadError(f"cannot read {file}: {error.strerror}", path=str(file), kind="summary") from error
     if not is_there:
         what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
+        what = "this is a file, not the folder of a run" if folder.is_file() else what
         raise NotFoundError(f"{what}: {folder}{_way_out(folder)}", path=str(folder), kind="run")
     try:
         return _checked(json.loads(file.read_text(encoding="utf-8")))

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 Summary = dict[str, Any]
 
+
 def summarize(
     trace: Trace,
     built: Built,
@@ -72,11 +73,15 @@ def _certificate(trace: Trace) -> Summary:
     balances: Summary = {name: value for name, value, _, _ in rows if value is not None}
     gates = {GATE + name: gate for name, value, gate, _ in rows if value is not None}
     failed = [name for name, _, _, passed in rows if not passed]
-    return balances | {
-        "certificate_passed": not failed,
-        "certificate_failures": ", ".join(failed),
-        "certificate_not_evaluated": ", ".join(name for name in CHECKS if name not in balances),
-    } | gates
+    return (
+        balances
+        | {
+            "certificate_passed": not failed,
+            "certificate_failures": ", ".join(failed),
+            "certificate_not_evaluated": ", ".join(name for name in CHECKS if name not in balances),
+        }
+        | gates
+    )
 
 
 def _tracking(trace: Trace) -> Summary:

@@ -11,6 +11,7 @@ from string import Template
 from typing import Any
 
 from onorbit_rs.output.checks import Check, checks
+from onorbit_rs.printable import printable
 from onorbit_rs.report.numbers import Row, groups
 
 _TEMPLATE = Path(__file__).with_name("page.html")
@@ -40,7 +41,7 @@ def page(
     version: str,
 ) -> str:
     """HTML of a report; nothing in it refers to anything outside."""
-    name = str(summary.get("scenario") or "run")
+    name = printable(summary.get("scenario") or "run")
     return Template(_TEMPLATE.read_text(encoding="utf-8")).substitute(
         title=escape(f"{name}: onorbit report"),
         name=escape(name),
@@ -105,7 +106,9 @@ def _data(row: Row) -> str:
 
 def _checks(summary: dict[str, Any]) -> str:
     lines = "\n".join(map(_check, checks(summary)))
-    head = '<th scope="col">{}</th><th scope="col" class="number">{}</th><th scope="col" class="number">{}</th>'
+    head = (
+        '<th scope="col">{}</th><th scope="col" class="number">{}</th><th scope="col" class="number">{}</th>'
+    )
     head = head.format("check", "value", "gate") + '<th scope="col">unit</th><th scope="col">verdict</th>'
     table = f'<div class="scroll"><table class="checks"><thead><tr>{head}</tr></thead>{lines}</table></div>'
     return table if lines else "<p>This run carries no certificate.</p>"

@@ -55,6 +55,7 @@ def describe(model: Model) -> dict[str, Any]:
 def print_info(model: Model, console: Console | None = None) -> None:
     """The tree, then tables of bodies and joints, then what was odd."""
     console = console or Console(highlight=False)
+    console.width = max(console.width, 72)  # a narrower terminal breaks the lines: no number is cut
     com, moments = _whole(model)
     counts = f"{_count(len(model.bodies), 'body', 'bodies')}, {_count(len(model.joints), 'joint', 'joints')}"
     console.print(
