@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+from commands import onorbit, refusal
 
 from onorbit_rs import scenarios
 
@@ -21,23 +22,13 @@ SHORT_REACH = (
 )
 
 
-def onorbit(*arguments: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+def in_a_process(*arguments: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "onorbit_rs", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False)
 
 
-def refusal(*arguments: str | Path, cwd: Path | None = None) -> str:
-    done = onorbit(*arguments, cwd=cwd)
-    assert done.returncode == 2, done
-    lines = done.stderr.splitlines()
-    assert len(lines) == 1, lines
-    assert lines[0].startswith("onorbit: ")
-    assert "Traceback" not in done.stderr + done.stdout
-    return lines[0]
-
-
 def test_list_names_every_bundled_scenario() -> None:
-    done = onorbit("list")
+    done = in_a_process("list")
     assert done.returncode == 0
     for name in ("humanoid_reach", "kepler_orbit", "free_tumble", "humanoid_torso", "humanoid_dual_arm"):
         assert name in done.stdout
@@ -114,7 +105,9 @@ def test_text_in_brackets_is_no_markup(tmp_path: Path) -> None:
     assert done.stdout.startswith("[/oops]: complete")
     assert "next: onorbit show 'o [x]'" in done.stdout
     for moment in ("nan", "7"):
-        assert "outside the run" in refusal_of_show(tmp_path, "o [x]", "--picture", "p.png", "--at", moment)
+        assert "outside the run" in refusal(
+            "show", "o [x]", "--picture", "p.png", "--at", moment, cwd=tmp_path
+        )
 
 
 @pytest.mark.parametrize("name", ["x.jpg", "x", "x.png.svg"])
@@ -122,12 +115,6 @@ def test_a_picture_that_would_be_no_png_is_refused(tmp_path: Path, name: str) ->
     (tmp_path / "summary.json").write_text('{"simulated_s": 1.0}')
     assert f"--picture {name} is no .png" in refusal("show", ".", "--picture", name, cwd=tmp_path)
     assert not (tmp_path / name).exists()
-
-
-def refusal_of_show(cwd: Path, *arguments: str) -> str:
-    done = onorbit("show", *arguments, cwd=cwd)
-    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done
-    return done.stderr
 
 
 def test_kilometres_forgotten_are_refused_by_check_and_leave_no_folder(tmp_path: Path) -> None:
@@ -143,7 +130,9 @@ def test_rows_left_out_leave_checks_out_and_the_summary_says_which(tmp_path: Pat
         SHORT_REACH.replace("time_step: 5 ms", "time_step: 5 ms\n  record_every: 2")
     )
     done = onorbit("run", "mine.yaml", cwd=tmp_path)
-    assert "base_rows_residual_rel, attitude_consistency" in done.stdout, done
+    for check in ("base rows residual", "attitude consistency"):
+        (line,) = [line for line in done.stdout.splitlines() if check in line]
+        assert line.split()[-2:] == ["not", "evaluated"], done
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
@@ -215,7 +204,7 @@ def test_a_run_that_diverges_on_mujoco_leaves_no_log_behind(tmp_path: Path) -> N
         "reference: {kind: joint_waypoints, points: [[1,1,1,1,1,1,1]], times: [1 s]}\n"
         "simulation: {duration: 5 s, time_step: 10 ms}\n"
     )
-    done = onorbit("run", "blow.yaml", "--out", "out", "--quiet", cwd=tmp_path)
+    done = in_a_process("run", "blow.yaml", "--out", "out", "--quiet", cwd=tmp_path)
     assert done.returncode != 0
     assert len(done.stderr.splitlines()) == 1, done.stderr
     assert sorted(file.name for file in tmp_path.iterdir()) == ["blow.yaml", "out"]

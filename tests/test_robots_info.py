@@ -90,7 +90,10 @@ def test_info_fits_a_terminal_of_80_columns(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a robot that is odd on purpose
         model = oo.robots.load(name)
-    assert all(len(line) <= 80 for line in done.stdout.splitlines())
+    lines = [
+        line for line in done.stdout.splitlines() if not line.startswith("  - ")
+    ]  # what was odd, in words
+    assert all(len(line) <= 80 for line in lines)
     for word in (*model.body_names, *model.joint_names, *model.frame_names, f"mass {model.mass:.6g} kg"):
         assert word in done.stdout, word
     assert "\x1b" not in done.stdout

@@ -152,8 +152,8 @@ __all__ = [
 __version__: str = build_info()["version"]
 
 _LATER = {
-    "Comparison": "comparison", "compare": "comparison", "Run": "running", "resume": "running", "run": "running",
-    "Scenario": "scenario",
+    "Comparison": "comparison", "compare": "comparison", "Scenario": "scenario",
+    "Run": "running", "resume": "running", "run": "running",
 }  # fmt: skip
 """Where names come from that are loaded when first asked for: numpy and pydantic take half a second."""
 _LATER_MODULES = ("layouts", "plants", "comparison", "running", "scenario")

@@ -1,4 +1,4 @@
-"""Text of others' on a terminal: shown as it is where that is harmless, escaped where it would steer the screen."""
+"""Text of others' on a terminal: as it is where that is harmless, escaped where it would steer the screen."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ import shlex
 
 _IN_ASCII = str.maketrans(
     {
-        "²": "^2", "³": "^3", "°": " deg", "µ": "u", "·": ".", "−": "-", "–": "-", "≤": "<=", "≥": ">=", "±": "+-", "×": "x",
-        "Δ": "d", "Σ": "sum ", "…": "...", "→": "->", "’": "'", "•": "-",
-        "─": "-", "━": "-", "│": "|", "┌": "+", "┐": "+", "└": "+", "┘": "+", "╭": "+", "╮": "+", "╰": "+", "╯": "+",
-        "├": "+", "┤": "+", "═": "=",
+        "²": "^2", "³": "^3", "°": " deg", "µ": "u", "·": ".", "−": "-", "≤": "<=", "≥": ">=", "±": "+-",
+        "×": "x", "Δ": "d", "Σ": "sum ", "…": "...", "→": "->", "’": "'",
     }
 )  # fmt: skip
 """What our own words hold beyond ASCII."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +28,7 @@ from onorbit_rs.output import (
 from onorbit_rs.output.divergence import divergence
 from onorbit_rs.output.relay import Relay
 from onorbit_rs.plants import versions
+from onorbit_rs.printable import shell_word
 from onorbit_rs.progress import ProgressCallback, doing, progress_bar
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
@@ -250,8 +250,7 @@ def _keep(
     tell: Callable[[str], None],
 ) -> None:
     """Write what there is of a run that stopped early, and say where."""
-    diverged = isinstance(stop, SimulationError)
-    if diverged:
+    if isinstance(stop, SimulationError):
         stop.message = divergence(stop, built)
     else:
         duration = built.scenario.simulation.duration
@@ -261,12 +260,13 @@ def _keep(
     if stop.trace is None or len(stop.trace.time) == 0:
         folder.discard()
         return
+    diverged = isinstance(stop, SimulationError)
     summary = _write_rows(stop.trace, "diverged" if diverged else "interrupted", built, folder)
     stop.message += f"; the trace so far is in {folder.path}"
     if diverged:  # such numbers make no picture, and there is nothing to go on to
         discard_checkpoint(folder)
     else:
-        stop.message += f"; go on with: onorbit resume {shlex.quote(str(folder.path))}"
+        stop.message += f"; go on with: onorbit resume {shell_word(folder.path)}"
         write_pictures(folder, stop.trace, summary, built, tell=tell)
 
 

@@ -30,7 +30,7 @@ def in_one_line(message: object) -> str:
 
 
 def encode_all() -> None:
-    """A stream whose encoding lacks a letter of ours gets one it has: no ``UnicodeEncodeError`` in ``LC_ALL=C``."""
+    """A letter that the encoding of a stream lacks becomes one it has, instead of an error."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors=LACKING)

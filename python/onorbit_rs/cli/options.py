@@ -53,6 +53,7 @@ def of_file(robot: str, packages: list[Path] | None, arguments: list[str] | None
     """
     from onorbit_rs import robots
 
+    values = as_mapping(arguments)
     if (packages or arguments) and not robots.is_file(robot):
         raise InputError(
             f"--package-path and --arg are for a robot's file, and {robot!r} is a name, not a path of one",
@@ -67,7 +68,7 @@ def of_file(robot: str, packages: list[Path] | None, arguments: list[str] | None
         raise InputError(
             f"--arg is for a xacro, and {robot} holds none: leave it out", name="arg", got=arguments
         )
-    return {"package_paths": packages, "xacro_arguments": as_mapping(arguments)}
+    return {"package_paths": packages, "xacro_arguments": values}
 
 
 def in_words(robot: str, packages: list[Path] | None, arguments: list[str] | None) -> str:

@@ -23,7 +23,7 @@ def text(value: object) -> str:
 
 
 def print_json(data: object) -> None:
-    """Data, and nothing else, on stdout; what is no letter, or what its encoding lacks, is escaped as in JSON."""
+    """Data, and nothing else, on stdout; what its encoding lacks or would steer a terminal is escaped."""
     said = json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False)
     try:
         said.encode(sys.stdout.encoding or "utf-8")
@@ -38,7 +38,7 @@ def _escaped(char: str) -> str:
 
 
 class _Console(Console):
-    """Leaves a pipe that was closed to the command, which may have more to do; rich's ends with exit code 1."""
+    """Leaves a closed pipe to the command, which may have more to do; rich would end with exit code 1."""
 
     def on_broken_pipe(self) -> None:
         raise BrokenPipeError
@@ -53,7 +53,7 @@ def new_console() -> Console:
 
 
 def new_table(*header: str) -> Table:
-    """Columns side by side, no lines; without a header two, of which the second is broken where it is long."""
+    """Columns side by side, no lines; numbers below a header stand to the right, the first may be broken."""
     table = Table(show_header=bool(header), box=None, padding=(0, 2, 0, 0), header_style="dim")
     for number, name in enumerate(header):
         justify: JustifyMethod = "left" if name in ("", "unit") else "right"

@@ -71,7 +71,8 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
 
 def _errors(summary: dict[str, Any]) -> list[tuple[str, str]]:
     """Largest tracking errors: each controller's under its name, or those of the one there is."""
-    named, single = [], []
+    named: list[tuple[str, str]] = []
+    single: list[tuple[str, str]] = []
     for key, value in summary.items():
         for ending, words, unit in _ERRORS if key.startswith("tracking_") else ():
             if key.endswith(ending):

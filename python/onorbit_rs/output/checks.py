@@ -20,7 +20,7 @@ CHECKS = {
 
 
 class Check(NamedTuple):
-    """A line; ``holds`` is None where it does not apply to the run, ``gate`` where an older run did not say it."""
+    """A line; ``holds`` is None where it does not apply, ``gate`` where an older run left it out."""
 
     key: str
     name: str

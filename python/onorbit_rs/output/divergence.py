@@ -28,8 +28,8 @@ def divergence(stop: SimulationError, built: Built) -> str:
     ways += ["softer gains"] if built.scenario.laws else []
     ways += ["more damping of the joint"] if worst >= 6 else []
     return (
-        f"the run diverged at t = {stop.time:.6g} s{step}: the state is no longer finite; fastest was {name}, "
-        f"{rates[worst]:.3g} {unit} when it last was; try {', or '.join(ways)}"
+        f"the run diverged at t = {stop.time:.6g} s{step}: the state is no longer finite; the fastest when "
+        f"it last was: {name}, {rates[worst]:.3g} {unit}; try {', or '.join(ways)}"
     )
 
 
