@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import json
 import os
 import shlex
 
@@ -28,7 +29,7 @@ def shell_word(text: str | os.PathLike[str]) -> str:
     r"""A word as a shell reads it back, quoted where needed.
 
     >>> shell_word("my run"), shell_word("a\nb")
-    ("'my run'", "$'a\\nb'")
+    ("'my run'", "$'a\\x0ab'")
     """
     word = os.fspath(text)
     if word.isprintable():
@@ -37,17 +38,25 @@ def shell_word(text: str | os.PathLike[str]) -> str:
     return f"$'{escaped}'"
 
 
+def json_text(data: object, *, indent: int | None = None) -> str:
+    r"""JSON whose strings hold letters as they are, and escaped what would steer a terminal or break a YAML.
+
+    >>> json_text({"µ": "\x9b"})
+    '{"µ": "\\u009b"}'
+    """
+    said = json.dumps(data, indent=indent, ensure_ascii=False, allow_nan=False)
+    return "".join(char if char.isprintable() or char == "\n" else json.dumps(char)[1:-1] for char in said)
+
+
 def _escaped(char: str) -> str:
     return char.encode("unicode_escape").decode("ascii")
 
 
 def _in_quotes(char: str) -> str:
-    """For ``$'…'`` of bash and zsh; a byte of a file's name that is no UTF-8 is that byte again."""
+    """For ``$'…'`` of bash and zsh: bytes, as a file's name is made of them."""
     if char in "\\'":
         return f"\\{char}"
-    if char.isprintable():
-        return char
-    return f"\\x{ord(char) - 0xDC00:02x}" if "\udc80" <= char <= "\udcff" else _escaped(char)
+    return char if char.isprintable() else "".join(f"\\x{byte:02x}" for byte in os.fsencode(char))
 
 
 def _replaced(error: UnicodeError) -> tuple[str, int]:

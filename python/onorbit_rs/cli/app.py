@@ -11,7 +11,15 @@ import typer
 from onorbit_rs.cli.check import check
 from onorbit_rs.cli.compare import compare
 from onorbit_rs.cli.convert import convert
-from onorbit_rs.cli.failing import encode_all, ending_well, fail, leave_stdout, of_controller, show_warning
+from onorbit_rs.cli.failing import (
+    encode_all,
+    ending_well,
+    fail,
+    leave_stdout,
+    of_controller,
+    say_all,
+    show_warning,
+)
 from onorbit_rs.cli.info import info
 from onorbit_rs.cli.list import list_
 from onorbit_rs.cli.new import new
@@ -53,7 +61,7 @@ def _print_version(is_asked: bool) -> None:
     if is_asked:
         from onorbit_rs import __version__
 
-        typer.echo(f"onorbit {__version__}")
+        say_all(f"onorbit {__version__}")
         raise typer.Exit
 
 
@@ -66,7 +74,7 @@ VersionOption = Annotated[
 def onorbit(context: typer.Context, version: VersionOption = False) -> None:
     """Simulate free-floating robots in orbit."""
     if context.invoked_subcommand is None:
-        typer.echo(context.get_help())
+        say_all(context.get_help())
         raise typer.Exit(2)
 
 

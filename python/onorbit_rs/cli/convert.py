@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from onorbit_rs.cli.failing import say
+from onorbit_rs.cli.failing import complain, say
 from onorbit_rs.cli.writing import claim, writing
 from onorbit_rs.printable import printable, shell_word
 
@@ -37,7 +37,7 @@ def convert(
     )
     check_scenario(done.scenario, None, {})
     for note in done.notes:
-        typer.echo(printable(note), err=True)
+        complain(printable(note))
     made_of = ", ".join(file.name for file in files)
     text = scenario_text(
         done.scenario, done.comments, f"Made by onorbit convert of {made_of}. SI and radians."

@@ -21,7 +21,18 @@ RED, YELLOW = typer.colors.RED, typer.colors.YELLOW
 
 def say(line: str) -> None:
     """A line on stdout, whatever names of files and robots it holds."""
-    typer.echo(printable(line))
+    say_all(printable(line))
+
+
+def say_all(text: str) -> None:
+    """On stdout, in its encoding: left to itself typer writes UTF-8 to a terminal of ASCII."""
+    typer.echo(text, file=sys.stdout)
+
+
+def complain(text: str) -> None:
+    """On stderr, if it is open."""
+    if sys.stderr is not None:
+        typer.echo(text, file=sys.stderr)
 
 
 def in_one_line(message: object) -> str:
@@ -46,9 +57,7 @@ def of_controller(error: Exception) -> str:
 
 def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
     """One line, without the place in our code."""
-    if sys.stderr is not None:
-        said = _colored("onorbit: warning:", YELLOW)
-        typer.echo(f"{said} {in_one_line(message)}", err=True)
+    complain(f"{_colored('onorbit: warning:', YELLOW)} {in_one_line(message)}")
 
 
 def ending_well(command: Callable[..., None]) -> Callable[..., None]:
@@ -86,8 +95,8 @@ def leave_stdout() -> None:
 
 def fail(message: str, code: int) -> NoReturn:
     """Say it on one line of stderr, and leave with this exit code."""
-    if message and sys.stderr is not None:
-        typer.echo(f"{_colored('onorbit:', RED)} {in_one_line(message)}", err=True)
+    if message:
+        complain(f"{_colored('onorbit:', RED)} {in_one_line(message)}")
     sys.exit(code)
 
 

@@ -6,12 +6,12 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from onorbit_rs.printable import printable
+from onorbit_rs.cli.failing import say_all
+from onorbit_rs.printable import json_text, printable
 
 if TYPE_CHECKING:
     from rich.console import JustifyMethod
@@ -23,18 +23,13 @@ def text(value: object) -> str:
 
 
 def print_json(data: object) -> None:
-    """Data, and nothing else, on stdout; what its encoding lacks or would steer a terminal is escaped."""
-    said = json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False)
+    """Data, and nothing else, on stdout; what its encoding lacks is escaped."""
+    said = json_text(data, indent=2)
     try:
         said.encode(sys.stdout.encoding or "utf-8")
     except UnicodeEncodeError:
         said = json.dumps(data, indent=2, allow_nan=False)
-    typer.echo("".join(char if char.isprintable() or char == "\n" else _escaped(char) for char in said))
-
-
-def _escaped(char: str) -> str:
-    """Stands in a string of the JSON: control characters of ASCII are escaped already."""
-    return json.dumps(char)[1:-1]
+    say_all(said)
 
 
 class _Console(Console):

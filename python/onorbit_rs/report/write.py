@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -75,7 +74,7 @@ def write_report(
         scenario=text,
         pictures=pictures,
         remarks=remarks,
-        again=f"onorbit run {shlex.quote('scenario.yaml')}",
+        again="onorbit run scenario.yaml",
         version=version,
     )
     with out.writing(REPORT) as file:
