@@ -93,7 +93,7 @@ def test_an_encoding_that_lacks_our_letters_gets_others(settings: dict[str, str]
         (("validate", "--list", "--only", "hill"), "<= "),
         (("check", "mine.yaml"), "ok: K\\xfcche: "),
         (("check", "mine.yaml", "--json"), '"scenario": "K\\u00fcche"'),
-        (("check", "Küche.yaml"), "K\\xfcche.yaml"),
+        (("check", "Küche.yaml"), "cche.yaml'"),  # its bytes mean nothing in the C locale
     ):
         done = subprocess.run(
             [sys.executable, "-m", "onorbit_rs", *words], capture_output=True, cwd=tmp_path, timeout=60,

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 import io
 import json
-import subprocess
-import sys
 import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
 from border import joint, massive, urdf
+from commands import onorbit
 from rich.console import Console
 
 import onorbit_rs as oo
 from onorbit_rs.robots.describe import describe, print_info
 
 MODEL = oo.robots.load("humanoid_dual_arm")
-
-
-def onorbit(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "onorbit_rs", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
 
 
 def text_of(model: oo.Model) -> str:

@@ -8,18 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.cli.printing import new_console, new_table, print_table, text
 from onorbit_rs.output.checks import Check, checks
+from onorbit_rs.output.words import goal_of, tracking
 from onorbit_rs.printable import shell_word
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-_ERRORS = (
-    ("_position_error_max_m", "position error", "m"),
-    ("_attitude_error_max_rad", "attitude error", "rad"),
-    ("_joint_error_max_rad", "joint error", "rad"),
-    ("_joint_error_max_m", "error of a sliding joint", "m"),
-)
-"""How the key of a tracking error ends: ``tracking_NAME…`` where it is that of one of several controllers."""
 _ROWS = (
     ("joint_torque_max_nm", "joint torque, largest", "N m"),
     ("joint_force_max_n", "force of a sliding joint, largest", "N"),
@@ -71,27 +65,18 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
 
 def _errors(summary: dict[str, Any]) -> list[tuple[str, str]]:
     """Largest tracking errors: each controller's under its name, or those of the one there is."""
-    named: list[tuple[str, str]] = []
-    single: list[tuple[str, str]] = []
-    for key, value in summary.items():
-        for ending, words, unit in _ERRORS if key.startswith("tracking_") else ():
-            if key.endswith(ending):
-                whose = key.removesuffix(ending).removeprefix("tracking").removeprefix("_")
-                kind = words if whose or "joint" in words else f"tool {words}"
-                said = (f"{whose}: {kind}, largest" if whose else f"{kind}, largest", _said(value, unit))
-                (named if whose else single).append(said)
-                break
-    return named or single  # the tool's errors are also those of the controller that moves it
+    found = [(tracking(key), value) for key, value in summary.items()]
+    largest = [(error, value) for error, value in found if error is not None and error.is_largest]
+    named = [(error, value) for error, value in largest if error.whose]
+    # the tool's errors are also those of the controller that moves it
+    return [(error.words, _said(value, error.unit)) for error, value in named or largest]
 
 
 def _goals(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """What came of the goals of controllers."""
     for key, value in summary.items():
-        if key.startswith("control_") and key.endswith("_result"):
-            yield (
-                f"{key.removeprefix('control_').removesuffix('_result')}: goal",
-                str(value).replace("_", " "),
-            )
+        if (whose := goal_of(key)) is not None:
+            yield f"{whose}: goal", str(value).replace("_", " ")
 
 
 def _numbers(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any, NamedTuple
 
 from onorbit_rs.output.checks import CHECKS
+from onorbit_rs.output.words import goal_of, tracking
 from onorbit_rs.units import with_prefix
 
 # longest first: `_rad_s` ends in `_s` too
@@ -71,14 +73,23 @@ def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
 def row(key: str, value: Any) -> Row:
     """One entry with its unit, which its key ends in."""
     ending, unit = next(((ending, unit) for ending, unit in _UNITS if key.endswith(ending)), ("", ""))
-    words = _NAMES.get(key) or key.removesuffix(ending).replace("_", " ")
-    shown = value
+    words = _NAMES.get(key) or _words(key, key.removesuffix(ending))
+    shown = value.replace("_", " ") if goal_of(key) and isinstance(value, str) else value
     if unit in _SCALED and isinstance(value, float) and _LEAST_SCALED <= abs(value) < 0.5:
         factor, unit = with_prefix(abs(value), unit)
         shown = factor * value
     if unit in ("rad", "mrad") and isinstance(value, float) and abs(value) > 0.01:
         unit += f" ({math.degrees(value):.3g}°)"
     return Row(key, words, value, _shown(shown), "" if unit == "relative" else unit)
+
+
+def _words(key: str, stem: str) -> str:
+    error, whose = tracking(key), goal_of(key)
+    if error is not None:
+        return error.words
+    if whose is not None:
+        return f"{whose}: goal"
+    return re.sub(r" max$", ", largest", re.sub(r" final\b", " at the end", stem.replace("_", " ")))
 
 
 def _shown(value: Any) -> str:
