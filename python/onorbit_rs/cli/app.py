@@ -11,20 +11,13 @@ import typer
 from onorbit_rs.cli.check import check
 from onorbit_rs.cli.compare import compare
 from onorbit_rs.cli.convert import convert
-from onorbit_rs.cli.failing import (
-    encode_all,
-    ending_well,
-    fail,
-    leave_stdout,
-    of_controller,
-    say_all,
-    show_warning,
-)
+from onorbit_rs.cli.failing import ending_well, fail, leave_stdout, of_controller
 from onorbit_rs.cli.info import info
 from onorbit_rs.cli.list import list_
 from onorbit_rs.cli.new import new
 from onorbit_rs.cli.report import report
 from onorbit_rs.cli.run import resume, run
+from onorbit_rs.cli.saying import encode_all, say_all, show_warning
 from onorbit_rs.cli.show import show
 from onorbit_rs.cli.validate import validate
 from onorbit_rs.exceptions import OnOrbitError

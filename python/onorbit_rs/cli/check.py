@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.cli.failing import say
 from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument
+from onorbit_rs.cli.saying import say
 from onorbit_rs.printable import shell_word
 
 if TYPE_CHECKING:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from onorbit_rs.cli.completing import scenario_names
-from onorbit_rs.cli.failing import as_far_as_read, say
+from onorbit_rs.cli.failing import as_far_as_read
 from onorbit_rs.cli.options import JsonOption
+from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim, writing
 from onorbit_rs.exceptions import InputError
 

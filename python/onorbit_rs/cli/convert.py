@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from onorbit_rs.cli.failing import complain, say
+from onorbit_rs.cli.saying import complain, say
 from onorbit_rs.cli.writing import claim, writing
 from onorbit_rs.printable import printable, shell_word
 

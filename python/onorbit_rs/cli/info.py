@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 
-from onorbit_rs.cli.failing import say
 from onorbit_rs.cli.options import (
     ArgumentsOption,
     JsonOption,
@@ -13,6 +12,7 @@ from onorbit_rs.cli.options import (
     in_words,
     of_file,
 )
+from onorbit_rs.cli.saying import say
 
 
 def info(

@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from onorbit_rs.cli.failing import say
 from onorbit_rs.cli.options import (
     ArgumentsOption,
     PackagesOption,
@@ -16,6 +15,7 @@ from onorbit_rs.cli.options import (
     in_words,
     of_file,
 )
+from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim, writing
 from onorbit_rs.printable import shell_word
 

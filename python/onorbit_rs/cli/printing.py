@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from onorbit_rs.cli.failing import say_all
+from onorbit_rs.cli.saying import say_all
 from onorbit_rs.printable import json_text, printable
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def print_json(data: object) -> None:
     """Data, and nothing else, on stdout; what its encoding lacks is escaped."""
     said = json_text(data, indent=2)
     try:
-        said.encode(sys.stdout.encoding or "utf-8")
+        said.encode(getattr(sys.stdout, "encoding", None) or "utf-8")
     except UnicodeEncodeError:
         said = json.dumps(data, indent=2, allow_nan=False)
     say_all(said)

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from onorbit_rs.cli.failing import say
 from onorbit_rs.cli.options import FolderArgument, JsonOption, QuietOption
+from onorbit_rs.cli.saying import say
 
 
 def report(

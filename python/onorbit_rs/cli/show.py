@@ -8,8 +8,9 @@ from typing import Annotated
 
 import typer
 
-from onorbit_rs.cli.failing import as_far_as_read, say
+from onorbit_rs.cli.failing import as_far_as_read
 from onorbit_rs.cli.options import FolderArgument, JsonOption
+from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim, writing
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.printable import shell_word
