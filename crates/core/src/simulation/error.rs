@@ -74,7 +74,7 @@ pub enum SimulationError {
     TooManyRows { rows: usize },
     #[error(
         "the run diverged at t = {time} s: the state is no longer finite; shorten time_step, or soften gains and joint damping \
-         (last finite q = {q:?}, v = {v:?})"
+         (the last finite state is in the error's q and v)"
     )]
     Diverged { time: f64, q: Vec<f64>, v: Vec<f64> },
     #[error("the run was interrupted at t = {time} s")]
