@@ -24,6 +24,7 @@ def show(
     """Print the summary of a run and open its recording, or save a picture of it."""
     from onorbit_rs.cli.printing import print_json, print_summary
     from onorbit_rs.output.read import read_summary
+    from onorbit_rs.output.robot import remark_on_robot
 
     if picture is not None and picture.suffix.lower() != ".png":
         raise InputError(
@@ -35,6 +36,8 @@ def show(
         print_json(summary)
         return
     print_summary(summary, folder, is_new=False)
+    if (remark := remark_on_robot(folder, summary)) is not None:
+        typer.echo(f"note: {remark}")
     if picture is not None:
         save_picture(folder, picture, at, float(summary.get("simulated_s") or 0.0))
     elif viewer:
