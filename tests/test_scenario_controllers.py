@@ -352,7 +352,9 @@ def test_what_update_raises_comes_out_as_itself(tmp_path: Path) -> None:
 def test_a_check_names_every_controller(capsys: pytest.CaptureFixture[str]) -> None:
     from onorbit_rs.cli.check import print_checked
 
-    print_checked(build(load(two(arm("right"), {"name": "left", "kind": "joint_pid", "joints": "left_*"}))))
+    print_checked(
+        build(load(two(arm("right"), {"name": "left", "kind": "joint_pid", "p": 1, "joints": "left_*"})))
+    )
     assert "joint_computed_torque, joint_pid" in capsys.readouterr().out
 
 
