@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import NotFoundError, RunInterrupted, SimulationError
+from onorbit_rs.exceptions import ModelError, NotFoundError, RunInterrupted, SimulationError
 from onorbit_rs.output import (
     CheckpointWriter,
     OutputFolder,
@@ -26,10 +27,11 @@ from onorbit_rs.output import (
     write_trace,
 )
 from onorbit_rs.output.relay import Relay
+from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.plants import versions
 from onorbit_rs.progress import ProgressCallback, doing, progress_bar
 from onorbit_rs.scenario import Scenario, load
-from onorbit_rs.scenario.build import Built, build
+from onorbit_rs.scenario.build import Built, build, make_robot
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,7 +43,8 @@ if TYPE_CHECKING:
 class Run:
     """What a run gave.
 
-    ``trace`` has the columns, ``summary`` is the dict of ``summary.json``, ``out`` the folder or None.
+    ``trace`` has the columns, ``summary`` is the dict of ``summary.json``, ``out`` the folder or None. A run
+    pickles, for :mod:`multiprocessing`: its rows travel, its robot is read again where they arrive.
     """
 
     trace: Trace
@@ -49,6 +52,20 @@ class Run:
     model: Model
     scenario: Scenario
     out: Path | None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Its parts without the robot, which the scenario names."""
+        return _arrived, (self.trace, self.summary, self.scenario, self.out)
+
+
+def _arrived(trace: Trace, summary: dict[str, Any], scenario: Scenario, out: Path | None) -> Run:
+    """A run from another process."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what the robot's file is like was told when it ran
+        model = make_robot(scenario)
+    if was_changed(model, summary):
+        raise ModelError(CHANGED)
+    return Run(trace, summary, model, scenario, out)
 
 
 CHECKPOINT_EVERY = 30.0
