@@ -33,6 +33,7 @@ def show(
     from onorbit_rs.cli.printing import print_json
     from onorbit_rs.cli.summary import print_summary
     from onorbit_rs.output.read import read_summary
+    from onorbit_rs.output.robot import remark_on_robot
 
     if picture is not None and picture.suffix.lower() != ".png":
         raise InputError(
@@ -49,6 +50,8 @@ def show(
             print_json(summary)
         else:
             print_summary(summary, folder, is_new=False)
+            if (remark := remark_on_robot(folder, summary)) is not None:
+                say(f"note: {remark}")
     if picture is not None:
         save_picture(folder, picture, at or 0.0)
         if not as_json:
