@@ -65,7 +65,7 @@ def layout(
     axes = "W (inertial axes)" if rows.quat_wl is None else "L (local orbital frame)"
     robot = rrb.Spatial3DView(
         origin="world",
-        name=f"{setting.model.name}: the eye follows the base, axes of {axes}",
+        name=f"{setting.robot}: the eye follows the base, axes of {axes}",
         spatial_information=rrb.SpatialInformation(FOLLOW, show_axes=False),
         eye_controls=stage.eye(),
         background=_BACKGROUND,
@@ -129,13 +129,15 @@ def _orbit(rows: Rows, setting: Setting) -> rrb.View:
         low, high = position.min(axis=0), position.max(axis=0)
         center, reach = (low + high) / 2.0, max(float(np.linalg.norm(high - low)) / 2.0, 1e-3)
         towards = np.array([0.5, -0.75, 0.45])
+    arrow = ""
     if earth is not None and has_sun(earth):  # half of it in the light
+        arrow = "; yellow arrow: to the Sun"  # here, since a label in space would stand before others
         sun = np.asarray(earth.sun(0.0)).reshape(3)
         towards -= 0.9 * (towards @ sun) / (sun @ sun) * sun
     towards /= np.linalg.norm(towards)
     return rrb.Spatial3DView(
         origin="orbit",
-        name="Orbit (inertial axes, km)",
+        name=f"Orbit (inertial axes, km{arrow})",
         spatial_information=rrb.SpatialInformation(INERTIAL, show_axes=False),
         eye_controls=rrb.EyeControls3D(
             position=center + 3.1 * reach * towards, look_target=center, eye_up=(0.0, 0.0, 1.0)
