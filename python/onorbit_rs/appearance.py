@@ -1,6 +1,6 @@
 """What a robot looks like: its visual geometry, and what stands in where the mesh of a link is missing.
 
-That is the link's own collision shapes, else a ball at its joint; rods go to the next joints, as in a stick figure.
+That is the link's own collision shapes, else a ball at its joint; rods go to the next joints.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def _is_missing(shape: Shape) -> bool:
 
 
 def _stick_figure(model: Model, bare: set[str], solid: set[str]) -> Iterator[Shape]:
-    """Rods through the bodies that have a bare link; at one that is not solid, a ball, or the base's box of inertia."""
+    """Rods through bodies that have a bare link; a ball at one not solid, or the base's box of inertia."""
     ends: dict[str, list[Floats]] = {body.name: [] for body in model.bodies}
     for joint in model.joints:
         ends[joint.parent].append(np.array(joint.pose)[:3, 3])

@@ -11,6 +11,7 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.viewer.arrows import Arrows
+from onorbit_rs.viewer.flight import is_apart, send_flight
 from onorbit_rs.viewer.planet import send_orbit_trail
 from onorbit_rs.viewer.recording import new_recording, open_stage, send_rows
 from onorbit_rs.viewer.rows import Rows
@@ -49,7 +50,7 @@ class LiveView:
         self._arrows: Arrows | None = None
         self._before: Rows | None = None
         self._angles: dict[str, Floats] = {}
-        self._count, self._is_lost = 0, False
+        self._count, self._is_lost, self._has_flight = 0, False, False
 
     def take(self, columns: Mapping[str, Floats]) -> None:
         """New rows, as a checkpoint holds them."""
@@ -87,6 +88,7 @@ class LiveView:
         if self._stage is None:
             self._stage = open_stage(recording, rows, setting, plots, self._duration_s, is_live=True)
             self._arrows = Arrows(recording, setting, self._stage)
+            self._has_flight = is_apart(rows, setting, self._stage)
         send_rows(recording, rows, setting, self._stage)
         for series in plots:
             send_series(recording, rows, self._continued(series))
@@ -99,6 +101,8 @@ class LiveView:
             send_trails(recording, joined, setting, MOST_ROWS, "obtained")
         if "position_eci" in rows:
             send_orbit_trail(recording, joined, MOST_ROWS)
+        if self._has_flight:
+            send_flight(recording, joined, setting, MOST_ROWS)
         self._before = rows.last()
 
     def _continued(self, series: Series) -> Series:

@@ -41,13 +41,13 @@ def escaped(text: str) -> str:
 
 
 def readable(text: str) -> str:
-    """Characters that break the line, turn the writing round or are not seen as ``\\n``, ``\\u202e``."""
-    return "".join(_told(character) if unicodedata.category(character)[0] == "C" or character in "\u2028\u2029"
-                   else character for character in text)  # fmt: skip
+    """Characters that break the line, turn the writing round or are not seen, as ``\\n``, ``\\u202e``."""
+    return "".join(map(_told, text))
 
 
 def _told(character: str) -> str:
-    return character.encode("unicode_escape").decode("ascii")
+    is_seen = unicodedata.category(character) not in ("Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp")
+    return character if is_seen else character.encode("unicode_escape").decode("ascii")
 
 
 def _short(value: Any) -> str:

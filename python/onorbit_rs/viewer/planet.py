@@ -58,7 +58,7 @@ def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> N
         put_in(recording, "orbit/sun", SUN)
         far = max(radius, float(np.linalg.norm(rows["position_eci"], axis=1).max()) / 1e3)
         arrow = rr.Arrows3D(
-            vectors=[[0.4 * far, 0.0, 0.0]], origins=[[1.3 * far, 0.0, 0.0]], radii=[far / 70.0],
+            vectors=[[0.35 * far, 0.0, 0.0]], origins=[[1.15 * far, 0.0, 0.0]], radii=[far / 70.0],
             colors=[(255, 225, 90)],
         )  # fmt: skip
         recording.log("orbit/sun", arrow, static=True, strict=True)
@@ -145,16 +145,11 @@ def _globe(radii: Floats, *, has_land: bool, bands: int = 60, sectors: int = 120
     v, u = (np.linspace(0.0, 1.0, count + 1) for count in (bands, sectors))
     colatitude, longitude = np.pi * v[:, None], 2.0 * np.pi * u[None, :] - np.pi
     unit = _directions(colatitude, longitude)
-    corner = (np.arange(bands)[:, None] * (sectors + 1) + np.arange(sectors)).reshape(-1)
-    below = corner + sectors + 1
-    triangles = np.concatenate(
-        [np.stack([corner, below, below + 1], axis=1), np.stack([corner, below + 1, corner + 1], axis=1)]
-    )
     return rr.Mesh3D(
         vertex_positions=(unit * radii).reshape(-1, 3),
         vertex_normals=np.zeros((unit.shape[0] * unit.shape[1], 3)),  # the Sun is the light, not the viewer's
         vertex_texcoords=np.stack(np.broadcast_arrays(u[None, :], v[:, None]), axis=-1).reshape(-1, 2),
-        triangle_indices=triangles,
+        triangle_indices=_triangles(bands, sectors),
         albedo_texture=world_map(has_land),
     )
 
@@ -167,17 +162,21 @@ def _night(radii: Floats, depth: float, bands: int = 24, sectors: int = 72) -> r
         indexing="ij",
     )
     unit = np.stack([np.cos(away), np.sin(away) * np.cos(around), np.sin(away) * np.sin(around)], axis=-1)
-    corner = (np.arange(bands)[:, None] * (sectors + 1) + np.arange(sectors)).reshape(-1)
-    below = corner + sectors + 1
-    triangles = np.concatenate(
-        [np.stack([corner, below, below + 1], axis=1), np.stack([corner, below + 1, corner + 1], axis=1)]
-    )
     positions = (unit * radii).reshape(-1, 3)
     return rr.Mesh3D(
         vertex_positions=positions,
         vertex_normals=np.zeros_like(positions),
-        triangle_indices=triangles,
+        triangle_indices=_triangles(bands, sectors),
         albedo_factor=(4, 8, 20, 105),
+    )
+
+
+def _triangles(bands: int, sectors: int) -> NDArray[np.int64]:
+    """(2 bands sectors, 3) corners of a net of so many cells, row by row."""
+    corner = (np.arange(bands)[:, None] * (sectors + 1) + np.arange(sectors)).reshape(-1)
+    below = corner + sectors + 1
+    return np.concatenate(
+        [np.stack([corner, below, below + 1], axis=1), np.stack([corner, below + 1, corner + 1], axis=1)]
     )
 
 

@@ -17,6 +17,7 @@ from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.axes import log_all_axes
 from onorbit_rs.viewer.blueprint import layout
 from onorbit_rs.viewer.encoded import Encoded
+from onorbit_rs.viewer.flight import is_apart, log_flight, log_whole_flight, send_flight
 from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames
 from onorbit_rs.viewer.notes import about_meshes, readable
 from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
@@ -82,6 +83,9 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
         send_trails(recording, rows, setting, MOST_TRAIL_PIECES, "obtained")
     if "position_eci" in rows:
         log_path_flown(recording, rows)
+    if is_apart(rows, setting, stage):
+        log_whole_flight(recording, rows, setting)
+        send_flight(recording, rows, setting, MOST_TRAIL_PIECES)
     Arrows(recording, setting, stage).send(rows)
     encoded.write_to(path)
     return path
@@ -123,6 +127,8 @@ def open_stage(
     log_targets(recording, setting, stage.size)
     if "position_eci" in rows:
         log_planet(recording, rows, setting)
+    if is_apart(rows, setting, stage):
+        log_flight(recording, rows, setting)
     for series in plots:
         log_style(recording, series)
     if notes:
