@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from onorbit_rs.viewer import silence  # noqa: F401  # before rerun is imported
 from onorbit_rs.viewer.notes import notes
 from onorbit_rs.viewer.recording import recorded_rows, write_recording
 from onorbit_rs.viewer.rows import TIMELINE

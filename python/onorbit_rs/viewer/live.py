@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from onorbit_rs.exceptions import ViewerError
 from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.flight import is_apart, send_flight
 from onorbit_rs.viewer.planet import send_orbit_trail
@@ -64,9 +65,19 @@ class LiveView:
                 self._show(Rows.of_trace(trace, slice(self._count, None)))
         with self._trouble():
             if not self._is_lost:
-                self._recording.flush(timeout_sec=GOODBYE_S)
+                self._say_goodbye()
         with self._trouble():
             self._recording.disconnect()
+
+    def _say_goodbye(self) -> None:
+        """Wait for the last rows to arrive; only here does rerun say that the viewer was closed."""
+        try:
+            self._recording.flush(timeout_sec=GOODBYE_S)
+        except Exception:
+            self._is_lost = True
+            warnings.warn(
+                "the viewer was closed, or did not answer, before it had seen the whole run", stacklevel=2
+            )
 
     @contextmanager
     def _trouble(self) -> Iterator[None]:
@@ -127,9 +138,10 @@ def open_live(setting: Setting, duration_s: float) -> LiveView | None:
     if not has_screen():
         warnings.warn("there is no screen here: the run goes on without the viewer", stacklevel=2)
         return None
-    url = open_viewer()
-    if url is None:
-        warnings.warn("the viewer did not start: the run goes on without it", stacklevel=2)
+    try:
+        url = open_viewer()
+    except ViewerError as error:
+        warnings.warn(f"{error}: the run goes on without it", stacklevel=2)
         return None
     try:
         recording = new_recording(setting)
