@@ -177,7 +177,13 @@ impl PyModel {
     /// Shapes to draw.
     #[getter]
     fn visuals(&self) -> Vec<PyVisual> {
-        records::visuals(&self.model)
+        records::shapes(&self.model, self.model.visuals())
+    }
+
+    /// Collision shapes that are no meshes; nothing collides here: the viewer draws them where a mesh is missing.
+    #[getter]
+    fn collisions(&self) -> Vec<PyVisual> {
+        records::shapes(&self.model, self.model.collisions())
     }
 
     /// The configuration at W's origin, unrotated, joints at zero: (nq,).
