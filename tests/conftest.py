@@ -6,7 +6,15 @@ from pathlib import Path
 
 import pytest
 
+from onorbit_rs import running
+
 REPOSITORY = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs in this process draw no figures and write no recording, which is what they take long for."""
+    monkeypatch.setattr(running, "write_pictures", lambda *_, **__: None)
 
 
 @pytest.fixture(scope="session")
