@@ -197,3 +197,12 @@ def test_every_kind_of_a_scenario_has_its_keys_told() -> None:
 def test_links_to_files_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\((?!https?:)([^)#\s]+)", in_text(page)):
         assert (page.parent / target).exists(), target
+
+
+def test_the_api_shows_no_helpers_of_scenarios() -> None:
+    """What a page lists of a class by name is there; a new key of a scenario is listed too."""
+    text = (DOCS / "api" / "scenarios.md").read_text()
+    listed = re.findall(r"^::: onorbit_rs\.(\w+)\n    options:\n      members: \[(.*)\]$", text, re.MULTILINE)
+    members = {name: set(found.split(", ")) for name, found in listed}
+    assert members["Scenario"] == {*oo.Scenario.model_fields, "file", "resolved"}
+    assert members["plants"] == {"Mujoco"}

@@ -196,26 +196,3 @@ def test_without_a_screen_it_is_said_and_the_run_is_the_same(monkeypatch: pytest
     with pytest.warns(UserWarning, match="no screen here: the run goes on without the viewer"):
         watched = oo.run(data, quiet=True, view=True)
     np.testing.assert_array_equal(watched.trace.q, oo.run(data, quiet=True).trace.q)
-
-
-def test_the_viewer_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    commands = []
-
-    class Process:
-        def poll(self) -> int:
-            return 1
-
-        def kill(self) -> None:
-            commands.append("killed")
-
-    def popen(command: list[str], **_: object) -> Process:
-        commands.append(command)
-        return Process()
-
-    monkeypatch.setattr(screen.subprocess, "Popen", popen)
-    assert screen.open_viewer() is None  # it ended at once
-    screen.open_recording(Path("run.rrd"))
-    assert commands[1] == "killed"
-    for command in (commands[0], commands[2]):
-        assert command[command.index("--bind") + 1] == "127.0.0.1"
-    assert screen.url_of(9876) == "rerun+http://127.0.0.1:9876/proxy"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import InputError, NotFoundError, RunInterrupted, SimulationError
+from onorbit_rs.exceptions import InputError, ModelError, NotFoundError, RunInterrupted, SimulationError
 from onorbit_rs.output import (
     CheckpointWriter,
     OutputFolder,
@@ -27,11 +28,12 @@ from onorbit_rs.output import (
 )
 from onorbit_rs.output.divergence import divergence
 from onorbit_rs.output.relay import Relay
+from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.plants import versions
 from onorbit_rs.printable import shell_word
 from onorbit_rs.progress import ProgressCallback, doing, progress_bar
 from onorbit_rs.scenario import Scenario, load
-from onorbit_rs.scenario.build import Built, build
+from onorbit_rs.scenario.build import Built, build, make_robot
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,7 +45,8 @@ if TYPE_CHECKING:
 class Run:
     """What a run gave.
 
-    ``trace`` has the columns, ``summary`` is the dict of ``summary.json``, ``out`` the folder or None.
+    ``trace`` has the columns, ``summary`` is the dict of ``summary.json``, ``out`` the folder or None. A run
+    pickles, for :mod:`multiprocessing`: its rows travel, its robot is read again where they arrive.
     """
 
     trace: Trace
@@ -51,6 +54,20 @@ class Run:
     model: Model
     scenario: Scenario
     out: Path | None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Its parts without the robot, which the scenario names."""
+        return _arrived, (self.trace, self.summary, self.scenario, self.out)
+
+
+def _arrived(trace: Trace, summary: dict[str, Any], scenario: Scenario, out: Path | None) -> Run:
+    """A run from another process."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what the robot's file is like was told when it ran
+        model = make_robot(scenario)
+    if was_changed(model, summary):
+        raise ModelError(CHANGED)
+    return Run(trace, summary, model, scenario, out)
 
 
 CHECKPOINT_EVERY = 30.0

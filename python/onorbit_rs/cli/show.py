@@ -33,6 +33,7 @@ def show(
     from onorbit_rs.cli.printing import print_json
     from onorbit_rs.cli.summary import print_summary
     from onorbit_rs.output.read import read_summary
+    from onorbit_rs.output.robot import remark_on_robot
 
     if picture is not None and picture.suffix.lower() != ".png":
         raise InputError(
@@ -49,6 +50,8 @@ def show(
             print_json(summary)
         else:
             print_summary(summary, folder, is_new=False)
+            if (remark := remark_on_robot(folder, summary)) is not None:
+                say(f"note: {remark}")
     if picture is not None:
         save_picture(folder, picture, at or 0.0)
         if not as_json:
@@ -58,14 +61,30 @@ def show(
 
 
 def open_viewer(folder: Path) -> None:
-    """Open the recording of a run where there is a screen, or say how."""
+    """Open the recording of a run where there is a screen, or say how.
+
+    Raises
+    ------
+    ViewerError
+        There is a screen, and the viewer does not open on it.
+    """
+    from onorbit_rs.exceptions import ViewerError
     from onorbit_rs.viewer.screen import has_screen, open_recording
 
     recording = folder / "run.rrd"
-    if recording.is_file() and has_screen():
+    if not recording.is_file():
+        return
+    way_out = (
+        f"save a picture with: onorbit show {shell_word(folder)} --picture FILE.png, "
+        f"or open it elsewhere with: rerun {shell_word(recording)}"
+    )
+    if not has_screen():
+        say(f"no screen here; {way_out}")
+        return
+    try:
         open_recording(recording)
-    elif recording.is_file():
-        say(f"no screen here; open the recording with: rerun {shell_word(recording)}")
+    except ViewerError as error:
+        raise ViewerError(f"{error}; {way_out}", reason=error.reason) from error
 
 
 def _check_moment(at_s: float, end_s: float) -> None:

@@ -12,6 +12,7 @@ from onorbit_rs import _core
 from onorbit_rs.output.checks import CHECKS, GATE
 from onorbit_rs.output.joints import joint_errors, joint_loads, single_errors
 from onorbit_rs.plants import versions
+from onorbit_rs.robots.fingerprint import fingerprint
 from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario.control import JOINT_LAWS
 
@@ -61,7 +62,7 @@ def summarize(
         | versions(scenario.plant)
         | _settings(scenario)
         | _orbit(trace, scenario, built.orbit)
-        | {"warnings": "; ".join(built.model.warnings)}
+        | {"warnings": "; ".join(built.model.warnings), "robot_fingerprint": fingerprint(built.model)}
         | _versions()
     )
     return {key: _plain(value) for key, value in summary.items()}

@@ -10,6 +10,7 @@ import numpy as np
 import yaml
 
 from onorbit_rs.output.folder import FIGURES, OutputFolder
+from onorbit_rs.output.travel import arrays_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,9 +38,7 @@ def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
 def write_trace(folder: OutputFolder, trace: Trace) -> None:
     """``trace.npz``: the columns of the trace under their own names, and the errors of each controller."""
     with folder.writing("trace.npz") as path, path.open("wb") as stream:
-        columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
-        columns |= {f"tracking_{name}": np.asarray(errors) for name, errors in trace.tracking.items()}
-        columns |= {f"wrench_{name}": np.asarray(rows) for name, rows in trace.wrenches.items()}
+        columns = arrays_of(trace)
         if len(trace.rereferenced):
             columns["rereferenced"] = np.asarray(trace.rereferenced)
         np.savez(stream, allow_pickle=False, **columns)
@@ -70,7 +69,7 @@ def write_pictures(
     tell("writing the recording")
     with folder.writing("run.rrd") as path:
         setting = viewer.Setting.of(built)
-        viewer.write_recording(path, trace, setting, notes=notes(summary, built.scenario))
+        viewer.write_recording(path, trace, setting, notes=viewer.notes(summary, built.scenario))
 
 
 def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
@@ -79,13 +78,3 @@ def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
     settings = data["simulation"]
     settings.setdefault("control_period", settings["time_step"])
     return data
-
-
-def notes(summary: dict[str, Any], scenario: Scenario) -> str:
-    """The summary as Markdown."""
-    rows = "\n".join(f"| {key} | {_short(value)} |" for key, value in summary.items())
-    return f"# {scenario.name}\n\n{scenario.description}\n\n| | |\n|-|-|\n{rows}\n"
-
-
-def _short(value: Any) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -6,12 +6,13 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from onorbit_rs import _core
 from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError
 from onorbit_rs.output.folder import FIGURES, REPORT, OutputFolder
 from onorbit_rs.output.read import read_summary, read_trace
+from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.report.page import Picture, page
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import make_robot
@@ -60,7 +61,7 @@ def write_report(
     text, scenario = _scenario(out.path / "scenario.yaml")
     remarks: list[str] = []
     tell("reading the trace", 0.0)
-    subject = _subject(out.path, scenario, remarks)
+    subject = _subject(out.path, scenario, summary, remarks)
     pictures: list[Picture] = []
     if summary.get("status") == "diverged":
         remarks.append("the run diverged: its numbers make no picture")
@@ -92,14 +93,17 @@ def _scenario(file: Path) -> tuple[str, Scenario]:
     return text, load(file)
 
 
-def _subject(folder: Path, scenario: Scenario, remarks: list[str]) -> Subject:
-    """What there is to draw; a robot, an orbit or an Earth whose files are gone is a remark."""
+def _subject(folder: Path, scenario: Scenario, summary: dict[str, Any], remarks: list[str]) -> Subject:
+    """What there is to draw; a robot, an orbit or an Earth whose files are gone or changed is a remark."""
     from onorbit_rs import figures
 
     trace = read_trace(folder)
     model = orbit = earth = None
     with _remarked(remarks, "the robot could not be read, figures that show it are left out"):
         model = make_robot(scenario)
+        if was_changed(model, summary):
+            model = None
+            remarks.append(f"{CHANGED}; figures that show it are left out")
     with _remarked(remarks, "the orbit could not be read, figures that show it are left out"):
         orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, folder)
         earth = make_earth(scenario, orbit, folder)

@@ -44,6 +44,10 @@ pub enum SimulationError {
     RecordEvery,
     #[error("{effect} needs an orbit around a planet: give the simulation one, or give the path its mu")]
     NeedsOrbit { effect: String },
+    #[error(
+        "{effect} is given twice for body '{body}' and would count twice: give it once, or each of the two to other bodies"
+    )]
+    EffectTwice { effect: String, body: String },
     #[error("the controller tracks a frame but the simulation has no reference to track: give it one")]
     NeedsReference,
     #[error(
