@@ -31,7 +31,7 @@ class GravityFieldEffect(Part):
         """Whether ``model`` is a path."""
         return self.model.endswith(".gfc")
 
-    def make(self, folder: Path) -> _core.GravityField:
+    def make(self, _model: _core.Model, folder: Path) -> _core.GravityField:
         """The engine's."""
         degree = {} if self.degree is None else {"degree": self.degree}
         if self.is_file:
