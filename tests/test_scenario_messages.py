@@ -160,6 +160,33 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
         "2: simulation",
         ("record_every is 5000", "1000 steps", "at most 1000"),
     ),
+    "rows, a switch": (
+        ROBOT + "simulation: {duration: 1, record_every: true}\n",
+        "2: simulation.record_every",
+        ("a whole number is needed",),
+    ),
+    "elements by their letters": (
+        LAW + "orbit: {a: 7000 km}\n",
+        "5: orbit.a",
+        ("did you mean 'semi_major_axis'?",),
+    ),
+    "light without an orbit": (
+        LAW + "environment: [radiation_pressure]\n",
+        "5: environment[0]",
+        ("radiation pressure needs an 'orbit'",),
+    ),
+    "a unit that is none": (
+        ROBOT + "simulation: {duration: 5 sec}\n",
+        "2: simulation.duration",
+        ("unknown unit 'sec';", "s, ms, us, min"),
+    ),
+    "no points": (
+        LAW + "reference: {kind: waypoints, points: [], speed: 1}\n",
+        "5: reference.points",
+        ("has 0 entries, needs at least 1",),
+    ),
+    "a quote left open": ("robot: 'humanoid\n" + RUN, "3", ("broken YAML", "is a quote left open?")),
+    "a sign of YAML's": ("robot: @torso\n" + RUN, "1", ("'@'", "wants quotes")),
     "integrator": (
         ROBOT + "simulation: {duration: 1, integrator: euler}\n",
         "2: simulation.integrator",

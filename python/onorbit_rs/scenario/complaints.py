@@ -72,7 +72,7 @@ def _said(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> str:
         return f"{shown(given)} is not one of {context['expected']}{_near(given, context)}"
     if kind in ("too_short", "too_long"):
         needed = context["min_length" if kind == "too_short" else "max_length"]
-        return f"has {context['actual_length']} entries, needs {needed}"
+        return f"has {context['actual_length']} entries, needs {'at least 1' if needed == 1 else needed}"
     if kind == "greater_than_equal":
         return f"{shown(given)} is below {context['ge']}, the least that is allowed"
     if kind == "less_than_equal":

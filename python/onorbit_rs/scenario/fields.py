@@ -67,6 +67,17 @@ Inertia = Annotated[float, _reader(units.INERTIA)]
 Stiffness = Annotated[float, _reader(units.STIFFNESS)]
 
 
+def _whole(value: object) -> object:
+    if isinstance(value, bool):
+        raise QuantityError(
+            f"{value} is no number; a whole number is needed", text=value, expected="a number"
+        )
+    return value
+
+
+Whole = Annotated[int, BeforeValidator(_whole)]
+
+
 def _drift(value: object) -> float | Literal["never"]:
     if value in ("never", math.inf):
         return "never"

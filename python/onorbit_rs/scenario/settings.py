@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from onorbit_rs.scenario.fields import Drift, NotNegative, Number, Positive, Time
+from onorbit_rs.scenario.fields import Drift, NotNegative, Number, Positive, Time, Whole
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.refusals import wrong
 
@@ -36,7 +36,7 @@ class SimulationSettings(Part):
     """Whether rigid stops keep the joints within their position limits."""
     restitution: Number = Field(default=0.0, ge=0.0, le=1.0)
     """Share of its rate that a joint keeps when it hits a stop."""
-    record_every: int = Field(default=1, ge=1, le=MAX_STEPS)
+    record_every: Whole = Field(default=1, ge=1, le=MAX_STEPS)
     """One row of the trace every so many steps."""
     record_wrenches: bool = False
     """Whether the trace holds the wrench of every effect on every body."""
