@@ -157,8 +157,8 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     ),
     "rows, too few": (
         ROBOT + "simulation: {duration: 1, record_every: 5000}\n",
-        "2: simulation",
-        ("record_every is 5000", "1000 steps", "at most 1000"),
+        "2: simulation.record_every",
+        ("5000 is more than the 1000 steps", "at most 1000"),
     ),
     "rows, a switch": (
         ROBOT + "simulation: {duration: 1, record_every: true}\n",

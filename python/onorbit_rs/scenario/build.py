@@ -12,7 +12,7 @@ from onorbit_rs import _core, robots
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
 from onorbit_rs.scenario.make_orbit import integrated, make_orbit
-from onorbit_rs.scenario.place import located
+from onorbit_rs.scenario.place import dotted, located, scenario_error
 from onorbit_rs.scenario.plant import make_plant
 from onorbit_rs.scenario.reference import Start
 from onorbit_rs.scenario.schema import Scenario
@@ -48,6 +48,7 @@ def build(scenario: Scenario) -> Built:
     OnOrbitError
         The fitting subclass, with file, line and place before the engine's own words.
     """
+    _check_rows(scenario)
     beside = scenario.file.parent if scenario.file else Path()
     with located(scenario, "robot"):
         model = make_robot(scenario)
@@ -90,6 +91,15 @@ def build(scenario: Scenario) -> Built:
 
     try_one_step(scenario, simulation()[0])  # a controller in Python may remember it: the run gets another
     return Built(scenario, model, orbit, earth, q, v, *simulation())
+
+
+def _check_rows(scenario: Scenario) -> None:
+    """Refuse a run of which its two ends alone would be recorded; folders of such runs are still read."""
+    every, steps = scenario.simulation.record_every, scenario.simulation.steps
+    if every > steps:
+        at = ("simulation", "record_every")
+        message = f"{every} is more than the {steps} steps of the run: take at most {steps}, for its two ends"
+        raise scenario_error(message, scenario.file, scenario.line_of(*at), dotted(at))
 
 
 def _controlled(scenario: Scenario, start: Start) -> tuple[Any, Any]:

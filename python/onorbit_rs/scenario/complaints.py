@@ -40,11 +40,11 @@ def _place_and_message(details: ErrorDetails, data: Any) -> tuple[Location, str]
         known = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
         return (*at, "kind"), f"unknown kind {context['tag']!r}{did_you_mean(context['tag'], known)}"
     if kind == "missing":
-        return at, "is missing" + FORMS.get(at[-1] if at else "", "")
+        return at, "is missing" + _FORMS.get(at[-1] if at else "", "")
     return at, _said(kind, details, context)
 
 
-FORMS: dict[str | int, str] = {
+_FORMS: dict[str | int, str] = {
     "robot": ": a bundled name (humanoid_torso), a URDF, or {rigid_body: {mass: ..., inertia: ...}}",
     "simulation": ": at least {duration: 10 s}",
 }
