@@ -217,7 +217,7 @@ def test_torques_are_held_for_the_period_of_control_and_switches_are_hit() -> No
 
 
 def test_a_resumed_run_has_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("onorbit_rs.running.write_pictures", lambda *_, **__: None)
+    monkeypatch.setattr("onorbit_rs.keeping.write_pictures", lambda *_, **__: None)
     data = scenario("humanoid_reach", duration=0.5) | {"plant": "mujoco"}
     whole = oo.run(data)
 
