@@ -79,7 +79,7 @@ def test_the_flight_beside_the_reference_is_seen_live(tmp_path: Path) -> None:
     built = build(load("hill_relative"))
     watched = Watched(tmp_path, built)
     moving, static = rows_by_entity(watched.path)
-    assert 0 < moving["/world/flight/base/trail"] and "/world/flight/axes" in static
+    assert moving["/world/flight/base/trail"] > 0 and "/world/flight/axes" in static
     strips = [strip[0] for strip in column(watched.path, "/world/flight/base/trail", "LineStrips3D:strips")]
     for before, after in itertools.pairwise(strips):
         assert before[1] == after[0]
