@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from test_cli import onorbit, refusal
+from commands import onorbit, refusal
 
 import onorbit_rs as oo
 from onorbit_rs.drafting import draft
 from onorbit_rs.drafting.arm import find_arm
+from onorbit_rs.drafting.motion import configuration
+from onorbit_rs.drafting.reaction import turn_per_metre
+from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario import load
 
 INERTIAL = (
@@ -23,9 +26,15 @@ INERTIAL = (
 )
 
 
-def arm(joints: list[tuple[str, str, str]], *, limits: str = 'lower="-2" upper="2"', names: str = "") -> str:
+def arm(
+    joints: list[tuple[str, str, str]],
+    *,
+    limits: str = 'lower="-2" upper="2"',
+    names: str = "",
+    base: tuple[float, float] = (100, 20),
+) -> str:
     """A chain of (name, type, axis) joints on a base of 100 kg, links of 0.2 m; ends in ``names``."""
-    parts = [f'<link name="base">{INERTIAL.format(mass=100, i=20)}</link>']
+    parts = [f'<link name="base">{INERTIAL.format(mass=base[0], i=base[1])}</link>']
     parent = "base"
     for index, (name, kind, axis) in enumerate(joints):
         last = index == len(joints) - 1
@@ -79,7 +88,7 @@ def test_every_bundled_robot_gets_a_scenario_that_certifies(robot: str, tmp_path
 def test_robots_of_others_get_one_too(shared: Path, name: str, tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text(draft(str(shared / "models" / name), beside=tmp_path).text)
-    ran(file)
+    assert ran(file)["base_rotation_max_rad"] < 0.4  # Canadarm2's turned by 121 degrees once
 
 
 @pytest.mark.parametrize(
@@ -110,6 +119,34 @@ def test_arms_of_every_kind(urdf: str, kind: str | None, moves: str, tmp_path: P
     assert moves in scenario.description
     assert scenario.robot.urdf == Path("mine.urdf")
     ran(file)
+
+
+def test_an_arm_that_is_heavy_for_its_base_leaves_it_nearly_as_it_is(tmp_path: Path) -> None:
+    """Links of 3 kg on 1 kg: the longest of the lines would turn the base by 54 degrees."""
+    (tmp_path / "mine.urdf").write_text(arm(SEVEN, names="tool", base=(1, 0.01)))
+    file = tmp_path / "mine.yaml"
+    file.write_text(draft(str(tmp_path / "mine.urdf"), beside=tmp_path).text)
+    assert 0.01 < ran(file)["base_rotation_max_rad"] < 0.4
+
+
+def test_a_turn_of_the_base_is_foretold() -> None:
+    """A small motion, run: what the Jacobians of the start say, to the first order."""
+    model = oo.robots.load("humanoid_torso")
+    joints = dict(zip(model.joint_names, [0.53, -2.34, -2.0, -2.22, -2.27, -0.13, -0.2], strict=True))
+    found = find_arm(model)
+    assert found is not None
+    q = configuration(model, joints)
+    foretold = turn_per_metre(model, found, q)
+    for axis in range(3):
+        step = np.zeros(3)
+        step[axis] = 0.01
+        start = model.frame_pose(q, found.tool)
+        trace = oo.Simulation(
+            model, q, np.zeros(model.nv), controller=oo.ComputedTorque(model, found.tool, kp=100, kd=20),
+            reference=oo.LineParabola(start, displacement=step, duration=1.0), time_step=1e-2,
+        ).run(1.5)  # fmt: skip
+        turned = angle_between(trace.q[-1, 3:7], trace.q[0, 3:7])
+        assert turned == pytest.approx(0.01 * foretold[axis], rel=0.1)
 
 
 def test_every_section_and_number_has_a_comment() -> None:

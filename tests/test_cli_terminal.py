@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_cli import SHORT_REACH, onorbit, refusal
+from commands import onorbit, refusal
+from test_cli import SHORT_REACH
 
 from onorbit_rs import progress, robots, scenarios
 

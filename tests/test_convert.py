@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from border import Bad, check
+from commands import onorbit
 
 import onorbit_rs as oo
 from onorbit_rs.interop.expressions import evaluate
@@ -170,6 +170,84 @@ def test_a_controller_with_its_robot(tmp_path: Path) -> None:
     assert "kd" not in other.scenario["controller"] and verdicts(other)["kv_value"] == "corrected"
 
 
+# as robot_torso has them: an arm each, and the head by ROS Control
+SIDES = "".join(
+    f"""\
+  {side}_arm_controller:
+    type: "talos_control/TorsoEffortController"
+    end_effector_link: {side}_tool
+    joints: [{", ".join(f"{side}_joint_{index}" for index in joints)}]
+    trajectory_duration: {duration}
+    kp_value: 100.0
+    kv_value: 20.0
+"""
+    for side, joints, duration in (("right", range(1, 8), 3.0), ("left", range(1, 7), 4.0))
+)
+HEAD = """\
+  wrist_controller:
+    type: effort_controllers/JointPositionController
+    joint: left_joint_7
+    pid: {p: 50.0, i: 10.0, d: 1.0}
+  joint_state_controller:
+    type: joint_state_controller/JointStateController
+    publish_rate: 50
+"""
+DUAL = oo.robots.path("humanoid_dual_arm")
+
+
+def test_controllers_of_joints_of_their_own_run_at_once(tmp_path: Path) -> None:
+    done = convert([*write(tmp_path, control="talos:\n" + SIDES + HEAD), DUAL])
+    scenario = load(done.scenario)
+    assert [(law.name, law.kind) for law in scenario.laws] == [
+        ("right_arm_controller", "computed_torque"),
+        ("left_arm_controller", "computed_torque"),
+        ("wrist_controller", "joint_pid"),
+    ]
+    right, left, wrist = done.scenario["controllers"]
+    assert (right["tool"], left["tool"], right["kp"], left["kd"]) == ("right_tool", "left_tool", 100.0, 20.0)
+    assert left["joints"] == [f"left_joint_{index}" for index in range(1, 7)]
+    assert left["reference"]["duration"] == scenario.simulation.duration == 4.0
+    assert (wrist["joints"], wrist["p"], wrist["d"], "i" in wrist) == (["left_joint_7"], [50.0], [1.0], False)
+    told = verdicts(done)
+    assert told["joint_state_controller"] == "no meaning" and told["left_arm_controller"] == "understood"
+    assert any("integral is held at zero" in note.text for note in done.notes)
+    build(scenario).simulation.run(0.05)
+    # one of them, as before
+    one = convert([*write(tmp_path, control="talos:\n" + SIDES), DUAL], controller="left_arm_controller")
+    assert one.scenario["tool"] == "left_tool" and "controllers" not in one.scenario
+
+
+def test_gains_of_ros_control_become_those_of_a_pid(tmp_path: Path) -> None:
+    joints = oo.robots.load("humanoid_torso").joint_names
+    gains = "".join(
+        f"    {name}: {{p: {100 + k}, d: 2, i: 1, i_clamp: 3}}\n" for k, name in enumerate(joints)
+    )
+    text = "arm:\n  type: effort_controllers/JointTrajectoryController\n"
+    done = convert([*write(tmp_path, pid=f"{text}  joints: [{', '.join(joints)}]\n  gains:\n{gains}"), ROBOT])
+    (arm,) = done.scenario["controllers"]
+    assert (arm["p"], arm["i"], arm["i_limit"]) == ([100.0 + k for k in range(7)], [1.0] * 7, [3.0] * 7)
+    build(load(done.scenario)).simulation.run(0.01)
+
+
+def test_controllers_that_share_joints_are_one_at_a_time(tmp_path: Path) -> None:
+    shared = SIDES.replace("left_joint_6", "right_joint_1")
+    done = convert([*write(tmp_path, control="talos:\n" + shared), DUAL])
+    assert done.scenario["tool"] == "right_tool" and "controllers" not in done.scenario
+    (told,) = (note.text for note in done.notes if note.key == "left_arm_controller")
+    assert "drives joints that another drives" in told and "--controller" in told
+
+
+def test_a_list_of_controllers_is_written_with_its_lines(tmp_path: Path) -> None:
+    write(tmp_path, control="talos:\n" + SIDES)
+    done = onorbit("convert", "control.yaml", DUAL, "--out", "mine.yaml", cwd=tmp_path)
+    assert done.returncode == 0, done
+    text = (tmp_path / "mine.yaml").read_text()
+    assert '\n  - name: "right_arm_controller"\n    tool: "right_tool"' in text
+    assert re.search(r"\n    kp: 100.0 +# control.yaml:7: kp_value: 100.0\n", text), text
+    assert re.search(r"\n    reference: .*# the target came over a ROS topic", text), text
+    assert onorbit("check", "mine.yaml", cwd=tmp_path).returncode == 0
+
+
 @pytest.mark.parametrize(
     ("text", "value"),
     [
@@ -272,9 +350,19 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
         ("joints", "list"),
     ),
     "ROS Control": (
-        "arm:\n  type: effort_controllers/JointTrajectoryController\n",
+        "arm:\n  type: position_controllers/JointTrajectoryController\n",
         "ScenarioError",
         ("ROS Control", "Trajectory"),
+    ),
+    "ROS Control, a joint without gains": (
+        "arm:\n  type: effort_controllers/JointTrajectoryController\n  joints: [a,b]\n  gains: {a: {p: 1}}\n",
+        "ScenarioError",
+        (":4:", "arm.gains", "no gains for b"),
+    ),
+    "ROS Control, a gain misspelt": (
+        "arm:\n  type: effort_controllers/JointPositionController\n  joint: a\n  pid: {p: 1, dd: 2}\n",
+        "ScenarioError",
+        (":4:", "arm.pid.dd", "i_clamp"),
     ),
     "empty": ("", "ScenarioError", ("no parameters",)),
     "a list": ("- 1", "ScenarioError", ("no parameters",)),
@@ -308,11 +396,6 @@ def test_files_that_do_not_fit_together(tmp_path: Path) -> None:
 def test_unknown_keys_can_be_passed_over(tmp_path: Path) -> None:
     done = convert(write(tmp_path, orbit=ORBIT + "colour: red\n"), keep_going=True)
     assert verdicts(done)["colour"] == "no meaning"
-
-
-def onorbit(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "onorbit_rs", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False)
 
 
 def test_the_command(tmp_path: Path) -> None:

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs.figures import subject_of
 from onorbit_rs.rotations import attitude_in_orbit
 from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import build
 
 # ETS-VII's numbers are as published
 pytestmark = pytest.mark.filterwarnings("ignore:the inertia of link 'link_5'")
@@ -128,3 +130,19 @@ def test_a_step_too_long_for_the_motion_is_not_certified() -> None:
     summary = oo.run(data, quiet=True).summary
     assert not summary["certificate_passed"]
     assert "energy_balance_error_rel" in summary["certificate_failures"]
+
+
+def test_the_papers_reach_is_the_same_to_the_bit_without_its_epoch() -> None:
+    """It turns the Earth in pictures; neither the gravity gradient nor a point mass asks for it."""
+    data = load("humanoid_reach").resolved()
+    data["simulation"] |= {"duration": 0.2}
+    with_epoch = build(load(data))
+    assert with_epoch.earth is not None
+    del data["epoch"]
+    without = build(load(data))
+    assert without.earth is None
+    first, second = (built.simulation.run(0.2) for built in (with_epoch, without))
+    for name in first.columns():
+        np.testing.assert_array_equal(getattr(first, name), getattr(second, name), err_msg=name)
+    # runs of earlier versions, which had none, are still the paper's
+    assert subject_of(second, without.scenario, without.model, without.orbit, None).is_the_papers

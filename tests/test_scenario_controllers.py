@@ -14,7 +14,7 @@ import yaml
 from test_output_checkpoint import scenario_file, stopped_run
 
 import onorbit_rs as oo
-from onorbit_rs.cli.printing import print_summary
+from onorbit_rs.cli.summary import print_summary
 from onorbit_rs.exceptions import (
     ControlError,
     NotFoundError,
@@ -225,6 +225,7 @@ def test_a_path_tolerance_that_is_left_is_in_the_results() -> None:
 
 PYTHON = """
 import numpy as np
+import onorbit_rs
 
 class Damp:
     def __init__(self, gain=0.1):
@@ -238,6 +239,9 @@ class Damp:
         return -self.gain * state.v[6:][:len(state.joints)]
 
 class NoUpdate:
+    pass
+
+class Inherits(onorbit_rs.Controller):
     pass
 """
 
@@ -320,6 +324,7 @@ def test_a_resolved_scenario_finds_its_python_file_from_anywhere(tmp_path: Path)
         ({"file": "none.py"}, PYTHON, NotFoundError, ("no such file", "none.py")),
         ({"class": "Dmap"}, PYTHON, ControlError, ("no class 'Dmap'", "did you mean 'Damp'")),
         ({"class": "NoUpdate"}, PYTHON, ControlError, ("no update(t, state)",)),
+        ({"class": "Inherits"}, PYTHON, ControlError, ("no update(t, state)",)),
         ({"arguments": {"gain": -1}}, PYTHON, ControlError, ("raised ValueError: gain -1 is negative",)),
         ({"arguments": {"gian": 1}}, PYTHON, ControlError, ("Damp(...) of", "gian")),
         ({}, "import nothing_of_that_name", ControlError, ("mine.py", "ModuleNotFoundError")),
@@ -352,7 +357,9 @@ def test_what_update_raises_comes_out_as_itself(tmp_path: Path) -> None:
 def test_a_check_names_every_controller(capsys: pytest.CaptureFixture[str]) -> None:
     from onorbit_rs.cli.check import print_checked
 
-    print_checked(build(load(two(arm("right"), {"name": "left", "kind": "joint_pid", "joints": "left_*"}))))
+    print_checked(
+        build(load(two(arm("right"), {"name": "left", "kind": "joint_pid", "p": 1, "joints": "left_*"})))
+    )
     assert "joint_computed_torque, joint_pid" in capsys.readouterr().out
 
 

@@ -94,7 +94,7 @@ def test_a_wrong_entry_is_named_with_its_line(
         ("  time_step: 1 ms", "  time_step: 7 s", "longer than the duration"),
         ("  time_step: 1 ms", "  time_step: 1e-15", "steps"),
         ("  time_step: 1 ms", "  time_step: 1e-8", "record_every"),
-        ("  time_step: 1 ms", "  record_every: 0", "greater than or equal to 1"),
+        ("  time_step: 1 ms", "  record_every: 0", "0 is below 1"),
         ("initial: ", "initial: {attitude: {quaternion_xyzw: [0, 0, 0, 1.1]}} #", "broken YAML"),
     ],
 )

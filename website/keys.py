@@ -27,6 +27,8 @@ WORDS = {
     "RigidBody": "[rigid body](#rigid_body)",
     "EarthPart": "[earth](#earth)",
     "Orbit": "[orbit](#orbits)",
+    "Frame": "`world`, `lvlh`, `base` or [target](#a-target-that-moves)",
+    "GeomagneticIndex": "number or 7 × number",
     "Effect": "[effects](#environment)",
     "Controller": "[controller](#controllers)",
     "AnyControl": "[controllers](#in-a-list-of-controllers)",

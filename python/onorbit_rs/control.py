@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import pickle
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-class Controller:
+class Controller(ABC):
     """Base class of controllers written in Python.
 
     Give one to :class:`onorbit_rs.Simulation` as ``controller=``. An exception raised in ``update`` stops the
-    run and comes out of ``run`` as itself.
+    run and comes out of ``run`` as itself. One without ``update`` cannot be made.
 
     Examples
     --------
@@ -22,7 +23,7 @@ class Controller:
     ...         return -0.5 * state.v[6:]
     """
 
-    def reset(self) -> None:
+    def reset(self) -> None:  # noqa: B027  # most have nothing to forget
         """Called at the start of every run; forget what an earlier run left behind."""
 
     def get_state(self) -> bytes:
@@ -44,6 +45,7 @@ class Controller:
         """
         self.__dict__.update(pickle.loads(state))
 
+    @abstractmethod
     def update(self, t: float, state: Any) -> ArrayLike:
         """Joint torques held until the next call.
 
@@ -61,4 +63,3 @@ class Controller:
         (n,) array
             One per name in ``state.joints``, N m (N on a prismatic joint).
         """
-        raise NotImplementedError(f"{type(self).__name__} has no update(t, state)")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
-import shlex
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import NotFoundError, RunInterrupted, SimulationError
+from onorbit_rs.exceptions import InputError, ModelError, NotFoundError, RunInterrupted, SimulationError
 from onorbit_rs.output import (
     CheckpointWriter,
     OutputFolder,
@@ -25,11 +26,14 @@ from onorbit_rs.output import (
     write_summary,
     write_trace,
 )
+from onorbit_rs.output.divergence import divergence
 from onorbit_rs.output.relay import Relay
+from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.plants import versions
+from onorbit_rs.printable import shell_word
 from onorbit_rs.progress import ProgressCallback, doing, progress_bar
 from onorbit_rs.scenario import Scenario, load
-from onorbit_rs.scenario.build import Built, build
+from onorbit_rs.scenario.build import Built, build, make_robot
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -41,7 +45,8 @@ if TYPE_CHECKING:
 class Run:
     """What a run gave.
 
-    ``trace`` has the columns, ``summary`` is the dict of ``summary.json``, ``out`` the folder or None.
+    ``trace`` has the columns, ``summary`` is the dict of ``summary.json``, ``out`` the folder or None. A run
+    pickles, for :mod:`multiprocessing`: its rows travel, its robot is read again where they arrive.
     """
 
     trace: Trace
@@ -49,6 +54,20 @@ class Run:
     model: Model
     scenario: Scenario
     out: Path | None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Its parts without the robot, which the scenario names."""
+        return _arrived, (self.trace, self.summary, self.scenario, self.out)
+
+
+def _arrived(trace: Trace, summary: dict[str, Any], scenario: Scenario, out: Path | None) -> Run:
+    """A run from another process."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what the robot's file is like was told when it ran
+        model = make_robot(scenario)
+    if was_changed(model, summary):
+        raise ModelError(CHANGED)
+    return Run(trace, summary, model, scenario, out)
 
 
 CHECKPOINT_EVERY = 30.0
@@ -91,6 +110,7 @@ def run(
     RunInterrupted
         Ctrl-C; its trace so far is in the exception and in ``out``.
     """
+    _check_period(checkpoint_every)
     checked = load(scenario)
     built = build(checked)
     folder = None if out is None else OutputFolder.claim(out, force=force)
@@ -128,6 +148,7 @@ def resume(
     OnOrbitError
         As :func:`run`.
     """
+    _check_period(checkpoint_every)
     folder = OutputFolder(Path(out))
     if not (folder.path / "scenario.yaml").is_file():
         what = "no run in this folder (no scenario.yaml)" if folder.path.is_dir() else "no such folder"
@@ -140,6 +161,15 @@ def resume(
         build(scenario), folder, quiet=quiet, view=view,
         checkpoint=writer, checkpoint_every=checkpoint_every, resume=checkpoint,
     )  # fmt: skip
+
+
+def _check_period(checkpoint_every: float) -> None:
+    """Before anything is written, and also where nothing is."""
+    if not checkpoint_every >= 0.0 or checkpoint_every == math.inf:
+        raise InputError(
+            f"checkpoint_every is {checkpoint_every} s of wall clock, it must be finite, zero or positive",
+            name="checkpoint_every", got=checkpoint_every, expected=">= 0",
+        )  # fmt: skip
 
 
 def _fingerprint(scenario: Scenario) -> str:
@@ -237,8 +267,9 @@ def _keep(
     tell: Callable[[str], None],
 ) -> None:
     """Write what there is of a run that stopped early, and say where."""
-    diverged = isinstance(stop, SimulationError)
-    if not diverged:
+    if isinstance(stop, SimulationError):
+        stop.message = divergence(stop, built)
+    else:
         duration = built.scenario.simulation.duration
         stop.message = f"stopped by Ctrl-C at t = {stop.time:g} s of {duration:g} s"
     if folder is None:
@@ -246,12 +277,13 @@ def _keep(
     if stop.trace is None or len(stop.trace.time) == 0:
         folder.discard()
         return
+    diverged = isinstance(stop, SimulationError)
     summary = _write_rows(stop.trace, "diverged" if diverged else "interrupted", built, folder)
     stop.message += f"; the trace so far is in {folder.path}"
     if diverged:  # such numbers make no picture, and there is nothing to go on to
         discard_checkpoint(folder)
     else:
-        stop.message += f"; go on with: onorbit resume {shlex.quote(str(folder.path))}"
+        stop.message += f"; go on with: onorbit resume {shell_word(folder.path)}"
         write_pictures(folder, stop.trace, summary, built, tell=tell)
 
 

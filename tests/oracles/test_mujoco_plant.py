@@ -22,6 +22,7 @@ from onorbit_rs import running
 from onorbit_rs.exceptions import ModelError, PlantError, ScenarioError
 from onorbit_rs.plants import Mujoco
 from onorbit_rs.plants.mujoco_model import mujoco_model
+from onorbit_rs.plants.mujoco_quiet import unlogged
 from onorbit_rs.progress import Progress
 from onorbit_rs.scenario import load
 
@@ -288,3 +289,19 @@ def test_a_robot_whose_root_is_called_world_flies() -> None:
     model = oo.ModelBuilder("w", base="world", mass=5.0, inertia=np.eye(3)).build()
     trace = oo.Simulation(model, model.neutral(), [0.1, 0, 0, 0, 0, 0.2], plant=Mujoco(model)).run(0.1)
     assert trace.q[-1, 0] == pytest.approx(0.01, rel=1e-3)
+
+
+def test_the_log_is_as_it_was_when_steps_of_two_plants_cross() -> None:
+    """Its settings are the process': the one that leaves last must not bring back what the first had set."""
+    before = mujoco.MjLogConfig.get()
+    assert before.logto_console and before.logto_file
+    first, second = unlogged(mujoco), unlogged(mujoco)
+    first.__enter__()
+    second.__enter__()
+    first.__exit__(None, None, None)
+    assert not mujoco.MjLogConfig.get().logto_file  # the second is still in its step
+    second.__exit__(None, None, None)
+    assert mujoco.MjLogConfig.get().logto_console and mujoco.MjLogConfig.get().logto_file
+    with pytest.raises(KeyError), unlogged(mujoco):
+        raise KeyError
+    assert mujoco.MjLogConfig.get().logto_file

@@ -1,6 +1,6 @@
 //! The robot.
 
-use crate::arrays::{Count, array_of, fixed};
+use crate::arrays::{Threads, array_of, fixed};
 use crate::derivatives::{PyFreeFloatingDerivatives, free_floating_derivatives, three};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
@@ -18,7 +18,7 @@ use std::sync::{Arc, Mutex};
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
-type External<'a, 'py> = Option<&'a Bound<'py, PyDict>>;
+type External<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// A robot with a free base: an immutable tree of bodies.
 ///
@@ -197,7 +197,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         dv: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::Integrate, &[q, dv], None, &[self.model.nq()], threads, out)
@@ -209,7 +209,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         q2: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::Difference, &[q, q2], None, &[self.model.nv()], threads, out)
@@ -221,7 +221,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         frame: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::FramePose(self.frame(frame)?), &[q], None, &[4, 4], threads, out)
@@ -234,7 +234,7 @@ impl PyModel {
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         frame: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::FrameVelocity(self.frame(frame)?), &[q, v], None, &[6], threads, out)
@@ -246,7 +246,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         frame: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::FrameJacobian(self.frame(frame)?), &[q], None, &[6, self.model.nv()], threads, out)
@@ -257,7 +257,7 @@ impl PyModel {
     fn mass_matrix<'py>(
         &self,
         q: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         let nv = self.model.nv();
@@ -273,7 +273,7 @@ impl PyModel {
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::BiasForces, &[q, v], external, &[self.model.nv()], threads, out)
@@ -289,7 +289,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         a: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::InverseDynamics, &[q, v, a], external, &[self.model.nv()], threads, out)
@@ -305,7 +305,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         tau: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::ForwardDynamics, &[q, v, tau], external, &[self.model.nv()], threads, out)
@@ -322,7 +322,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         a: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
         three(q.py(), self, Kernel::InverseDynamicsDerivatives, &[q, v, a], external, out, threads)
@@ -338,7 +338,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         tau: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
         three(q.py(), self, Kernel::ForwardDynamicsDerivatives, &[q, v, tau], external, out, threads)
@@ -350,7 +350,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::Momentum, &[q, v], None, &[6], threads, out)
@@ -362,7 +362,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let energy = self.one(Kernel::KineticEnergy, &[q, v], None, &[], threads, out)?;
@@ -377,7 +377,7 @@ impl PyModel {
     fn center_of_mass<'py>(
         &self,
         q: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::CenterOfMass, &[q], None, &[3], threads, out)
@@ -393,7 +393,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<&Bound<'py, PyFreeFloating>>,
     ) -> PyResult<Bound<'py, PyFreeFloating>> {
         free_floating(q.py(), self, self.frame(frame)?, &[q, v], external, out, threads)
@@ -411,7 +411,7 @@ impl PyModel {
         joint_acceleration: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<&Bound<'py, PyFreeFloatingDerivatives>>,
     ) -> PyResult<Bound<'py, PyFreeFloatingDerivatives>> {
         let state = [q, v, joint_acceleration];
@@ -438,7 +438,7 @@ impl PyModel {
         values: &[Any<'_, 'py>],
         external: External<'_, 'py>,
         shape: &[usize],
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         let out = out.map(|out| [out.clone()]);

@@ -162,9 +162,13 @@ def _same_robot(a: Recorded, b: Recorded) -> list[str]:
             "robot compare",
             name="robot", got=joints[1], expected=joints[0],
         )  # fmt: skip
-    if a.robot == b.robot:
+    prints = a.fingerprint, b.fingerprint
+    if prints[0] == prints[1] if None not in prints else a.robot == b.robot:
         return []
-    notes = [f"the robots are not the same: {a.robot} and {b.robot}"]
+    if a.robot == b.robot:
+        notes = [f"the robot {a.robot} was changed between the two runs ({prints[0]} and {prints[1]})"]
+    else:
+        notes = [f"the robots are not the same: {a.robot} and {b.robot}"]
     try:
         names = a.joint_names(), b.joint_names()
     except OnOrbitError as error:  # a folder whose robot has moved away: the rows are still there

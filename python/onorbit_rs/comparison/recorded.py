@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import DtypeError, NotFoundError
+from onorbit_rs.exceptions import DtypeError, ModelError, NotFoundError
 from onorbit_rs.output import with_absolute_paths
-from onorbit_rs.output.read import read_trace
+from onorbit_rs.output.read import read_summary, read_trace
+from onorbit_rs.robots.fingerprint import fingerprint, is_another
 from onorbit_rs.running import Run, run
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import make_robot
@@ -36,6 +37,8 @@ class Recorded:
     scenario: Scenario
     model: Model | None = None
     """Of a run that is in memory."""
+    fingerprint: str | None = None
+    """Of its robot, as it was when it ran; runs of earlier versions have none."""
 
     @property
     def robot(self) -> Any:
@@ -49,13 +52,18 @@ class Recorded:
         Raises
         ------
         OnOrbitError
-            It is no longer there, or cannot be read.
+            It is no longer there, cannot be read, or is another by now.
         """
-        if self.model is not None:
-            return list(self.model.joint_names)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what the file is like was told when it ran
-            return list(make_robot(self.scenario).joint_names)
+        model = self.model
+        if model is None:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # what the file is like was told when it ran
+                model = make_robot(self.scenario)
+            if is_another(model, self.fingerprint):
+                raise ModelError(
+                    f"{self.robot} was changed since {self.name} was recorded", path=str(self.robot)
+                )
+        return list(model.joint_names)
 
 
 def recorded(source: Source) -> Recorded:
@@ -92,7 +100,7 @@ def _of_run(made: Run) -> Recorded:
     trace = made.trace
     columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
     name = f"{made.scenario.name} ({made.scenario.plant})" if made.out is None else str(made.out)
-    return Recorded(name, columns, made.scenario, made.model)
+    return Recorded(name, columns, made.scenario, made.model, fingerprint(made.model))
 
 
 def _of_folder(folder: Path) -> Recorded:
@@ -101,4 +109,6 @@ def _of_folder(folder: Path) -> Recorded:
     if not file.is_file():
         raise NotFoundError(f"no run in this folder (no {file.name}): {folder}", path=str(folder), kind="run")
     columns = {name: np.asarray(getattr(trace, name), dtype=np.float64) for name in trace.columns()}
-    return Recorded(str(folder), columns, load(file))
+    has_summary = (folder / "summary.json").is_file()
+    known = read_summary(folder).get("robot_fingerprint") if has_summary else None
+    return Recorded(str(folder), columns, load(file), fingerprint=known)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onorbit_rs.drafting.arm import ENOUGH, Arm
+from onorbit_rs.drafting.reaction import GENTLE, turn_per_metre
+from onorbit_rs.yoshikawa import manipulability
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +47,7 @@ def home(model: Model, arm: Arm) -> dict[str, float]:
         :, :, columns
     ]
     rows = slice(0, 6 if len(columns) >= ENOUGH else 3)
-    measure = np.linalg.svd(jacobian[:, rows], compute_uv=False).prod(axis=1)
+    measure = manipulability(jacobian[:, rows])
     best = 0 if measure[0] >= _GOOD_ENOUGH * measure.max() else int(np.argmax(measure))
     return dict(zip(arm.joints, poses[best].tolist(), strict=True))
 
@@ -76,18 +78,23 @@ def time_step(model: Model) -> float:
 
 
 def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[list[float], float]]:
-    """Displacements of the tool in W (m), the longest first, and a time for each (s)."""
+    """Displacements of the tool in W (m), the longest first, and a time for each (s).
+
+    Those left out turn the base by more than is gentle, as the start's Jacobian foretells.
+    """
     q = configuration(model, joints)
     tool = np.asarray(model.frame_pose(q, arm.tool))[:3, 3]
     first = next(joint for joint in model.joints if joint.name == arm.joints[0])
     shoulder = np.asarray(model.frame_pose(q, first.child))[:3, 3]
     reach = max(float(np.linalg.norm(tool - shoulder)), 0.05)
-    away = tool - shoulder
-    for share in (1.0, 0.5, 0.2):
+    away, turns = tool - shoulder, turn_per_metre(model, arm, q)
+    for share in (1.0, 0.5, 0.2, 0.1, 0.05):
         length = float(f"{share * _SHARE_OF_REACH * reach:.1g}")
         duration = max(4.0, float(f"{length / _SPEED:.1g}"))
         # across before along, since an arm is often stretched; inwards before outwards
         for axis in sorted(range(3), key=lambda axis: abs(away[axis])):
+            if turns[axis] * length > GENTLE:
+                continue
             for sign in (-1.0, 1.0) if away[axis] > 0.0 else (1.0, -1.0):
                 yield [sign * length if index == axis else 0.0 for index in range(3)], duration
 

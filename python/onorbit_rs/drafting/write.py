@@ -15,8 +15,10 @@ import yaml
 from onorbit_rs import robots
 from onorbit_rs.drafting.arm import ENOUGH, Arm, find_arm
 from onorbit_rs.drafting.motion import home, lines, time_step, turns, within
+from onorbit_rs.drafting.reaction import GENTLE
 from onorbit_rs.drafting.text import Plan, scenario_text
 from onorbit_rs.exceptions import FrameError, OnOrbitError, ScenarioError
+from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
@@ -82,14 +84,21 @@ def draft(
 
 
 def _settled(model: Model, arm: Arm | None, robot: Any, name: str) -> Plan:
-    """The first plan that runs as it should."""
+    """The first plan that runs as it should and leaves the base nearly as it is, else the gentlest."""
     last: OnOrbitError | None = None
+    found: list[tuple[float, Plan]] = []
     for plan in _plans(model, arm, Plan(name, robot)):
         try:
-            if _runs(plan):
-                return plan
+            turn = _base_turn_of(plan)
         except OnOrbitError as error:
             last = error
+            continue
+        if turn is not None and (turn <= GENTLE or arm is None):
+            return plan
+        if turn is not None:
+            found.append((turn, plan))
+    if found:
+        return min(found, key=lambda one: one[0])[1]
     if last is not None:
         raise last
     raise ScenarioError(
@@ -119,17 +128,21 @@ def _plans(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Plan]:
         yield replace(plan, goal=goal)
 
 
-def _runs(plan: Plan) -> bool:
-    """Whether it certifies, keeps its joints within their limits and, where none sticks, tracks its line."""
+def _base_turn_of(plan: Plan) -> float | None:
+    """By how much the base turns in a run of it, rad.
+
+    None where the run does not certify, leaves its joints' limits or, where none sticks, its line.
+    """
     built = build(load(yaml.safe_load(scenario_text(plan, "trial"))))
     trace = built.simulation.run(plan.duration_s)
     watched = set(plan.arm if plan.friction else built.model.joint_names)
     if not all(passed for *_, passed in trace.certificate()) or watched & set(trace.joint_limits_exceeded()):
-        return False
-    if plan.displacement is None or plan.friction:
-        return True
-    error = np.linalg.norm(np.asarray(trace.position_error), axis=1)
-    return bool(error.max() < NEAR_ENOUGH_M)
+        return None
+    is_tracked = plan.displacement is not None and not plan.friction
+    if is_tracked and np.linalg.norm(np.asarray(trace.position_error), axis=1).max() >= NEAR_ENOUGH_M:
+        return None
+    attitude = np.asarray(trace.q)[:, 3:7]
+    return float(angle_between(attitude, attitude[0]).max())
 
 
 def _name(robot: str, model: Model) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
+from onorbit_rs import yoshikawa
 from onorbit_rs.figures.style import (
     COLORS,
     COLUMN,
@@ -21,11 +22,7 @@ from onorbit_rs.thinning import evenly
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from onorbit_rs._core import Model, Trace
-
-    Floats = NDArray[np.float64]
 
 _MOST_ROWS = 2_000
 
@@ -60,16 +57,10 @@ def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] 
     figure = new_figure(COLUMN, 0.5 + 1.4 * len(parts))
     panels = figure.subplots(len(parts), 1, sharex=True, squeeze=False)[:, 0]
     for axes, (what, part) in zip(panels, parts, strict=True):
-        measures = np.column_stack([_measure(free[:, part]), _measure(held[:, part])])
+        measures = np.column_stack([yoshikawa.manipulability(jacobian[:, part]) for jacobian in (free, held)])
         plot_lines(axes, time[rows], measures, ("base free", "base held"), COLORS)
         axes.lines[1].set_linestyle((0, (3, 1.5)))
         axes.set_ylim(0.0, 1.08 * float(max(measures.max(), 1e-12)))
         tidy(axes, label if axes is panels[-1] else "", f"{what} [{unit}]")
     legend_above(panels[0])
     return figure
-
-
-def _measure(jacobian: Floats) -> Floats:
-    """`√det(J Jᵀ)` of (k, m, n) Jacobians: the product of their singular values."""
-    product: Floats = np.linalg.svd(jacobian, compute_uv=False).prod(axis=-1)
-    return product

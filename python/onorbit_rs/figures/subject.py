@@ -60,8 +60,8 @@ def subject_of(
 
 
 def _is_the_papers(scenario: Scenario) -> bool:
-    """Whether everything but the integrator's settings is as the bundled scenario has it."""
-    apart = ("name", "description", "simulation")
+    """Whether everything but the integrator's settings, and the epoch, is as the bundled scenario has it."""
+    apart = ("name", "description", "epoch", "simulation")
     ours, theirs = (
         {key: value for key, value in one.resolved(Path()).items() if key not in apart}
         for one in (scenario, load(PAPER))

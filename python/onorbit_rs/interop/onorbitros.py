@@ -8,39 +8,21 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
-from onorbit_rs.exceptions import InputError, OnOrbitError
-from onorbit_rs.interop.onorbitros_controller import read_controllers
+from onorbit_rs.exceptions import InputError
+from onorbit_rs.interop.onorbitros_controllers import read_controllers
 from onorbit_rs.interop.onorbitros_orbit import FIXED_KEYS, ORBIT_KEYS, read_fixed_pose, read_orbit
-from onorbit_rs.names import did_you_mean
-from onorbit_rs.scenario.place import dotted, scenario_error
-from onorbit_rs.scenario.yaml_lines import Lines, Location, read_yaml
-
-Verdict = Literal["understood", "corrected", "no meaning"]
+from onorbit_rs.interop.source import Note, Source
+from onorbit_rs.scenario.place import scenario_error
+from onorbit_rs.scenario.yaml_lines import Location, read_yaml
 
 CONTROLLER_MARKS = {"end_effector_link", "kp_value", "kv_value"}
 PLACEHOLDER = {"rigid_body": {"mass": 100.0, "inertia": [10.0, 10.0, 10.0]}}
 DURATION = 60.0
 """s, where no trajectory says how long."""
-
-
-@dataclass(frozen=True)
-class Note:
-    """What became of one line."""
-
-    file: Path
-    line: int | None
-    key: str
-    verdict: Verdict
-    text: str
-
-    def __str__(self) -> str:
-        """``orbit.yaml:4: semi_major_axix: corrected: ...``."""
-        where = f"{self.file}:{self.line}" if self.line else f"{self.file}"
-        return f"{where}: {self.key}: {self.verdict}: {self.text}"
 
 
 @dataclass(frozen=True)
@@ -52,53 +34,6 @@ class Conversion:
     notes: list[Note]
     comments: dict[Location, str]
     """Where each entry of the scenario came from."""
-
-
-@dataclass
-class Source:
-    """A mapping in a file, and where what is made of it goes."""
-
-    file: Path
-    lines: Lines
-    at: Location
-    data: dict[str, Any]
-    keep_going: bool
-    notes: list[Note]
-    result: dict[str, Any] = field(default_factory=dict)
-    comments: dict[Location, str] = field(default_factory=dict)
-
-    def note(self, key: str, verdict: Verdict, text: str) -> None:
-        """A remark on the line of ``key``."""
-        at = (*self.at, *key.split("/"))
-        line = self.lines.get(at) or self.lines.get((*self.at, key)) or self.lines.get(self.at)
-        self.notes.append(Note(self.file, line, key, verdict, text))
-
-    def put(self, at: Location, value: Any, key: str) -> None:
-        """An entry of the scenario, from the line of ``key``."""
-        part = self.result
-        for step in at[:-1]:
-            part = part.setdefault(str(step), {})
-        part[str(at[-1])] = value
-        line = self.lines.get((*self.at, key))
-        self.comments[at] = (
-            f"{self.file.name}{f':{line}' if line else ''}: {key}: {self.data.get(key, 'not given')}"
-        )
-
-    def fail(self, key: str, message: str) -> OnOrbitError:
-        """An error at the line of ``key``."""
-        at = (*self.at, key)
-        return scenario_error(message, self.file, self.lines.get(at), dotted(at))
-
-    def refuse_unknown(self, known: Sequence[str]) -> None:
-        """A key that OnOrbitROS does not have is an error, or with ``keep_going`` a remark."""
-        for key in self.data:
-            if key in known:
-                continue
-            hint = did_you_mean(key, known) or "; see docs/coming_from/onorbitros.md"
-            if not self.keep_going:
-                way_out = "correct or remove it, or go on without it: --keep-going"
-                raise self.fail(key, f"no key of OnOrbitROS{hint} ({way_out})")
-            self.note(key, "no meaning", f"no key of OnOrbitROS{hint}")
 
 
 def convert(
@@ -115,7 +50,8 @@ def convert(
     paths : sequence of paths
         YAML files, and at most one URDF or xacro.
     controller : str, optional
-        Which controller, where a file has several; the first where not given.
+        Which controller, where a file has several; all of them where not given and where no joint is driven
+        by two, else the first.
     keep_going : bool
         Whether an unknown key is a remark, not an error.
     beside : path, optional
@@ -152,7 +88,7 @@ def convert(
                 raise scenario_error(f"'{key}' comes from two files; give one of them", source.file, None)
             scenario[key] = part
         comments |= source.comments
-    if "controller" in scenario and not robots:
+    if {"controller", "controllers"} & set(scenario) and not robots:
         raise scenario_error("a controller needs its robot: give the URDF or xacro as well", files[0], None)
     scenario.setdefault("simulation", {"duration": DURATION})
     notes.sort(key=lambda note: (files.index(note.file), note.line or 0))
@@ -180,12 +116,10 @@ def _unwrapped(source: Source) -> list[Source]:
     if not is_namespace or any(CONTROLLER_MARKS & set(part) or "type" in part for part in inner):
         return [source]
     below: list[Source] = []
-    for key, part in source.data.items():
+    for key in source.data:
         text = "a wrapper of ROS 2" if key in ("/**", "ros__parameters") else "a namespace of ROS: left away"
         source.note(key, "understood", text)
-        below += _unwrapped(
-            Source(source.file, source.lines, (*source.at, key), part, source.keep_going, source.notes)
-        )
+        below += _unwrapped(source.inside(key, apart=True))
     return below
 
 

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.exceptions import QuantityError
-from onorbit_rs.interop.expressions import evaluate
-from onorbit_rs.names import did_you_mean
-
 if TYPE_CHECKING:
-    from onorbit_rs.interop.onorbitros import Source
+    from onorbit_rs.interop.source import Source
+    from onorbit_rs.scenario.yaml_lines import Location
 
 KEYS = (
     "type",
@@ -21,43 +18,21 @@ KEYS = (
     "trajectory_duration",
     "goal_tolerance",
 )
-_SCENARIO = "one scenario moves one tool; choose it with --controller"
 
 
-def read_controllers(source: Source, wanted: str | None) -> None:
-    """The wanted one, or the first, to ``tool``, ``controller`` and ``reference``."""
-    if "end_effector_link" in source.data or "kp_value" in source.data:
-        _read(source)
-        return
-    of_tasks = [name for name, part in source.data.items() if isinstance(part, dict) and _is_of_task(part)]
-    if not of_tasks:
-        kinds = {str(part.get("type")) for part in source.data.values() if isinstance(part, dict)}
-        name = next(iter(source.data))
-        raise source.fail(
-            name, f"no controller with an end_effector_link, but {', '.join(sorted(kinds))}: controllers of "
-            "ROS Control are not converted",
-        )  # fmt: skip
-    if wanted is not None and wanted not in of_tasks:
-        raise source.fail(of_tasks[0], f"no controller is named {wanted!r}{did_you_mean(wanted, of_tasks)}")
-    chosen = wanted or of_tasks[0]
-    for name, part in source.data.items():
-        if name == chosen:
-            source.note(name, "understood", "the controller")
-            inside = type(source)(
-                source.file, source.lines, (*source.at, name), part, source.keep_going, source.notes,
-                source.result, source.comments,
-            )  # fmt: skip
-            _read(inside)
-        else:
-            what = _SCENARIO if name in of_tasks else "not a controller of an end effector"
-            source.note(name, "no meaning", what)
-
-
-def _is_of_task(part: dict[str, Any]) -> bool:
+def is_of_task(part: dict[str, Any]) -> bool:
+    """Whether it moves an end effector."""
     return "end_effector_link" in part or "kp_value" in part
 
 
-def _read(source: Source) -> None:
+def joints_of(part: dict[str, Any]) -> list[str]:
+    """Those that it says to drive."""
+    joints = part.get("joints", [part["joint"]] if "joint" in part else [])
+    return [str(name) for name in joints] if isinstance(joints, list) else []
+
+
+def read_task_law(source: Source, law: Location) -> None:
+    """To ``tool``, ``reference`` and the law at ``law``: beside them where it is one of several."""
     source.refuse_unknown(KEYS)
     data = source.data
     if "end_effector_link" not in data:
@@ -67,36 +42,36 @@ def _read(source: Source) -> None:
             raise source.fail(key, f"must be a name, not {data[key]!r}")
     source.put(("tool",), data["end_effector_link"], "end_effector_link")
     source.note("end_effector_link", "understood", f"tool: {data['end_effector_link']}")
-    source.put(("controller", "kind"), "computed_torque", "type")
+    source.put((*law, "kind"), "computed_torque", "type")
     if "type" in data:
-        law = "computed torque of the paper's Eq. (6)-(8)"
-        source.note("type", "understood", f"{data['type']} becomes {law}")
-    _gains(source)
+        source.note("type", "understood", f"{data['type']} becomes computed torque, the paper's Eq. (6)-(8)")
+    _gains(source, law)
     if "joints" in data:
         if not isinstance(data["joints"], list) or not all(isinstance(name, str) for name in data["joints"]):
             raise source.fail("joints", "must be a list of names")
-        source.note(
-            "joints",
-            "no meaning",
-            "the law drives all joints that move the tool, as the reduced model has them",
-        )
+        if law:
+            told = "the law drives all joints that move the tool, as the reduced model has them"
+            source.note("joints", "no meaning", told)
+        else:
+            source.put(("joints",), data["joints"], "joints")
+            source.note("joints", "understood", "the joints it drives")
     if "base_link" in data:
         source.note("base_link", "no meaning", "the robot's root link is its base, and floats")
     if "goal_tolerance" in data:
-        _number(source, "goal_tolerance")
+        source.number("goal_tolerance")
         source.note("goal_tolerance", "no meaning", "the law has no goal to reach; the trace has the errors")
     _trajectory(source)
 
 
-def _gains(source: Source) -> None:
+def _gains(source: Source, law: Location) -> None:
     for key, ours, unit in (("kp_value", "kp", "1/s²"), ("kv_value", "kd", "1/s")):
         if key not in source.data:
             source.note(key, "corrected", f"not given: the default of {ours} here")
             continue
-        value = _number(source, key)
+        value = source.number(key)
         if value < 0.0:
             raise source.fail(key, f"{value:g} is negative, a gain must not be")
-        source.put(("controller", ours), value, key)
+        source.put((*law, ours), value, key)
         source.note(
             key, "understood",
             f"{ours} {value:g} {unit}, the paper's gain; "
@@ -107,7 +82,7 @@ def _gains(source: Source) -> None:
 def _trajectory(source: Source) -> None:
     if "trajectory_duration" not in source.data:
         return
-    seconds = _number(source, "trajectory_duration")
+    seconds = source.number("trajectory_duration")
     if seconds <= 0.0:
         raise source.fail("trajectory_duration", f"{seconds:g} s is no duration, it must be positive")
     key = "trajectory_duration"
@@ -122,10 +97,3 @@ def _trajectory(source: Source) -> None:
     source.note(
         key, "understood", f"{seconds:g} s; the target comes over a topic there: fill in 'displacement'"
     )
-
-
-def _number(source: Source, key: str) -> float:
-    try:
-        return evaluate(source.data[key])
-    except QuantityError as error:
-        raise source.fail(key, str(error)) from None

@@ -11,7 +11,7 @@ from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.interop.expressions import evaluate
 
 if TYPE_CHECKING:
-    from onorbit_rs.interop.onorbitros import Source
+    from onorbit_rs.interop.source import Source
 
 MISSPELT = {"semi_major_axix": "semi_major_axis", "rate_argument_Of_perigee": "rate_argument_of_perigee"}
 """As its own files write them and its node does not read them."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from typing import Any
+
+from onorbit_rs.printable import json_text
 
 _COLUMN = 44
 
@@ -12,23 +13,29 @@ _COLUMN = 44
 def scenario_text(
     scenario: Mapping[str, Any], comments: Mapping[tuple[str | int, ...], str], head: str
 ) -> str:
-    """Nested mappings indented, everything else on one line; ``comments`` by place."""
+    """Nested mappings and lists of them indented, everything else on one line; ``comments`` by place."""
     lines = [f"# {line}".rstrip() for line in head.splitlines()]
     return "\n".join([*lines, "", *_lines(scenario, comments, ())]) + "\n"
 
 
-def _lines(part: Mapping[str, Any], comments: Mapping[Any, str], at: tuple[str, ...]) -> Iterator[str]:
+def _lines(part: Mapping[str, Any], comments: Mapping[Any, str], at: tuple[str | int, ...]) -> Iterator[str]:
     indent = "  " * len(at)
     for key, value in part.items():
         here = (*at, key)
+        if not at and isinstance(value, list) and all(isinstance(entry, dict) for entry in value):
+            yield f"{key}:"
+            for index, entry in enumerate(value):
+                first, *rest = _lines(entry, comments, (*here, index))
+                yield from ("  - " + first.removeprefix("    "), *rest)
+            continue
         is_nested = isinstance(value, dict) and not at
         start = f"{indent}{key}:" if is_nested else f"{indent}{key}: {_flow(value)}"
         comment = " ".join(comments.get(here, "").split())
-        yield f"{start:<{_COLUMN}}# {comment}" if comment else start
+        yield f"{start:<{_COLUMN - 1}} # {comment}" if comment else start
         if is_nested:
             yield from _lines(value, comments, here)
 
 
 def _flow(value: object) -> str:
     """JSON is YAML on one line; ``1e-05`` needs no dot in YAML 1.2."""
-    return json.dumps(value, ensure_ascii=False)
+    return json_text(value)

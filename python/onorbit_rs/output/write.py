@@ -10,6 +10,7 @@ import numpy as np
 import yaml
 
 from onorbit_rs.output.folder import FIGURES, OutputFolder
+from onorbit_rs.output.travel import arrays_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,9 +38,7 @@ def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
 def write_trace(folder: OutputFolder, trace: Trace) -> None:
     """``trace.npz``: the columns of the trace under their own names, and the errors of each controller."""
     with folder.writing("trace.npz") as path, path.open("wb") as stream:
-        columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
-        columns |= {f"tracking_{name}": np.asarray(errors) for name, errors in trace.tracking.items()}
-        columns |= {f"wrench_{name}": np.asarray(rows) for name, rows in trace.wrenches.items()}
+        columns = arrays_of(trace)
         if len(trace.rereferenced):
             columns["rereferenced"] = np.asarray(trace.rereferenced)
         np.savez(stream, allow_pickle=False, **columns)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from onorbit_rs.exceptions import PlantError
 from onorbit_rs.plants.mujoco_model import engine, link, mujoco_model
+from onorbit_rs.plants.mujoco_quiet import unlogged
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,8 +31,8 @@ class Mujoco:
     ``rk4`` is the Runge-Kutta of MuJoCo 4, with the environment's wrenches at every stage; nothing in it
     carries momentum, which drifts with its fourth order. ``semi_implicit_euler`` is MuJoCo's ``Euler``,
     implicit in joint damping. Friction and stops are MuJoCo's, soft, at their hardest; stops give hardly
-    anything back. One simulation at a time may run on it; a step that meets
-    another is refused.
+    anything back. One simulation at a time may run on it; a step that meets another is refused. MuJoCo's log,
+    which belongs to the whole process, is quiet during a step, and after it as it was.
 
     Parameters
     ----------
@@ -130,7 +129,7 @@ class Mujoco:
                 name="plant", got="mujoco",
             )  # fmt: skip
         try:
-            with _unlogged(self._mujoco), np.errstate(all="ignore"):  # of a run that diverges, which is told
+            with unlogged(self._mujoco), np.errstate(all="ignore"):  # of a run that diverges, which is told
                 return self._step(start, end, q, v, tau, wrenches)
         finally:
             self._stepping.release()
@@ -208,18 +207,6 @@ class Mujoco:
         flat = np.empty(9)
         self._mujoco.mju_quat2Mat(flat, qpos[3:7])
         return flat.reshape(3, 3)
-
-
-@contextmanager
-def _unlogged(mujoco: Any) -> Iterator[None]:
-    """MuJoCo's warnings, of matrices near singular, go neither to stderr nor to MUJOCO_LOG.TXT."""
-    settings, loud = mujoco.MjLogConfig.get(), mujoco.MjLogConfig.get()
-    settings.logto_console = settings.logto_file = 0
-    settings.set()
-    try:
-        yield
-    finally:
-        loud.set()
 
 
 def _turning(turn: Floats, w: Floats) -> Floats:

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from onorbit_rs import _core
 from onorbit_rs.scenario.fields import (
@@ -22,7 +21,9 @@ from onorbit_rs.scenario.fields import (
     Number3,
     Positive,
 )
-from onorbit_rs.scenario.part import Part, expand_kind
+from onorbit_rs.scenario.part import Part, of_kind
+from onorbit_rs.scenario.refusals import wrong
+from onorbit_rs.scenario.units import NUMBER, parse_quantity
 
 if TYPE_CHECKING:
     from typing import Any
@@ -69,13 +70,25 @@ class HarrisPriesterAir(Part):
         return _core.HarrisPriester(exponent=self.exponent, **lag)
 
 
+def _ap(value: object) -> float | list[float]:
+    if not isinstance(value, list):
+        return parse_quantity(value, NUMBER)
+    if len(value) != 7:
+        raise wrong(f"ap is one number or seven, not {len(value)}")
+    return [parse_quantity(entry, NUMBER) for entry in value]
+
+
+GeomagneticIndex = Annotated[float | list[float], BeforeValidator(_ap)]
+
+
 class Nrlmsise00Air(Part):
     """NRLMSISE-00 under constant indices or those of a table; needs an epoch."""
 
     kind: Literal["nrlmsise00"] = "nrlmsise00"
     f107: Number | None = None
     f107a: Number | None = None
-    ap: Number | Annotated[list[Number], Field(min_length=7, max_length=7)] | None = None
+    ap: GeomagneticIndex | None = None
+    """One number, or seven: the day's, then the means of the hours before, as NRLMSISE-00 has them."""
     table: FilePath | None = None
     """A CSV beside the scenario."""
     three_hourly: bool = True
@@ -88,10 +101,8 @@ class Nrlmsise00Air(Part):
         )
 
 
-Air = Annotated[
-    Annotated[ConstantAir | ExponentialAir | HarrisPriesterAir | Nrlmsise00Air, Field(discriminator="kind")],
-    BeforeValidator(expand_kind),
-]
+AnyAir = ConstantAir | ExponentialAir | HarrisPriesterAir | Nrlmsise00Air
+Air = Annotated[AnyAir, Field(discriminator="kind"), of_kind(AnyAir)]
 
 
 class FacesSurface(Part):
@@ -151,10 +162,8 @@ class PlatesSurface(Part):
         )  # fmt: skip
 
 
-AnySurface = Annotated[
-    Annotated[FacesSurface | CannonballSurface | PlatesSurface, Field(discriminator="kind")],
-    BeforeValidator(expand_kind),
-]
+_Surfaces = FacesSurface | CannonballSurface | PlatesSurface
+AnySurface = Annotated[_Surfaces, Field(discriminator="kind"), of_kind(_Surfaces)]
 
 
 class Covered(Part):
@@ -167,9 +176,7 @@ class Covered(Part):
     @model_validator(mode="after")
     def _is_covered_once(self) -> Covered:
         if self.surfaces is not None and self.bodies is not None:
-            raise PydanticCustomError(
-                "covered_twice", "give surfaces for the robot or bodies one by one, not both"
-            )
+            raise wrong("give surfaces for the robot or bodies one by one, not both")
         return self
 
     def made_surfaces(self) -> Any:

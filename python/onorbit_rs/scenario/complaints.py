@@ -13,6 +13,7 @@ from pydantic_core import ErrorDetails
 from onorbit_rs.exceptions import ScenarioError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.place import dotted, scenario_error
+from onorbit_rs.scenario.refusals import shown
 from onorbit_rs.scenario.yaml_lines import Lines, Location
 
 
@@ -33,57 +34,61 @@ def _place_and_message(details: ErrorDetails, data: Any) -> tuple[Location, str]
     at = _yaml_location(details["loc"], data, is_missing=kind == "missing")
     if kind == "unknown_key":
         return (*at, context["key"]), details["msg"]
-    if kind == "parts":
+    if kind == "misfit":
         return context["at"], details["msg"]
+    if kind == "union_tag_invalid":
+        known = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
+        return (*at, "kind"), f"unknown kind {context['tag']!r}{did_you_mean(context['tag'], known)}"
     if kind == "missing":
-        return at, "is missing"
-    if kind in ("union_tag_not_found", "union_tag_invalid"):
-        return _unknown_kind(at, context)
-    if kind == "value_error":
-        return at, str(context["error"])
-    if kind == "literal_error":
-        return (
-            at,
-            f"{details['input']!r} is not one of {context['expected']}{_near(details['input'], context)}",
-        )
-    if kind in ("too_short", "too_long"):
-        return at, f"has {context['actual_length']} entries, needs {_needed_length(kind, context)}"
-    if kind in ("model_type", "model_attributes_type", "dict_type"):
-        return at, f"must be a mapping of keys to values, not {details['input']!r}"
-    return (
-        at,
-        f"{_lower_first(details['msg'])}, got {details['input']!r}"
-        if kind in _WITH_INPUT
-        else details["msg"],
-    )
+        return at, "is missing" + FORMS.get(at[-1] if at else "", "")
+    return at, _said(kind, details, context)
 
 
-_WITH_INPUT = {
-    "int_type",
-    "int_parsing",
-    "int_from_float",
-    "list_type",
-    "string_type",
-    "greater_than_equal",
-    "path_type",
+FORMS: dict[str | int, str] = {
+    "robot": ": a bundled name (humanoid_torso), a URDF, or {rigid_body: {mass: ..., inertia: ...}}",
+    "simulation": ": at least {duration: 10 s}",
 }
+"""What to write where a whole part is missing."""
+
+_MUST_BE = {
+    "int": "a whole number",
+    "float": "a number",
+    "bool": "true or false",
+    "list": "a list ([a, b], or lines that begin with '- ')",
+    "dict": "a mapping of keys to values",
+    "model": "a mapping of keys to values",
+    "string": "text (a number wants quotes)",
+    "path": "the path of a file",
+}
+"""By what pydantic's complaints of another type begin with."""
+
+
+def _said(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> str:
+    """A complaint about one value, in our words."""
+    given = details["input"]
+    if kind == "value_error":
+        return str(context["error"])
+    if kind == "literal_error":
+        return f"{shown(given)} is not one of {context['expected']}{_near(given, context)}"
+    if kind in ("too_short", "too_long"):
+        needed = context["min_length" if kind == "too_short" else "max_length"]
+        return f"has {context['actual_length']} entries, needs {needed}"
+    if kind == "greater_than_equal":
+        return f"{shown(given)} is below {context['ge']}, the least that is allowed"
+    if kind == "less_than_equal":
+        return f"{shown(given)} is above {context['le']}, the most that is allowed"
+    if kind == "string_pattern_mismatch":
+        return f"{shown(given)} has characters other than letters, digits, '_' and '-'"
+    what = kind.split("_")[0]
+    if what in _MUST_BE and kind.endswith(("_type", "_parsing", "_from_float", "_size")):
+        return f"must be {_MUST_BE[what]}, not {shown(given)}"
+    return details["msg"]
 
 
 def _near(given: object, context: Mapping[str, Any]) -> str:
     """``, did you mean ...`` where one of the expected words is close."""
     near = nearest(str(given), re.findall(r"'([^']*)'", context["expected"]))
     return f", did you mean {near!r}?" if near else ""
-
-
-def _unknown_kind(at: Location, context: Mapping[str, Any]) -> tuple[Location, str]:
-    if "tag" not in context:
-        return at, "needs a 'kind'"
-    known = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
-    return (*at, "kind"), f"unknown kind {context['tag']!r}{did_you_mean(context['tag'], known)}"
-
-
-def _needed_length(kind: str, context: Mapping[str, Any]) -> int:
-    return int(context["min_length"] if kind == "too_short" else context["max_length"])
 
 
 def _yaml_location(loc: Location, data: Any, *, is_missing: bool) -> Location:
@@ -106,7 +111,3 @@ def _line_of(at: Location, lines: Lines) -> int | None:
         if at[:end] in lines:
             return lines[at[:end]]
     return None
-
-
-def _lower_first(text: str) -> str:
-    return text[:1].lower() + text[1:]

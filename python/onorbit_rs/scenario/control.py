@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, model_validator
 
 from onorbit_rs.scenario.fields import (
     DamperGain,
@@ -21,7 +20,8 @@ from onorbit_rs.scenario.fields import (
     SpringGain,
     StiffnessGain,
 )
-from onorbit_rs.scenario.part import Part, expand_kind
+from onorbit_rs.scenario.part import Part, of_kind
+from onorbit_rs.scenario.refusals import wrong
 
 
 class ComputedTorqueController(Part):
@@ -68,6 +68,16 @@ class JointPidController(Part):
     """Largest share of the integral, N m."""
     effort_limit: JointEffort | None = None
 
+    @model_validator(mode="after")
+    def _has_gains(self) -> Self:
+        """Of ``effort`` the reference is the effort; else a PID without gains would leave the joints limp."""
+        if self.interface != "effort" and not self.model_fields_set & {"p", "i", "d"}:
+            raise wrong(
+                f"a PID of interface {self.interface} without gains does nothing: give 'p', 'i' or 'd', or no"
+                " controller where the joints are to be limp"
+            )
+        return self
+
 
 class ComplianceController(Part):
     """The tool on a spring and a damper; nothing weighs anything, so nothing is compensated."""
@@ -96,9 +106,7 @@ class PythonController(Part):
     @model_validator(mode="after")
     def _says_where(self) -> PythonController:
         if (self.file is None) == (self.module is None):
-            raise PydanticCustomError(
-                "python_controller", "give exactly one of 'file' (beside the scenario) and 'module'"
-            )
+            raise wrong("give exactly one of 'file' (beside the scenario) and 'module'")
         return self
 
 
@@ -112,7 +120,4 @@ AnyController = (
     | ComplianceController
     | PythonController
 )
-Controller = Annotated[
-    Annotated[AnyController, Field(discriminator="kind")],
-    BeforeValidator(expand_kind),
-]
+Controller = Annotated[AnyController, Field(discriminator="kind"), of_kind(AnyController)]

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field
 
 from onorbit_rs.scenario import control as laws
 from onorbit_rs.scenario.fields import JointTolerance, NotNegative, Positive, TaskTolerance, Time
-from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.part import Part, of_kind
 from onorbit_rs.scenario.reference_parts import Reference
 
 
@@ -85,7 +85,7 @@ class PythonControl(laws.PythonController, TaskControl):
     """A controller of yours on a group; it returns one effort per joint, and may track a tool."""
 
 
-AnyControl = Annotated[
-    ComputedTorqueControl | ComplianceControl | JointComputedTorqueControl | JointPidControl | PythonControl,
-    Field(discriminator="kind"),
-]
+_Controls = (
+    ComputedTorqueControl | ComplianceControl | JointComputedTorqueControl | JointPidControl | PythonControl
+)
+AnyControl = Annotated[_Controls, Field(discriminator="kind"), of_kind(_Controls)]

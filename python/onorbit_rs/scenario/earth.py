@@ -13,6 +13,7 @@ from onorbit_rs import _core
 from onorbit_rs.exceptions import EarthError
 from onorbit_rs.scenario.fields import Angle, AngularRate, FilePath, Time
 from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.refusals import wrong
 
 if TYPE_CHECKING:
     from onorbit_rs.scenario.schema import Scenario
@@ -47,11 +48,11 @@ class EarthPart(Part):
     def _is_one_rotation(self) -> EarthPart:
         is_even, iau = self.rotation == "about_z", (self.ut1_minus_utc, self.polar_motion, self.eop)
         if is_even and any(given is not None for given in iau):
-            raise ValueError("ut1_minus_utc, polar_motion and eop are for rotation: iau2006")
+            raise wrong("ut1_minus_utc, polar_motion and eop are for rotation: iau2006")
         if not is_even and (self.angle is not None or self.rate is not None):
-            raise ValueError("angle and rate are for rotation: about_z")
+            raise wrong("angle and rate are for rotation: about_z")
         if self.eop is not None and (self.ut1_minus_utc is not None or self.polar_motion is not None):
-            raise ValueError("give eop, or ut1_minus_utc and polar_motion, not both")
+            raise wrong("give eop, or ut1_minus_utc and polar_motion, not both")
         return self
 
 

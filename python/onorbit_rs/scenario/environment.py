@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, model_validator
 
 from onorbit_rs.scenario.air_and_light import DragEffect, RadiationPressureEffect
 from onorbit_rs.scenario.fields import Force3, Time, Torque3
 from onorbit_rs.scenario.gravity_field import GravityFieldEffect
-from onorbit_rs.scenario.part import Part, expand_kind
+from onorbit_rs.scenario.part import Part, of_kind
+from onorbit_rs.scenario.refusals import wrong
 from onorbit_rs.scenario.third_body import ThirdBodyEffect
 
 
@@ -34,23 +34,16 @@ class BodyWrenchEffect(Part):
     @model_validator(mode="after")
     def _ends_after_start(self) -> BodyWrenchEffect:
         if self.end is not None and self.end <= self.start:
-            raise PydanticCustomError(
-                "wrench_times",
-                "the wrench ends at {end} s, not after its start at {start} s",
-                {"end": self.end, "start": self.start},
-            )
+            raise wrong(f"the wrench ends at {self.end:g} s, not after its start at {self.start:g} s")
         return self
 
 
-Effect = Annotated[
-    Annotated[
-        GravityFieldEffect
-        | GravityGradientEffect
-        | ThirdBodyEffect
-        | BodyWrenchEffect
-        | DragEffect
-        | RadiationPressureEffect,
-        Field(discriminator="kind"),
-    ],
-    BeforeValidator(expand_kind),
-]
+AnyEffect = (
+    GravityFieldEffect
+    | GravityGradientEffect
+    | ThirdBodyEffect
+    | BodyWrenchEffect
+    | DragEffect
+    | RadiationPressureEffect
+)
+Effect = Annotated[AnyEffect, Field(discriminator="kind"), of_kind(AnyEffect)]

@@ -71,7 +71,10 @@ Stiffness = Annotated[float, _reader(units.STIFFNESS)]
 def _drift(value: object) -> float | Literal["never"]:
     if value in ("never", math.inf):
         return "never"
-    distance = parse_quantity(value, units.LENGTH)
+    try:
+        distance = parse_quantity(value, units.LENGTH)
+    except QuantityError as error:
+        raise QuantityError(f"{error}, or never", text=value, expected="a length, or never") from None
     if distance < 1.0:
         message = f"{distance:g} m is too near: give at least 1 m, or never"
         raise QuantityError(message, text=value, expected="at least 1 m")

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.fields import (
     Angle3,
@@ -18,10 +17,16 @@ from onorbit_rs.scenario.fields import (
     Speed3,
 )
 from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.refusals import wrong
 
 
 class Attitude(Part):
     """Either a quaternion or three angles; it takes components of the base to components of the frame."""
+
+    other_words: ClassVar = {
+        "rpy": "roll_pitch_yaw", "euler": "roll_pitch_yaw", "angles": "roll_pitch_yaw",
+        "quaternion": "quaternion_xyzw", "quat": "quaternion_xyzw", "xyzw": "quaternion_xyzw",
+    }  # fmt: skip
 
     quaternion_xyzw: Number4 | None = None
     roll_pitch_yaw: Angle3 | None = None
@@ -31,30 +36,27 @@ class Attitude(Part):
     @classmethod
     def _from_list(cls, value: Any) -> Any:
         if isinstance(value, list):
-            raise PydanticCustomError(
-                "attitude", "say which: 'quaternion_xyzw: [...]' or 'roll_pitch_yaw: [...]'"
-            )
+            raise wrong("say which: 'quaternion_xyzw: [...]' or 'roll_pitch_yaw: [...]'")
         return value
 
     @model_validator(mode="after")
     def _is_one_rotation(self) -> Attitude:
         if (self.quaternion_xyzw is None) == (self.roll_pitch_yaw is None):
-            raise PydanticCustomError(
-                "attitude", "give exactly one of 'quaternion_xyzw' and 'roll_pitch_yaw'"
-            )
+            raise wrong("give exactly one of 'quaternion_xyzw' and 'roll_pitch_yaw'")
         if self.quaternion_xyzw is not None:
             norm = math.hypot(*self.quaternion_xyzw)
             if abs(norm - 1.0) > 1e-6:
-                raise PydanticCustomError(
-                    "attitude",
-                    "the quaternion has norm {norm}, off 1 by more than 1e-6",
-                    {"norm": f"{norm:.9g}"},
-                )
+                raise wrong(f"the quaternion has norm {norm:.9g}, off 1 by more than 1e-6")
         return self
 
 
 class InitialState(Part):
     """Pose and twist of the base, and the joints; zero where not given."""
+
+    other_words: ClassVar = {
+        "velocity": "linear_velocity", "spin": "angular_velocity", "orientation": "attitude",
+        "q": "joints", "joint_velocities": "joint_rates",
+    }  # fmt: skip
 
     frame: Literal["world", "lvlh", "path"] = "world"
     """What ``position`` and ``attitude`` are given in, and what the velocities are relative to: W, the

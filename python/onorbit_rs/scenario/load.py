@@ -62,7 +62,10 @@ def check(data: Any, file: Path | None, lines: Lines) -> Scenario:
     """Validate plain data; ``lines`` is where each entry stands."""
     if not isinstance(data, dict):
         what = "empty" if data is None else f"a {type(data).__name__}"
-        raise scenario_error(f"a scenario is a mapping of keys to values, this is {what}", file, None)
+        message = (
+            f"a scenario is a mapping of keys to values, this is {what}; onorbit new writes one to start from"
+        )
+        raise scenario_error(message, file, None)
     try:
         scenario = Scenario.checked(data)
     except ValidationError as error:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import model_validator
-from pydantic_core import PydanticCustomError
 
 from onorbit_rs._core import MU_EARTH
 from onorbit_rs.scenario.fields import (
@@ -20,6 +19,7 @@ from onorbit_rs.scenario.fields import (
     Time,
 )
 from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.refusals import wrong
 
 SIZES = ("semi_major_axis", "semi_latus_rectum")
 SECULAR = ("secular_j2", "j2", "radius")
@@ -63,16 +63,16 @@ class ConicOrbit(Part):
         if self.is_from_state:
             others = [name for name in given if name not in ("position", "velocity")]
             if self.position is None or self.velocity is None:
-                raise _wrong("a state needs both 'position' and 'velocity'")
+                raise wrong("a state needs both 'position' and 'velocity'")
             if others:
-                raise _wrong(f"give a state or elements, not both: {', '.join(others)}")
+                raise wrong(f"give a state or elements, not both: {', '.join(others)}")
             return self
         sizes = [name for name in SIZES if name in given]
         if len(sizes) != 1:
-            raise _wrong(f"give exactly one of {_listed(SIZES)}; given: {', '.join(sizes) or 'none'}")
+            raise wrong(f"give exactly one of {_listed(SIZES)}; given: {', '.join(sizes) or 'none'}")
         phases = [name for name in PHASES if name in given]
         if len(phases) > 1:
-            raise _wrong(f"give one of {_listed(PHASES)}; given: {', '.join(phases)}")
+            raise wrong(f"give one of {_listed(PHASES)}; given: {', '.join(phases)}")
         self._check_signs()
         self._write_out_defaults(has_phase=bool(phases))
         return self
@@ -90,12 +90,12 @@ class ConicOrbit(Part):
         if a is None:
             return
         if e == 1.0:
-            raise _wrong("a parabola (eccentricity 1) has no semi-major axis; give 'semi_latus_rectum'")
+            raise wrong("a parabola (eccentricity 1) has no semi-major axis; give 'semi_latus_rectum'")
         if (a > 0.0) != (e < 1.0):
             right = (
                 "positive below eccentricity 1" if e < 1.0 else "negative above eccentricity 1 (a hyperbola)"
             )
-            raise _wrong(f"semi_major_axis {a:g} m contradicts eccentricity {e:g}: it is {right}")
+            raise wrong(f"semi_major_axis {a:g} m contradicts eccentricity {e:g}: it is {right}")
 
 
 class KeplerOrbit(ConicOrbit):
@@ -111,7 +111,7 @@ class KeplerOrbit(ConicOrbit):
     def _is_flattened(self) -> KeplerOrbit:
         given = [name for name in SECULAR[1:] if getattr(self, name) is not None]
         if given and not self.secular_j2:
-            raise _wrong(f"{_listed(tuple(given))} does nothing without 'secular_j2: true'")
+            raise wrong(f"{_listed(tuple(given))} does nothing without 'secular_j2: true'")
         return self
 
 
@@ -123,7 +123,3 @@ class NumericalOrbit(ConicOrbit):
 
 def _listed(names: tuple[str, ...]) -> str:
     return ", ".join(repr(name) for name in names)
-
-
-def _wrong(message: str) -> PydanticCustomError:
-    return PydanticCustomError("orbit_elements", "{message}", {"message": message})

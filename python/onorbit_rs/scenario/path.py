@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.fields import (
     Acceleration3,
@@ -19,7 +18,8 @@ from onorbit_rs.scenario.fields import (
 )
 from onorbit_rs.scenario.initial import Attitude
 from onorbit_rs.scenario.orbit import KeplerOrbit, NumericalOrbit
-from onorbit_rs.scenario.part import Part, expand_kind
+from onorbit_rs.scenario.part import Part, of_kind
+from onorbit_rs.scenario.refusals import wrong
 
 Mu = Annotated[GravitationalParameter, Positive]
 GravityMode = Annotated[
@@ -47,12 +47,12 @@ class Sgp4Orbit(Part):
     @model_validator(mode="after")
     def _is_one_set(self) -> Sgp4Orbit:
         if (self.line1 is None) != (self.line2 is None):
-            raise _wrong("a TLE has two lines: give both 'line1' and 'line2'")
+            raise wrong("a TLE has two lines: give both 'line1' and 'line2'")
         names = ("line1", "tle", "tle_file", "omm_file")
         given = [name for name in names if getattr(self, name) is not None]
         if len(given) != 1:
             ways = "'line1' and 'line2', 'tle', 'tle_file' or 'omm_file'"
-            raise _wrong(f"give one element set, by {ways}; given: {', '.join(given) or 'none'}")
+            raise wrong(f"give one element set, by {ways}; given: {', '.join(given) or 'none'}")
         return self
 
 
@@ -79,9 +79,9 @@ class CustomPathOrbit(Part):
         if self.file is not None:
             extra = [name for name in ("velocities", "accelerations", "attitudes") if getattr(self, name)]
             if inline or extra:
-                raise _wrong(f"give 'file' or points, not both: {', '.join(inline + extra)}")
+                raise wrong(f"give 'file' or points, not both: {', '.join(inline + extra)}")
         elif len(inline) != 2:
-            raise _wrong("give 'times' and 'positions', or a 'file' with them")
+            raise wrong("give 'times' and 'positions', or a 'file' with them")
         return self
 
 
@@ -95,20 +95,10 @@ class FixedFrameOrbit(Part):
     gravity_mode: GravityMode = "true"
 
 
-def _wrong(message: str) -> PydanticCustomError:
-    return PydanticCustomError("orbit", "{message}", {"message": message})
-
-
 def _with_kind(value: Any) -> Any:
     """An orbit that does not say its kind is Kepler's."""
-    value = expand_kind(value)
-    return {"kind": "kepler"} | value if isinstance(value, dict) and "kind" not in value else value
+    return {"kind": "kepler"} | value if isinstance(value, dict) else value
 
 
-Orbit = Annotated[
-    Annotated[
-        KeplerOrbit | NumericalOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit,
-        Field(discriminator="kind"),
-    ],
-    BeforeValidator(_with_kind),
-]
+AnyOrbit = KeplerOrbit | NumericalOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit
+Orbit = Annotated[AnyOrbit, Field(discriminator="kind"), of_kind(AnyOrbit), BeforeValidator(_with_kind)]

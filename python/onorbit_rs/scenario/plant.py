@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from onorbit_rs import plants
-from onorbit_rs.scenario.control_fit import wrong
+from onorbit_rs.scenario.refusals import misfit
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
@@ -18,12 +18,12 @@ def check_plant(scenario: Scenario) -> None:
     if scenario.plant == "native":
         return
     if settings.integrator == "dormand_prince":
-        raise wrong(
+        raise misfit(
             ("simulation", "integrator"),
             f"the plant {scenario.plant} has no dormand_prince; take rk4, or plant: native",
         )
     if settings.enforce_limits and settings.restitution > 0.0:
-        raise wrong(
+        raise misfit(
             ("simulation", "restitution"),
             f"stops of the plant {scenario.plant} give nothing back; take restitution 0, or plant: native",
         )

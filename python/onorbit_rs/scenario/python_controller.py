@@ -38,7 +38,7 @@ def python_controller(part: PythonController, beside: Path) -> Any:
         raise ControlError(
             f"{source} has no class {part.class_!r}{hint}", name="class", got=part.class_, expected=classes
         )
-    if not callable(getattr(made, "update", None)):
+    if not callable(getattr(made, "update", None)) or inspect.isabstract(made):
         raise ControlError(
             f"{part.class_} of {source} has no update(t, state): give it one that returns the efforts",
             name="class",

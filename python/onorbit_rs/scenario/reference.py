@@ -12,6 +12,7 @@ from onorbit_rs import _core
 from onorbit_rs.exceptions import FrameError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.rotations import matrix_from_quaternion
+from onorbit_rs.scenario import joint_reference_parts as joint_parts
 from onorbit_rs.scenario import reference_parts as parts
 from onorbit_rs.scenario.start import joint_values, quaternion_of
 from onorbit_rs.scenario.table import read_table
@@ -146,9 +147,9 @@ def _joints(part: Any, at: Start) -> _core.JointReference:
     group = list(at.joints or every)
     indices = [every.index(name) for name in group]
     first = at.q[7:][indices]
-    if isinstance(part, parts.JointHoldReference):
+    if isinstance(part, joint_parts.JointHoldReference):
         return _core.JointHold(joint_values("joints", part.joints, at.q[7:], at.model)[indices])
-    if isinstance(part, parts.JointSampledReference):
+    if isinstance(part, joint_parts.JointSampledReference):
         columns = {name: (name,) for name in ("time", *group)}
         table = read_table(at.folder / part.file, columns, ("time",))
         time = table.pop("time").ravel()
@@ -158,7 +159,7 @@ def _joints(part: Any, at: Start) -> _core.JointReference:
         return _core.JointSampled(time, positions)
     times = None if part.times is None else np.array([0.0, *part.times])
     timing: dict[str, Any] = {"times": times, "speed": part.speed, "acceleration": part.acceleration}
-    if isinstance(part, parts.JointRampsReference):
+    if isinstance(part, joint_parts.JointRampsReference):
         return _core.JointWaypoints.one_by_one(first, [_move(move, group) for move in part.moves], **timing)
     points, now = [first], at.q[7:]
     for point in part.points:
@@ -167,7 +168,7 @@ def _joints(part: Any, at: Start) -> _core.JointReference:
     return _core.JointWaypoints(np.array(points), stops=part.stops, **timing)
 
 
-def _move(move: parts.JointMove, group: list[str]) -> tuple[int, float]:
+def _move(move: joint_parts.JointMove, group: list[str]) -> tuple[int, float]:
     if move.joint not in group:
         raise FrameError(
             f"moves: no joint is named {move.joint!r}{did_you_mean(move.joint, group)}",

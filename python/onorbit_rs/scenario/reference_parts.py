@@ -1,15 +1,16 @@
-"""References, as a scenario writes them. A new kind is one class with its own ``kind``, added to the union.
+"""References of a tool, as a scenario writes them, and the union of all.
 
-Those of a tool begin at its first pose unless ``start`` is given, and are written in the axes of ``frame``.
+A new kind is one class with its own ``kind``, added to the union. Those of a tool begin at its first pose
+unless ``start`` is given, and are written in the axes of ``frame``.
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
+from onorbit_rs.names import nearest
 from onorbit_rs.scenario.fields import (
     Acceleration,
     Angle,
@@ -17,9 +18,6 @@ from onorbit_rs.scenario.fields import (
     AngularRate,
     AngularRate3,
     FilePath,
-    JointAcceleration,
-    JointPositions,
-    JointRate,
     Length,
     Length3,
     Number,
@@ -30,8 +28,15 @@ from onorbit_rs.scenario.fields import (
     Time,
 )
 from onorbit_rs.scenario.initial import Attitude
-from onorbit_rs.scenario.part import Part, expand_kind
-from onorbit_rs.scenario.units import ANGLE, LENGTH, parse_quantity
+from onorbit_rs.scenario.joint_reference_parts import (
+    JointHoldReference,
+    JointRampsReference,
+    JointSampledReference,
+    JointWaypointsReference,
+    check_times,
+)
+from onorbit_rs.scenario.part import Part, of_kind
+from onorbit_rs.scenario.refusals import shown, wrong
 
 ORIGIN = [0.0, 0.0, 0.0]
 
@@ -46,6 +51,11 @@ class Pose(Part):
 class TargetMotion(Pose):
     """A spacecraft that nothing acts on: its pose at time zero in W, constant velocity and spin in W axes."""
 
+    other_words: ClassVar = {
+        "angular_velocity": "spin", "angular_rate": "spin", "rate": "spin", "linear_velocity": "velocity",
+        "orientation": "attitude",
+    }  # fmt: skip
+
     velocity: Speed3 = Field(default_factory=lambda: list(ORIGIN))
     spin: AngularRate3 = Field(default_factory=lambda: list(ORIGIN))
     size: Length3 | None = None
@@ -56,6 +66,28 @@ class TargetFrame(Part):
     """The frame of a target."""
 
     target: TargetMotion
+
+
+FRAMES = ("world", "lvlh", "base")
+
+
+def _frame(value: Any) -> Any:
+    """A name or a target, each checked as what it is."""
+    if value in FRAMES or isinstance(value, (dict, TargetFrame)):
+        return value
+    near = nearest(value, FRAMES) if isinstance(value, str) else None
+    raise wrong(
+        f"{shown(value)} is no frame{f', did you mean {near!r}?' if near else ''}; there are "
+        f"{', '.join(FRAMES)} and {{target: {{position: ..., velocity: ..., spin: ...}}}}"
+    )
+
+
+Frame = Annotated[
+    Annotated[Literal["world", "lvlh", "base"], Tag("name")] | Annotated[TargetFrame, Tag("a target")],
+    Discriminator(lambda value: "name" if isinstance(value, str) else "a target"),
+    BeforeValidator(_frame),
+]
+"""World W, the local orbital frame L, the axes of the base at its first place, or those of a target."""
 
 
 class Goal(Part):
@@ -70,16 +102,16 @@ class Goal(Part):
     @model_validator(mode="after")
     def _says_each_once(self) -> Goal:
         if self.displacement is not None and self.position is not None:
-            raise _wrong("give either 'displacement' (from the start) or 'position' (in the frame)")
+            raise wrong("give either 'displacement' (from the start) or 'position' (in the frame)")
         if self.turn is not None and self.attitude is not None:
-            raise _wrong("give either 'turn' (from the start) or 'attitude' (in the frame)")
+            raise wrong("give either 'turn' (from the start) or 'attitude' (in the frame)")
         return self
 
 
 class TaskReference(Part):
     """What all references of a tool share."""
 
-    frame: Literal["world", "lvlh", "base"] | TargetFrame = "world"
+    frame: Frame = "world"
     start: Pose | None = None
     """Where it begins; where the tool is, if not given."""
 
@@ -153,6 +185,11 @@ class WaypointsReference(Limits):
     stops: bool = True
     """Whether it rests at each point."""
 
+    @model_validator(mode="after")
+    def _has_a_time_for_each(self) -> Self:
+        check_times(self.times, "points", len(self.points))
+        return self
+
 
 class SampledReference(TaskReference):
     """From a CSV with the header ``time,x,y,z,qx,qy,qz,qw`` and, where known, ``vx,vy,vz,wx,wy,wz``; SI."""
@@ -162,55 +199,6 @@ class SampledReference(TaskReference):
     """Beside the scenario."""
     relative: bool = False
     """Whether the motion is moved so that it begins at the start."""
-
-
-class JointHoldReference(Part):
-    """Joints stay, where they start or where ``joints`` says."""
-
-    kind: Literal["joint_hold"] = "joint_hold"
-    joints: JointPositions = Field(default_factory=list)
-
-
-class JointTimed(Part):
-    """As fast as limits, the same for all joints, allow."""
-
-    speed: Annotated[JointRate, Positive] | None = None
-    acceleration: Annotated[JointAcceleration, Positive] | None = None
-    times: list[Time] | None = None
-    """Of the points, the start being at zero."""
-
-
-class JointWaypointsReference(JointTimed):
-    """Quintics from where the joints start through points; joints that are not named stay."""
-
-    kind: Literal["joint_waypoints"] = "joint_waypoints"
-    points: Annotated[list[JointPositions], Field(min_length=1)]
-    stops: bool = True
-
-
-class JointMove(Part):
-    """One joint to a position."""
-
-    joint: str
-    to: Annotated[float, BeforeValidator(lambda value: parse_quantity(value, ANGLE, LENGTH))]
-
-
-class JointRampsReference(JointTimed):
-    """One joint after the other, each from rest to rest."""
-
-    kind: Literal["joint_ramps"] = "joint_ramps"
-    moves: Annotated[list[JointMove], Field(min_length=1)]
-
-
-class JointSampledReference(Part):
-    """From a CSV with the header ``time`` and names of joints; rad and m. Joints that are not named stay."""
-
-    kind: Literal["joint_sampled"] = "joint_sampled"
-    file: FilePath
-
-
-def _wrong(message: str) -> PydanticCustomError:
-    return PydanticCustomError("reference", "{message}", {"message": message})
 
 
 AnyReference = (
@@ -226,7 +214,4 @@ AnyReference = (
     | JointRampsReference
     | JointSampledReference
 )
-Reference = Annotated[
-    Annotated[AnyReference, Field(discriminator="kind")],
-    BeforeValidator(expand_kind),
-]
+Reference = Annotated[AnyReference, Field(discriminator="kind"), of_kind(AnyReference)]

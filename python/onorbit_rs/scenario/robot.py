@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import Field, field_validator, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from onorbit_rs import robots
 from onorbit_rs.scenario.fields import FilePath, Inertia, Mass, Positive
 from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.refusals import shown, wrong
 
 
 class RigidBody(Part):
@@ -31,9 +31,16 @@ class RigidBody(Part):
                 ]
             if all(rows) and all(len(row) == 3 for row in value):
                 return value
-        raise PydanticCustomError(
-            "inertia_shape", "an inertia is three numbers (a diagonal) or a 3 x 3 matrix"
-        )
+        raise wrong("an inertia is three numbers (a diagonal) or a 3 x 3 matrix")
+
+
+def _argument(value: Any) -> Any:
+    if isinstance(value, (str, bool, int, float)):
+        return value
+    raise wrong(f"an argument of xacro is text, a number, true or false, not {shown(value)}")
+
+
+XacroArgument = Annotated[str | bool | int | float, BeforeValidator(_argument)]
 
 
 class Robot(Part):
@@ -44,7 +51,7 @@ class Robot(Part):
     rigid_body: RigidBody | None = None
     package_paths: list[FilePath] = Field(default_factory=list)
     """Folders in which ``package://`` and xacro's ``$(find ...)`` are looked up."""
-    xacro_arguments: dict[str, str | bool | int | float] = Field(default_factory=dict)
+    xacro_arguments: dict[str, XacroArgument] = Field(default_factory=dict)
     """What ``$(arg name)`` gives in a xacro file."""
 
     @model_validator(mode="before")
@@ -52,10 +59,9 @@ class Robot(Part):
     def _from_text(cls, value: Any) -> Any:
         """``humanoid_torso`` is a bundled name; ``arms/my_arm.urdf`` is a path, relative to the YAML."""
         if not isinstance(value, (str, dict)):
-            raise PydanticCustomError(
-                "robot_choice",
-                "must be a bundled name, a path of a URDF, or a mapping with 'rigid_body', not {value}",
-                {"value": repr(value)},
+            raise wrong(
+                "must be a bundled name, a path of a URDF, or a mapping with 'bundled', 'urdf' or "
+                f"'rigid_body', not {shown(value)}"
             )
         if not isinstance(value, str):
             return value
@@ -65,13 +71,8 @@ class Robot(Part):
     def _exactly_one(self) -> Robot:
         given = [name for name in ("bundled", "urdf", "rigid_body") if getattr(self, name) is not None]
         if len(given) != 1:
-            raise PydanticCustomError(
-                "robot_choice",
-                "give exactly one of 'bundled', 'urdf' and 'rigid_body'; given: {given}",
-                {"given": ", ".join(given) or "none"},
-            )
+            listed = ", ".join(given) or "none"
+            raise wrong(f"give exactly one of 'bundled', 'urdf' and 'rigid_body'; given: {listed}")
         if self.urdf is None and (self.package_paths or self.xacro_arguments):
-            raise PydanticCustomError(
-                "robot_choice", "'package_paths' and 'xacro_arguments' belong to a 'urdf'"
-            )
+            raise wrong("'package_paths' and 'xacro_arguments' belong to a 'urdf'")
         return self

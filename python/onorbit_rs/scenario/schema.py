@@ -9,7 +9,7 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from onorbit_rs.scenario.complaints import first_complaint
 from onorbit_rs.scenario.control import AnyController, Controller
-from onorbit_rs.scenario.control_fit import check_control, wrong
+from onorbit_rs.scenario.control_fit import check_control
 from onorbit_rs.scenario.controls import AnyControl
 from onorbit_rs.scenario.earth import EarthPart, Epoch
 from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
@@ -19,6 +19,7 @@ from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.path import Orbit
 from onorbit_rs.scenario.plant import check_plant
 from onorbit_rs.scenario.reference_parts import Reference
+from onorbit_rs.scenario.refusals import misfit
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import SimulationSettings
 from onorbit_rs.scenario.third_body import ThirdBodyEffect
@@ -125,7 +126,7 @@ class Scenario(Part):
             for index, effect in enumerate(self.environment):
                 if isinstance(effect, GravityGradientEffect | GravityFieldEffect | ThirdBodyEffect):
                     what = effect.kind.replace("_", " ")
-                    raise wrong(("environment", index), f"the {what} needs an 'orbit'")
+                    raise misfit(("environment", index), f"the {what} needs an 'orbit'")
             if self.initial.frame != "world":
-                raise wrong(("initial", "frame"), f"the frame {self.initial.frame} needs an 'orbit'")
+                raise misfit(("initial", "frame"), f"the frame {self.initial.frame} needs an 'orbit'")
         return self

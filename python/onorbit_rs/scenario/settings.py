@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import math
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from onorbit_rs.scenario.fields import Drift, NotNegative, Number, Positive, Time
 from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.refusals import wrong
 
 NotNegativeNumber = Annotated[Number, NotNegative]
 MAX_STEPS = 10**10
@@ -19,17 +20,21 @@ MAX_ROWS = 10**7
 class SimulationSettings(Part):
     """Times in seconds of simulation."""
 
+    other_words: ClassVar = {
+        "dt": "time_step", "step": "time_step", "timestep": "time_step", "end": "duration",
+    }  # fmt: skip
+
     duration: Annotated[Time, Positive]
     time_step: Annotated[Time, Positive] = 1e-3
     control_period: Annotated[Time, Positive] | None = None
     """How often the controller runs; every time step where not given."""
     integrator: Literal["rk4", "semi_implicit_euler", "dormand_prince"] = "rk4"
     """``dormand_prince`` adapts its steps; ``time_step`` is then the grid of the rows."""
-    tolerance: float = Field(default=1e-9, ge=1e-13, le=0.1)
+    tolerance: Number = Field(default=1e-9, ge=1e-13, le=0.1)
     """Of ``dormand_prince``: error of a step as a share of a radian, of the robot's size, of rates."""
     enforce_limits: bool = False
     """Whether rigid stops keep the joints within their position limits."""
-    restitution: float = Field(default=0.0, ge=0.0, le=1.0)
+    restitution: Number = Field(default=0.0, ge=0.0, le=1.0)
     """Share of its rate that a joint keeps when it hits a stop."""
     record_every: int = Field(default=1, ge=1, le=MAX_STEPS)
     """One row of the trace every so many steps."""
@@ -45,19 +50,21 @@ class SimulationSettings(Part):
     @model_validator(mode="after")
     def _steps_fit(self) -> SimulationSettings:
         if self.time_step > self.duration:
-            raise _wrong(f"time_step {self.time_step:g} s is longer than the duration {self.duration:g} s")
+            raise wrong(f"time_step {self.time_step:g} s is longer than the duration {self.duration:g} s")
         if self.duration / self.time_step > MAX_STEPS:
-            raise _wrong(f"duration / time_step is above {MAX_STEPS:.0e} steps; take a longer time_step")
-        if self.duration / self.time_step / self.record_every > MAX_ROWS:
-            raise _wrong(
+            raise wrong(f"duration / time_step is above {MAX_STEPS:.0e} steps; take a longer 'time_step'")
+        steps = math.ceil(self.duration / self.time_step * (1.0 - 1e-9))
+        if steps / self.record_every > MAX_ROWS:
+            raise wrong(
                 f"the trace would have more than {MAX_ROWS} rows; record less often with 'record_every'"
             )
+        if self.record_every > steps:
+            raise wrong(
+                f"record_every is {self.record_every}, the run has {steps} steps: take at most {steps}, "
+                "which records its two ends"
+            )
         if self.control_period is not None and self.control_period < self.time_step * (1.0 - 1e-9):
-            raise _wrong(
+            raise wrong(
                 f"control_period {self.control_period:g} s is shorter than time_step {self.time_step:g} s"
             )
         return self
-
-
-def _wrong(message: str) -> PydanticCustomError:
-    return PydanticCustomError("settings", "{message}", {"message": message})

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.names import did_you_mean
+from onorbit_rs.scenario.refusals import shown
 
 Powers = tuple[int, int, int, int]
 """Powers of mass (kg), length (m), time (s) and angle (rad)."""
@@ -24,6 +25,8 @@ class Dimension:
     name: str
     powers: Powers
     si: str
+    also: tuple[str, ...] = ()
+    """Units of several names that are worth a mention."""
 
 
 NUMBER = Dimension("a plain number", (0, 0, 0, 0), "")
@@ -33,10 +36,10 @@ AREA = Dimension("an area", (0, 2, 0, 0), "m^2")
 DENSITY = Dimension("a density", (1, -3, 0, 0), "kg/m^3")
 TIME = Dimension("a time", (0, 0, 1, 0), "s")
 ANGLE = Dimension("an angle", (0, 0, 0, 1), "rad")
-SPEED = Dimension("a speed", (0, 1, -1, 0), "m/s")
+SPEED = Dimension("a speed", (0, 1, -1, 0), "m/s", ("km/s", "mm/s"))
 ACCELERATION = Dimension("an acceleration", (0, 1, -2, 0), "m/s^2")
-ANGULAR_RATE = Dimension("an angular rate", (0, 0, -1, 1), "rad/s")
-ANGULAR_ACCELERATION = Dimension("an angular acceleration", (0, 0, -2, 1), "rad/s^2")
+ANGULAR_RATE = Dimension("an angular rate", (0, 0, -1, 1), "rad/s", ("deg/s",))
+ANGULAR_ACCELERATION = Dimension("an angular acceleration", (0, 0, -2, 1), "rad/s^2", ("deg/s^2",))
 RATE = Dimension("a rate", (0, 0, -1, 0), "1/s")
 STIFFNESS = Dimension("a stiffness per mass", (0, 0, -2, 0), "1/s^2")
 FLUX = Dimension("a flux of energy", (1, 0, -3, 0), "W/m^2")
@@ -47,7 +50,7 @@ LINEAR_STIFFNESS = Dimension("a stiffness", (1, 0, -2, 0), "N/m")
 ANGULAR_STIFFNESS = Dimension("an angular stiffness", (1, 2, -2, -1), "N m/rad")
 LINEAR_DAMPING = Dimension("a damping", (1, 0, -1, 0), "N s/m")
 ANGULAR_DAMPING = Dimension("an angular damping", (1, 2, -1, -1), "N m s/rad")
-GRAVITY = Dimension("a gravitational parameter", (0, 3, -2, 0), "m^3/s^2")
+GRAVITY = Dimension("a gravitational parameter", (0, 3, -2, 0), "m^3/s^2", ("km^3/s^2",))
 
 _DAY = 86_400.0
 _UNITS: dict[str, tuple[float, Powers]] = {
@@ -164,7 +167,7 @@ def _any_of(allowed: tuple[Dimension, ...]) -> str:
 def _example_units(dimension: Dimension) -> str:
     """``m, km, ...`` for a message: units of this dimension, the SI unit first."""
     same = [name for name, (_, powers) in _UNITS.items() if powers == dimension.powers and name != "1"]
-    return ", ".join(dict.fromkeys([dimension.si, *same])) if dimension.si else ""
+    return ", ".join(dict.fromkeys([dimension.si, *dimension.also, *same])) if dimension.si else ""
 
 
 def _refused(value: object, why: str, allowed: tuple[Dimension, ...]) -> QuantityError:
@@ -172,5 +175,4 @@ def _refused(value: object, why: str, allowed: tuple[Dimension, ...]) -> Quantit
     way_out = (
         f"write a bare number (SI) or one with a unit: {units}" if units else "write a number without a unit"
     )
-    shown = repr(value) if len(repr(value)) <= 60 else repr(value)[:57] + "..."
-    return QuantityError(f"{shown} {why}; {way_out}", text=value, expected=_any_of(allowed))
+    return QuantityError(f"{shown(value)} {why}; {way_out}", text=value, expected=_any_of(allowed))

@@ -102,7 +102,14 @@ class _Walk:
             line = key_node.start_mark.line + 1
             key = loader.construct_object(key_node) if isinstance(key_node, yaml.ScalarNode) else None
             if not isinstance(key, str):
-                raise _at(self.file, line, "a key must be text")
+                what = "a list or mapping" if key is None else f"{key!r}: put it in quotes"
+                raise _at(self.file, line, f"a key must be text, not {what}")
+            if key == "<<":
+                raise _at(
+                    self.file,
+                    line,
+                    "keys are not merged by '<<': name a whole part by its anchor, or write it out",
+                )
             if key in own:
                 raise _at(self.file, line, f"the key {key!r} is given twice, first on line {own[key]}")
             own[key] = line
@@ -139,7 +146,22 @@ def _syntax_error(error: yaml.YAMLError, file: Path | None) -> ScenarioError:
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     problem = getattr(error, "problem", None) or getattr(error, "reason", None) or "cannot be read"
     line = None if mark is None else mark.line + 1
-    return _at(file, line, f"broken YAML, {' '.join(str(problem).split())}")
+    told = " ".join(str(problem).split())
+    way_out = next((words for part, words in _WAYS_OUT.items() if part in told), None)
+    return _at(file, line, f"broken YAML, {told}{f': {way_out}' if way_out else ''}")
+
+
+_WAYS_OUT = {
+    r"'\t'": "indent with spaces, not with tabs",
+    "mapping values are not allowed": "is a ':' missing above, or a line further in than the one before it?",
+    "could not find expected ':'": "a key is followed by ':' and a space",
+    "expected <block end>": "is this line further in, or less far, than its neighbours?",
+    "expected ',' or": "is a bracket or brace left open?",
+    "another document": "a file holds one scenario",
+    "constructor for the tag": "values are plain, without '!'",
+    "undefined alias": "its '&' must stand above it",
+}
+"""What is likely meant by what PyYAML says."""
 
 
 def _at(file: Path | None, line: int | None, message: str) -> ScenarioError:

@@ -11,6 +11,9 @@ use crate::dynamics::{
 use crate::model::{Model, difference, integrate};
 use crate::spatial::{Force, Real, pose_rows};
 
+/// Most outputs that a kernel has.
+pub(super) const OUTPUTS: usize = 5;
+
 /// What to compute from a state; frames by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
@@ -96,22 +99,43 @@ impl Kernel {
         matches!(self, Self::ForwardDynamics | Self::ForwardDynamicsDerivatives)
     }
 
+    /// The frame it is about, if it is about one.
+    pub(super) fn frame(self) -> Option<usize> {
+        match self {
+            Self::FramePose(frame)
+            | Self::FrameVelocity(frame)
+            | Self::FrameJacobian(frame)
+            | Self::FreeFloating(frame)
+            | Self::FreeFloatingDerivatives(frame) => Some(frame),
+            _ => None,
+        }
+    }
+
     /// Widths of the outputs' rows.
     pub fn outputs(self, model: &Model) -> Vec<usize> {
+        let (widths, count) = self.widths(model);
+        widths[..count].to_vec()
+    }
+
+    /// Widths of the outputs' rows, and how many outputs there are.
+    pub(super) fn widths(self, model: &Model) -> ([usize; OUTPUTS], usize) {
         let (nq, nv, n) = (model.nq(), model.nv(), model.joint_count());
-        match self {
-            Self::FramePose(_) => vec![16],
-            Self::FrameVelocity(_) | Self::Momentum => vec![6],
-            Self::FrameJacobian(_) => vec![6 * nv],
-            Self::MassMatrix => vec![nv * nv],
-            Self::BiasForces | Self::InverseDynamics | Self::ForwardDynamics | Self::Difference => vec![nv],
-            Self::KineticEnergy => vec![1],
-            Self::CenterOfMass => vec![3],
-            Self::FreeFloating(_) => vec![n * n, n, n, 6 * n, 6],
-            Self::InverseDynamicsDerivatives | Self::ForwardDynamicsDerivatives => vec![nv * nv; 3],
-            Self::FreeFloatingDerivatives(_) => vec![n * nv, n * nv, 6 * nv, 6 * nv, 6 * nv],
-            Self::Integrate => vec![nq],
-        }
+        let given: &[usize] = match self {
+            Self::FramePose(_) => &[16],
+            Self::FrameVelocity(_) | Self::Momentum => &[6],
+            Self::FrameJacobian(_) => &[6 * nv],
+            Self::MassMatrix => &[nv * nv],
+            Self::BiasForces | Self::InverseDynamics | Self::ForwardDynamics | Self::Difference => &[nv],
+            Self::KineticEnergy => &[1],
+            Self::CenterOfMass => &[3],
+            Self::FreeFloating(_) => &[n * n, n, n, 6 * n, 6],
+            Self::InverseDynamicsDerivatives | Self::ForwardDynamicsDerivatives => &[nv * nv; 3],
+            Self::FreeFloatingDerivatives(_) => &[n * nv, n * nv, 6 * nv, 6 * nv, 6 * nv],
+            Self::Integrate => &[nq],
+        };
+        let mut widths = [0; OUTPUTS];
+        widths[..given.len()].copy_from_slice(given);
+        (widths, given.len())
     }
 
     /// One state, or one set of lanes.

@@ -100,7 +100,7 @@ pub struct ComputedTorqueWork<S> {
     pub reduced: FreeFloating<S>,
     inverse: PseudoInverse<S>,
     acceleration: Vec<S>,
-    free: Vec<S>,
+    kept: Vec<S>,
     lost: Vec<S>,
 }
 
@@ -112,7 +112,7 @@ impl<S: Real> ComputedTorqueWork<S> {
             reduced: FreeFloating::new(model),
             inverse: PseudoInverse::new(1),
             acceleration: vec![S::of(0.0); n],
-            free: vec![S::of(0.0); n],
+            kept: vec![S::of(0.0); n],
             lost: vec![S::of(0.0); n],
         }
     }
@@ -179,7 +179,7 @@ fn kernel<S: Real>(
         *a = (-k).mul_add(*rate, *a);
     }
     if work.inverse.is_damped() {
-        work.inverse.split(jacobian, rates, &mut work.free, &mut work.lost);
+        work.inverse.lost(jacobian, rates, &mut work.kept, &mut work.lost);
         for (a, lost) in work.acceleration.iter_mut().zip(&work.lost) {
             *a = (k - S::of(law.brake())).mul_add(*lost, *a);
         }

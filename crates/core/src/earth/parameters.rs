@@ -54,7 +54,7 @@ impl Default for EarthParameters {
 
 impl EarthParameters {
     /// A table from rows of four numbers: MJD (UTC), `x_p, y_p`, rad, UT1 less UTC, s.
-    pub fn rows(numbers: &[f64]) -> Self {
+    pub fn from_rows(numbers: &[f64]) -> Self {
         let row =
             |r: &[f64]| EarthParameterRow { mjd: r[0], polar_motion: [r[1], r[2]], ut1_minus_utc: r[3] };
         Self::Table(numbers.chunks_exact(4).map(row).collect())

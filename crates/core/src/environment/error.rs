@@ -28,8 +28,8 @@ pub enum EnvironmentError {
     },
     /// A path runs through the planet.
     #[error(
-        "{effect}: {what} is {distance} m from the planet's centre, at least {minimum} m is needed \
-         (no planet of this mass is smaller)"
+        "{effect}: {what} is below ground, {distance} m from the planet's centre where at least {minimum} m are needed: \
+         end the run earlier, or raise the orbit"
     )]
     InsidePlanet {
         /// Name of the effect.

@@ -7,6 +7,7 @@ mod driver;
 mod engine;
 mod error;
 mod exchange;
+mod guide;
 mod integrator;
 mod launch;
 mod pair;

@@ -131,6 +131,7 @@ impl Simulation {
         if let Some(effect) = self.effects.iter().find(|effect| effect.requires_orbit() && !has_planet) {
             return Err(SimulationError::NeedsOrbit { effect: effect.name().to_owned() });
         }
+        self.check_that_none_counts_twice()?;
         if let (Some(orbit), Some(earth)) = (&self.orbit, &self.earth) {
             earth.fits(orbit.axes(), orbit.epoch())?;
         }
@@ -170,6 +171,22 @@ impl Simulation {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Refuses two effects that do the same to a body; gravity is always there around a planet.
+    fn check_that_none_counts_twice(&self) -> Result<(), SimulationError> {
+        let effects = self.all_effects();
+        for (k, effect) in effects.iter().enumerate() {
+            let before = effects[..k].iter().filter(|before| before.name() == effect.name());
+            for before in before {
+                let both = |body: &usize| before.counts_once_on(*body) && effect.counts_once_on(*body);
+                if let Some(body) = (0..self.model.nodes().len()).find(both) {
+                    let (effect, body) = (effect.name().to_owned(), self.model.body_frame(body).name.clone());
+                    return Err(SimulationError::EffectTwice { effect, body });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Restitution, and whether the joints start within their limits.

@@ -1,14 +1,14 @@
 //! Surfaces on the bodies of a robot.
 
 use super::ball::Ball;
-use super::block::Block;
+use super::eight_surfaces::EightSurfaces;
 use super::error::{SurfaceError, not_negative};
 use super::from_shapes::parts_of_body;
 use super::optics::Optics;
 use super::plate::Plate;
 use super::slab::Slab;
 use super::tube::Tube;
-use crate::environment::rows::WIDTH;
+use crate::environment::eight::WIDTH;
 use crate::model::{Frame, Model};
 use crate::spatial::Vec3;
 use nalgebra::Vector3;
@@ -52,7 +52,7 @@ pub struct Covering {
 pub struct Surfaces {
     /// By body.
     is_covered: Vec<bool>,
-    blocks: Vec<Block>,
+    blocks: Vec<EightSurfaces>,
 }
 
 impl Surface {
@@ -148,7 +148,7 @@ impl Surfaces {
             }
         }
         let is_covered = surfaces.iter().map(Option::is_some).collect();
-        Ok(Self { is_covered, blocks: surfaces.chunks(WIDTH).map(Block::new).collect() })
+        Ok(Self { is_covered, blocks: surfaces.chunks(WIDTH).map(EightSurfaces::new).collect() })
     }
 
     /// Every body with the faces of its own shapes; bodies that look like nothing feel nothing.
@@ -183,7 +183,7 @@ impl Surfaces {
 
     /// What covers the eight bodies among which body number `first` is; `None` where nothing does.
     #[inline(always)]
-    pub(in crate::environment) fn around(&self, first: usize) -> Option<&Block> {
+    pub(in crate::environment) fn around(&self, first: usize) -> Option<&EightSurfaces> {
         self.blocks.get(first / WIDTH).filter(|block| !block.is_bare())
     }
 }

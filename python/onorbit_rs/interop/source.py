@@ -1,0 +1,95 @@
+"""A mapping in a file of OnOrbitROS, what is made of it, and what is said of its lines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+from onorbit_rs.exceptions import OnOrbitError, QuantityError
+from onorbit_rs.interop.expressions import evaluate
+from onorbit_rs.names import did_you_mean
+from onorbit_rs.scenario.place import dotted, scenario_error
+from onorbit_rs.scenario.yaml_lines import Lines, Location
+
+Verdict = Literal["understood", "corrected", "no meaning"]
+
+
+@dataclass(frozen=True)
+class Note:
+    """What became of one line."""
+
+    file: Path
+    line: int | None
+    key: str
+    verdict: Verdict
+    text: str
+
+    def __str__(self) -> str:
+        """``orbit.yaml:4: semi_major_axix: corrected: ...``."""
+        where = f"{self.file}:{self.line}" if self.line else f"{self.file}"
+        return f"{where}: {self.key}: {self.verdict}: {self.text}"
+
+
+@dataclass
+class Source:
+    """A mapping in a file, and where what is made of it goes."""
+
+    file: Path
+    lines: Lines
+    at: Location
+    data: dict[str, Any]
+    keep_going: bool
+    notes: list[Note]
+    result: dict[str, Any] = field(default_factory=dict)
+    comments: dict[Location, str] = field(default_factory=dict)
+
+    def note(self, key: str, verdict: Verdict, text: str) -> None:
+        """A remark on the line of ``key``."""
+        at = (*self.at, *key.split("/"))
+        line = self.lines.get(at) or self.lines.get((*self.at, key)) or self.lines.get(self.at)
+        self.notes.append(Note(self.file, line, key, verdict, text))
+
+    def put(self, at: Location, value: Any, key: str) -> None:
+        """An entry of the scenario, from the line of ``key``."""
+        part = self.result
+        for step in at[:-1]:
+            part = part.setdefault(str(step), {})
+        part[str(at[-1])] = value
+        line = self.lines.get((*self.at, key))
+        given = self.data.get(key, "not given")
+        words = "" if isinstance(given, list) else f": {given}"
+        self.comments[at] = f"{self.file.name}{f':{line}' if line else ''}: {key}{words}"
+
+    def fail(self, key: str, message: str) -> OnOrbitError:
+        """An error at the line of ``key``."""
+        at = (*self.at, key)
+        return scenario_error(message, self.file, self.lines.get(at), dotted(at))
+
+    def refuse_unknown(self, known: Sequence[str]) -> None:
+        """A key that OnOrbitROS does not have is an error, or with ``keep_going`` a remark."""
+        for key in self.data:
+            if key in known:
+                continue
+            hint = did_you_mean(key, known) or "; see docs/coming_from/onorbitros.md"
+            if not self.keep_going:
+                way_out = "correct or remove it, or go on without it: --keep-going"
+                raise self.fail(key, f"no key of OnOrbitROS{hint} ({way_out})")
+            self.note(key, "no meaning", f"no key of OnOrbitROS{hint}")
+
+    def number(self, key: str) -> float:
+        """The value of ``key``, which may be arithmetic."""
+        try:
+            return evaluate(self.data[key])
+        except QuantityError as error:
+            raise self.fail(key, str(error)) from None
+
+    def inside(self, key: str, *, apart: bool = False) -> Source:
+        """The mapping of ``key``; ``apart`` where what is made of it is a part of its own."""
+        result: dict[str, Any] = {} if apart else self.result
+        comments: dict[Location, str] = {} if apart else self.comments
+        at = (*self.at, key)
+        return Source(
+            self.file, self.lines, at, self.data[key], self.keep_going, self.notes, result, comments
+        )

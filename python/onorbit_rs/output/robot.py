@@ -1,0 +1,33 @@
+"""Whether the robot that a run's folder names is still the one that ran."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.robots.fingerprint import is_another
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import make_robot
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model
+
+CHANGED = "the robot's file was changed since the run: it is not the robot that was recorded"
+
+
+def was_changed(model: Model, summary: dict[str, Any]) -> bool:
+    """Whether a robot is not the one of a run; of runs of earlier versions nobody knows."""
+    return is_another(model, summary.get("robot_fingerprint"))
+
+
+def remark_on_robot(folder: Path, summary: dict[str, Any]) -> str | None:
+    """What is to be said where the robot of a folder's run was changed since, or is gone; None where not."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what the file is like was told when it ran
+            model = make_robot(load(folder / "scenario.yaml"))
+    except OnOrbitError as error:
+        return f"the robot of the run cannot be read again: {error}"
+    return CHANGED if was_changed(model, summary) else None

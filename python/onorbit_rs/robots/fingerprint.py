@@ -1,0 +1,64 @@
+"""Whether two robots are one: a digest of what moves, what is named, and what wind and light meet."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model
+
+DIGITS = 9
+"""Kept of every number, in m, rad or kg; of an inertia, of its largest entry. Rounding is no other robot."""
+
+
+def fingerprint(model: Model) -> str:
+    """Sixteen hexadecimal digits that follow from a robot's content, not from where its file lies.
+
+    Of bodies, joints, named frames, and of the shapes of its visuals without their colours. What is in the
+    file of a mesh is not looked at.
+    """
+    content = {
+        "bodies": [
+            (body.name, _exact(body.mass), _rounded(body.com), _scaled(body.inertia)) for body in model.bodies
+        ],
+        "joints": [
+            (joint.name, joint.kind, joint.parent, joint.child, _rounded(joint.pose), _rounded(joint.axis),
+             *map(_exact, (joint.lower, joint.upper, joint.velocity, joint.effort, joint.damping,
+                           joint.friction, joint.rotor_inertia)))
+            for joint in model.joints
+        ],
+        "frames": sorted((frame.name, frame.body, _rounded(frame.pose)) for frame in model.frames),
+        "visuals": [
+            (visual.link, visual.kind, _rounded(visual.pose), _rounded(visual.size), _rounded(visual.scale),
+             PurePath(visual.filename).name if visual.filename else None)
+            for visual in model.visuals
+        ],
+    }  # fmt: skip
+    return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:16]
+
+
+def is_another(model: Model, recorded: Any) -> bool:
+    """Whether a robot is not the one of this fingerprint; older runs have none, and then nobody knows."""
+    return isinstance(recorded, str) and recorded != fingerprint(model)
+
+
+def _exact(number: float | None) -> str | None:
+    """What is written in a file and not computed."""
+    return None if number is None else f"{number:.12g}"
+
+
+def _rounded(values: Iterable[Any]) -> list[Any]:
+    rounded: list[Any] = (np.round(np.array(values, dtype=np.float64), DIGITS) + 0.0).tolist()  # -0.0 is 0.0
+    return rounded
+
+
+def _scaled(inertia: Iterable[Any]) -> list[Any]:
+    entries = np.array(inertia, dtype=np.float64)
+    largest = float(np.abs(entries).max())
+    return [f"{largest:.{DIGITS}g}", _rounded(entries / largest if largest > 0.0 else entries)]

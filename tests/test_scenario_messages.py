@@ -1,0 +1,260 @@
+"""What a user reads of a wrong scenario: the line, what was found, what is accepted, the way out."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import pytest
+
+from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import build
+
+ROBOT = "robot: humanoid_torso\n"
+RUN = "simulation: {duration: 1 s}\n"
+LAW = ROBOT + "tool: tool\ncontroller: computed_torque\n" + RUN
+ORBIT = LAW + "orbit: {semi_major_axis: 6778 km}\n"
+TARGET = LAW + "reference:\n  kind: hold\n  frame:\n    target:\n      velocity: [1, 0, 0]\n"
+LINE = LAW + "reference: {kind: line, duration: 1, goal: {displacement: [0.1, 0, 0]}"
+JOINTS = ROBOT + RUN
+
+# name: text, the line and place it is told with, words of the message
+WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
+    "target, other word": (
+        TARGET + "      angular_velocity: [0, 0, 0.1]\n",
+        "10: reference.frame.target.angular_velocity",
+        ("did you mean 'spin'?", "known are: position, attitude, velocity, spin, size"),
+    ),
+    "target, misspelt": (
+        TARGET + "      atitude: 1\n",
+        "10: reference.frame.target.atitude",
+        ("did you mean 'attitude'?",),
+    ),
+    "target, unit": (
+        TARGET + "      spin: [0, 0, 1 deg]\n",
+        "10: reference.frame.target.spin[2]",
+        ("not an angular rate", "deg/s"),
+    ),
+    "target, empty": (
+        LAW + "reference:\n  kind: hold\n  frame:\n    target:\n",
+        "8: reference.frame.target",
+        ("must be a mapping", "not nothing"),
+    ),
+    "frame, misspelt key": (
+        LAW + "reference: {kind: hold, frame: {targt: {}}}\n",
+        "5: reference.frame.targt",
+        ("did you mean 'target'?",),
+    ),
+    "frame, misspelt": (
+        LAW + "reference: {kind: hold, frame: wrold}\n",
+        "5: reference.frame",
+        ("'wrold'", "did you mean 'world'?", "world, lvlh, base and {target: {position"),
+    ),
+    "frame, a list": (
+        LAW + "reference: {kind: hold, frame: [1, 0, 0]}\n",
+        "5: reference.frame",
+        ("[1, 0, 0] is no frame", "{target: {position"),
+    ),
+    "attitude, other word": (
+        LAW + "initial: {attitude: {rpy: [0, 0, 0]}}\n",
+        "5: initial.attitude.rpy",
+        ("did you mean 'roll_pitch_yaw'?",),
+    ),
+    "attitude, a list": (LAW + "initial: {attitude: [0, 0, 0, 1]}\n", "5: initial.attitude", ("say which",)),
+    "initial, other word": (
+        LAW + "initial: {spin: [0, 0, 1]}\n",
+        "5: initial.spin",
+        ("did you mean 'angular_velocity'?",),
+    ),
+    "a key that is there already": (
+        LAW + "initial: {joint_rates: [1], joint_rate: [1]}\n",
+        "5: initial.joint_rate",
+        ("did you mean 'joints'?", "known are: frame"),
+    ),
+    "time step, other word": (
+        ROBOT + "simulation: {duration: 1, dt: 0.1}\n",
+        "2: simulation.dt",
+        ("did you mean 'time_step'?",),
+    ),
+    "kind of a reference, missing": (
+        LAW + "reference: {duration: 1}\n",
+        "5: reference",
+        ("needs a 'kind': hold, line_parabola, line,",),
+    ),
+    "kind of an effect, missing": (
+        ORBIT + "environment:\n  - {body: base}\n",
+        "7: environment[0]",
+        ("needs a 'kind': gravity_field,", "body_wrench"),
+    ),
+    "kind of a controller, missing": (
+        JOINTS + "controllers: [{name: a}]\n",
+        "3: controllers[0]",
+        ("needs a 'kind': computed_torque,",),
+    ),
+    "kind, misspelt": (LAW + "orbit: {kind: keplr}\n", "5: orbit.kind", ("did you mean 'kepler'?",)),
+    "kind, a number": (JOINTS + "controller: 5\n", "3: controller", ("'kind' (computed_torque", "not 5")),
+    "effect, empty": (
+        ORBIT + "environment:\n  -\n",
+        "7: environment[0]",
+        ("mapping with a 'kind'", "not nothing"),
+    ),
+    "key of another kind": (
+        LINE + ", height: [0, 0, 1]}\n",
+        "5: reference.height",
+        ("of kind 'line'", "belongs to line_parabola"),
+    ),
+    "key of another orbit": (
+        LAW + "orbit: {semi_major_axis: 6778 km, gravity_mode: carried}\n",
+        "5: orbit.gravity_mode",
+        ("of kind 'kepler'", "sgp4, custom_path, fixed_frame"),
+    ),
+    "air, misspelt": (
+        ORBIT + "environment: [{kind: drag, atmosphere: exponantial}]\n",
+        "6: environment[0].atmosphere.kind",
+        ("did you mean 'exponential'?",),
+    ),
+    "surface of one body": (
+        ORBIT + "environment: [{kind: drag, bodies: {torso: {kind: cannonball, aera: 1}}}]\n",
+        "6: environment[0].bodies.torso.aera",
+        ("did you mean 'area'?",),
+    ),
+    "index, too few": (
+        ORBIT + "environment: [{kind: drag, atmosphere: {kind: nrlmsise00, ap: [1, 2]}}]\n",
+        "6: environment[0].atmosphere.ap",
+        ("one number or seven, not 2",),
+    ),
+    "index, a word": (
+        ORBIT + "environment: [{kind: drag, atmosphere: {kind: nrlmsise00, ap: high}}]\n",
+        "6: environment[0].atmosphere.ap",
+        ("'high' is not a plain number",),
+    ),
+    "effects, no list": (
+        ORBIT + "environment: gravity_gradient\n",
+        "6: environment",
+        ("must be a list", "begin with '- '"),
+    ),
+    "effects, nothing": (ORBIT + "environment:\n", "6: environment", ("must be a list", "not nothing")),
+    "force, no list": (
+        ORBIT + "environment: [{kind: body_wrench, body: torso, force: 5 N}]\n",
+        "6: environment[0].force",
+        ("must be a list", "not '5 N'"),
+    ),
+    "argument of xacro": (
+        "robot: {urdf: a.xacro, xacro_arguments: {side: [left]}}\n" + RUN,
+        "1: robot.xacro_arguments.side",
+        ("text, a number, true or false, not ['left']",),
+    ),
+    "robot, missing": (RUN, "1: robot", ("is missing", "a URDF", "rigid_body")),
+    "simulation, missing": (ROBOT, "1: simulation", ("is missing", "{duration: 10 s}")),
+    "simulation, a number": (ROBOT + "simulation: 5 s\n", "2: simulation", ("must be a mapping", "'5 s'")),
+    "rows, a fraction": (
+        ROBOT + "simulation: {duration: 1, record_every: 2.5}\n",
+        "2: simulation.record_every",
+        ("must be a whole number, not 2.5",),
+    ),
+    "rows, too few": (
+        ROBOT + "simulation: {duration: 1, record_every: 5000}\n",
+        "2: simulation",
+        ("record_every is 5000", "1000 steps", "at most 1000"),
+    ),
+    "integrator": (
+        ROBOT + "simulation: {duration: 1, integrator: euler}\n",
+        "2: simulation.integrator",
+        ("'rk4', 'semi_implicit_euler' or 'dormand_prince'",),
+    ),
+    "tolerance, too large": (
+        ROBOT + "simulation: {duration: 1, tolerance: 1}\n",
+        "2: simulation.tolerance",
+        ("above 0.1, the most",),
+    ),
+    "tolerance, a word": (
+        ROBOT + "simulation: {duration: 1, tolerance: tight}\n",
+        "2: simulation.tolerance",
+        ("'tight' is not a plain number",),
+    ),
+    "duration, nothing": (
+        ROBOT + "simulation: {duration: }\n",
+        "2: simulation.duration",
+        ("nothing is not a time", "min, h, day"),
+    ),
+    "drift, a word": (
+        ROBOT + "simulation: {duration: 1, rereference_beyond: always}\n",
+        "2: simulation.rereference_beyond",
+        ("is not a length", "or never"),
+    ),
+    "a switch": (
+        ROBOT + "simulation: {duration: 1, enforce_limits: perhaps}\n",
+        "2: simulation.enforce_limits",
+        ("true or false, not 'perhaps'",),
+    ),
+    "text, a number": (LAW.replace("tool: tool", "tool: 5"), "2: tool", ("must be text", "not 5")),
+    "times of points": (
+        LAW + "reference: {kind: waypoints, times: [1, 2], points: [{displacement: [0, 0, 0]}]}\n",
+        "5: reference",
+        ("times has 2 entries for 1 points",),
+    ),
+    "times of moves": (
+        JOINTS
+        + "controller: joint_computed_torque\nreference:\n  kind: joint_ramps\n  times: [1, 2]\n"
+        + "  moves: [{joint: arm_joint_1, to: 1}]\n",
+        "4: reference",
+        ("times has 2 entries for 1 moves",),
+    ),
+    "no gains": (
+        JOINTS + "controller: joint_pid\n",
+        "3: controller",
+        ("without gains does nothing", "'p', 'i' or 'd'"),
+    ),
+    "name of a controller": (
+        JOINTS + "controllers: [{kind: joint_pid, p: 1, name: a b}]\n",
+        "3: controllers[0].name",
+        ("'a b'", "letters, digits"),
+    ),
+    "a key that is a number": (ROBOT + "5: x\n" + RUN, "2", ("must be text, not 5",)),
+    "keys merged": (
+        ROBOT + "simulation:\n  <<: {duration: 1}\n",
+        "3",
+        ("'<<'", "write it out"),
+    ),
+    "a tab": (ROBOT + "simulation:\n\tduration: 5\n", "3", ("broken YAML", "with spaces, not with tabs")),
+    "a colon left out": ("robot humanoid_torso\n" + RUN, "2", ("broken YAML", "is a ':' missing above")),
+    "two scenarios": (JOINTS + "---\n" + JOINTS, "3", ("broken YAML", "a file holds one scenario")),
+    "an alias of nothing": (ROBOT + "simulation: *run\n", "2", ("'run'", "its '&' must stand above it")),
+    "a tag": ("robot: !robot x\n" + RUN, "1", ("'!robot'", "values are plain")),
+    "a bracket left open": (
+        ROBOT + "initial: {joints: [1, 2\n" + RUN,
+        "3",
+        ("broken YAML", "bracket or brace left open"),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_scenario_is_told_with_its_line_and_the_way_out(tmp_path: Path, name: str) -> None:
+    text, place, words = WRONG[name]
+    file = tmp_path / "mine.yaml"
+    file.write_text(text)
+    with pytest.raises(OnOrbitError) as caught, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        build(load(file))
+    message = str(caught.value)
+    assert message.startswith(f"{file}:{place}: "), message
+    assert all(word in message for word in words), message
+    assert "more)" not in message and "\n" not in message and "pydantic" not in message.lower(), message
+
+
+def test_an_empty_scenario_tells_how_to_begin(tmp_path: Path) -> None:
+    (tmp_path / "empty.yaml").write_text("# nothing yet\n")
+    with pytest.raises(OnOrbitError, match="this is empty; onorbit new writes one"):
+        load(tmp_path / "empty.yaml")
+
+
+@pytest.mark.parametrize(
+    "extra", ["controller: {kind: joint_pid, p: 0}\n", "controller: {kind: joint_pid, i: 1}\n"]
+)
+def test_gains_that_are_given_are_taken(tmp_path: Path, extra: str) -> None:
+    """Also zero: a sweep of gains may begin there, and what a run writes out is read back."""
+    (tmp_path / "mine.yaml").write_text(JOINTS + extra)
+    scenario = load(tmp_path / "mine.yaml")
+    assert load(scenario.resolved()).resolved() == scenario.resolved()
