@@ -75,6 +75,17 @@ def test_a_long_run_comes_in_parts_that_join(tmp_path: Path, monkeypatch: pytest
         assert before[1] == after[0]  # no gap between two looks
 
 
+def test_the_flight_beside_the_reference_is_seen_live(tmp_path: Path) -> None:
+    built = build(load("hill_relative"))
+    watched = Watched(tmp_path, built)
+    moving, static = rows_by_entity(watched.path)
+    assert moving["/world/flight/base/trail"] > 0 and "/world/flight/axes" in static
+    strips = [strip[0] for strip in column(watched.path, "/world/flight/base/trail", "LineStrips3D:strips")]
+    for before, after in itertools.pairwise(strips):
+        assert before[1] == after[0]
+    assert "/world/flight/base/whole" not in static  # which nobody knows yet
+
+
 def test_the_columns_of_checkpoints_are_those_of_the_trace(tmp_path: Path) -> None:
     watched = Watched(tmp_path, built_reach(duration=20.0))
     whole = Rows.of_trace(watched.trace)

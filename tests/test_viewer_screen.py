@@ -22,8 +22,6 @@ HELP = "save a picture with: onorbit show"
 @pytest.fixture
 def broken_display(monkeypatch: pytest.MonkeyPatch) -> None:
     """There is a screen as far as the environment says, and nobody answers there."""
-    monkeypatch.setitem(screen.ENVIRONMENT, "DISPLAY", ":7777")
-    monkeypatch.setitem(screen.ENVIRONMENT, "WAYLAND_DISPLAY", "")
     monkeypatch.setenv("DISPLAY", ":7777")
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
 

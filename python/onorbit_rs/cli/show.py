@@ -73,6 +73,7 @@ def open_viewer(folder: Path) -> None:
 
     recording = folder / "run.rrd"
     if not recording.is_file():
+        typer.echo(f"there is no recording here: {recording}")
         return
     way_out = (
         f"save a picture with: onorbit show {shell_word(folder)} --picture FILE.png, "

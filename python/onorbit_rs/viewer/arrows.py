@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.units import amount
+from onorbit_rs.units import amount, round_up
 from onorbit_rs.viewer.colors import MOMENTUM, hues
 from onorbit_rs.viewer.frames import FOLLOW, WORLD, put_in
 from onorbit_rs.viewer.rows import TIMELINE
@@ -93,7 +93,7 @@ class Arrows:
     def _send(self, rows: Rows, kind: _Kind, origins: Floats, vectors: Floats) -> None:
         """Arrows (T, n, 3) at origins (T, n, 3), W."""
         path, peak = kind.path, _peak(vectors)
-        scale = max(_round_up(peak / (kind.longest * self.stage.size)), self._scales.get(path, 0.0))
+        scale = max(round_up(peak / (kind.longest * self.stage.size)), self._scales.get(path, 0.0))
         if scale == 0.0 or not np.isfinite(scale):
             return
         count, each = vectors.shape[:2]
@@ -126,12 +126,3 @@ class Arrows:
 
 def _peak(vectors: Floats) -> float:
     return float(np.sqrt(np.einsum("...i,...i->...", vectors, vectors).max(initial=0.0)))
-
-
-def _round_up(value: float) -> float:
-    """To 1, 2 or 5 times a power of ten; what has no such number above it stays as it is."""
-    if not 0.0 < value < math.inf:
-        return 0.0 if value <= 0.0 else value
-    power = 10.0 ** math.floor(math.log10(value))
-    steps = (step * power for step in (1.0, 2.0, 5.0, 10.0))
-    return next((step for step in steps if value * (1.0 - 1e-12) <= step < math.inf), value)

@@ -101,8 +101,8 @@ def send_orbit_trail(recording: rr.RecordingStream, rows: Rows, most: int) -> No
 def log_path_flown(recording: rr.RecordingStream, rows: Rows) -> None:
     """The whole path of the robot."""
     position = rows["position_eci"]
-    keep = evenly(len(position), _MOST_PATH_POINTS)
-    path = rr.LineStrips3D([position[keep] / 1e3], colors=[_PATH], radii=rr.Radius.ui_points(2.0))
+    points = position[evenly(len(position), _MOST_PATH_POINTS)] / 1e3
+    path = rr.LineStrips3D([points], colors=[_PATH], radii=rr.Radius.ui_points(2.0))
     put_in(recording, "orbit/path", INERTIAL)
     recording.log("orbit/path", path, static=True, strict=True)
 
@@ -172,7 +172,7 @@ def _night(radii: Floats, depth: float, bands: int = 24, sectors: int = 72) -> r
 
 
 def _triangles(bands: int, sectors: int) -> NDArray[np.int64]:
-    """(2 bands sectors, 3) corners of a net of so many cells, row by row."""
+    """(2 bands sectors, 3) corners of a net of so many cells, band by band."""
     corner = (np.arange(bands)[:, None] * (sectors + 1) + np.arange(sectors)).reshape(-1)
     below = corner + sectors + 1
     return np.concatenate(

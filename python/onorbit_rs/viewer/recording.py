@@ -149,7 +149,7 @@ def send_rows(recording: rr.RecordingStream, rows: Rows, setting: Setting, stage
 
 
 def recorded_rows(count: int) -> NDArray[np.int64]:
-    """Rows of the trace that go into the recording."""
+    """Indices of the rows of the trace that go into the recording."""
     stride = -(-count // MOST_STEPS)
-    rows = np.arange(0, count, stride)
-    return rows if rows[-1] == count - 1 else np.append(rows, count - 1)
+    chosen = np.arange(0, count, stride)
+    return chosen if chosen[-1] == count - 1 else np.append(chosen, count - 1)

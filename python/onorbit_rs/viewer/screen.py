@@ -20,9 +20,6 @@ from onorbit_rs.exceptions import ViewerError
 START_PATIENCE_S = 20.0
 """Wall-clock time given to the viewer to start."""
 
-ENVIRONMENT = os.environ | {"RERUN_APP_ONLY": "true", "RUST_LOG": "error"}
-"""Of a viewer: as rerun's own launcher sets it, and no chat on stderr."""
-
 _BINARIES = ("rerun", "rerun.exe", "Rerun.app/Contents/MacOS/Rerun")
 _LOCAL = "127.0.0.1"
 
@@ -69,6 +66,11 @@ def command_of(port: int) -> list[str]:
     return [str(binary), "--bind", _LOCAL, "--port", str(port)]
 
 
+def environment() -> dict[str, str]:
+    """Of a viewer: no welcome, and errors alone on stderr."""
+    return os.environ | {"RERUN_APP_ONLY": "true", "RUST_LOG": "error"}
+
+
 def listens(port: int) -> bool:
     """Whether something does at this port of this machine."""
     with socket.socket() as probe:
@@ -93,7 +95,7 @@ def _start(port: int, *arguments: str) -> None:
     with tempfile.TemporaryFile("w+", errors="replace") as said:
         try:
             viewer = subprocess.Popen(
-                command, env=ENVIRONMENT, start_new_session=True, stdout=subprocess.DEVNULL, stderr=said
+                command, env=environment(), start_new_session=True, stdout=subprocess.DEVNULL, stderr=said
             )
         except OSError as error:
             raise _not_started(str(error)) from error

@@ -15,7 +15,7 @@ from rerun.experimental import ViewerClient
 
 from onorbit_rs.exceptions import NotFoundError, ViewerError
 from onorbit_rs.viewer.rows import TIMELINE
-from onorbit_rs.viewer.screen import ENVIRONMENT, command_of, free_port, listens, reason, url_of
+from onorbit_rs.viewer.screen import command_of, environment, free_port, listens, reason, url_of
 
 SETTLE_S = 3.0
 """Wall-clock time given to the viewer to load fonts and draw, before and after moving in time."""
@@ -54,7 +54,7 @@ def take_screenshot(
         *("--window-size", f"{width}x{height}", str(recording.resolve())),
     ]
     with subprocess.Popen(
-        command, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        command, env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     ) as viewer:
         try:
             client = _connect(port, viewer)
