@@ -10,10 +10,12 @@ import unicodedata
 from pathlib import Path
 
 import pytest
+import yaml
 from commands import SPIN, onorbit, refusal
 from test_cli_summary import PLAIN
 from test_cli_terminal import on_terminal
 
+import onorbit_rs as oo
 from onorbit_rs import robots, scenarios
 from onorbit_rs.cli.list import description
 from onorbit_rs.printable import printable, shell_word
@@ -73,6 +75,12 @@ def test_no_command_prints_a_name_that_steers(tmp_path: Path) -> None:
         assert "\\u202e" in said or "\\xe2\\x80\\xae" in said, (words, done)
     assert json.loads(onorbit("show", EVIL, "--json", cwd=tmp_path).stdout)["scenario"] == EVIL
     assert refusal("show", f"no{EVIL}", cwd=tmp_path).startswith("onorbit: no such folder: no")
+
+
+def test_a_comparison_that_is_printed_from_python_does_not_steer_either() -> None:
+    scenario = yaml.safe_load(SPIN) | {"name": EVIL}
+    said = str(oo.compare(scenario, scenario))
+    assert said.startswith(f"{SAFE} ") and not steers(said)
 
 
 def test_the_bar_of_a_run_shows_no_name_that_steers(tmp_path: Path) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from onorbit_rs.printable import printable
+
 if TYPE_CHECKING:
     from onorbit_rs.comparison import Comparison
 
@@ -28,4 +30,4 @@ def as_text(compared: Comparison) -> str:
     verdict = f"they agree within {within} over {span}"
     if not compared.agrees:
         verdict = f"they part at t = {compared.parts_at:.6g} s by more than {within}; {span}"
-    return "\n".join((*lines, verdict))
+    return "\n".join(map(printable, (*lines, verdict)))
