@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
+from commands import refusal
 
 from onorbit_rs.cli.writing import claim, writing
 from onorbit_rs.exceptions import NotFoundError, OutputFolderError, OutputNotEmptyError
@@ -21,6 +23,28 @@ def test_what_cannot_be_written_is_refused_before_the_work(tmp_path: Path) -> No
     with pytest.raises(OutputFolderError, match=r"cannot write .*mine\.yaml: no such folder") as refused:
         claim(tmp_path / "none" / "mine.yaml", force=True)
     assert refused.value.path == str(tmp_path / "none" / "mine.yaml")
+
+
+def test_what_may_not_be_written_is_refused_before_the_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(OutputFolderError, match="it is a folder, name a file in it"):
+        claim(tmp_path, force=True)
+    file = tmp_path / "mine.yaml"
+    file.touch()
+    monkeypatch.setattr(os, "access", lambda path, mode: False)  # for root everything may be written
+    for wanted in (file, tmp_path / "new.yaml"):
+        with pytest.raises(OutputFolderError, match="not yours to write"):
+            claim(wanted, force=True)
+
+
+def test_a_place_where_nobody_may_look_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied", "/secret/x.yaml")
+
+    monkeypatch.setattr(Path, "is_file", refused)
+    monkeypatch.setattr(Path, "exists", refused)
+    assert refusal("check", "/secret/x.yaml") == "onorbit: cannot use /secret/x.yaml: Permission denied"
 
 
 def test_errors_of_the_system_are_ours_and_ours_stay(tmp_path: Path) -> None:

@@ -89,8 +89,10 @@ def main(arguments: list[str] | None = None) -> None:
     except BrokenPipeError:
         leave_stdout()
         sys.exit(0)
-    except OSError as error:  # printing: the disk behind stdout is full
-        leave_stdout()
+    except OSError as error:
+        if error.filename is not None:  # nobody may look there
+            fail(f"cannot use {error.filename}: {error.strerror or error}", 2)
+        leave_stdout()  # printing: the disk behind it is full
         fail(f"cannot write: {error.strerror or error}", 2)
     except Exception as error:
         if not hasattr(error, "trace"):

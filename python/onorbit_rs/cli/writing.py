@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,16 +18,20 @@ def claim(file: Path | None, *, force: bool) -> None:
     OutputNotEmptyError
         It is there, and may not be replaced.
     OutputFolderError
-        Its folder is not there, or it is one.
+        Its folder is not there, it is one, or it may not be written.
     """
     if file is None:
         return
-    if file.is_dir():
-        raise OutputFolderError(f"cannot write {file}: it is a folder, name a file in it", path=str(file))
-    if file.exists() and not force:
-        raise OutputNotEmptyError(f"{file} is there already; replace it with --force", path=str(file))
-    if not file.absolute().parent.is_dir():
-        raise OutputFolderError(f"cannot write {file}: no such folder", path=str(file))
+    folder = file.absolute().parent
+    with writing(file):
+        if file.is_dir():
+            raise OutputFolderError(f"cannot write {file}: it is a folder, name a file in it", path=str(file))
+        if file.exists() and not force:
+            raise OutputNotEmptyError(f"{file} is there already; replace it with --force", path=str(file))
+        if not folder.is_dir():
+            raise OutputFolderError(f"cannot write {file}: no such folder", path=str(file))
+        if not os.access(file if file.exists() else folder, os.W_OK):
+            raise OutputFolderError(f"cannot write {file}: it is not yours to write", path=str(file))
 
 
 @contextmanager
