@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -36,7 +36,7 @@ test-rust: ## the engine alone; needs no Python
 	cargo test --workspace --exclude onorbit-py
 
 test-python: $(VENV)/.built $(VENV)/.tested ## the package, against independent engines
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --maxprocesses 8 --dist worksteal
 
 lint: $(VENV)/.built $(VENV)/.tested ## formatting, lints as errors, types
 	cargo fmt --all --check
@@ -73,6 +73,9 @@ bench-orbits: $(VENV)/.built $(VENV)/.tested ## propagation against sgp4, numpy,
 
 bench-everything: $(VENV)/.built ## humanoid_reach with the whole environment on against as it is bundled, alternated
 	$(BIN)/python benches/compare_everything.py
+
+bench-spart: $(VENV)/.built $(VENV)/.tested ## forward dynamics against SPART, compiled from PyPI's spartpy, alternated
+	$(BIN)/python benches/compare_spart.py
 
 clean: ## forgets builds and the environment
 	rm -rf target $(VENV) out

@@ -52,7 +52,8 @@ class FrameTree:
             batch = chunk.to_record_batch()
             if "Transform3D:child_frame" not in batch.schema.names:
                 continue
-            parts = {name.split(":")[-1]: batch.column(name).to_pylist() for name in batch.schema.names}
+            names = [name for name in batch.schema.names if name.startswith("Transform3D:")]
+            parts = {name.split(":")[-1]: batch.column(name).to_pylist() for name in names}
             child, parent = ({row[0] for row in parts[f"{name}_frame"]} for name in ("child", "parent"))
             assert len(child) == len(parent) == 1, chunk.entity_path
             (name,), (self.parents[name],) = child, parent

@@ -78,6 +78,24 @@ BAD: dict[str, Bad] = {
     "times of text": Bad(
         lambda: oo.Kepler(semi_major_axis=7e6).state("noon"), "DtypeError", ("t", "text"), {"name": "t"}
     ),
+    "masked entries": Bad(
+        lambda: MODEL.mass_matrix(np.ma.masked_array(Q, Q == 1.0)),
+        "DtypeError",
+        ("q", "masked", "q.filled(x)", "q.compressed()"),
+        {"name": "q", "got": "masked entries"},
+    ),
+    "masked times": Bad(
+        lambda: oo.Kepler(semi_major_axis=7e6).state(np.ma.masked_greater([0.0, 1.0, 2.0], 1.5)),
+        "DtypeError",
+        ("t", "masked"),
+        {"name": "t"},
+    ),
+    "wrenches without frames": Bad(
+        lambda: MODEL.forward_dynamics(Q, V, V, external=np.zeros(6)),  # type: ignore[arg-type]
+        "DtypeError",
+        ("external", "ndarray", "dict", "{'torso': [fx"),
+        {"name": "external", "got": "ndarray"},
+    ),
     "a frame by number": Bad(lambda: MODEL.frame_pose(Q, 3), "DtypeError", ("int", "name"), {"got": "int"}),  # type: ignore[arg-type]
     "a reference by number": Bad(
         lambda: simulation(reference=3), "DtypeError", ("int", "Hold", "LineParabola"), {"name": "reference"}

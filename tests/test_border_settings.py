@@ -107,8 +107,26 @@ BAD: dict[str, Bad] = {
     "no such integrator": Bad(
         lambda: simulation(integrator="euler"),
         "InputError",
-        ("euler", "semi_implicit_euler"),
+        ("euler", "did you mean 'semi_implicit_euler'?"),
         {"name": "integrator", "got": "euler"},
+    ),
+    "an effect twice": Bad(
+        lambda: simulation(
+            orbit=oo.Kepler(semi_major_axis=7e6), environment=[oo.GravityGradient(), oo.GravityGradient()]
+        ),
+        "EffectError",
+        ("gravity gradient", "twice", "'torso'", "give it once"),
+        {"name": "gravity gradient", "got": "torso"},
+    ),
+    "drag twice on a link": Bad(
+        lambda: simulation(
+            orbit=oo.Kepler(semi_major_axis=7e6),
+            earth=oo.Earth("2024-03-01T12:00:00 UTC"),
+            environment=[oo.Drag(oo.ConstantAtmosphere(1e-12))] * 2,
+        ),
+        "EffectError",
+        ("drag", "twice", "other bodies"),
+        {"name": "drag"},
     ),
     "gravity gradient without an orbit": Bad(
         lambda: simulation(environment=[oo.GravityGradient()]), "OrbitError", ("needs an orbit", "give")
@@ -151,6 +169,31 @@ BAD: dict[str, Bad] = {
         {"got": 0.0},
     ),
     # many runs
+    "rollout of another law": Bad(
+        lambda: oo.rollout(
+            MODEL,
+            Q[None],
+            V[None],
+            steps=1,
+            controller=oo.Compliance(MODEL, "tool", stiffness=1.0, damping=1.0),  # type: ignore[arg-type]
+            reference=oo.Hold(np.eye(4)),
+        ),
+        "ControlError",
+        ("Compliance", "ComputedTorque", "tau", "Simulation"),
+        {"name": "controller", "got": "Compliance"},
+    ),
+    "threads below one": Bad(
+        lambda: MODEL.mass_matrix(Q[None], threads=-1),
+        "InputError",
+        ("threads is -1", "at least 1", "leave it out for all cores"),
+        {"name": "threads", "got": -1},
+    ),
+    "no threads": Bad(
+        lambda: oo.rollout(MODEL, Q[None], V[None], steps=1, threads=0),
+        "InputError",
+        ("threads is 0", "leave it out"),
+        {"name": "threads", "got": 0},
+    ),
     "rollout of one state": Bad(
         lambda: oo.rollout(MODEL, Q, V, steps=1), *shape("q0", [14], "(14,)", "(B, 14)")
     ),

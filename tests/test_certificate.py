@@ -6,14 +6,12 @@ That every bundled scenario passes every check is in ``test_scenario_bundled``.
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from commands import onorbit
 
 import onorbit_rs as oo
 from onorbit_rs.scenario import load
@@ -31,12 +29,11 @@ BROKEN: dict[str, tuple[str, dict[str, Any], str, str]] = {
 }  # fmt: skip
 
 
-def run(scenario: Path, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "onorbit_rs", "run", scenario, *arguments]
-    colours = {key: value for key, value in os.environ.items() if key != "NO_COLOR"} | {"FORCE_COLOR": "1"}
-    return subprocess.run(
-        list(map(str, command)), capture_output=True, text=True, timeout=120, check=False, env=colours
-    )
+@pytest.fixture(autouse=True)
+def in_colour(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on a terminal."""
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("FORCE_COLOR", "1")
 
 
 def written(folder: Path, name: str, change: dict[str, Any]) -> Path:
@@ -50,15 +47,20 @@ def written(folder: Path, name: str, change: dict[str, Any]) -> Path:
 @pytest.mark.parametrize("what", BROKEN)
 def test_a_broken_run_is_red_everywhere(what: str, tmp_path: Path) -> None:
     name, change, check, way_out = BROKEN[what]
-    out = tmp_path / "out"
-    done = run(written(tmp_path, name, change), "--out", out)
+    done = onorbit("run", written(tmp_path, name, change))
     assert done.returncode == 1
     assert f"{RED}certificate FAILED" in done.stdout and check in done.stdout
-    assert "certificate passed" not in done.stdout
+    assert f"{RED}BROKEN" in done.stdout and "certificate passed" not in done.stdout
     (line,) = done.stderr.splitlines()
     assert line.startswith("onorbit: the certificate failed (") and check in line
     assert line.endswith(way_out)
-    # its results are kept, and say so as well
+
+
+@pytest.mark.usefixtures("no_pictures")
+def test_results_of_a_broken_run_are_kept_and_say_so_as_well(tmp_path: Path) -> None:
+    name, change, check, _ = BROKEN["energy"]
+    out = tmp_path / "out"
+    assert onorbit("run", written(tmp_path, name, change), "--out", out).returncode == 1
     summary = json.loads((out / "summary.json").read_text())
     assert summary["certificate_passed"] is False and check in summary["certificate_failures"]
     assert summary["status"] == "complete" and (out / "trace.npz").is_file()
@@ -66,13 +68,13 @@ def test_a_broken_run_is_red_everywhere(what: str, tmp_path: Path) -> None:
 
 def test_a_quiet_run_fails_as_loudly(tmp_path: Path) -> None:
     name, change, *_ = BROKEN["energy"]
-    done = run(written(tmp_path, name, change), "--quiet")
+    done = onorbit("run", written(tmp_path, name, change), "--quiet")
     assert (done.returncode, done.stdout) == (1, "")
     assert "the certificate failed" in done.stderr
 
 
 def test_the_same_run_at_its_own_step_is_green(tmp_path: Path) -> None:
-    done = run(written(tmp_path, "free_tumble", {"duration": 10.0}))
+    done = onorbit("run", written(tmp_path, "free_tumble", {"duration": 10.0}))
     assert (done.returncode, done.stderr) == (0, "")
     assert f"{GREEN}certificate passed" in done.stdout
 

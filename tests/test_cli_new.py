@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from test_cli import onorbit, refusal
+from commands import onorbit, refusal
 
 import onorbit_rs as oo
 from onorbit_rs.drafting import draft

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from commands import onorbit
 
 import onorbit_rs as oo
 from onorbit_rs.comparison.measures import _length
@@ -308,11 +307,6 @@ def test_the_figure_has_a_panel_per_measure_and_marks_where_they_part() -> None:
     assert [float(dot.get_xdata()[0]) for dot in dots] == [pytest.approx(1.1)]  # type: ignore[index]
     same = differences(oo.compare(spin(0.1), spin(0.1)))
     assert not any(line.get_marker() == "o" for axes in same.axes for line in axes.lines)
-
-
-def onorbit(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "onorbit_rs", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
 
 
 def test_the_command_says_whether_and_where_they_part(tmp_path: Path) -> None:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from border import Bad, check
+from commands import onorbit
 
 import onorbit_rs as oo
 from onorbit_rs.interop.expressions import evaluate
@@ -318,11 +317,6 @@ def test_files_that_do_not_fit_together(tmp_path: Path) -> None:
 def test_unknown_keys_can_be_passed_over(tmp_path: Path) -> None:
     done = convert(write(tmp_path, orbit=ORBIT + "colour: red\n"), keep_going=True)
     assert verdicts(done)["colour"] == "no meaning"
-
-
-def onorbit(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "onorbit_rs", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False)
 
 
 def test_the_command(tmp_path: Path) -> None:

@@ -88,7 +88,7 @@ def test_lists_are_asked_for_by_name() -> None:
     out = (np.zeros((1, 1, 3)),) * 3
     with pytest.raises(InputError, match="out is no pair"):
         oo.propagate([ORBIT], [0.0], out=out)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="-1 is no number of steps, rows or threads"):
+    with pytest.raises(InputError, match="threads is -1, it must be at least 1; leave it out"):
         oo.propagate([ORBIT], [0.0], threads=-1)
 
 

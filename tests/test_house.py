@@ -165,10 +165,32 @@ def test_a_scenario_knows_no_pictures() -> None:
             assert not name.startswith(("onorbit_rs.viewer", "onorbit_rs.figures", "onorbit_rs.cli")), file
 
 
-def test_importing_the_package_loads_neither_viewer_nor_plots() -> None:
-    program = "import sys, onorbit_rs; print(*{'rerun', 'matplotlib', 'typer', 'mujoco'} & set(sys.modules))"
+HEAVY = {"rerun", "matplotlib", "mujoco", "numpy", "pydantic", "yaml", "rich"}
+"""Each takes a tenth of a second or more, and not everybody needs it."""
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        "import onorbit_rs",
+        "import onorbit_rs; onorbit_rs.Model, onorbit_rs.robots.names()",
+        "from onorbit_rs.cli import main; main(['--help'])",
+        "from onorbit_rs.cli import main; main(['--version'])",
+    ],
+)
+def test_nothing_heavy_is_loaded_before_it_is_asked_for(program: str) -> None:
+    told = f"import atexit, sys; atexit.register(lambda: print(*{HEAVY} & set(sys.modules), file=sys.stderr))"
+    command = [sys.executable, "-c", f"{told}; {program}"]
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert result.stderr.split() == []
+
+
+def test_the_commands_are_not_loaded_with_the_package() -> None:
+    program = "import sys, onorbit_rs; print('typer' in sys.modules, onorbit_rs.run, 'numpy' in sys.modules)"
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert result.stdout.split() == []
+    assert result.stdout.startswith("False <function run") and result.stdout.endswith(" True\n")
+    with pytest.raises(AttributeError, match="no attribute 'runn'"):
+        _ = oo.runn  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("words", ["is there already", "cannot write {"])

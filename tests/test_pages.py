@@ -14,12 +14,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-import typer
 import yaml
 
 import onorbit_rs as oo
 from onorbit_rs import _core, cli, figures
-from onorbit_rs.cli.app import COMMANDS, app
 from onorbit_rs.scenario.part import Part
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -193,15 +191,6 @@ def test_every_kind_of_a_scenario_has_its_keys_told() -> None:
     }  # a law and a group
     assert len(wanted - combined) > 20
     assert wanted - combined <= set(told)
-
-
-def test_every_command_is_told() -> None:
-    text = (DOCS / "cli.md").read_text()
-    for name in COMMANDS:
-        assert f"`onorbit {name}" in text, name
-    group = typer.main.get_command(app)
-    known = {option for command in group.commands.values() for part in command.params for option in part.opts}  # type: ignore[attr-defined]
-    assert set(re.findall(r"`(--[a-z-]+)", text)) <= known
 
 
 @pages

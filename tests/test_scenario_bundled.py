@@ -67,6 +67,21 @@ def test_two_arms_reach_at_once() -> None:
     assert np.linalg.norm(limp[-1, 14:] - q[-1, 14:]) > 0.1
 
 
+def test_the_tool_meets_a_satellite_that_drifts_and_turns() -> None:
+    result = oo.run("approach_target", quiet=True)
+    trace, t = result.trace, result.trace.time
+    assert (
+        result.summary["tracking_position_error_max_m"] < 1e-3
+    )  # 6e-4 m: it begins at rest beside what moves
+    assert result.summary["tracking_position_error_final_m"] < 1e-8
+    turn = np.radians(20.0 + 2.0 * t)  # of the satellite, about z
+    normal = np.stack([-np.cos(turn), -np.sin(turn), np.zeros_like(t)], axis=1)
+    place = np.array([0.54, -0.05, 0.5]) + np.outer(t, [0.0, 0.008, 0.0]) + 0.2 * normal
+    off = np.linalg.norm(trace.tool_pose[:, :3, 3] - place, axis=1)
+    assert off[0] > 0.4 and off[t >= 7.0].max() < 1e-6
+    assert np.linalg.norm(place[-1] - place[t >= 7.0][0]) > 0.02  # which moves meanwhile
+
+
 def test_a_controller_in_python_brings_the_arm_into_its_posture() -> None:
     assert Path(oo.scenarios.path("python_controller")).with_suffix(".py").is_file()
     result = oo.run("python_controller", quiet=True)

@@ -14,7 +14,7 @@ import yaml
 from test_output_checkpoint import scenario_file, stopped_run
 
 import onorbit_rs as oo
-from onorbit_rs.cli.printing import print_summary
+from onorbit_rs.cli.summary import print_summary
 from onorbit_rs.exceptions import (
     ControlError,
     NotFoundError,

@@ -18,11 +18,13 @@ import pytest
 import onorbit_rs as oo
 from onorbit_rs.cli import main
 from onorbit_rs.exceptions import InputError
+from onorbit_rs.rotations import matrix_from_quaternion
 from onorbit_rs.validation import (
     CASES,
     Case,
     against_mujoco,
     against_pinocchio,
+    against_spart,
     air_and_light,
     bodies,
     conservation,
@@ -78,6 +80,10 @@ def without_rotors(tree: Any, build: Callable[..., Any] = against_mujoco.build) 
     return build(replace(tree, parts=[replace(part, rotor_inertia=0.0) for part in tree.parts]))
 
 
+def at_origin(_: Any, q: Any, tau: Any) -> Any:
+    return np.concatenate([tau[3:6], matrix_from_quaternion(q[3:7]) @ tau[:3]]), tau[6:]
+
+
 def with_long_steps(name: str, run: Callable[..., Any] = oo.run, **settings: Any) -> Any:
     data = oo.scenario.load(name).resolved()
     data["simulation"] |= {"duration": 10.0, "time_step": 0.1}
@@ -113,6 +119,7 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("order", "a tree of eight links by RK4, half the step", order, "end", by_euler),
     ("engines", "humanoid_torso, 4 states", against_pinocchio, "GRAVITY", np.array([0.0, 0.0, -9.81])),
     ("engines", "8 random trees with rotors, 4 states each", against_mujoco, "build", without_rotors),
+    ("engines", "8 random pairs of arms, 2 humanoids, 4 states each", against_spart, "forces", at_origin),
     ("engines", "SGP4: 30 sets, 60 times each", sgp4, "GRAVITY", "wgs84"),
 ]  # fmt: skip
 

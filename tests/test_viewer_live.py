@@ -75,6 +75,17 @@ def test_a_long_run_comes_in_parts_that_join(tmp_path: Path, monkeypatch: pytest
         assert before[1] == after[0]  # no gap between two looks
 
 
+def test_the_flight_beside_the_reference_is_seen_live(tmp_path: Path) -> None:
+    built = build(load("hill_relative"))
+    watched = Watched(tmp_path, built)
+    moving, static = rows_by_entity(watched.path)
+    assert moving["/world/flight/base/trail"] > 0 and "/world/flight/axes" in static
+    strips = [strip[0] for strip in column(watched.path, "/world/flight/base/trail", "LineStrips3D:strips")]
+    for before, after in itertools.pairwise(strips):
+        assert before[1] == after[0]
+    assert "/world/flight/base/whole" not in static  # which nobody knows yet
+
+
 def test_the_columns_of_checkpoints_are_those_of_the_trace(tmp_path: Path) -> None:
     watched = Watched(tmp_path, built_reach(duration=20.0))
     whole = Rows.of_trace(watched.trace)
@@ -196,26 +207,3 @@ def test_without_a_screen_it_is_said_and_the_run_is_the_same(monkeypatch: pytest
     with pytest.warns(UserWarning, match="no screen here: the run goes on without the viewer"):
         watched = oo.run(data, quiet=True, view=True)
     np.testing.assert_array_equal(watched.trace.q, oo.run(data, quiet=True).trace.q)
-
-
-def test_the_viewer_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    commands = []
-
-    class Process:
-        def poll(self) -> int:
-            return 1
-
-        def kill(self) -> None:
-            commands.append("killed")
-
-    def popen(command: list[str], **_: object) -> Process:
-        commands.append(command)
-        return Process()
-
-    monkeypatch.setattr(screen.subprocess, "Popen", popen)
-    assert screen.open_viewer() is None  # it ended at once
-    screen.open_recording(Path("run.rrd"))
-    assert commands[1] == "killed"
-    for command in (commands[0], commands[2]):
-        assert command[command.index("--bind") + 1] == "127.0.0.1"
-    assert screen.url_of(9876) == "rerun+http://127.0.0.1:9876/proxy"

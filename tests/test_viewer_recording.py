@@ -14,7 +14,7 @@ from rerun.chunk import RrdReader
 
 import onorbit_rs as oo
 from onorbit_rs import viewer
-from onorbit_rs.geometry import shapes
+from onorbit_rs.appearance import shapes
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
 from onorbit_rs.viewer.rows import Rows

@@ -17,8 +17,7 @@ from onorbit_rs.planet import is_earth
 from onorbit_rs.rotations import local_orbital_axes
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
-from onorbit_rs.units import amount
-from onorbit_rs.viewer.arrows import _round_up
+from onorbit_rs.units import amount, round_up
 from onorbit_rs.viewer.land import land, world_map
 
 EPOCH = "2026-03-20 12:00:00 UTC"
@@ -97,9 +96,9 @@ def test_amounts_are_told_with_prefixes() -> None:
 
 
 def test_every_number_has_a_scale() -> None:
-    rounded = [_round_up(value) for value in (-1.0, 0.0, 5e-324, 0.003, 7.0, 1.5e308, np.inf)]
+    rounded = [round_up(value) for value in (-1.0, 0.0, 5e-324, 0.003, 7.0, 1.5e308, np.inf)]
     assert rounded == [0.0, 0.0, 5e-324, 0.005, 10.0, 1.5e308, np.inf]
-    assert np.isnan(_round_up(np.nan))
+    assert np.isnan(round_up(np.nan))
 
 
 def test_the_map_has_land_where_there_is_land() -> None:

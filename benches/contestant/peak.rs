@@ -1,6 +1,5 @@
 //! The ceiling: how many operations a second one core does when nothing but multiply-adds is asked of it.
 
-use onorbit_core::spatial::{Lanes4, Lanes8, Real};
 use std::error::Error;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -9,41 +8,84 @@ use std::time::{Duration, Instant};
 const CHAINS: usize = 12;
 const LINKS: usize = 10_000;
 
+/// `x ← a x + b` in all chains, each in a register of its own.
+macro_rules! chains {
+    ($(#[$feature:meta])? $name:ident, $of:expr, |$x:ident, $a:ident, $b:ident| $mul_add:expr) => {
+        $(#[$feature])?
+        fn $name() {
+            let ($a, $b) = ($of(black_box(1.0 - 1e-9)), $of(black_box(1e-9)));
+            let mut all = [$of(1.0); CHAINS];
+            for _ in 0..LINKS {
+                for $x in &mut all {
+                    *$x = $mul_add;
+                }
+            }
+            black_box(all);
+        }
+    };
+}
+
+chains!(one, std::convert::identity::<f64>, |x, a, b| *x * a + b);
+
+#[cfg(target_arch = "x86_64")]
+mod wide {
+    use super::{CHAINS, LINKS, black_box};
+    use std::arch::x86_64 as x86;
+
+    chains!(
+        #[target_feature(enable = "avx2,fma")]
+        four,
+        x86::_mm256_set1_pd,
+        |x, a, b| x86::_mm256_fmadd_pd(*x, a, b)
+    );
+    chains!(
+        #[target_feature(enable = "avx512f")]
+        eight,
+        x86::_mm512_set1_pd,
+        |x, a, b| x86::_mm512_fmadd_pd(*x, a, b)
+    );
+
+    /// Numbers in a register of that instruction set, and the chains in them, where they are here.
+    pub(super) fn chains(set: &str) -> Option<(usize, fn())> {
+        let has_four = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+        // SAFETY, of both: the processor has the instructions, asked in the same line
+        match set {
+            "avx2+fma" if has_four => Some((4, || unsafe { four() })),
+            "avx512" if is_x86_feature_detected!("avx512f") => Some((8, || unsafe { eight() })),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+mod wide {
+    use super::{CHAINS, LINKS, black_box};
+
+    chains!(two, |x: f64| [x; 2], |x, a, b| [x[0].mul_add(a[0], b[0]), x[1].mul_add(a[1], b[1])]);
+
+    /// Numbers in a register of that instruction set, and the chains in them, where they are here.
+    pub(super) fn chains(set: &str) -> Option<(usize, fn())> {
+        (set == "fma" && cfg!(target_arch = "aarch64")).then_some((2, two))
+    }
+}
+
 /// Billions of operations per second with the lanes of that instruction set. (Of one number at a time it is the
 /// share of a lane: chains of single numbers the compiler would put side by side itself.)
 pub(crate) fn answer(set: &str, seconds: f64) -> Result<String, Box<dyn Error>> {
-    let seconds = Duration::try_from_secs_f64(seconds)?;
-    let gflops = match set {
-        "avx2+fma" | "fma" if Lanes4::is_available() => best::<Lanes4>(seconds),
-        "avx512" if Lanes8::is_available() => best::<Lanes8>(seconds),
-        "baseline" => best::<f64>(seconds),
-        _ => return Err(format!("{set} is not here").into()),
-    };
+    let found = if set == "baseline" { Some((1, one as fn())) } else { wide::chains(set) };
+    let (lanes, chains) = found.ok_or_else(|| format!("{set} is not here"))?;
+    let gflops =
+        (2 * CHAINS * LINKS * lanes) as f64 / fastest(chains, Duration::try_from_secs_f64(seconds)?) * 1e-9;
     Ok(format!("{{\"gflops\": {gflops}}}"))
 }
 
-fn best<S: Real>(seconds: Duration) -> f64 {
+/// The shortest time one call took, s.
+fn fastest(chains: fn(), seconds: Duration) -> f64 {
     let (end, mut fastest) = (Instant::now() + seconds, f64::INFINITY);
     while Instant::now() < end {
         let started = Instant::now();
-        black_box(chains(S::of(black_box(1.0 - 1e-9)), S::of(black_box(1e-9))));
+        chains();
         fastest = fastest.min(started.elapsed().as_secs_f64());
     }
-    (2 * CHAINS * LINKS * S::LANES) as f64 / fastest * 1e-9
-}
-
-/// `x ← a x + b` in all chains.
-fn chains<S: Real>(a: S, b: S) -> [S; CHAINS] {
-    S::enter(
-        #[inline(always)]
-        || {
-            let mut x = [S::of(1.0); CHAINS];
-            for _ in 0..LINKS {
-                for x in &mut x {
-                    *x = x.mul_add(a, b);
-                }
-            }
-            x
-        },
-    )
+    fastest
 }

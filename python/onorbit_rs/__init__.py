@@ -11,7 +11,10 @@ SI and radians everywhere; frames and layouts are those of ``docs/``: ``q = [p(3
 
 from __future__ import annotations
 
-from onorbit_rs import exceptions, layouts, plants, relative, robots, scenarios
+import importlib
+from typing import TYPE_CHECKING
+
+from onorbit_rs import exceptions, relative, robots, scenarios
 from onorbit_rs._core import (
     MU_EARTH,
     Atmosphere,
@@ -67,11 +70,14 @@ from onorbit_rs._core import (
     propagate,
     rollout,
 )
-from onorbit_rs.comparison import Comparison, compare
 from onorbit_rs.control import Controller
 from onorbit_rs.exceptions import OnOrbitError
-from onorbit_rs.running import Run, resume, run
-from onorbit_rs.scenario import Scenario
+
+if TYPE_CHECKING:
+    from onorbit_rs import layouts, plants
+    from onorbit_rs.comparison import Comparison, compare
+    from onorbit_rs.running import Run, resume, run
+    from onorbit_rs.scenario import Scenario
 
 __all__ = [
     "MU_EARTH",
@@ -144,6 +150,25 @@ __all__ = [
 ]
 
 __version__: str = build_info()["version"]
+
+_LATER = {
+    "Comparison": "comparison", "compare": "comparison", "Scenario": "scenario",
+    "Run": "running", "resume": "running", "run": "running",
+}  # fmt: skip
+"""Where names come from that are loaded when first asked for: numpy and pydantic take half a second."""
+_LATER_MODULES = ("layouts", "plants", "comparison", "running", "scenario")
+
+
+if not TYPE_CHECKING:  # or every misspelt name would have a type
+
+    def __getattr__(name: str) -> object:
+        """Load what is asked for."""
+        if name in _LATER_MODULES:
+            return importlib.import_module(f"onorbit_rs.{name}")
+        if name not in _LATER:
+            raise AttributeError(f"module 'onorbit_rs' has no attribute {name!r}")
+        globals()[name] = found = getattr(importlib.import_module(f"onorbit_rs.{_LATER[name]}"), name)
+        return found
 
 
 def __dir__() -> list[str]:

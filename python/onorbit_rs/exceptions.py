@@ -31,6 +31,7 @@ class                       built-in               fields
 ``OutputNotWritableError``  ``PermissionError``    ``path``: the folder cannot be written
 ``ScenarioError``           ``ValueError``         ``file, path, line``: a YAML broken, misspelt or senseless
 ``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is no angle
+``ViewerError``             ``RuntimeError``       ``reason``: the viewer does not start or shows nothing
 ==========================  =====================  ==========================================================
 
 :class:`RunInterrupted` stands apart: it is a ``KeyboardInterrupt`` (Ctrl-C), so neither ``except Exception``
@@ -69,6 +70,7 @@ __all__ = [
     "Sgp4Error",
     "ShapeError",
     "SimulationError",
+    "ViewerError",
 ]
 
 
@@ -298,6 +300,12 @@ class QuantityError(OnOrbitError, ValueError):
 
     text: Any = None
     expected: Any = None
+
+
+class ViewerError(OnOrbitError, RuntimeError):
+    """The viewer, a program of its own, does not start here or shows nothing."""
+
+    reason: Any = None
 
 
 class RunInterrupted(_Fields, KeyboardInterrupt):

@@ -1,8 +1,7 @@
-"""What a robot looks like: its visual geometry, or the box that has the inertia of a plain body."""
+"""Shapes, and the space that they take."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Model
@@ -36,38 +37,6 @@ class Shape:
     rgba: tuple[float, float, float, float]
 
 
-def shapes(model: Model) -> list[Shape]:
-    """Everything there is to draw of a robot; boxes of its inertia stand for geometry that is not there."""
-    found = [
-        Shape(
-            link=visual.link,
-            pose=np.asarray(visual.pose, dtype=np.float64),
-            kind=visual.kind,
-            size=tuple(visual.size or ()),
-            filename=Path(visual.filename) if visual.filename else None,
-            scale=_three(visual.scale),
-            rgba=_color(visual.rgba),
-        )
-        for visual in model.visuals
-    ]
-    missing = {shape.link for shape in found if _is_missing(shape)}
-    found = [shape for shape in found if not _is_missing(shape)]
-    drawn = {shape.link for shape in found}
-    for body in model.bodies:
-        if body.name in missing - drawn and body.mass > 0.0:
-            sides, axes = box_of_inertia(body.mass, np.array(body.inertia))
-            found.append(_box(body.name, sides, _pose(axes, np.array(body.com))))
-    return found or [_inertia_box(model)]
-
-
-def _is_missing(shape: Shape) -> bool:
-    return shape.kind == "mesh" and (shape.filename is None or not shape.filename.is_file())
-
-
-def _box(link: str, sides: Floats, pose: Floats) -> Shape:
-    return Shape(link, pose, "box", tuple(sides), None, (1.0, 1.0, 1.0), GREY)
-
-
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
     """Centre (3,), W, and diagonal of the box around a robot, m."""
     corners = np.vstack([_corners(model, q, shape) for shape in robot])
@@ -83,7 +52,7 @@ def _corners(model: Model, q: Floats, shape: Shape) -> Floats:
         size = np.full(3, 0.1)
         if body is not None:
             size, axes = box_of_inertia(body.mass, np.array(body.inertia))
-            pose = pose @ _pose(axes, np.array(body.com))
+            pose = pose @ pose_of(axes, np.array(body.com))
         half = size / 2.0
     else:
         pose = pose @ shape.pose
@@ -99,10 +68,16 @@ def _corners(model: Model, q: Floats, shape: Shape) -> Floats:
     return corners
 
 
-def _pose(rotation: Floats, position: Floats) -> Floats:
+def pose_of(rotation: Floats, position: Floats) -> Floats:
+    """(4, 4)."""
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = rotation, position
     return pose
+
+
+def plain(link: str, kind: str, size: Iterable[float], pose: Floats) -> Shape:
+    """A grey shape that is no mesh."""
+    return Shape(link, pose, kind, tuple(size), None, (1.0, 1.0, 1.0), GREY)
 
 
 def box_of_inertia(mass: float, inertia: Floats) -> tuple[Floats, Floats]:
@@ -113,25 +88,3 @@ def box_of_inertia(mass: float, inertia: Floats) -> tuple[Floats, Floats]:
     moments, axes = np.linalg.eigh(inertia)
     axes[:, 2] *= np.sign(np.linalg.det(axes))
     return np.sqrt(np.maximum(6.0 * (moments.sum() - 2.0 * moments) / mass, 1e-4)), axes
-
-
-def _three(scale: Sequence[float] | None) -> tuple[float, float, float]:
-    x, y, z = scale or (1.0, 1.0, 1.0)
-    return x, y, z
-
-
-def _color(rgba: Sequence[float] | None) -> tuple[float, float, float, float]:
-    red, green, blue, alpha = rgba or GREY
-    return red, green, blue, alpha
-
-
-def _inertia_box(model: Model) -> Shape:
-    """The uniform box with the mass and principal moments of the whole robot in its neutral configuration."""
-    matrix = np.asarray(model.mass_matrix(model.neutral()))
-    mass = matrix[0, 0]
-    # The base rows of M are [m 1, -m [c]; m [c], I_origin], with c the centre of mass in base axes.
-    lever = matrix[3:6, :3] / mass
-    center = np.array([lever[2, 1], lever[0, 2], lever[1, 0]])
-    inertia = matrix[3:6, 3:6] - mass * (center @ center * np.eye(3) - np.outer(center, center))
-    sides, axes = box_of_inertia(mass, inertia)
-    return _box(model.body_names[0], sides, _pose(axes, center))

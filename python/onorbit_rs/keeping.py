@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +15,8 @@ from onorbit_rs.output import (
     write_summary,
     write_trace,
 )
+from onorbit_rs.output.divergence import divergence
+from onorbit_rs.printable import shell_word
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,8 +56,9 @@ def keep_stopped(
     tell: Callable[[str], None],
 ) -> None:
     """Write what there is of a run that stopped early, and say where."""
-    diverged = isinstance(stop, SimulationError)
-    if not diverged:
+    if isinstance(stop, SimulationError):
+        stop.message = divergence(stop, built)
+    else:
         duration = built.scenario.simulation.duration
         stop.message = f"stopped by Ctrl-C at t = {stop.time:g} s of {duration:g} s"
     if folder is None:
@@ -64,12 +66,13 @@ def keep_stopped(
     if stop.trace is None or len(stop.trace.time) == 0:
         folder.discard()
         return
+    diverged = isinstance(stop, SimulationError)
     summary = _write_rows(stop.trace, "diverged" if diverged else "interrupted", built, folder)
     stop.message += f"; the trace so far is in {folder.path}"
     if diverged:  # such numbers make no picture, and there is nothing to go on to
         discard_checkpoint(folder)
     else:
-        stop.message += f"; go on with: onorbit resume {shlex.quote(str(folder.path))}"
+        stop.message += f"; go on with: onorbit resume {shell_word(folder.path)}"
         write_pictures(folder, stop.trace, summary, built, tell=tell)
 
 

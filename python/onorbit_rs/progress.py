@@ -7,7 +7,12 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs.printable import printable
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bar
 
 ProgressCallback = Callable[[float, float], None]
 """Called with the time reached and the duration, both in seconds of simulation."""
@@ -24,12 +29,33 @@ class Progress:
 @contextmanager
 def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progress]:
     """A bar on the terminal that is gone at the end."""
-    if quiet or not sys.stderr.isatty():
+    if quiet or not _is_watched():
         yield Progress()
         return
+    with _bar() as bar:
+        task = bar.add_task(printable(name), total=duration_s, doing="starting", start=False)
+        yield Progress(_Mover(bar, task), lambda doing: bar.update(task, completed=duration_s, doing=doing))
+
+
+@contextmanager
+def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None]]:
+    """A bar on the terminal for work in parts: told which part begins, and what share of all is done."""
+    if quiet or not _is_watched():
+        yield lambda part, done: None
+        return
+    with _bar() as bar:
+        task = bar.add_task(printable(name), total=1.0, doing="starting")
+        yield lambda part, done: bar.update(task, completed=done, doing=printable(part))
+
+
+def _is_watched() -> bool:
+    """Whether stderr is a terminal; it may be closed."""
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
+def _bar() -> Bar:
     from rich.console import Console
-    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
-    from rich.progress import Progress as Bar
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = (
         TextColumn("{task.description}", markup=False),
@@ -37,22 +63,20 @@ def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progr
         TextColumn("{task.fields[doing]}", markup=False),
         TimeRemainingColumn(),
     )
-    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(name, total=duration_s, doing="starting", start=False)
-        yield Progress(_Mover(bar, task), lambda doing: bar.update(task, completed=duration_s, doing=doing))
+    return Progress(*columns, console=Console(stderr=True), transient=True)
 
 
 @contextmanager
 def doing(name: str, *, quiet: bool) -> Iterator[Callable[[str], None]]:
     """Something that takes seconds: says on a terminal what, and what part of it."""
-    if quiet or not sys.stderr.isatty():
+    if quiet or not _is_watched():
         yield lambda part: None
         return
     from rich.console import Console
     from rich.markup import escape
 
-    with Console(stderr=True).status(escape(name)) as status:
-        yield lambda part: status.update(escape(f"{name}: {part}"))
+    with Console(stderr=True).status(escape(printable(name))) as status:
+        yield lambda part: status.update(escape(printable(f"{name}: {part}")))
 
 
 class _Mover:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import warnings
 from collections.abc import Mapping
@@ -9,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.exceptions import ModelError, NotFoundError, RunInterrupted, SimulationError
+from onorbit_rs.exceptions import InputError, ModelError, NotFoundError, RunInterrupted, SimulationError
 from onorbit_rs.keeping import finished, keep_failed, keep_stopped
 from onorbit_rs.output import (
     CheckpointWriter,
@@ -95,6 +96,7 @@ def run(
     RunInterrupted
         Ctrl-C; its trace so far is in the exception and in ``out``.
     """
+    _check_period(checkpoint_every)
     checked = load(scenario)
     built = build(checked)
     folder = None if out is None else OutputFolder.claim(out, force=force)
@@ -132,6 +134,7 @@ def resume(
     OnOrbitError
         As :func:`run`.
     """
+    _check_period(checkpoint_every)
     folder = OutputFolder(Path(out))
     if not (folder.path / "scenario.yaml").is_file():
         what = "no run in this folder (no scenario.yaml)" if folder.path.is_dir() else "no such folder"
@@ -144,6 +147,15 @@ def resume(
         build(scenario), folder, quiet=quiet, view=view,
         checkpoint=writer, checkpoint_every=checkpoint_every, resume=checkpoint,
     )  # fmt: skip
+
+
+def _check_period(checkpoint_every: float) -> None:
+    """Before anything is written, and also where nothing is."""
+    if not checkpoint_every >= 0.0 or checkpoint_every == math.inf:
+        raise InputError(
+            f"checkpoint_every is {checkpoint_every} s of wall clock, it must be finite, zero or positive",
+            name="checkpoint_every", got=checkpoint_every, expected=">= 0",
+        )  # fmt: skip
 
 
 def _fingerprint(scenario: Scenario) -> str:

@@ -1,4 +1,4 @@
-"""Units as labels tell them: prefixes that fit the number, those of joints by their kind."""
+"""Numbers and units as labels tell them: round, with prefixes that fit, those of joints by their kind."""
 
 from __future__ import annotations
 
@@ -25,6 +25,15 @@ def amount(value: float, unit: str) -> str:
     """``2e-6``, ``N`` as ``2 µN``."""
     factor, scaled = with_prefix(value, unit)
     return f"{factor * value:.3g} {scaled}"
+
+
+def round_up(value: float) -> float:
+    """To 1, 2 or 5 times a power of ten; what has no such number above it stays as it is."""
+    if not 0.0 < value < math.inf:
+        return 0.0 if value <= 0.0 else value
+    power = 10.0 ** math.floor(math.log10(value))
+    steps = (step * power for step in (1.0, 2.0, 5.0, 10.0))
+    return next((step for step in steps if value * (1.0 - 1e-12) <= step < math.inf), value)
 
 
 class JointUnits(NamedTuple):

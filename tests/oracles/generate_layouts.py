@@ -1,7 +1,6 @@
 """Writes `fixtures/layouts.json`: states of a bundled robot as Drake, SPART and RBDL write them, and links.
 
-Run where `drake` and `spartpy` (with `intel-openmp` on the library path) are installed, with the path of a
-program built from `generate_layouts_rbdl.cc`:
+Run where `drake` and `spartpy` are installed, with a program built from `generate_layouts_rbdl.cc`:
 
     python generate_layouts.py RBDL_PROGRAM
 
@@ -21,6 +20,8 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+
+from onorbit_rs.validation.against_spart import with_inertia_alone
 
 ROOT = Path(__file__).parents[2]
 URDF = ROOT / "python" / "onorbit_rs" / "robots" / "humanoid_dual_arm.urdf"
@@ -67,16 +68,10 @@ def drake() -> dict[str, Any]:
 
 
 def spart() -> dict[str, Any]:
-    """Links without inertia are left out: SPART wants one of each."""
+    """Of the links that have an inertia."""
     module = importlib.import_module("SPARTpy.SPARTpy")
-    robot = ElementTree.parse(URDF).getroot()
-    bare = [link for link in robot.findall("link") if link.find("inertial") is None]
-    names = {link.get("name") for link in bare}
-    mounts = [joint for joint in robot.findall("joint") if joint.find("child").get("link") in names]  # type: ignore[union-attr]
-    for element in (*bare, *mounts):
-        robot.remove(element)
     with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-        file.write(ElementTree.tostring(robot, encoding="unicode"))
+        file.write(with_inertia_alone(URDF.read_text()))
         file.flush()
         engine = module.SPART(file.name)
         _, keys = module._parse_urdf(file.name)

@@ -1,9 +1,9 @@
 """Layouts of others against the engines: the same state puts every link in the same place and motion.
 
-Pinocchio and MuJoCo run here. Drake (large), SPART (needs Intel's OpenMP) and RBDL (its package builds on no
-current Python; its C++ was compiled) were run by `generate_layouts.py`, which wrote `fixtures/layouts.json`:
-states in their layouts with the poses and velocities of links that they computed. Drake also runs here where
-it is installed.
+Pinocchio and MuJoCo run here. Drake (large), SPART (whose dynamics `onorbit validate` asks) and RBDL (its
+package builds on no current Python; its C++ was compiled) were run by `generate_layouts.py`, which wrote
+`fixtures/layouts.json`: states in their layouts with the poses and velocities of links that they computed.
+Drake also runs here where it is installed.
 Gate 1e-13 of the largest entry; seen is 4e-15 at most.
 """
 

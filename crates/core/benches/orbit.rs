@@ -9,7 +9,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::environment::{
-    Bodies, BodyState, DifferentialGravity, Effect, GravityGradient, Instant, Reference, Scene, Wrenches,
+    Bodies, BodyState, DifferentialGravity, Effect, GravityGradient, Reference, Scene, Wrenches,
 };
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{Elements, Kepler, Orbit, Size, states};
@@ -69,13 +69,13 @@ fn effects(c: &mut Criterion) {
     let mut wrenches = Wrenches::new(8);
     let gravity = orbit.mu().map(Gravity::point_mass);
     let reference = Some(Reference { state, gravity: gravity.as_ref(), falls_freely: false });
-    let instant = Instant::default();
-    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
-    c.bench_function("differential_gravity_8_bodies", |b| {
-        b.iter(|| DifferentialGravity::default().add_wrenches(black_box(&scene), &mut wrenches));
-    });
-    c.bench_function("gravity_gradient_8_bodies", |b| {
-        b.iter(|| GravityGradient.add_wrenches(black_box(&scene), &mut wrenches));
+    Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, |scene| {
+        c.bench_function("differential_gravity_8_bodies", |b| {
+            b.iter(|| DifferentialGravity::default().add_wrenches(black_box(scene), &mut wrenches));
+        });
+        c.bench_function("gravity_gradient_8_bodies", |b| {
+            b.iter(|| GravityGradient.add_wrenches(black_box(scene), &mut wrenches));
+        });
     });
 }
 

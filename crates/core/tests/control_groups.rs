@@ -16,12 +16,15 @@ use onorbit_core::dynamics::{
 };
 use onorbit_core::model::urdf::from_file;
 use onorbit_core::model::{Joint, JointKind, Link, Model, ModelBuilder, neutral};
-use onorbit_core::reference::{Hold, JointHold, LineParabola, ReferenceFrame, TaskReference};
+use onorbit_core::reference::{
+    Hold, JointHold, LineParabola, ReferenceFrame, TaskPath, TaskReference, TaskSample,
+};
 use onorbit_core::simulation::{Simulation, Trace};
 use onorbit_core::spatial::{Force, Motion, Vec3, log_rotation};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Two arms of seven joints and a tail of two on a base, frames `right`, `left` and `tail`.
 fn two_arms() -> Model {
@@ -272,4 +275,47 @@ fn two_arms_track_at_once_and_not_when_each_ignores_the_other() {
     };
     let most = (0..trace.rows()).map(off).fold(0.0, f64::max);
     assert!(most > 3e-4, "each on its own is off by {most}");
+}
+
+/// A path that counts how often it is asked.
+#[derive(Debug)]
+struct Counted(Hold, AtomicUsize);
+
+impl TaskPath for Counted {
+    fn sample(&self, t: f64) -> TaskSample<f64> {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.sample(t)
+    }
+    fn duration(&self) -> f64 {
+        0.0
+    }
+}
+
+/// A row asks for what the law has just asked for: the answer is that of the same instant and state.
+#[test]
+fn a_reference_is_sampled_once_for_a_tick_and_its_row() {
+    let model = humanoid();
+    let (q, mut v, tool) = (start(&model), vec![0.0; model.nv()], model.frame("tool").unwrap());
+    let path = Arc::new(Counted(near(&model, &q, tool), AtomicUsize::new(0)));
+    let reference =
+        TaskReference { path: Arc::clone(&path) as Arc<dyn TaskPath>, frame: ReferenceFrame::World };
+    let law = Law::TaskComputedTorque(Box::new(ComputedTorque::new(tool, 4.0, 4.0)), reference);
+    let mut controls = [Control::new("arm", (0..7).collect(), law)];
+    let mut stack = Stack::<f64>::new(&mut controls, &model, 1e-12).unwrap();
+    let (mut data, mut tau) = (Data::new(&model), vec![0.0; 7]);
+    kinematics(&model, &mut data, &q, &v);
+    stack.update(0.0, &model, &mut data, &q, &v, &mut tau).unwrap();
+    let asked = || path.1.swap(0, Ordering::Relaxed);
+    asked();
+    stack.look(0.0, &model, &data, &q, &v).unwrap();
+    assert_eq!(asked(), 0);
+    stack.update(1e-3, &model, &mut data, &q, &v, &mut tau).unwrap();
+    stack.look(1e-3, &model, &data, &q, &v).unwrap();
+    assert_eq!(asked(), 1);
+    // another state at that instant, as after an impact, and another instant
+    v[7] = 0.1;
+    kinematics(&model, &mut data, &q, &v);
+    stack.look(1e-3, &model, &data, &q, &v).unwrap();
+    stack.look(2e-3, &model, &data, &q, &v).unwrap();
+    assert_eq!(asked(), 2);
 }

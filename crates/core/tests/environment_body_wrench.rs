@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::environment::{
-    Bodies, BodyState, BodyWrench, Effect, EnvironmentError, Instant, Scene, Wrench, Wrenches,
+    Bodies, BodyState, BodyWrench, Effect, EnvironmentError, Scene, Wrench, Wrenches,
 };
 
 /// A body turned a quarter about z, its centre of mass off the link's origin.
@@ -20,9 +20,9 @@ fn body() -> BodyState {
 
 fn act(effect: &BodyWrench, interval: (f64, f64)) -> Result<[Wrench; 2], EnvironmentError> {
     let mut wrenches = Wrenches::new(2);
-    let (bodies, instant) = (Bodies::from_iter([body(), body()]), Instant::default());
-    let scene = Scene::new(interval, interval.0, &bodies, &instant);
-    effect.add_wrenches(&scene, &mut wrenches)?;
+    let bodies = Bodies::from_iter([body(), body()]);
+    let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
+    Scene::show(interval, interval.0, &bodies, None, None, act)?;
     Ok([0, 1].map(|k| wrenches.get(k).expect("a body there")))
 }
 

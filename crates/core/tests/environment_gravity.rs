@@ -4,8 +4,8 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::environment::{
-    Bodies, BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Instant, Place,
-    Reference, ReferenceMotion, Scene, Wrench, Wrenches,
+    Bodies, BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Place, Reference,
+    ReferenceMotion, Scene, Wrench, Wrenches,
 };
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{Kepler, MU_EARTH, Orbit, OrbitState};
@@ -14,8 +14,8 @@ use onorbit_core::orbit::{Kepler, MU_EARTH, Orbit, OrbitState};
 const ORIGIN: [f64; 3] = [-4292653.41, 955168.47, 5139356.57];
 
 /// Offset ρ from the reference (m) and the tide g(R + ρ) - g(R) there (m/s²): radial, skew and
-/// across, 1 mm to 10 000 km, then the far side of the Earth and 1000 km below.
-/// mpmath 1.3.0, 60 digits, the definition as it stands, every input taken as the double it
+/// across, 1 mm to 10 000 km, then the far side of the Earth and 300 km below.
+/// mpmath 1.3.0 (the last row Python's decimal), 60 digits, the definition as it stands, every input taken as the double it
 /// is, mu 3.986004418e14; 2026-11-21.
 #[rustfmt::skip]
 const TIDES: [([f64; 3], [f64; 3]); 17] = [
@@ -35,7 +35,7 @@ const TIDES: [([f64; 3], [f64; 3]); 17] = [
     ([3600000.0, -4800000.0, 8000000.0], [-5.4217987920362126, 1.8252541556468583, 4.5862394503020483]),
     ([1129702.1238863163, 9635866.852669885, -847276.5929147372], [-4.7727291114874025, -1.302034864119109, 5.5933192566401883]),
     ([8585306.82, -1910335.94, -10278713.14], [-1.1057973645903682e+1, 2.4605345996641143, 1.3239100407121372e+1]),
-    ([634628.8412326936, -141212.76548578954, -759806.0204680561], [2.0848570096457606, -4.6390646760184547e-1, -2.4960840176550601]),
+    ([190388.64, -42363.83, -227941.81], [5.25116542505289564e-1, -1.16844920120231902e-1, -6.28692973018048241e-1]),
 ];
 
 fn body(com: Vector3<f64>) -> BodyState {
@@ -68,9 +68,9 @@ fn wrench(
     body: BodyState,
 ) -> Result<Wrench, EnvironmentError> {
     let mut wrenches = Wrenches::new(1);
-    let (bodies, instant) = (Bodies::from_iter([body]), Instant::default());
-    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
-    effect.add_wrenches(&scene, &mut wrenches)?;
+    let bodies = Bodies::from_iter([body]);
+    let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
+    Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, act)?;
     Ok(wrenches.get(0).expect("one body"))
 }
 
@@ -130,9 +130,8 @@ fn force_scales_with_mass_and_adds_to_what_is_there() {
     let mut wrenches = Wrenches::new(2);
     wrenches.add(1, there).expect("two bodies");
     let reference = Some(reference(ORIGIN, MU_EARTH));
-    let instant = Instant::default();
-    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
-    CARRIED.add_wrenches(&scene, &mut wrenches).expect("outside");
+    let act = |scene: &Scene<'_>| CARRIED.add_wrenches(scene, &mut wrenches);
+    Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, act).expect("outside");
     let [light, heavy] = [0, 1].map(|k| wrenches.get(k).expect("two bodies"));
     assert_eq!(heavy.force, there.force + light.force * 3.0);
     assert_eq!(heavy.torque, there.torque);
@@ -238,11 +237,11 @@ fn gravity_is_refused_around_no_planet_and_inside_one() {
 
 #[test]
 fn one_wrench_per_body_is_needed() {
-    let (bodies, instant) = (Bodies::from_iter([body(Vector3::zeros())]), Instant::default());
-    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(Some(reference(ORIGIN, MU_EARTH)));
-    let mut two = Wrenches::new(2);
+    let (bodies, mut two) = (Bodies::from_iter([body(Vector3::zeros())]), Wrenches::new(2));
     for effect in [&TRUE as &dyn Effect, &GravityGradient] {
-        let error = effect.add_wrenches(&scene, &mut two).expect_err("one too many");
+        let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut two);
+        let reference = Some(reference(ORIGIN, MU_EARTH));
+        let error = Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, act).expect_err("one too many");
         assert_eq!(error, EnvironmentError::WrongLength { expected: 1, got: 2 });
     }
 }

@@ -10,7 +10,7 @@ use onorbit_core::earth::{Earth, Epoch};
 use onorbit_core::environment::atmosphere::ExponentialAtmosphere;
 use onorbit_core::environment::surfaces::{Covering, Optics, Surface, Surfaces};
 use onorbit_core::environment::{
-    Bodies, BodyState, DifferentialGravity, Drag, Effect, EnvironmentError, GravityGradient, Instant, Place,
+    Bodies, BodyState, DifferentialGravity, Drag, Effect, EnvironmentError, GravityGradient, Place,
     RadiationPressure, Reference, Scene, Wrench, Wrenches,
 };
 use onorbit_core::gravity::{Gravity, GravityField};
@@ -82,9 +82,8 @@ fn wrenches(
     let state = OrbitState { position, velocity, acceleration };
     let reference = Reference { state, gravity: Some(gravity), falls_freely: true };
     let (mut wrenches, bodies) = (Wrenches::new(bodies.len()), bodies.iter().copied().collect::<Bodies>());
-    let instant = Instant::default();
-    let scene = Scene::new((0.0, 1e-3), 0.0, &bodies, &instant).beside(Some(reference)).above(Some(earth));
-    effect.add_wrenches(&scene, &mut wrenches)?;
+    let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
+    Scene::show((0.0, 1e-3), 0.0, &bodies, Some(reference), Some(earth), act)?;
     Ok(wrenches.iter().collect())
 }
 

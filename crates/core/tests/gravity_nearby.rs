@@ -4,12 +4,14 @@
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::{
-    Bodies, BodyState, DifferentialGravity, Effect, Instant, Reference, ReferenceMotion, Scene, Wrenches,
+    Bodies, BodyState, DifferentialGravity, Effect, GravityGradient, Reference, ReferenceMotion, Scene,
+    Wrenches,
 };
-use onorbit_core::gravity::{Gravity, GravityField};
+use onorbit_core::gravity::{Gravity, GravityError, GravityField, ThirdBody};
 use onorbit_core::orbit::OrbitState;
 use serde_json::Value;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn fixture() -> Value {
     serde_json::from_str(include_str!("../../../tests/fixtures/gravity.json")).unwrap()
@@ -66,10 +68,9 @@ fn force(
     let velocity = Vector3::from(VELOCITY);
     let state = OrbitState { position: at.1, velocity, acceleration: Vector3::zeros() };
     let reference = Some(Reference { state, gravity: Some(gravity), falls_freely: false });
-    let (bodies, instant) = (Bodies::from_iter([b]), Instant::default());
-    let scene = Scene::new((at.0, at.0 + step), at.0, &bodies, &instant).beside(reference);
-    let mut wrenches = Wrenches::new(1);
-    DifferentialGravity { motion }.add_wrenches(&scene, &mut wrenches).unwrap();
+    let (mut wrenches, bodies) = (Wrenches::new(1), Bodies::from_iter([b]));
+    let act = |scene: &Scene<'_>| DifferentialGravity { motion }.add_wrenches(scene, &mut wrenches);
+    Scene::show((at.0, at.0 + step), at.0, &bodies, reference, None, act).unwrap();
     wrenches.get(0).unwrap().force
 }
 
@@ -139,4 +140,40 @@ fn an_expansion_does_not_depend_on_what_was_asked_before() {
         let _ = at(&used, f64::from(k) * 0.7);
     }
     assert_eq!(at(&used, 1.4), at(&fresh, 1.4));
+}
+
+/// A body that counts how often it is asked where it is.
+#[derive(Debug, Default)]
+struct Counted(AtomicUsize);
+
+impl ThirdBody for Counted {
+    fn name(&self) -> &str {
+        "counted"
+    }
+    fn mu(&self) -> f64 {
+        4.9e12
+    }
+    fn position(&self, _: f64) -> Result<Vector3<f64>, GravityError> {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        Ok(Vector3::new(3.8e8, 1e7, 0.0))
+    }
+}
+
+#[test]
+fn a_gradient_beyond_the_expansion_is_worked_out_once() {
+    let moon = Arc::new(Counted::default());
+    let gravity = Gravity::point_mass(3.986004415e14).and(Arc::clone(&moon) as Arc<dyn ThirdBody>);
+    let (origin, zero) = (vector(&fixture()["origin"]), Vector3::zeros());
+    let state = OrbitState { position: origin, velocity: zero, acceleration: zero };
+    let reference = Some(Reference { state, gravity: Some(&gravity), falls_freely: true });
+    let asked = |offset: f64| {
+        let (mut wrenches, bodies) = (Wrenches::new(1), Bodies::from_iter([body(Vector3::x() * offset)]));
+        let before = moon.0.load(Ordering::Relaxed);
+        Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, |scene| {
+            GravityGradient.add_wrenches(scene, &mut wrenches).unwrap();
+        });
+        moon.0.load(Ordering::Relaxed) - before
+    };
+    // about the reference, and once more where that does not reach
+    assert_eq!((asked(10.0), asked(1e4)), (1, 2));
 }

@@ -4,8 +4,7 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::{
-    Bodies, BodyState, DifferentialGravity, Effect, GravityGradient, Instant, Reference, Scene, Wrench,
-    Wrenches,
+    Bodies, BodyState, DifferentialGravity, Effect, GravityGradient, Reference, Scene, Wrench, Wrenches,
 };
 use onorbit_core::gravity::{Gravity, GravityField};
 use onorbit_core::orbit::OrbitState;
@@ -72,14 +71,13 @@ fn felt(gravity: &Gravity, bodies: &[BodyState], forces: bool) -> Vec<Wrench> {
     let acceleration = gravity.acceleration(0.0, &position).unwrap();
     let state = OrbitState { position, velocity: Vector3::new(0.0, 5.4e3, 5.4e3), acceleration };
     let reference = Some(Reference { state, gravity: Some(gravity), falls_freely: true });
-    let instant = Instant::default();
-    let (count, bodies) = (bodies.len(), bodies.iter().copied().collect::<Bodies>());
-    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(reference);
-    let mut wrenches = Wrenches::new(count);
-    GravityGradient.add_wrenches(&scene, &mut wrenches).unwrap();
-    if forces {
-        DifferentialGravity::default().add_wrenches(&scene, &mut wrenches).unwrap();
-    }
+    let (mut wrenches, bodies) = (Wrenches::new(bodies.len()), bodies.iter().copied().collect::<Bodies>());
+    Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, |scene| {
+        GravityGradient.add_wrenches(scene, &mut wrenches).unwrap();
+        if forces {
+            DifferentialGravity::default().add_wrenches(scene, &mut wrenches).unwrap();
+        }
+    });
     wrenches.iter().collect()
 }
 

@@ -6,7 +6,14 @@ mod common;
 use common::humanoid::{humanoid, start};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::control::{ComputedTorque, ControlError, ControlLaw};
-use onorbit_core::environment::{BodyWrench, EnvironmentError, GravityGradient};
+use onorbit_core::environment::atmosphere::ConstantAtmosphere;
+use onorbit_core::environment::surfaces::{Covering, Surface, Surfaces};
+use onorbit_core::environment::{
+    BodyWrench, DifferentialGravity, Drag, Effect, EnvironmentError, GravityGradient, Place,
+    RadiationPressure,
+};
+use onorbit_core::model::{Model, neutral};
+use onorbit_core::orbit::{Elements, Kepler, MU_EARTH, Orbit, Phase, Size};
 use onorbit_core::reference::Hold;
 use onorbit_core::simulation::{Simulation, SimulationError};
 use std::ops::ControlFlow;
@@ -142,4 +149,79 @@ fn a_reference_that_starts_away_says_how_far() {
     });
     let SimulationError::ReferenceStartsAway { position, angle, .. } = error else { panic!("{error}") };
     assert!(position > 0.05 || angle > 0.1);
+}
+
+fn kepler(size: f64, eccentricity: f64, mu: f64) -> Option<Arc<dyn Orbit>> {
+    let elements = Elements { mu, ..Elements::new(Size::SemiMajorAxis(size), eccentricity) };
+    Some(Arc::new(Kepler::new(&elements).unwrap()))
+}
+
+#[test]
+fn an_effect_given_twice_is_refused_by_its_name() {
+    let twice = |effects: Vec<Arc<dyn Effect>>| {
+        refused(|s| {
+            s.orbit = kepler(7e6, 0.0, MU_EARTH);
+            s.effects = effects;
+        })
+    };
+    let is = |error: SimulationError, name: &str| matches!(&error, SimulationError::EffectTwice { effect, .. } if effect == name);
+    assert!(is(twice(vec![Arc::new(GravityGradient), Arc::new(GravityGradient)]), "gravity gradient"));
+    // gravity comes with the orbit
+    assert!(is(twice(vec![Arc::new(DifferentialGravity::default())]), "gravity"));
+    let ball = |body| {
+        let surface = Surface::cannonball(1.0, 2.2, 1.3).unwrap();
+        Surfaces::new(vec![Covering { body, surface }], sound().model.nodes().len()).unwrap()
+    };
+    let air = || Arc::new(ConstantAtmosphere::new(1e-12).unwrap());
+    let drag = |body| -> Arc<dyn Effect> { Arc::new(Drag::new(air(), ball(body))) };
+    let light = |body| -> Arc<dyn Effect> { Arc::new(RadiationPressure::new(ball(body))) };
+    assert!(is(twice(vec![drag(0), light(0), drag(0)]), "drag"));
+    assert!(is(twice(vec![light(3), light(3)]), "radiation pressure"));
+    // other bodies, another effect, and wrenches as many as one likes
+    let mut simulation = sound();
+    simulation.orbit = kepler(7e6, 0.0, MU_EARTH);
+    let push = || Arc::new(BodyWrench::new(0, Vector3::x(), Vector3::zeros()).unwrap());
+    simulation.effects =
+        vec![drag(0), drag(1), light(0), light(2), push(), push(), Arc::new(GravityGradient)];
+    simulation.check().unwrap();
+}
+
+/// At the perigee of an ellipse through the Earth, with nothing on that would look at the ground.
+#[test]
+fn a_robot_that_falls_to_the_ground_stops_there() {
+    let fly = |mu: f64| {
+        let model = Arc::new(Model::rigid_body(10.0, Matrix3::identity()).unwrap());
+        let (q, v) = (neutral(&model), vec![0.0; 6]);
+        let mut simulation = Simulation::new(model, q, v);
+        simulation.time_step = 1.0;
+        simulation.orbit = kepler(7e6, 0.1, mu);
+        simulation.run(3000.0, &mut |_| ControlFlow::Continue(()))
+    };
+    let failure = fly(MU_EARTH).unwrap_err();
+    println!("{failure}");
+    assert!(failure.error.to_string().contains("below ground"));
+    let SimulationError::Environment { time, source } = &failure.error else { panic!("{failure}") };
+    let EnvironmentError::InsidePlanet { what: Place::Reference, distance, minimum, .. } = source else {
+        panic!("{source}")
+    };
+    assert_eq!(*time, 0.0); // the perigee is the start
+    assert!(*distance == 6.3e6 && *minimum == 0.996 * 6_378_137.0, "{distance} {minimum}");
+    // a denser planet of another mass may be as small as that
+    assert_eq!(fly(1.1 * MU_EARTH).unwrap().rows(), 3001);
+}
+
+/// The same from above: it flies until it is there, and keeps what it had recorded.
+#[test]
+fn the_rows_before_the_ground_are_kept() {
+    let model = Arc::new(Model::rigid_body(10.0, Matrix3::identity()).unwrap());
+    let mut simulation = Simulation::new(Arc::clone(&model), neutral(&model), vec![0.0; 6]);
+    let start = Elements { phase: Phase::TrueAnomaly(-1.0), ..Elements::new(Size::SemiMajorAxis(7e6), 0.1) };
+    let orbit = Kepler::new(&start).unwrap();
+    simulation.orbit = Some(Arc::new(orbit));
+    simulation.time_step = 1.0;
+    let failure = simulation.run(3000.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let SimulationError::Environment { time, .. } = failure.error else { panic!("{failure}") };
+    let height = |t: f64| orbit.state(t).unwrap().position.norm() - 0.996 * 6_378_137.0;
+    assert!(height(time) < 0.0 && height(time - 1.0) > 0.0, "{time} s");
+    assert!((failure.trace.time.last().unwrap() - time).abs() <= 1.0);
 }

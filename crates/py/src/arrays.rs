@@ -1,10 +1,12 @@
 //! Arrays in and out.
 
 use crate::errors::{fields, raise, shape_error};
-use numpy::{IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
-use pyo3::PyClass;
+use numpy::{
+    IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
+use pyo3::{PyClass, PyTypeInfo};
 
 /// A whole number that is not negative.
 #[derive(Clone, Copy)]
@@ -17,13 +19,30 @@ impl<'py> FromPyObject<'_, 'py> for Count {
         match value.extract::<i64>() {
             Ok(count) => usize::try_from(count).map(Self).map_err(|_| {
                 let py = value.py();
-                let message = format!(
-                    "{count} is no number of steps, rows or threads: a whole number of at least 0 is needed"
-                );
+                let message =
+                    format!("{count} is no number of steps or rows: a whole number of at least 0 is needed");
                 raise(py, "InputError", &message, &fields!(py, "got": count, "expected": "at least 0"))
             }),
             Err(error) => Err(error),
         }
+    }
+}
+
+/// How many threads to run on.
+#[derive(Clone, Copy)]
+pub(crate) struct Threads(pub(crate) usize);
+
+impl<'py> FromPyObject<'_, 'py> for Threads {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let count = value.extract::<i64>()?;
+        usize::try_from(count).ok().filter(|count| *count > 0).map(Self).ok_or_else(|| {
+            let py = value.py();
+            let message = format!("threads is {count}, it must be at least 1; leave it out for all cores");
+            let fields = fields!(py, "name": "threads", "got": count, "expected": "at least 1");
+            raise(py, "InputError", &message, &fields)
+        })
     }
 }
 
@@ -59,7 +78,9 @@ pub(crate) struct Input<'py> {
 impl<'py> Input<'py> {
     /// Borrows `value`, converting lists and other real numbers; refuses anything else by name.
     pub(crate) fn new(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        // no subclass: a masked array is one
         if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
+            && value.get_type_ptr() == PyUntypedArray::type_object_raw(value.py())
             && array.is_c_contiguous()
             && array.is_aligned()
         {
@@ -79,6 +100,14 @@ impl<'py> Input<'py> {
             return Err(refuse("text".to_owned()));
         }
         let numpy = py.import("numpy")?;
+        if numpy.getattr("ma")?.call_method1("is_masked", (value,))?.is_truthy()? {
+            let message = format!(
+                "{name} is a masked array with entries masked, which have no numbers: give them some by \
+                 {name}.filled(x), or leave them out by {name}.compressed()"
+            );
+            let fields = fields!(py, "name": name, "got": "masked entries", "expected": "float64");
+            return Err(raise(py, "DtypeError", &message, &fields));
+        }
         let array =
             numpy.call_method1("asarray", (value,)).map_err(|_| refuse("no rectangular array".to_owned()))?;
         let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;

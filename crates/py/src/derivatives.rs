@@ -1,12 +1,12 @@
 //! Derivatives of the dynamics.
 
-use crate::arrays::Count;
+use crate::arrays::Threads;
 use crate::errors::{fields, raise};
 use crate::kernels::evaluate;
 use crate::model::PyModel;
 use onorbit_core::batch::Kernel;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::PyTuple;
 
 /// Derivatives of the reduced model at given joint accelerations; tangent of ``q`` as in ``Model.integrate``.
 #[pyclass(name = "FreeFloatingDerivatives", frozen, get_all, module = "onorbit_rs")]
@@ -29,9 +29,9 @@ pub(crate) fn free_floating_derivatives<'py>(
     model: &PyModel,
     frame: usize,
     state: &[&Bound<'py, PyAny>],
-    external: Option<&Bound<'py, PyDict>>,
+    external: Option<&Bound<'py, PyAny>>,
     out: Option<&Bound<'py, PyFreeFloatingDerivatives>>,
-    threads: Option<Count>,
+    threads: Option<Threads>,
 ) -> PyResult<Bound<'py, PyFreeFloatingDerivatives>> {
     let (n, nv) = (model.model.joint_count(), model.model.nv());
     let shapes: [&[usize]; 5] = [&[n, nv], &[n, nv], &[6, nv], &[6, nv], &[6, nv]];
@@ -58,9 +58,9 @@ pub(crate) fn three<'py>(
     model: &PyModel,
     kernel: Kernel,
     values: &[&Bound<'py, PyAny>],
-    external: Option<&Bound<'py, PyDict>>,
+    external: Option<&Bound<'py, PyAny>>,
     out: Option<&Bound<'py, PyAny>>,
-    threads: Option<Count>,
+    threads: Option<Threads>,
 ) -> PyResult<Bound<'py, PyTuple>> {
     let out = out.map(|out| out.extract::<[Bound<'py, PyAny>; 3]>()).transpose().map_err(|_| {
         let needed = "three arrays (nv, nv) or (B, nv, nv)";

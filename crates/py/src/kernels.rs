@@ -1,7 +1,7 @@
 //! The dynamics of a model: one state `(n,)` or a batch `(B, n)`.
 
-use crate::arrays::{Count, Input, wrong_shape};
-use crate::errors::IntoPython;
+use crate::arrays::{Input, Threads, wrong_shape};
+use crate::errors::{IntoPython, fields, raise};
 use crate::model::PyModel;
 use crate::output::{Output, outputs};
 use numpy::PyArrayDyn;
@@ -32,10 +32,10 @@ pub(crate) fn evaluate<'py, const N: usize>(
     model: &PyModel,
     kernel: Kernel,
     values: &[&Bound<'py, PyAny>],
-    external: Option<&Bound<'py, PyDict>>,
+    external: Option<&Bound<'py, PyAny>>,
     shapes: [&[usize]; N],
     out: Option<[Bound<'py, PyAny>; N]>,
-    threads: Option<Count>,
+    threads: Option<Threads>,
 ) -> PyResult<[Array<'py>; N]> {
     let names = kernel.inputs();
     let mut inputs: Vec<Input<'py>> =
@@ -86,11 +86,21 @@ fn batch_of(py: Python<'_>, inputs: &[Input<'_>], names: &[&str]) -> PyResult<Op
 /// Puts their numbers behind `inputs` and returns their frames.
 fn wrenches<'py>(
     model: &PyModel,
-    external: Option<&Bound<'py, PyDict>>,
+    external: Option<&Bound<'py, PyAny>>,
     batch: Option<usize>,
     inputs: &mut Vec<Input<'py>>,
 ) -> PyResult<Vec<usize>> {
     let Some(external) = external else { return Ok(Vec::new()) };
+    let Ok(external) = external.cast::<PyDict>() else {
+        let (py, got) = (external.py(), external.get_type().name()?.to_string());
+        let message = format!(
+            "external is {got}, a dict of wrenches by the frames they act on is needed, such as \
+             {{'{}': [fx, fy, fz, tx, ty, tz]}}",
+            model.model.frames()[0].name
+        );
+        let fields = fields!(py, "name": "external", "got": got, "expected": "dict");
+        return Err(raise(py, "DtypeError", &message, &fields));
+    };
     let mut one = |(name, wrench): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
         let frame = model.frame(&name)?;
         let input = Input::new(&wrench, "external wrench")?;
@@ -115,9 +125,9 @@ pub(crate) fn free_floating<'py>(
     model: &PyModel,
     frame: usize,
     state: &[&Bound<'py, PyAny>],
-    external: Option<&Bound<'py, PyDict>>,
+    external: Option<&Bound<'py, PyAny>>,
     out: Option<&Bound<'py, PyFreeFloating>>,
-    threads: Option<Count>,
+    threads: Option<Threads>,
 ) -> PyResult<Bound<'py, PyFreeFloating>> {
     let n = model.model.joint_count();
     let shapes: [&[usize]; 5] = [&[n, n], &[n], &[n], &[6, n], &[6]];

@@ -1,9 +1,10 @@
 //! The robot.
 
-use crate::arrays::{Count, array_of, fixed};
+use crate::arrays::{Threads, array_of, fixed};
 use crate::derivatives::{PyFreeFloatingDerivatives, free_floating_derivatives, three};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
+use crate::made::{Made, absolute};
 use crate::records::{self, PyBody, PyFrame, PyJoint, PyVisual};
 use crate::xacro::from_xacro;
 use nalgebra::Matrix3;
@@ -11,6 +12,7 @@ use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel};
 use onorbit_core::model::urdf::{self, UrdfProblem};
 use onorbit_core::model::{Model, neutral};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 use std::path::PathBuf;
@@ -18,7 +20,7 @@ use std::sync::{Arc, Mutex};
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
-type External<'a, 'py> = Option<&'a Bound<'py, PyDict>>;
+type External<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// A robot with a free base: an immutable tree of bodies.
 ///
@@ -31,16 +33,17 @@ type External<'a, 'py> = Option<&'a Bound<'py, PyDict>>;
 pub(crate) struct PyModel {
     pub(crate) model: Arc<Model>,
     pub(crate) evaluator: Mutex<Evaluator>,
+    made: Option<Made>,
 }
 
 impl PyModel {
-    pub(crate) fn wrap(py: Python<'_>, model: Model) -> PyResult<Self> {
+    pub(crate) fn wrap(py: Python<'_>, model: Model, made: Option<Made>) -> PyResult<Self> {
         let warnings = py.import("warnings")?;
         for warning in model.warnings() {
             warnings.call_method1("warn", (warning.to_string(),))?;
         }
         let evaluator = Mutex::new(Evaluator::new(&model));
-        Ok(Self { model: Arc::new(model), evaluator })
+        Ok(Self { model: Arc::new(model), evaluator, made })
     }
 
     /// Index of a frame by name.
@@ -71,16 +74,20 @@ impl PyModel {
         package_paths: Option<Vec<PathBuf>>,
         xacro_arguments: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let packages = package_paths.unwrap_or_default();
+        let packages: Vec<PathBuf> =
+            package_paths.unwrap_or_default().iter().map(|path| absolute(path)).collect();
+        let keywords = fields!(py, "path": absolute(&path), "package_paths": packages.clone());
+        keywords.set_item("xacro_arguments", xacro_arguments.map(|given| given.copy()).transpose()?)?;
+        let made = Some(Made::by("Model.from_urdf", &keywords)?);
         let is_xacro = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xacro"));
         if !is_xacro && xacro_arguments.is_none() {
             match urdf::from_file(&path, &packages) {
-                Ok(model) => return Self::wrap(py, model),
+                Ok(model) => return Self::wrap(py, model, made),
                 Err(error) if matches!(*error.problem, UrdfProblem::Xacro { .. }) => {}
                 Err(error) => return Err(error.into_python(py)),
             }
         }
-        Self::wrap(py, from_xacro(py, &path, &packages, xacro_arguments)?)
+        Self::wrap(py, from_xacro(py, &path, &packages, xacro_arguments)?, made)
     }
 
     /// Load a robot from the text of a URDF; ``folder`` is where its relative paths start.
@@ -95,7 +102,10 @@ impl PyModel {
         let packages = package_paths.unwrap_or_default();
         let model =
             urdf::from_str(text, folder.as_deref(), &packages).map_err(|error| error.into_python(py))?;
-        Self::wrap(py, model)
+        let packages: Vec<PathBuf> = packages.iter().map(|path| absolute(path)).collect();
+        let folder = folder.as_deref().map(absolute);
+        let keywords = fields!(py, "text": text, "folder": folder, "package_paths": packages);
+        Self::wrap(py, model, Some(Made::by("Model.from_urdf_string", &keywords)?))
     }
 
     /// A spacecraft without joints: mass, kg, and inertia (3, 3) about its centre of mass, kg m².
@@ -103,9 +113,21 @@ impl PyModel {
     /// Its one body is called ``base``, its origin is the centre of mass.
     #[staticmethod]
     fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyResult<Self> {
-        let inertia = Matrix3::from_row_slice(&fixed::<9>(inertia, "inertia", &[3, 3])?);
+        let given = fixed::<9>(inertia, "inertia", &[3, 3])?;
+        let inertia = Matrix3::from_row_slice(&given);
         let model = Model::rigid_body(mass, inertia).map_err(|error| error.into_python(py))?;
-        Self::wrap(py, model)
+        let rows: Vec<&[f64]> = given.chunks(3).collect();
+        let keywords = fields!(py, "mass": mass, "inertia": rows);
+        Self::wrap(py, model, Some(Made::by("Model.rigid_body", &keywords)?))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
+        match &self.made {
+            Some(made) => made.again(py),
+            None => Err(PyTypeError::new_err(
+                "a model built link by link does not pickle: build it where it is needed, or write it as URDF",
+            )),
+        }
     }
 
     /// Name of the robot.
@@ -177,7 +199,13 @@ impl PyModel {
     /// Shapes to draw.
     #[getter]
     fn visuals(&self) -> Vec<PyVisual> {
-        records::visuals(&self.model)
+        records::shapes(&self.model, self.model.visuals())
+    }
+
+    /// Collision shapes that are no meshes; nothing collides here: the viewer draws them where a mesh is missing.
+    #[getter]
+    fn collisions(&self) -> Vec<PyVisual> {
+        records::shapes(&self.model, self.model.collisions())
     }
 
     /// The configuration at W's origin, unrotated, joints at zero: (nq,).
@@ -191,7 +219,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         dv: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::Integrate, &[q, dv], None, &[self.model.nq()], threads, out)
@@ -203,7 +231,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         q2: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::Difference, &[q, q2], None, &[self.model.nv()], threads, out)
@@ -215,7 +243,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         frame: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::FramePose(self.frame(frame)?), &[q], None, &[4, 4], threads, out)
@@ -228,7 +256,7 @@ impl PyModel {
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         frame: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::FrameVelocity(self.frame(frame)?), &[q, v], None, &[6], threads, out)
@@ -240,7 +268,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         frame: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::FrameJacobian(self.frame(frame)?), &[q], None, &[6, self.model.nv()], threads, out)
@@ -251,7 +279,7 @@ impl PyModel {
     fn mass_matrix<'py>(
         &self,
         q: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         let nv = self.model.nv();
@@ -267,7 +295,7 @@ impl PyModel {
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::BiasForces, &[q, v], external, &[self.model.nv()], threads, out)
@@ -283,7 +311,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         a: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::InverseDynamics, &[q, v, a], external, &[self.model.nv()], threads, out)
@@ -299,7 +327,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         tau: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::ForwardDynamics, &[q, v, tau], external, &[self.model.nv()], threads, out)
@@ -316,7 +344,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         a: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
         three(q.py(), self, Kernel::InverseDynamicsDerivatives, &[q, v, a], external, out, threads)
@@ -332,7 +360,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         tau: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyTuple>> {
         three(q.py(), self, Kernel::ForwardDynamicsDerivatives, &[q, v, tau], external, out, threads)
@@ -344,7 +372,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::Momentum, &[q, v], None, &[6], threads, out)
@@ -356,7 +384,7 @@ impl PyModel {
         &self,
         q: Any<'_, 'py>,
         v: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let energy = self.one(Kernel::KineticEnergy, &[q, v], None, &[], threads, out)?;
@@ -371,7 +399,7 @@ impl PyModel {
     fn center_of_mass<'py>(
         &self,
         q: Any<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         self.one(Kernel::CenterOfMass, &[q], None, &[3], threads, out)
@@ -387,7 +415,7 @@ impl PyModel {
         v: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<&Bound<'py, PyFreeFloating>>,
     ) -> PyResult<Bound<'py, PyFreeFloating>> {
         free_floating(q.py(), self, self.frame(frame)?, &[q, v], external, out, threads)
@@ -405,7 +433,7 @@ impl PyModel {
         joint_acceleration: Any<'_, 'py>,
         frame: Any<'_, 'py>,
         external: External<'_, 'py>,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<&Bound<'py, PyFreeFloatingDerivatives>>,
     ) -> PyResult<Bound<'py, PyFreeFloatingDerivatives>> {
         let state = [q, v, joint_acceleration];
@@ -432,7 +460,7 @@ impl PyModel {
         values: &[Any<'_, 'py>],
         external: External<'_, 'py>,
         shape: &[usize],
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<Array<'py>> {
         let out = out.map(|out| [out.clone()]);

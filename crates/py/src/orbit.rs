@@ -10,7 +10,7 @@ pub(crate) use fixed_frame::PyFixedFrame;
 pub(crate) use numerical::PyNumerical;
 pub(crate) use sgp4::PySgp4;
 
-use crate::arrays::{Count, Input, array_of, fixed, fresh, wrong_shape, zeros};
+use crate::arrays::{Input, Threads, array_of, fixed, fresh, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use nalgebra::Vector3;
 use onorbit_core::orbit::{
@@ -277,7 +277,7 @@ impl PyKepler {
         argument_of_periapsis: Any<'_, 'py>,
         mean_anomaly: Any<'_, 'py>,
         mu: f64,
-        threads: Option<Count>,
+        threads: Option<Threads>,
         out: Option<Any<'_, 'py>>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let given = [

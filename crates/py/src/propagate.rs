@@ -1,6 +1,6 @@
 //! Many orbits at once.
 
-use crate::arrays::{Count, Input, list_of, shape_text, wrong_shape};
+use crate::arrays::{Input, Threads, list_of, shape_text, wrong_shape};
 use crate::errors::IntoPython;
 use crate::orbit::PyOrbit;
 use crate::output::{outputs, pair};
@@ -25,7 +25,7 @@ pub(crate) fn propagate<'py>(
     py: Python<'py>,
     orbits: Any<'_, 'py>,
     times: Any<'_, 'py>,
-    threads: Option<Count>,
+    threads: Option<Threads>,
     out: Option<Any<'_, 'py>>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let input = Input::new(times, "times")?;
@@ -64,7 +64,7 @@ pub(crate) fn kepler_states<'py>(
     py: Python<'py>,
     given: [(&str, Any<'_, 'py>); 7],
     mu: f64,
-    threads: Option<Count>,
+    threads: Option<Threads>,
     out: Out<'_, 'py>,
 ) -> PyResult<Pair<'py>> {
     let inputs = given.iter().map(|(name, value)| Input::new(value, name)).collect::<PyResult<Vec<_>>>()?;

@@ -96,9 +96,10 @@ impl PyVisual {
     }
 }
 
-pub(crate) fn visuals(model: &Model) -> Vec<PyVisual> {
+/// Of a model's visuals or collision shapes.
+pub(crate) fn shapes(model: &Model, shapes: &[(usize, Visual)]) -> Vec<PyVisual> {
     let frame = |index: usize| &model.frames()[index].name;
-    model.visuals().iter().map(|(index, visual)| PyVisual::new(frame(*index), visual)).collect()
+    shapes.iter().map(|(index, shape)| PyVisual::new(frame(*index), shape)).collect()
 }
 
 pub(crate) fn joints(model: &Model) -> Vec<PyJoint> {

@@ -1,6 +1,6 @@
 //! Many runs at once.
 
-use crate::arrays::{Count, Input, shape_text, wrong_shape};
+use crate::arrays::{Count, Input, Threads, shape_text, wrong_shape};
 use crate::control::PyComputedTorque;
 use crate::errors::{IntoPython, fields, plain, raise};
 use crate::model::PyModel;
@@ -34,11 +34,11 @@ pub(crate) fn rollout<'py>(
     steps: Count,
     time_step: f64,
     tau: Option<Any<'_, 'py>>,
-    controller: Option<&Bound<'py, PyComputedTorque>>,
+    controller: Option<Any<'_, 'py>>,
     reference: Option<Any<'_, 'py>>,
     integrator: &str,
     record_every: Option<Count>,
-    threads: Option<Count>,
+    threads: Option<Threads>,
     out: Option<Any<'_, 'py>>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let core = &*model.model;
@@ -63,6 +63,7 @@ pub(crate) fn rollout<'py>(
     let tau = tau.map(|tau| Input::new(tau, "tau")).transpose()?;
     let inputs: Vec<Input<'py>> = [q0, v0].into_iter().chain(tau).collect();
     let reference = reference.map(|value| reference::extract(value, None)).transpose()?;
+    let controller = controller.map(law_of).transpose()?;
     let control = match (inputs.get(2), controller, &reference) {
         (_, None, Some(_)) => {
             return Err(plain(py, "ControlError", "a reference is given but no controller that tracks it"));
@@ -100,6 +101,20 @@ pub(crate) fn rollout<'py>(
     let result = interruptible(py, &stop, || rollout.run(core, from_q, from_v, to_q, to_v))?;
     result.map_err(|error| error.into_python(py))?;
     Ok((q.into_array().into_any(), v.into_array().into_any()))
+}
+
+/// The law that all lanes can run.
+fn law_of<'a, 'py>(controller: Any<'a, 'py>) -> PyResult<&'a Bound<'py, PyComputedTorque>> {
+    controller.cast::<PyComputedTorque>().map_err(|_| {
+        let py = controller.py();
+        let got = controller.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string());
+        let message = format!(
+            "controller is {got}, a rollout runs ComputedTorque or torques given as tau: run other controllers in a \
+             Simulation"
+        );
+        let fields = fields!(py, "name": "controller", "got": got, "expected": "ComputedTorque");
+        raise(py, "ControlError", &message, &fields)
+    })
 }
 
 /// Runs `work` on a thread of its own and looks for Ctrl-C meanwhile, which sets `stop`.

@@ -276,8 +276,13 @@ pub(crate) fn integrator_named(py: Python<'_>, name: &str) -> PyResult<Integrato
         "semi_implicit_euler" => Ok(Integrator::SemiImplicitEuler),
         "dormand_prince" => Ok(Integrator::DormandPrince),
         other => {
+            let way_out = if other.eq_ignore_ascii_case("euler") {
+                "; did you mean 'semi_implicit_euler'?"
+            } else {
+                ""
+            };
             let message = format!(
-                "integrator is '{other}'; there are 'rk4', 'semi_implicit_euler' and 'dormand_prince'"
+                "integrator is '{other}'; there are 'rk4', 'semi_implicit_euler' and 'dormand_prince'{way_out}"
             );
             Err(raise(py, "InputError", &message, &fields!(py, "name": "integrator", "got": other)))
         }

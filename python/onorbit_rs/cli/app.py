@@ -11,12 +11,13 @@ import typer
 from onorbit_rs.cli.check import check
 from onorbit_rs.cli.compare import compare
 from onorbit_rs.cli.convert import convert
-from onorbit_rs.cli.failing import fail, leave_stdout, of_controller, show_warning
+from onorbit_rs.cli.failing import ending_well, fail, leave_stdout, of_controller
 from onorbit_rs.cli.info import info
 from onorbit_rs.cli.list import list_
 from onorbit_rs.cli.new import new
 from onorbit_rs.cli.report import report
 from onorbit_rs.cli.run import resume, run
+from onorbit_rs.cli.saying import encode_all, say_all, show_warning
 from onorbit_rs.cli.show import show
 from onorbit_rs.cli.validate import validate
 from onorbit_rs.exceptions import OnOrbitError
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 app = typer.Typer(
     name="onorbit",
     help="Simulate free-floating robots in orbit.",
-    no_args_is_help=True,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # boxes take half a second to load, and break names on a narrow terminal
 )
 
 # in the order of the help; a command loads what it needs when it is called
@@ -46,14 +47,14 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "validate": validate,
 }
 for name, command in COMMANDS.items():
-    app.command(name=name)(command)
+    app.command(name=name)(ending_well(command))
 
 
 def _print_version(is_asked: bool) -> None:
     if is_asked:
         from onorbit_rs import __version__
 
-        typer.echo(f"onorbit {__version__}")
+        say_all(f"onorbit {__version__}")
         raise typer.Exit
 
 
@@ -62,24 +63,29 @@ VersionOption = Annotated[
 ]
 
 
-@app.callback()
-def onorbit(version: VersionOption = False) -> None:
+@app.callback(invoke_without_command=True)
+def onorbit(context: typer.Context, version: VersionOption = False) -> None:
     """Simulate free-floating robots in orbit."""
+    if context.invoked_subcommand is None:
+        say_all(context.get_help())
+        raise typer.Exit(2)
 
 
 def main(arguments: list[str] | None = None) -> None:
     """Entry point: an error is one line on stderr and exit code 2, Ctrl-C is 130."""
+    encode_all()
     try:
         with warnings.catch_warnings():
             warnings.showwarning = show_warning
             code = app(arguments, standalone_mode=False, prog_name="onorbit")
-            sys.stdout.flush()
+            if sys.stdout is not None:
+                sys.stdout.flush()
     except OnOrbitError as error:
         fail(str(error), 2)
     except (KeyboardInterrupt, typer.Abort):
         fail("stopped by Ctrl-C", 130)
     except typer.TyperException as error:
-        fail(_with_commands(error.format_message()), 2)
+        fail(_with_way_out(error), 2)
     except BrokenPipeError:
         leave_stdout()
         sys.exit(0)
@@ -93,8 +99,10 @@ def main(arguments: list[str] | None = None) -> None:
     sys.exit(code if isinstance(code, int) else 0)
 
 
-def _with_commands(message: str) -> str:
-    """An unknown command is answered with those there are."""
-    if not message.startswith("No such command"):
-        return message
-    return f"{message} Commands are: {', '.join(COMMANDS)}"
+def _with_way_out(error: typer.TyperException) -> str:
+    """An unknown command is answered with those there are, a wrong option with where they are told."""
+    message = error.format_message()
+    if message.startswith("No such command"):
+        return f"{message} Commands are: {', '.join(COMMANDS)}"
+    context = getattr(error, "ctx", None)
+    return message if context is None else f"{message.rstrip('.')}; see: {context.command_path} --help"

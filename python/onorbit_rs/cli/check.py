@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import shlex
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument
+from onorbit_rs.cli.saying import say
+from onorbit_rs.printable import shell_word
 
 if TYPE_CHECKING:
     from onorbit_rs.scenario.build import Built
 
 
 def check(scenario: ScenarioArgument, quiet: QuietOption = False, as_json: JsonOption = False) -> None:
-    """Check a scenario and everything it names, without running it."""
+    """Check a scenario and all it names, without running it."""
     from onorbit_rs.cli.printing import print_json
     from onorbit_rs.scenario import load
     from onorbit_rs.scenario.build import build
@@ -24,7 +23,7 @@ def check(scenario: ScenarioArgument, quiet: QuietOption = False, as_json: JsonO
         print_json(described(built))
     elif not quiet:
         print_checked(built)
-        typer.echo(f"next: onorbit run {shlex.quote(scenario)} --out DIR")
+        say(f"next: onorbit run {shell_word(scenario)} --out DIR")
 
 
 def described(built: Built) -> dict[str, Any]:
@@ -60,4 +59,4 @@ def print_checked(built: Built) -> None:
         ", ".join(law.kind for law in scenario.laws) or "no controller",
         f"{settings.duration:g} s at {settings.time_step:g} s with {settings.integrator}{plant}",
     ]
-    typer.echo(f"ok: {scenario.name}: {', '.join(parts)}")
+    say(f"ok: {scenario.name}: {', '.join(parts)}")

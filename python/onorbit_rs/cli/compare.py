@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from onorbit_rs.cli.completing import scenario_names
-from onorbit_rs.cli.failing import fail
+from onorbit_rs.cli.failing import as_far_as_read
 from onorbit_rs.cli.options import JsonOption
+from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim, writing
-from onorbit_rs.exceptions import InputError, RunInterrupted
+from onorbit_rs.exceptions import InputError
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -44,8 +45,12 @@ def compare(
         Path | None,
         typer.Option("--out", "-o", metavar="FILE", help="Draw the differences: PNG, PDF or SVG."),
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the figure that is there.")] = False,
 ) -> None:
-    """Compare two runs and say where they part; exit code 1 if they do."""
+    """Compare two runs and say where they part.
+
+    Exit code 1 if they do, 2 for errors, 130 after Ctrl-C.
+    """
     from onorbit_rs.cli.printing import print_json
     from onorbit_rs.comparison import compare as compare_runs
 
@@ -53,26 +58,25 @@ def compare(
         raise InputError(
             f"--out {out} is none of {', '.join(PICTURES)}", name="out", got=out.suffix, expected=PICTURES
         )
-    claim(out, force=True)
-    try:
-        compared = compare_runs(a, b, tolerance=tolerance)
-    except RunInterrupted as stop:  # caught here, as in run
-        fail(str(stop), 130)
-    if as_json:
-        print_json(compared.as_dict())
-    else:
-        print_comparison(compared)
+    claim(out, force=force)
+    compared = compare_runs(a, b, tolerance=tolerance)
+    with as_far_as_read():
+        if as_json:
+            print_json(compared.as_dict())
+        else:
+            print_comparison(compared)
     if out is not None:
         save_figure(compared, out)
-        if not as_json:
-            typer.echo(f"figure: {out}")
+    if out is not None and not as_json:
+        with as_far_as_read():
+            say(f"figure: {out}")
     if not compared.agrees:
         raise typer.Exit(1)
 
 
 def print_comparison(compared: Comparison) -> None:
     """A table of the differences, and where the runs part."""
-    from onorbit_rs.cli.printing import new_console, text
+    from onorbit_rs.cli.printing import new_console, print_table, text
 
     console = new_console()
     console.print(f"[bold]{text(compared.b)}[/bold] against [bold]{text(compared.a)}[/bold]", soft_wrap=True)
@@ -80,7 +84,7 @@ def print_comparison(compared: Comparison) -> None:
     for difference in compared.differences:
         parted = difference.parts_at
         table.add_row(
-            difference.name,
+            text(difference.name),
             f"{difference.largest:.1e}",
             f"{difference.largest_at:.6g}",
             f"{difference.final:.1e}",
@@ -88,7 +92,7 @@ def print_comparison(compared: Comparison) -> None:
             "[green]nowhere[/green]" if parted is None else f"[red]{parted:.6g}[/red]",
             difference.unit,
         )
-    console.print(table)
+    print_table(console, table)
     for note in compared.notes:
         console.print(f"[yellow]note[/yellow]: {text(note)}", soft_wrap=True)
     rows = f"{len(compared.time)} rows from {compared.time[0]:g} to {compared.time[-1]:g} s"
@@ -102,13 +106,7 @@ def print_comparison(compared: Comparison) -> None:
 def _table() -> Table:
     from onorbit_rs.cli.printing import new_table
 
-    table = new_table()
-    table.show_header, table.header_style = True, "dim"
-    table.add_column("")
-    for name in ("largest", "at, s", "at the end", "allowed", "parts at, s"):
-        table.add_column(name, justify="right")
-    table.add_column("unit")
-    return table
+    return new_table("", "largest", "at, s", "at the end", "allowed", "parts at, s", "unit")
 
 
 def save_figure(compared: Comparison, file: Path) -> None:

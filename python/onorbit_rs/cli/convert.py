@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from onorbit_rs.cli.saying import complain, say
 from onorbit_rs.cli.writing import claim, writing
+from onorbit_rs.printable import printable, shell_word
 
 
 def convert(
@@ -22,7 +23,10 @@ def convert(
     keep_going: Annotated[bool, typer.Option("--keep-going", help="Pass over unknown keys.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
 ) -> None:
-    """Make a scenario of OnOrbitROS' YAML files, and say what became of every line."""
+    """Make a scenario of OnOrbitROS' YAML files.
+
+    Says on standard error what became of every line; without --out the scenario goes to standard output.
+    """
     from onorbit_rs.interop.onorbitros import convert as convert_files
     from onorbit_rs.interop.write_scenario import scenario_text
     from onorbit_rs.scenario.load import check as check_scenario
@@ -33,7 +37,7 @@ def convert(
     )
     check_scenario(done.scenario, None, {})
     for note in done.notes:
-        typer.echo(str(note), err=True)
+        complain(printable(note))
     made_of = ", ".join(file.name for file in files)
     text = scenario_text(
         done.scenario, done.comments, f"Made by onorbit convert of {made_of}. SI and radians."
@@ -43,4 +47,5 @@ def convert(
         return
     with writing(out):
         out.write_text(text, encoding="utf-8")
-    typer.echo(f"scenario: {out}\nnext: onorbit check {shlex.quote(str(out))}")
+    say(f"scenario: {out}")
+    say(f"next: onorbit check {shell_word(out)}")

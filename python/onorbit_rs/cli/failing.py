@@ -1,29 +1,45 @@
-"""How a command ends that cannot go on: one line on stderr, and an exit code."""
+"""How a command ends: all done, at Ctrl-C, at a pipe that was closed, or with one line that says why not."""
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
 import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, NoReturn
 
-import typer
-
-RED, YELLOW = typer.colors.RED, typer.colors.YELLOW
-
-
-def of_controller(error: Exception) -> str:
-    """What a controller of the user's raised, and where."""
-    frames = traceback.extract_tb(error.__traceback__)
-    where = f" ({frames[-1].filename}:{frames[-1].lineno})" if frames else ""
-    notes = "".join(f"; {note}" for note in getattr(error, "__notes__", ()))
-    return f"the controller raised {type(error).__name__}{where}: {error}{notes}"
+from onorbit_rs.cli.saying import refuse
+from onorbit_rs.exceptions import RunInterrupted
 
 
-def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    """One line, without the place in our code."""
-    said = _colored("onorbit: warning:", YELLOW)
-    typer.echo(f"{said} {' '.join(str(message).split())}", err=True)
+def ending_well(command: Callable[..., None]) -> Callable[..., None]:
+    """The command, with what typer would end in its own way: Ctrl-C, and a pipe that was closed."""
+
+    @functools.wraps(command)
+    def guarded(*arguments: Any, **options: Any) -> None:
+        try:
+            command(*arguments, **options)
+        except RunInterrupted as stop:
+            fail(str(stop), 130)
+        except KeyboardInterrupt:
+            fail("stopped by Ctrl-C", 130)
+        except BrokenPipeError:
+            leave_stdout()
+
+    return guarded
+
+
+@contextmanager
+def as_far_as_read() -> Iterator[None]:
+    """Around what is printed by a command that does more: ``| head`` ends the printing, not the command."""
+    try:
+        yield
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        leave_stdout()
 
 
 def leave_stdout() -> None:
@@ -34,11 +50,13 @@ def leave_stdout() -> None:
 def fail(message: str, code: int) -> NoReturn:
     """Say it on one line of stderr, and leave with this exit code."""
     if message:
-        typer.echo(f"{_colored('onorbit:', RED)} {' '.join(message.split())}", err=True)
+        refuse(message)
     sys.exit(code)
 
 
-def _colored(word: str, color: str) -> str:
-    """In colour on a terminal, unless its user wants none (https://no-color.org)."""
-    wants_none = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
-    return word if wants_none or not sys.stderr.isatty() else typer.style(word, fg=color, bold=True)
+def of_controller(error: Exception) -> str:
+    """What a controller of the user's raised, and where."""
+    frames = traceback.extract_tb(error.__traceback__)
+    where = f" ({frames[-1].filename}:{frames[-1].lineno})" if frames else ""
+    notes = "".join(f"; {note}" for note in getattr(error, "__notes__", ()))
+    return f"the controller raised {type(error).__name__}{where}: {error}{notes}"

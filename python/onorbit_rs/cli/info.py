@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-import json
-import shlex
 import warnings
 
-import typer
-
-from onorbit_rs.cli.options import ArgumentsOption, JsonOption, PackagesOption, RobotArgument, as_mapping
+from onorbit_rs.cli.options import (
+    ArgumentsOption,
+    JsonOption,
+    PackagesOption,
+    RobotArgument,
+    in_words,
+    of_file,
+)
+from onorbit_rs.cli.saying import say
 
 
 def info(
@@ -17,15 +21,17 @@ def info(
     arguments: ArgumentsOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Print a robot's tree, masses, joints, frames and what was odd."""
+    """Print a robot's tree, masses, joints, frames, oddities."""
     from onorbit_rs import robots
+    from onorbit_rs.cli.printing import new_console, print_json
     from onorbit_rs.robots.describe import describe, print_info
 
+    given = of_file(robot, packages, arguments)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # they are printed with the rest
-        model = robots.load(robot, package_paths=packages, xacro_arguments=as_mapping(arguments))
+        model = robots.load(robot, **given)
     if as_json:
-        typer.echo(json.dumps(describe(model), indent=1))
+        print_json(describe(model))
     else:
-        print_info(model)
-        typer.echo(f"next: onorbit new {shlex.quote(robot)} --out FILE")
+        print_info(model, new_console())
+        say(f"next: onorbit new {in_words(robot, packages, arguments)} --out FILE")

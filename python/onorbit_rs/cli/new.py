@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -13,9 +12,12 @@ from onorbit_rs.cli.options import (
     PackagesOption,
     QuietOption,
     RobotArgument,
-    as_mapping,
+    in_words,
+    of_file,
 )
+from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim, writing
+from onorbit_rs.printable import shell_word
 
 
 def new(
@@ -29,18 +31,20 @@ def new(
     force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
     quiet: QuietOption = False,
 ) -> None:
-    """Write a commented scenario in which a robot's arm moves in orbit, tried before it is written."""
+    """Write a commented scenario that moves a robot's arm.
+
+    In orbit, tried before it is written; without --out it goes to standard output.
+    """
+    given = of_file(robot, packages, arguments)
     claim(out, force=force)
     from onorbit_rs.drafting import draft
     from onorbit_rs.progress import doing
 
-    written_by = " ".join(
-        ["onorbit new", shlex.quote(robot), *(["--tool", shlex.quote(tool)] if tool else [])]
-    )
+    named = f" --tool {shell_word(tool)}" if tool else ""
+    written_by = f"onorbit new {in_words(robot, packages, arguments)}{named}"
     with doing("trying motions", quiet=quiet):
         made = draft(
-            robot, tool=tool, beside=out.absolute().parent if out else None, package_paths=packages,
-            xacro_arguments=as_mapping(arguments), command=written_by,
+            robot, tool=tool, beside=out.absolute().parent if out else None, command=written_by, **given,
         )  # fmt: skip
     if out is None:
         typer.echo(made.text, nl=False)
@@ -49,4 +53,5 @@ def new(
         out.write_text(made.text, encoding="utf-8")
     if not quiet:
         moved = f"{made.tool}, moved by {len(made.joints)} joints" if made.tool else "a body without joints"
-        typer.echo(f"scenario: {out} ({moved})\nnext: onorbit check {shlex.quote(str(out))}")
+        say(f"scenario: {out} ({moved})")
+        say(f"next: onorbit check {shell_word(out)}")

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from onorbit_rs.cli.completing import robot_names, scenario_names
+from onorbit_rs.exceptions import InputError
+from onorbit_rs.printable import shell_word
 
 ScenarioArgument = Annotated[
     str,
@@ -28,7 +30,8 @@ JsonOption = Annotated[bool, typer.Option("--json", help="As data on stdout and 
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar, no summary.")]
 ViewOption = Annotated[bool, typer.Option("--view", help="Watch it in the viewer while it runs.")]
 CheckpointOption = Annotated[
-    float, typer.Option(metavar="SECONDS", help="Wall-clock time between checkpoints in DIR.")
+    float | None,
+    typer.Option(metavar="SECONDS", help="Wall-clock time between checkpoints in DIR; 30 unless told."),
 ]
 
 PackagesOption = Annotated[
@@ -38,6 +41,50 @@ PackagesOption = Annotated[
 ArgumentsOption = Annotated[
     list[str] | None, typer.Option("--arg", metavar="NAME=VALUE", help="For a xacro; may be repeated.")
 ]
+
+
+def of_file(robot: str, packages: list[Path] | None, arguments: list[str] | None) -> dict[str, Any]:
+    """What says how a robot's file is read, as :func:`onorbit_rs.robots.load` takes it.
+
+    Raises
+    ------
+    InputError
+        It could have no effect: a bundled robot, a folder that is not there, a file that is no xacro.
+    """
+    from onorbit_rs import robots
+
+    values = as_mapping(arguments)
+    if (packages or arguments) and not robots.is_file(robot):
+        raise InputError(
+            f"--package-path and --arg are for a robot's file, and {robot!r} is a name, not a path of one",
+            name="robot", got=robot,
+        )  # fmt: skip
+    for folder in packages or ():
+        if not folder.is_dir():
+            raise InputError(
+                f"--package-path {folder}: there is no such folder", name="package_path", got=str(folder)
+            )
+    if arguments and not _may_be_xacro(Path(robot)):
+        raise InputError(
+            f"--arg is for a xacro, and {robot} holds none: leave it out", name="arg", got=arguments
+        )
+    return {"package_paths": packages, "xacro_arguments": values}
+
+
+def in_words(robot: str, packages: list[Path] | None, arguments: list[str] | None) -> str:
+    """The robot and how it is read, as the next command takes them."""
+    words = [robot]
+    for option, values in (("--package-path", packages), ("--arg", arguments)):
+        words += [word for value in values or () for word in (option, str(value))]
+    return " ".join(map(shell_word, words))
+
+
+def _may_be_xacro(file: Path) -> bool:
+    """By its ending or by what is in it; who reads it says what is wrong with one that cannot be read."""
+    try:
+        return file.suffix.lower() == ".xacro" or b"xacro" in file.read_bytes()
+    except OSError:
+        return True
 
 
 def as_mapping(arguments: list[str] | None) -> dict[str, str] | None:

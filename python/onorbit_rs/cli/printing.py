@@ -1,102 +1,70 @@
-"""What several commands print."""
+"""What several commands print with: text of others' made harmless, JSON, tables."""
 
 from __future__ import annotations
 
 import json
-import shlex
-from pathlib import Path
-from typing import Any
+import sys
+from typing import TYPE_CHECKING
 
-import typer
 from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
+from rich.table import Column, Table
 
-from onorbit_rs.output.summary import CHECKS
+from onorbit_rs.cli.saying import say_all
+from onorbit_rs.printable import json_text, printable
 
-_ROWS = (
-    ("tracking_position_error_max_m", "tool position error, largest", "m"),
-    ("tracking_attitude_error_max_rad", "tool attitude error, largest", "rad"),
-    ("tracking_joint_error_max_rad", "joint error, largest", "rad"),
-    ("tracking_joint_error_max_m", "error of a sliding joint, largest", "m"),
-    ("joint_torque_max_nm", "joint torque, largest", "N m"),
-    ("joint_force_max_n", "force of a sliding joint, largest", "N"),
-    ("base_rotation_max_rad", "base rotation, largest", "rad"),
-    ("simulated_s", "simulated", "s"),
-    ("wall_s", "wall clock of the simulation loop", "s"),
-    ("real_time_factor", "times real time", ""),
-)
-_FILES = (
-    ("summary.json", "these numbers and more"),
-    ("trace.npz", "every column of the trace, for numpy"),
-    ("figures", "the figures, PNG"),
-    ("report.html", "one page with everything, for a browser"),
-    ("run.rrd", "the recording, for the rerun viewer"),
-    ("scenario.yaml", "the scenario with every default; it runs again"),
-)
-
-
-def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = True) -> None:
-    """The main numbers, the verdict, where the files are and what to do next."""
-    console = new_console()
-    table = new_table()
-    for key, name, unit in _ROWS:
-        if isinstance(summary.get(key), (int, float)):
-            table.add_row(name, f"{summary[key]:.4g} {unit}")
-    console.print(f"[bold]{text(summary.get('scenario', ''))}[/bold]: {text(summary.get('status', ''))}")
-    console.print(table)
-    console.print(_verdict(summary), soft_wrap=True)
-    if summary.get("certificate_not_evaluated"):
-        console.print(
-            f"[yellow]certificate not evaluated[/yellow]: {text(summary['certificate_not_evaluated'])}",
-            soft_wrap=True,
-        )
-    if out is None:
-        console.print("nothing was written; keep the results with --out DIR", soft_wrap=True)
-        return
-    for name, what in _FILES:
-        if (out / name).exists():
-            console.print(f"  {text(out / name)}  [dim]{what}[/dim]", soft_wrap=True)
-    if is_new:
-        folder = text(shlex.quote(str(out)))
-        console.print(f"next: onorbit show {folder}    [dim]opens the recording[/dim]", soft_wrap=True)
-        console.print(
-            f"      onorbit report {folder}  [dim]one page with everything, figures as PDF[/dim]",
-            soft_wrap=True,
-        )
-
-
-def _verdict(summary: dict[str, Any]) -> str:
-    """Green or red, with the balances behind it."""
-    balances = [
-        f"{name.removesuffix('_rel').removesuffix('_rad').replace('_', ' ')} {value:.1e}"
-        for name, value in summary.items()
-        if name in CHECKS and isinstance(value, float)
-    ]
-    if summary.get("certificate_passed"):
-        return f"[green]certificate passed[/green]: {', '.join(balances)}"
-    failures = text(summary.get("certificate_failures"))
-    return f"[red]certificate FAILED[/red] ({failures}): {', '.join(balances)}"
+if TYPE_CHECKING:
+    from rich.console import JustifyMethod
 
 
 def text(value: object) -> str:
-    """Text of the user's, in which rich must see no markup."""
-    return escape(str(value))
+    """Text of the user's, in which rich must see no markup and the terminal nothing but letters."""
+    return escape(printable(value))
 
 
 def print_json(data: object) -> None:
-    """Data, and nothing else, on stdout."""
-    typer.echo(json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False))
+    """Data, and nothing else, on stdout; what its encoding lacks is escaped."""
+    said = json_text(data, indent=2)
+    try:
+        said.encode(getattr(sys.stdout, "encoding", None) or "utf-8")
+    except UnicodeEncodeError:
+        said = json.dumps(data, indent=2, allow_nan=False)
+    say_all(said)
+
+
+class _Console(Console):
+    """Leaves a closed pipe to the command, which may have more to do; rich would end with exit code 1."""
+
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError
 
 
 def new_console() -> Console:
     """Stdout, with no colours but ours; lines are as long as they are where nobody looks."""
-    console = Console(highlight=False)
+    console = _Console(highlight=False)
     if not console.is_terminal:
         console.width = 10_000
     return console
 
 
-def new_table() -> Table:
-    """Columns side by side, no lines."""
-    return Table(show_header=False, box=None, padding=(0, 2, 0, 0))
+def new_table(*header: str) -> Table:
+    """Columns side by side, no lines; numbers below a header stand to the right, the first may be broken."""
+    table = Table(show_header=bool(header), box=None, padding=(0, 2, 0, 0), header_style="dim")
+    for number, name in enumerate(header):
+        justify: JustifyMethod = "left" if name in ("", "unit") else "right"
+        table.add_column(name, justify=justify, no_wrap=number > 0)
+    return table
+
+
+def print_table(console: Console, table: Table) -> None:
+    """Whole also on a narrow terminal, which then breaks the lines: no number and no name is cut."""
+    width = console.width
+    console.width = max(width, sum(_least(console, column) + 2 for column in table.columns))
+    console.print(table, crop=False)
+    console.width = width
+
+
+def _least(console: Console, column: Column) -> int:
+    """Words may be broken between, not within."""
+    sizes = [console.measure(text) for text in (column.header, *column.cells)]
+    return max(size.maximum if column.no_wrap else size.minimum for size in sizes)

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from onorbit_rs.cli.options import FolderArgument, JsonOption, QuietOption
+from onorbit_rs.cli.saying import say
 
 
 def report(
@@ -15,17 +16,21 @@ def report(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Write one HTML page of a run with everything in it: figures, numbers, certificate, scenario."""
-    from onorbit_rs.cli.printing import print_json
-    from onorbit_rs.progress import doing
-    from onorbit_rs.report import write_report
+    """Write one HTML page of a run, with everything in it.
 
-    with doing("report", quiet=quiet) as tell:
+    Figures, numbers, certificate and scenario; the figures also as PDF.
+    """
+    from onorbit_rs.cli.printing import print_json
+    from onorbit_rs.progress import parts_bar
+
+    with parts_bar("report", quiet=quiet) as tell:
+        from onorbit_rs.report import write_report
+
         page = write_report(folder, pdf=pdf, tell=tell)
     if as_json:
         print_json({"report": str(page), "bytes": page.stat().st_size})
     elif not quiet:
-        typer.echo(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB, needs no other file)")
-        if pdf:
-            typer.echo(f"figures: {folder / 'figures'}, as PDF")
-        typer.echo("next: open it in a browser, or send it")
+        say(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB, needs no other file)")
+        if any((folder / "figures").glob("*.pdf")) and pdf:
+            say(f"figures: {folder / 'figures'}, as PDF")
+        say("next: open it in a browser, or send it")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.cli.failing import fail
+from onorbit_rs.cli.failing import as_far_as_read, fail
 from onorbit_rs.cli.options import (
     CheckpointOption,
     FolderArgument,
@@ -15,7 +15,7 @@ from onorbit_rs.cli.options import (
     ScenarioArgument,
     ViewOption,
 )
-from onorbit_rs.exceptions import RunInterrupted
+from onorbit_rs.exceptions import InputError, RunInterrupted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,15 +30,23 @@ def run(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
     view: ViewOption = False,
-    checkpoint_every: CheckpointOption = 30.0,
+    checkpoint_every: CheckpointOption = None,
 ) -> None:
-    """Run a scenario and certify its momentum and energy: exit code 1 where they do not hold."""
+    """Run a scenario and certify its momentum and energy.
+
+    Exit code 1 where the certificate fails, 2 for errors, 130 after Ctrl-C.
+    """
+    from onorbit_rs.running import CHECKPOINT_EVERY
     from onorbit_rs.running import run as run_scenario
 
+    if checkpoint_every is not None and out is None:
+        raise InputError(
+            "--checkpoint-every leaves checkpoints in the folder of the run: add --out DIR",
+            name="checkpoint_every", got=checkpoint_every,
+        )  # fmt: skip
+    every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     _report(
-        lambda: run_scenario(
-            scenario, out, force=force, quiet=quiet, view=view, checkpoint_every=checkpoint_every
-        ),
+        lambda: run_scenario(scenario, out, force=force, quiet=quiet, view=view, checkpoint_every=every),
         quiet=quiet,
         as_json=as_json,
     )
@@ -49,13 +57,18 @@ def resume(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
     view: ViewOption = False,
-    checkpoint_every: CheckpointOption = 30.0,
+    checkpoint_every: CheckpointOption = None,
 ) -> None:
-    """Go on with a run that was killed or interrupted, to the same bits."""
+    """Go on with a run that was stopped, to the same bits.
+
+    Killed or interrupted: it left a checkpoint in DIR. Exit codes are those of onorbit run.
+    """
+    from onorbit_rs.running import CHECKPOINT_EVERY
     from onorbit_rs.running import resume as resume_run
 
+    every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     _report(
-        lambda: resume_run(folder, quiet=quiet, view=view, checkpoint_every=checkpoint_every),
+        lambda: resume_run(folder, quiet=quiet, view=view, checkpoint_every=every),
         quiet=quiet,
         as_json=as_json,
     )
@@ -63,18 +76,20 @@ def resume(
 
 def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
     """Do it and print the summary."""
-    from onorbit_rs.cli.printing import print_json, print_summary
+    from onorbit_rs.cli.printing import print_json
+    from onorbit_rs.cli.summary import print_summary
 
     try:
         result = job()
-    except RunInterrupted as stop:  # caught here: typer would swallow a KeyboardInterrupt and its message
-        fail(str(stop), 130)
+    except RunInterrupted:
+        raise
     except KeyboardInterrupt:  # the simulation was over
         fail("stopped by Ctrl-C while the results were written; run it again with --force", 130)
-    if as_json:
-        print_json(result.summary)
-    elif not quiet:
-        print_summary(result.summary, result.out)
+    with as_far_as_read():
+        if as_json:
+            print_json(result.summary)
+        elif not quiet:
+            print_summary(result.summary, result.out)
     if not result.summary["certificate_passed"]:
         fail(_uncertified(result.summary), 1)
 

@@ -17,10 +17,12 @@ def claim(file: Path | None, *, force: bool) -> None:
     OutputNotEmptyError
         It is there, and may not be replaced.
     OutputFolderError
-        Its folder is not there.
+        Its folder is not there, or it is one.
     """
     if file is None:
         return
+    if file.is_dir():
+        raise OutputFolderError(f"cannot write {file}: it is a folder, name a file in it", path=str(file))
     if file.exists() and not force:
         raise OutputNotEmptyError(f"{file} is there already; replace it with --force", path=str(file))
     if not file.absolute().parent.is_dir():

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
+
+from onorbit_rs.printable import json_text
 
 
 @dataclass(frozen=True)
@@ -173,7 +174,7 @@ def _line(key: str, value: object, comment: str, indent: int = 0) -> str:
 def _flow(value: object) -> str:
     """JSON is YAML on one line; plain words, and numbers with units, need no quotes."""
     is_plain = isinstance(value, str) and _PLAIN.fullmatch(value) and value.lower() not in _NO_WORDS
-    return str(value) if is_plain else json.dumps(value, ensure_ascii=False)
+    return str(value) if is_plain else json_text(value)
 
 
 _PLAIN = re.compile(r"[A-Za-z][\w./-]*|[\d.]+ [a-z]+")

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.geometry import Shape, shapes
+from onorbit_rs.appearance import shapes
+from onorbit_rs.geometry import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

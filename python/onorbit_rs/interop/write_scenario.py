@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from typing import Any
+
+from onorbit_rs.printable import json_text
 
 _COLUMN = 44
 
@@ -37,4 +38,4 @@ def _lines(part: Mapping[str, Any], comments: Mapping[Any, str], at: tuple[str |
 
 def _flow(value: object) -> str:
     """JSON is YAML on one line; ``1e-05`` needs no dot in YAML 1.2."""
-    return json.dumps(value, ensure_ascii=False)
+    return json_text(value)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shlex
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ import numpy as np
 
 from onorbit_rs.exceptions import NotFoundError, ReadError
 from onorbit_rs.output.checkpoint import has_checkpoint
+from onorbit_rs.printable import shell_word
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Trace
@@ -76,7 +76,7 @@ def _way_out(folder: Path) -> str:
     """How to go on with a run that was killed."""
     if not has_checkpoint(folder):
         return ""
-    return f"; its run was stopped before its end, go on with: onorbit resume {shlex.quote(str(folder))}"
+    return f"; its run was stopped before its end, go on with: onorbit resume {shell_word(folder)}"
 
 
 def _check_shapes(arrays: Mapping[str, Any]) -> None:
@@ -121,14 +121,15 @@ def read_summary(folder: Path) -> dict[str, Any]:
         raise ReadError(f"cannot read {file}: {error.strerror}", path=str(file), kind="summary") from error
     if not is_there:
         what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
+        what = "this is a file, not the folder of a run" if folder.is_file() else what
         raise NotFoundError(f"{what}: {folder}{_way_out(folder)}", path=str(folder), kind="run")
     try:
         return _checked(json.loads(file.read_text(encoding="utf-8")))
     except OSError as error:
         raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error
     except (ValueError, TypeError) as error:
-        here = shlex.quote(str(folder))
-        again = f"run it again: onorbit run {shlex.quote(str(folder / 'scenario.yaml'))} --out {here} --force"
+        here = shell_word(folder)
+        again = f"run it again: onorbit run {shell_word(folder / 'scenario.yaml')} --out {here} --force"
         raise ReadError(f"cannot read {file}: {error}; {again}", path=str(file), kind="summary") from error
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.output.checks import CHECKS, GATE
 from onorbit_rs.output.joints import joint_errors, joint_loads, single_errors
 from onorbit_rs.plants import versions
 from onorbit_rs.robots.fingerprint import fingerprint
@@ -21,17 +22,6 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.build import Built
 
 Summary = dict[str, Any]
-
-CHECKS = (
-    "linear_momentum_drift_rel",
-    "angular_momentum_drift_rel",
-    "energy_balance_error_rel",
-    "center_of_mass_error_rel",
-    "base_rows_residual_rel",
-    "attitude_consistency",
-    "attitude_step_doubling_rad",
-)
-"""Every line a certificate can have; a run leaves out those that do not apply to it."""
 
 
 def summarize(
@@ -82,12 +72,17 @@ def _certificate(trace: Trace) -> Summary:
     """Every balance that applies to this run, whether all are within their gates, and what does not apply."""
     rows = trace.certificate()
     balances: Summary = {name: value for name, value, _, _ in rows if value is not None}
+    gates = {GATE + name: gate for name, value, gate, _ in rows if value is not None}
     failed = [name for name, _, _, passed in rows if not passed]
-    return balances | {
-        "certificate_passed": not failed,
-        "certificate_failures": ", ".join(failed),
-        "certificate_not_evaluated": ", ".join(name for name in CHECKS if name not in balances),
-    }
+    return (
+        balances
+        | {
+            "certificate_passed": not failed,
+            "certificate_failures": ", ".join(failed),
+            "certificate_not_evaluated": ", ".join(name for name in CHECKS if name not in balances),
+        }
+        | gates
+    )
 
 
 def _tracking(trace: Trace) -> Summary:

@@ -69,7 +69,7 @@ def write_pictures(
     tell("writing the recording")
     with folder.writing("run.rrd") as path:
         setting = viewer.Setting.of(built)
-        viewer.write_recording(path, trace, setting, notes=notes(summary, built.scenario))
+        viewer.write_recording(path, trace, setting, notes=viewer.notes(summary, built.scenario))
 
 
 def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
@@ -78,13 +78,3 @@ def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
     settings = data["simulation"]
     settings.setdefault("control_period", settings["time_step"])
     return data
-
-
-def notes(summary: dict[str, Any], scenario: Scenario) -> str:
-    """The summary as Markdown."""
-    rows = "\n".join(f"| {key} | {_short(value)} |" for key, value in summary.items())
-    return f"# {scenario.name}\n\n{scenario.description}\n\n| | |\n|-|-|\n{rows}\n"
-
-
-def _short(value: Any) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)

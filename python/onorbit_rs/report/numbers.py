@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any, NamedTuple
 
-from onorbit_rs.output.summary import CHECKS
+from onorbit_rs.output.checks import CHECKS
+from onorbit_rs.output.words import goal_of, tracking
 from onorbit_rs.units import with_prefix
 
 # longest first: `_rad_s` ends in `_s` too
@@ -20,7 +22,7 @@ _NAMES = {
     "wall_s": "wall clock of the loop",
     "real_time_factor": "times real time",
     "rows": "rows of the trace",
-    "rereferenced": "times given another reference",
+    "rereferenced": "new reference orbits taken, having drifted too far off",
     "velocity_eci_source": "inertial velocity from",
     "onorbit_rs_version": "onorbit_rs",
     "python_version": "Python",
@@ -36,6 +38,8 @@ _GROUPS = (
     ),
     ("Versions", ("onorbit_rs_version", "instruction_set", "python_version", "numpy_version")),
 )
+_ONLY_IF_ANY = ("rereferenced", "joint_dissipation_j")
+"""Say nothing where they are 0."""
 _ELSEWHERE = ("scenario", "status", "warnings", *CHECKS)
 
 
@@ -55,7 +59,11 @@ def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
             if key not in _ELSEWHERE and not key.startswith("certificate_")}  # fmt: skip
     found = []
     for title, starts in _GROUPS:
-        rows = [row(key, value) for key, value in left.items() if key.startswith(starts)]
+        rows = [
+            row(key, value)
+            for key, value in left.items()
+            if key.startswith(starts) and not (key in _ONLY_IF_ANY and value == 0)
+        ]
         left = {key: value for key, value in left.items() if not key.startswith(starts)}
         found.append((title, rows))
     found.append(("Other", [row(key, value) for key, value in left.items()]))
@@ -65,14 +73,23 @@ def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
 def row(key: str, value: Any) -> Row:
     """One entry with its unit, which its key ends in."""
     ending, unit = next(((ending, unit) for ending, unit in _UNITS if key.endswith(ending)), ("", ""))
-    words = _NAMES.get(key) or key.removesuffix(ending).replace("_", " ")
-    shown = value
+    words = _NAMES.get(key) or _words(key, key.removesuffix(ending))
+    shown = value.replace("_", " ") if goal_of(key) and isinstance(value, str) else value
     if unit in _SCALED and isinstance(value, float) and _LEAST_SCALED <= abs(value) < 0.5:
         factor, unit = with_prefix(abs(value), unit)
         shown = factor * value
     if unit in ("rad", "mrad") and isinstance(value, float) and abs(value) > 0.01:
         unit += f" ({math.degrees(value):.3g}°)"
     return Row(key, words, value, _shown(shown), "" if unit == "relative" else unit)
+
+
+def _words(key: str, stem: str) -> str:
+    error, whose = tracking(key), goal_of(key)
+    if error is not None:
+        return error.words
+    if whose is not None:
+        return f"{whose}: goal"
+    return re.sub(r" max$", ", largest", re.sub(r" final\b", " at the end", stem.replace("_", " ")))
 
 
 def _shown(value: Any) -> str:
@@ -83,16 +100,3 @@ def _shown(value: Any) -> str:
     if not isinstance(value, float):
         return str(value) if value != "" else "none"
     return f"{value:.4g}"
-
-
-def checks(summary: dict[str, Any]) -> list[tuple[Row, bool | None]]:
-    """Every line of the certificate, and whether it holds; None where it does not apply to the run."""
-    failed = {name.strip() for name in str(summary.get("certificate_failures") or "").split(",")}
-    absent = {name.strip() for name in str(summary.get("certificate_not_evaluated") or "").split(",")}
-    rows: list[tuple[Row, bool | None]] = []
-    for name in CHECKS:
-        if name in summary:
-            rows.append((row(name, summary[name]), name not in failed))
-        elif name in absent:
-            rows.append((Row(name, row(name, None).name, None, "not evaluated", ""), None))
-    return rows

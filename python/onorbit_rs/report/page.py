@@ -10,9 +10,12 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-from onorbit_rs.report.numbers import Row, checks, groups
+from onorbit_rs.output.checks import Check, checks
+from onorbit_rs.printable import printable
+from onorbit_rs.report.numbers import Row, groups
 
 _TEMPLATE = Path(__file__).with_name("page.html")
+_VERDICTS = {True: ("passed", "holds"), False: ("failed", "BROKEN"), None: ("faint", "does not apply")}
 _TYPES = {"svg": "image/svg+xml", "png": "image/png"}
 
 
@@ -38,7 +41,7 @@ def page(
     version: str,
 ) -> str:
     """HTML of a report; nothing in it refers to anything outside."""
-    name = str(summary.get("scenario") or "run")
+    name = printable(summary.get("scenario") or "run")
     return Template(_TEMPLATE.read_text(encoding="utf-8")).substitute(
         title=escape(f"{name}: onorbit report"),
         name=escape(name),
@@ -102,13 +105,26 @@ def _data(row: Row) -> str:
 
 
 def _checks(summary: dict[str, Any]) -> str:
-    words = {True: ("passed", "holds"), False: ("failed", "BROKEN"), None: ("faint", "does not apply")}
-    lines = "\n".join(
-        f'<tr><td>{escape(row.name)}</td><td class="number">{_data(row)}</td><td class="unit">'
-        f'{escape(row.unit)}</td><td class="{words[holds][0]}">{words[holds][1]}</td></tr>'
-        for row, holds in checks(summary)
+    lines = "\n".join(map(_check, checks(summary)))
+    head = (
+        '<th scope="col">{}</th><th scope="col" class="number">{}</th><th scope="col" class="number">{}</th>'
     )
-    return f'<table class="checks">{lines}</table>' if lines else "<p>This run carries no certificate.</p>"
+    head = head.format("check", "value", "gate") + '<th scope="col">unit</th><th scope="col">verdict</th>'
+    table = f'<div class="scroll"><table class="checks"><thead><tr>{head}</tr></thead>{lines}</table></div>'
+    return table if lines else "<p>This run carries no certificate.</p>"
+
+
+def _check(check: Check) -> str:
+    """Its value beside the most that it may be."""
+    kind, verdict = _VERDICTS[check.holds]
+    value, gate = ("-" if number is None else f"{number:.2g}" for number in (check.value, check.gate))
+    if check.holds is not None:
+        shown = "not finite" if check.value is None else value
+        value = _data(Row(check.key, check.name, check.value, shown, check.unit))
+    return (
+        f'<tr><td>{escape(check.name)}</td><td class="number">{value}</td><td class="number">{gate}</td>'
+        f'<td class="unit">{escape(check.unit)}</td><td class="{kind}">{verdict}</td></tr>'
+    )
 
 
 def _figure(picture: Picture) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -32,7 +31,7 @@ def write_report(
     folder: str | os.PathLike[str],
     *,
     pdf: bool = False,
-    tell: Callable[[str], None] = lambda doing: None,
+    tell: Callable[[str, float], None] = lambda doing, done: None,
 ) -> Path:
     """Write ``report.html`` beside a run's other files; one page with everything in it.
 
@@ -43,7 +42,7 @@ def write_report(
     pdf : bool
         Whether to write each figure into ``figures/`` as PDF too.
     tell : callable
-        Called with what is being done.
+        Called with what is done next, and the share of the work that is done, 0 to 1.
 
     Returns
     -------
@@ -61,13 +60,14 @@ def write_report(
     summary = read_summary(out.path)
     text, scenario = _scenario(out.path / "scenario.yaml")
     remarks: list[str] = []
+    tell("reading the trace", 0.0)
     subject = _subject(out.path, scenario, summary, remarks)
     pictures: list[Picture] = []
     if summary.get("status") == "diverged":
         remarks.append("the run diverged: its numbers make no picture")
     elif len(subject.trace.time) > 1:
         pictures = list(_pictures(subject, out, pdf, tell))
-    tell("writing the page")
+    tell("writing the page", 1.0)
     version = str(_core.build_info()["version"])
     content = page(
         summary,
@@ -75,7 +75,7 @@ def write_report(
         scenario=text,
         pictures=pictures,
         remarks=remarks,
-        again=f"onorbit run {shlex.quote('scenario.yaml')}",
+        again="onorbit run scenario.yaml",
         version=version,
     )
     with out.writing(REPORT) as file:
@@ -119,15 +119,16 @@ def _remarked(remarks: list[str], what: str) -> Iterator[None]:
 
 
 def _pictures(
-    subject: Subject, out: OutputFolder, pdf: bool, tell: Callable[[str], None]
+    subject: Subject, out: OutputFolder, pdf: bool, tell: Callable[[str, float], None]
 ) -> Iterator[Picture]:
     from onorbit_rs import figures
 
     if pdf:
         with out.refusals(FIGURES):
             (out.path / FIGURES).mkdir(exist_ok=True)
-    for drawing in figures.drawings(subject):
-        tell(f"drawing {drawing.name}")
+    drawings = list(figures.drawings(subject))
+    for number, drawing in enumerate(drawings):
+        tell(f"drawing {drawing.name}, {number + 1} of {len(drawings)}", number / len(drawings))
         figure = drawing.draw()
         kind, content = "svg", figures.as_bytes(figure, "svg")
         if len(content) > LARGEST_SVG:

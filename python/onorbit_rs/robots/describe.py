@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.console import Console
-from rich.markup import escape
+from rich.markup import escape as _escape
 from rich.table import Table
 from rich.tree import Tree
+
+from onorbit_rs.printable import printable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,10 +55,11 @@ def describe(model: Model) -> dict[str, Any]:
 def print_info(model: Model, console: Console | None = None) -> None:
     """The tree, then tables of bodies and joints, then what was odd."""
     console = console or Console(highlight=False)
+    console.width = max(console.width, 72)  # a narrower terminal breaks the lines: no number is cut
     com, moments = _whole(model)
     counts = f"{_count(len(model.bodies), 'body', 'bodies')}, {_count(len(model.joints), 'joint', 'joints')}"
     console.print(
-        f"[bold]{escape(model.name)}[/bold]: {counts}, {_count(len(model.frames), 'frame', 'frames')}"
+        f"[bold]{_text(model.name)}[/bold]: {counts}, {_count(len(model.frames), 'frame', 'frames')}"
     )
     console.print(f"mass {model.mass:.6g} kg, nq = {model.nq}, nv = {model.nv}")
     console.print(f"joints at zero: centre of mass {_row(com)} m from the base's origin,")
@@ -76,7 +79,12 @@ def print_info(model: Model, console: Console | None = None) -> None:
     if model.warnings:
         console.print(f"\n[bold yellow]odd[/bold yellow] ({len(model.warnings)}):")
         for warning in model.warnings:
-            console.print(f"  - {escape(warning)}")
+            console.print(f"  - {_text(warning)}")
+
+
+def _text(name: str) -> str:
+    """A name of the file's, in which neither rich nor the terminal must see anything but letters."""
+    return _escape(printable(name))
 
 
 def _tree(model: Model) -> Tree:
@@ -87,16 +95,16 @@ def _tree(model: Model) -> Tree:
             frames.setdefault(frame.body, []).append(frame.name)
 
     def label(body: str, how: str) -> str:
-        fixed = f" [dim]\\[{escape(', '.join(frames[body]))}][/dim]" if body in frames else ""
-        return f"{escape(body)}{how}{fixed}"
+        fixed = f" [dim]\\[{_text(', '.join(frames[body]))}][/dim]" if body in frames else ""
+        return f"{_text(body)}{how}{fixed}"
 
     base = model.bodies[0].name
     root = Tree(label(base, " (base, floats)"))
     place = {base: (root, 0)}
     for joint in model.joints:
         above, depth = place[joint.parent]
-        on = f" on {escape(joint.parent)}" if depth >= _DEEPEST else ""
-        branch = above.add(label(joint.child, f" by {escape(joint.name)}{on}"))
+        on = f" on {_text(joint.parent)}" if depth >= _DEEPEST else ""
+        branch = above.add(label(joint.child, f" by {_text(joint.name)}{on}"))
         place[joint.child] = (above, depth) if depth >= _DEEPEST else (branch, depth + 1)
     return root
 
@@ -105,7 +113,7 @@ def _bodies(model: Model) -> Table:
     table = _table("name", "mass, kg", "centre of mass, m", "principal moments, kg m²")
     for body in model.bodies:
         table.add_row(
-            escape(body.name), f"{body.mass:.5g}", _row(body.com), _row(_moments(np.array(body.inertia)))
+            _text(body.name), f"{body.mass:.5g}", _row(body.com), _row(_moments(np.array(body.inertia)))
         )
     return table
 
@@ -114,7 +122,7 @@ def _joints(model: Model) -> Table:
     table = _table("name", "kind", "axis", "from", "to", "rate", "effort")
     for joint in model.joints:
         bounds = (joint.lower, joint.upper, joint.velocity, joint.effort)
-        table.add_row(escape(joint.name), _kind(joint), _axis(joint.axis), *map(_bound, bounds))
+        table.add_row(_text(joint.name), _kind(joint), _axis(joint.axis), *map(_bound, bounds))
     return table
 
 
@@ -122,7 +130,7 @@ def _losses(model: Model) -> Table:
     table = _table("name", "damping", "friction", "rotor inertia")
     for joint in model.joints:
         amounts = (joint.damping, joint.friction, joint.rotor_inertia)
-        table.add_row(escape(joint.name), *(f"{amount:.5g}" for amount in amounts))
+        table.add_row(_text(joint.name), *(f"{amount:.5g}" for amount in amounts))
     return table
 
 

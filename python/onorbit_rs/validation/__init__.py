@@ -15,6 +15,7 @@ from onorbit_rs.validation import (
     against_mujoco,
     against_pinocchio,
     against_sgp4,
+    against_spart,
     air_and_light,
     bodies,
     conservation,
@@ -37,7 +38,7 @@ CASES: tuple[Case, ...] = tuple(
     case
     for module in (
         kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
-        conservation, order, against_pinocchio, against_mujoco, against_sgp4,
+        conservation, order, against_pinocchio, against_mujoco, against_sgp4, against_spart,
     )
     for case in module.CASES
 )  # fmt: skip

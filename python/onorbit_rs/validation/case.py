@@ -12,8 +12,15 @@ from typing import Any
 
 import numpy as np
 
-INSTALL = {"pinocchio": "pip install pin", "mujoco": "pip install mujoco", "sgp4": "pip install sgp4"}
+INSTALL = {
+    "pinocchio": "pip install pin", "mujoco": "pip install mujoco", "sgp4": "pip install sgp4",
+    "SPARTpy": "pip install spartpy",
+}  # fmt: skip
 """How to get the engines that some cases ask; none is needed to use the package."""
+
+
+class CannotRunError(Exception):
+    """What a case needs does not work here, which says nothing about us."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +106,8 @@ class Case:
         try:
             errors = [float(error) for error in self.measure()]
             pairs = list(zip(self.gates, errors, strict=True))
+        except CannotRunError as reason:
+            return self._without_errors(None, str(reason))
         except Exception as error:  # whatever it is, the others run on
             return self._without_errors(False, f"{type(error).__name__}: {error}")
         # a NaN is within no gate

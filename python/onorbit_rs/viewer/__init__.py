@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from onorbit_rs.viewer import silence  # noqa: F401  # before rerun is imported
+from onorbit_rs.viewer.notes import notes
 from onorbit_rs.viewer.recording import recorded_rows, write_recording
 from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.screenshot import take_screenshot
 from onorbit_rs.viewer.setting import Setting
 
-__all__ = ["TIMELINE", "Setting", "recorded_rows", "take_screenshot", "write_recording"]
+__all__ = ["TIMELINE", "Setting", "notes", "recorded_rows", "take_screenshot", "write_recording"]

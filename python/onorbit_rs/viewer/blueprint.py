@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import rerun.blueprint as rrb
 
+from onorbit_rs.viewer.flight import flight_view, is_apart
 from onorbit_rs.viewer.frames import FOLLOW
 from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL, has_sun
 from onorbit_rs.viewer.rows import TIMELINE
-from onorbit_rs.viewer.scene import MOVES, TRAILS, on_path
+from onorbit_rs.viewer.scene import MOVES, TRAILS, UNTIL_NOW, on_path
 
 if TYPE_CHECKING:
     from onorbit_rs.viewer.rows import Rows
@@ -43,12 +44,9 @@ _FOR_LEGENDS = 1.24
 """Plots go on for so much longer than the run, in units of it: legends stand there."""
 
 _BACKGROUND, _SPACE = (28, 31, 38), (12, 14, 20)
-_UNTIL_NOW = rrb.VisibleTimeRange(
-    TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
-)
 
-_LARGE = ("arrows", "axes/base", "axes/inertial", "axes/lvlh")
-_TRAILS_UNTIL_NOW: dict[Any, Any] = dict.fromkeys(TRAILS.values(), rrb.VisibleTimeRanges([_UNTIL_NOW]))
+_LARGE = ("arrows", "axes/base", "axes/inertial", "axes/lvlh", "flight")
+_TRAILS_UNTIL_NOW: dict[Any, Any] = dict.fromkeys(TRAILS.values(), UNTIL_NOW)
 
 
 def layout(
@@ -65,7 +63,8 @@ def layout(
     axes = "W (inertial axes)" if rows.quat_wl is None else "L (local orbital frame)"
     robot = rrb.Spatial3DView(
         origin="world",
-        name=f"{setting.model.name}: the eye follows the base, axes of {axes}",
+        contents=["$origin/**", "- $origin/flight/**"],
+        name=f"{setting.robot}: the eye follows the base, axes of {axes}",
         spatial_information=rrb.SpatialInformation(FOLLOW, show_axes=False),
         eye_controls=stage.eye(),
         background=_BACKGROUND,
@@ -75,6 +74,8 @@ def layout(
     below: list[rrb.View] = []
     if "position_eci" in rows:
         below.append(_orbit(rows, setting))
+    if is_apart(rows, setting, stage):
+        below.append(flight_view(rows, setting))
     if has_notes:
         below.append(rrb.TextDocumentView(origin="notes", name="Notes"))
     close_up = _close_up(rows, setting, stage) if "reference_pose" in rows and not is_live else None
@@ -129,20 +130,22 @@ def _orbit(rows: Rows, setting: Setting) -> rrb.View:
         low, high = position.min(axis=0), position.max(axis=0)
         center, reach = (low + high) / 2.0, max(float(np.linalg.norm(high - low)) / 2.0, 1e-3)
         towards = np.array([0.5, -0.75, 0.45])
+    name = "Orbit (inertial axes, km)"
     if earth is not None and has_sun(earth):  # half of it in the light
+        name = "Orbit (I, km); yellow arrow to the Sun"  # a label in space would stand before others
         sun = np.asarray(earth.sun(0.0)).reshape(3)
         towards -= 0.9 * (towards @ sun) / (sun @ sun) * sun
     towards /= np.linalg.norm(towards)
     return rrb.Spatial3DView(
         origin="orbit",
-        name="Orbit (inertial axes, km)",
+        name=name,
         spatial_information=rrb.SpatialInformation(INERTIAL, show_axes=False),
         eye_controls=rrb.EyeControls3D(
             position=center + 3.1 * reach * towards, look_target=center, eye_up=(0.0, 0.0, 1.0)
         ),
         background=_SPACE,
         line_grid=False,
-        overrides={ORBIT_TRAIL: rrb.VisibleTimeRanges([_UNTIL_NOW])},
+        overrides={ORBIT_TRAIL: UNTIL_NOW},
     )
 
 

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from onorbit_rs.exceptions import ViewerError
 from onorbit_rs.viewer.arrows import Arrows
+from onorbit_rs.viewer.flight import is_apart, send_flight
 from onorbit_rs.viewer.planet import send_orbit_trail
 from onorbit_rs.viewer.recording import new_recording, open_stage, send_rows
 from onorbit_rs.viewer.rows import Rows
@@ -49,7 +51,7 @@ class LiveView:
         self._arrows: Arrows | None = None
         self._before: Rows | None = None
         self._angles: dict[str, Floats] = {}
-        self._count, self._is_lost = 0, False
+        self._count, self._is_lost, self._has_flight = 0, False, False
 
     def take(self, columns: Mapping[str, Floats]) -> None:
         """New rows, as a checkpoint holds them."""
@@ -63,9 +65,19 @@ class LiveView:
                 self._show(Rows.of_trace(trace, slice(self._count, None)))
         with self._trouble():
             if not self._is_lost:
-                self._recording.flush(timeout_sec=GOODBYE_S)
+                self._say_goodbye()
         with self._trouble():
             self._recording.disconnect()
+
+    def _say_goodbye(self) -> None:
+        """Wait for the last rows to arrive; only here does rerun say that the viewer was closed."""
+        try:
+            self._recording.flush(timeout_sec=GOODBYE_S)
+        except Exception:
+            self._is_lost = True
+            warnings.warn(
+                "the viewer was closed, or did not answer, before it had seen the whole run", stacklevel=2
+            )
 
     @contextmanager
     def _trouble(self) -> Iterator[None]:
@@ -87,6 +99,7 @@ class LiveView:
         if self._stage is None:
             self._stage = open_stage(recording, rows, setting, plots, self._duration_s, is_live=True)
             self._arrows = Arrows(recording, setting, self._stage)
+            self._has_flight = is_apart(rows, setting, self._stage)
         send_rows(recording, rows, setting, self._stage)
         for series in plots:
             send_series(recording, rows, self._continued(series))
@@ -99,6 +112,8 @@ class LiveView:
             send_trails(recording, joined, setting, MOST_ROWS, "obtained")
         if "position_eci" in rows:
             send_orbit_trail(recording, joined, MOST_ROWS)
+        if self._has_flight:
+            send_flight(recording, joined, setting, MOST_ROWS)
         self._before = rows.last()
 
     def _continued(self, series: Series) -> Series:
@@ -123,9 +138,10 @@ def open_live(setting: Setting, duration_s: float) -> LiveView | None:
     if not has_screen():
         warnings.warn("there is no screen here: the run goes on without the viewer", stacklevel=2)
         return None
-    url = open_viewer()
-    if url is None:
-        warnings.warn("the viewer did not start: the run goes on without it", stacklevel=2)
+    try:
+        url = open_viewer()
+    except ViewerError as error:
+        warnings.warn(f"{error}: the run goes on without it", stacklevel=2)
         return None
     try:
         recording = new_recording(setting)

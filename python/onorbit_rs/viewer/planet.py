@@ -58,8 +58,8 @@ def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> N
         put_in(recording, "orbit/sun", SUN)
         far = max(radius, float(np.linalg.norm(rows["position_eci"], axis=1).max()) / 1e3)
         arrow = rr.Arrows3D(
-            vectors=[[0.4 * far, 0.0, 0.0]], origins=[[1.3 * far, 0.0, 0.0]], radii=[far / 70.0],
-            colors=[(255, 225, 90)], labels=["to the Sun"], show_labels=True,
+            vectors=[[0.35 * far, 0.0, 0.0]], origins=[[1.15 * far, 0.0, 0.0]], radii=[far / 70.0],
+            colors=[(255, 225, 90)],
         )  # fmt: skip
         recording.log("orbit/sun", arrow, static=True, strict=True)
     ring = path_around_planet(orbit)
@@ -101,8 +101,8 @@ def send_orbit_trail(recording: rr.RecordingStream, rows: Rows, most: int) -> No
 def log_path_flown(recording: rr.RecordingStream, rows: Rows) -> None:
     """The whole path of the robot."""
     position = rows["position_eci"]
-    keep = evenly(len(position), _MOST_PATH_POINTS)
-    path = rr.LineStrips3D([position[keep] / 1e3], colors=[_PATH], radii=rr.Radius.ui_points(2.0))
+    points = position[evenly(len(position), _MOST_PATH_POINTS)] / 1e3
+    path = rr.LineStrips3D([points], colors=[_PATH], radii=rr.Radius.ui_points(2.0))
     put_in(recording, "orbit/path", INERTIAL)
     recording.log("orbit/path", path, static=True, strict=True)
 
@@ -112,7 +112,7 @@ def send_spacecraft(recording: rr.RecordingStream, rows: Rows, setting: Setting)
     path = "orbit/spacecraft"
     put_in(recording, path, INERTIAL)
     look = rr.Points3D.from_fields(
-        colors=[_SPACECRAFT], radii=rr.Radius.ui_points(7.0), labels=[setting.model.name], show_labels=True
+        colors=[_SPACECRAFT], radii=rr.Radius.ui_points(7.0), labels=[setting.robot], show_labels=True
     )
     recording.log(path, look, static=True, strict=True)
     place = rr.Points3D.columns(positions=rows["position_eci"] / 1e3)
@@ -140,49 +140,48 @@ def _radius_km(mu: float, rows: Rows) -> float:
     return float(min(radius, 0.95 * lowest)) / 1e3
 
 
-def _globe(radii: Floats, *, has_land: bool, rows: int = 60, columns: int = 120) -> rr.Mesh3D:
+def _globe(radii: Floats, *, has_land: bool, bands: int = 60, sectors: int = 120) -> rr.Mesh3D:
     """An ellipsoid under a map whose middle is longitude zero, the x axis."""
-    v, u = (np.linspace(0.0, 1.0, count + 1) for count in (rows, columns))
+    v, u = (np.linspace(0.0, 1.0, count + 1) for count in (bands, sectors))
     colatitude, longitude = np.pi * v[:, None], 2.0 * np.pi * u[None, :] - np.pi
     unit = _directions(colatitude, longitude)
-    corner = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).reshape(-1)
-    below = corner + columns + 1
-    triangles = np.concatenate(
-        [np.stack([corner, below, below + 1], axis=1), np.stack([corner, below + 1, corner + 1], axis=1)]
-    )
     return rr.Mesh3D(
         vertex_positions=(unit * radii).reshape(-1, 3),
         vertex_normals=np.zeros((unit.shape[0] * unit.shape[1], 3)),  # the Sun is the light, not the viewer's
         vertex_texcoords=np.stack(np.broadcast_arrays(u[None, :], v[:, None]), axis=-1).reshape(-1, 2),
-        triangle_indices=triangles,
+        triangle_indices=_triangles(bands, sectors),
         albedo_texture=world_map(has_land),
     )
 
 
-def _night(radii: Floats, depth: float, rows: int = 24, columns: int = 72) -> rr.Mesh3D:
+def _night(radii: Floats, depth: float, bands: int = 24, sectors: int = 72) -> rr.Mesh3D:
     """A dark veil over the half away from the x axis, where the Sun is ``depth`` rad below the horizon."""
     away, around = np.meshgrid(
-        np.linspace(np.pi / 2 + depth, np.pi, rows + 1),
-        np.linspace(0.0, 2.0 * np.pi, columns + 1),
+        np.linspace(np.pi / 2 + depth, np.pi, bands + 1),
+        np.linspace(0.0, 2.0 * np.pi, sectors + 1),
         indexing="ij",
     )
     unit = np.stack([np.cos(away), np.sin(away) * np.cos(around), np.sin(away) * np.sin(around)], axis=-1)
-    corner = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).reshape(-1)
-    below = corner + columns + 1
-    triangles = np.concatenate(
-        [np.stack([corner, below, below + 1], axis=1), np.stack([corner, below + 1, corner + 1], axis=1)]
-    )
     positions = (unit * radii).reshape(-1, 3)
     return rr.Mesh3D(
         vertex_positions=positions,
         vertex_normals=np.zeros_like(positions),
-        triangle_indices=triangles,
+        triangle_indices=_triangles(bands, sectors),
         albedo_factor=(4, 8, 20, 105),
     )
 
 
+def _triangles(bands: int, sectors: int) -> NDArray[np.int64]:
+    """(2 bands sectors, 3) corners of a net of so many cells, band by band."""
+    corner = (np.arange(bands)[:, None] * (sectors + 1) + np.arange(sectors)).reshape(-1)
+    below = corner + sectors + 1
+    return np.concatenate(
+        [np.stack([corner, below, below + 1], axis=1), np.stack([corner, below + 1, corner + 1], axis=1)]
+    )
+
+
 def _directions(colatitude: Floats, longitude: Floats) -> Floats:
-    """Unit vectors (rows, columns, 3)."""
+    """Unit vectors (bands, sectors, 3)."""
     parts = np.broadcast_arrays(
         np.sin(colatitude) * np.cos(longitude), np.sin(colatitude) * np.sin(longitude), np.cos(colatitude)
     )

@@ -17,7 +17,9 @@ from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.axes import log_all_axes
 from onorbit_rs.viewer.blueprint import layout
 from onorbit_rs.viewer.encoded import Encoded
+from onorbit_rs.viewer.flight import is_apart, log_flight, log_whole_flight, send_flight
 from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames
+from onorbit_rs.viewer.notes import about_meshes, readable
 from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
 from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.scene import (
@@ -67,6 +69,7 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
     rows = Rows.of_trace(trace, slice(None) if len(chosen) == len(trace.time) else chosen)
     if len(chosen) < len(trace.time):
         notes += f"\n\nThe recording holds {len(chosen)} of the {len(trace.time)} rows of the trace.\n"
+    notes += about_meshes(setting.model)
     recording = new_recording(setting)
     encoded = Encoded(recording)
     plots = list(series_of(rows, setting.model))
@@ -80,6 +83,9 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
         send_trails(recording, rows, setting, MOST_TRAIL_PIECES, "obtained")
     if "position_eci" in rows:
         log_path_flown(recording, rows)
+    if is_apart(rows, setting, stage):
+        log_whole_flight(recording, rows, setting)
+        send_flight(recording, rows, setting, MOST_TRAIL_PIECES)
     Arrows(recording, setting, stage).send(rows)
     encoded.write_to(path)
     return path
@@ -91,7 +97,7 @@ def new_recording(setting: Setting) -> rr.RecordingStream:
     recording.set_log_time_enabled(False)
     recording.set_log_tick_enabled(False)
     if setting.name:
-        recording.send_recording_name(setting.name)
+        recording.send_recording_name(readable(setting.name))
     return recording
 
 
@@ -121,6 +127,8 @@ def open_stage(
     log_targets(recording, setting, stage.size)
     if "position_eci" in rows:
         log_planet(recording, rows, setting)
+    if is_apart(rows, setting, stage):
+        log_flight(recording, rows, setting)
     for series in plots:
         log_style(recording, series)
     if notes:
@@ -141,7 +149,7 @@ def send_rows(recording: rr.RecordingStream, rows: Rows, setting: Setting, stage
 
 
 def recorded_rows(count: int) -> NDArray[np.int64]:
-    """Rows of the trace that go into the recording."""
+    """Indices of the rows of the trace that go into the recording."""
     stride = -(-count // MOST_STEPS)
-    rows = np.arange(0, count, stride)
-    return rows if rows[-1] == count - 1 else np.append(rows, count - 1)
+    chosen = np.arange(0, count, stride)
+    return chosen if chosen[-1] == count - 1 else np.append(chosen, count - 1)

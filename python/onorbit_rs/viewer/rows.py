@@ -44,12 +44,12 @@ class Rows:
     tracking: Mapping[str, Floats] = field(default_factory=dict)
 
     @classmethod
-    def of_trace(cls, trace: Trace, rows: NDArray[np.int64] | slice = slice(None)) -> Rows:
+    def of_trace(cls, trace: Trace, chosen: NDArray[np.int64] | slice = slice(None)) -> Rows:
         """Some of a trace, or all of it."""
         return cls(
-            {name: np.asarray(getattr(trace, name))[rows] for name in trace.columns()},
-            {name: np.asarray(values)[rows] for name, values in trace.wrenches.items()},
-            {name: np.asarray(values)[rows] for name, values in trace.tracking.items()},
+            {name: np.asarray(getattr(trace, name))[chosen] for name in trace.columns()},
+            {name: np.asarray(values)[chosen] for name, values in trace.wrenches.items()},
+            {name: np.asarray(values)[chosen] for name, values in trace.tracking.items()},
         )
 
     @classmethod

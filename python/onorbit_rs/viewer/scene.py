@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import rerun as rr
+import rerun.blueprint as rrb
 
 from onorbit_rs.rotations import matrix_from_quaternion, quaternion_from_matrix
 from onorbit_rs.thinning import evenly
@@ -37,6 +38,13 @@ MOVES = 0.02
 
 COLORS = {"desired": (240, 240, 240), "obtained": (255, 96, 64)}
 TRAILS = {name: f"world/tool/{name}/trail" for name in COLORS}
+UNTIL_NOW = rrb.VisibleTimeRanges(
+    rrb.VisibleTimeRange(
+        TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
+    )
+)
+"""What a view shows of a trail."""
+
 _POSES = {"desired": "reference_pose", "obtained": "tool_pose"}
 
 

@@ -6,42 +6,69 @@ import os
 import socket
 import subprocess
 import sys
+import tempfile
+import threading
 import time
 from pathlib import Path
+from typing import IO
+
+import rerun_cli  # type: ignore[import-untyped]  # ships no types
+from rerun.experimental import ViewerClient
+
+from onorbit_rs.exceptions import ViewerError
 
 START_PATIENCE_S = 20.0
 """Wall-clock time given to the viewer to start."""
 
+_BINARIES = ("rerun", "rerun.exe", "Rerun.app/Contents/MacOS/Rerun")
 _LOCAL = "127.0.0.1"
 
 
 def has_screen() -> bool:
-    """Whether a window can be opened here."""
+    """Whether a window may be opened here."""
     on_linux = sys.platform.startswith("linux")
     return not on_linux or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def open_recording(recording: Path) -> None:
-    """Open a ``.rrd`` and return at once; the viewer outlives this process."""
-    _start("--port", "auto", str(recording))
+    """Open a ``.rrd`` and return once its window is there; the viewer outlives this process.
+
+    Raises
+    ------
+    ViewerError
+        The viewer ended before it opened a window.
+    """
+    _start(free_port(), str(recording))
 
 
-def open_viewer(*options: str) -> str | None:
-    """Start a viewer that waits for rows, and return where it does; None where it does not start."""
+def open_viewer() -> str:
+    """Start a viewer that waits for rows, and return where it does.
+
+    Raises
+    ------
+    ViewerError
+        The viewer ended before it opened a window.
+    """
     port = free_port()
-    viewer = _start("--port", str(port), "--expect-data-soon", *options)
-    deadline = time.monotonic() + START_PATIENCE_S
-    while time.monotonic() < deadline and viewer.poll() is None:
-        if listens(port):
-            return url_of(port)
-        time.sleep(0.05)
-    viewer.kill()
-    return None
+    _start(port, "--expect-data-soon")
+    return url_of(port)
 
 
 def url_of(port: int) -> str:
     """What a client connects to."""
     return f"rerun+http://{_LOCAL}:{port}/proxy"
+
+
+def command_of(port: int) -> list[str]:
+    """The viewer itself, not ``python -m rerun_cli``, whose end would leave it alone."""
+    places = [Path(rerun_cli.__file__).parent / name for name in _BINARIES]
+    binary = next((place for place in places if place.is_file()), places[0])
+    return [str(binary), "--bind", _LOCAL, "--port", str(port)]
+
+
+def environment() -> dict[str, str]:
+    """Of a viewer: no welcome, and errors alone on stderr."""
+    return os.environ | {"RERUN_APP_ONLY": "true", "RUST_LOG": "error"}
 
 
 def listens(port: int) -> bool:
@@ -57,8 +84,50 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
-def _start(*arguments: str) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "rerun_cli", "--bind", _LOCAL, *arguments]
-    return subprocess.Popen(
-        command, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
+def reason(printed: str) -> str:
+    """The last thing that a viewer said, without the places in its code that it names before."""
+    lines = printed.strip().splitlines()
+    return lines[-1].rsplit(": ", 1)[-1] if lines else "it printed nothing"
+
+
+def _start(port: int, *arguments: str) -> None:
+    command = [*command_of(port), *arguments]
+    with tempfile.TemporaryFile("w+", errors="replace") as said:
+        try:
+            viewer = subprocess.Popen(
+                command, env=environment(), start_new_session=True, stdout=subprocess.DEVNULL, stderr=said
+            )
+        except OSError as error:
+            raise _not_started(str(error)) from error
+        _await_window(viewer, port, said)
+
+
+def _await_window(viewer: subprocess.Popen[bytes], port: int, said: IO[str]) -> None:
+    """Until it answers, or patience ends with one that listens: it does that before it has a window, too."""
+    answered = threading.Event()
+    deadline = time.monotonic() + START_PATIENCE_S
+    asked: threading.Thread | None = None
+    while not answered.is_set() and time.monotonic() < deadline:
+        if viewer.poll() is not None:
+            said.seek(0)
+            raise _not_started(reason(said.read()))
+        if (asked is None or not asked.is_alive()) and listens(port):
+            asked = threading.Thread(target=_ask, args=(url_of(port), answered), daemon=True)
+            asked.start()
+        time.sleep(0.05)
+    if not answered.is_set() and not listens(port):
+        viewer.kill()
+        raise _not_started(f"it does not answer within {START_PATIENCE_S:g} s")
+
+
+def _not_started(why: str) -> ViewerError:
+    return ViewerError(f"the viewer did not start: {why}", reason=why)
+
+
+def _ask(url: str, answered: threading.Event) -> None:
+    """Ask what is shown, which a window alone can answer."""
+    try:
+        ViewerClient.connect(url).get_state()
+    except OSError:  # not yet
+        return
+    answered.set()

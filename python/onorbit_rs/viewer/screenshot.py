@@ -7,17 +7,15 @@ Needs a Vulkan driver; Debian's ``mesa-vulkan-drivers`` and ``libegl1`` draw in 
 
 from __future__ import annotations
 
-import os
 import subprocess
 import time
 from pathlib import Path
 
-import rerun_cli  # type: ignore[import-untyped]  # ships no types
 from rerun.experimental import ViewerClient
 
-from onorbit_rs.exceptions import NotFoundError, OnOrbitError
+from onorbit_rs.exceptions import NotFoundError, ViewerError
 from onorbit_rs.viewer.rows import TIMELINE
-from onorbit_rs.viewer.screen import free_port, listens, url_of
+from onorbit_rs.viewer.screen import command_of, environment, free_port, listens, reason, url_of
 
 SETTLE_S = 3.0
 """Wall-clock time given to the viewer to load fonts and draw, before and after moving in time."""
@@ -43,20 +41,20 @@ def take_screenshot(
     ------
     NotFoundError
         No such recording.
-    OnOrbitError
-        The viewer did not start; says what it printed.
+    ViewerError
+        The viewer did not start; says why.
     """
     if not recording.is_file():
         raise NotFoundError(f"no such recording: {recording}", path=str(recording), kind="recording")
     port = free_port()
     command = [
-        *(str(Path(rerun_cli.__file__).with_name("rerun")), "--headless", "--hide-welcome-screen"),
-        *("--bind", "127.0.0.1", "--port", str(port), "--window-size", f"{width}x{height}"),
-        str(recording.resolve()),
+        *command_of(port),
+        "--headless",
+        "--hide-welcome-screen",
+        *("--window-size", f"{width}x{height}", str(recording.resolve())),
     ]
-    environment = os.environ | {"RERUN_APP_ONLY": "true", "RUST_LOG": "error"}
     with subprocess.Popen(
-        command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        command, env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     ) as viewer:
         try:
             client = _connect(port, viewer)
@@ -78,7 +76,9 @@ def _go_to(client: ViewerClient, at_s: float, patience_s: float = 60.0) -> None:
             return
         except OSError as error:  # no recording yet
             if time.monotonic() > deadline:
-                raise OnOrbitError(f"the viewer does not show the recording: {error}") from error
+                raise ViewerError(
+                    f"the viewer does not show the recording: {error}", reason=str(error)
+                ) from error
             time.sleep(0.2)
 
 
@@ -90,7 +90,9 @@ def _connect(port: int, viewer: subprocess.Popen[str], patience_s: float = 30.0)
             return ViewerClient.connect(url_of(port))
         time.sleep(0.1)
     viewer.kill()
-    printed = (viewer.stderr.read() if viewer.stderr else "").strip().splitlines()
-    raise OnOrbitError(
-        f"the headless viewer did not start: {printed[-1] if printed else 'it printed nothing'}"
+    why = reason(viewer.stderr.read() if viewer.stderr else "")
+    raise ViewerError(
+        f"the headless viewer did not start: {why}; it needs a Vulkan driver "
+        "(Debian: mesa-vulkan-drivers and libegl1)",
+        reason=why,
     )

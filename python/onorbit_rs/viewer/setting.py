@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from onorbit_rs.geometry import Shape, extent, shapes
+from onorbit_rs.appearance import shapes
+from onorbit_rs.geometry import Shape, extent
+from onorbit_rs.viewer.notes import readable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -68,6 +70,11 @@ class Setting:
     def shapes(self) -> list[Shape]:
         """What there is to draw of the robot."""
         return shapes(self.model)
+
+    @property
+    def robot(self) -> str:
+        """Its name, as labels show it."""
+        return readable(self.model.name)
 
     @property
     def base(self) -> str:

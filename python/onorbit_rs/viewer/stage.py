@@ -56,7 +56,7 @@ class Stage:
         return place
 
     def _sight(self) -> Floats:
-        """Rows: to the right, up, and towards the eye, as seen at the start."""
+        """Unit vectors (3, 3): to the right, up, and towards the eye, as seen at the start."""
         to_eye = self.rot_fb @ _TO_EYE
         to_eye /= np.linalg.norm(to_eye)
         right = np.cross(self.rot_fb[:, 2], to_eye)

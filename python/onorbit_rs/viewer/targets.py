@@ -14,9 +14,13 @@ from onorbit_rs.viewer.frames import WORLD, send_frame
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from numpy.typing import NDArray
+
     from onorbit_rs.scenario import Scenario
     from onorbit_rs.viewer.rows import Rows
     from onorbit_rs.viewer.setting import PathFrame, Setting, Target
+
+    Floats = NDArray[np.float64]
 
 
 def path_frame(scenario: Scenario) -> PathFrame:
@@ -56,15 +60,15 @@ def send_targets(recording: rr.RecordingStream, rows: Rows, setting: Setting) ->
         axis = target.spin / rate if rate > 0.0 else np.array([0.0, 0.0, 1.0])
         half = rate * t[:, None] / 2.0
         turned = np.hstack([np.sin(half) * axis, np.cos(half)])
-        position = target.position + np.outer(t, target.velocity)
-        send_frame(recording, rows.times, WORLD, _frame(index), position, product(turned, target.quat_xyzw))
+        quat, position = product(turned, target.quat_xyzw), position_of(target, t)
+        send_frame(recording, rows.times, WORLD, frame_of_target(index), position, quat)
 
 
 def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) -> None:
     """Their axes, and their boxes where the scenario tells a size."""
     for index, target in enumerate(setting.targets):
         path = f"world/target/{index}"
-        log_axes(recording, path, _frame(index), 0.3 * size, ("x T", "y T", "z T"))
+        log_axes(recording, path, frame_of_target(index), 0.3 * size, ("x T", "y T", "z T"))
         if target.size:
             box = rr.Boxes3D(
                 sizes=[target.size], colors=[(205, 170, 90)], fill_mode=rr.components.FillMode.Solid
@@ -72,5 +76,12 @@ def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) ->
             recording.log(path, box, static=True, strict=True)
 
 
-def _frame(index: int) -> str:
+def position_of(target: Target, t: Floats) -> Floats:
+    """(T, 3), W, m."""
+    place: Floats = target.position + np.outer(t, target.velocity)
+    return place
+
+
+def frame_of_target(index: int) -> str:
+    """Name of its frame."""
     return f"target/{index}"

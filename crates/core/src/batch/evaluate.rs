@@ -1,7 +1,7 @@
 //! Running a kernel over rows.
 
 use super::input::{InputError, Wrenches, check_finite, check_quaternions, check_shapes};
-use super::kernel::Kernel;
+use super::kernel::{Kernel, OUTPUTS};
 use super::space::{Call, Rows, RowsMut, Space};
 use super::threads::for_each;
 use crate::model::Model;
@@ -10,9 +10,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// States that one task takes, so that a batch is cut alike for every number of threads.
 const CHUNK: usize = 128;
-
-/// Most outputs that a kernel has.
-const OUTPUTS: usize = 5;
 
 /// Space of one model's kernels for single states, kept between calls.
 #[derive(Clone, Debug)]
@@ -27,7 +24,7 @@ impl Evaluator {
         Self { plain: Space::new(model), fused: Space::new(model) }
     }
 
-    /// Checks the inputs and computes one state on the calling thread.
+    /// Checks inputs and outputs and computes one state on the calling thread.
     ///
     /// # Errors
     /// [`InputError`]; the outputs are untouched then, but for [`InputError::Singular`] and
@@ -41,7 +38,13 @@ impl Evaluator {
         outputs: &mut [RowsMut<'_>],
     ) -> Result<(), InputError> {
         let call = Call { kernel, model, inputs, external };
-        check_shapes(&call)?;
+        check_shapes(&call, outputs)?;
+        if call.count() != 1 {
+            return Err(InputError::NotSingle { got: call.count() });
+        }
+        if !self.plain.fits(model) {
+            *self = Self::new(model);
+        }
         let is_fine = match InstructionSet::current() {
             InstructionSet::Baseline => self.plain.states(&call, 0..1, outputs),
             InstructionSet::Fused | InstructionSet::Wide => self.fused.states(&call, 0..1, outputs),
@@ -49,7 +52,7 @@ impl Evaluator {
         if is_fine { Ok(()) } else { fault(&call, outputs) }
     }
 
-    /// Checks the inputs and computes many states, on `threads` threads (all cores if `None`).
+    /// Checks inputs and outputs and computes many states, on `threads` threads (all cores if `None`).
     /// The bits do not depend on the number of threads.
     ///
     /// # Errors
@@ -63,7 +66,7 @@ impl Evaluator {
         threads: Option<usize>,
     ) -> Result<(), InputError> {
         let call = Call { kernel, model, inputs, external };
-        check_shapes(&call)?;
+        check_shapes(&call, outputs)?;
         let is_fine = match InstructionSet::current() {
             InstructionSet::Baseline => all::<f64>(&call, outputs, threads),
             InstructionSet::Fused => all::<Lanes4>(&call, outputs, threads),
@@ -79,12 +82,13 @@ fn all<S: Real>(
     outputs: &mut [RowsMut<'_>],
     threads: Option<usize>,
 ) -> Result<bool, InputError> {
-    let (count, widths) = (call.count(), call.kernel.outputs(call.model));
+    let (count, (widths, used)) = (call.count(), call.kernel.widths(call.model));
+    let widths = &widths[..used];
     let mut rest: [RowsMut<'_>; OUTPUTS] = Default::default();
     rest.iter_mut().zip(outputs).for_each(|(rest, out)| *rest = out);
     let tasks = (0..count.div_ceil(CHUNK)).map(|index| {
         let states = index * CHUNK..count.min((index + 1) * CHUNK);
-        (states.clone(), take(&mut rest, &widths, states.len()))
+        (states.clone(), take(&mut rest, widths, states.len()))
     });
     let is_fine = AtomicBool::new(true);
     for_each(
@@ -94,8 +98,8 @@ fn all<S: Real>(
         |space, (states, mut rows)| {
             for start in states.clone().step_by(S::LANES) {
                 let group = start..states.end.min(start + S::LANES);
-                let mut rows = take(&mut rows, &widths, group.len());
-                if !space.states(call, group, &mut rows[..widths.len()]) {
+                let mut rows = take(&mut rows, widths, group.len());
+                if !space.states(call, group, &mut rows[..used]) {
                     is_fine.store(false, Ordering::Relaxed);
                 }
             }
@@ -126,7 +130,7 @@ fn fault(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
         check_finite("external wrench", wrenches.rows, 6)?;
     }
     // the mass matrix is singular, or products overflow
-    for (out, width) in outputs.iter().zip(call.kernel.outputs(call.model)) {
+    for (out, width) in outputs.iter().zip(call.kernel.widths(call.model).0) {
         if let Some(index) = out.iter().position(|x| !x.is_finite()) {
             let state = index / width;
             let divides = call.kernel.divides();

@@ -1,7 +1,8 @@
 //! What is checked before a kernel runs.
 
 use super::kernel::Kernel;
-use super::space::Call;
+use super::space::{Call, RowsMut};
+use crate::model::Model;
 use crate::orbit::OrbitError;
 use thiserror::Error;
 
@@ -22,6 +23,16 @@ pub enum InputError {
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error("{name} has {got} states, the first argument has {expected}")]
     WrongBatch { name: &'static str, expected: usize, got: usize },
+    #[error("{name} has {got} numbers, which are no whole number of rows of {width}")]
+    Ragged { name: &'static str, width: usize, got: usize },
+    #[error("{got} {what} are given, this kernel has {expected}")]
+    WrongCount { what: &'static str, expected: usize, got: usize },
+    #[error("output {output} has room for {got} numbers, it must be {expected}")]
+    WrongRoom { output: usize, expected: usize, got: usize },
+    #[error("{got} states are given where one is computed: compute them with Evaluator::many")]
+    NotSingle { got: usize },
+    #[error("frame {frame} is asked for, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    UnknownFrame { frame: usize, count: usize },
     #[error("{name} holds {value} in state {state}, it must be finite")]
     NotFinite { name: &'static str, state: usize, value: f64 },
     #[error(
@@ -57,17 +68,35 @@ pub enum InputError {
 /// Largest deviation of a quaternion from unit norm.
 pub(super) const UNIT_NORM: f64 = 1e-6;
 
-/// Refuses rows of another width or number than the kernel takes.
-pub(super) fn check_shapes(call: &Call<'_>) -> Result<(), InputError> {
+/// Refuses rows of another width or number than the kernel takes, outputs with other room than it needs, and frames
+/// that the robot does not have.
+pub(super) fn check_shapes(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
+    let names = call.kernel.inputs();
+    if call.inputs.len() != names.len() {
+        return Err(InputError::WrongCount { what: "inputs", expected: names.len(), got: call.inputs.len() });
+    }
     let count = call.count();
-    for (name, rows) in call.kernel.inputs().iter().zip(call.inputs) {
+    for (name, rows) in names.iter().zip(call.inputs) {
         let expected = Kernel::width(name, call.model);
         if rows.width != expected {
             return Err(InputError::WrongLength { name, expected, got: rows.width });
         }
-        let got = rows.data.len().checked_div(expected).unwrap_or(count); // a robot may have no joints
-        if got != count {
+        if rows.data.len() != count * expected {
+            check_whole(name, rows.data, expected)?;
+            let got = rows.data.len() / expected.max(1); // a robot may have no joints
             return Err(InputError::WrongBatch { name, expected: count, got });
+        }
+    }
+    for frame in call.kernel.frame().into_iter().chain(call.external.iter().map(|one| one.frame)) {
+        check_frame(call.model, frame)?;
+    }
+    let (widths, outputs_wanted) = call.kernel.widths(call.model);
+    if outputs.len() != outputs_wanted {
+        return Err(InputError::WrongCount { what: "outputs", expected: outputs_wanted, got: outputs.len() });
+    }
+    for (output, (out, width)) in outputs.iter().zip(widths).enumerate() {
+        if out.len() != count * width {
+            return Err(InputError::WrongRoom { output, expected: count * width, got: out.len() });
         }
     }
     match call.external.iter().find(|one| one.rows.len() != 6 && one.rows.len() != 6 * count) {
@@ -76,6 +105,18 @@ pub(super) fn check_shapes(call: &Call<'_>) -> Result<(), InputError> {
         }
         None => Ok(()),
     }
+}
+
+/// Refuses a frame that the robot does not have.
+pub(super) fn check_frame(model: &Model, frame: usize) -> Result<(), InputError> {
+    let count = model.frames().len();
+    if frame < count { Ok(()) } else { Err(InputError::UnknownFrame { frame, count }) }
+}
+
+/// Refuses numbers that make no whole number of rows.
+pub(super) fn check_whole(name: &'static str, data: &[f64], width: usize) -> Result<(), InputError> {
+    let got = data.len();
+    if got.is_multiple_of(width.max(1)) { Ok(()) } else { Err(InputError::Ragged { name, width, got }) }
 }
 
 /// Refuses rows that are not finite.

@@ -1,6 +1,6 @@
 //! Ellipses by their elements, each at a time of its own.
 
-use super::input::{InputError, check_finite};
+use super::input::{InputError, check_finite, check_whole};
 use super::threads::for_each;
 use crate::orbit::kepler::ellipse_state;
 use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real};
@@ -23,6 +23,7 @@ pub fn kepler_states(
     threads: Option<usize>,
 ) -> Result<(), InputError> {
     let count = positions.len() / 3;
+    check_whole("positions", positions, 3)?;
     check(&elements, mu, count)?;
     if velocities.len() != positions.len() {
         let (expected, got) = (positions.len(), velocities.len());

@@ -1,15 +1,9 @@
 //! The kernels by name, with the widths of their rows.
 
-use crate::dynamics::derivatives::{
-    Derivatives, forward_dynamics_derivatives, free_floating_derivatives, inverse_dynamics_derivatives,
-};
-use crate::dynamics::{
-    Data, FrameWrench, FreeFloating, bias_forces, center_of_mass, forward_dynamics, frame_jacobian,
-    frame_pose, frame_velocity, free_floating, inverse_dynamics, kinematics, kinetic_energy, mass_matrix,
-    momentum, positions,
-};
-use crate::model::{Model, difference, integrate};
-use crate::spatial::{Force, Real, pose_rows};
+use crate::model::Model;
+
+/// Most outputs that a kernel has.
+pub(super) const OUTPUTS: usize = 5;
 
 /// What to compute from a state; frames by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,26 +42,6 @@ pub enum Kernel {
     Difference,
 }
 
-/// Workspace of all kernels for one scalar.
-#[derive(Clone, Debug)]
-pub(super) struct Work<S> {
-    pub(super) data: Data<S>,
-    pub(super) reduced: FreeFloating<S>,
-    pub(super) derivatives: Derivatives<S>,
-    pub(super) external: Vec<FrameWrench<S>>,
-}
-
-impl<S: Real> Work<S> {
-    pub(super) fn new(model: &Model) -> Self {
-        Self {
-            data: Data::new(model),
-            reduced: FreeFloating::new(model),
-            derivatives: Derivatives::new(model),
-            external: Vec::new(),
-        }
-    }
-}
-
 impl Kernel {
     /// Names of the inputs.
     pub fn inputs(self) -> &'static [&'static str] {
@@ -96,110 +70,42 @@ impl Kernel {
         matches!(self, Self::ForwardDynamics | Self::ForwardDynamicsDerivatives)
     }
 
+    /// The frame it is about, if it is about one.
+    pub(super) fn frame(self) -> Option<usize> {
+        match self {
+            Self::FramePose(frame)
+            | Self::FrameVelocity(frame)
+            | Self::FrameJacobian(frame)
+            | Self::FreeFloating(frame)
+            | Self::FreeFloatingDerivatives(frame) => Some(frame),
+            _ => None,
+        }
+    }
+
     /// Widths of the outputs' rows.
     pub fn outputs(self, model: &Model) -> Vec<usize> {
+        let (widths, count) = self.widths(model);
+        widths[..count].to_vec()
+    }
+
+    /// Widths of the outputs' rows, and how many outputs there are.
+    pub(super) fn widths(self, model: &Model) -> ([usize; OUTPUTS], usize) {
         let (nq, nv, n) = (model.nq(), model.nv(), model.joint_count());
-        match self {
-            Self::FramePose(_) => vec![16],
-            Self::FrameVelocity(_) | Self::Momentum => vec![6],
-            Self::FrameJacobian(_) => vec![6 * nv],
-            Self::MassMatrix => vec![nv * nv],
-            Self::BiasForces | Self::InverseDynamics | Self::ForwardDynamics | Self::Difference => vec![nv],
-            Self::KineticEnergy => vec![1],
-            Self::CenterOfMass => vec![3],
-            Self::FreeFloating(_) => vec![n * n, n, n, 6 * n, 6],
-            Self::InverseDynamicsDerivatives | Self::ForwardDynamicsDerivatives => vec![nv * nv; 3],
-            Self::FreeFloatingDerivatives(_) => vec![n * nv, n * nv, 6 * nv, 6 * nv, 6 * nv],
-            Self::Integrate => vec![nq],
-        }
+        let given: &[usize] = match self {
+            Self::FramePose(_) => &[16],
+            Self::FrameVelocity(_) | Self::Momentum => &[6],
+            Self::FrameJacobian(_) => &[6 * nv],
+            Self::MassMatrix => &[nv * nv],
+            Self::BiasForces | Self::InverseDynamics | Self::ForwardDynamics | Self::Difference => &[nv],
+            Self::KineticEnergy => &[1],
+            Self::CenterOfMass => &[3],
+            Self::FreeFloating(_) => &[n * n, n, n, 6 * n, 6],
+            Self::InverseDynamicsDerivatives | Self::ForwardDynamicsDerivatives => &[nv * nv; 3],
+            Self::FreeFloatingDerivatives(_) => &[n * nv, n * nv, 6 * nv, 6 * nv, 6 * nv],
+            Self::Integrate => &[nq],
+        };
+        let mut widths = [0; OUTPUTS];
+        widths[..given.len()].copy_from_slice(given);
+        (widths, given.len())
     }
-
-    /// One state, or one set of lanes.
-    pub(super) fn run<S: Real>(
-        self,
-        model: &Model,
-        work: &mut Work<S>,
-        inputs: &[Vec<S>],
-        out: &mut [Vec<S>],
-    ) {
-        let Work { data, reduced, derivatives, external } = work;
-        let q = &inputs[0];
-        match self {
-            Self::FramePose(frame) => {
-                positions(model, data, q);
-                let pose = S::enter(
-                    #[inline(always)]
-                    || frame_pose(model, data, q, frame),
-                );
-                out[0].copy_from_slice(&pose_rows(&pose.rot_wf, pose.pos_w));
-            }
-            Self::FrameVelocity(frame) => {
-                kinematics(model, data, q, &inputs[1]);
-                let velocity = S::enter(
-                    #[inline(always)]
-                    || frame_velocity(model, data, q, frame),
-                );
-                velocity.write(&mut out[0]);
-            }
-            Self::FrameJacobian(frame) => {
-                positions(model, data, q);
-                frame_jacobian(model, data, q, frame, &mut out[0]);
-            }
-            Self::MassMatrix => mass_matrix(model, data, q, &mut out[0]),
-            Self::BiasForces => bias_forces(model, data, q, &inputs[1], external, &mut out[0]),
-            Self::InverseDynamics => {
-                inverse_dynamics(model, data, q, &inputs[1], &inputs[2], external, &mut out[0])
-            }
-            Self::ForwardDynamics => {
-                forward_dynamics(model, data, q, &inputs[1], &inputs[2], external, &mut out[0])
-            }
-            Self::Momentum => {
-                kinematics(model, data, q, &inputs[1]);
-                let h = momentum(data, q);
-                Force::new(h.linear, h.angular).write(&mut out[0]);
-            }
-            Self::KineticEnergy => {
-                kinematics(model, data, q, &inputs[1]);
-                out[0][0] = kinetic_energy(model, data, &inputs[1]);
-            }
-            Self::CenterOfMass => {
-                positions(model, data, q);
-                center_of_mass(data, q).write(&mut out[0]);
-            }
-            Self::FreeFloating(frame) => {
-                free_floating(model, data, q, &inputs[1], frame, external, reduced);
-                out[0].copy_from_slice(&reduced.inertia);
-                out[1].copy_from_slice(&reduced.bias);
-                out[2].copy_from_slice(&reduced.external);
-                out[3].copy_from_slice(&reduced.jacobian);
-                reduced.drift.write(&mut out[4]);
-            }
-            Self::InverseDynamicsDerivatives => {
-                let (v, a, out) = (&inputs[1], &inputs[2], slices(out));
-                inverse_dynamics_derivatives(model, data, derivatives, q, v, a, external, out);
-            }
-            Self::ForwardDynamicsDerivatives => {
-                let (v, tau, out) = (&inputs[1], &inputs[2], slices(out));
-                forward_dynamics_derivatives(model, data, derivatives, q, v, tau, external, out);
-            }
-            Self::FreeFloatingDerivatives(frame) => {
-                let (v, a, out) = (&inputs[1], &inputs[2], slices(out));
-                free_floating_derivatives(model, data, derivatives, q, v, a, frame, external, out);
-            }
-            Self::Integrate => S::enter(
-                #[inline(always)]
-                || integrate(q, &inputs[1], &mut out[0]),
-            ),
-            Self::Difference => S::enter(
-                #[inline(always)]
-                || difference(q, &inputs[1], &mut out[0]),
-            ),
-        }
-    }
-}
-
-/// The first `N` outputs.
-fn slices<S, const N: usize>(out: &mut [Vec<S>]) -> [&mut [S]; N] {
-    let mut rows = out.iter_mut();
-    std::array::from_fn(|_| rows.next().map(Vec::as_mut_slice).unwrap_or_default())
 }

@@ -1,8 +1,8 @@
 //! Many orbits at many times.
 
-use super::input::InputError;
+use super::input::{InputError, check_whole};
 use super::threads::for_each;
-use crate::orbit::{Orbit, OrbitError, Rows};
+use crate::orbit::{Orbit, OrbitError, StateRows};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Instants at which to look, s of simulation.
@@ -19,7 +19,7 @@ pub enum Times<'a> {
 /// On `threads` threads (all cores if `None`); the bits do not depend on their number.
 ///
 /// # Errors
-/// [`InputError::NoThreads`], [`InputError::WrongLength`], and [`InputError::Orbit`] for the first orbit that is
+/// [`InputError::NoThreads`], [`InputError::WrongLength`], [`InputError::Ragged`], and [`InputError::Orbit`] for the first orbit that is
 /// refused.
 pub fn propagate(
     orbits: &[Arc<dyn Orbit>],
@@ -30,7 +30,10 @@ pub fn propagate(
 ) -> Result<(), InputError> {
     let count = match times {
         Times::Common(times) => times.len(),
-        Times::Each(times) => times.len() / orbits.len().max(1),
+        Times::Each(times) => {
+            check_whole("times", times, orbits.len())?;
+            times.len() / orbits.len().max(1)
+        }
     };
     let expected = 3 * orbits.len() * count;
     for (name, got) in [("positions", positions.len()), ("velocities", velocities.len())] {
@@ -53,7 +56,8 @@ pub fn propagate(
                 Times::Common(times) => times,
                 Times::Each(times) => &times[index * count..][..count],
             };
-            let filled = Rows::new(count, positions, velocities).and_then(|rows| orbit.fill(instants, rows));
+            let filled =
+                StateRows::new(count, positions, velocities).and_then(|rows| orbit.fill(instants, rows));
             if let Err(error) = filled {
                 let mut first = first.lock().unwrap_or_else(PoisonError::into_inner);
                 if first.as_ref().is_none_or(|(known, _)| index < *known) {

@@ -1,6 +1,6 @@
 //! Many runs at once, in empty space: passive, with given torques, or under computed torque.
 
-use super::input::{InputError, check_finite, check_quaternions};
+use super::input::{InputError, check_finite, check_frame, check_quaternions, check_whole};
 use super::side_by_side::{Places, gather, scatter};
 use super::threads::for_each;
 use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
@@ -63,6 +63,8 @@ impl Rollout<'_> {
     ) -> Result<(), InputError> {
         let (count, nq, nv) = (q0.len() / model.nq(), model.nq(), model.nv());
         let rows = self.rows();
+        check_whole("q0", q0, nq)?;
+        check_whole("v0", v0, nv)?;
         for (name, got, expected) in
             [("q0", q0.len(), nq), ("v0", v0.len(), nv), ("q", q.len(), rows * nq), ("v", v.len(), rows * nv)]
         {
@@ -85,10 +87,11 @@ impl Rollout<'_> {
         }
         // joints that stick and slip do so each at its own time: one state after the other
         let sticks = model.joints().iter().any(|joint| joint.friction > 0.0);
-        if let RolloutControl::ComputedTorque(_, reference) = self.control
-            && reference.needs_orbit()
-        {
-            return Err(InputError::NeedsOrbit);
+        if let RolloutControl::ComputedTorque(law, reference) = self.control {
+            check_frame(model, law.frame)?;
+            if reference.needs_orbit() {
+                return Err(InputError::NeedsOrbit);
+            }
         }
         let diverged = match InstructionSet::current() {
             InstructionSet::Baseline => self.all::<f64>(model, q0, v0, q, v),

@@ -1,8 +1,9 @@
 //! Workspace and rows of as many states as stand side by side.
 
 use super::input::{UNIT_NORM, Wrenches};
-use super::kernel::{Kernel, Work};
+use super::kernel::{Kernel, OUTPUTS};
 use super::side_by_side::{Places, gather, scatter};
+use super::work::Work;
 use crate::dynamics::FrameWrench;
 use crate::model::Model;
 use crate::spatial::{Force, Quat, Real};
@@ -41,7 +42,7 @@ impl Call<'_> {
 pub(super) struct Space<S> {
     work: Work<S>,
     inputs: [Vec<S>; 3],
-    outputs: [Vec<S>; 5],
+    outputs: [Vec<S>; OUTPUTS],
     /// Whether no input is so large that products of it may overflow.
     is_tame: bool,
 }
@@ -50,6 +51,11 @@ impl<S: Real> Space<S> {
     pub(super) fn new(model: &Model) -> Self {
         let (inputs, outputs) = (Default::default(), Default::default());
         Self { work: Work::new(model), inputs, outputs, is_tame: true }
+    }
+
+    /// Whether it is room for this robot.
+    pub(super) fn fits(&self, model: &Model) -> bool {
+        self.work.data.bodies.len() == model.nodes().len()
     }
 
     /// Computes the states `range` (at most one per lane) into rows of their own; whether inputs and outputs are

@@ -55,9 +55,9 @@ impl Compliance {
             *tau = (0..6).map(|i| jacobian[i * k + j] * wrench[i]).sum();
         }
         if self.null_space_damping > 0.0 {
-            let (free, lost) = (&mut room.free[..k], &mut room.lost[..k]);
+            let free = &mut room.free[..k];
             room.inverse.factor(jacobian, k, &[0.0]);
-            room.inverse.split(jacobian, rates, free, lost);
+            room.inverse.free(jacobian, rates, free);
             tau.iter_mut().zip(free).for_each(|(tau, free)| *tau -= self.null_space_damping * *free);
         }
     }
@@ -68,12 +68,11 @@ impl Compliance {
 pub(super) struct ComplianceRoom {
     inverse: PseudoInverse<f64>,
     free: Vec<f64>,
-    lost: Vec<f64>,
 }
 
 impl ComplianceRoom {
     /// For up to `n` joints.
     pub(super) fn new(n: usize) -> Self {
-        Self { inverse: PseudoInverse::new(1), free: vec![0.0; n], lost: vec![0.0; n] }
+        Self { inverse: PseudoInverse::new(1), free: vec![0.0; n] }
     }
 }

@@ -4,7 +4,7 @@ use super::error::ControlError;
 use super::gains::{check_matrix, check_numbers};
 use super::pseudo_inverse::PseudoInverse;
 use crate::dynamics::{Data, FreeFloating, base_relative_frame, free_floating_recursion};
-use crate::model::{JointProperties, Model};
+use crate::model::{Frame, JointProperties, Model};
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 
@@ -77,13 +77,19 @@ impl ComputedTorque {
         check_matrix("kd", &self.kd)?;
         check_numbers("damping", &[self.damping])?;
         check_numbers("null_space_damping", &[self.null_space_damping])?;
-        let frame = &model.frames()[self.frame];
+        let frame = frame_of(model, self.frame)?;
         let joints = path_joints(model, self.frame).count();
         if joints < 6 {
             return Err(ControlError::TooFewJoints { frame: frame.name.clone(), joints });
         }
         Ok(())
     }
+}
+
+/// A frame that the robot has.
+pub(super) fn frame_of(model: &Model, frame: usize) -> Result<&Frame, ControlError> {
+    let count = model.frames().len();
+    model.frames().get(frame).ok_or(ControlError::NoSuchFrame { frame, count })
 }
 
 /// Joints between a frame and the base, from the frame on.
@@ -100,7 +106,7 @@ pub struct ComputedTorqueWork<S> {
     pub reduced: FreeFloating<S>,
     inverse: PseudoInverse<S>,
     acceleration: Vec<S>,
-    free: Vec<S>,
+    kept: Vec<S>,
     lost: Vec<S>,
 }
 
@@ -112,7 +118,7 @@ impl<S: Real> ComputedTorqueWork<S> {
             reduced: FreeFloating::new(model),
             inverse: PseudoInverse::new(1),
             acceleration: vec![S::of(0.0); n],
-            free: vec![S::of(0.0); n],
+            kept: vec![S::of(0.0); n],
             lost: vec![S::of(0.0); n],
         }
     }
@@ -179,7 +185,7 @@ fn kernel<S: Real>(
         *a = (-k).mul_add(*rate, *a);
     }
     if work.inverse.is_damped() {
-        work.inverse.split(jacobian, rates, &mut work.free, &mut work.lost);
+        work.inverse.lost(jacobian, rates, &mut work.kept, &mut work.lost);
         for (a, lost) in work.acceleration.iter_mut().zip(&work.lost) {
             *a = (k - S::of(law.brake())).mul_add(*lost, *a);
         }

@@ -26,5 +26,4 @@ pub use gains::PerJoint;
 pub use goal::{Goal, Miss, Outcome};
 pub use group::{Begin, Control, Law};
 pub use joint_space::{Interface, JointComputedTorque, JointPid};
-pub use pseudo_inverse::PseudoInverse;
 pub use stack::Stack;

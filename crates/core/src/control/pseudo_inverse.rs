@@ -15,7 +15,7 @@ pub(super) const ROWS: usize = 6;
 /// Source: Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control 108(3), 1986, with another measure of
 /// the distance from singularity.
 #[derive(Clone, Debug)]
-pub struct PseudoInverse<S> {
+pub(super) struct PseudoInverse<S> {
     rows: usize,
     gram: Vec<S>,
     damped: Vec<S>,
@@ -26,7 +26,7 @@ pub struct PseudoInverse<S> {
 
 impl<S: Real> PseudoInverse<S> {
     /// Space for the factors of up to `tasks` tasks.
-    pub fn new(tasks: usize) -> Self {
+    pub(super) fn new(tasks: usize) -> Self {
         let (rows, zero) = (ROWS * tasks, S::of(0.0));
         let square = vec![zero; rows * rows];
         Self {
@@ -41,7 +41,7 @@ impl<S: Real> PseudoInverse<S> {
 
     /// Factors `J Jᵀ` of a row-major `(6 k, n)` Jacobian; `damping` has the `k` numbers `λ₀`.
     #[inline(always)]
-    pub fn factor(&mut self, jacobian: &[S], n: usize, damping: &[f64]) {
+    pub(super) fn factor(&mut self, jacobian: &[S], n: usize, damping: &[f64]) {
         self.rows = ROWS * damping.len();
         match damping.len() {
             1 => self.factor_rows(ROWS, jacobian, n, damping), // its own code, loops unrolled
@@ -90,7 +90,7 @@ impl<S: Real> PseudoInverse<S> {
 
     /// `out = J⁺ x`, damped; `x` is `(6 k,)`, `out` `(n,)`.
     #[inline(always)]
-    pub fn apply(&mut self, jacobian: &[S], x: &[S], out: &mut [S]) {
+    pub(super) fn apply(&mut self, jacobian: &[S], x: &[S], out: &mut [S]) {
         self.x[..self.rows].copy_from_slice(&x[..self.rows]);
         let factor = if self.is_damped { &self.damped } else { &self.undamped };
         transpose_apply(self.rows, factor, jacobian, &mut self.x, out);
@@ -98,35 +98,38 @@ impl<S: Real> PseudoInverse<S> {
 
     /// Whether some task is damped.
     #[inline(always)]
-    pub fn is_damped(&self) -> bool {
+    pub(super) fn is_damped(&self) -> bool {
         self.is_damped
     }
 
-    /// Splits joint rates `y`, `(n,)`: what the tasks do not feel, `(1 − J⁺ J) y` undamped, into
-    /// `free`, and what they feel but give up for the damping, into `lost` (zero where undamped).
+    /// Of joint rates `y`, `(n,)`, what the tasks do not feel: `(1 − J⁺ J) y`, undamped.
     #[inline(always)]
-    pub fn split(&mut self, jacobian: &[S], y: &[S], free: &mut [S], lost: &mut [S]) {
-        let n = y.len();
-        self.feel(jacobian, y);
+    pub(super) fn free(&mut self, jacobian: &[S], y: &[S], free: &mut [S]) {
+        feel(self.rows, jacobian, y, &mut self.x);
         transpose_apply(self.rows, &self.undamped, jacobian, &mut self.x, free);
-        lost.copy_from_slice(free);
-        if self.is_damped {
-            self.feel(jacobian, y);
-            transpose_apply(self.rows, &self.damped, jacobian, &mut self.x, lost);
-        }
-        for j in 0..n {
-            lost[j] = free[j] - lost[j];
-            free[j] = y[j] - free[j];
-        }
+        free.iter_mut().zip(y).for_each(|(free, y)| *free = *y - *free);
     }
 
-    /// `x = J y`.
+    /// Of joint rates `y`, `(n,)`, what the tasks feel but give up for the damping, zero where there is none; `kept` is what
+    /// they do not give up.
     #[inline(always)]
-    fn feel(&mut self, jacobian: &[S], y: &[S]) {
-        let n = y.len();
-        for i in 0..self.rows {
-            self.x[i] = dot(&jacobian[i * n..(i + 1) * n], y);
+    pub(super) fn lost(&mut self, jacobian: &[S], y: &[S], kept: &mut [S], lost: &mut [S]) {
+        if !self.is_damped {
+            return lost.fill(S::of(0.0));
         }
+        for (factor, out) in [(&self.undamped, &mut *lost), (&self.damped, &mut *kept)] {
+            feel(self.rows, jacobian, y, &mut self.x);
+            transpose_apply(self.rows, factor, jacobian, &mut self.x, out);
+        }
+        lost.iter_mut().zip(kept).for_each(|(lost, kept)| *lost -= *kept);
+    }
+}
+
+/// `x = J y`.
+#[inline(always)]
+fn feel<S: Real>(rows: usize, jacobian: &[S], y: &[S], x: &mut [S]) {
+    for i in 0..rows {
+        x[i] = dot(&jacobian[i * y.len()..(i + 1) * y.len()], y);
     }
 }
 

@@ -123,10 +123,10 @@ impl SideBySide {
             self.inverse.factor(&self.jacobian, k, &self.damping);
             self.inverse.apply(&self.jacobian, &self.command, a);
             tasks.iter().enumerate().for_each(|(i, &j)| x[i] = calming[j][0] * rates[j]);
-            self.inverse.split(&self.jacobian, x, free, lost);
+            self.inverse.free(&self.jacobian, x, free);
             (0..k).for_each(|i| a[i] -= free[i]);
             tasks.iter().enumerate().for_each(|(i, &j)| x[i] = rates[j]);
-            self.inverse.split(&self.jacobian, x, free, lost);
+            self.inverse.lost(&self.jacobian, x, free, lost);
             for (i, &j) in tasks.iter().enumerate() {
                 acceleration[j] = a[i] - calming[j][1] * lost[i];
             }

@@ -1,7 +1,8 @@
 //! The bodies of a robot as effects see them, side by side.
 
-use super::rows::{Row, WIDTH, store};
-use crate::spatial::{Mat3, Real, Sym3, Vec3};
+use super::eight::{Eight, WIDTH, store};
+use super::eight_bodies::{BodyMotion, EightBodies, Group};
+use crate::spatial::{Real, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
 /// One body of the robot, in `W`.
@@ -27,28 +28,7 @@ pub struct BodyState {
 #[derive(Clone, Debug)]
 pub struct Bodies {
     count: usize,
-    blocks: Vec<Block>,
-}
-
-/// Eight bodies; where there are fewer, the last one again, without mass.
-#[derive(Clone, Debug)]
-struct Block {
-    mass: Row,
-    inertia: Sym3<Row>,
-    /// Centres of mass from the origins of the bodies' axes, body axes, m.
-    com_k: Vec3<Row>,
-    motion: BodyMotion<Row>,
-}
-
-/// Where bodies are and how they move, `W`.
-#[derive(Clone, Debug)]
-pub(crate) struct BodyMotion<T> {
-    pub(crate) com: Vec3<T>,
-    /// Centres of mass from the base's origin, with the digits that are lost far from the reference.
-    pub(crate) arm: Vec3<T>,
-    pub(crate) rot_wk: Mat3<T>,
-    /// Linear, of the centre of mass, and angular.
-    pub(crate) velocity: [Vec3<T>; 2],
+    blocks: Vec<EightBodies>,
 }
 
 impl Bodies {
@@ -83,7 +63,7 @@ impl Bodies {
     /// One of them, base first.
     pub fn get(&self, body: usize) -> Option<BodyState> {
         let (block, i) = (self.blocks.get(body / WIDTH).filter(|_| body < self.count)?, body % WIDTH);
-        let vector = |rows: &Vec3<Row>| rows.map(|row| row.get(i)).to_nalgebra();
+        let vector = |rows: &Vec3<Eight>| rows.map(|row| row.get(i)).to_nalgebra();
         let BodyMotion { com, rot_wk, velocity: [velocity, angular_velocity], .. } = &block.motion;
         let (com, rot_wk) = (vector(com), rot_wk.map(|row| row.get(i)).to_nalgebra());
         Some(BodyState {
@@ -110,16 +90,16 @@ impl Bodies {
 
     /// Centre of mass of the base; the origin where there is none.
     pub(super) fn com_of_base(&self) -> Vector3<f64> {
-        let first = |block: &Block| block.motion.com.map(|row| row.get(0)).to_nalgebra();
+        let first = |block: &EightBodies| block.motion.com.map(|row| row.get(0)).to_nalgebra();
         self.blocks.first().map_or_else(Vector3::zeros, first)
     }
 
     /// Centre of mass of a robot in `W`, m: `c = Σ mₖ cₖ / Σ mₖ`.
     pub(super) fn center_of_mass(&self) -> Vec3<f64> {
         let (mut moment, mut mass) = (Vec3::zero(), 0.0);
-        for Block { mass: masses, motion, .. } in &self.blocks {
+        for EightBodies { mass: masses, motion, .. } in &self.blocks {
             moment += motion.com.map(|row| row.dot(masses));
-            mass += masses.dot(&Row::of(|_| 1.0));
+            mass += masses.dot(&Eight::of(|_| 1.0));
         }
         moment * (1.0 / mass)
     }
@@ -140,82 +120,7 @@ impl FromIterator<BodyState> for Bodies {
     fn from_iter<I: IntoIterator<Item = BodyState>>(bodies: I) -> Self {
         let bodies: Vec<_> = bodies.into_iter().collect();
         let base = bodies.first().map_or_else(Vector3::zeros, |base| base.origin);
-        let block = |bodies: &[BodyState]| {
-            let body = |i: usize| &bodies[i.min(bodies.len() - 1)];
-            let vectors = |of: fn(&BodyState) -> &Vector3<f64>| Row::vectors(|i| (*of(body(i))).into());
-            let rot = |j: usize| Row::vectors(|i| body(i).rot_wk.column(j).into_owned().into());
-            let inertia = |j: usize, k: usize| Row::of(|i| body(i).inertia[(j, k)]);
-            Block {
-                mass: Row::of(|i| bodies.get(i).map_or(0.0, |body| body.mass)),
-                inertia: Sym3 {
-                    xx: inertia(0, 0),
-                    yy: inertia(1, 1),
-                    zz: inertia(2, 2),
-                    xy: inertia(0, 1),
-                    xz: inertia(0, 2),
-                    yz: inertia(1, 2),
-                },
-                com_k: Row::vectors(|i| body(i).rot_wk.tr_mul(&(body(i).com - body(i).origin)).into()),
-                motion: BodyMotion {
-                    com: vectors(|body| &body.com),
-                    arm: Row::vectors(|i| (body(i).com - base).into()),
-                    rot_wk: Mat3 { x: rot(0), y: rot(1), z: rot(2) },
-                    velocity: [vectors(|body| &body.velocity), vectors(|body| &body.angular_velocity)],
-                },
-            }
-        };
-        Self { count: bodies.len(), blocks: bodies.chunks(WIDTH).map(block).collect() }
-    }
-}
-
-/// As many bodies as there are lanes, or the rest of them: the last one then fills the lanes left over.
-#[derive(Clone, Copy)]
-pub(super) struct Group<'a> {
-    /// Index of the first.
-    pub(super) first: usize,
-    /// How many there are.
-    pub(super) count: usize,
-    block: &'a Block,
-}
-
-impl Group<'_> {
-    /// Where it stands in its block.
-    #[inline(always)]
-    pub(super) fn offset(&self) -> usize {
-        self.first % WIDTH
-    }
-
-    #[inline(always)]
-    fn load<S: Real>(&self) -> impl Fn(&Row) -> S {
-        let offset = self.offset();
-        move |row| row.load(offset)
-    }
-
-    #[inline(always)]
-    pub(super) fn masses<S: Real>(&self) -> S {
-        self.load()(&self.block.mass)
-    }
-
-    #[inline(always)]
-    pub(super) fn inertias<S: Real>(&self) -> Sym3<S> {
-        self.block.inertia.map(self.load())
-    }
-
-    /// Centres of mass.
-    #[inline(always)]
-    pub(super) fn coms<S: Real>(&self) -> Vec3<S> {
-        self.block.motion.com.map(self.load())
-    }
-
-    #[inline(always)]
-    pub(super) fn rot_wk<S: Real>(&self) -> Mat3<S> {
-        self.block.motion.rot_wk.map(self.load())
-    }
-
-    /// Velocities of the centres of mass, and angular velocities.
-    #[inline(always)]
-    pub(super) fn velocities<S: Real>(&self) -> [Vec3<S>; 2] {
-        let [linear, angular] = &self.block.motion.velocity;
-        [linear.map(self.load()), angular.map(self.load())]
+        let eight = |bodies: &[BodyState]| EightBodies::new(bodies, &base);
+        Self { count: bodies.len(), blocks: bodies.chunks(WIDTH).map(eight).collect() }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::rows::on_lanes;
+use super::eight::on_lanes;
 use super::wrenches::Push;
 use super::{Effect, EnvironmentError, Reference, Scene, Wrenches};
 use crate::gravity::{point_mass, tide};
@@ -60,6 +60,10 @@ impl Effect for DifferentialGravity {
 
     fn reads_velocities(&self) -> bool {
         false
+    }
+
+    fn counts_once_on(&self, _body: usize) -> bool {
+        true
     }
 
     /// # Errors

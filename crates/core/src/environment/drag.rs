@@ -1,7 +1,7 @@
 //! Drag of the air that turns with the Earth.
 
 use super::atmosphere::{AirPlace, Atmosphere, AtmosphereError, LocalAir};
-use super::rows::on_lanes;
+use super::eight::on_lanes;
 use super::surfaces::Surfaces;
 use super::wrenches::Push;
 use super::{Effect, EnvironmentError, Scene, Wrenches};
@@ -59,6 +59,10 @@ impl Effect for Drag {
 
     fn requires_orbit(&self) -> bool {
         true
+    }
+
+    fn counts_once_on(&self, body: usize) -> bool {
+        self.surfaces.cover(body)
     }
 
     fn acts_on_reference(&self) -> bool {

@@ -28,8 +28,8 @@ pub enum EnvironmentError {
     },
     /// A path runs through the planet.
     #[error(
-        "{effect}: {what} is {distance} m from the planet's centre, at least {minimum} m is needed \
-         (no planet of this mass is smaller)"
+        "{effect}: {what} is below ground, {distance} m from the planet's centre where at least {minimum} m are needed: \
+         end the run earlier, or raise the orbit"
     )]
     InsidePlanet {
         /// Name of the effect.
@@ -63,6 +63,14 @@ pub enum EnvironmentError {
         /// Index given.
         body: usize,
         /// Number of bodies.
+        count: usize,
+    },
+    /// A wrench acts on a frame that the robot does not have.
+    #[error("wrench acts on frame {frame}, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    UnknownFrame {
+        /// Index given.
+        frame: usize,
+        /// Number of frames.
         count: usize,
     },
     /// The air cannot be told.

@@ -1,6 +1,6 @@
 //! Torque of the field on each extended body.
 
-use super::rows::on_lanes;
+use super::eight::on_lanes;
 use super::wrenches::Push;
 use super::{Effect, EnvironmentError, Scene, Wrenches};
 use crate::spatial::{Real, Sym3, Vec3};
@@ -29,6 +29,10 @@ impl Effect for GravityGradient {
 
     fn reads_velocities(&self) -> bool {
         false
+    }
+
+    fn counts_once_on(&self, _body: usize) -> bool {
+        true
     }
 
     /// # Errors

@@ -8,25 +8,27 @@ mod bodies;
 mod body_wrench;
 mod differential_gravity;
 mod drag;
+mod eight;
+mod eight_bodies;
 mod error;
 mod gravity_gradient;
 mod radiation_pressure;
-mod rows;
 mod scene;
 mod shadow;
 pub mod surfaces;
 mod wrenches;
 
-pub(crate) use bodies::BodyMotion;
 pub use bodies::{Bodies, BodyState};
 pub use body_wrench::BodyWrench;
 pub use differential_gravity::{DifferentialGravity, ReferenceMotion};
 pub use drag::Drag;
+pub(crate) use eight::on_lanes;
+pub(crate) use eight_bodies::BodyMotion;
 pub use error::{EnvironmentError, Place};
 pub use gravity_gradient::GravityGradient;
 pub use radiation_pressure::{RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX};
-pub(crate) use rows::on_lanes;
-pub use scene::{Instant, Reference, Scene};
+pub(crate) use scene::Heavens;
+pub use scene::{Reference, Scene};
 pub use shadow::sunlit;
 pub use wrenches::{Wrench, Wrenches};
 
@@ -75,6 +77,12 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
     /// Whether a reference that carries the robot along has it in its own motion: the share that moves all bodies alike
     /// is then left out.
     fn acts_on_reference(&self) -> bool {
+        false
+    }
+
+    /// Whether it is all there is of its kind on a body (index): a run refuses another effect of the same name there, which
+    /// would count twice.
+    fn counts_once_on(&self, _body: usize) -> bool {
         false
     }
 

@@ -1,6 +1,6 @@
 //! The push of sunlight.
 
-use super::rows::on_lanes;
+use super::eight::on_lanes;
 use super::shadow::sunlit;
 use super::surfaces::{SurfaceError, Surfaces, not_negative};
 use super::wrenches::Push;
@@ -116,6 +116,10 @@ impl Effect for RadiationPressure {
 
     fn requires_orbit(&self) -> bool {
         true
+    }
+
+    fn counts_once_on(&self, body: usize) -> bool {
+        self.surfaces.cover(body)
     }
 
     fn acts_on_reference(&self) -> bool {

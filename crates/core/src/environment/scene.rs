@@ -3,11 +3,12 @@
 use nalgebra::Vector3;
 
 use super::EnvironmentError;
-use super::bodies::{Bodies, Group};
+use super::bodies::Bodies;
+use super::eight_bodies::Group;
 use super::error::Place;
 use super::wrenches::{Push, Wrenches};
 use crate::earth::Earth;
-use crate::gravity::{Gravity, Nearby, Sky, Station, smallest_radius_cubed};
+use crate::gravity::{Gravity, Nearby, Sky, Station, lowest_ground_cubed};
 use crate::orbit::OrbitState;
 use crate::spatial::Real;
 use std::cell::OnceCell;
@@ -23,16 +24,16 @@ pub struct Reference<'a> {
     pub falls_freely: bool,
 }
 
-/// What depends on the instant alone, found at the first look: stages of a step, and steps, share it.
+/// What depends on the instant and the reference alone, found at the first look: stages of a step, and steps, share it.
 #[derive(Clone, Debug, Default)]
-pub struct Instant {
+pub(crate) struct Heavens {
     sky: OnceCell<Sky>,
     sun: OnceCell<Vector3<f64>>,
 }
 
-impl Instant {
-    /// Nothing is known any more: it stands for another time or place.
-    pub fn forget(&mut self) {
+impl Heavens {
+    /// Nothing is known any more: they stand for another time or place.
+    pub(crate) fn forget(&mut self) {
         self.sky.take();
         self.sun.take();
     }
@@ -51,27 +52,31 @@ pub struct Scene<'a> {
     pub earth: Option<&'a Earth>,
     /// The robot's bodies now.
     pub bodies: &'a Bodies,
-    instant: &'a Instant,
+    heavens: &'a Heavens,
     /// What effects look at one after the other: the field by itself, and where differences are asked for.
     near: [OnceCell<Nearby<'a>>; 2],
 }
 
+impl Scene<'_> {
+    /// Shows effects the bodies at `time` in a step over `interval`, s, beside a reference orbit and above an Earth where
+    /// there are: what a run does at every stage of a step.
+    pub fn show<R>(
+        interval: (f64, f64),
+        time: f64,
+        bodies: &Bodies,
+        reference: Option<Reference<'_>>,
+        earth: Option<&Earth>,
+        look: impl FnOnce(&Scene<'_>) -> R,
+    ) -> R {
+        let heavens = Heavens::default();
+        look(&Scene { reference, earth, ..Scene::new(interval, time, bodies, &heavens) })
+    }
+}
+
 impl<'a> Scene<'a> {
-    /// The bodies at `time` in a step over `interval`; no orbit, no Earth. `instant` is one for each time and reference.
-    pub fn new(interval: (f64, f64), time: f64, bodies: &'a Bodies, instant: &'a Instant) -> Self {
-        Self { interval, time, reference: None, earth: None, bodies, instant, near: Default::default() }
-    }
-
-    /// Beside a reference orbit, where there is one.
-    #[must_use]
-    pub fn beside(self, reference: Option<Reference<'a>>) -> Self {
-        Self { reference, ..self }
-    }
-
-    /// Above this Earth, where the run has one.
-    #[must_use]
-    pub fn above(self, earth: Option<&'a Earth>) -> Self {
-        Self { earth, ..self }
+    /// The bodies at `time` in a step over `interval`; no orbit, no Earth. `heavens` are those of that time and reference.
+    pub(crate) fn new(interval: (f64, f64), time: f64, bodies: &'a Bodies, heavens: &'a Heavens) -> Self {
+        Self { interval, time, reference: None, earth: None, bodies, heavens, near: Default::default() }
     }
 
     /// Middle of the step being integrated, s.
@@ -118,7 +123,7 @@ impl<'a> Scene<'a> {
         let around = |r: Reference<'a>| Some((r.state, r.gravity?, r.falls_freely));
         let found = self.reference.and_then(around);
         let (reference, gravity, falls_freely) = found.ok_or(EnvironmentError::NoPlanet { effect })?;
-        let minimum_cubed = smallest_radius_cubed(gravity.mu());
+        let minimum_cubed = lowest_ground_cubed(gravity.mu());
         let planet = Planet { effect, mu: gravity.mu(), gravity, reference, falls_freely, minimum_cubed };
         planet.outside(Place::Reference, reference.position.norm())?;
         Ok(planet)
@@ -137,7 +142,7 @@ impl<'a> Scene<'a> {
             let OrbitState { position, velocity, .. } = planet.reference;
             let travel = velocity.norm() * (self.interval.1 - self.interval.0);
             let (time, origin, com) = (self.time, position.into(), self.bodies.center_of_mass());
-            let sky = found(&self.instant.sky, || planet.gravity.sky(time, origin))?;
+            let sky = found(&self.heavens.sky, || planet.gravity.sky(time, origin))?;
             let station = Station { time, origin, com, travel };
             Ok(planet.gravity.nearby(&station, sky, differs)?)
         };
@@ -146,7 +151,7 @@ impl<'a> Scene<'a> {
 
     /// Position of the Sun from the Earth's centre, axes of `I`, m.
     pub(super) fn sun(&self, earth: &Earth) -> Result<Vector3<f64>, EnvironmentError> {
-        Ok(*found(&self.instant.sun, || earth.sun(self.time))?)
+        Ok(*found(&self.heavens.sun, || earth.sun(self.time))?)
     }
 }
 
@@ -169,7 +174,7 @@ pub(super) struct Planet<'a> {
 }
 
 impl Planet<'_> {
-    /// Refuses bodies that are inside the planet; `distance` from its centre, m.
+    /// Refuses bodies that are below ground; `distance` from its centre, m.
     #[inline(always)]
     pub(super) fn all_outside<S: Real>(
         &self,
@@ -184,7 +189,7 @@ impl Planet<'_> {
         Ok(())
     }
 
-    /// Refuses a `distance` from the planet's centre, m, that lies inside the planet.
+    /// Refuses a `distance` from the planet's centre, m, at which all is ground.
     pub(super) fn outside(&self, what: Place, distance: f64) -> Result<(), EnvironmentError> {
         if distance * distance * distance >= self.minimum_cubed {
             return Ok(());

@@ -1,7 +1,7 @@
 //! Forces and torques on the bodies of a robot, side by side.
 
 use super::EnvironmentError;
-use super::rows::{Row, WIDTH, store};
+use super::eight::{Eight, WIDTH, store};
 use crate::spatial::{Mat3, Real, Vec3};
 use nalgebra::Vector3;
 use std::ops::{Add, Mul};
@@ -19,7 +19,7 @@ pub struct Wrench {
 #[derive(Clone, Debug)]
 pub struct Wrenches {
     count: usize,
-    blocks: Vec<Push<Row>>,
+    blocks: Vec<Push<Eight>>,
 }
 
 /// A force through the centre of mass and a torque about it.
@@ -53,7 +53,7 @@ impl Wrenches {
     /// That on one body; none where there is no such body.
     pub fn get(&self, body: usize) -> Option<Wrench> {
         let (push, i) = (self.blocks.get(body / WIDTH).filter(|_| body < self.count)?, body % WIDTH);
-        let vector = |rows: &Vec3<Row>| rows.map(|row| row.get(i)).to_nalgebra();
+        let vector = |rows: &Vec3<Eight>| rows.map(|row| row.get(i)).to_nalgebra();
         Some(Wrench { force: vector(&push.force), torque: vector(&push.torque) })
     }
 
@@ -91,7 +91,7 @@ impl Wrenches {
     }
 }
 
-impl Push<Row> {
+impl Push<Eight> {
     #[inline(always)]
     fn load<S: Real>(&self, offset: usize) -> Push<S> {
         Push {

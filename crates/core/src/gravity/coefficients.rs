@@ -1,6 +1,7 @@
 //! Coefficients of a planet's field, checked.
 
 use super::GravityError;
+use super::point_mass::is_earth;
 use super::series::Series;
 
 /// Highest degree that is stable; no published model goes beyond.
@@ -138,8 +139,7 @@ pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
 /// The Earth's `C20` where it is not normalised, -1.08e-3: √5 times what it ought to be.
 fn earth_not_normalised(mu: f64, series: &Series) -> Option<String> {
     let [c20, _] = series.get(2, 0);
-    let is_earth = (mu / 3.986e14 - 1.0).abs() < 1e-3;
-    (is_earth && (0.9e-3..1.3e-3).contains(&c20.abs()))
+    (is_earth(mu) && (0.9e-3..1.3e-3).contains(&c20.abs()))
         .then(|| format!("of degree 2, order 0 it is {c20:.4e}, the Earth's is -4.84e-4"))
 }
 

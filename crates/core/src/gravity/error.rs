@@ -50,6 +50,11 @@ pub enum GravityError {
     Header { file: String, key: &'static str, got: String, expected: &'static str },
     #[error("{file}:{line}: '{got}' is no row of coefficients, 'gfc degree order C S' is needed")]
     Row { file: String, line: usize, got: String },
+    #[error(
+        "{file}:{line}: the file ends within '{got}', whose last number may be cut short: get it again, or end the line if it is \
+         whole"
+    )]
+    CutRow { file: String, line: usize, got: String },
     #[error("{file}:{line}: degree {degree}, order {order} is given twice")]
     Twice { file: String, line: usize, degree: usize, order: usize },
     #[error(

@@ -4,6 +4,7 @@ use super::GravityError;
 use super::coefficients::{Coefficients, check_planet};
 use super::gfc;
 use super::harmonics::Harmonics;
+use super::point_mass::SURFACE;
 use super::zonal::{self, Zonal};
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
@@ -11,9 +12,6 @@ use std::path::Path;
 /// Models that come with the engine, to degree and order 70.
 const BUNDLED: [(&str, &str); 2] =
     [("egm2008", include_str!("models/egm2008.gfc")), ("jgm3", include_str!("models/jgm3.gfc"))];
-
-/// Share of the reference radius from which on a field holds: the Earth's poles lie at 0.9966 of it.
-const SURFACE: f64 = 0.996;
 
 /// A planet's field without that of its point mass, in axes `F` fixed in the planet, z along its axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -196,6 +194,10 @@ impl GravityField {
         mut write: impl FnMut(&Vector3<f64>, &mut [f64]) -> Result<(), GravityError>,
     ) -> Result<(), GravityError> {
         let expected = positions.len() / 3 * width;
+        if !positions.len().is_multiple_of(3) {
+            let (expected, got) = (positions.len().next_multiple_of(3), positions.len());
+            return Err(GravityError::WrongLength { name: "positions", expected, got });
+        }
         if out.len() != expected {
             return Err(GravityError::WrongLength { name: "out", expected, got: out.len() });
         }

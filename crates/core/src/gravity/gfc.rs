@@ -16,6 +16,7 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
     let mut series = Series::zeros(degree);
     let mut is_given = vec![false; (degree + 1) * (degree + 2) / 2];
     let mut central = 1.0;
+    let (last, is_cut) = (text.lines().count(), !text.ends_with(['\n', '\r']));
     let rows = text.lines().enumerate().skip(header.lines).filter(|(_, line)| !line.trim().is_empty());
     for (index, text) in rows {
         let line = index + 1;
@@ -40,6 +41,11 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
         let (c, s) = (number(words[3]).ok_or_else(refuse)?, number(words[4]).ok_or_else(refuse)?);
         if n > degree {
             continue;
+        }
+        // where no error and no end of the line follows it, S may be cut; an exponent that is cut shows by its size
+        let is_plain = m > 0 && !words[4].contains(['e', 'E', 'd', 'D']);
+        if is_cut && line == last && words.len() == 5 && is_plain {
+            return Err(GravityError::CutRow { file: file.to_owned(), line, got: text.trim().to_owned() });
         }
         if std::mem::replace(&mut is_given[n * (n + 1) / 2 + m], true) {
             return Err(GravityError::Twice { file: file.to_owned(), line, degree: n, order: m });
@@ -163,6 +169,16 @@ mod tests {
         assert!(read("tiny.gfc", &cut(16), Some(2)).is_ok());
         let broken = GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7");
         assert!(matches!(refused(&broken, None), GravityError::Row { line: 19, .. }));
+        // within its last number, which then reads as another; what stands behind it may be missing
+        for cut in ["7e-7 0.0000014", "7e-7 0.00", "7e-7 1.4"] {
+            let cut = refused(&GOOD.replace("7e-7 1.4e-6 0 0\n", cut), None);
+            assert!(matches!(cut, GravityError::CutRow { line: 19, .. }), "{cut}");
+        }
+        assert!(read("tiny.gfc", GOOD.trim_end(), None).is_ok());
+        for whole in ["7e-7 0.0000014\n", "7e-7 1.4e-6", "7e-7 0.0000014 0 0"] {
+            assert!(read("tiny.gfc", &GOOD.replace("7e-7 1.4e-6 0 0\n", whole), None).is_ok(), "{whole}");
+        }
+        assert!(read("tiny.gfc", &GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7 1.4"), Some(2)).is_ok());
         for (from, to) in
             [("2D-10", "2DD10"), ("gfc 2 1", "gfc 2 5"), ("2.4e-6", "nan"), ("gfc 3 0", "foo 3 0")]
         {

@@ -14,15 +14,17 @@ mod nearby;
 mod perturber;
 mod point_mass;
 mod series;
+mod sky;
 mod third_body;
 mod zonal;
 
 pub use coefficients::Coefficients;
 pub use error::GravityError;
 pub use field::GravityField;
-pub use nearby::{Nearby, Sky, Station};
+pub(crate) use nearby::{Nearby, Station};
 pub use perturber::{Luminary, Perturber};
-pub(crate) use point_mass::{point_mass, point_mass_gradient, smallest_radius_cubed, tide};
+pub(crate) use point_mass::{lowest_ground_cubed, point_mass, point_mass_gradient, tide};
+pub(crate) use sky::Sky;
 pub use third_body::ThirdBody;
 
 use crate::earth::{Earth, Epoch};

@@ -1,37 +1,21 @@
 //! The field near a robot: evaluated once, expanded to the bodies.
 
 use super::expansion::{Expansion, is_near};
-use super::point_mass::{point_mass_gradient, tide};
-use super::{Gravity, GravityError, GravityField};
-use crate::spatial::{Mat3, Real, Sym3, Vec3};
-use std::cell::OnceCell;
-
-/// Pitch of the points, fixed in the planet, about which a dear field is expanded for short steps, m: a robot in a low orbit
-/// passes one every third step of 1 ms. No place is farther than 28 m from one; on the way from one to the next what the
-/// expansion leaves out averages to nothing, because `∇²g = 0`.
-const PITCH: f64 = 32.0;
+use super::sky::Sky;
+use super::{Gravity, GravityError};
+use crate::spatial::{Real, Sym3, Vec3};
 
 /// Where and when: a robot beside its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Station {
+pub(crate) struct Station {
     /// Instant, s of simulation.
-    pub time: f64,
+    pub(crate) time: f64,
     /// Position of the reference from the planet's centre, axes of `I`, m.
-    pub origin: Vec3<f64>,
+    pub(crate) origin: Vec3<f64>,
     /// Centre of mass of the robot from there, m.
-    pub com: Vec3<f64>,
+    pub(crate) com: Vec3<f64>,
     /// Way through the planet's field in the step being integrated, m.
-    pub travel: f64,
-}
-
-/// How the planet and the bodies beyond it stand at one instant.
-#[derive(Clone, Debug)]
-pub struct Sky {
-    rot_fi: Mat3<f64>,
-    /// The point of the grid that was asked for first, and the field about it in axes of `I`: stages share it.
-    first: OnceCell<(Vec3<f64>, Expansion)>,
-    /// What third bodies do, about the reference: over 40 m linear to 1e-7 of the Moon's tide.
-    third: Option<Expansion>,
+    pub(crate) travel: f64,
 }
 
 /// The field without its point mass, around the bodies of a robot at one instant, axes of `I`.
@@ -40,7 +24,7 @@ pub struct Sky {
 /// for steps that lead from point to point, about the robot as it stands. All of it is a function of the instant and of
 /// the step: a run that goes on from a checkpoint finds the same bits.
 #[derive(Clone, Debug)]
-pub struct Nearby<'a> {
+pub(crate) struct Nearby<'a> {
     gravity: &'a Gravity,
     time: f64,
     origin: Vec3<f64>,
@@ -50,16 +34,6 @@ pub struct Nearby<'a> {
 }
 
 impl Gravity {
-    /// How the planet and the bodies beyond it stand at an instant, the reference being at `origin`.
-    ///
-    /// # Errors
-    /// What a third body says.
-    pub fn sky(&self, time: f64, origin: Vec3<f64>) -> Result<Sky, GravityError> {
-        let rot_fi = self.rot_fi(time).map_or_else(Mat3::identity, Mat3::from);
-        let third = (!self.third_bodies.is_empty()).then(|| self.third_bodies_about(time, origin));
-        Ok(Sky { rot_fi, first: OnceCell::new(), third: third.transpose()? })
-    }
-
     /// All but the planet's point mass around a robot, under the [sky](Self::sky) of that instant and origin.
     ///
     /// `differs` says whether [`Nearby::difference`] will be asked for: what is expanded is then expanded half way to a
@@ -67,7 +41,7 @@ impl Gravity {
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`].
-    pub fn nearby<'a>(
+    pub(crate) fn nearby<'a>(
         &'a self,
         station: &Station,
         sky: &'a Sky,
@@ -85,39 +59,6 @@ impl Gravity {
         }
         Ok(near)
     }
-
-    /// What third bodies do at a place and around it.
-    fn third_bodies_about(&self, t: f64, at: Vec3<f64>) -> Result<Expansion, GravityError> {
-        let mut about = Expansion { at, value: Vec3::zero(), gradient: Sym3::default() };
-        for body in &self.third_bodies {
-            let place = Vec3::from(body.position(t)?);
-            about.value += tide(body.mu(), &-place, at).0;
-            about.gradient += point_mass_gradient(body.mu(), &(at - place).to_nalgebra()).into();
-        }
-        Ok(about)
-    }
-
-    /// The field about a place or the point of the grid next to it, axes of `I`.
-    fn about(
-        &self,
-        field: &GravityField,
-        sky: &Sky,
-        at: Vec3<f64>,
-        travel: f64,
-    ) -> Result<Expansion, GravityError> {
-        let here = sky.rot_fi * at;
-        if field.is_closed() {
-            return Ok(Expansion::of(field, here)?.turned_back(&sky.rot_fi));
-        }
-        let next = |x: f64| (x / PITCH).round() * PITCH;
-        let point = if travel > PITCH { here } else { here.map(|x| next(*x)) };
-        if let Some((_, expansion)) = sky.first.get().filter(|(first, _)| *first == point) {
-            return Ok(*expansion);
-        }
-        let expansion = self.memo.about(field, point)?.turned_back(&sky.rot_fi);
-        let _ = sky.first.set((point, expansion)); // the first stays
-        Ok(expansion)
-    }
 }
 
 impl Nearby<'_> {
@@ -126,15 +67,17 @@ impl Nearby<'_> {
     /// # Errors
     /// [`GravityError::BelowSurface`].
     #[inline(always)]
-    pub fn acceleration<S: Real>(&self, offset: Vec3<S>) -> Result<Vec3<S>, GravityError> {
+    pub(crate) fn acceleration<S: Real>(&self, offset: Vec3<S>) -> Result<Vec3<S>, GravityError> {
         let there = Vec3::of(&self.origin) + offset;
         let field = match self.expansion(there) {
             Some(near) => near.value_at(there),
-            None => each(there, |there| self.field(there))?,
+            None => lanes(each(there, |there| self.field(there))?),
         };
         let third = match &self.sky.third {
             Some(third) if third.reaches(there) => third.value_at(there),
-            Some(_) => each(there, |there| self.third_bodies(Vec3::zero(), there))?,
+            Some(_) => {
+                lanes(each(there, |there| self.gravity.tide_of_third_bodies(self.time, Vec3::zero(), there))?)
+            }
             None => Vec3::zero(),
         };
         Ok(field + third)
@@ -145,15 +88,17 @@ impl Nearby<'_> {
     /// # Errors
     /// [`GravityError::BelowSurface`].
     #[inline(always)]
-    pub fn difference<S: Real>(&self, offset: Vec3<S>) -> Result<Vec3<S>, GravityError> {
+    pub(crate) fn difference<S: Real>(&self, offset: Vec3<S>) -> Result<Vec3<S>, GravityError> {
         let there = Vec3::of(&self.origin) + offset;
         let field = match self.expansion(self.origin).filter(|near| near.reaches(there)) {
             Some(near) => near.rise(offset),
-            None => each(offset, |offset| self.difference_of_field(offset))?,
+            None => lanes(each(offset, |offset| self.difference_of_field(offset))?),
         };
         let third = match &self.sky.third {
             Some(third) if third.reaches(there) => third.rise(offset),
-            Some(_) => each(offset, |offset| self.third_bodies(self.origin, offset))?,
+            Some(_) => lanes(each(offset, |offset| {
+                self.gravity.tide_of_third_bodies(self.time, self.origin, offset)
+            })?),
             None => Vec3::zero(),
         };
         Ok(field + third)
@@ -164,7 +109,7 @@ impl Nearby<'_> {
     /// # Errors
     /// [`GravityError::BelowSurface`].
     #[inline(always)]
-    pub fn gradient<S: Real>(&self, offset: Vec3<S>) -> Result<Sym3<S>, GravityError> {
+    pub(crate) fn gradient<S: Real>(&self, offset: Vec3<S>) -> Result<Sym3<S>, GravityError> {
         let there = Vec3::of(&self.origin) + offset;
         let known = self.expansion(there).map(|near| near.gradient);
         let field = if self.gravity.field.is_none() { Some(Sym3::default()) } else { known };
@@ -172,12 +117,10 @@ impl Nearby<'_> {
             (Some(field), None) => Ok(Sym3::of(&field)),
             (Some(field), Some(third)) if third.reaches(there) => Ok(Sym3::of(&(field + third.gradient))),
             _ => {
-                let column = |axis: fn(Sym3<f64>) -> Vec3<f64>| {
-                    each(there, |there| self.exact_gradient(there).map(axis))
-                };
-                let (diagonal, rest) =
-                    (column(|g| Vec3::new(g.xx, g.yy, g.zz))?, column(|g| Vec3::new(g.xy, g.xz, g.yz))?);
-                Ok(Sym3::new(diagonal.x, diagonal.y, diagonal.z, rest.x, rest.y, rest.z))
+                let g = each(there, |there| self.exact_gradient(there))?;
+                let number = |of: fn(&Sym3<f64>) -> f64| S::from_lanes(|i| of(&g[i]));
+                let (xx, yy, zz) = (number(|g| g.xx), number(|g| g.yy), number(|g| g.zz));
+                Ok(Sym3::new(xx, yy, zz, number(|g| g.xy), number(|g| g.xz), number(|g| g.yz)))
             }
         }
     }
@@ -229,24 +172,26 @@ impl Nearby<'_> {
             None => self.gradient_of_field(at)?,
         } + third)
     }
-
-    /// The tide of third bodies: what they do at `from + offset` beyond what they do at `from`.
-    ///
-    /// At the planet's centre they do nothing: its own fall is that of the frame.
-    fn third_bodies(&self, from: Vec3<f64>, offset: Vec3<f64>) -> Result<Vec3<f64>, GravityError> {
-        self.gravity.third_bodies.iter().try_fold(Vec3::zero(), |sum, body| {
-            Ok(sum + tide(body.mu(), &(from - Vec3::from(body.position(self.time)?)), offset).0)
-        })
-    }
 }
+
+/// Most places side by side.
+const MOST_LANES: usize = 8;
 
 /// One place after the other.
 #[inline(never)]
-fn each<S: Real, E>(places: Vec3<S>, find: impl Fn(Vec3<f64>) -> Result<Vec3<f64>, E>) -> Result<Vec3<S>, E> {
-    const MOST_LANES: usize = 8;
-    let mut found = [Vec3::zero(); MOST_LANES];
+fn each<S: Real, T: Copy + Default>(
+    places: Vec3<S>,
+    find: impl Fn(Vec3<f64>) -> Result<T, GravityError>,
+) -> Result<[T; MOST_LANES], GravityError> {
+    let mut found = [T::default(); MOST_LANES];
     for (i, to) in found.iter_mut().enumerate().take(S::LANES) {
         *to = find(places.lane(i))?;
     }
-    Ok(Vec3::from_lanes(|i| found[i]))
+    Ok(found)
+}
+
+/// A vector of each place.
+#[inline(always)]
+fn lanes<S: Real>(vectors: [Vec3<f64>; MOST_LANES]) -> Vec3<S> {
+    Vec3::from_lanes(|i| vectors[i])
 }

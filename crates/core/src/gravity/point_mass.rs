@@ -42,12 +42,21 @@ pub(crate) fn tide<S: Real>(mu: f64, origin: &Vec3<f64>, offset: Vec3<S>) -> (Ve
     ((offset - origin_s * f) * (s(-mu) * a * inverse), distance)
 }
 
-/// Cube of the radius below which no solid body of this `μ = G m` can have its surface, m³.
+/// Whether this is the Earth's `μ`, m³/s², in whatever version: no other planet's is near it.
+pub(crate) fn is_earth(mu: f64) -> bool {
+    (mu / 3.986e14 - 1.0).abs() < 1e-3
+}
+
+/// Share of a planet's largest radius from which on there is an outside: the Earth's poles lie at 0.9966 of it.
+pub(crate) const SURFACE: f64 = 0.996;
+
+/// Cube of the distance from the centre of a planet of this `μ = G m` below which all is ground, m³.
 ///
-/// `R³ = 3 μ/(4π G ρ)` with osmium's `ρ = 22 600 kg/m³`: `R` = 3980 km for the Earth's mass. The
-/// true surface lies higher and is not ours to know; far below it the field of a point mass
-/// means nothing and grows without bound.
-pub(crate) fn smallest_radius_cubed(mu: f64) -> f64 {
+/// The Earth is known by its `μ`: 6353 km, where fields end too. Of other planets the surface is not ours to know, but none
+/// lies below `R³ = 3 μ/(4π G ρ)` with osmium's `ρ = 22 600 kg/m³`: deep in the ground the field of a point mass means
+/// nothing and grows without bound.
+pub(crate) fn lowest_ground_cubed(mu: f64) -> f64 {
     const G_RHO: f64 = 6.674e-11 * 22_600.0;
-    3.0 * mu / (4.0 * std::f64::consts::PI * G_RHO)
+    const EARTH: f64 = SURFACE * 6_378_137.0; // WGS84
+    if is_earth(mu) { EARTH * EARTH * EARTH } else { 3.0 * mu / (4.0 * std::f64::consts::PI * G_RHO) }
 }

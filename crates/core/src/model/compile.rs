@@ -29,6 +29,7 @@ pub(super) fn compile(builder: ModelBuilder) -> Result<Model, ModelError> {
         frames: Vec::new(),
         body_frames: vec![0],
         visuals: Vec::new(),
+        collisions: Vec::new(),
         warnings: builder.warnings.clone(),
     };
     let mut placed: Vec<Option<Placed>> = vec![None; builder.links.len()];
@@ -50,6 +51,7 @@ pub(super) fn compile(builder: ModelBuilder) -> Result<Model, ModelError> {
         }
         model.frames.push(named_frame(&description.name, &place, &Isometry3::identity()));
         model.visuals.extend(description.visuals.iter().map(|visual| (frame, visual.clone())));
+        model.collisions.extend(description.collisions.iter().map(|shape| (frame, shape.clone())));
         placed[link] = Some(place);
     }
     let mut pose = Isometry3::identity();

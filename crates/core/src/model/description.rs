@@ -22,12 +22,14 @@ pub struct Link {
     pub inertial: Option<Inertial>,
     /// What it looks like.
     pub visuals: Vec<Visual>,
+    /// What its contacts are computed with elsewhere; never a mesh.
+    pub collisions: Vec<Visual>,
 }
 
 impl Link {
     /// A link that looks like nothing.
     pub fn new(name: &str, inertial: Option<Inertial>) -> Self {
-        Self { name: name.to_owned(), inertial, visuals: Vec::new() }
+        Self { name: name.to_owned(), inertial, visuals: Vec::new(), collisions: Vec::new() }
     }
 }
 

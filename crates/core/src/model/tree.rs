@@ -79,6 +79,7 @@ pub struct Model {
     /// Frame of each body's link.
     pub(super) body_frames: Vec<usize>,
     pub(super) visuals: Vec<(usize, Visual)>,
+    pub(super) collisions: Vec<(usize, Visual)>,
     pub(super) warnings: Vec<ModelWarning>,
 }
 
@@ -130,6 +131,11 @@ impl Model {
     /// Visual shapes with the frame (index) each is fixed to.
     pub fn visuals(&self) -> &[(usize, Visual)] {
         &self.visuals
+    }
+
+    /// Collision shapes that are no meshes, likewise: what to draw where the mesh of a visual is missing.
+    pub fn collisions(&self) -> &[(usize, Visual)] {
+        &self.collisions
     }
 
     /// What was odd in the description.

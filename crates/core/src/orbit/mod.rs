@@ -25,7 +25,7 @@ pub use fixed_frame::FixedFrame;
 pub use frames::{Lvlh, Nadir, PathFrame};
 pub use kepler::{Elements, Kepler, Phase, SecularJ2, Size};
 pub use numerical::Numerical;
-pub use rows::Rows;
+pub use rows::StateRows;
 pub use sgp4::{EarthModel, MeanElements, Sgp4};
 
 /// Gravitational parameter of the Earth, `3.986004418e14 m³/s²`, atmosphere included.
@@ -80,7 +80,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     ///
     /// # Errors
     /// As [`Orbit::position_velocity`], at the first instant that is refused.
-    fn fill(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
+    fn fill(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         rows::one_by_one(self, times, rows)
     }
 
@@ -144,7 +144,7 @@ pub fn states(
     positions: &mut [f64],
     velocities: &mut [f64],
 ) -> Result<(), OrbitError> {
-    orbit.fill(times, Rows::new(times.len(), positions, velocities)?)
+    orbit.fill(times, StateRows::new(times.len(), positions, velocities)?)
 }
 
 /// Local orbital frames (Hill) at many instants.

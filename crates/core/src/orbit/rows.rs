@@ -6,12 +6,12 @@ use nalgebra::Vector3;
 
 /// Where positions and velocities go, m and m/s, axes of `I`: rows of three numbers, row after row.
 #[derive(Debug)]
-pub struct Rows<'a> {
+pub struct StateRows<'a> {
     positions: &'a mut [f64],
     velocities: &'a mut [f64],
 }
 
-impl<'a> Rows<'a> {
+impl<'a> StateRows<'a> {
     /// Room for `count` rows.
     ///
     /// # Errors
@@ -30,9 +30,28 @@ impl<'a> Rows<'a> {
     }
 
     /// Writes row `index`.
-    pub fn set(&mut self, index: usize, position: &Vector3<f64>, velocity: &Vector3<f64>) {
+    ///
+    /// # Errors
+    /// [`OrbitError::WrongLength`] for a row beyond the last.
+    pub fn set(
+        &mut self,
+        index: usize,
+        position: &Vector3<f64>,
+        velocity: &Vector3<f64>,
+    ) -> Result<(), OrbitError> {
+        let (count, end) = (self.positions.len() / 3, index.saturating_add(1));
+        if end > count {
+            return Err(OrbitError::WrongLength { name: "rows", expected: end, got: count });
+        }
         self.positions[3 * index..][..3].copy_from_slice(position.as_slice());
         self.velocities[3 * index..][..3].copy_from_slice(velocity.as_slice());
+        Ok(())
+    }
+
+    /// Refuses another number of rows than there are `times`.
+    fn check(&self, times: &[f64]) -> Result<(), OrbitError> {
+        let (expected, got) = (times.len(), self.positions.len() / 3);
+        if expected == got { Ok(()) } else { Err(OrbitError::WrongLength { name: "rows", expected, got }) }
     }
 
     #[inline(always)]
@@ -49,11 +68,12 @@ impl<'a> Rows<'a> {
 pub(super) fn one_by_one(
     orbit: &(impl Orbit + ?Sized),
     times: &[f64],
-    mut rows: Rows<'_>,
+    mut rows: StateRows<'_>,
 ) -> Result<(), OrbitError> {
+    rows.check(times)?;
     for (index, &t) in times.iter().enumerate() {
         let (position, velocity) = orbit.position_velocity(t)?;
-        rows.set(index, &position, &velocity);
+        rows.set(index, &position, &velocity)?;
     }
     Ok(())
 }
@@ -62,9 +82,10 @@ pub(super) fn one_by_one(
 pub(super) fn in_lanes<S: Real>(
     orbit: &impl Orbit,
     times: &[f64],
-    mut rows: Rows<'_>,
+    mut rows: StateRows<'_>,
     kernel: impl Fn(S) -> Option<(Vec3<S>, Vec3<S>)>,
 ) -> Result<(), OrbitError> {
+    rows.check(times)?;
     let mut done = 0;
     while done < times.len() {
         // as far as the lanes go, within their instruction set
@@ -85,7 +106,7 @@ pub(super) fn in_lanes<S: Real>(
         );
         for index in done..times.len().min(done + S::LANES) {
             let (position, velocity) = orbit.position_velocity(times[index])?;
-            rows.set(index, &position, &velocity);
+            rows.set(index, &position, &velocity)?;
         }
         done = times.len().min(done + S::LANES);
     }

@@ -44,6 +44,10 @@ pub enum SimulationError {
     RecordEvery,
     #[error("{effect} needs an orbit around a planet: give the simulation one, or give the path its mu")]
     NeedsOrbit { effect: String },
+    #[error(
+        "{effect} is given twice for body '{body}' and would count twice: give it once, or each of the two to other bodies"
+    )]
+    EffectTwice { effect: String, body: String },
     #[error("the controller tracks a frame but the simulation has no reference to track: give it one")]
     NeedsReference,
     #[error(
@@ -70,7 +74,7 @@ pub enum SimulationError {
     TooManyRows { rows: usize },
     #[error(
         "the run diverged at t = {time} s: the state is no longer finite; shorten time_step, or soften gains and joint damping \
-         (last finite q = {q:?}, v = {v:?})"
+         (the last finite state is in the error's q and v)"
     )]
     Diverged { time: f64, q: Vec<f64>, v: Vec<f64> },
     #[error("the run was interrupted at t = {time} s")]

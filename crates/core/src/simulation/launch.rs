@@ -171,7 +171,7 @@ impl Simulation {
     }
 
     /// The effects of the scenario, and gravity where there is a planet.
-    fn all_effects(&self) -> Vec<Arc<dyn Effect>> {
+    pub(super) fn all_effects(&self) -> Vec<Arc<dyn Effect>> {
         let mut effects = self.effects.clone();
         if self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some()) {
             effects.push(Arc::new(DifferentialGravity { motion: self.reference_motion }));

@@ -1,12 +1,14 @@
 //! Runs: the plant, its integrators, events, the trace and its certificate.
 
 mod certificate;
+mod check;
 mod checkpoint;
 mod contacts;
 mod driver;
 mod engine;
 mod error;
 mod exchange;
+mod guide;
 mod integrator;
 mod launch;
 mod pair;

@@ -2,12 +2,13 @@
 
 use super::error::SimulationError;
 use super::exchange::{Base, bodies_of};
+use super::guide::{Guide, Known};
 use super::plant::World;
 use super::rereference::{OwnReference, Shift};
 use crate::dynamics::{Data, base_rotation};
 use crate::earth::Earth;
 use crate::environment::{
-    Bodies, DifferentialGravity, Effect, EnvironmentError, Instant, Reference, Scene, Wrench, Wrenches,
+    Bodies, DifferentialGravity, Effect, EnvironmentError, Reference, Scene, Wrench, Wrenches,
 };
 use crate::gravity::Gravity;
 use crate::model::Model;
@@ -25,37 +26,17 @@ pub(super) struct Surroundings {
     /// What W's origin rides on.
     home: Option<Arc<dyn Orbit>>,
     /// What the robot is integrated about: `home`, or its own.
-    orbit: Option<Arc<dyn Orbit>>,
+    guide: Guide,
     own: Option<OwnReference>,
     gravity: Option<Arc<Gravity>>,
     earth: Option<Arc<Earth>>,
     /// The step being integrated.
     interval: (f64, f64),
-    /// The last instants asked for: the stages of a step share them.
-    known: [Box<Known>; 5],
     bodies: Bodies,
     wrenches: Wrenches,
     /// Of effects that a reference which carries the robot along has in its own motion.
     shared: Wrenches,
     is_carried: bool,
-}
-
-/// An instant, with the state of the reference there.
-#[derive(Clone, Debug)]
-struct Known {
-    time: f64,
-    state: Option<OrbitState>,
-    instant: Instant,
-}
-
-impl Known {
-    fn new(time: f64, state: Option<OrbitState>) -> Self {
-        Self { time, state, instant: Instant::default() }
-    }
-
-    fn nothing() -> [Box<Self>; 5] {
-        std::array::from_fn(|_| Box::new(Self::new(f64::NAN, None)))
-    }
 }
 
 impl Surroundings {
@@ -72,12 +53,11 @@ impl Surroundings {
             reads_velocities: effects.iter().any(|effect| effect.reads_velocities()),
             effects,
             home: orbit.clone(),
-            orbit,
+            guide: Guide::new(orbit),
             own: None,
             gravity,
             earth,
             interval: (f64::NAN, f64::NAN),
-            known: Known::nothing(),
             bodies: bodies_of(model),
             wrenches: Wrenches::new(count),
             shared: Wrenches::new(count),
@@ -94,8 +74,8 @@ impl Surroundings {
     pub(super) fn follow(&mut self, own: OwnReference) -> Result<(), SimulationError> {
         let (Some(gravity), Some(&time)) = (&self.gravity, own.times.last()) else { return Ok(()) };
         let orbit = Numerical::new(own.position.into(), own.velocity.into(), time, Arc::clone(gravity));
-        self.orbit = Some(Arc::new(orbit.map_err(|source| SimulationError::Orbit { time, source })?));
-        self.known = Known::nothing();
+        let orbit = orbit.map_err(|source| SimulationError::Orbit { time, source })?;
+        self.guide = Guide::new(Some(Arc::new(orbit)));
         self.own = Some(own);
         Ok(())
     }
@@ -113,48 +93,17 @@ impl Surroundings {
 
     /// State of the reference at `t` with the rate of its position for a velocity, if the run has one.
     pub(super) fn origin(&self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
-        self.orbit.as_ref().map(|orbit| as_it_moves(&**orbit, t)).transpose()
+        self.guide.orbit().map(|orbit| as_it_moves(orbit, t)).transpose()
     }
 
     /// State of the reference at `t`, if the run has one.
     pub(super) fn orbit_state(&mut self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
-        self.look_up(t)?;
-        Ok(self.known[0].state)
-    }
-
-    /// Puts what is known of an instant first.
-    fn look_up(&mut self, t: f64) -> Result<(), SimulationError> {
-        if let Some(place) = self.known.iter().position(|known| known.time == t) {
-            self.known[..=place].rotate_right(1);
-            return Ok(());
-        }
-        let Some(orbit) = &self.orbit else {
-            self.remember(t, None);
-            return Ok(());
-        };
-        // the end of the step is asked for next: two cost little more than one
-        let end = self.interval.1;
-        let is_ahead = t < end && self.known.iter().all(|known| known.time != end);
-        if let Some([now, then]) = is_ahead.then(|| orbit.two_states([t, end])).flatten() {
-            self.remember(end, Some(then));
-            self.remember(t, Some(now));
-            return Ok(());
-        }
-        let state = orbit.state(t).map_err(|source| SimulationError::Orbit { time: t, source })?;
-        self.remember(t, Some(state));
-        Ok(())
-    }
-
-    fn remember(&mut self, t: f64, state: Option<OrbitState>) {
-        self.known.rotate_right(1);
-        let Known { time, state: place, instant } = &mut *self.known[0];
-        (*time, *place) = (t, state);
-        instant.forget();
+        Ok(self.guide.at(t, self.interval.1)?.state)
     }
 
     /// Whether the reference obeys the very gravity of the run.
     fn falls_freely(&self) -> bool {
-        let obeyed = self.orbit.as_ref().and_then(|orbit| orbit.gravity());
+        let obeyed = self.guide.orbit().and_then(|orbit| orbit.gravity());
         obeyed.zip(self.gravity.as_ref()).is_some_and(|(own, all)| Arc::ptr_eq(own, all))
     }
 
@@ -169,16 +118,15 @@ impl Surroundings {
 
     /// Adds up what these effects do at `t` to the bodies that were looked at last.
     fn feel(&mut self, t: f64, effects: Range<usize>) -> Result<(), SimulationError> {
-        self.look_up(t)?;
         self.wrenches.clear();
         if self.is_carried {
             self.shared.clear();
         }
         let falls_freely = self.falls_freely();
-        let Known { state, instant, .. } = &*self.known[0];
+        let Known { state, heavens, .. } = self.guide.at(t, self.interval.1)?;
         let gravity = self.gravity.as_deref();
         let reference = state.map(|state| Reference { state, gravity, falls_freely });
-        let mut scene = Scene::new(self.interval, t, &self.bodies, instant);
+        let mut scene = Scene::new(self.interval, t, &self.bodies, heavens);
         (scene.reference, scene.earth) = (reference, self.earth.as_deref()); // in place: it is large
         for effect in &self.effects[effects] {
             let is_shared = self.is_carried && effect.acts_on_reference();

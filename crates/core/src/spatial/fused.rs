@@ -6,8 +6,8 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// An `f64` whose [`mul_add`](Real::mul_add) is one instruction.
 ///
-/// Compute with it only inside [`Real::enter`] on a processor for which
-/// [`Fused::is_available`] holds: several sines at a time are taken in its registers.
+/// Compute with it inside [`Real::enter`] on a processor for which [`Fused::is_available`] holds: elsewhere it is right
+/// but slow, and `enter` panics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[repr(transparent)]
 pub struct Fused(pub f64);
@@ -110,6 +110,10 @@ impl Real for Fused {
     }
     #[inline(always)]
     fn sin_cos_each(angles: &[Self], out: &mut [(Self, Self)]) {
+        if !Self::is_available() {
+            angles.iter().zip(out).for_each(|(angle, out)| *out = angle.sin_cos());
+            return;
+        }
         for (angles, out) in angles.chunks(4).zip(out.chunks_mut(4)) {
             let (s, c) = Lanes4::from_lanes(|i| angles.get(i).map_or(0.0, |x| x.0)).sin_cos();
             for (i, out) in out.iter_mut().enumerate() {

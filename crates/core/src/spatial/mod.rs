@@ -26,7 +26,7 @@ pub use coriolis::Coriolis;
 pub use fused::Fused;
 pub use inertia::{InverseInertia, SpatialInertia};
 pub use instruction_set::InstructionSet;
-pub use lanes::{Lanes4, Lanes8};
+pub(crate) use lanes::{Lanes4, Lanes8};
 pub use mat3::{Mat3, pose_rows};
 pub use motion::{Force, Motion};
 pub use rotation::{Quat, dexp_inv, dexp_inv_exact, exp_so3, log_rotation, log_so3};

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::surfaces::{Covering, Surface, Surfaces};
 use onorbit_core::environment::{
-    Bodies, BodyState, Effect, EnvironmentError, Instant, Reference, Scene, Wrench, Wrenches,
+    Bodies, BodyState, Effect, EnvironmentError, Reference, Scene, Wrench, Wrenches,
 };
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{MU_EARTH, OrbitState};
@@ -40,10 +40,9 @@ pub fn wrenches(
     let gravity = Gravity::point_mass(MU_EARTH);
     let state = OrbitState { position: r, velocity: v, acceleration: Vector3::zeros() };
     let (mut wrenches, bodies) = (Wrenches::new(bodies.len()), bodies.iter().copied().collect::<Bodies>());
-    let (reference, instant) =
-        (Reference { state, gravity: Some(&gravity), falls_freely: true }, Instant::default());
-    let scene = Scene::new((0.0, 1.0), 0.0, &bodies, &instant).beside(Some(reference)).above(earth);
-    effect.add_wrenches(&scene, &mut wrenches)?;
+    let reference = Some(Reference { state, gravity: Some(&gravity), falls_freely: true });
+    let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
+    Scene::show((0.0, 1.0), 0.0, &bodies, reference, earth, act)?;
     Ok(wrenches.iter().collect())
 }
 

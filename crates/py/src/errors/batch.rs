@@ -12,6 +12,16 @@ impl IntoPython for InputError {
             Self::WrongLength { name, expected, got } | Self::WrongBatch { name, expected, got } => {
                 shape_error(py, &message, name, expected, got)
             }
+            Self::Ragged { name, width, got } => shape_error(py, &message, name, width, got),
+            Self::WrongCount { what, expected, got } => shape_error(py, &message, what, expected, got),
+            Self::WrongRoom { expected, got, .. } => shape_error(py, &message, "out", expected, got),
+            Self::NotSingle { got } => shape_error(py, &message, "states", 1, got),
+            Self::UnknownFrame { frame, count } => raise(
+                py,
+                "InputError",
+                &message,
+                &fields!(py, "name": "frame", "got": frame, "expected": count),
+            ),
             Self::NotFinite { name, value, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
             }

@@ -29,6 +29,7 @@ impl IntoPython for GravityError {
             Self::Unreadable { file, .. } | Self::Truncated { file, .. } => fields!(py, "path": file),
             Self::Header { file, key, .. } => fields!(py, "path": file, "name": key),
             Self::Row { file, line, .. }
+            | Self::CutRow { file, line, .. }
             | Self::Twice { file, line, .. }
             | Self::VariesWithTime { file, line, .. } => fields!(py, "path": file, "line": line),
             Self::BelowSurface { distance, minimum } => {

@@ -45,6 +45,9 @@ impl SimulationErrorExt for SimulationError {
             ),
             Self::Earth(source) => source.into_python(py),
             Self::RecordEvery => plain(py, "InputError", &message),
+            Self::EffectTwice { effect, body } => {
+                raise(py, "EffectError", &message, &fields!(py, "name": effect, "got": body))
+            }
             Self::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
             Self::NeedsReference | Self::NeedsTool | Self::OtherTool { .. } => {
                 plain(py, "ControlError", &message)

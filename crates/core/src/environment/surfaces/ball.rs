@@ -1,7 +1,7 @@
 //! A ball in a stream of air or light.
 
 use super::sums::{Pressed, Swept};
-use crate::environment::rows::Row;
+use crate::environment::eight::Eight;
 use crate::spatial::{Real, Vec3};
 
 /// A whole ball.
@@ -17,16 +17,16 @@ pub(super) struct Ball<T> {
 
 impl Ball<f64> {
     /// One of each of eight bodies.
-    pub(super) fn rows(balls: impl Fn(usize) -> Self) -> Ball<Row> {
+    pub(super) fn eight(balls: impl Fn(usize) -> Self) -> Ball<Eight> {
         Ball {
-            area: Row::of(|i| balls(i).area),
-            centre: Row::vectors(|i| balls(i).centre),
-            reflectivity: Row::of(|i| balls(i).reflectivity),
+            area: Eight::of(|i| balls(i).area),
+            centre: Eight::vectors(|i| balls(i).centre),
+            reflectivity: Eight::of(|i| balls(i).reflectivity),
         }
     }
 }
 
-impl Ball<Row> {
+impl Ball<Eight> {
     #[inline(always)]
     pub(super) fn load<S: Real>(&self, offset: usize) -> Ball<S> {
         let centre = self.centre.map(|row| row.load(offset));

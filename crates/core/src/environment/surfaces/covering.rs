@@ -1,15 +1,15 @@
 //! Surfaces on the bodies of a robot.
 
 use super::ball::Ball;
-use super::block::Block;
+use super::eight_surfaces::EightSurfaces;
 use super::error::{SurfaceError, not_negative};
 use super::from_shapes::parts_of_body;
 use super::optics::Optics;
 use super::plate::Plate;
 use super::slab::Slab;
 use super::tube::Tube;
-use crate::environment::rows::WIDTH;
-use crate::model::{Frame, Model};
+use crate::environment::eight::WIDTH;
+use crate::model::{Frame, Model, Node};
 use crate::spatial::Vec3;
 use nalgebra::Vector3;
 
@@ -52,7 +52,7 @@ pub struct Covering {
 pub struct Surfaces {
     /// By body.
     is_covered: Vec<bool>,
-    blocks: Vec<Block>,
+    blocks: Vec<EightSurfaces>,
 }
 
 impl Surface {
@@ -76,13 +76,14 @@ impl Surface {
     /// The faces of all shapes fixed to a body: boxes, cylinders, capsules, balls.
     ///
     /// # Errors
-    /// [`SurfaceError::NoShape`], [`SurfaceError::Mesh`], [`SurfaceError::Value`].
+    /// [`SurfaceError::UnknownBody`], [`SurfaceError::NoShape`], [`SurfaceError::Mesh`], [`SurfaceError::Value`].
     pub fn from_shapes(
         model: &Model,
         body: usize,
         drag_coefficient: f64,
         optics: Optics,
     ) -> Result<Self, SurfaceError> {
+        node_of(model, body)?;
         let parts = parts_of_body(model, body, &optics)?;
         if parts.is_empty() {
             return Err(SurfaceError::NoShape { body: model.body_frame(body).name.clone() });
@@ -94,7 +95,7 @@ impl Surface {
     /// Flat plates: areas, m², outward normals of any length, centroids, m; axes and origin of `frame`.
     ///
     /// # Errors
-    /// [`SurfaceError::WrongLength`], [`SurfaceError::NoPlates`], [`SurfaceError::Normal`], [`SurfaceError::Value`].
+    /// [`SurfaceError::UnknownBody`], [`SurfaceError::WrongLength`], [`SurfaceError::NoPlates`], [`SurfaceError::Normal`], [`SurfaceError::Value`].
     pub fn plates(
         model: &Model,
         frame: &Frame,
@@ -111,7 +112,7 @@ impl Surface {
         if areas.is_empty() {
             return Err(SurfaceError::NoPlates);
         }
-        let com = model.nodes()[frame.body].com;
+        let com = node_of(model, frame.body)?.com;
         let plate = |plate: usize| {
             let normal = Vec3::from(Vector3::from(normals[plate]));
             let length = normal.norm();
@@ -131,6 +132,12 @@ impl Surface {
     }
 }
 
+/// A body that the robot has.
+fn node_of(model: &Model, body: usize) -> Result<&Node, SurfaceError> {
+    let count = model.nodes().len();
+    model.nodes().get(body).ok_or(SurfaceError::UnknownBody { body, count })
+}
+
 impl Surfaces {
     /// These coverings on a robot of `count` bodies.
     ///
@@ -148,7 +155,7 @@ impl Surfaces {
             }
         }
         let is_covered = surfaces.iter().map(Option::is_some).collect();
-        Ok(Self { is_covered, blocks: surfaces.chunks(WIDTH).map(Block::new).collect() })
+        Ok(Self { is_covered, blocks: surfaces.chunks(WIDTH).map(EightSurfaces::new).collect() })
     }
 
     /// Every body with the faces of its own shapes; bodies that look like nothing feel nothing.
@@ -183,7 +190,7 @@ impl Surfaces {
 
     /// What covers the eight bodies among which body number `first` is; `None` where nothing does.
     #[inline(always)]
-    pub(in crate::environment) fn around(&self, first: usize) -> Option<&Block> {
+    pub(in crate::environment) fn around(&self, first: usize) -> Option<&EightSurfaces> {
         self.blocks.get(first / WIDTH).filter(|block| !block.is_bare())
     }
 }

@@ -3,8 +3,8 @@
 //! No part shadows another: where faces overlap as the stream sees them, both are hit.
 
 mod ball;
-mod block;
 mod covering;
+mod eight_surfaces;
 mod error;
 mod from_shapes;
 mod optics;

@@ -1,7 +1,7 @@
 //! What a surface does with light.
 
 use super::error::{SurfaceError, not_negative};
-use crate::environment::rows::Row;
+use crate::environment::eight::Eight;
 use crate::spatial::Real;
 
 /// Shares of the light that a surface sends back; the rest is absorbed.
@@ -26,8 +26,8 @@ impl Optics {
     }
 
     /// Of eight bodies.
-    pub(super) fn rows(optics: impl Fn(usize) -> Self) -> Optics<Row> {
-        Optics { specular: Row::of(|i| optics(i).specular), diffuse: Row::of(|i| optics(i).diffuse) }
+    pub(super) fn eight(optics: impl Fn(usize) -> Self) -> Optics<Eight> {
+        Optics { specular: Eight::of(|i| optics(i).specular), diffuse: Eight::of(|i| optics(i).diffuse) }
     }
 
     /// `C_R` of a ball: of a mirror's push that of a black one, of a matt one's 4/9 more.
@@ -36,7 +36,7 @@ impl Optics {
     }
 }
 
-impl Optics<Row> {
+impl Optics<Eight> {
     #[inline(always)]
     pub(super) fn load<S: Real>(&self, offset: usize) -> Optics<S> {
         Optics { specular: self.specular.load(offset), diffuse: self.diffuse.load(offset) }

@@ -2,7 +2,7 @@
 
 use super::optics::Optics;
 use super::sums::{Pressed, Swept};
-use crate::environment::rows::Row;
+use crate::environment::eight::Eight;
 use crate::spatial::{Real, Vec3};
 
 /// A flat face, seen from the side of its normal; axes of the body, positions from its centre of mass.
@@ -23,20 +23,20 @@ impl Plate<f64> {
     }
 
     /// One of each of eight bodies.
-    pub(super) fn rows(plates: impl Fn(usize) -> Self) -> Plate<Row> {
+    pub(super) fn eight(plates: impl Fn(usize) -> Self) -> Plate<Eight> {
         Plate {
-            area: Row::of(|i| plates(i).area),
-            normal: Row::vectors(|i| plates(i).normal),
-            centroid: Row::vectors(|i| plates(i).centroid),
-            moment: Row::vectors(|i| plates(i).moment),
+            area: Eight::of(|i| plates(i).area),
+            normal: Eight::vectors(|i| plates(i).normal),
+            centroid: Eight::vectors(|i| plates(i).centroid),
+            moment: Eight::vectors(|i| plates(i).moment),
         }
     }
 }
 
-impl Plate<Row> {
+impl Plate<Eight> {
     #[inline(always)]
     pub(super) fn load<S: Real>(&self, offset: usize) -> Plate<S> {
-        let vectors = |rows: &Vec3<Row>| rows.map(|row| row.load(offset));
+        let vectors = |rows: &Vec3<Eight>| rows.map(|row| row.load(offset));
         let [normal, centroid, moment] = [&self.normal, &self.centroid, &self.moment].map(vectors);
         Plate { area: self.area.load(offset), normal, centroid, moment }
     }

@@ -2,7 +2,7 @@
 
 use super::optics::Optics;
 use super::sums::{Pressed, Swept};
-use crate::environment::rows::Row;
+use crate::environment::eight::Eight;
 use crate::spatial::{Real, Vec3};
 
 /// Opposite faces of a box, the ends of a cylinder; axes of the body, positions from its centre of mass.
@@ -29,21 +29,21 @@ impl Slab<f64> {
     }
 
     /// One of each of eight bodies.
-    pub(super) fn rows(slabs: impl Fn(usize) -> Self) -> Slab<Row> {
+    pub(super) fn eight(slabs: impl Fn(usize) -> Self) -> Slab<Eight> {
         Slab {
-            area: Row::of(|i| slabs(i).area),
-            half: Row::of(|i| slabs(i).half),
-            normal: Row::vectors(|i| slabs(i).normal),
-            centre: Row::vectors(|i| slabs(i).centre),
-            moment: Row::vectors(|i| slabs(i).moment),
+            area: Eight::of(|i| slabs(i).area),
+            half: Eight::of(|i| slabs(i).half),
+            normal: Eight::vectors(|i| slabs(i).normal),
+            centre: Eight::vectors(|i| slabs(i).centre),
+            moment: Eight::vectors(|i| slabs(i).moment),
         }
     }
 }
 
-impl Slab<Row> {
+impl Slab<Eight> {
     #[inline(always)]
     pub(super) fn load<S: Real>(&self, offset: usize) -> Slab<S> {
-        let vectors = |rows: &Vec3<Row>| rows.map(|row| row.load(offset));
+        let vectors = |rows: &Vec3<Eight>| rows.map(|row| row.load(offset));
         let [normal, centre, moment] = [&self.normal, &self.centre, &self.moment].map(vectors);
         Slab { area: self.area.load(offset), half: self.half.load(offset), normal, centre, moment }
     }

@@ -2,7 +2,7 @@
 
 use super::optics::Optics;
 use super::sums::{Pressed, Swept};
-use crate::environment::rows::Row;
+use crate::environment::eight::Eight;
 use crate::spatial::{Real, Vec3};
 use std::f64::consts::PI;
 
@@ -21,17 +21,17 @@ pub(super) struct Tube<T> {
 
 impl Tube<f64> {
     /// One of each of eight bodies.
-    pub(super) fn rows(tubes: impl Fn(usize) -> Self) -> Tube<Row> {
+    pub(super) fn eight(tubes: impl Fn(usize) -> Self) -> Tube<Eight> {
         Tube {
-            radius: Row::of(|i| tubes(i).radius),
-            length: Row::of(|i| tubes(i).length),
-            axis: Row::vectors(|i| tubes(i).axis),
-            centre: Row::vectors(|i| tubes(i).centre),
+            radius: Eight::of(|i| tubes(i).radius),
+            length: Eight::of(|i| tubes(i).length),
+            axis: Eight::vectors(|i| tubes(i).axis),
+            centre: Eight::vectors(|i| tubes(i).centre),
         }
     }
 }
 
-impl Tube<Row> {
+impl Tube<Eight> {
     #[inline(always)]
     pub(super) fn load<S: Real>(&self, offset: usize) -> Tube<S> {
         let [axis, centre] = [&self.axis, &self.centre].map(|rows| rows.map(|row| row.load(offset)));

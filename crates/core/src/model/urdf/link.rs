@@ -33,6 +33,10 @@ pub(super) fn read_link(
             }
         }
     }
+    // those only stand in for a missing mesh: what is odd in them is nobody's business
+    let solid = |shape: &Element<'_>| shape.child("geometry").is_some_and(|it| it.child("mesh").is_none());
+    let collisions = link.children("collision").filter(solid);
+    result.collisions = collisions.filter_map(|shape| read_visual(shape, around).ok()).collect();
     Ok(result)
 }
 

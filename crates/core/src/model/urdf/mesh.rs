@@ -38,7 +38,7 @@ impl<'a> Meshes<'a> {
             None => String::new(),
         };
         Some(ModelWarning::Note(format!(
-            "{count} mesh {files} not found, the first is '{first}': the robot is simulated but not drawn there{hint}"
+            "{count} mesh {files} not found, the first is '{first}': simpler shapes are drawn instead{hint}"
         )))
     }
 

@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 
 use super::error::finite;
 use super::rows::{in_lanes, one_by_one};
-use super::{Orbit, OrbitError, OrbitState, Rows};
+use super::{Orbit, OrbitError, OrbitState, StateRows};
 use crate::gravity::point_mass;
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real, Vec3};
 use conic::{Conic, InPlane, Shape};
@@ -107,7 +107,7 @@ impl Orbit for Kepler {
         }))
     }
 
-    fn fill(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
+    fn fill(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         match (InstructionSet::current(), self.conic) {
             (InstructionSet::Fused, Conic::Ellipse { .. }) => self.side_by_side::<Lanes4>(times, rows),
             (InstructionSet::Wide, Conic::Ellipse { .. }) => self.side_by_side::<Lanes8>(times, rows),
@@ -147,7 +147,7 @@ impl Kepler {
     }
 
     /// As many times at once as `S` has lanes; one by one where one of them is refused.
-    fn side_by_side<S: Real>(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
+    fn side_by_side<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         let (p, q, longest) = (self.p_i.into(), self.q_i.into(), self.conic.longest_time());
         let (p, q) = (Vec3::<S>::of(&p), Vec3::<S>::of(&q));
         in_lanes::<S>(

@@ -39,7 +39,7 @@ struct Half {
 
 impl Arcs {
     pub(super) fn new(t0: f64, r: Vector3<f64>, v: Vector3<f64>, mu: f64) -> Result<Self, OrbitError> {
-        let smallest_radius = crate::gravity::smallest_radius_cubed(mu).cbrt();
+        let smallest_radius = crate::gravity::lowest_ground_cubed(mu).cbrt();
         let distance = r.norm();
         if distance < smallest_radius {
             return Err(OrbitError::BeginsBelowSurface { distance, smallest_radius });

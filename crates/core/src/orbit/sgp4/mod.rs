@@ -19,7 +19,7 @@ mod tle;
 use nalgebra::Vector3;
 
 use super::error::finite;
-use super::rows::{Rows, in_lanes, one_by_one};
+use super::rows::{StateRows, in_lanes, one_by_one};
 use super::{Axes, Orbit, OrbitError, OrbitState};
 use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real};
 pub use constants::EarthModel;
@@ -89,7 +89,7 @@ impl Sgp4 {
     }
 
     /// As many times at once as `S` has lanes; one by one where one of them is refused.
-    fn side_by_side<S: Real>(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
+    fn side_by_side<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         in_lanes::<S>(
             self,
             times,
@@ -166,7 +166,7 @@ impl Orbit for Sgp4 {
         self.flight(t)
     }
 
-    fn fill(&self, times: &[f64], rows: Rows<'_>) -> Result<(), OrbitError> {
+    fn fill(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         if !self.propagator.goes_side_by_side() {
             return one_by_one(self, times, rows);
         }

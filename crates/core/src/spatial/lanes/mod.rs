@@ -1,4 +1,6 @@
 //! Several states side by side: the scalars of batches.
+//!
+//! The crate's own: their arithmetic *is* instructions that not every processor has, wherever it is called from.
 
 #[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
 #[cfg_attr(not(target_arch = "x86_64"), path = "array.rs")]
@@ -16,12 +18,12 @@ macro_rules! lanes {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
         #[repr(transparent)]
-        pub struct $name(register::$register);
+        pub(crate) struct $name(register::$register);
 
         impl $name {
             /// Whether this processor has the instructions that [`Real::enter`] uses.
             #[inline(always)]
-            pub fn is_available() -> bool {
+            pub(crate) fn is_available() -> bool {
                 $available
             }
 

@@ -8,9 +8,9 @@ pub(crate) const WIDTH: usize = Lanes8::LANES;
 /// One number of each of eight bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(64))]
-pub(crate) struct Row([f64; WIDTH]);
+pub(crate) struct Eight([f64; WIDTH]);
 
-impl Row {
+impl Eight {
     /// The number `f(i)` of body `i`.
     pub(super) fn of(f: impl Fn(usize) -> f64) -> Self {
         Self(std::array::from_fn(f))
@@ -50,7 +50,7 @@ impl Row {
 
 /// The way back for a vector.
 #[inline(always)]
-pub(super) fn store<S: Real>(rows: &mut Vec3<Row>, offset: usize, lanes: Vec3<S>) {
+pub(super) fn store<S: Real>(rows: &mut Vec3<Eight>, offset: usize, lanes: Vec3<S>) {
     rows.x.store(offset, lanes.x);
     rows.y.store(offset, lanes.y);
     rows.z.store(offset, lanes.z);

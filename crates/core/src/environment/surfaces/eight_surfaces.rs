@@ -7,34 +7,34 @@ use super::plate::Plate;
 use super::slab::Slab;
 use super::sums::{Pressed, Swept};
 use super::tube::Tube;
-use crate::environment::rows::{Row, WIDTH};
+use crate::environment::eight::{Eight, WIDTH};
 use crate::environment::wrenches::Push;
 use crate::spatial::{Real, Vec3};
 
 /// What covers eight bodies.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::environment) struct Block {
+pub(in crate::environment) struct EightSurfaces {
     is_bare: bool,
-    drag_coefficient: Row,
-    optics: Optics<Row>,
-    plates: Parallel<Plate<Row>>,
-    slabs: Parallel<Slab<Row>>,
-    tubes: Parallel<Tube<Row>>,
-    balls: Parallel<Ball<Row>>,
+    drag_coefficient: Eight,
+    optics: Optics<Eight>,
+    plates: Parallel<Plate<Eight>>,
+    slabs: Parallel<Slab<Eight>>,
+    tubes: Parallel<Tube<Eight>>,
+    balls: Parallel<Ball<Eight>>,
 }
 
-impl Block {
+impl EightSurfaces {
     /// The surfaces of at most eight bodies.
     pub(super) fn new(surfaces: &[Option<Surface>]) -> Self {
         let surface = |i: usize| surfaces.get(i).and_then(Option::as_ref);
         Self {
             is_bare: surfaces.iter().all(Option::is_none),
-            drag_coefficient: Row::of(|i| surface(i).map_or(0.0, |surface| surface.drag_coefficient)),
-            optics: Optics::rows(|i| surface(i).map_or(Optics::default(), |surface| surface.optics)),
-            plates: Parallel::new(surfaces, |parts| &parts.plates, |plates| Plate::rows(plates)),
-            slabs: Parallel::new(surfaces, |parts| &parts.slabs, |slabs| Slab::rows(slabs)),
-            tubes: Parallel::new(surfaces, |parts| &parts.tubes, |tubes| Tube::rows(tubes)),
-            balls: Parallel::new(surfaces, |parts| &parts.balls, |balls| Ball::rows(balls)),
+            drag_coefficient: Eight::of(|i| surface(i).map_or(0.0, |surface| surface.drag_coefficient)),
+            optics: Optics::eight(|i| surface(i).map_or(Optics::default(), |surface| surface.optics)),
+            plates: Parallel::new(surfaces, |parts| &parts.plates, |plates| Plate::eight(plates)),
+            slabs: Parallel::new(surfaces, |parts| &parts.slabs, |slabs| Slab::eight(slabs)),
+            tubes: Parallel::new(surfaces, |parts| &parts.tubes, |tubes| Tube::eight(tubes)),
+            balls: Parallel::new(surfaces, |parts| &parts.balls, |balls| Ball::eight(balls)),
         }
     }
 

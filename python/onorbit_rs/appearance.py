@@ -1,0 +1,109 @@
+"""What a robot looks like: its visual geometry, and what stands in where the mesh of a link is missing.
+
+That is the link's own collision shapes, else a ball at its joint; rods go to the next joints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onorbit_rs.geometry import GREY, Shape, box_of_inertia, plain, pose_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Body, Model, Visual
+
+    Floats = NDArray[np.float64]
+
+ROD, BALL = 0.008, 0.016
+"""Radii of a stick figure, as shares of the robot's reach."""
+
+
+def shapes(model: Model) -> list[Shape]:
+    """Everything there is to draw of a robot."""
+    found = [_of(visual) for visual in model.visuals]
+    links = {shape.link for shape in found if _is_missing(shape)} if found else set(model.body_names)
+    found = [shape for shape in found if not _is_missing(shape)]
+    bare = links - {shape.link for shape in found}
+    solid = [_of(shape) for shape in model.collisions if shape.link in bare]
+    return [*found, *solid, *_stick_figure(model, bare, {shape.link for shape in solid})]
+
+
+def missing_meshes(model: Model) -> list[str]:
+    """Names of the mesh files that are not there, each once."""
+    return list(dict.fromkeys(visual.filename or "" for visual in model.visuals if _is_missing(_of(visual))))
+
+
+def _is_missing(shape: Shape) -> bool:
+    return shape.kind == "mesh" and (shape.filename is None or not shape.filename.is_file())
+
+
+def _stick_figure(model: Model, bare: set[str], solid: set[str]) -> Iterator[Shape]:
+    """Rods through bodies that have a bare link; a ball at one not solid, or the base's box of inertia."""
+    ends: dict[str, list[Floats]] = {body.name: [] for body in model.bodies}
+    for joint in model.joints:
+        ends[joint.parent].append(np.array(joint.pose)[:3, 3])
+    on_body = {frame.name: frame for frame in model.frames if frame.name in bare and frame.name not in ends}
+    for frame in on_body.values():
+        ends[frame.body].append(np.array(frame.pose)[:3, 3])
+    ghosts = {on_body[link].body if link in on_body else link for link in bare - solid}
+    reach = _reach(model)
+    for index, body in enumerate(model.bodies):
+        if body.name in ghosts and index == 0 and body.mass > 0.0:
+            yield _box_of_inertia(body)
+        elif body.name in ghosts:
+            yield plain(body.name, "sphere", [BALL * reach], np.eye(4))
+        if body.name in ghosts | bare:
+            for end in ends[body.name] or ([np.array(body.com)] if index > 0 else []):
+                length = float(np.linalg.norm(end))
+                if length > BALL * reach:
+                    yield plain(body.name, "cylinder", [ROD * reach, length], _along(end))
+
+
+def _reach(model: Model) -> float:
+    """Diagonal of the box around all joints and centres of mass of the neutral configuration, m."""
+    q, points = model.neutral(), []
+    for body in model.bodies:
+        pose = np.asarray(model.frame_pose(q, body.name))
+        points += [pose[:3, 3], pose[:3, :3] @ np.array(body.com) + pose[:3, 3]]
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def _along(end: Floats) -> Floats:
+    """Pose (4, 4) of a cylinder from the origin to a point."""
+    z = end / np.linalg.norm(end)
+    x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
+    x /= np.linalg.norm(x)
+    return pose_of(np.stack([x, np.cross(z, x), z], axis=-1), end / 2.0)
+
+
+def _of(visual: Visual) -> Shape:
+    return Shape(
+        link=visual.link,
+        pose=np.asarray(visual.pose, dtype=np.float64),
+        kind=visual.kind,
+        size=tuple(visual.size or ()),
+        filename=Path(visual.filename) if visual.filename else None,
+        scale=_three(visual.scale),
+        rgba=_color(visual.rgba),
+    )
+
+
+def _three(scale: Sequence[float] | None) -> tuple[float, float, float]:
+    x, y, z = scale or (1.0, 1.0, 1.0)
+    return x, y, z
+
+
+def _color(rgba: Sequence[float] | None) -> tuple[float, float, float, float]:
+    red, green, blue, alpha = rgba or GREY
+    return red, green, blue, alpha
+
+
+def _box_of_inertia(body: Body) -> Shape:
+    sides, axes = box_of_inertia(body.mass, np.array(body.inertia))
+    return plain(body.name, "box", sides, pose_of(axes, np.array(body.com)))

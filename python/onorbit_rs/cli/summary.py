@@ -1,0 +1,114 @@
+"""A run's summary on the terminal: its numbers, its certificate, its files, and what to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs.cli.printing import new_console, new_table, print_table, text
+from onorbit_rs.output.checks import Check, checks
+from onorbit_rs.output.words import goal_of, tracking
+from onorbit_rs.printable import shell_word
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+_ROWS = (
+    ("joint_torque_max_nm", "joint torque, largest", "N m"),
+    ("joint_force_max_n", "force of a sliding joint, largest", "N"),
+    ("base_rotation_max_rad", "base rotation, largest", "rad"),
+    ("simulated_s", "simulated", "s"),
+    ("wall_s", "wall clock of the simulation loop", "s"),
+    ("real_time_factor", "times real time", ""),
+)
+_FILES = (
+    ("summary.json", "these numbers and more"),
+    ("trace.npz", "every column of the trace, for numpy"),
+    ("figures", "the figures, PNG"),
+    ("report.html", "one page with everything, for a browser"),
+    ("run.rrd", "the recording, for the rerun viewer"),
+    ("scenario.yaml", "the scenario with every default; it runs again"),
+)
+_VERDICTS = {True: "[green]holds[/green]", False: "[red]BROKEN[/red]", None: "[yellow]not evaluated[/yellow]"}
+
+
+def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = True) -> None:
+    """The main numbers, the verdict, where the files are and what to do next."""
+    console = new_console()
+    console.print(f"[bold]{text(summary.get('scenario', ''))}[/bold]: {text(summary.get('status', ''))}")
+    table = new_table()
+    for name, value in (*_errors(summary), *_goals(summary), *_numbers(summary)):
+        table.add_row(text(name), text(value))
+    print_table(console, table)
+    if summary.get("joint_limits_exceeded"):
+        exceeded = text(summary["joint_limits_exceeded"])
+        console.print(f"[yellow]joint limits were exceeded[/yellow]: {exceeded}", soft_wrap=True)
+    console.print(_verdict(summary), soft_wrap=True)
+    lines = checks(summary)
+    if lines:
+        print_table(console, _certificate(lines))
+    if out is None:
+        console.print("nothing was written; keep the results with --out DIR", soft_wrap=True)
+        return
+    for name, what in _FILES:
+        if (out / name).exists():
+            console.print(f"  {text(out / name)}  [dim]{what}[/dim]", soft_wrap=True)
+    if is_new:
+        folder = text(shell_word(out))
+        console.print(f"next: onorbit show {folder}    [dim]opens the recording[/dim]", soft_wrap=True)
+        console.print(
+            f"      onorbit report {folder}  [dim]one page with everything, figures as PDF[/dim]",
+            soft_wrap=True,
+        )
+
+
+def _errors(summary: dict[str, Any]) -> list[tuple[str, str]]:
+    """Largest tracking errors: each controller's under its name, or those of the one there is."""
+    found = [(tracking(key), value) for key, value in summary.items()]
+    largest = [(error, value) for error, value in found if error is not None and error.is_largest]
+    named = [(error, value) for error, value in largest if error.whose]
+    # the tool's errors are also those of the controller that moves it
+    return [(error.words, _said(value, error.unit)) for error, value in named or largest]
+
+
+def _goals(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """What came of the goals of controllers."""
+    for key, value in summary.items():
+        if (whose := goal_of(key)) is not None:
+            yield f"{whose}: goal", str(value).replace("_", " ")
+
+
+def _numbers(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    for key, name, unit in _ROWS:
+        if key in summary:
+            yield name, _said(summary[key], unit)
+
+
+def _said(value: Any, unit: str) -> str:
+    if not isinstance(value, (int, float)):
+        return "not finite"
+    return f"{value:.4g} {unit}".rstrip()
+
+
+def _verdict(summary: dict[str, Any]) -> str:
+    """Green or red, or neither where nothing was checked."""
+    has_passed = summary.get("certificate_passed")
+    if has_passed is None:
+        return "[yellow]certificate absent[/yellow]: nothing was checked"
+    if has_passed:
+        return "[green]certificate passed[/green]: every value is within its gate"
+    return f"[red]certificate FAILED[/red] ({text(summary.get('certificate_failures'))})"
+
+
+def _certificate(lines: list[Check]) -> Table:
+    """Each value beside the most that it may be."""
+    table = new_table("", "value", "gate", "unit", "")
+    for check in lines:
+        value = "not finite" if check.holds is False and check.value is None else _short(check.value)
+        table.add_row(f"  {check.name}", value, _short(check.gate), check.unit, _VERDICTS[check.holds])
+    return table
+
+
+def _short(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2g}"

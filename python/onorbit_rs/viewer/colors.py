@@ -1,0 +1,40 @@
+"""Colours of arrows: a hue for each effect, full for what pushes, pale for what turns.
+
+Any two that one legend may hold are at least 25 apart in CIE 1976 L*a*b*, where 2.3 can just be told apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+Color = tuple[int, int, int]
+
+
+class Hue(NamedTuple):
+    """Of one cause: red, green, blue, 0 to 255."""
+
+    full: Color
+    """Forces, linear momentum."""
+    pale: Color
+    """Torques, angular momentum."""
+
+
+MOMENTUM = Hue((230, 135, 40), (253, 206, 165))
+
+_OF_EFFECTS = {
+    "gravity": Hue((150, 112, 222), (222, 212, 255)),
+    "gravity_gradient": Hue((235, 40, 230), (250, 150, 245)),
+    "drag": Hue((20, 160, 170), (140, 245, 255)),
+    "radiation_pressure": Hue((175, 165, 20), (255, 244, 125)),
+}
+_OF_OTHERS = (Hue((250, 55, 130), (250, 158, 188)), Hue((60, 150, 80), (165, 245, 175)))
+
+
+def hues(effects: Iterable[str]) -> dict[str, Hue]:
+    """Of each effect its own; others take what is left in their order, and from the seventh on share."""
+    names = list(effects)
+    left = [*_OF_OTHERS, *(hue for name, hue in _OF_EFFECTS.items() if name not in names)]
+    others = [name for name in names if name not in _OF_EFFECTS]
+    taken = {name: left[index % len(left)] for index, name in enumerate(others)}
+    return {name: _OF_EFFECTS.get(name) or taken[name] for name in names}

@@ -1,0 +1,54 @@
+"""The notes beside the picture, as Markdown in which no name or value of the user's is markup."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs.appearance import missing_meshes
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model
+    from onorbit_rs.scenario import Scenario
+
+_MARKUP = re.compile(r"([!#&()*+<>\[\]\\^`{|}~$])|(?<!\w)_|_(?!\w)")
+"""What means something to Markdown; not the underscores within a name."""
+
+_MOST_MESHES = 10
+
+
+def notes(summary: dict[str, Any], scenario: Scenario) -> str:
+    """The summary of a run."""
+    lines = "\n".join(f"| {escaped(key)} | {escaped(_short(value))} |" for key, value in summary.items())
+    about = escaped(" ".join(scenario.description.split()))
+    return f"# {escaped(scenario.name)}\n\n{about}\n\n| | |\n|-|-|\n{lines}\n"
+
+
+def about_meshes(model: Model) -> str:
+    """Which meshes are missing; empty where none is."""
+    missing = missing_meshes(model)
+    if not missing:
+        return ""
+    more = "" if len(missing) <= _MOST_MESHES else f" and {len(missing) - _MOST_MESHES} more"
+    named = ", ".join(escaped(name) for name in missing[:_MOST_MESHES])
+    return f"\n\nCollision shapes and sticks stand in for meshes that were not found: {named}{more}.\n"
+
+
+def escaped(text: str) -> str:
+    """On one line, as it reads: markup and what would not be seen is told instead of obeyed."""
+    return _MARKUP.sub(r"\\\g<0>", readable(text))
+
+
+def readable(text: str) -> str:
+    """Characters that break the line, turn the writing round or are not seen, as ``\\n``, ``\\u202e``."""
+    return "".join(map(_told, text))
+
+
+def _told(character: str) -> str:
+    is_seen = unicodedata.category(character) not in ("Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp")
+    return character if is_seen else character.encode("unicode_escape").decode("ascii")
+
+
+def _short(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,179 @@
+"""What the terminal says of a run: checks beside their gates, controllers by name, a divergence in a line."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from commands import SPIN, onorbit, refusal
+
+import onorbit_rs as oo
+from onorbit_rs.cli.summary import print_summary
+from onorbit_rs.exceptions import InputError, SimulationError
+from onorbit_rs.output.checks import CHECKS, GATE
+from onorbit_rs.scenario import load
+
+
+def short(name: str, **settings: Any) -> dict[str, Any]:
+    data = load(name).resolved()
+    data["simulation"] |= {"duration": 0.1, "time_step": 5e-3, **settings}
+    return data
+
+
+def printed(capsys: pytest.CaptureFixture[str], summary: dict[str, Any]) -> list[str]:
+    capsys.readouterr()
+    print_summary(summary, None)
+    return capsys.readouterr().out.splitlines()
+
+
+def test_every_check_stands_beside_its_gate_and_unit(capsys: pytest.CaptureFixture[str]) -> None:
+    run = oo.run(short("humanoid_reach"), quiet=True)
+    lines = printed(capsys, run.summary)
+    rows = run.trace.certificate()
+    assert len(rows) == len(CHECKS)
+    for key, value, gate, passed in rows:
+        assert run.summary[GATE + key] == gate
+        name = key.removesuffix("_rel").removesuffix("_rad").replace("_", " ")
+        (line,) = [line for line in lines if line.startswith(f"  {name} ")]
+        unit = "rad" if key.endswith("_rad") else "relative"
+        assert line.split()[-4:] == [f"{value:.2g}", f"{gate:.2g}", unit, "holds"] and passed
+
+
+def test_a_check_that_breaks_is_told_apart_from_those_that_hold(capsys: pytest.CaptureFixture[str]) -> None:
+    data = load("free_tumble").resolved()
+    data["simulation"] |= {"duration": 10.0, "time_step": 0.1}
+    summary = oo.run(data, quiet=True).summary
+    broken = {line.split("  ")[1] for line in printed(capsys, summary) if line.rstrip().endswith("BROKEN")}
+    failed = {
+        name.removesuffix("_rel").replace("_", " ") for name in summary["certificate_failures"].split(", ")
+    }
+    assert broken == failed and 0 < len(broken) < len(CHECKS)
+
+
+def test_a_summary_of_before_gates_were_told_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    summary = {"certificate_passed": True, "energy_balance_error_rel": 1e-9}
+    assert printed(capsys, summary)[-2].split() == [
+        "energy",
+        "balance",
+        "error",
+        "1e-09",
+        "-",
+        "relative",
+        "holds",
+    ]
+    assert "nothing was checked" in "".join(printed(capsys, {"status": "complete"}))
+
+
+def test_errors_of_several_controllers_are_printed_by_their_names(capsys: pytest.CaptureFixture[str]) -> None:
+    summary = oo.run(short("dual_arm_reach"), quiet=True).summary
+    lines = printed(capsys, summary)
+    for name in ("left", "right"):
+        for kind, unit in (("position", "m"), ("attitude", "rad")):
+            (line,) = [line for line in lines if line.startswith(f"{name}: {kind} error, largest")]
+            value = summary[f"tracking_{name}_{kind}_error_max_{unit}"]
+            assert line.split()[-2:] == [f"{value:.4g}", unit]
+        (line,) = [line for line in lines if line.startswith(f"{name}: goal")]
+        assert line.split()[-1] == summary[f"control_{name}_result"]
+    assert not any(line.startswith("tool ") for line in lines)  # it is the first controller's
+    one = printed(capsys, oo.run(short("humanoid_reach"), quiet=True).summary)
+    assert [line.split(",")[0] for line in one if line.startswith("tool ")] == [
+        "tool position error", "tool attitude error",
+    ]  # fmt: skip
+
+
+def test_joint_limits_that_were_exceeded_are_said(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "joint limits were exceeded: elbow" in printed(capsys, {"joint_limits_exceeded": "elbow"})
+    assert not any("limits" in line for line in printed(capsys, {"joint_limits_exceeded": ""}))
+
+
+BLOWING = (
+    "robot: humanoid_torso\ncontroller: {kind: joint_pid, p: 100000, d: 3000}\n"
+    "reference: {kind: joint_waypoints, points: [[1,1,1,1,1,1,1]], times: [1 s]}\n"
+    "simulation: {duration: 5 s, time_step: 10 ms}\n"
+)
+
+
+def test_a_run_that_diverged_names_the_worst_joint_and_keeps_the_state_in_the_error(tmp_path: Path) -> None:
+    (tmp_path / "blow.yaml").write_text(BLOWING)
+    with pytest.raises(SimulationError) as caught:
+        oo.run(tmp_path / "blow.yaml", quiet=True)
+    error = caught.value
+    joint = oo.robots.load("humanoid_torso").joint_names[int(np.argmax(np.abs(error.v))) - 6]
+    said = refusal("run", "blow.yaml", cwd=tmp_path)
+    assert f"diverged at t = {error.time:.6g} s, in step {round(error.time / 0.01) + 1}:" in said
+    assert f"joint '{joint}', {np.abs(error.v).max():.3g} rad/s" in said.replace("-", "")
+    assert "try a time_step shorter than 0.01 s, or softer gains" in said
+    assert len(said) < 300 and "[" not in said
+    assert len(error.q) == 14 and len(error.v) == 13
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(error)).v, error.v)
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "-1"])
+def test_a_period_of_checkpoints_that_is_none_is_refused_before_the_run(value: str, tmp_path: Path) -> None:
+    said = refusal("run", "free_tumble", "--out", "out", "--checkpoint-every", value, cwd=tmp_path)
+    assert "checkpoint_every is" in said and "positive" in said
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(InputError, match="checkpoint_every"):
+        oo.run("free_tumble", quiet=True, checkpoint_every=float(value))
+
+
+def test_checkpoints_without_a_folder_are_refused_with_the_way_out() -> None:
+    assert refusal("run", "free_tumble", "--checkpoint-every", "5").endswith("add --out DIR")
+
+
+def test_a_moment_is_looked_at_before_anything_is_printed(tmp_path: Path) -> None:
+    (tmp_path / "summary.json").write_text('{"simulated_s": 1.0}')
+    for moment in ("7", "nan", "-1"):
+        assert "outside the run" in refusal("show", ".", "--picture", "p.png", "--at", moment, cwd=tmp_path)
+    assert "add --picture FILE" in refusal("show", ".", "--at", "0.5", cwd=tmp_path)
+    (tmp_path / "p.png").touch()
+    assert "replace it with --force" in refusal("show", ".", "--picture", "p.png", cwd=tmp_path)
+
+
+def test_a_figure_of_a_comparison_is_not_replaced_unasked(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(SPIN)
+    figure = tmp_path / "d.svg"
+    figure.write_text("mine")
+    words = ("compare", "mine.yaml", "mine.yaml", "--out", "d.svg")
+    assert "d.svg is there already; replace it with --force" in refusal(*words, cwd=tmp_path)
+    assert figure.read_text() == "mine"
+    done = onorbit(*words, "--force", "--json", cwd=tmp_path)
+    assert done.returncode == 0 and json.loads(done.stdout)["agrees"] is True
+    assert "<svg" in figure.read_text()
+
+
+PLAIN = (
+    '<robot name="{name}"><link name="a"><inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+)
+
+
+@pytest.mark.parametrize("command", ["info", "new"])
+def test_options_of_a_robot_that_would_do_nothing_are_refused(command: str, tmp_path: Path) -> None:
+    (tmp_path / "plain.urdf").write_text(PLAIN.format(name="x"))
+    said = refusal(command, "plain.urdf", "--package-path", "nowhere", cwd=tmp_path)
+    assert said == "onorbit: --package-path nowhere: there is no such folder"
+    said = refusal(command, "plain.urdf", "--arg", "a=1", cwd=tmp_path)
+    assert said == "onorbit: --arg is for a xacro, and plain.urdf holds none: leave it out"
+    for option in (("--arg", "a=1"), ("--package-path", ".")):
+        assert "for a robot's file" in refusal(command, "ets_vii", *option, cwd=tmp_path)
+    assert "name=value" in refusal(command, "plain.urdf", "--arg", "a", cwd=tmp_path)
+    done = onorbit(command, "plain.urdf", "--package-path", ".", cwd=tmp_path)
+    assert done.returncode == 0, done
+
+
+def test_the_next_command_reads_the_robot_as_this_one_did(tmp_path: Path) -> None:
+    pytest.importorskip("xacro", reason="the extra: pip install 'onorbit-rs[xacro]'")
+    text = PLAIN.format(name="$(arg who)").replace(
+        "<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" '
+    )
+    (tmp_path / "r.xacro").write_text(text)
+    words = ("r.xacro", "--package-path", ".", "--arg", "who=a b")
+    told = onorbit("info", *words, cwd=tmp_path).stdout.splitlines()[-1]
+    assert told == "next: onorbit new r.xacro --package-path . --arg 'who=a b' --out FILE"
+    made = onorbit("new", *words, cwd=tmp_path).stdout.splitlines()[0]
+    assert made == "# Written by: onorbit new r.xacro --package-path . --arg 'who=a b'"

@@ -1,0 +1,48 @@
+"""Names of the user's are text in the notes of a recording, whatever they hold."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from recordings import column
+from rerun.chunk import RrdReader
+
+import onorbit_rs as oo
+from onorbit_rs.scenario import load
+from onorbit_rs.viewer.notes import escaped, readable
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("humanoid_reach", "humanoid_reach"),
+        ("a | b", r"a \| b"),
+        ("two\nlines", r"two\\nlines"),
+        ("<b>bold</b>", r"\<b\>bold\</b\>"),
+        ("turned \u202e round", r"turned \\u202e round"),
+        ("_x_ *y* `z` [a](b) # c", r"\_x\_ \*y\* \`z\` \[a\]\(b\) \# c"),
+        ("Längstisch 机器人 µ", "Längstisch 机器人 µ"),
+        ("\u2028\x07\u200b", r"\\u2028\\x07\\u200b"),
+    ],
+)
+def test_markup_in_a_name_is_text(name: str, expected: str) -> None:
+    assert escaped(name) == expected
+    assert len(readable(name).splitlines()) == 1
+
+
+def test_the_table_of_the_notes_has_two_cells_in_every_line(tmp_path: Path) -> None:
+    data = load("humanoid_reach").resolved() | {
+        "name": "a|b\n<i>\u202ec",
+        "description": "# not a\ntitle | x",
+    }
+    data["simulation"] |= {"duration": 0.01}
+    oo.run(data, tmp_path / "out", quiet=True)
+    path = tmp_path / "out/run.rrd"
+    ((text,),) = column(path, "/notes", "TextDocument:text", static=True)
+    title, _, about, _, *table = text.splitlines()
+    assert title == r"# a\|b\\n\<i\>\\u202ec" and about == r"\# not a title \| x"
+    assert r"| scenario | a\|b\\n\<i\>\\u202ec |" in table
+    for line in table:
+        assert line.replace(r"\|", "").count("|") == 3, line
+    assert len(RrdReader(path).recordings()) == 1

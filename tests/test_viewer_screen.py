@@ -1,0 +1,154 @@
+"""The viewer's own process: it listens to this machine alone, and where it does not start it is told why."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.exceptions import ViewerError
+from onorbit_rs.scenario import load
+from onorbit_rs.viewer import screen
+
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="a broken DISPLAY is Linux's")
+HELP = "save a picture with: onorbit show"
+
+
+@pytest.fixture
+def broken_display(monkeypatch: pytest.MonkeyPatch) -> None:
+    """There is a screen as far as the environment says, and nobody answers there."""
+    monkeypatch.setenv("DISPLAY", ":7777")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("show") / "out"
+    oo.run(short(), out, quiet=True)
+    return out
+
+
+def short() -> dict[str, Any]:
+    data = load("humanoid_reach").resolved()
+    data["simulation"] |= {"duration": 0.1}
+    return data
+
+
+def onorbit(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    known = {name: text for name, text in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    command = [sys.executable, "-m", "onorbit_rs", *arguments]
+    return subprocess.run(command, env=known | environment, capture_output=True, text=True, check=False)
+
+
+@on_linux
+@pytest.mark.usefixtures("broken_display")
+def test_a_display_that_does_not_work_is_an_error_that_says_why(folder: Path) -> None:
+    with pytest.raises(ViewerError, match="the viewer did not start: ") as told:
+        screen.open_recording(folder / "run.rrd")
+    assert told.value.reason and "/" not in told.value.reason  # no place in the viewer's code
+    assert isinstance(told.value, RuntimeError)
+    with pytest.raises(ViewerError):
+        screen.open_viewer()
+
+
+@on_linux
+def test_show_says_it_on_one_line_with_the_way_out(folder: Path) -> None:
+    done = onorbit("show", str(folder), DISPLAY=":7777")
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("onorbit: the viewer did not start: ") and f"{HELP} {folder} --picture" in line
+
+
+@on_linux
+def test_show_without_a_screen_says_the_way_out(folder: Path) -> None:
+    done = onorbit("show", str(folder))
+    assert done.returncode == 0 and not done.stderr
+    assert "no screen here; " in done.stdout and HELP in done.stdout
+
+
+@on_linux
+@pytest.mark.usefixtures("broken_display")
+def test_a_run_goes_on_without_a_viewer_that_does_not_start() -> None:
+    with pytest.warns(UserWarning, match="the viewer did not start: .*: the run goes on without it"):
+        assert oo.run(short(), quiet=True, view=True).trace.is_complete
+
+
+def test_the_viewer_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    commands = []
+
+    class Process:
+        def poll(self) -> int:
+            return 1
+
+    def popen(command: list[str], **_: object) -> Process:
+        commands.append(command)
+        return Process()
+
+    monkeypatch.setattr(screen.subprocess, "Popen", popen)
+    for start in (screen.open_viewer, lambda: screen.open_recording(Path("run.rrd"))):
+        with pytest.raises(ViewerError, match="did not start: it printed nothing"):  # it ended at once
+            start()
+    assert len(commands) == 2
+    for command in commands:
+        assert Path(command[0]).is_file()
+        assert command[command.index("--bind") + 1] == "127.0.0.1"
+    assert screen.url_of(9876) == "rerun+http://127.0.0.1:9876/proxy"
+
+
+def test_a_viewer_that_hangs_is_not_waited_for_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended = []
+
+    class Process:
+        def poll(self) -> None:
+            return None
+
+        def kill(self) -> None:
+            ended.append("killed")
+
+    monkeypatch.setattr(screen.subprocess, "Popen", lambda *_, **__: Process())
+    monkeypatch.setattr(screen, "START_PATIENCE_S", 0.2)
+    with pytest.raises(ViewerError, match=r"did not start: it does not answer within 0\.2 s"):
+        screen.open_viewer()
+    assert ended == ["killed"]
+
+
+GONE = """
+import os, socket, threading
+from onorbit_rs.viewer import screen
+import rerun as rr
+
+def hang_up():
+    while True:
+        peer, _ = server.accept()
+        peer.recv(100)
+        peer.close()
+
+server = socket.create_server(("127.0.0.1", 0))
+threading.Thread(target=hang_up, daemon=True).start()
+recording = rr.RecordingStream("onorbit", send_properties=False)
+recording.connect_grpc(screen.url_of(server.getsockname()[1]))
+recording.log("a", rr.Scalars([1.0]))
+try:
+    recording.flush(timeout_sec=5.0)
+except Exception:
+    print("said", flush=True)
+os._exit(0)  # to disconnect would be to wait for nobody
+"""
+
+
+def test_rerun_prints_no_log_of_its_own() -> None:
+    quiet, loud = (
+        subprocess.run(
+            [sys.executable, "-c", GONE],
+            env={name: text for name, text in os.environ.items() if name != "RUST_LOG"} | log,
+            capture_output=True, text=True, check=True,
+        )
+        for log in ({}, {"RUST_LOG": "error"})
+    )  # fmt: skip
+    assert quiet.stdout == "said\n" and quiet.stderr == ""
+    assert "ERROR" in loud.stderr  # who asks for it gets it
