@@ -10,6 +10,13 @@ from subprocess import CompletedProcess
 
 from onorbit_rs.cli import main
 
+SPIN = """name: spin
+robot: {rigid_body: {mass: 10, inertia: [1, 2, 3]}}
+initial: {angular_velocity: [0.1, 0.2, 0.3]}
+simulation: {duration: 0.1 s, time_step: 10 ms}
+"""
+"""The scenario with the fewest figures: drawing them is what a run with a folder takes long for."""
+
 
 def onorbit(*arguments: str | Path, cwd: Path | None = None) -> CompletedProcess[str]:
     """Exit code, stdout and stderr of ``onorbit ARGUMENTS``; neither is a terminal."""

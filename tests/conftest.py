@@ -9,10 +9,17 @@ from pathlib import Path
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs import running
 from onorbit_rs.validation import against_spart
 from onorbit_rs.validation.case import CannotRunError
 
 REPOSITORY = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs in this process draw no figures and write no recording, which is what they take long for."""
+    monkeypatch.setattr(running, "write_pictures", lambda *_, **__: None)
 
 
 def pytest_configure(config: pytest.Config) -> None:

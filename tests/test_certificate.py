@@ -56,6 +56,7 @@ def test_a_broken_run_is_red_everywhere(what: str, tmp_path: Path) -> None:
     assert line.endswith(way_out)
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_results_of_a_broken_run_are_kept_and_say_so_as_well(tmp_path: Path) -> None:
     name, change, check, _ = BROKEN["energy"]
     out = tmp_path / "out"

@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from commands import onorbit, refusal
+from commands import SPIN, onorbit, refusal
 
 from onorbit_rs import scenarios
 
@@ -53,6 +53,7 @@ def test_run_writes_the_folder_and_show_reads_it(tmp_path: Path) -> None:
     assert shown.returncode == 0, shown
     assert "tool position error" in shown.stdout
     assert "--force" in refusal("run", "mine.yaml", "--out", "out", cwd=tmp_path)
+    (tmp_path / "mine.yaml").write_text(SPIN)
     again = onorbit("run", "mine.yaml", "--out", "out", "--force", "--quiet", cwd=tmp_path)
     assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
 
@@ -99,8 +100,9 @@ def test_a_wrong_urdf_is_one_line(tmp_path: Path, urdf: str, says: str) -> None:
     assert says in refusal("check", file)
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_text_in_brackets_is_no_markup(tmp_path: Path) -> None:
-    (tmp_path / "mine.yaml").write_text('name: "[/oops]"\n' + SHORT_REACH.replace("name: ", "#"))
+    (tmp_path / "mine.yaml").write_text(SPIN.replace("name: spin", 'name: "[/oops]"'))
     done = onorbit("run", "mine.yaml", "--out", "o [x]", cwd=tmp_path)
     assert done.returncode == 0, done
     assert done.stdout.startswith("[/oops]: complete")
@@ -186,6 +188,7 @@ def test_ctrl_c_keeps_the_trace_so_far_and_says_so(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "trace.npz").is_file()
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_a_warning_is_one_line_and_in_the_summary(tmp_path: Path) -> None:
     (tmp_path / "w.urdf").write_text(
         '<robot name="x"><link name="a"><inertial><mass value="1"/>'

@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import onorbit, refusal
-from test_cli import SHORT_REACH
+from commands import SPIN, onorbit, refusal
 
 import onorbit_rs as oo
 from onorbit_rs.cli.summary import print_summary
@@ -136,7 +135,7 @@ def test_a_moment_is_looked_at_before_anything_is_printed(tmp_path: Path) -> Non
 
 
 def test_a_figure_of_a_comparison_is_not_replaced_unasked(tmp_path: Path) -> None:
-    (tmp_path / "mine.yaml").write_text(SHORT_REACH)
+    (tmp_path / "mine.yaml").write_text(SPIN)
     figure = tmp_path / "d.svg"
     figure.write_text("mine")
     words = ("compare", "mine.yaml", "mine.yaml", "--out", "d.svg")

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from commands import onorbit, refusal
+from commands import SPIN, onorbit, refusal
 from test_cli import SHORT_REACH
 
 from onorbit_rs import progress, robots, scenarios
@@ -25,6 +25,13 @@ COLOR = re.compile(r"\x1b\[[0-9;]*3[0-9][0-9;]*m")
 def reach(tmp_path: Path) -> Path:
     file = tmp_path / "mine.yaml"
     file.write_text(SHORT_REACH)
+    return file
+
+
+@pytest.fixture
+def spin(tmp_path: Path) -> Path:
+    file = tmp_path / "mine.yaml"
+    file.write_text(SPIN)
     return file
 
 
@@ -54,16 +61,17 @@ def _chunks(master: int) -> Iterator[bytes]:
         yield chunk
 
 
-def test_json_of_a_run_is_the_summary_and_nothing_else(reach: Path) -> None:
-    done = onorbit("run", reach.name, "--out", "out", "--json", cwd=reach.parent)
+@pytest.mark.usefixtures("no_pictures")
+def test_json_of_a_run_is_the_summary_and_nothing_else(spin: Path) -> None:
+    done = onorbit("run", spin.name, "--out", "out", "--json", cwd=spin.parent)
     assert (done.returncode, done.stderr) == (0, "")
-    assert json.loads(done.stdout) == json.loads((reach.parent / "out" / "summary.json").read_text())
-    shown = onorbit("show", "out", "--json", cwd=reach.parent)
+    assert json.loads(done.stdout) == json.loads((spin.parent / "out" / "summary.json").read_text())
+    shown = onorbit("show", "out", "--json", cwd=spin.parent)
     assert json.loads(shown.stdout) == json.loads(done.stdout)
-    reported = onorbit("report", "out", "--json", "--no-pdf", cwd=reach.parent)
+    reported = onorbit("report", "out", "--json", "--no-pdf", cwd=spin.parent)
     made = json.loads(reported.stdout)
-    assert (reach.parent / made["report"]).stat().st_size == made["bytes"]
-    assert not list((reach.parent / "out" / "figures").glob("*.pdf"))
+    assert (spin.parent / made["report"]).stat().st_size == made["bytes"]
+    assert not list((spin.parent / "out" / "figures").glob("*.pdf"))
 
 
 def test_json_of_a_run_without_a_folder(reach: Path) -> None:
@@ -98,19 +106,21 @@ def test_an_error_leaves_stdout_empty_for_programs(tmp_path: Path) -> None:
         assert len(done.stderr.splitlines()) == 1
 
 
-def test_quiet_says_nothing(reach: Path) -> None:
+@pytest.mark.usefixtures("no_pictures")
+def test_quiet_says_nothing(spin: Path) -> None:
     for arguments in (
         ("check", "mine.yaml"),
         ("run", "mine.yaml", "--out", "out"),
         ("report", "out", "--no-pdf"),
         ("new", "ets_vii", "--out", "new.yaml"),
     ):
-        done = onorbit(*arguments, "--quiet", cwd=reach.parent)
+        done = onorbit(*arguments, "--quiet", cwd=spin.parent)
         assert (done.returncode, done.stdout, done.stderr) == (0, "", ""), arguments
 
 
-def test_every_command_says_the_next(reach: Path) -> None:
-    folder = reach.parent
+@pytest.mark.usefixtures("no_pictures")
+def test_every_command_says_the_next(spin: Path) -> None:
+    folder = spin.parent
     assert "next: onorbit run mine.yaml --out DIR" in onorbit("check", "mine.yaml", cwd=folder).stdout
     ran = onorbit("run", "mine.yaml", "--out", "a b", cwd=folder).stdout
     assert "next: onorbit show 'a b'" in ran and "onorbit report 'a b'" in ran
@@ -129,8 +139,8 @@ def test_lines_in_a_pipe_are_whole() -> None:
     assert "\x1b" not in "".join(lines)
 
 
-def test_a_terminal_shows_what_is_done_in_colour(reach: Path) -> None:
-    code, written = on_terminal("run", reach, "--out", reach.parent / "out", cwd=reach.parent)
+def test_a_terminal_shows_what_is_done_in_colour(spin: Path) -> None:
+    code, written = on_terminal("run", spin, "--out", spin.parent / "out", cwd=spin.parent)
     assert code == 0, written
     assert COLOR.search(written)
     assert "drawing" in written and "recording" in written
@@ -138,10 +148,14 @@ def test_a_terminal_shows_what_is_done_in_colour(reach: Path) -> None:
 
 
 def test_no_color_and_dumb_terminals_get_none(reach: Path) -> None:
-    for environment in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
-        for arguments in (("run", reach), ("run", "no_such")):
-            _, written = on_terminal(*arguments, cwd=reach.parent, **environment)
-            assert not COLOR.search(written), (environment, written)
+    for environment, arguments in (
+        ({"NO_COLOR": "1"}, ("run", reach)),
+        ({"NO_COLOR": "1"}, ("run", "no_such")),
+        ({"TERM": "dumb"}, ("list",)),
+        ({"TERM": "dumb"}, ("run", "no_such")),
+    ):
+        _, written = on_terminal(*arguments, cwd=reach.parent, **environment)
+        assert not COLOR.search(written), (environment, written)
     code, written = on_terminal("run", "no_such", cwd=reach.parent)
     assert code == 2 and COLOR.search(written) and "onorbit:" in written
 

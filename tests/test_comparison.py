@@ -21,7 +21,7 @@ from onorbit_rs.scenario import load
 
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("onorbit_rs.running.write_pictures", lambda *_, **__: None)
+    monkeypatch.setattr("onorbit_rs.keeping.write_pictures", lambda *_, **__: None)
 
 
 def scenario(name: str = "humanoid_reach", **simulation: Any) -> dict[str, Any]:

@@ -143,7 +143,7 @@ SCENARIO: dict[str, Any] = {
         ({"surfaces": {"kind": "cannonball", "area": 2}}, None, EffectError, r"in YAML bodies: \{torso"),
         ({"bodies": {"torsso": "faces"}}, None, OnOrbitError, "torso"),
         ({}, "epoch", EffectError, "in YAML an epoch"),
-        ({"bodies": {}}, None, ScenarioError, "has 0 entries, needs 1"),
+        ({"bodies": {}}, None, ScenarioError, "has 0 entries, needs at least 1"),
     ],
 )
 @pytest.mark.parametrize("kind", ["drag", "radiation_pressure"])

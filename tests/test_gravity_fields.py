@@ -168,5 +168,5 @@ simulation: {duration: 10 s, time_step: 1 s}
     assert error.value.name == "degree"
     with pytest.raises(GravityError, match="no gravity model is named"):
         moved("egm08")
-    with pytest.raises(oo.exceptions.ScenarioError, match="greater than or equal to 2"):
+    with pytest.raises(oo.exceptions.ScenarioError, match="degree: 1 is below 2, the least"):
         moved("egm2008", "1")

@@ -21,7 +21,7 @@ from onorbit_rs.scenario import load
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures of this process say nothing about bits; runs of the command line draw theirs."""
-    monkeypatch.setattr("onorbit_rs.running.write_pictures", lambda *_, **__: None)
+    monkeypatch.setattr("onorbit_rs.keeping.write_pictures", lambda *_, **__: None)
 
 
 def long_reach(duration: float = 8.0, **simulation: Any) -> dict[str, Any]:

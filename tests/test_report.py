@@ -212,6 +212,7 @@ def test_a_run_that_diverged_has_a_page_without_pictures(tmp_path: Path) -> None
     assert page.having("src") == []
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_a_body_without_joints_and_without_orbit_has_a_page(tmp_path: Path) -> None:
     body = {"rigid_body": {"mass": 10.0, "inertia": [1.0, 2.0, 3.0]}}
     scenario = {"robot": body, "simulation": {"duration": 1.0, "time_step": 0.01}}
@@ -220,6 +221,7 @@ def test_a_body_without_joints_and_without_orbit_has_a_page(tmp_path: Path) -> N
     assert {"figure-base_motion", "figure-ledger"} <= set(page.having("id"))
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_warnings_of_the_robot_are_on_the_page(tmp_path: Path) -> None:
     data = load("leo_drag_tumble").resolved()
     data["simulation"] |= {"duration": 400.0, "time_step": 10.0}

@@ -22,7 +22,7 @@ ARM = robots.path("humanoid_torso").read_text()
 
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("onorbit_rs.running.write_pictures", lambda *_, **__: None)
+    monkeypatch.setattr("onorbit_rs.keeping.write_pictures", lambda *_, **__: None)
     monkeypatch.setattr("onorbit_rs.report.write._pictures", lambda *_: [])
 
 

@@ -54,9 +54,9 @@ def test_elements_reach_the_orbit_in_si() -> None:
 @pytest.mark.parametrize(
     "size",
     [
-        {"semi_major_axis": "7000 km", "eccentricity": 0.1},
-        {"semi_latus_rectum": "7000 km", "eccentricity": 0.1},
-        {"semi_major_axis": "-7000 km", "eccentricity": 2.1},
+        {"semi_major_axis": "7200 km", "eccentricity": 0.1},
+        {"semi_latus_rectum": "7200 km", "eccentricity": 0.1},
+        {"semi_major_axis": "-7200 km", "eccentricity": 2.1},
     ],
 )
 def test_every_form_of_elements_builds(size: dict[str, Any], phase: str) -> None:

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs import run, scenarios
+from onorbit_rs.exceptions import DtypeError, InputError, NotFoundError, OnOrbitError
+from onorbit_rs.names import nearest
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
@@ -155,13 +157,40 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     ),
     "rows, too few": (
         ROBOT + "simulation: {duration: 1, record_every: 5000}\n",
-        "2: simulation",
-        ("record_every is 5000", "1000 steps", "at most 1000"),
+        "2: simulation.record_every",
+        ("5000 is more than the 1000 steps", "at most 1000"),
     ),
+    "rows, a switch": (
+        ROBOT + "simulation: {duration: 1, record_every: true}\n",
+        "2: simulation.record_every",
+        ("a whole number is needed",),
+    ),
+    "elements by their letters": (
+        LAW + "orbit: {a: 7000 km}\n",
+        "5: orbit.a",
+        ("did you mean 'semi_major_axis'?",),
+    ),
+    "light without an orbit": (
+        LAW + "environment: [radiation_pressure]\n",
+        "5: environment[0]",
+        ("radiation pressure needs an 'orbit'",),
+    ),
+    "a unit that is none": (
+        ROBOT + "simulation: {duration: 5 sec}\n",
+        "2: simulation.duration",
+        ("unknown unit 'sec';", "s, ms, us, min"),
+    ),
+    "no points": (
+        LAW + "reference: {kind: waypoints, points: [], speed: 1}\n",
+        "5: reference.points",
+        ("has 0 entries, needs at least 1",),
+    ),
+    "a quote left open": ("robot: 'humanoid\n" + RUN, "3", ("broken YAML", "is a quote left open?")),
+    "a sign of YAML's": ("robot: @torso\n" + RUN, "1", ("'@'", "wants quotes")),
     "integrator": (
         ROBOT + "simulation: {duration: 1, integrator: euler}\n",
         "2: simulation.integrator",
-        ("'rk4', 'semi_implicit_euler' or 'dormand_prince'",),
+        ("'rk4', 'semi_implicit_euler' or 'dormand_prince'", "did you mean 'semi_implicit_euler'?"),
     ),
     "tolerance, too large": (
         ROBOT + "simulation: {duration: 1, tolerance: 1}\n",
@@ -258,3 +287,32 @@ def test_gains_that_are_given_are_taken(tmp_path: Path, extra: str) -> None:
     (tmp_path / "mine.yaml").write_text(JOINTS + extra)
     scenario = load(tmp_path / "mine.yaml")
     assert load(scenario.resolved()).resolved() == scenario.resolved()
+
+
+@pytest.mark.parametrize("source", [5, None, ["humanoid_reach"]])
+def test_what_is_no_scenario_at_all_is_told(source: object) -> None:
+    with pytest.raises(
+        DtypeError, match=r"\((int|NoneType|list)\) is no scenario: give a bundled name"
+    ) as caught:
+        run(source, quiet=True)  # type: ignore[arg-type]  # that is what is tested
+    assert isinstance(caught.value, TypeError)
+
+
+def test_a_bundled_scenario_of_no_such_name_suggests_the_nearest() -> None:
+    with pytest.raises(NotFoundError, match="did you mean 'humanoid_reach'"):
+        scenarios.path("humanoid_rech")
+    assert scenarios.path("humanoid_reach").is_file()
+
+
+def test_a_part_of_one_name_is_near_it() -> None:
+    integrators = ("rk4", "semi_implicit_euler", "dormand_prince")
+    assert nearest("euler", integrators) == "semi_implicit_euler"
+    assert nearest("prince", integrators) == "dormand_prince"
+    assert nearest("i", integrators) is None
+    assert nearest("arm", ("arm_left_link", "arm_right_link")) is None
+
+
+@pytest.mark.parametrize("every", ["5", None, -1.0, float("nan"), float("inf")])
+def test_a_period_of_checkpoints_that_is_none_is_told(every: object) -> None:
+    with pytest.raises(InputError, match=r"checkpoint_every is .* it must be finite, zero or positive"):
+        run("free_tumble", quiet=True, checkpoint_every=every)  # type: ignore[arg-type]  # that is what is tested

@@ -15,13 +15,13 @@ from recordings import FrameTree, column, rows_by_entity
 import onorbit_rs as oo
 from onorbit_rs import viewer
 from onorbit_rs.output.relay import Relay
-from onorbit_rs.running import _watched
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
 from onorbit_rs.viewer import live, screen
 from onorbit_rs.viewer.live import LiveView
 from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.series import ANGLES, Series
+from onorbit_rs.watching import watched
 
 
 def built_reach(**simulation: Any) -> Built:
@@ -168,7 +168,7 @@ def test_the_error_of_the_run_is_told_where_its_last_rows_cannot_be_written(
     monkeypatch.setattr(live, "open_live", lambda *_: Eye())
     failing = replace(built, simulation=Simulation())  # type: ignore[arg-type]  # all that is asked of it
     with pytest.raises(oo.exceptions.SimulationError, match="diverged") as told:
-        _watched(failing, None, full, checkpoint_every=1e3)  # type: ignore[arg-type]  # any writer
+        watched(failing, None, full, checkpoint_every=1e3)  # type: ignore[arg-type]  # any writer
     assert any("disk full" in note for note in told.value.__notes__)
     assert ended == [None]
 

@@ -18,6 +18,7 @@ ROLE = re.compile(r":\w+:`([^`]*)`")
 WORDS = {
     "float": "number",
     "int": "whole number",
+    "Whole": "whole number",
     "bool": "`true` or `false`",
     "str": "text",
     "FilePath": "file",

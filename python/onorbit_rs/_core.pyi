@@ -121,6 +121,7 @@ def build_info() -> _BuildInfo: ...
 
 @final
 class Model:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @staticmethod
     def from_urdf(
         path: _Path,
@@ -564,7 +565,8 @@ class FixedFrame(Orbit):
     ) -> FixedFrame: ...
 
 @disjoint_base
-class Effect: ...
+class Effect:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @final
 class GravityGradient(Effect):
@@ -572,6 +574,7 @@ class GravityGradient(Effect):
 
 @disjoint_base
 class Atmosphere:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     def density(
         self,
         altitude: ArrayLike,
@@ -610,7 +613,8 @@ class Nrlmsise00(Atmosphere):
     ) -> Nrlmsise00: ...
 
 @disjoint_base
-class Surface: ...
+class Surface:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @final
 class Cannonball(Surface):

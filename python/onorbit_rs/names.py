@@ -9,8 +9,11 @@ from collections.abc import Iterable
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """The known name closest to a misspelt one, or None where nothing is close."""
     by_lower = {candidate.lower(): candidate for candidate in known}
-    found = difflib.get_close_matches(str(name).lower(), by_lower, n=1, cutoff=0.55)
-    return by_lower[found[0]] if found else None
+    lower = str(name).lower()
+    found = difflib.get_close_matches(lower, by_lower, n=1, cutoff=0.55)
+    # a part of one name alone: euler of semi_implicit_euler
+    found = found or [candidate for candidate in by_lower if len(lower) > 2 and lower in candidate]
+    return by_lower[found[0]] if len(found) == 1 else None
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

@@ -1,4 +1,4 @@
-"""How orbits come back from a pickle."""
+"""How objects of the engine come back from a pickle."""
 
 from __future__ import annotations
 

@@ -10,35 +10,25 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from onorbit_rs.exceptions import InputError, ModelError, NotFoundError, RunInterrupted, SimulationError
+from onorbit_rs.keeping import finished, keep_failed, keep_stopped
 from onorbit_rs.output import (
     CheckpointWriter,
     OutputFolder,
-    discard_checkpoint,
     fingerprint_of,
     read_checkpoint,
-    summarize,
     with_absolute_paths,
-    write_pictures,
     write_scenario,
-    write_summary,
-    write_trace,
 )
-from onorbit_rs.output.divergence import divergence
-from onorbit_rs.output.relay import Relay
 from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.plants import versions
-from onorbit_rs.printable import shell_word
-from onorbit_rs.progress import ProgressCallback, doing, progress_bar
+from onorbit_rs.progress import doing, progress_bar
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build, make_robot
+from onorbit_rs.watching import CHECKPOINT_EVERY, watched
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from onorbit_rs._core import Checkpoint, Model, Trace
+    from onorbit_rs._core import Model, Trace
 
 
 @dataclass(frozen=True)
@@ -68,10 +58,6 @@ def _arrived(trace: Trace, summary: dict[str, Any], scenario: Scenario, out: Pat
     if was_changed(model, summary):
         raise ModelError(CHANGED)
     return Run(trace, summary, model, scenario, out)
-
-
-CHECKPOINT_EVERY = 30.0
-"""Wall-clock time between two checkpoints, s."""
 
 
 def run(
@@ -165,9 +151,9 @@ def resume(
 
 def _check_period(checkpoint_every: float) -> None:
     """Before anything is written, and also where nothing is."""
-    if not checkpoint_every >= 0.0 or checkpoint_every == math.inf:
+    if not isinstance(checkpoint_every, (int, float)) or not 0.0 <= checkpoint_every < math.inf:
         raise InputError(
-            f"checkpoint_every is {checkpoint_every} s of wall clock, it must be finite, zero or positive",
+            f"checkpoint_every is {checkpoint_every!r} s of wall clock, it must be finite, zero or positive",
             name="checkpoint_every", got=checkpoint_every, expected=">= 0",
         )  # fmt: skip
 
@@ -185,112 +171,15 @@ def _go(
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
             if view:
-                trace = _watched(built, progress.move, **checkpoints)
+                trace = watched(built, progress.move, **checkpoints)
             else:
                 trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
-            return _finish(trace, built, folder, progress.tell)
+            summary = finished(trace, built, folder, progress.tell)
+            return Run(trace, summary, built.model, scenario, folder.path if folder else None)
     except (SimulationError, RunInterrupted) as stop:
         with doing("stopped, writing what there is", quiet=quiet) as tell:
-            _keep(stop, built, folder, tell)
+            keep_stopped(stop, built, folder, tell)
         raise
     except Exception as error:  # raised by a controller of the user's, or where orbit or environment end
-        _keep_rows(error, built, folder)
+        keep_failed(error, built, folder)
         raise
-
-
-def _finish(trace: Trace, built: Built, folder: OutputFolder | None, tell: Callable[[str], None]) -> Run:
-    """Certify a run that came to its end, and write its folder."""
-    tell("certificate")
-    scenario = built.scenario
-    summary = summarize(trace, built)
-    if folder is not None:
-        tell("writing the trace")
-        write_trace(folder, trace)
-        write_summary(folder, summary)
-        write_pictures(folder, trace, summary, built, tell=tell)
-        discard_checkpoint(folder)
-    return Run(trace, summary, built.model, scenario, folder.path if folder else None)
-
-
-def _watched(
-    built: Built,
-    progress: ProgressCallback | None,
-    checkpoint: CheckpointWriter | None = None,
-    checkpoint_every: float = CHECKPOINT_EVERY,
-    resume: Checkpoint | None = None,
-) -> Trace:
-    """Simulate while the viewer shows it."""
-    from onorbit_rs.viewer.live import LOOK_EVERY_S, open_live
-    from onorbit_rs.viewer.setting import Setting
-
-    duration = built.scenario.simulation.duration
-    live = open_live(Setting.of(built), duration)
-    if live is None:
-        return built.simulation.run(
-            duration, progress=progress, checkpoint=checkpoint, checkpoint_every=checkpoint_every,
-            resume=resume,
-        )  # fmt: skip
-    if resume is not None:
-        live.take(resume.columns)
-    relay = Relay(live, checkpoint, checkpoint_every)
-    trace = None
-    try:
-        try:
-            trace = built.simulation.run(
-                duration, progress=progress, checkpoint=relay, checkpoint_every=LOOK_EVERY_S, resume=resume
-            )
-        except BaseException as own:
-            try:
-                relay.hand_on()
-            except Exception as error:  # the run's own error is the one to tell
-                own.add_note(f"its last rows could not be written either: {error}")
-            raise
-        relay.hand_on()
-    finally:
-        live.finish(trace)
-    return trace
-
-
-def _keep_rows(error: Exception, built: Built, folder: OutputFolder | None) -> None:
-    """Write the rows there are of a run that ended by an error other than its own divergence, and note it."""
-    trace = getattr(error, "trace", None)
-    if folder is not None and trace is not None and len(trace.time) > 0:
-        _write_rows(trace, "failed", built, folder)
-        discard_checkpoint(folder)
-        error.add_note(f"the rows so far are in {folder.path}")
-
-
-def _keep(
-    stop: SimulationError | RunInterrupted,
-    built: Built,
-    folder: OutputFolder | None,
-    tell: Callable[[str], None],
-) -> None:
-    """Write what there is of a run that stopped early, and say where."""
-    if isinstance(stop, SimulationError):
-        stop.message = divergence(stop, built)
-    else:
-        duration = built.scenario.simulation.duration
-        stop.message = f"stopped by Ctrl-C at t = {stop.time:g} s of {duration:g} s"
-    if folder is None:
-        return
-    if stop.trace is None or len(stop.trace.time) == 0:
-        folder.discard()
-        return
-    diverged = isinstance(stop, SimulationError)
-    summary = _write_rows(stop.trace, "diverged" if diverged else "interrupted", built, folder)
-    stop.message += f"; the trace so far is in {folder.path}"
-    if diverged:  # such numbers make no picture, and there is nothing to go on to
-        discard_checkpoint(folder)
-    else:
-        stop.message += f"; go on with: onorbit resume {shell_word(folder.path)}"
-        write_pictures(folder, stop.trace, summary, built, tell=tell)
-
-
-def _write_rows(trace: Trace, status: str, built: Built, folder: OutputFolder) -> dict[str, Any]:
-    """Trace and summary of a run, whole or not; returns the summary."""
-    with np.errstate(all="ignore"):  # of one that diverged: numbers near the end of the range of floats
-        summary = summarize(trace, built, status=status)
-    write_trace(folder, trace)
-    write_summary(folder, summary)
-    return summary

@@ -87,7 +87,7 @@ fn texts_that_are_no_instants_are_refused() {
 }
 
 fn table(rows: &[[f64; 4]]) -> EarthParameters {
-    EarthParameters::from_rows(&rows.concat())
+    EarthParameters::from_rows(rows)
 }
 
 #[test]

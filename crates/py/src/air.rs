@@ -3,12 +3,14 @@
 use crate::arrays::{Input, fresh, wrong_shape, zeros};
 use crate::earth::PyEarth;
 use crate::errors::{IntoPython, fields, in_file, plain, raise};
+use crate::made::{Made, absolute};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::atmosphere::{
     Atmosphere, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer, MagneticActivity,
     Nrlmsise00, SpaceIndices, SpaceWeather, SpaceWeatherTable, densities_at, densities_over,
 };
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -18,11 +20,18 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 #[pyclass(name = "Atmosphere", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyAtmosphere {
     pub(crate) air: Arc<dyn Atmosphere>,
+    made: Made,
 }
 
 impl PyAtmosphere {
-    fn of(air: impl Atmosphere + 'static) -> PyClassInitializer<Self> {
-        PyClassInitializer::from(Self { air: Arc::new(air) })
+    /// Air that `class` makes of `keywords`.
+    fn of(
+        air: impl Atmosphere + 'static,
+        class: &str,
+        keywords: &Bound<'_, PyDict>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let made = Made::by(class, keywords)?;
+        Ok(PyClassInitializer::from(Self { air: Arc::new(air), made }))
     }
 }
 
@@ -89,6 +98,10 @@ impl PyAtmosphere {
     fn __repr__(&self) -> String {
         format!("<{}>", self.air.name())
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
+        self.made.again(py)
+    }
 }
 
 /// Arrays of one shape.
@@ -129,7 +142,8 @@ impl PyConstantAtmosphere {
     #[new]
     fn new(py: Python<'_>, density: f64) -> PyResult<PyClassInitializer<Self>> {
         let air = ConstantAtmosphere::new(density).map_err(|error| error.into_python(py))?;
-        Ok(PyAtmosphere::of(air).add_subclass(Self))
+        let keywords = fields!(py, "density": density);
+        Ok(PyAtmosphere::of(air, "ConstantAtmosphere", &keywords)?.add_subclass(Self))
     }
 }
 
@@ -164,7 +178,9 @@ impl PyExponentialAtmosphere {
                 ));
             }
         };
-        Ok(PyAtmosphere::of(air.map_err(|error| error.into_python(py))?).add_subclass(Self))
+        let air = air.map_err(|error| error.into_python(py))?;
+        let keywords = fields!(py, "density": density, "altitude": altitude, "scale_height": scale_height);
+        Ok(PyAtmosphere::of(air, "ExponentialAtmosphere", &keywords)?.add_subclass(Self))
     }
 }
 
@@ -181,7 +197,8 @@ impl PyHarrisPriester {
     #[pyo3(signature = (*, exponent=4.0, lag=std::f64::consts::FRAC_PI_6))]
     fn new(py: Python<'_>, exponent: f64, lag: f64) -> PyResult<PyClassInitializer<Self>> {
         let air = HarrisPriester::new(exponent, lag).map_err(|error| error.into_python(py))?;
-        Ok(PyAtmosphere::of(air).add_subclass(Self))
+        let keywords = fields!(py, "exponent": exponent, "lag": lag);
+        Ok(PyAtmosphere::of(air, "HarrisPriester", &keywords)?.add_subclass(Self))
     }
 }
 
@@ -206,10 +223,17 @@ impl PyNrlmsise00 {
         table: Option<PathBuf>,
         three_hourly: bool,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let keywords = fields!(py, "f107": f107, "f107a": f107a, "three_hourly": three_hourly);
+        keywords.set_item("table", table.as_deref().map(absolute))?;
         let weather = match (f107, f107a, ap, table) {
             (None, None, None, Some(path)) => SpaceWeather::Table(read_table(py, &path, three_hourly)?),
             (Some(f107), Some(f107a), Some(ap), None) => {
-                let indices = SpaceIndices::new(f107, f107a, activity(ap)?);
+                let activity = activity(ap)?;
+                match &activity {
+                    MagneticActivity::Daily(daily) => keywords.set_item("ap", daily)?,
+                    MagneticActivity::History(history) => keywords.set_item("ap", history)?,
+                }
+                let indices = SpaceIndices::new(f107, f107a, activity);
                 SpaceWeather::Constant(indices.map_err(|error| error.into_python(py))?)
             }
             (f107, f107a, ap, table) => {
@@ -226,7 +250,8 @@ impl PyNrlmsise00 {
                 return Err(raise(py, "EffectError", &message, &fields!(py, "name": "f107, f107a, ap")));
             }
         };
-        Ok(PyAtmosphere::of(Nrlmsise00::new(weather)).add_subclass(Self))
+        let air = Nrlmsise00::new(weather);
+        Ok(PyAtmosphere::of(air, "Nrlmsise00", &keywords)?.add_subclass(Self))
     }
 }
 

@@ -80,7 +80,7 @@ impl<'py> Input<'py> {
     pub(crate) fn new(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         // no subclass: a masked array is one
         if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
-            && value.get_type().is(PyUntypedArray::type_object(value.py()))
+            && value.get_type_ptr() == PyUntypedArray::type_object_raw(value.py())
             && array.is_c_contiguous()
             && array.is_aligned()
         {

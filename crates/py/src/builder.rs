@@ -107,7 +107,7 @@ impl PyModelBuilder {
     /// The finished robot; the builder can go on.
     fn build(&self, py: Python<'_>) -> PyResult<PyModel> {
         let model = self.builder.clone().build().map_err(|error| error.into_python(py))?;
-        PyModel::wrap(py, model)
+        PyModel::wrap(py, model, None)
     }
 }
 

@@ -273,7 +273,7 @@ fn table_of(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
     }
     let rows = Input::new(eop, "eop")?;
     let [_, 4] = rows.shape() else { return Err(wrong_shape(py, "eop", "(N, 4)", rows.shape())) };
-    Ok(EarthParameters::from_rows(rows.data()))
+    Ok(EarthParameters::from_rows(rows.data().as_chunks().0))
 }
 
 /// Sun and Moon of a SPICE kernel; Python's `jplephem` reads it.

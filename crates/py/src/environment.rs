@@ -3,7 +3,8 @@
 use crate::air::PyAtmosphere;
 use crate::arrays::{fixed, list_of};
 use crate::errors::{IntoPython, fields, raise};
-use crate::surfaces::Spread;
+use crate::made::Made;
+use crate::surfaces::{Spread, kept};
 use nalgebra::Vector3;
 use onorbit_core::environment::atmosphere::Atmosphere;
 use onorbit_core::environment::{
@@ -11,7 +12,9 @@ use onorbit_core::environment::{
 };
 use onorbit_core::gravity::{GravityField, Luminary};
 use onorbit_core::model::Model;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
@@ -20,6 +23,18 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 #[pyclass(name = "Effect", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyEffect {
     kind: Kind,
+    /// Of a field the subclass knows.
+    made: Option<Made>,
+}
+
+#[pymethods]
+impl PyEffect {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
+        match &self.made {
+            Some(made) => made.again(py),
+            None => Err(PyTypeError::new_err("this effect does not pickle")),
+        }
+    }
 }
 
 enum Kind {
@@ -57,7 +72,12 @@ pub(crate) fn effects<'py>(environment: Option<Any<'_, 'py>>) -> PyResult<Vec<Bo
 impl PyEffect {
     /// The field of a planet as one of the effects.
     pub(crate) fn of_field(field: Arc<GravityField>) -> Self {
-        Self { kind: Kind::GravityField(field) }
+        Self { kind: Kind::GravityField(field), made: None }
+    }
+
+    /// An effect that `class` makes of `keywords`.
+    fn made(kind: Kind, class: &str, keywords: &Bound<'_, PyDict>) -> PyResult<PyClassInitializer<Self>> {
+        Ok(PyClassInitializer::from(Self { kind, made: Some(Made::by(class, keywords)?) }))
     }
 
     /// The field, if it is one.
@@ -114,8 +134,9 @@ pub(crate) struct PyGravityGradient;
 #[pymethods]
 impl PyGravityGradient {
     #[new]
-    fn new() -> PyClassInitializer<Self> {
-        PyClassInitializer::from(PyEffect { kind: Kind::GravityGradient }).add_subclass(Self)
+    fn new(py: Python<'_>) -> PyResult<PyClassInitializer<Self>> {
+        let effect = PyEffect::made(Kind::GravityGradient, "GravityGradient", &PyDict::new(py))?;
+        Ok(effect.add_subclass(Self))
     }
 
     fn __repr__(&self) -> &'static str {
@@ -139,7 +160,8 @@ impl PyThirdBody {
             let message = format!("third body is '{body}'; there are 'sun' and 'moon'");
             return Err(raise(py, "EffectError", &message, &fields!(py, "name": "body", "got": body)));
         };
-        Ok(PyClassInitializer::from(PyEffect { kind: Kind::ThirdBody(body) }).add_subclass(Self { body }))
+        let keywords = fields!(py, "body": body.name());
+        Ok(PyEffect::made(Kind::ThirdBody(body), "ThirdBody", &keywords)?.add_subclass(Self { body }))
     }
 
     /// ``sun`` or ``moon``.
@@ -178,6 +200,7 @@ impl PyBodyWrench {
         start: Option<f64>,
         end: Option<f64>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let keywords = fields!(py, "body": &body, "start": start, "end": end);
         let (start, end) = (start.unwrap_or(f64::NEG_INFINITY), end.unwrap_or(f64::INFINITY));
         let vector = |value: Option<Any<'_, '_>>, name| {
             Ok::<_, PyErr>(Vector3::from(value.map_or(Ok([0.0; 3]), |value| fixed::<3>(value, name, &[3]))?))
@@ -187,8 +210,10 @@ impl PyBodyWrench {
         BodyWrench::new(0, force, torque)
             .and_then(|wrench| wrench.during(start, end))
             .map_err(|error| error.into_python(py))?;
+        keywords.set_item("force", force.as_slice())?;
+        keywords.set_item("torque", torque.as_slice())?;
         let kind = Kind::BodyWrench { frame: body, force, torque, start, end };
-        Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
+        Ok(PyEffect::made(kind, "BodyWrench", &keywords)?.add_subclass(Self))
     }
 }
 
@@ -208,9 +233,10 @@ impl PyDrag {
         atmosphere: &Bound<'_, PyAtmosphere>,
         surfaces: Option<Any<'_, '_>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let keywords = fields!(atmosphere.py(), "atmosphere": atmosphere, "surfaces": kept(surfaces)?);
         let atmosphere = Arc::clone(&atmosphere.get().air);
         let kind = Kind::Drag { atmosphere, surfaces: Spread::new(surfaces)? };
-        Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
+        Ok(PyEffect::made(kind, "Drag", &keywords)?.add_subclass(Self))
     }
 }
 
@@ -234,8 +260,10 @@ impl PyRadiationPressure {
         earth_radius: f64,
     ) -> PyResult<PyClassInitializer<Self>> {
         RadiationPressure::check(flux, earth_radius).map_err(|error| error.into_python(py))?;
+        let keywords = fields!(py, "flux": flux, "shadow": shadow, "earth_radius": earth_radius);
+        keywords.set_item("surfaces", kept(surfaces)?)?;
         let earth_radius = shadow.then_some(earth_radius);
         let kind = Kind::RadiationPressure { surfaces: Spread::new(surfaces)?, flux, earth_radius };
-        Ok(PyClassInitializer::from(PyEffect { kind }).add_subclass(Self))
+        Ok(PyEffect::made(kind, "RadiationPressure", &keywords)?.add_subclass(Self))
     }
 }

@@ -11,6 +11,7 @@ mod environment;
 mod errors;
 mod gravity;
 mod kernels;
+mod made;
 mod model;
 mod orbit;
 mod output;

@@ -4,6 +4,7 @@ use crate::arrays::{Threads, array_of, fixed};
 use crate::derivatives::{PyFreeFloatingDerivatives, free_floating_derivatives, three};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
+use crate::made::{Made, absolute};
 use crate::records::{self, PyBody, PyFrame, PyJoint, PyVisual};
 use crate::xacro::from_xacro;
 use nalgebra::Matrix3;
@@ -11,6 +12,7 @@ use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel};
 use onorbit_core::model::urdf::{self, UrdfProblem};
 use onorbit_core::model::{Model, neutral};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 use std::path::PathBuf;
@@ -31,16 +33,17 @@ type External<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 pub(crate) struct PyModel {
     pub(crate) model: Arc<Model>,
     pub(crate) evaluator: Mutex<Evaluator>,
+    made: Option<Made>,
 }
 
 impl PyModel {
-    pub(crate) fn wrap(py: Python<'_>, model: Model) -> PyResult<Self> {
+    pub(crate) fn wrap(py: Python<'_>, model: Model, made: Option<Made>) -> PyResult<Self> {
         let warnings = py.import("warnings")?;
         for warning in model.warnings() {
             warnings.call_method1("warn", (warning.to_string(),))?;
         }
         let evaluator = Mutex::new(Evaluator::new(&model));
-        Ok(Self { model: Arc::new(model), evaluator })
+        Ok(Self { model: Arc::new(model), evaluator, made })
     }
 
     /// Index of a frame by name.
@@ -71,16 +74,20 @@ impl PyModel {
         package_paths: Option<Vec<PathBuf>>,
         xacro_arguments: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let packages = package_paths.unwrap_or_default();
+        let packages: Vec<PathBuf> =
+            package_paths.unwrap_or_default().iter().map(|path| absolute(path)).collect();
+        let keywords = fields!(py, "path": absolute(&path), "package_paths": packages.clone());
+        keywords.set_item("xacro_arguments", xacro_arguments.map(|given| given.copy()).transpose()?)?;
+        let made = Some(Made::by("Model.from_urdf", &keywords)?);
         let is_xacro = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xacro"));
         if !is_xacro && xacro_arguments.is_none() {
             match urdf::from_file(&path, &packages) {
-                Ok(model) => return Self::wrap(py, model),
+                Ok(model) => return Self::wrap(py, model, made),
                 Err(error) if matches!(*error.problem, UrdfProblem::Xacro { .. }) => {}
                 Err(error) => return Err(error.into_python(py)),
             }
         }
-        Self::wrap(py, from_xacro(py, &path, &packages, xacro_arguments)?)
+        Self::wrap(py, from_xacro(py, &path, &packages, xacro_arguments)?, made)
     }
 
     /// Load a robot from the text of a URDF; ``folder`` is where its relative paths start.
@@ -95,7 +102,10 @@ impl PyModel {
         let packages = package_paths.unwrap_or_default();
         let model =
             urdf::from_str(text, folder.as_deref(), &packages).map_err(|error| error.into_python(py))?;
-        Self::wrap(py, model)
+        let packages: Vec<PathBuf> = packages.iter().map(|path| absolute(path)).collect();
+        let folder = folder.as_deref().map(absolute);
+        let keywords = fields!(py, "text": text, "folder": folder, "package_paths": packages);
+        Self::wrap(py, model, Some(Made::by("Model.from_urdf_string", &keywords)?))
     }
 
     /// A spacecraft without joints: mass, kg, and inertia (3, 3) about its centre of mass, kg m².
@@ -103,9 +113,21 @@ impl PyModel {
     /// Its one body is called ``base``, its origin is the centre of mass.
     #[staticmethod]
     fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyResult<Self> {
-        let inertia = Matrix3::from_row_slice(&fixed::<9>(inertia, "inertia", &[3, 3])?);
+        let given = fixed::<9>(inertia, "inertia", &[3, 3])?;
+        let inertia = Matrix3::from_row_slice(&given);
         let model = Model::rigid_body(mass, inertia).map_err(|error| error.into_python(py))?;
-        Self::wrap(py, model)
+        let rows: Vec<&[f64]> = given.chunks(3).collect();
+        let keywords = fields!(py, "mass": mass, "inertia": rows);
+        Self::wrap(py, model, Some(Made::by("Model.rigid_body", &keywords)?))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
+        match &self.made {
+            Some(made) => made.again(py),
+            None => Err(PyTypeError::new_err(
+                "a model built link by link does not pickle: build it where it is needed, or write it as URDF",
+            )),
+        }
     }
 
     /// Name of the robot.

@@ -2,10 +2,11 @@
 
 use crate::arrays::{Input, wrong_shape};
 use crate::errors::{IntoPython, fields, raise};
+use crate::made::Made;
 use onorbit_core::environment::surfaces::{Covering, Optics, Surface, SurfaceError, Surfaces};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
-use pyo3::types::PyMapping;
+use pyo3::types::{PyDict, PyMapping, PyTuple};
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
@@ -13,6 +14,23 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 #[pyclass(name = "Surface", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PySurface {
     kind: SurfaceKind,
+    made: Made,
+}
+
+#[pymethods]
+impl PySurface {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
+        self.made.again(py)
+    }
+}
+
+/// Surfaces as they are now: a dict of them may change later.
+pub(crate) fn kept<'py>(surfaces: Option<Any<'_, 'py>>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let Some(surfaces) = surfaces else { return Ok(None) };
+    Ok(Some(match surfaces.cast::<PyMapping>() {
+        Ok(named) => PyDict::from_sequence(named.items()?.as_any())?.into_any(),
+        Err(_) => surfaces.clone(),
+    }))
 }
 
 /// A surface before it is on a robot.
@@ -163,8 +181,11 @@ impl PyCannonball {
         reflectivity: f64,
     ) -> PyResult<PyClassInitializer<Self>> {
         Surface::cannonball(area, drag_coefficient, reflectivity).map_err(|error| error.into_python(py))?;
+        let keywords =
+            fields!(py, "area": area, "drag_coefficient": drag_coefficient, "reflectivity": reflectivity);
         let kind = SurfaceKind::Cannonball { area, drag_coefficient, reflectivity };
-        Ok(PyClassInitializer::from(PySurface { kind }).add_subclass(Self))
+        let made = Made::by("Cannonball", &keywords)?;
+        Ok(PyClassInitializer::from(PySurface { kind, made }).add_subclass(Self))
     }
 }
 
@@ -187,7 +208,10 @@ impl PyFaces {
     ) -> PyResult<PyClassInitializer<Self>> {
         Surface::cannonball(0.0, drag_coefficient, 0.0).map_err(|error| error.into_python(py))?;
         let kind = SurfaceKind::Faces { drag_coefficient, optics: optics(py, specular, diffuse)? };
-        Ok(PyClassInitializer::from(PySurface { kind }).add_subclass(Self))
+        let keywords =
+            fields!(py, "drag_coefficient": drag_coefficient, "specular": specular, "diffuse": diffuse);
+        let made = Made::by("Faces", &keywords)?;
+        Ok(PyClassInitializer::from(PySurface { kind, made }).add_subclass(Self))
     }
 }
 
@@ -214,13 +238,19 @@ impl PyPlates {
             return Err(wrong_shape(py, "areas", "(N,)", areas.shape()));
         }
         let (normals, centroids) = (rows(normals, "normals")?, rows(centroids, "centroids")?);
+        let keywords =
+            fields!(py, "drag_coefficient": drag_coefficient, "specular": specular, "diffuse": diffuse);
+        keywords.set_item("areas", areas.data())?;
+        keywords.set_item("normals", normals.clone())?;
+        keywords.set_item("centroids", centroids.clone())?;
         let (areas, optics) = (areas.data().to_vec(), optics(py, specular, diffuse)?);
         // plates are wrong or right on any robot
         let model =
             Model::rigid_body(1.0, nalgebra::Matrix3::identity()).map_err(|error| error.into_python(py))?;
         let kind = SurfaceKind::Plates { areas, normals, centroids, drag_coefficient, optics };
         kind.on(py, &model, 0)?;
-        Ok(PyClassInitializer::from(PySurface { kind }).add_subclass(Self))
+        let made = Made::by("Plates", &keywords)?;
+        Ok(PyClassInitializer::from(PySurface { kind, made }).add_subclass(Self))
     }
 }
 

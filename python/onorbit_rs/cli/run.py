@@ -36,8 +36,8 @@ def run(
 
     Exit code 1 where the certificate fails, 2 for errors, 130 after Ctrl-C.
     """
-    from onorbit_rs.running import CHECKPOINT_EVERY
     from onorbit_rs.running import run as run_scenario
+    from onorbit_rs.watching import CHECKPOINT_EVERY
 
     if checkpoint_every is not None and out is None:
         raise InputError(
@@ -63,8 +63,8 @@ def resume(
 
     Killed or interrupted: it left a checkpoint in DIR. Exit codes are those of onorbit run.
     """
-    from onorbit_rs.running import CHECKPOINT_EVERY
     from onorbit_rs.running import resume as resume_run
+    from onorbit_rs.watching import CHECKPOINT_EVERY
 
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     _report(

@@ -128,8 +128,10 @@ def compare(
     OnOrbitError
         As :func:`onorbit_rs.run`, and for folders without a run.
     """
-    if not (np.isfinite(tolerance) and tolerance > 0.0):
-        raise InputError(f"tolerance is {tolerance}, it must be positive", name="tolerance", got=tolerance)
+    if not isinstance(tolerance, (int, float)) or not 0.0 < tolerance < np.inf:
+        raise InputError(
+            f"tolerance is {tolerance!r}, it must be a positive number", name="tolerance", got=tolerance
+        )
     first = recorded(a)
     second = on_the_other_plant(first) if b is None else recorded(b)
     notes = [*_same_robot(first, second), *settings_apart(first.scenario, second.scenario)]

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,28 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core, robots
-from onorbit_rs.exceptions import (
-    ControlError,
-    EarthError,
-    EffectError,
-    FrameError,
-    OnOrbitError,
-    OrbitError,
-    ShapeError,
-)
-from onorbit_rs.names import did_you_mean, nearest
-from onorbit_rs.scenario.air_and_light import Covered, DragEffect, RadiationPressureEffect
 from onorbit_rs.scenario.earth import make_earth
-from onorbit_rs.scenario.environment import BodyWrenchEffect
-from onorbit_rs.scenario.gravity_field import GravityFieldEffect
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
 from onorbit_rs.scenario.make_orbit import integrated, make_orbit
-from onorbit_rs.scenario.place import dotted, file_and_line
+from onorbit_rs.scenario.place import dotted, located, scenario_error
 from onorbit_rs.scenario.plant import make_plant
 from onorbit_rs.scenario.reference import Start
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.start import initial_state
-from onorbit_rs.scenario.third_body import ThirdBodyEffect
+from onorbit_rs.scenario.trial import Flight, about_controllers, try_effects, try_one_step
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -56,17 +40,6 @@ class Built:
     """What a single controller tracks."""
 
 
-@dataclass(frozen=True)
-class _Flight:
-    """A robot on its way."""
-
-    model: _core.Model
-    q: Floats
-    v: Floats
-    orbit: _core.Orbit | None
-    earth: _core.Earth | None
-
-
 def build(scenario: Scenario) -> Built:
     """Robot, orbit, start and simulation of a scenario, and one step as a trial; a run starts afresh.
 
@@ -75,6 +48,7 @@ def build(scenario: Scenario) -> Built:
     OnOrbitError
         The fitting subclass, with file, line and place before the engine's own words.
     """
+    _check_rows(scenario)
     beside = scenario.file.parent if scenario.file else Path()
     with located(scenario, "robot"):
         model = make_robot(scenario)
@@ -87,7 +61,7 @@ def build(scenario: Scenario) -> Built:
     effects = []
     for index, effect in enumerate(scenario.environment):
         with located(scenario, "environment", index):
-            effects.append(_effect(effect, model, beside))
+            effects.append(effect.make(model, beside))
     with located(scenario, "orbit"):
         orbit = integrated(scenario.orbit, orbit, effects, earth)
         if orbit is not None:
@@ -98,7 +72,7 @@ def build(scenario: Scenario) -> Built:
     with located(scenario, "tool"):
         tool_pose = None if tool is None else model.frame_pose(q, tool)
     start = Start(model, q, tool_pose, orbit, beside)
-    _try_effects(scenario, effects, _Flight(model, q, v, orbit, earth))
+    try_effects(scenario, effects, Flight(model, q, v, orbit, earth))
     with located(scenario, "plant"):
         plant = make_plant(scenario, model)
     settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
@@ -107,7 +81,7 @@ def build(scenario: Scenario) -> Built:
 
     def simulation() -> tuple[_core.Simulation, Any]:
         controller, reference = _controlled(scenario, start)
-        with located(scenario, "simulation"), _about_controllers(scenario):
+        with located(scenario, "simulation"), about_controllers(scenario):
             made = _core.Simulation(
                 model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode,
                 environment=effects, controller=controller, reference=reference, tool=tool,
@@ -115,8 +89,17 @@ def build(scenario: Scenario) -> Built:
             )  # fmt: skip
         return made, reference
 
-    _try_one_step(scenario, simulation()[0])  # a controller in Python may remember it: the run gets another
+    try_one_step(scenario, simulation()[0])  # a controller in Python may remember it: the run gets another
     return Built(scenario, model, orbit, earth, q, v, *simulation())
+
+
+def _check_rows(scenario: Scenario) -> None:
+    """Refuse a run of which its two ends alone would be recorded; folders of such runs are still read."""
+    every, steps = scenario.simulation.record_every, scenario.simulation.steps
+    if every > steps:
+        at = ("simulation", "record_every")
+        message = f"{every} is more than the {steps} steps of the run: take at most {steps}, for its two ends"
+        raise scenario_error(message, scenario.file, scenario.line_of(*at), dotted(at))
 
 
 def _controlled(scenario: Scenario, start: Start) -> tuple[Any, Any]:
@@ -141,59 +124,6 @@ def _controlled(scenario: Scenario, start: Start) -> tuple[Any, Any]:
     return controls or None, None
 
 
-@contextmanager
-def _about_controllers(scenario: Scenario) -> Iterator[None]:
-    """What is wrong with controllers that the engine puts together stands with them."""
-    try:
-        yield
-    except (ControlError, ShapeError):
-        with located(scenario, "controller" if scenario.controllers is None else "controllers"):
-            raise
-
-
-def _try_one_step(scenario: Scenario, simulation: _core.Simulation) -> None:
-    """One step, thrown away: what would stop the run at once is told before anything is written."""
-    try:
-        with _about_controllers(scenario):
-            simulation.run(scenario.simulation.time_step)
-    except OnOrbitError as error:
-        is_about_orbit = isinstance(error, (OrbitError, EffectError)) and scenario.orbit is not None
-        with located(scenario, "orbit" if is_about_orbit else "simulation"):
-            raise
-
-
-def _try_effects(scenario: Scenario, effects: list[Any], flight: _Flight) -> None:
-    """One step under air or light alone: what they refuse stands with them; the rest is told in its place."""
-    for index, (part, effect) in enumerate(zip(scenario.environment, effects, strict=True)):
-        if not isinstance(part, Covered):
-            continue
-        with located(scenario, "environment", index), warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # the run itself warns
-            try:
-                alone = _core.Simulation(
-                    flight.model, flight.q, flight.v, orbit=flight.orbit, earth=flight.earth,
-                    environment=[effect], time_step=scenario.simulation.time_step,
-                )  # fmt: skip
-                alone.run(scenario.simulation.time_step)
-            except OnOrbitError as error:
-                if isinstance(error, (EarthError, EffectError, FrameError)):
-                    raise
-
-
-@contextmanager
-def located(scenario: Scenario, *at: str | int) -> Iterator[None]:
-    """Put file, line and place before the message of an error of ours; its class stays."""
-    try:
-        yield
-    except OnOrbitError as error:
-        if getattr(error, "located", False):
-            raise
-        where = file_and_line(scenario.file, scenario.line_of(*at))
-        error.message = f"{where}: {dotted(at)}: {error.message}"
-        error.located = True  # type: ignore[attr-defined]  # set once, read above
-        raise
-
-
 def make_robot(scenario: Scenario) -> _core.Model:
     """The robot of a scenario."""
     robot = scenario.robot
@@ -207,20 +137,3 @@ def make_robot(scenario: Scenario) -> _core.Model:
     return _core.Model.from_urdf(
         beside / robot.urdf, package_paths=packages or None, xacro_arguments=robot.xacro_arguments or None
     )
-
-
-def _effect(effect: Any, model: _core.Model, beside: Path) -> Any:
-    if isinstance(effect, (DragEffect, GravityFieldEffect, RadiationPressureEffect, ThirdBodyEffect)):
-        return effect.make(beside)
-    if isinstance(effect, BodyWrenchEffect):
-        bodies = list(model.body_names)
-        if effect.body not in bodies:
-            raise FrameError(
-                f"no body is named {effect.body!r}{did_you_mean(effect.body, bodies)}",
-                name=effect.body, kind="body", known=bodies, suggestion=nearest(effect.body, bodies),
-            )  # fmt: skip
-        times = {"start": effect.start} | ({} if effect.end is None else {"end": effect.end})
-        return _core.BodyWrench(
-            effect.body, force=np.array(effect.force), torque=np.array(effect.torque), **times
-        )
-    return _core.GravityGradient()

@@ -40,11 +40,11 @@ def _place_and_message(details: ErrorDetails, data: Any) -> tuple[Location, str]
         known = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
         return (*at, "kind"), f"unknown kind {context['tag']!r}{did_you_mean(context['tag'], known)}"
     if kind == "missing":
-        return at, "is missing" + FORMS.get(at[-1] if at else "", "")
+        return at, "is missing" + _FORMS.get(at[-1] if at else "", "")
     return at, _said(kind, details, context)
 
 
-FORMS: dict[str | int, str] = {
+_FORMS: dict[str | int, str] = {
     "robot": ": a bundled name (humanoid_torso), a URDF, or {rigid_body: {mass: ..., inertia: ...}}",
     "simulation": ": at least {duration: 10 s}",
 }
@@ -72,7 +72,7 @@ def _said(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> str:
         return f"{shown(given)} is not one of {context['expected']}{_near(given, context)}"
     if kind in ("too_short", "too_long"):
         needed = context["min_length" if kind == "too_short" else "max_length"]
-        return f"has {context['actual_length']} entries, needs {needed}"
+        return f"has {context['actual_length']} entries, needs {'at least 1' if needed == 1 else needed}"
     if kind == "greater_than_equal":
         return f"{shown(given)} is below {context['ge']}, the least that is allowed"
     if kind == "less_than_equal":

@@ -6,16 +6,13 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from onorbit_rs.scenario.fields import (
+from onorbit_rs.scenario.fields import FilePath, NotNegative, Number, Rate
+from onorbit_rs.scenario.gains import (
     DamperGain,
-    FilePath,
     JointEffort,
     JointNumber,
     JointRateGain,
     JointStiffnessGain,
-    NotNegative,
-    Number,
-    Rate,
     RateGain,
     SpringGain,
     StiffnessGain,

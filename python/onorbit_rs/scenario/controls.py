@@ -7,7 +7,8 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from onorbit_rs.scenario import control as laws
-from onorbit_rs.scenario.fields import JointTolerance, NotNegative, Positive, TaskTolerance, Time
+from onorbit_rs.scenario.fields import NotNegative, Positive, Time
+from onorbit_rs.scenario.gains import JointTolerance, TaskTolerance
 from onorbit_rs.scenario.part import Part, of_kind
 from onorbit_rs.scenario.reference_parts import Reference
 

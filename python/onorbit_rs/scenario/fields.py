@@ -11,7 +11,6 @@ from pydantic import (
     BeforeValidator,
     Field,
     PlainSerializer,
-    PlainValidator,
     SerializationInfo,
 )
 
@@ -68,6 +67,17 @@ Inertia = Annotated[float, _reader(units.INERTIA)]
 Stiffness = Annotated[float, _reader(units.STIFFNESS)]
 
 
+def _whole(value: object) -> object:
+    if isinstance(value, bool):
+        raise QuantityError(
+            f"{value} is no number; a whole number is needed", text=value, expected="a number"
+        )
+    return value
+
+
+Whole = Annotated[int, BeforeValidator(_whole)]
+
+
 def _drift(value: object) -> float | Literal["never"]:
     if value in ("never", math.inf):
         return "never"
@@ -92,121 +102,3 @@ Force3 = Annotated[list[Force], Field(min_length=3, max_length=3)]
 Torque3 = Annotated[list[Torque], Field(min_length=3, max_length=3)]
 Number3 = Annotated[list[Number], Field(min_length=3, max_length=3)]
 Number4 = Annotated[list[Number], Field(min_length=4, max_length=4)]
-
-
-def _gain_reader(linear: Dimension, angular: Dimension | None = None) -> BeforeValidator:
-    """Gains of the six directions; a number for all of them is bare where they differ in dimension."""
-
-    def row(value: object) -> list[float]:
-        if not isinstance(value, list) or len(value) != 6:
-            raise QuantityError(_GAIN_SHAPES, text=value, expected="6 numbers")
-        kinds = [linear] * 3 + [angular or linear] * 3
-        return [parse_quantity(entry, kind) for entry, kind in zip(value, kinds, strict=True)]
-
-    def read(value: object) -> float | list[float] | list[list[float]]:
-        if not isinstance(value, list):
-            return parse_quantity(value, units.NUMBER if angular else linear)
-        if any(isinstance(entry, list) for entry in value):
-            if len(value) != 6:
-                raise QuantityError(_GAIN_SHAPES, text=value, expected="6 x 6 numbers")
-            return [row(entry) for entry in value]
-        return row(value)
-
-    return BeforeValidator(read)
-
-
-_GAIN_SHAPES = "a gain is one number, six (linear first, then angular), or a 6 x 6 matrix given as six rows"
-_Gain = float | list[float] | list[list[float]]
-
-StiffnessGain = Annotated[_Gain, _gain_reader(units.STIFFNESS)]
-RateGain = Annotated[_Gain, _gain_reader(units.RATE)]
-SpringGain = Annotated[_Gain, _gain_reader(units.LINEAR_STIFFNESS, units.ANGULAR_STIFFNESS)]
-DamperGain = Annotated[_Gain, _gain_reader(units.LINEAR_DAMPING, units.ANGULAR_DAMPING)]
-
-
-def _per_joint_reader(*allowed: Dimension) -> BeforeValidator:
-    """A number for all joints of a group, or one for each."""
-
-    def read(value: object) -> float | list[float]:
-        if isinstance(value, list):
-            return [parse_quantity(entry, *allowed) for entry in value]
-        return parse_quantity(value, *allowed)
-
-    return BeforeValidator(read)
-
-
-_PerJoint = float | list[float]
-
-JointNumber = Annotated[_PerJoint, _per_joint_reader(units.NUMBER)]
-JointStiffnessGain = Annotated[_PerJoint, _per_joint_reader(units.STIFFNESS)]
-JointRateGain = Annotated[_PerJoint, _per_joint_reader(units.RATE)]
-JointEffort = Annotated[_PerJoint, _per_joint_reader(units.TORQUE, units.FORCE)]
-JointTolerance = Annotated[_PerJoint, _per_joint_reader(units.ANGLE, units.LENGTH)]
-
-
-def _task_tolerance(value: object) -> list[float]:
-    if not isinstance(value, list) or len(value) != 2:
-        raise QuantityError(
-            "the tolerance of a tool is a distance and an angle, such as [1 mm, 0.1 deg]",
-            text=value,
-            expected="a length and an angle",
-        )
-    return [parse_quantity(value[0], units.LENGTH), parse_quantity(value[1], units.ANGLE)]
-
-
-TaskTolerance = Annotated[list[float], BeforeValidator(_task_tolerance)]
-
-
-class JointValue(float):
-    """The value of a joint in SI; ``dimension`` is that of its unit, None for a bare number."""
-
-    dimension: Dimension | None = None
-
-
-def _joint_value(value: object, allowed: tuple[Dimension, ...]) -> JointValue:
-    number = JointValue(parse_quantity(value, *allowed))
-    fitting = [dimension for dimension in allowed if _measures(value, dimension)]
-    number.dimension = fitting[0] if len(fitting) == 1 else None
-    return number
-
-
-def _measures(value: object, dimension: Dimension) -> bool:
-    try:
-        parse_quantity(value, dimension)
-    except QuantityError:
-        return False
-    return True
-
-
-def _joints_reader(*allowed: Dimension) -> PlainValidator:
-    def read(value: object) -> list[JointValue] | dict[str, JointValue]:
-        if isinstance(value, dict):
-            return {str(name): _named(str(name), entry, allowed) for name, entry in value.items()}
-        if isinstance(value, list):
-            return [_joint_value(entry, allowed) for entry in value]
-        raise QuantityError(
-            "joints are a list in the model's order, or a mapping from joint name to value",
-            text=value,
-            expected="joints",
-        )
-
-    return PlainValidator(read)
-
-
-def _named(name: str, value: object, allowed: tuple[Dimension, ...]) -> JointValue:
-    try:
-        return _joint_value(value, allowed)
-    except QuantityError as error:
-        raise QuantityError(f"{name}: {error}", text=error.text, expected=error.expected) from None
-
-
-def _plain(joints: _Joints) -> list[float] | dict[str, float]:
-    if isinstance(joints, dict):
-        return {name: float(value) for name, value in joints.items()}
-    return [float(value) for value in joints]
-
-
-_Joints = list[JointValue] | dict[str, JointValue]
-
-JointPositions = Annotated[_Joints, _joints_reader(units.ANGLE, units.LENGTH), PlainSerializer(_plain)]
-JointRates = Annotated[_Joints, _joints_reader(units.ANGULAR_RATE, units.SPEED), PlainSerializer(_plain)]

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, SerializationInfo, field_serializer
 
 from onorbit_rs import _core
-from onorbit_rs.scenario.fields import beside
+from onorbit_rs.scenario.fields import Whole, beside
 from onorbit_rs.scenario.part import Part
 
 
@@ -17,9 +17,9 @@ class GravityFieldEffect(Part):
 
     kind: Literal["gravity_field"] = "gravity_field"
     model: str = "egm2008"
-    degree: Annotated[int, Field(ge=2)] | None = None
+    degree: Annotated[Whole, Field(ge=2)] | None = None
     """36 for a bundled model, 6 for ``zonal``, the file's own for a file, where not given."""
-    order: Annotated[int, Field(ge=0)] | None = None
+    order: Annotated[Whole, Field(ge=0)] | None = None
     """That of the degree where not given."""
 
     @field_serializer("model", when_used="json")
@@ -31,7 +31,7 @@ class GravityFieldEffect(Part):
         """Whether ``model`` is a path."""
         return self.model.endswith(".gfc")
 
-    def make(self, folder: Path) -> _core.GravityField:
+    def make(self, _model: _core.Model, folder: Path) -> _core.GravityField:
         """The engine's."""
         degree = {} if self.degree is None else {"degree": self.degree}
         if self.is_file:

@@ -7,15 +7,8 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from onorbit_rs.scenario.fields import (
-    Angle3,
-    AngularRate3,
-    JointPositions,
-    JointRates,
-    Length3,
-    Number4,
-    Speed3,
-)
+from onorbit_rs.scenario.fields import Angle3, AngularRate3, Length3, Number4, Speed3
+from onorbit_rs.scenario.joint_values import JointPositions, JointRates
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.refusals import wrong
 

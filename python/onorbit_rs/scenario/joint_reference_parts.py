@@ -6,14 +6,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from onorbit_rs.scenario.fields import (
-    FilePath,
-    JointAcceleration,
-    JointPositions,
-    JointRate,
-    Positive,
-    Time,
-)
+from onorbit_rs.scenario.fields import FilePath, JointAcceleration, JointRate, Positive, Time
+from onorbit_rs.scenario.joint_values import JointPositions
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.refusals import wrong
 from onorbit_rs.scenario.units import ANGLE, LENGTH, parse_quantity

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from onorbit_rs import scenarios
-from onorbit_rs.exceptions import NotFoundError
+from onorbit_rs.exceptions import DtypeError, NotFoundError
 from onorbit_rs.names import did_you_mean
 from onorbit_rs.scenario.complaints import first_complaint
 from onorbit_rs.scenario.place import scenario_error
@@ -30,6 +30,8 @@ def load(source: str | os.PathLike[str] | Mapping[str, Any] | Scenario) -> Scena
     ------
     NotFoundError
         Neither a bundled name nor a file.
+    DtypeError
+        Nothing that names or holds a scenario.
     ScenarioError
         Broken, misspelt or senseless; carries ``file``, ``path`` (the place in the YAML) and ``line``.
     """
@@ -37,6 +39,13 @@ def load(source: str | os.PathLike[str] | Mapping[str, Any] | Scenario) -> Scena
         return source
     if isinstance(source, Mapping):
         return check(dict(source), None, {})
+    if not isinstance(source, (str, os.PathLike)):
+        kind = type(source).__name__
+        raise DtypeError(
+            f"{source!s:.60} ({kind}) is no scenario: give a bundled name, a YAML file, a mapping or a "
+            "Scenario",
+            name="scenario", got=kind, expected="str, path, mapping or Scenario",
+        )  # fmt: skip
     file = locate(source)
     data, lines = read_yaml(file)
     return check(data, file, lines)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
@@ -33,6 +33,16 @@ class ConicOrbit(Part):
     parabola), ``eccentricity``, three angles, and one phase. State: ``position`` and ``velocity`` at the
     start, inertial axes.
     """
+
+    other_words: ClassVar = {
+        "a": "semi_major_axis", "sma": "semi_major_axis", "altitude": "semi_major_axis",
+        "p": "semi_latus_rectum",
+        "e": "eccentricity", "ecc": "eccentricity", "i": "inclination", "inc": "inclination",
+        "node": "raan", "right_ascension": "raan", "argp": "argument_of_periapsis",
+        "aop": "argument_of_periapsis", "argument_of_perigee": "argument_of_periapsis",
+        "m": "mean_anomaly", "ma": "mean_anomaly", "nu": "true_anomaly", "ta": "true_anomaly",
+        "r": "position", "v": "velocity",
+    }  # fmt: skip
 
     semi_major_axis: Length | None = None
     semi_latus_rectum: Annotated[Length, Positive] | None = None

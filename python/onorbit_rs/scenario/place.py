@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from onorbit_rs.exceptions import ScenarioError
+from onorbit_rs.exceptions import OnOrbitError, ScenarioError
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.schema import Scenario
 
 
 def dotted(at: tuple[str | int, ...]) -> str:
@@ -21,3 +27,17 @@ def scenario_error(message: str, file: Path | None, line: int | None, path: str 
     """An error with its place before the message."""
     where = f"{file_and_line(file, line)}: {path}: " if path else f"{file_and_line(file, line)}: "
     return ScenarioError(where + message, file=str(file) if file else None, path=path or None, line=line)
+
+
+@contextmanager
+def located(scenario: Scenario, *at: str | int) -> Iterator[None]:
+    """Put file, line and place before the message of an error of ours; its class stays."""
+    try:
+        yield
+    except OnOrbitError as error:
+        if getattr(error, "located", False):
+            raise
+        where = file_and_line(scenario.file, scenario.line_of(*at))
+        error.message = f"{where}: {dotted(at)}: {error.message}"
+        error.located = True  # type: ignore[attr-defined]  # set once, read above
+        raise

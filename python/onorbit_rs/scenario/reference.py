@@ -16,6 +16,7 @@ from onorbit_rs.scenario import joint_reference_parts as joint_parts
 from onorbit_rs.scenario import reference_parts as parts
 from onorbit_rs.scenario.start import joint_values, quaternion_of
 from onorbit_rs.scenario.table import read_table
+from onorbit_rs.scenario.task_frame import TargetFrame
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -59,7 +60,7 @@ def reference_of(part: parts.AnyReference | None, at: Start) -> _core.Reference 
 
 def _task(part: parts.TaskReference, at: Start) -> _core.Reference:
     frame: Any = part.frame
-    if isinstance(part.frame, parts.TargetFrame):
+    if isinstance(part.frame, TargetFrame):
         motion = part.frame.target
         pose = _pose(motion.position, motion.attitude)
         frame = _core.Target(pose, velocity=np.array(motion.velocity), spin=np.array(motion.spin))
@@ -96,7 +97,7 @@ def _first_pose(part: parts.TaskReference, at: Start) -> Floats:
         return _pose(part.start.position, part.start.attitude)
     assert at.tool_pose is not None, "a task reference is built for a tool"
     frame = np.eye(4)
-    if isinstance(part.frame, parts.TargetFrame):
+    if isinstance(part.frame, TargetFrame):
         frame = _pose(part.frame.target.position, part.frame.target.attitude)
     elif part.frame == "base":
         frame[:3, :3], frame[:3, 3] = matrix_from_quaternion(at.q[3:7]), at.q[:3]

@@ -12,8 +12,7 @@ from onorbit_rs.scenario.control import AnyController, Controller
 from onorbit_rs.scenario.control_fit import check_control
 from onorbit_rs.scenario.controls import AnyControl
 from onorbit_rs.scenario.earth import EarthPart, Epoch
-from onorbit_rs.scenario.environment import Effect, GravityGradientEffect
-from onorbit_rs.scenario.gravity_field import GravityFieldEffect
+from onorbit_rs.scenario.environment import BodyWrenchEffect, Effect
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.path import Orbit
@@ -22,7 +21,6 @@ from onorbit_rs.scenario.reference_parts import Reference
 from onorbit_rs.scenario.refusals import misfit
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import SimulationSettings
-from onorbit_rs.scenario.third_body import ThirdBodyEffect
 from onorbit_rs.scenario.yaml_lines import Lines
 
 
@@ -124,7 +122,7 @@ class Scenario(Part):
         check_plant(self)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
-                if isinstance(effect, GravityGradientEffect | GravityFieldEffect | ThirdBodyEffect):
+                if not isinstance(effect, BodyWrenchEffect):
                     what = effect.kind.replace("_", " ")
                     raise misfit(("environment", index), f"the {what} needs an 'orbit'")
             if self.initial.frame != "world":

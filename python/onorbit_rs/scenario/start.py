@@ -13,8 +13,8 @@ from onorbit_rs.rotations import (
     quaternion_from_matrix,
     quaternion_from_roll_pitch_yaw,
 )
-from onorbit_rs.scenario.fields import JointValue
 from onorbit_rs.scenario.initial import Attitude, InitialState
+from onorbit_rs.scenario.joint_values import JointValue
 from onorbit_rs.scenario.units import LENGTH, SPEED
 
 if TYPE_CHECKING:

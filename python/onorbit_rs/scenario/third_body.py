@@ -15,6 +15,6 @@ class ThirdBodyEffect(Part):
     kind: Literal["third_body"] = "third_body"
     body: Literal["sun", "moon"]
 
-    def make(self, _beside: Path) -> _core.ThirdBody:
+    def make(self, _model: _core.Model, _beside: Path) -> _core.ThirdBody:
         """The effect of the engine."""
         return _core.ThirdBody(self.body)

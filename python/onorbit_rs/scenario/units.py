@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass
 
 from onorbit_rs.exceptions import QuantityError
-from onorbit_rs.names import did_you_mean
+from onorbit_rs.names import nearest
 from onorbit_rs.scenario.refusals import shown
 
 Powers = tuple[int, int, int, int]
@@ -142,9 +142,12 @@ def _parse_unit(unit: str, text: str, allowed: tuple[Dimension, ...]) -> tuple[f
             raise _refused(text, f"has a unit that cannot be read, {unit!r}", allowed)
         operator, name, power = match[1], match[2], int(match[3] or 1)
         if name not in _UNITS:
-            raise _refused(
-                text, f"has the unknown unit {name!r}{did_you_mean(name, _UNITS).rstrip('?')}", allowed
-            )
+            fitting = [
+                known for known, (_, own) in _UNITS.items() if any(own == one.powers for one in allowed)
+            ]
+            near = nearest(name, fitting or _UNITS)
+            hint = f", did you mean {near!r}" if near else ""
+            raise _refused(text, f"has the unknown unit {name!r}{hint}", allowed)
         if abs(power) > 9:
             raise _refused(text, f"has an absurd power in its unit, {unit!r}", allowed)
         signed = -power if operator == "/" else power

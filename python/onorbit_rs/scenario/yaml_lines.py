@@ -157,6 +157,8 @@ _WAYS_OUT = {
     "could not find expected ':'": "a key is followed by ':' and a space",
     "expected <block end>": "is this line further in, or less far, than its neighbours?",
     "expected ',' or": "is a bracket or brace left open?",
+    "unexpected end of stream": "is a quote left open?",
+    "cannot start any token": "text that begins with such a character wants quotes",
     "another document": "a file holds one scenario",
     "constructor for the tag": "values are plain, without '!'",
     "undefined alias": "its '&' must stand above it",

@@ -81,9 +81,9 @@ pub(super) fn check_shapes(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(
         if rows.width != expected {
             return Err(InputError::WrongLength { name, expected, got: rows.width });
         }
-        check_whole(name, rows.data, expected)?;
-        let got = rows.data.len().checked_div(expected).unwrap_or(count); // a robot may have no joints
-        if got != count {
+        if rows.data.len() != count * expected {
+            check_whole(name, rows.data, expected)?;
+            let got = rows.data.len() / expected.max(1); // a robot may have no joints
             return Err(InputError::WrongBatch { name, expected: count, got });
         }
     }

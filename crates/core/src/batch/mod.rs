@@ -9,6 +9,7 @@ mod rollout;
 mod side_by_side;
 mod space;
 mod threads;
+mod work;
 
 pub use evaluate::Evaluator;
 pub use input::{InputError, Wrenches};

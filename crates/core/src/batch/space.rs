@@ -1,8 +1,9 @@
 //! Workspace and rows of as many states as stand side by side.
 
 use super::input::{UNIT_NORM, Wrenches};
-use super::kernel::{Kernel, OUTPUTS, Work};
+use super::kernel::{Kernel, OUTPUTS};
 use super::side_by_side::{Places, gather, scatter};
+use super::work::Work;
 use crate::dynamics::FrameWrench;
 use crate::model::Model;
 use crate::spatial::{Force, Quat, Real};

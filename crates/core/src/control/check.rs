@@ -1,6 +1,6 @@
 //! What can be wrong with several controls, as far as it is known before the run.
 
-use super::computed_torque::path_joints;
+use super::computed_torque::{frame_of, path_joints};
 use super::error::ControlError;
 use super::group::{Begin, Control, Law};
 use crate::model::Model;
@@ -45,6 +45,7 @@ fn check_group(control: &Control, model: &Model) -> Result<(), ControlError> {
 
 fn check_law(control: &Control, model: &Model) -> Result<(), ControlError> {
     let count = control.joints.len();
+    control.task().map(|(frame, _)| frame_of(model, frame)).transpose()?;
     match &control.law {
         Law::TaskComputedTorque(law, _) => {
             law.check(model)?;

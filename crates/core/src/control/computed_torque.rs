@@ -4,7 +4,7 @@ use super::error::ControlError;
 use super::gains::{check_matrix, check_numbers};
 use super::pseudo_inverse::PseudoInverse;
 use crate::dynamics::{Data, FreeFloating, base_relative_frame, free_floating_recursion};
-use crate::model::{JointProperties, Model};
+use crate::model::{Frame, JointProperties, Model};
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 
@@ -77,13 +77,19 @@ impl ComputedTorque {
         check_matrix("kd", &self.kd)?;
         check_numbers("damping", &[self.damping])?;
         check_numbers("null_space_damping", &[self.null_space_damping])?;
-        let frame = &model.frames()[self.frame];
+        let frame = frame_of(model, self.frame)?;
         let joints = path_joints(model, self.frame).count();
         if joints < 6 {
             return Err(ControlError::TooFewJoints { frame: frame.name.clone(), joints });
         }
         Ok(())
     }
+}
+
+/// A frame that the robot has.
+pub(super) fn frame_of(model: &Model, frame: usize) -> Result<&Frame, ControlError> {
+    let count = model.frames().len();
+    model.frames().get(frame).ok_or(ControlError::NoSuchFrame { frame, count })
 }
 
 /// Joints between a frame and the base, from the frame on.

@@ -27,6 +27,8 @@ pub enum ControlError {
     EmptyGroup { control: String },
     #[error("control '{control}' drives joint {joint}, the robot has joints 0 to {last}", last = count.saturating_sub(1))]
     NoSuchJoint { control: String, joint: usize, count: usize },
+    #[error("frame {frame} is to be controlled, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    NoSuchFrame { frame: usize, count: usize },
     #[error("control '{control}' names joint '{joint}' twice")]
     RepeatedJoint { control: String, joint: String },
     #[error(

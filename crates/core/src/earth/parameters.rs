@@ -54,10 +54,13 @@ impl Default for EarthParameters {
 
 impl EarthParameters {
     /// A table from rows of four numbers: MJD (UTC), `x_p, y_p`, rad, UT1 less UTC, s.
-    pub fn from_rows(numbers: &[f64]) -> Self {
-        let row =
-            |r: &[f64]| EarthParameterRow { mjd: r[0], polar_motion: [r[1], r[2]], ut1_minus_utc: r[3] };
-        Self::Table(numbers.chunks_exact(4).map(row).collect())
+    pub fn from_rows(rows: &[[f64; 4]]) -> Self {
+        let row = |&[mjd, x, y, ut1_minus_utc]: &[f64; 4]| EarthParameterRow {
+            mjd,
+            polar_motion: [x, y],
+            ut1_minus_utc,
+        };
+        Self::Table(rows.iter().map(row).collect())
     }
 }
 

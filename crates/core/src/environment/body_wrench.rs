@@ -38,14 +38,15 @@ impl BodyWrench {
     /// on.
     ///
     /// # Errors
-    /// [`EnvironmentError::NotFinite`].
+    /// [`EnvironmentError::NotFinite`], [`EnvironmentError::UnknownFrame`].
     pub fn on_frame(
         model: &Model,
         frame: usize,
         force: Vector3<f64>,
         torque: Vector3<f64>,
     ) -> Result<Self, EnvironmentError> {
-        let frame = &model.frames()[frame];
+        let count = model.frames().len();
+        let frame = model.frames().get(frame).ok_or(EnvironmentError::UnknownFrame { frame, count })?;
         let rot_kf = frame.rot_kf.to_nalgebra();
         Self::new(frame.body, rot_kf * force, rot_kf * torque)?.at(frame.pos_kf.to_nalgebra())
     }

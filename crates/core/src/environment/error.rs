@@ -65,6 +65,14 @@ pub enum EnvironmentError {
         /// Number of bodies.
         count: usize,
     },
+    /// A wrench acts on a frame that the robot does not have.
+    #[error("wrench acts on frame {frame}, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    UnknownFrame {
+        /// Index given.
+        frame: usize,
+        /// Number of frames.
+        count: usize,
+    },
     /// The air cannot be told.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),

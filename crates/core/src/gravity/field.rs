@@ -194,6 +194,10 @@ impl GravityField {
         mut write: impl FnMut(&Vector3<f64>, &mut [f64]) -> Result<(), GravityError>,
     ) -> Result<(), GravityError> {
         let expected = positions.len() / 3 * width;
+        if !positions.len().is_multiple_of(3) {
+            let (expected, got) = (positions.len().next_multiple_of(3), positions.len());
+            return Err(GravityError::WrongLength { name: "positions", expected, got });
+        }
         if out.len() != expected {
             return Err(GravityError::WrongLength { name: "out", expected, got: out.len() });
         }

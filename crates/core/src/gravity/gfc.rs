@@ -175,7 +175,7 @@ mod tests {
             assert!(matches!(cut, GravityError::CutRow { line: 19, .. }), "{cut}");
         }
         assert!(read("tiny.gfc", GOOD.trim_end(), None).is_ok());
-        for whole in ["7e-7 0.0000014\n", "7e-7 1.4e-6", "7e-7 0.0000014 0"] {
+        for whole in ["7e-7 0.0000014\n", "7e-7 1.4e-6", "7e-7 0.0000014 0 0"] {
             assert!(read("tiny.gfc", &GOOD.replace("7e-7 1.4e-6 0 0\n", whole), None).is_ok(), "{whole}");
         }
         assert!(read("tiny.gfc", &GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7 1.4"), Some(2)).is_ok());

@@ -8,16 +8,16 @@ impl Hold {
     ///
     /// # Errors
     /// [`ReferenceError::LastRow`] for a last row other than 0, 0, 0, 1; as [`Hold::new`].
-    pub fn from_rows(rows: &[f64]) -> Result<Vec<Self>, ReferenceError> {
-        let pose = |rows: &[f64]| {
-            let pose = Matrix4::from_row_slice(rows);
+    pub fn from_rows(rows: &[[f64; 16]]) -> Result<Vec<Self>, ReferenceError> {
+        let pose = |row: &[f64; 16]| {
+            let pose = Matrix4::from_row_slice(row);
             let last = pose.row(3).transpose();
             if last != Vector4::w() {
                 return Err(ReferenceError::LastRow { row: last.into() });
             }
             Self::new(pose.fixed_view::<3, 3>(0, 0).into(), pose.fixed_view::<3, 1>(0, 3).into())
         };
-        rows.chunks_exact(16).map(pose).collect()
+        rows.iter().map(pose).collect()
     }
 }
 
@@ -25,13 +25,18 @@ impl Hold {
 /// those of the path's own frame where `in_own_frame`.
 ///
 /// # Errors
-/// As [`TaskReference::sample`]; rows before it are written.
+/// [`ReferenceError::WrongLength`]; as [`TaskReference::sample`], rows before it being written.
 pub fn task_table(
     reference: &TaskReference,
     in_own_frame: bool,
     times: &[f64],
     [poses, velocities, accelerations]: [&mut [f64]; 3],
 ) -> Result<(), ReferenceError> {
+    for (name, width, out) in
+        [("poses", 16, &poses), ("velocities", 6, &velocities), ("accelerations", 6, &accelerations)]
+    {
+        check_room(name, width * times.len(), out)?;
+    }
     let rows = poses.chunks_exact_mut(16).zip(velocities.chunks_exact_mut(6));
     for (&t, ((pose, velocity), acceleration)) in
         times.iter().zip(rows.zip(accelerations.chunks_exact_mut(6)))
@@ -45,8 +50,18 @@ pub fn task_table(
 }
 
 /// Samples at many `times` (T,), s: positions, rates and accelerations (T, n).
-pub fn joint_table(path: &dyn JointPath, times: &[f64], [q, v, a]: [&mut [f64]; 3]) {
+///
+/// # Errors
+/// [`ReferenceError::WrongLength`].
+pub fn joint_table(
+    path: &dyn JointPath,
+    times: &[f64],
+    [q, v, a]: [&mut [f64]; 3],
+) -> Result<(), ReferenceError> {
     let n = path.count();
+    for (name, out) in [("positions", &q), ("rates", &v), ("accelerations", &a)] {
+        check_room(name, n * times.len(), out)?;
+    }
     let mut now = JointSample::new(n);
     for (row, &t) in times.iter().enumerate() {
         path.sample(t, &mut now);
@@ -54,4 +69,11 @@ pub fn joint_table(path: &dyn JointPath, times: &[f64], [q, v, a]: [&mut [f64]; 
             out[row * n..(row + 1) * n].copy_from_slice(values);
         }
     }
+    Ok(())
+}
+
+/// Refuses an output that has other room than it needs.
+fn check_room(name: &'static str, expected: usize, out: &[f64]) -> Result<(), ReferenceError> {
+    let got = out.len();
+    if got == expected { Ok(()) } else { Err(ReferenceError::WrongLength { name, expected, got }) }
 }

@@ -1,6 +1,7 @@
 //! Runs: the plant, its integrators, events, the trace and its certificate.
 
 mod certificate;
+mod check;
 mod checkpoint;
 mod contacts;
 mod driver;

@@ -199,11 +199,14 @@ pub(super) fn check_rows(
     points: usize,
     width: usize,
 ) -> Result<(), SplineError> {
+    if width == 0 {
+        return Err(SplineError::WrongLength { name, expected: points, got: 0 });
+    }
     if rows.len() != points * width {
         return Err(SplineError::WrongLength { name, expected: points * width, got: rows.len() });
     }
     match rows.iter().position(|x| !x.is_finite()) {
-        Some(i) => Err(SplineError::NotFinite { name, point: i / width.max(1), value: rows[i] }),
+        Some(i) => Err(SplineError::NotFinite { name, point: i / width, value: rows[i] }),
         None => Ok(()),
     }
 }

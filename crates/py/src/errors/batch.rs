@@ -15,7 +15,7 @@ impl IntoPython for InputError {
             Self::Ragged { name, width, got } => shape_error(py, &message, name, width, got),
             Self::WrongCount { what, expected, got } => shape_error(py, &message, what, expected, got),
             Self::WrongRoom { expected, got, .. } => shape_error(py, &message, "out", expected, got),
-            Self::NotSingle { got } => shape_error(py, &message, "states", &1, got),
+            Self::NotSingle { got } => shape_error(py, &message, "states", 1, got),
             Self::UnknownFrame { frame, count } => raise(
                 py,
                 "InputError",

@@ -92,7 +92,8 @@ impl PyJointReference {
         let (times, shape) = times(t)?;
         let dims: Vec<usize> = shape.into_iter().chain([self.path.count()]).collect();
         let (q, v, a) = (zeros(py, &dims)?, zeros(py, &dims)?, zeros(py, &dims)?);
-        joint_table(&*self.path, &times, [fresh(&q), fresh(&v), fresh(&a)]);
+        joint_table(&*self.path, &times, [fresh(&q), fresh(&v), fresh(&a)])
+            .map_err(|error| error.into_python(py))?;
         Ok((q, v, a))
     }
 }
@@ -142,7 +143,7 @@ fn no_reference(value: Any<'_, '_>, expected: &str) -> PyErr {
 /// A (4, 4) pose.
 fn pose(value: Any<'_, '_>) -> PyResult<Hold> {
     let rows = fixed::<16>(value, "pose", &[4, 4])?;
-    let mut poses = Hold::from_rows(&rows).map_err(|error| error.into_python(value.py()))?;
+    let mut poses = Hold::from_rows(&[rows]).map_err(|error| error.into_python(value.py()))?;
     Ok(poses.remove(0))
 }
 
@@ -152,7 +153,7 @@ fn poses(value: Any<'_, '_>) -> PyResult<Vec<Hold>> {
     let [_, 4, 4] = input.shape() else {
         return Err(wrong_shape(value.py(), "poses", "(K, 4, 4)", input.shape()));
     };
-    Hold::from_rows(input.data()).map_err(|error| error.into_python(value.py()))
+    Hold::from_rows(input.data().as_chunks().0).map_err(|error| error.into_python(value.py()))
 }
 
 /// Numbers (K,).

@@ -9,7 +9,7 @@ use super::plate::Plate;
 use super::slab::Slab;
 use super::tube::Tube;
 use crate::environment::eight::WIDTH;
-use crate::model::{Frame, Model};
+use crate::model::{Frame, Model, Node};
 use crate::spatial::Vec3;
 use nalgebra::Vector3;
 
@@ -76,13 +76,14 @@ impl Surface {
     /// The faces of all shapes fixed to a body: boxes, cylinders, capsules, balls.
     ///
     /// # Errors
-    /// [`SurfaceError::NoShape`], [`SurfaceError::Mesh`], [`SurfaceError::Value`].
+    /// [`SurfaceError::UnknownBody`], [`SurfaceError::NoShape`], [`SurfaceError::Mesh`], [`SurfaceError::Value`].
     pub fn from_shapes(
         model: &Model,
         body: usize,
         drag_coefficient: f64,
         optics: Optics,
     ) -> Result<Self, SurfaceError> {
+        node_of(model, body)?;
         let parts = parts_of_body(model, body, &optics)?;
         if parts.is_empty() {
             return Err(SurfaceError::NoShape { body: model.body_frame(body).name.clone() });
@@ -94,7 +95,7 @@ impl Surface {
     /// Flat plates: areas, m², outward normals of any length, centroids, m; axes and origin of `frame`.
     ///
     /// # Errors
-    /// [`SurfaceError::WrongLength`], [`SurfaceError::NoPlates`], [`SurfaceError::Normal`], [`SurfaceError::Value`].
+    /// [`SurfaceError::UnknownBody`], [`SurfaceError::WrongLength`], [`SurfaceError::NoPlates`], [`SurfaceError::Normal`], [`SurfaceError::Value`].
     pub fn plates(
         model: &Model,
         frame: &Frame,
@@ -111,7 +112,7 @@ impl Surface {
         if areas.is_empty() {
             return Err(SurfaceError::NoPlates);
         }
-        let com = model.nodes()[frame.body].com;
+        let com = node_of(model, frame.body)?.com;
         let plate = |plate: usize| {
             let normal = Vec3::from(Vector3::from(normals[plate]));
             let length = normal.norm();
@@ -129,6 +130,12 @@ impl Surface {
         let drag_coefficient = not_negative("drag_coefficient", drag_coefficient)?;
         Ok(Self { parts, drag_coefficient, optics })
     }
+}
+
+/// A body that the robot has.
+fn node_of(model: &Model, body: usize) -> Result<&Node, SurfaceError> {
+    let count = model.nodes().len();
+    model.nodes().get(body).ok_or(SurfaceError::UnknownBody { body, count })
 }
 
 impl Surfaces {

@@ -1,0 +1,26 @@
+//! How objects come back from a pickle: by the call that made them.
+
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::path::{Path, PathBuf};
+
+/// Constructor, arguments and keywords that make an object again.
+pub(crate) struct Made(Py<PyTuple>);
+
+impl Made {
+    /// By keywords alone.
+    pub(crate) fn by(constructor: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let py = keywords.py();
+        Ok(Self((constructor, PyTuple::empty(py), keywords).into_pyobject(py)?.unbind()))
+    }
+
+    /// What `__reduce__` returns.
+    pub(crate) fn again<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
+        Ok((py.import("onorbit_rs.rebuild")?.getattr("rebuild")?, self.0.clone_ref(py)))
+    }
+}
+
+/// A path that means the same in another folder.
+pub(crate) fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}

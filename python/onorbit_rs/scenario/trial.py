@@ -1,0 +1,79 @@
+"""A first step, thrown away: what would stop a run at once is told with its place in the scenario."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs import _core
+from onorbit_rs.exceptions import (
+    ControlError,
+    EarthError,
+    EffectError,
+    FrameError,
+    OnOrbitError,
+    OrbitError,
+    ShapeError,
+)
+from onorbit_rs.scenario.air_and_light import Covered
+from onorbit_rs.scenario.place import located
+from onorbit_rs.scenario.schema import Scenario
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A robot on its way."""
+
+    model: _core.Model
+    q: Floats
+    v: Floats
+    orbit: _core.Orbit | None
+    earth: _core.Earth | None
+
+
+@contextmanager
+def about_controllers(scenario: Scenario) -> Iterator[None]:
+    """What is wrong with controllers that the engine puts together stands with them."""
+    try:
+        yield
+    except (ControlError, ShapeError):
+        with located(scenario, "controller" if scenario.controllers is None else "controllers"):
+            raise
+
+
+def try_one_step(scenario: Scenario, simulation: _core.Simulation) -> None:
+    """One step, thrown away: what would stop the run at once is told before anything is written."""
+    try:
+        with about_controllers(scenario):
+            simulation.run(scenario.simulation.time_step)
+    except OnOrbitError as error:
+        is_about_orbit = isinstance(error, (OrbitError, EffectError)) and scenario.orbit is not None
+        with located(scenario, "orbit" if is_about_orbit else "simulation"):
+            raise
+
+
+def try_effects(scenario: Scenario, effects: list[Any], flight: Flight) -> None:
+    """One step under air or light alone: what they refuse stands with them; the rest is told in its place."""
+    for index, (part, effect) in enumerate(zip(scenario.environment, effects, strict=True)):
+        if not isinstance(part, Covered):
+            continue
+        with located(scenario, "environment", index), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the run itself warns
+            try:
+                alone = _core.Simulation(
+                    flight.model, flight.q, flight.v, orbit=flight.orbit, earth=flight.earth,
+                    environment=[effect], time_step=scenario.simulation.time_step,
+                )  # fmt: skip
+                alone.run(scenario.simulation.time_step)
+            except OnOrbitError as error:
+                if isinstance(error, (EarthError, EffectError, FrameError)):
+                    raise

@@ -1,0 +1,90 @@
+"""Several controllers of OnOrbitROS and ROS Control become those of one scenario."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from test_convert import ROBOT, onorbit, verdicts, write
+
+import onorbit_rs as oo
+from onorbit_rs.interop.onorbitros import convert
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import build
+
+# as robot_torso has them: an arm each, and the head by ROS Control
+SIDES = "".join(
+    f"""\
+  {side}_arm_controller:
+    type: "talos_control/TorsoEffortController"
+    end_effector_link: {side}_tool
+    joints: [{", ".join(f"{side}_joint_{index}" for index in joints)}]
+    trajectory_duration: {duration}
+    kp_value: 100.0
+    kv_value: 20.0
+"""
+    for side, joints, duration in (("right", range(1, 8), 3.0), ("left", range(1, 7), 4.0))
+)
+HEAD = """\
+  wrist_controller:
+    type: effort_controllers/JointPositionController
+    joint: left_joint_7
+    pid: {p: 50.0, i: 10.0, d: 1.0}
+  joint_state_controller:
+    type: joint_state_controller/JointStateController
+    publish_rate: 50
+"""
+DUAL = oo.robots.path("humanoid_dual_arm")
+
+
+def test_controllers_of_joints_of_their_own_run_at_once(tmp_path: Path) -> None:
+    done = convert([*write(tmp_path, control="talos:\n" + SIDES + HEAD), DUAL])
+    scenario = load(done.scenario)
+    assert [(law.name, law.kind) for law in scenario.laws] == [
+        ("right_arm_controller", "computed_torque"),
+        ("left_arm_controller", "computed_torque"),
+        ("wrist_controller", "joint_pid"),
+    ]
+    right, left, wrist = done.scenario["controllers"]
+    assert (right["tool"], left["tool"], right["kp"], left["kd"]) == ("right_tool", "left_tool", 100.0, 20.0)
+    assert left["joints"] == [f"left_joint_{index}" for index in range(1, 7)]
+    assert left["reference"]["duration"] == scenario.simulation.duration == 4.0
+    assert (wrist["joints"], wrist["p"], wrist["d"], "i" in wrist) == (["left_joint_7"], [50.0], [1.0], False)
+    told = verdicts(done)
+    assert told["joint_state_controller"] == "no meaning" and told["left_arm_controller"] == "understood"
+    assert any("integral is held at zero" in note.text for note in done.notes)
+    build(scenario).simulation.run(0.05)
+    # one of them, as before
+    one = convert([*write(tmp_path, control="talos:\n" + SIDES), DUAL], controller="left_arm_controller")
+    assert one.scenario["tool"] == "left_tool" and "controllers" not in one.scenario
+
+
+def test_gains_of_ros_control_become_those_of_a_pid(tmp_path: Path) -> None:
+    joints = oo.robots.load("humanoid_torso").joint_names
+    gains = "".join(
+        f"    {name}: {{p: {100 + k}, d: 2, i: 1, i_clamp: 3}}\n" for k, name in enumerate(joints)
+    )
+    text = "arm:\n  type: effort_controllers/JointTrajectoryController\n"
+    done = convert([*write(tmp_path, pid=f"{text}  joints: [{', '.join(joints)}]\n  gains:\n{gains}"), ROBOT])
+    (arm,) = done.scenario["controllers"]
+    assert (arm["p"], arm["i"], arm["i_limit"]) == ([100.0 + k for k in range(7)], [1.0] * 7, [3.0] * 7)
+    build(load(done.scenario)).simulation.run(0.01)
+
+
+def test_controllers_that_share_joints_are_one_at_a_time(tmp_path: Path) -> None:
+    shared = SIDES.replace("left_joint_6", "right_joint_1")
+    done = convert([*write(tmp_path, control="talos:\n" + shared), DUAL])
+    assert done.scenario["tool"] == "right_tool" and "controllers" not in done.scenario
+    (told,) = (note.text for note in done.notes if note.key == "left_arm_controller")
+    assert "drives joints that another drives" in told and "--controller" in told
+
+
+def test_a_list_of_controllers_is_written_with_its_lines(tmp_path: Path) -> None:
+    write(tmp_path, control="talos:\n" + SIDES)
+    done = onorbit("convert", "control.yaml", DUAL, "--out", "mine.yaml", cwd=tmp_path)
+    assert done.returncode == 0, done
+    text = (tmp_path / "mine.yaml").read_text()
+    assert '\n  - name: "right_arm_controller"\n    tool: "right_tool"' in text
+    assert re.search(r"\n    kp: 100.0 +# control.yaml:7: kp_value: 100.0\n", text), text
+    assert re.search(r"\n    reference: .*# the target came over a ROS topic", text), text
+    assert onorbit("check", "mine.yaml", cwd=tmp_path).returncode == 0
