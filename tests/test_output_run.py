@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs import running
+from onorbit_rs import keeping
 from onorbit_rs.exceptions import OutputNotEmptyError, RunInterrupted, SimulationError
 from onorbit_rs.output.summary import summarize
 from onorbit_rs.scenario import load
@@ -42,7 +42,7 @@ def test_the_folder_holds_what_the_design_names(reach: oo.Run) -> None:
 
 
 def test_every_status_that_is_written_is_documented() -> None:
-    written = set(re.findall(r'"(\w+)"', "".join(re.findall(r"_write_rows\(.*", inspect.getsource(running)))))
+    written = set(re.findall(r'"(\w+)"', "".join(re.findall(r"_write_rows\(.*", inspect.getsource(keeping)))))
     assert written >= {"failed", "diverged", "interrupted"}
     for status in written | {"complete"}:
         assert f"``{status}``" in str(summarize.__doc__), status

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from onorbit_rs import run, scenarios
-from onorbit_rs.exceptions import DtypeError, NotFoundError, OnOrbitError
+from onorbit_rs.exceptions import DtypeError, InputError, NotFoundError, OnOrbitError
 from onorbit_rs.names import nearest
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
@@ -291,7 +291,9 @@ def test_gains_that_are_given_are_taken(tmp_path: Path, extra: str) -> None:
 
 @pytest.mark.parametrize("source", [5, None, ["humanoid_reach"]])
 def test_what_is_no_scenario_at_all_is_told(source: object) -> None:
-    with pytest.raises(DtypeError, match="is no scenario: give a bundled name, a YAML file") as caught:
+    with pytest.raises(
+        DtypeError, match=r"\((int|NoneType|list)\) is no scenario: give a bundled name"
+    ) as caught:
         run(source, quiet=True)  # type: ignore[arg-type]  # that is what is tested
     assert isinstance(caught.value, TypeError)
 
@@ -308,3 +310,9 @@ def test_a_part_of_one_name_is_near_it() -> None:
     assert nearest("prince", integrators) == "dormand_prince"
     assert nearest("i", integrators) is None
     assert nearest("arm", ("arm_left_link", "arm_right_link")) is None
+
+
+@pytest.mark.parametrize("every", ["5", None, -1.0, float("nan"), float("inf")])
+def test_a_period_of_checkpoints_that_is_none_is_told(every: object) -> None:
+    with pytest.raises(InputError, match=r"checkpoint_every is .* it must be finite, zero or positive"):
+        run("free_tumble", quiet=True, checkpoint_every=every)  # type: ignore[arg-type]  # that is what is tested

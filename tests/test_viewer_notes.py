@@ -9,8 +9,10 @@ from recordings import column
 from rerun.chunk import RrdReader
 
 import onorbit_rs as oo
+from onorbit_rs import viewer
 from onorbit_rs.scenario import load
-from onorbit_rs.viewer.notes import escaped, readable
+from onorbit_rs.scenario.build import build
+from onorbit_rs.viewer.notes import escaped
 
 
 @pytest.mark.parametrize(
@@ -28,7 +30,7 @@ from onorbit_rs.viewer.notes import escaped, readable
 )
 def test_markup_in_a_name_is_text(name: str, expected: str) -> None:
     assert escaped(name) == expected
-    assert len(readable(name).splitlines()) == 1
+    assert len(escaped(name).splitlines()) == 1
 
 
 def test_the_table_of_the_notes_has_two_cells_in_every_line(tmp_path: Path) -> None:
@@ -37,8 +39,9 @@ def test_the_table_of_the_notes_has_two_cells_in_every_line(tmp_path: Path) -> N
         "description": "# not a\ntitle | x",
     }
     data["simulation"] |= {"duration": 0.01}
-    oo.run(data, tmp_path / "out", quiet=True)
-    path = tmp_path / "out/run.rrd"
+    run = oo.run(data, quiet=True)
+    setting, notes = viewer.Setting.of(build(run.scenario)), viewer.notes(run.summary, run.scenario)
+    path = viewer.write_recording(tmp_path / "run.rrd", run.trace, setting, notes=notes)
     ((text,),) = column(path, "/notes", "TextDocument:text", static=True)
     title, _, about, _, *table = text.splitlines()
     assert title == r"# a\|b\\n\<i\>\\u202ec" and about == r"\# not a title \| x"

@@ -19,6 +19,8 @@ from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
 from onorbit_rs.units import amount, round_up
 from onorbit_rs.viewer.land import land, world_map
+from onorbit_rs.viewer.planet import to_eye
+from onorbit_rs.viewer.rows import Rows
 
 EPOCH = "2026-03-20 12:00:00 UTC"
 ORBIT = {"semi_major_axis": "6878 km", "inclination": "97 deg"}
@@ -132,6 +134,16 @@ def test_the_earth_turns_and_night_is_away_from_the_sun(tmp_path: Path) -> None:
     sun = earth.sun(trace.time)
     to_sun = sun / np.linalg.norm(sun, axis=1, keepdims=True)
     np.testing.assert_allclose(tree.pose("sun", "I")[:, :3, 0], to_sun, atol=1e-6)
+    np.testing.assert_allclose(tree.pose("sun_arrow", "I")[:, :3, 0], to_sun, atol=1e-6)
+    # the Sun's arrow is seen above all that flies: farther from the line of sight than it
+    built = build(Scenario(robot={"rigid_body": {"mass": 50, "inertia": [4, 5, 6]}}, epoch=EPOCH, orbit=ORBIT,
+                           simulation={"duration": 3600.0, "time_step": 60.0}))  # fmt: skip
+    eye = to_eye(Rows.of_trace(trace), viewer.Setting.of(built))
+    aside = tree.pose("sun_arrow", "I")[0, :3, 3]
+    assert (
+        np.linalg.norm(aside - (aside @ eye) * eye)
+        > 1.3 * np.linalg.norm(trace.position_eci, axis=1).max() / 1e3
+    )
     # noon in Greenwich: the Sun stands over longitude zero within the equation of time (4 degrees)
     noon = tree.pose("earth", "I")[0, :3, :3].T @ to_sun[0]
     assert abs(np.degrees(np.arctan2(noon[1], noon[0]))) < 4.0

@@ -151,9 +151,9 @@ def resume(
 
 def _check_period(checkpoint_every: float) -> None:
     """Before anything is written, and also where nothing is."""
-    if not checkpoint_every >= 0.0 or checkpoint_every == math.inf:
+    if not isinstance(checkpoint_every, (int, float)) or not 0.0 <= checkpoint_every < math.inf:
         raise InputError(
-            f"checkpoint_every is {checkpoint_every} s of wall clock, it must be finite, zero or positive",
+            f"checkpoint_every is {checkpoint_every!r} s of wall clock, it must be finite, zero or positive",
             name="checkpoint_every", got=checkpoint_every, expected=">= 0",
         )  # fmt: skip
 

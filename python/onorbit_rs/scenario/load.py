@@ -42,7 +42,8 @@ def load(source: str | os.PathLike[str] | Mapping[str, Any] | Scenario) -> Scena
     if not isinstance(source, (str, os.PathLike)):
         kind = type(source).__name__
         raise DtypeError(
-            f"a {kind} is no scenario: give a bundled name, a YAML file, a mapping or a Scenario",
+            f"{source!s:.60} ({kind}) is no scenario: give a bundled name, a YAML file, a mapping or a "
+            "Scenario",
             name="scenario", got=kind, expected="str, path, mapping or Scenario",
         )  # fmt: skip
     file = locate(source)

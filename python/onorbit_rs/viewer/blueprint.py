@@ -10,7 +10,7 @@ import rerun.blueprint as rrb
 
 from onorbit_rs.viewer.flight import flight_view, is_apart
 from onorbit_rs.viewer.frames import FOLLOW
-from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL, has_sun
+from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL, shows_sun, to_eye
 from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.scene import MOVES, TRAILS, UNTIL_NOW, on_path
 
@@ -121,21 +121,17 @@ def _close_up(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
 
 def _orbit(rows: Rows, setting: Setting) -> rrb.View:
     """Looks at the planet near where the run starts, north up, from where all of the path is seen."""
-    position, earth = rows["position_eci"] / 1e3, setting.earth
+    position = rows["position_eci"] / 1e3
     if setting.orbit is not None and setting.orbit.mu is not None:
         center, reach = np.zeros(3), max(float(np.linalg.norm(position, axis=1).max()), 6400.0)
-        start = position[0] / np.linalg.norm(position[0])
-        towards = start + [0.0, 0.0, 0.5] + 0.6 * np.cross([0.0, 0.0, 1.0], start)
+        towards = to_eye(rows, setting)
     else:
         low, high = position.min(axis=0), position.max(axis=0)
         center, reach = (low + high) / 2.0, max(float(np.linalg.norm(high - low)) / 2.0, 1e-3)
-        towards = np.array([0.5, -0.75, 0.45])
+        towards = np.array([0.5, -0.75, 0.45]) / np.linalg.norm([0.5, -0.75, 0.45])
     name = "Orbit (inertial axes, km)"
-    if earth is not None and has_sun(earth):  # half of it in the light
-        name = "Orbit (I, km); yellow arrow to the Sun"  # a label in space would stand before others
-        sun = np.asarray(earth.sun(0.0)).reshape(3)
-        towards -= 0.9 * (towards @ sun) / (sun @ sun) * sun
-    towards /= np.linalg.norm(towards)
+    if shows_sun(setting):  # told here, since a label in space would stand before others
+        name = "Orbit (I, km); yellow arrow to the Sun"
     return rrb.Spatial3DView(
         origin="orbit",
         name=name,

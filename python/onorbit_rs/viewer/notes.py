@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.appearance import missing_meshes
+from onorbit_rs.printable import printable
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
@@ -37,17 +37,7 @@ def about_meshes(model: Model) -> str:
 
 def escaped(text: str) -> str:
     """On one line, as it reads: markup and what would not be seen is told instead of obeyed."""
-    return _MARKUP.sub(r"\\\g<0>", readable(text))
-
-
-def readable(text: str) -> str:
-    """Characters that break the line, turn the writing round or are not seen, as ``\\n``, ``\\u202e``."""
-    return "".join(map(_told, text))
-
-
-def _told(character: str) -> str:
-    is_seen = unicodedata.category(character) not in ("Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp")
-    return character if is_seen else character.encode("unicode_escape").decode("ascii")
+    return _MARKUP.sub(r"\\\g<0>", printable(text))
 
 
 def _short(value: Any) -> str:

@@ -12,7 +12,7 @@ from onorbit_rs.exceptions import OrbitError
 from onorbit_rs.planet import EARTH_FLATTENING, EARTH_RADIUS_KM, is_earth
 from onorbit_rs.rotations import quaternion_from_matrix
 from onorbit_rs.thinning import evenly
-from onorbit_rs.viewer.frames import ORIGIN, put_in, send_frame
+from onorbit_rs.viewer.frames import ORIGIN, fix_frame, put_in, send_frame
 from onorbit_rs.viewer.land import world_map
 from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.scene import send_trail
@@ -27,11 +27,15 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 INERTIAL, EARTH, SUN = "I", "earth", "sun"
+SUN_PLACE, SUN_ARROW = "sun_place", "sun_arrow"
 MEAN_DENSITY = 5.0e3
 """Of a planet that is not the Earth: its size is not known, kg/m³."""
 
 MOST_TURNS = 2000
 """Moments at which the Earth's attitude is recorded."""
+
+_ABOVE = 1.35
+"""How far above the planet's middle the Sun's arrow is seen, in radii of the orbit: above all that flies."""
 
 _GRAVITATION = 6.6743e-11
 _MOST_PATH_POINTS = 20_000
@@ -50,15 +54,19 @@ def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> N
     flat = np.array([1.0, 1.0, 1.0 - EARTH_FLATTENING if about_earth else 1.0])
     put_in(recording, "orbit/planet", EARTH if turns else INERTIAL)
     recording.log("orbit/planet", _globe(radius * flat, has_land=turns), static=True, strict=True)
-    if turns and has_sun(setting.earth):
+    if shows_sun(setting):
         for index, (depth, height) in enumerate(((-0.05, 1.004), (0.0, 1.006), (0.05, 1.008))):
             path = f"orbit/night/{index}"
             put_in(recording, path, SUN)
             recording.log(path, _night(radius * height * flat, depth), static=True, strict=True)
-        put_in(recording, "orbit/sun", SUN)
+        put_in(recording, "orbit/sun", SUN_ARROW)
         far = max(radius, float(np.linalg.norm(rows["position_eci"], axis=1).max()) / 1e3)
+        place, eye = np.eye(4), to_eye(rows, setting)
+        up = np.array([0.0, 0.0, 1.0]) - eye[2] * eye
+        place[:3, 3] = _ABOVE * far * up / np.linalg.norm(up)
+        fix_frame(recording, INERTIAL, SUN_PLACE, place)
         arrow = rr.Arrows3D(
-            vectors=[[0.35 * far, 0.0, 0.0]], origins=[[1.15 * far, 0.0, 0.0]], radii=[far / 70.0],
+            vectors=[[0.5 * far, 0.0, 0.0]], origins=[[-0.25 * far, 0.0, 0.0]], radii=[far / 70.0],
             colors=[(255, 225, 90)],
         )  # fmt: skip
         recording.log("orbit/sun", arrow, static=True, strict=True)
@@ -67,6 +75,24 @@ def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> N
         line = rr.LineStrips3D([ring / 1e3], colors=[_RING], radii=rr.Radius.ui_points(1.0))
         recording.log("orbit/reference", line, static=True, strict=True)
         put_in(recording, "orbit/reference", INERTIAL)
+
+
+def to_eye(rows: Rows, setting: Setting) -> Floats:
+    """Unit vector to where the planet is looked at from: above the start of the run, half of it in light."""
+    start = rows["position_eci"][0] / np.linalg.norm(rows["position_eci"][0])
+    towards: Floats = start + [0.0, 0.0, 0.5] + 0.6 * np.cross([0.0, 0.0, 1.0], start)
+    if setting.earth is not None and has_sun(setting.earth):
+        sun = np.asarray(setting.earth.sun(0.0)).reshape(3)
+        towards -= 0.9 * (towards @ sun) / (sun @ sun) * sun
+    towards /= np.linalg.norm(towards)
+    over_pole = abs(towards[2]) > 0.98  # where north is not up
+    return np.array([0.5, 0.0, math.copysign(math.sqrt(0.75), towards[2])]) if over_pole else towards
+
+
+def shows_sun(setting: Setting) -> bool:
+    """Whether there are night and the Sun's arrow."""
+    orbit = setting.orbit
+    return orbit is not None and orbit.mu is not None and is_earth(orbit.mu) and has_sun(setting.earth)
 
 
 def has_sun(earth: Earth | None) -> bool:
@@ -85,9 +111,10 @@ def send_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> 
     quat_if = quaternion_from_matrix(np.swapaxes(rot_fi, 1, 2))
     times = rr.TimeColumn(TIMELINE, duration=t)
     send_frame(recording, times, INERTIAL, EARTH, ORIGIN, quat_if)
-    if has_sun(earth):
+    if shows_sun(setting):
         quat_is = quaternion_from_matrix(_axes_towards(np.asarray(earth.sun(t)).reshape(-1, 3)))
         send_frame(recording, times, INERTIAL, SUN, ORIGIN, quat_is)
+        send_frame(recording, times, SUN_PLACE, SUN_ARROW, ORIGIN, quat_is)
 
 
 ORBIT_TRAIL = "orbit/trail"

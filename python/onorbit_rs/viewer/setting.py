@@ -10,7 +10,7 @@ import numpy as np
 
 from onorbit_rs.appearance import shapes
 from onorbit_rs.geometry import Shape, extent
-from onorbit_rs.viewer.notes import readable
+from onorbit_rs.printable import printable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -74,7 +74,7 @@ class Setting:
     @property
     def robot(self) -> str:
         """Its name, as labels show it."""
-        return readable(self.model.name)
+        return printable(self.model.name)
 
     @property
     def base(self) -> str:
