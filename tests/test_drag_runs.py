@@ -131,7 +131,7 @@ def test_what_cannot_be_is_refused_with_the_way_out() -> None:
         simulate(oo.Drag(AIR, surfaces=BALL), still, robot)
     with pytest.raises(FrameError, match="arm"):
         simulate(oo.Drag(AIR, surfaces={"arm": BALL}), still, robot)
-    low = oo.Kepler.from_state((6.3e6, 0, 0), (0, 7900.0, 0), mu=MU)
+    low = oo.Kepler.from_state((6.37e6, 0, 0), (0, 7900.0, 0), mu=MU)
     with pytest.raises(EffectError, match="below the surface"):
         simulate(oo.Drag(AIR, surfaces=BALL), still, orbit=low)
 
