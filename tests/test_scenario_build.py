@@ -54,7 +54,7 @@ def test_elements_reach_the_orbit_in_si() -> None:
 @pytest.mark.parametrize(
     "size",
     [
-        {"semi_major_axis": "7000 km", "eccentricity": 0.1},
+        {"semi_major_axis": "7200 km", "eccentricity": 0.1},
         {"semi_latus_rectum": "7000 km", "eccentricity": 0.1},
         {"semi_major_axis": "-7000 km", "eccentricity": 2.1},
     ],
