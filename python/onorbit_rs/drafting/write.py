@@ -124,7 +124,7 @@ def _plans(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Plan]:
     if len(arm.joints) >= ENOUGH:
         for displacement, seconds in lines(model, arm, pose):
             yield replace(plan, displacement=displacement, move_s=seconds, duration_s=1.5 * seconds)
-    for goal in turns(model, arm, {name: pose[name] for name in arm.joints}):
+    for goal in turns(model, {name: pose[name] for name in arm.joints}):
         yield replace(plan, goal=goal)
 
 
