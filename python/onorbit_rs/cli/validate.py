@@ -43,7 +43,7 @@ def validate(
     elapsed = time.perf_counter() - started
     with as_far_as_read():
         if as_json:
-            print_json([verdict.plain() for verdict in verdicts])
+            print_json([verdict.as_dict() for verdict in verdicts])
         elif as_list:
             print_cases(cases)
         else:
