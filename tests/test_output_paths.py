@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.output import fingerprint_of, with_absolute_paths
+from onorbit_rs.output import scenario_digest, with_absolute_paths
 from onorbit_rs.scenario import load
 
 GFC = """product_type gravity_field
@@ -61,13 +61,13 @@ def test_a_resolved_scenario_with_tables_runs_from_elsewhere(folder: Path, tmp_p
 
 @pytest.mark.parametrize("name", FILES)
 def test_a_change_of_any_file_is_a_change_of_the_scenario(folder: Path, name: str) -> None:
-    def fingerprint() -> str:
-        return fingerprint_of(with_absolute_paths(load(folder / "mine.yaml")))
+    def digest() -> str:
+        return scenario_digest(with_absolute_paths(load(folder / "mine.yaml")))
 
-    before = fingerprint()
-    assert fingerprint() == before
+    before = digest()
+    assert digest() == before
     (folder / name).write_text(FILES[name] + "\n")
-    assert fingerprint() != before
+    assert digest() != before
 
 
 def test_what_is_no_file_stays_and_what_is_one_becomes_whole(folder: Path) -> None:

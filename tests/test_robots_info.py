@@ -14,7 +14,8 @@ from commands import onorbit
 from rich.console import Console
 
 import onorbit_rs as oo
-from onorbit_rs.robots.describe import describe, print_info
+from onorbit_rs.cli.robot import print_info
+from onorbit_rs.robots.describe import describe
 
 MODEL = oo.robots.load("humanoid_dual_arm")
 

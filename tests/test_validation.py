@@ -187,8 +187,8 @@ KEPLER = next(case for case in CASES if case.family == "kepler")
 def test_what_breaks_has_failed(measure: Any, note: str) -> None:
     verdict = replace(KEPLER, measure=measure).judge()
     assert verdict.passed is False and note in verdict.note
-    assert verdict.plain()["passed"] is False and verdict.plain()["error"] is None
-    json.dumps(verdict.plain(), allow_nan=False)
+    assert verdict.as_dict()["passed"] is False and verdict.as_dict()["error"] is None
+    json.dumps(verdict.as_dict(), allow_nan=False)
 
 
 def onorbit(*arguments: str) -> int:

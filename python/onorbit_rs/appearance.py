@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.geometry import GREY, Shape, box_of_inertia, plain, pose_of
+from onorbit_rs.geometry import GREY, Shape, box_of_inertia, grey_shape, pose_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,12 +57,12 @@ def _stick_figure(model: Model, bare: set[str], solid: set[str]) -> Iterator[Sha
         if body.name in ghosts and index == 0 and body.mass > 0.0:
             yield _box_of_inertia(body)
         elif body.name in ghosts:
-            yield plain(body.name, "sphere", [BALL * reach], np.eye(4))
+            yield grey_shape(body.name, "sphere", [BALL * reach], np.eye(4))
         if body.name in ghosts | bare:
             for end in ends[body.name] or ([np.array(body.com)] if index > 0 else []):
                 length = float(np.linalg.norm(end))
                 if length > BALL * reach:
-                    yield plain(body.name, "cylinder", [ROD * reach, length], _along(end))
+                    yield grey_shape(body.name, "cylinder", [ROD * reach, length], _along(end))
 
 
 def _reach(model: Model) -> float:
@@ -106,4 +106,4 @@ def _color(rgba: Sequence[float] | None) -> tuple[float, float, float, float]:
 
 def _box_of_inertia(body: Body) -> Shape:
     sides, axes = box_of_inertia(body.mass, np.array(body.inertia))
-    return plain(body.name, "box", sides, pose_of(axes, np.array(body.com)))
+    return grey_shape(body.name, "box", sides, pose_of(axes, np.array(body.com)))

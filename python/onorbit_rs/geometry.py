@@ -75,7 +75,7 @@ def pose_of(rotation: Floats, position: Floats) -> Floats:
     return pose
 
 
-def plain(link: str, kind: str, size: Iterable[float], pose: Floats) -> Shape:
+def grey_shape(link: str, kind: str, size: Iterable[float], pose: Floats) -> Shape:
     """A grey shape that is no mesh."""
     return Shape(link, pose, kind, tuple(size), None, (1.0, 1.0, 1.0), GREY)
 

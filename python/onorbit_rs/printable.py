@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import codecs
 import json
+import math
 import os
 import shlex
+from typing import Any
 
 _IN_ASCII = str.maketrans(
     {
@@ -46,6 +48,14 @@ def json_text(data: object, *, indent: int | None = None) -> str:
     """
     said = json.dumps(data, indent=indent, ensure_ascii=False, allow_nan=False)
     return "".join(char if char.isprintable() or char == "\n" else json.dumps(char)[1:-1] for char in said)
+
+
+def json_value(value: Any) -> Any:
+    """Of a number what JSON can hold: None where it is not finite."""
+    if isinstance(value, (bool, str, int)) or value is None:
+        return value
+    number = float(value)
+    return number if math.isfinite(number) else None
 
 
 def _escaped(char: str) -> str:

@@ -39,7 +39,7 @@ def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progr
 
 @contextmanager
 def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None]]:
-    """A bar on the terminal for work in parts: told which part begins, and what share of all is done."""
+    """A bar on the terminal for work in parts: told of a part, and what share of all is done."""
     if quiet or not _is_watched():
         yield lambda part, done: None
         return

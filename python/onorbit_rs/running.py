@@ -15,8 +15,8 @@ from onorbit_rs.keeping import finished, keep_failed, keep_stopped
 from onorbit_rs.output import (
     CheckpointWriter,
     OutputFolder,
-    fingerprint_of,
     read_checkpoint,
+    scenario_digest,
     with_absolute_paths,
     write_scenario,
 )
@@ -103,7 +103,7 @@ def run(
     if folder is None:
         return _go(built, None, quiet=quiet, view=view)
     write_scenario(folder, checked)
-    writer = CheckpointWriter(folder, _fingerprint(checked))
+    writer = CheckpointWriter(folder, _digest(checked))
     return _go(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=checkpoint_every)
 
 
@@ -140,9 +140,9 @@ def resume(
         what = "no run in this folder (no scenario.yaml)" if folder.path.is_dir() else "no such folder"
         raise NotFoundError(f"{what}: {folder.path}", path=str(folder.path), kind="run")
     scenario = load(folder.path / "scenario.yaml")
-    fingerprint = _fingerprint(scenario)
-    checkpoint, rows = read_checkpoint(folder.path, fingerprint)
-    writer = CheckpointWriter(folder, fingerprint, rows=rows)
+    digest = _digest(scenario)
+    checkpoint, rows = read_checkpoint(folder.path, digest)
+    writer = CheckpointWriter(folder, digest, rows=rows)
     return _go(
         build(scenario), folder, quiet=quiet, view=view,
         checkpoint=writer, checkpoint_every=checkpoint_every, resume=checkpoint,
@@ -158,9 +158,9 @@ def _check_period(checkpoint_every: float) -> None:
         )  # fmt: skip
 
 
-def _fingerprint(scenario: Scenario) -> str:
+def _digest(scenario: Scenario) -> str:
     """Of the scenario, its files, and the plant: another version of it may round otherwise."""
-    return fingerprint_of(with_absolute_paths(scenario) | versions(scenario.plant))
+    return scenario_digest(with_absolute_paths(scenario) | versions(scenario.plant))
 
 
 def _go(

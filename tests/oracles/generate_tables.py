@@ -39,7 +39,7 @@ def case(seed: int) -> dict[str, Any]:
         external = {name: plain(wrench) for name, wrench in state.external.items()}
         given = {name: plain(getattr(state, name)) for name in ("q", "v", "a", "tau")}
         states.append(given | {"external": external, "expected": expected})
-    return {"seed": seed, "tree": tree.plain(), "joint_names": model.joint_names, "states": states}
+    return {"seed": seed, "tree": tree.as_dict(), "joint_names": model.joint_names, "states": states}
 
 
 def main() -> None:

@@ -24,7 +24,8 @@ def info(
     """Print a robot's tree, masses, joints, frames, oddities."""
     from onorbit_rs import robots
     from onorbit_rs.cli.printing import new_console, print_json
-    from onorbit_rs.robots.describe import describe, print_info
+    from onorbit_rs.cli.robot import print_info
+    from onorbit_rs.robots.describe import describe
 
     given = of_file(robot, packages, arguments)
     with warnings.catch_warnings():
@@ -33,5 +34,5 @@ def info(
     if as_json:
         print_json(describe(model))
     else:
-        print_info(model, new_console())
+        print_info(model, new_console(at_least=72))
         say(f"next: onorbit new {in_words(robot, packages, arguments)} --out FILE")

@@ -39,11 +39,13 @@ class _Console(Console):
         raise BrokenPipeError
 
 
-def new_console() -> Console:
-    """Stdout, with no colours but ours; lines are as long as they are where nobody looks."""
+def new_console(at_least: int = 0) -> Console:
+    """Stdout, with no colours but ours; lines are as long as they are where nobody looks.
+
+    A terminal of fewer columns than ``at_least`` breaks the lines itself: no number is cut.
+    """
     console = _Console(highlight=False)
-    if not console.is_terminal:
-        console.width = 10_000
+    console.width = max(console.width, at_least) if console.is_terminal else 10_000
     return console
 
 

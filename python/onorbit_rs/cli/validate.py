@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import itertools
 import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
@@ -43,7 +43,7 @@ def validate(
     elapsed = time.perf_counter() - started
     with as_far_as_read():
         if as_json:
-            print_json([verdict.plain() for verdict in verdicts])
+            print_json([verdict.as_dict() for verdict in verdicts])
         elif as_list:
             print_cases(cases)
         else:
@@ -55,13 +55,9 @@ def validate(
 
 def _run(cases: Sequence[Case]) -> list[Verdict]:
     """With a bar where there is a terminal."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
+    from onorbit_rs.progress import parts_bar
     from onorbit_rs.validation import run
 
-    columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
-    console, is_quiet = Console(stderr=True), sys.stderr is None or not sys.stderr.isatty()
-    with Progress(*columns, console=console, transient=True, disable=is_quiet) as bar:
-        task = bar.add_task("", total=len(cases))
-        return run(cases, each=lambda case: bar.update(task, advance=1, description=case.name))
+    done = itertools.count(1)
+    with parts_bar("validate", quiet=False) as tell:
+        return run(cases, each=lambda case: tell(case.name, next(done) / len(cases)))

@@ -30,8 +30,7 @@ def print_cases(cases: Sequence[Case]) -> None:
 
 def print_verdicts(verdicts: Sequence[Verdict], *, in_full: bool) -> None:
     """A table by family and source: of each case the number nearest to its gate, and every one that fails."""
-    console = new_console()
-    console.width = max(console.width, 72)  # a narrower terminal breaks the lines: no number is cut
+    console = new_console(at_least=72)
     rows = [(verdict, _rows(verdict, in_full=in_full)) for verdict in verdicts]
     widths = _widths([row for _, some in rows for row in some], console.width)
     for family, members in itertools.groupby(rows, lambda row: row[0].family):

@@ -13,6 +13,7 @@ from onorbit_rs.comparison.rows import common_rows
 from onorbit_rs.comparison.settings import settings_apart
 from onorbit_rs.comparison.words import as_text
 from onorbit_rs.exceptions import CompareError, InputError, OnOrbitError
+from onorbit_rs.printable import json_value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -81,7 +82,7 @@ class Comparison:
         """Plain data without the rows, as ``onorbit compare --json`` prints it."""
         names = ("name", "unit", "largest", "largest_at", "final", "allowed", "parts_at")
         measured = [
-            {name: _plain(getattr(difference, name)) for name in names} for difference in self.differences
+            {name: json_value(getattr(difference, name)) for name in names} for difference in self.differences
         ]
         return {
             "a": self.a,
@@ -183,8 +184,3 @@ def _same_robot(a: Recorded, b: Recorded) -> list[str]:
             name="robot", got=names[1], expected=names[0],
         )  # fmt: skip
     return notes
-
-
-def _plain(value: Any) -> Any:
-    """What JSON can hold."""
-    return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -99,7 +99,7 @@ def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[li
                 yield [sign * length if index == axis else 0.0 for index in range(3)], duration
 
 
-def turns(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[dict[str, float]]:
+def turns(model: Model, joints: dict[str, float]) -> Iterator[dict[str, float]]:
     """Positions for an arm of few joints to go to, the farthest first."""
     for share in (0.5, 0.2, 0.05):
         goal = {}

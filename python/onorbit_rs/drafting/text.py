@@ -28,7 +28,7 @@ class Plan:
     friction: float = 0.0
 
 
-def scenario_text(plan: Plan, command: str) -> str:
+def draft_text(plan: Plan, command: str) -> str:
     """YAML that :func:`onorbit_rs.scenario.load` takes."""
     parts = (_head(plan, command), _ORBIT, _control(plan), _initial(plan), _simulation(plan))
     return "\n".join(part.strip("\n") + "\n" for part in parts if part)

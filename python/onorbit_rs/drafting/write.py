@@ -16,7 +16,7 @@ from onorbit_rs import robots
 from onorbit_rs.drafting.arm import ENOUGH, Arm, find_arm
 from onorbit_rs.drafting.motion import home, lines, time_step, turns, within
 from onorbit_rs.drafting.reaction import GENTLE
-from onorbit_rs.drafting.text import Plan, scenario_text
+from onorbit_rs.drafting.text import Plan, draft_text
 from onorbit_rs.exceptions import FrameError, OnOrbitError, ScenarioError
 from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario import load
@@ -80,7 +80,7 @@ def draft(
             )  # fmt: skip
         plan = _settled(model, arm, _robot(robot, None, package_paths, xacro_arguments), _name(robot, model))
     written = replace(plan, robot=_robot(robot, beside, package_paths, xacro_arguments))
-    return Draft(scenario_text(written, command), plan.tool, plan.arm)
+    return Draft(draft_text(written, command), plan.tool, plan.arm)
 
 
 def _settled(model: Model, arm: Arm | None, robot: Any, name: str) -> Plan:
@@ -124,7 +124,7 @@ def _plans(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Plan]:
     if len(arm.joints) >= ENOUGH:
         for displacement, seconds in lines(model, arm, pose):
             yield replace(plan, displacement=displacement, move_s=seconds, duration_s=1.5 * seconds)
-    for goal in turns(model, arm, {name: pose[name] for name in arm.joints}):
+    for goal in turns(model, {name: pose[name] for name in arm.joints}):
         yield replace(plan, goal=goal)
 
 
@@ -133,7 +133,7 @@ def _base_turn_of(plan: Plan) -> float | None:
 
     None where the run does not certify, leaves its joints' limits or, where none sticks, its line.
     """
-    built = build(load(yaml.safe_load(scenario_text(plan, "trial"))))
+    built = build(load(yaml.safe_load(draft_text(plan, "trial"))))
     trace = built.simulation.run(plan.duration_s)
     watched = set(plan.arm if plan.friction else built.model.joint_names)
     if not all(passed for *_, passed in trace.certificate()) or watched & set(trace.joint_limits_exceeded()):

@@ -16,9 +16,9 @@ from onorbit_rs.figures.style import (
     clock,
     legend_columns,
     legend_height,
+    legend_name,
     new_figure,
     others_of,
-    plain,
     thin,
     tidy,
 )
@@ -54,7 +54,7 @@ def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
             size = np.linalg.norm(rows[:, :, 3 * column : 3 * column + 3], axis=2)
             axes = panels[row, column]
             _plot_bodies(axes, time, size, bodies, shown)
-            name = f"{plain(effect.replace('_', ' '))}\n" if column == 0 else ""
+            name = f"{legend_name(effect.replace('_', ' '))}\n" if column == 0 else ""
             tidy(axes, label if is_last else "", f"{name}{what} [{unit}]")
     handles, names = panels[0, 0].get_legend_handles_labels()
     figure.legend(
@@ -85,7 +85,7 @@ def _plot_bodies(axes: Axes, time: Floats, size: Floats, bodies: Sequence[str], 
     if others:
         axes.lines[-1].set_label(others_of(len(others)))
     for color, body in zip(COLORS, shown, strict=False):
-        axes.plot(*thin(time, size[:, body]), color=color, linewidth=0.9, label=plain(bodies[body]))
+        axes.plot(*thin(time, size[:, body]), color=color, linewidth=0.9, label=legend_name(bodies[body]))
     peak = float(size.max())
     if peak > 0.0:
         axes.set_yscale("log", nonpositive="mask")

@@ -87,7 +87,7 @@ def legend_columns(names: Sequence[str], width: float) -> int:
     return max(1, min(len(names), int(width / entry)))
 
 
-def plain(name: str) -> str:
+def legend_name(name: str) -> str:
     """A name of the user's, in which matplotlib must see no formula, and that no legend leaves out.
 
     The middle of a long one is left out.
@@ -114,7 +114,7 @@ def plot_lines(
         x, y = thin(time, columns[:, index])
         dashes = DASHES[index // len(colors) % len(DASHES)]
         color = colors[index % len(colors)]
-        axes.plot(x, y, color=color, linewidth=LINE, linestyle=dashes, label=plain(name))
+        axes.plot(x, y, color=color, linewidth=LINE, linestyle=dashes, label=legend_name(name))
 
 
 def plot_largest(axes: Axes, time: Floats, columns: Floats, names: Sequence[str]) -> list[str]:

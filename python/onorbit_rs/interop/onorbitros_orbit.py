@@ -7,8 +7,6 @@ from datetime import datetime, timedelta
 from typing import TYPE_CHECKING
 
 from onorbit_rs._core import MU_EARTH
-from onorbit_rs.exceptions import QuantityError
-from onorbit_rs.interop.expressions import evaluate
 
 if TYPE_CHECKING:
     from onorbit_rs.interop.source import Source
@@ -71,7 +69,7 @@ def read_orbit(source: Source) -> None:
         if name in given:
             source.note(given[name], "no meaning", why)
     if "angular_velocity" in given:
-        rate, told = math.sqrt(MU_EARTH / a_m**3), _number(source, "angular_velocity")
+        rate, told = math.sqrt(MU_EARTH / a_m**3), source.number("angular_velocity")
         source.note(
             "angular_velocity", "no meaning",
             f"it follows from the semi-major axis: sqrt(mu/a³) = {rate:.6g} rad/s (the file says {told:.6g})",
@@ -84,7 +82,7 @@ def _element(source: Source, name: str, key: str | None) -> float:
     if key is None:
         source.note(name, "corrected", f"not given: OnOrbitROS' default, {default:.7g}")
         return default
-    value = _number(source, key)
+    value = source.number(key)
     unit = {"semi_major_axis": "km", "eccentricity": ""}.get(name, "rad")
     if name == "semi_major_axis" and not (1e3 < abs(value) < 1e6):
         raise source.fail(
@@ -158,9 +156,9 @@ def _date(source: Source, name: str) -> datetime | None:
 
 def read_fixed_pose(source: Source) -> None:
     """A pose to ``orbit: {kind: fixed_frame}``: km, quaternion of the local frame in the inertial one."""
-    position = [_number(source, f"pos_{axis}", 0.0) * 1e3 for axis in "xyz"]
+    position = [source.number(f"pos_{axis}", 0.0) * 1e3 for axis in "xyz"]
     names = [f"orientation_{axis}" for axis in "xyzw"]
-    quat = [_number(source, name, float(name.endswith("w"))) for name in names]
+    quat = [source.number(name, float(name.endswith("w"))) for name in names]
     norm = math.hypot(*quat)
     if abs(norm - 1.0) > 1e-3:
         raise source.fail("orientation_w", f"the quaternion has norm {norm:.6g}, it must be 1")
@@ -183,12 +181,3 @@ def read_fixed_pose(source: Source) -> None:
         source.comments[("orbit", "gravity_mode")] = (
             "tides alone: the robot stays with the pose, as in OnOrbitROS"
         )
-
-
-def _number(source: Source, key: str, default: float | None = None) -> float:
-    if default is not None and key not in source.data:
-        return default
-    try:
-        return evaluate(source.data[key])
-    except QuantityError as error:
-        raise source.fail(key, str(error)) from None

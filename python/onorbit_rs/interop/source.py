@@ -78,8 +78,10 @@ class Source:
                 raise self.fail(key, f"no key of OnOrbitROS{hint} ({way_out})")
             self.note(key, "no meaning", f"no key of OnOrbitROS{hint}")
 
-    def number(self, key: str) -> float:
-        """The value of ``key``, which may be arithmetic."""
+    def number(self, key: str, default: float | None = None) -> float:
+        """The value of ``key``, which may be arithmetic; ``default`` where it is not given."""
+        if default is not None and key not in self.data:
+            return default
         try:
             return evaluate(self.data[key])
         except QuantityError as error:

@@ -13,7 +13,7 @@ _COLUMN = 44
 def scenario_text(
     scenario: Mapping[str, Any], comments: Mapping[tuple[str | int, ...], str], head: str
 ) -> str:
-    """Nested mappings and lists of them indented, everything else on one line; ``comments`` by place."""
+    """Nested mappings and lists of them indented, all else as JSON on one line; ``comments`` by place."""
     lines = [f"# {line}".rstrip() for line in head.splitlines()]
     return "\n".join([*lines, "", *_lines(scenario, comments, ())]) + "\n"
 
@@ -29,13 +29,9 @@ def _lines(part: Mapping[str, Any], comments: Mapping[Any, str], at: tuple[str |
                 yield from ("  - " + first.removeprefix("    "), *rest)
             continue
         is_nested = isinstance(value, dict) and not at
-        start = f"{indent}{key}:" if is_nested else f"{indent}{key}: {_flow(value)}"
+        # JSON is YAML 1.2, in which 1e-05 needs no dot
+        start = f"{indent}{key}:" if is_nested else f"{indent}{key}: {json_text(value)}"
         comment = " ".join(comments.get(here, "").split())
         yield f"{start:<{_COLUMN - 1}} # {comment}" if comment else start
         if is_nested:
             yield from _lines(value, comments, here)
-
-
-def _flow(value: object) -> str:
-    """JSON is YAML on one line; ``1e-05`` needs no dot in YAML 1.2."""
-    return json_text(value)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from onorbit_rs.output.checkpoint import (
     CheckpointWriter,
     discard_checkpoint,
-    fingerprint_of,
     read_checkpoint,
+    scenario_digest,
 )
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.summary import summarize
@@ -22,8 +22,8 @@ __all__ = [
     "CheckpointWriter",
     "OutputFolder",
     "discard_checkpoint",
-    "fingerprint_of",
     "read_checkpoint",
+    "scenario_digest",
     "summarize",
     "with_absolute_paths",
     "write_pictures",

@@ -28,10 +28,10 @@ _STATE = "state.json"
 class CheckpointWriter:
     """Takes what :meth:`onorbit_rs.Simulation.run` hands to its ``checkpoint``; ``rows`` are there."""
 
-    def __init__(self, folder: OutputFolder, fingerprint: str, *, rows: int = 0) -> None:
-        """For a run whose scenario has this fingerprint."""
+    def __init__(self, folder: OutputFolder, digest: str, *, rows: int = 0) -> None:
+        """For a run whose scenario has this digest."""
         self._folder, self._path = folder, folder.path / CHECKPOINT
-        self._fingerprint, self._rows = fingerprint, rows
+        self._digest, self._rows = digest, rows
 
     def __call__(self, checkpoint: Checkpoint) -> None:
         """Append the new rows, then say that they count."""
@@ -44,7 +44,7 @@ class CheckpointWriter:
                 _append(self._path / f"{name}.f64", rows, after=8 * self._rows * widths[name])
         self._rows += new_rows
         record = {
-            "fingerprint": self._fingerprint,
+            "fingerprint": self._digest,
             "rows": self._rows,
             "widths": widths,
             "wall_s": checkpoint.wall_s,
@@ -63,7 +63,7 @@ def has_checkpoint(folder: Path) -> bool:
     return (folder / CHECKPOINT / _STATE).is_file()
 
 
-def read_checkpoint(folder: Path, fingerprint: str) -> tuple[Checkpoint, int]:
+def read_checkpoint(folder: Path, digest: str) -> tuple[Checkpoint, int]:
     """The checkpoint in an output folder, and how many rows it has.
 
     Raises
@@ -81,7 +81,7 @@ def read_checkpoint(folder: Path, fingerprint: str) -> tuple[Checkpoint, int]:
     try:
         record = json.loads((path / _STATE).read_text(encoding="utf-8"))
         found, rows, wall = str(record["fingerprint"]), int(record["rows"]), float(record["wall_s"])
-        if found != fingerprint:
+        if found != digest:
             raise _refused(
                 f"the checkpoint in {folder} is of another scenario: scenario.yaml, or a file it names, was "
                 "changed since; undo that or run the scenario again",
@@ -104,7 +104,7 @@ def discard_checkpoint(folder: OutputFolder) -> None:
     shutil.rmtree(folder.path / CHECKPOINT, ignore_errors=True)
 
 
-def fingerprint_of(scenario: dict[str, Any]) -> str:
+def scenario_digest(scenario: dict[str, Any]) -> str:
     """Digest of a resolved scenario and of the content of every file it names."""
     digest = hashlib.sha256(json.dumps(scenario, sort_keys=True, default=str).encode())
     for text in _texts(scenario):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import platform
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +11,7 @@ from onorbit_rs import _core
 from onorbit_rs.output.checks import CHECKS, GATE
 from onorbit_rs.output.joints import joint_errors, joint_loads, single_errors
 from onorbit_rs.plants import versions
+from onorbit_rs.printable import json_value
 from onorbit_rs.robots.fingerprint import fingerprint
 from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario.control import JOINT_LAWS
@@ -65,7 +65,7 @@ def summarize(
         | {"warnings": "; ".join(built.model.warnings), "robot_fingerprint": fingerprint(built.model)}
         | _versions()
     )
-    return {key: _plain(value) for key, value in summary.items()}
+    return {key: json_value(value) for key, value in summary.items()}
 
 
 def _certificate(trace: Trace) -> Summary:
@@ -164,11 +164,3 @@ def _versions() -> Summary:
         "python_version": platform.python_version(),
         "numpy_version": np.__version__,
     }
-
-
-def _plain(value: Any) -> Any:
-    """A value JSON can hold."""
-    if isinstance(value, (bool, str, int)) or value is None:
-        return value
-    number = float(value)
-    return number if math.isfinite(number) else None

@@ -8,7 +8,7 @@ import io
 import os
 import re
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -104,8 +104,7 @@ def _patched(xacro: Any, folders: Sequence[Path], remarks: list[str], used: set[
     ``used`` receives the names of arguments that the file asks for.
     """
     substitution = importlib.import_module("xacro.substitution_args")
-    include, call, argument = xacro.process_include, xacro.handle_macro_call, substitution._eval_arg
-    left_out: list[str] = []
+    argument = substitution._eval_arg
 
     def find(package: str) -> str:
         for folder in folders:
@@ -121,6 +120,27 @@ def _patched(xacro: Any, folders: Sequence[Path], remarks: list[str], used: set[
 
     def folder_of(_: object) -> str:
         return str(Path(xacro.filestack[-1] or ".").absolute().parent)
+
+    include_if_there, call_if_known = _without_extras(xacro, remarks)
+    with contextlib.ExitStack() as undo:
+        for owner, name, ours in (
+            (substitution, "_eval_find", find),
+            (substitution, "_eval_arg", argument_told),
+            (substitution, "_eval_dirname", folder_of),
+            (xacro, "process_include", include_if_there),
+            (xacro, "handle_macro_call", call_if_known),
+        ):
+            undo.callback(setattr, owner, name, getattr(owner, name))
+            setattr(owner, name, ours)
+        undo.callback(substitution._eval_dict.update, find=substitution._eval_dict["find"])
+        substitution._eval_dict["find"] = find
+        yield
+
+
+def _without_extras(xacro: Any, remarks: list[str]) -> tuple[Callable[..., None], Callable[..., Any]]:
+    """Xacro's include and macro call, which leave out what is a simulator's and not there."""
+    include, call = xacro.process_include, xacro.handle_macro_call
+    left_out: list[str] = []
 
     def include_if_there(node: Any, *others: Any) -> None:
         stack = list(xacro.filestack)
@@ -146,19 +166,7 @@ def _patched(xacro: Any, folders: Sequence[Path], remarks: list[str], used: set[
             _leave_out(node, f"the macro <{node.tagName}> was to come from it", remarks)
             return True
 
-    with contextlib.ExitStack() as undo:
-        for owner, name, ours in (
-            (substitution, "_eval_find", find),
-            (substitution, "_eval_arg", argument_told),
-            (substitution, "_eval_dirname", folder_of),
-            (xacro, "process_include", include_if_there),
-            (xacro, "handle_macro_call", call_if_known),
-        ):
-            undo.callback(setattr, owner, name, getattr(owner, name))
-            setattr(owner, name, ours)
-        undo.callback(substitution._eval_dict.update, find=substitution._eval_dict["find"])
-        substitution._eval_dict["find"] = find
-        yield
+    return include_if_there, call_if_known
 
 
 def _leave_out(node: Any, why: str, remarks: list[str]) -> None:

@@ -14,7 +14,7 @@ from onorbit_rs.exceptions import ScenarioError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.place import dotted, scenario_error
 from onorbit_rs.scenario.refusals import shown
-from onorbit_rs.scenario.yaml_lines import Lines, Location
+from onorbit_rs.scenario.yaml_lines import Lines, Location, line_of
 
 
 def first_complaint(error: ValidationError, data: Any, file: Path | None, lines: Lines) -> ScenarioError:
@@ -22,7 +22,7 @@ def first_complaint(error: ValidationError, data: Any, file: Path | None, lines:
     found: list[tuple[int, Location, str]] = []
     for details in error.errors(include_url=False):
         at, message = _place_and_message(details, data)
-        found.append((_line_of(at, lines) or 0, at, message))
+        found.append((line_of(at, lines) or lines.get((), 0), at, message))
     line, at, message = min(found, key=lambda complaint: complaint[0])
     more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
     return scenario_error(message + more, file, line or None, dotted(at))
@@ -104,10 +104,3 @@ def _yaml_location(loc: Location, data: Any, *, is_missing: bool) -> Location:
         elif is_missing and index == len(loc) - 1:
             at.append(step)
     return tuple(at)
-
-
-def _line_of(at: Location, lines: Lines) -> int | None:
-    for end in range(len(at), -1, -1):
-        if at[:end] in lines:
-            return lines[at[:end]]
-    return None

@@ -21,7 +21,7 @@ from onorbit_rs.scenario.reference_parts import Reference
 from onorbit_rs.scenario.refusals import misfit
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import SimulationSettings
-from onorbit_rs.scenario.yaml_lines import Lines
+from onorbit_rs.scenario.yaml_lines import Lines, line_of
 
 
 class Scenario(Part):
@@ -93,10 +93,7 @@ class Scenario(Part):
 
     def line_of(self, *at: str | int) -> int | None:
         """Line in the YAML of an entry, or of the nearest entry around it."""
-        for end in range(len(at), 0, -1):
-            if at[:end] in self._lines:
-                return self._lines[at[:end]]
-        return None
+        return line_of(at, self._lines)
 
     def remember_source(self, file: Path | None, lines: Lines) -> None:
         """Where it was read from, for messages."""

@@ -103,7 +103,7 @@ def joint_values(
 
 def _check_units(name: str, given: dict[str, JointValue], model: Model) -> None:
     """A unit of length on a joint that turns, or of angle on one that slides, is refused."""
-    slides = dict(zip(model.joint_names, _slides(model), strict=True))
+    slides = {joint.name: joint.kind == "prismatic" for joint in model.joints}
     for joint, value in given.items():
         if value.dimension is None:
             continue
@@ -114,12 +114,3 @@ def _check_units(name: str, given: dict[str, JointValue], model: Model) -> None:
             raise QuantityError(
                 message, text=float(value), expected="a length" if slides[joint] else "an angle"
             )
-
-
-def _slides(model: Model) -> list[bool]:
-    """Whether each joint is prismatic: it turns no body."""
-    q = model.neutral()
-    turning = np.zeros(model.nv)
-    for body in model.body_names:
-        turning += np.abs(np.asarray(model.frame_jacobian(q, body))[3:]).sum(axis=0)
-    return [bool(amount < 1e-9) for amount in turning[6:]]  # a unit axis gives 1 or more

@@ -168,3 +168,8 @@ _WAYS_OUT = {
 
 def _at(file: Path | None, line: int | None, message: str) -> ScenarioError:
     return scenario_error(message, file, line)
+
+
+def line_of(at: Location, lines: Lines) -> int | None:
+    """Of an entry, or of the nearest entry around it; the whole file is none."""
+    return next((lines[at[:end]] for end in range(len(at), 0, -1) if at[:end] in lines), None)

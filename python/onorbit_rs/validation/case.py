@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import csv
 import importlib.util
-import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from onorbit_rs.printable import json_value
 
 INSTALL = {
     "pinocchio": "pip install pin", "mujoco": "pip install mujoco", "sgp4": "pip install sgp4",
@@ -53,6 +54,10 @@ class Check:
             return float("inf")
         return 0.0 if self.error == 0.0 else self.error / self.gate if self.gate else float("inf")
 
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON, which has no NaN."""
+        return asdict(self) | {"error": json_value(self.error)}
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -70,18 +75,12 @@ class Verdict:
         """The check that comes nearest to its gate, or is furthest beyond it."""
         return max(self.checks, key=lambda check: check.share)
 
-    def plain(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Any]:
         """For JSON: the nearest check beside the case's name and source, then all of them."""
         head = {"family": self.family, "case": self.case, "source": self.source}
-        checks = [_plain(check) for check in self.checks]
+        checks = [check.as_dict() for check in self.checks]
         tail = {"passed": self.passed, "note": self.note, "checks": checks}
-        return head | _plain(self.nearest) | tail
-
-
-def _plain(check: Check) -> dict[str, Any]:
-    """JSON has no NaN."""
-    is_finite = check.error is not None and math.isfinite(check.error)
-    return asdict(check) | {"error": check.error if is_finite else None}
+        return head | self.nearest.as_dict() | tail
 
 
 @dataclass(frozen=True)

@@ -44,14 +44,14 @@ class Tree:
     tool_xyz: tuple[float, float, float]
     tool_rpy: tuple[float, float, float]
 
-    def plain(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Any]:
         """For JSON."""
         return asdict(self)
 
     @staticmethod
-    def of(plain: dict[str, Any]) -> Tree:
+    def of(data: dict[str, Any]) -> Tree:
         """From JSON."""
-        return Tree(**(plain | {"parts": [Part(**part) for part in plain["parts"]]}))
+        return Tree(**(data | {"parts": [Part(**part) for part in data["parts"]]}))
 
 
 @dataclass(frozen=True)

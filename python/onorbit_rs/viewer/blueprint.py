@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import rerun.blueprint as rrb
 
+from onorbit_rs.viewer.colors import BACKGROUND
 from onorbit_rs.viewer.flight import flight_view, is_apart
 from onorbit_rs.viewer.frames import FOLLOW
 from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL, shows_sun, to_eye
@@ -43,7 +44,7 @@ _MOST_IN_A_COLUMN = 4
 _FOR_LEGENDS = 1.24
 """Plots go on for so much longer than the run, in units of it: legends stand there."""
 
-_BACKGROUND, _SPACE = (28, 31, 38), (12, 14, 20)
+_SPACE = (12, 14, 20)
 
 _LARGE = ("arrows", "axes/base", "axes/inertial", "axes/lvlh", "flight")
 _TRAILS_UNTIL_NOW: dict[Any, Any] = dict.fromkeys(TRAILS.values(), UNTIL_NOW)
@@ -67,7 +68,7 @@ def layout(
         name=f"{setting.robot}: the eye follows the base, axes of {axes}",
         spatial_information=rrb.SpatialInformation(FOLLOW, show_axes=False),
         eye_controls=stage.eye(),
-        background=_BACKGROUND,
+        background=BACKGROUND,
         line_grid=False,
         overrides=_TRAILS_UNTIL_NOW,
     )
@@ -113,7 +114,7 @@ def _close_up(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
             position=center + 2.2 * length * np.array([0.5, -0.75, 0.45]), look_target=center,
             eye_up=(0.0, 0.0, 1.0),
         ),
-        background=_BACKGROUND,
+        background=BACKGROUND,
         line_grid=False,
         overrides=_TRAILS_UNTIL_NOW,
     )  # fmt: skip

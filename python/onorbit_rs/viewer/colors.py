@@ -1,6 +1,6 @@
-"""Colours of arrows: a hue for each effect, full for what pushes, pale for what turns.
+"""Colours of the viewer: its arrows have a hue for each effect, full for what pushes, pale for what turns.
 
-Any two that one legend may hold are at least 25 apart in CIE 1976 L*a*b*, where 2.3 can just be told apart.
+Any two of a legend of up to six effects are at least 25 apart in CIE 1976 L*a*b*; the eye tells 2.3 apart.
 """
 
 from __future__ import annotations
@@ -19,6 +19,11 @@ class Hue(NamedTuple):
     pale: Color
     """Torques, angular momentum."""
 
+
+BACKGROUND: Color = (28, 31, 38)
+ROBOT: Color = (255, 220, 120)
+"""Seen from afar."""
+TARGET: Color = (205, 170, 90)
 
 MOMENTUM = Hue((230, 135, 40), (253, 206, 165))
 

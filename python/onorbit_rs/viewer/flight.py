@@ -11,6 +11,7 @@ import rerun.blueprint as rrb
 from onorbit_rs.thinning import evenly
 from onorbit_rs.units import amount, round_up
 from onorbit_rs.viewer.axes import log_axes
+from onorbit_rs.viewer.colors import BACKGROUND, ROBOT, TARGET
 from onorbit_rs.viewer.frames import FOLLOW, LOCAL, ORIGIN, put_in
 from onorbit_rs.viewer.scene import UNTIL_NOW, send_trail
 from onorbit_rs.viewer.targets import frame_of_target, position_of
@@ -31,7 +32,6 @@ APART = 2.0
 AXES = 0.15
 """Least length of the axes of L, as a share of the farthest distance."""
 
-_BASE, _TARGET = (255, 220, 120), (205, 170, 90)
 _WHOLE = 0.5
 """Brightness of the whole path, over which the trail is drawn."""
 
@@ -98,7 +98,7 @@ def flight_view(rows: Rows, setting: Setting) -> rrb.View:
         eye_controls=rrb.EyeControls3D(
             position=center + 1.1 * size * to_eye, look_target=center, eye_up=(1.0, 0.0, 0.0)
         ),
-        background=(28, 31, 38),
+        background=BACKGROUND,
         line_grid=False,
         overrides={f"{flier.path}/trail": UNTIL_NOW for flier in fliers},
     )
@@ -108,10 +108,10 @@ def _fliers(rows: Rows, setting: Setting) -> list[_Flier]:
     """None where there is no L."""
     if rows.rot_wl is None:
         return []
-    found = [("base", FOLLOW, setting.robot, _BASE, rows["q"][:, :3])]
+    found = [("base", FOLLOW, setting.robot, ROBOT, rows["q"][:, :3])]
     for index, target in enumerate(setting.targets):
         place = position_of(target, rows["time"])
-        found.append((f"target_{index}", frame_of_target(index), "target", _TARGET, place))
+        found.append((f"target_{index}", frame_of_target(index), "target", TARGET, place))
     return [
         _Flier(f"world/flight/{name}", frame, label, color, np.einsum("tji,tj->ti", rows.rot_wl, place))
         for name, frame, label, color, place in found

@@ -12,6 +12,7 @@ from onorbit_rs.exceptions import OrbitError
 from onorbit_rs.planet import EARTH_FLATTENING, EARTH_RADIUS_KM, is_earth
 from onorbit_rs.rotations import quaternion_from_matrix
 from onorbit_rs.thinning import evenly
+from onorbit_rs.viewer.colors import ROBOT
 from onorbit_rs.viewer.frames import ORIGIN, fix_frame, put_in, send_frame
 from onorbit_rs.viewer.land import world_map
 from onorbit_rs.viewer.rows import TIMELINE
@@ -39,7 +40,7 @@ _ABOVE = 1.35
 
 _GRAVITATION = 6.6743e-11
 _MOST_PATH_POINTS = 20_000
-_PATH, _SPACECRAFT, _RING = (255, 96, 64), (255, 220, 120), (150, 155, 165)
+_PATH, _RING = (255, 96, 64), (150, 155, 165)
 
 
 def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
@@ -139,7 +140,7 @@ def send_spacecraft(recording: rr.RecordingStream, rows: Rows, setting: Setting)
     path = "orbit/spacecraft"
     put_in(recording, path, INERTIAL)
     look = rr.Points3D.from_fields(
-        colors=[_SPACECRAFT], radii=rr.Radius.ui_points(7.0), labels=[setting.robot], show_labels=True
+        colors=[ROBOT], radii=rr.Radius.ui_points(7.0), labels=[setting.robot], show_labels=True
     )
     recording.log(path, look, static=True, strict=True)
     place = rr.Points3D.columns(positions=rows["position_eci"] / 1e3)

@@ -9,6 +9,7 @@ import rerun as rr
 
 from onorbit_rs.rotations import product
 from onorbit_rs.viewer.axes import log_axes
+from onorbit_rs.viewer.colors import TARGET
 from onorbit_rs.viewer.frames import WORLD, send_frame
 
 if TYPE_CHECKING:
@@ -70,9 +71,7 @@ def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) ->
         path = f"world/target/{index}"
         log_axes(recording, path, frame_of_target(index), 0.3 * size, ("x T", "y T", "z T"))
         if target.size:
-            box = rr.Boxes3D(
-                sizes=[target.size], colors=[(205, 170, 90)], fill_mode=rr.components.FillMode.Solid
-            )
+            box = rr.Boxes3D(sizes=[target.size], colors=[TARGET], fill_mode=rr.components.FillMode.Solid)
             recording.log(path, box, static=True, strict=True)
 
 
