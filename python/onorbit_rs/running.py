@@ -6,7 +6,8 @@ import math
 import os
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,28 +37,37 @@ class Run:
     """What a run gave.
 
     ``trace`` has the columns, ``summary`` is the dict of ``summary.json``, ``out`` the folder or None. A run
-    pickles, for :mod:`multiprocessing`: its rows travel, its robot is read again where they arrive.
+    pickles, for :mod:`multiprocessing`: its rows travel, its robot is read again when it is asked for.
     """
 
     trace: Trace
     summary: dict[str, Any]
-    model: Model
     scenario: Scenario
     out: Path | None
+    _ran: Model | None = field(default=None, repr=False, compare=False)
+    """None after a journey."""
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Its parts without the robot, which the scenario names."""
-        return _arrived, (self.trace, self.summary, self.scenario, self.out)
+        """Data alone: ``multiprocessing.Pool`` waits for ever for what raises while it is unpickled."""
+        return Run, (self.trace, self.summary, self.scenario, self.out)
 
+    @cached_property
+    def model(self) -> Model:
+        """The robot that ran; of a run from another process as the scenario names it.
 
-def _arrived(trace: Trace, summary: dict[str, Any], scenario: Scenario, out: Path | None) -> Run:
-    """A run from another process."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what the robot's file is like was told when it ran
-        model = make_robot(scenario)
-    if was_changed(model, summary):
-        raise ModelError(CHANGED)
-    return Run(trace, summary, model, scenario, out)
+        Raises
+        ------
+        OnOrbitError
+            Its file is gone or cannot be read, or was changed since (``ModelError``).
+        """
+        if self._ran is not None:
+            return self._ran
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what the robot's file is like was told when it ran
+            model = make_robot(self.scenario)
+        if was_changed(model, self.summary):
+            raise ModelError(CHANGED)
+        return model
 
 
 def run(
@@ -175,7 +185,7 @@ def _go(
             else:
                 trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
             summary = finished(trace, built, folder, progress.tell)
-            return Run(trace, summary, built.model, scenario, folder.path if folder else None)
+            return Run(trace, summary, scenario, folder.path if folder else None, built.model)
     except (SimulationError, RunInterrupted) as stop:
         with doing("stopped, writing what there is", quiet=quiet) as tell:
             keep_stopped(stop, built, folder, tell)
