@@ -210,8 +210,3 @@ def test_a_body_without_geometry_is_drawn_as_the_box_of_its_inertia() -> None:
     assert box.kind == "box" and box.link == "base"
     extent = np.abs(box.pose[:3, :3]) @ np.array(box.size)
     np.testing.assert_allclose(extent, sides, rtol=1e-12)
-
-
-def test_no_recording_no_picture(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match="no such recording"):
-        viewer.take_screenshot(tmp_path / "run.rrd", tmp_path / "run.png")
