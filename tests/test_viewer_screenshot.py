@@ -71,7 +71,7 @@ def test_a_viewer_that_ends_is_not_a_picture_that_cannot_be_written(
 
 def test_a_viewer_that_cannot_be_started_says_so(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(screenshot, "command_of", lambda port: [str(folder / "none")])
-    with pytest.raises(ViewerError, match="did not start: .*No such file"):
+    with pytest.raises(ViewerError, match=r"did not start: .*No such file"):
         viewer.take_screenshot(folder / "run.rrd", folder / "run.png")
 
 
