@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import warnings
 from collections.abc import Mapping
@@ -24,6 +23,7 @@ from onorbit_rs.output import (
 from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.plants import versions
 from onorbit_rs.progress import doing, progress_bar
+from onorbit_rs.reals import real
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build, make_robot
 from onorbit_rs.watching import CHECKPOINT_EVERY, watched
@@ -106,7 +106,7 @@ def run(
     RunInterrupted
         Ctrl-C; its trace so far is in the exception and in ``out``.
     """
-    _check_period(checkpoint_every)
+    every = _checked_period(checkpoint_every)
     checked = load(scenario)
     built = build(checked)
     folder = None if out is None else OutputFolder.claim(out, force=force)
@@ -114,7 +114,7 @@ def run(
         return _go(built, None, quiet=quiet, view=view)
     write_scenario(folder, checked)
     writer = CheckpointWriter(folder, _fingerprint(checked))
-    return _go(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=checkpoint_every)
+    return _go(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=every)
 
 
 def resume(
@@ -144,7 +144,7 @@ def resume(
     OnOrbitError
         As :func:`run`.
     """
-    _check_period(checkpoint_every)
+    every = _checked_period(checkpoint_every)
     folder = OutputFolder(Path(out))
     if not (folder.path / "scenario.yaml").is_file():
         what = "no run in this folder (no scenario.yaml)" if folder.path.is_dir() else "no such folder"
@@ -155,17 +155,19 @@ def resume(
     writer = CheckpointWriter(folder, fingerprint, rows=rows)
     return _go(
         build(scenario), folder, quiet=quiet, view=view,
-        checkpoint=writer, checkpoint_every=checkpoint_every, resume=checkpoint,
+        checkpoint=writer, checkpoint_every=every, resume=checkpoint,
     )  # fmt: skip
 
 
-def _check_period(checkpoint_every: float) -> None:
+def _checked_period(checkpoint_every: float) -> float:
     """Before anything is written, and also where nothing is."""
-    if not isinstance(checkpoint_every, (int, float)) or not 0.0 <= checkpoint_every < math.inf:
+    every = real(checkpoint_every)
+    if every is None or every < 0.0:
         raise InputError(
             f"checkpoint_every is {checkpoint_every!r} s of wall clock, it must be finite, zero or positive",
             name="checkpoint_every", got=checkpoint_every, expected=">= 0",
         )  # fmt: skip
+    return every
 
 
 def _fingerprint(scenario: Scenario) -> str:
