@@ -163,7 +163,7 @@ class Raises(onorbit_rs.Controller):
 
 
 def test_an_error_before_the_first_row_is_itself(tmp_path: Path) -> None:
-    """There is a row to time zero in the step that is tried before a folder is made, and none in the run."""
+    """Of the run alone: the step that is tried before the folder is made goes well."""
     begun = f"pathlib.Path({str(tmp_path / 'out')!r}).exists()"
     with pytest.raises(RuntimeError, match="mine"):
         oo.run(raising(tmp_path, "RuntimeError('mine')", begun), out=tmp_path / "out", quiet=True)
