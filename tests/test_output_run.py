@@ -14,7 +14,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs import keeping
-from onorbit_rs.exceptions import OutputNotEmptyError, RunInterrupted, SimulationError
+from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError, RunInterrupted, SimulationError
 from onorbit_rs.output.summary import summarize
 from onorbit_rs.scenario import load
 
@@ -144,3 +144,46 @@ def test_an_interrupted_run_keeps_its_trace(tmp_path: Path) -> None:
     with np.load(tmp_path / "out" / "trace.npz") as stored:
         assert 0.0 < stored["time"][-1] < 36_000.0
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["status"] == "interrupted"
+
+
+def raising(tmp_path: Path, what: str, when: str = "t > 0.005") -> dict[str, Any]:
+    """A scenario whose controller raises at some time."""
+    (tmp_path / "mine.py").write_text(f"""
+import pathlib
+import numpy as np
+import onorbit_rs
+class Raises(onorbit_rs.Controller):
+    def update(self, t, state):
+        if {when}:
+            raise {what}
+        return np.zeros(len(state.joints))
+""")
+    control = {"kind": "python", "file": str(tmp_path / "mine.py"), "class": "Raises"}
+    return short_reach() | {"controller": control}
+
+
+def test_an_error_before_the_first_row_is_itself(tmp_path: Path) -> None:
+    """Of the run alone: the step that is tried before the folder is made goes well."""
+    begun = f"pathlib.Path({str(tmp_path / 'out')!r}).exists()"
+    with pytest.raises(RuntimeError, match="mine"):
+        oo.run(raising(tmp_path, "RuntimeError('mine')", begun), out=tmp_path / "out", quiet=True)
+    assert [file.name for file in (tmp_path / "out").iterdir()] == ["scenario.yaml"]
+
+
+@pytest.mark.parametrize("end", ["RuntimeError", "RunInterrupted", "SimulationError"])
+def test_a_full_disk_takes_the_place_of_no_other_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end: str
+) -> None:
+    def full(folder: Any, trace: Any) -> None:
+        raise OutputFolderError("cannot write trace.npz: No space left on device")
+
+    monkeypatch.setattr(keeping, "write_trace", full)
+    what = {"RuntimeError": "RuntimeError('mine')", "RunInterrupted": "KeyboardInterrupt"}.get(end)
+    scenario = diverging() if what is None else raising(tmp_path, what)
+    with pytest.raises(BaseException) as caught:
+        oo.run(scenario, out=tmp_path / "out", quiet=True)
+    own = caught.value
+    assert type(own).__name__ == end
+    notes = getattr(own, "__notes__", [])
+    assert "be written: cannot write trace.npz: No space left" in "; ".join([str(own), *notes])
+    assert "rows so far are in" not in str(notes) and "so far is in" not in str(own)

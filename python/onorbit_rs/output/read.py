@@ -26,7 +26,9 @@ class SavedTrace:
     arrays: Mapping[str, Any]
 
     def __getattr__(self, name: str) -> Any:
-        """A column."""
+        """A column; None where the run had nothing for it."""
+        if name in _COLUMNS:
+            return self.arrays.get(name)
         if name.startswith("__") or name == "arrays" or name not in self.arrays:
             raise AttributeError(f"the trace has no column {name!r}")
         return self.arrays[name]
@@ -102,6 +104,9 @@ def _widths(n: int) -> dict[str, tuple[int, ...]]:
         "tool_pose": pose, "reference_pose": pose, "position_error": three, "attitude_error": three,
         "position_eci": three, "velocity_eci": three, "reference_residual": three,
     }  # fmt: skip
+
+
+_COLUMNS = ("time", *_widths(0))
 
 
 def read_summary(folder: Path) -> dict[str, Any]:
