@@ -229,7 +229,7 @@ def test_what_is_refused(dual: oo.Model, q: Any) -> None:
     with pytest.raises(ControlError, match="'position', 'velocity' and 'effort'"):
         oo.JointPid(interface="positon")  # type: ignore[arg-type]
     for interface in ("position", "velocity"):  # its limits are no gains
-        with pytest.raises(ControlError, match=f"interface {interface} without gains does nothing: give 'p', "):
+        with pytest.raises(ControlError, match=f"interface {interface} without gains does nothing: give 'p'"):
             oo.JointPid(interface=interface, effort_limit=3.0)  # type: ignore[arg-type]
     oo.JointPid(interface="effort")
     oo.JointPid(p=0.0)  # asked for

@@ -14,7 +14,10 @@ import onorbit_rs as oo
 COUNTS: dict[str, tuple[str, Callable[[Any], Any]]] = {
     "threads of a kernel": ("threads", lambda n: MODEL.mass_matrix(Q[None], threads=n)),
     "threads of a rollout": ("threads", lambda n: oo.rollout(MODEL, Q[None], V[None], steps=1, threads=n)),
-    "threads of orbits": ("threads", lambda n: oo.propagate([oo.Kepler(semi_major_axis=7e6)], [0.0], threads=n)),
+    "threads of orbits": (
+        "threads",
+        lambda n: oo.propagate([oo.Kepler(semi_major_axis=7e6)], [0.0], threads=n),
+    ),
     "steps": ("steps", lambda n: oo.rollout(MODEL, Q[None], V[None], steps=n)),
     "rows of a rollout": (
         "record_every",
@@ -58,4 +61,6 @@ def test_fewer_than_the_least() -> None:
     rows = COUNTS["rows of a rollout"][1]
     for value in (0, -1):
         words = (f"record_every is {value}", "at least 1 step")
-        check(Bad(lambda value=value: rows(value), "InputError", words, {"name": "record_every", "got": value}))
+        check(
+            Bad(lambda value=value: rows(value), "InputError", words, {"name": "record_every", "got": value})
+        )

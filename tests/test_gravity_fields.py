@@ -79,7 +79,7 @@ def test_a_file_of_a_field_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(NotFoundError, match=r"none\.gfc: there is no such file$") as missing:
         oo.GravityField.from_gfc(tmp_path / "none.gfc")
     assert missing.value.path == str(tmp_path / "none.gfc")
-    with pytest.raises(ReadError, match="cannot be read: is a directory$"):
+    with pytest.raises(ReadError, match=r"cannot be read: is a directory$"):
         oo.GravityField.from_gfc(tmp_path)
     (tmp_path / "latin.gfc").write_bytes(b"modelname T\xfcbingen")
     with pytest.raises(ReadError, match="not UTF-8"):

@@ -32,8 +32,8 @@ def rebuild_robot(
     if is_another(model, fingerprint):
         path = keywords.get("path")
         raise ModelError(
-            f"{path or 'the description'} is not that of the pickled robot: it, or a file it includes, was changed"
-            " since; put it back, or load the robot from it anew and send that",
+            f"{path or 'the description'} is no longer that of the pickled robot: it, or a file it includes,"
+            " was changed since; put it back, or load the robot from it anew and send that",
             path=path and str(path),
         )
     return model
