@@ -90,13 +90,16 @@ def test_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_robot_does_not_come_back_as_another(tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     file.write_text(oo.robots.path("humanoid_torso").read_text())
-    sent = pickle.dumps(oo.Model.from_urdf(file))
+    model = oo.Model.from_urdf(file)
+    sent = pickle.dumps(model)
     file.write_text(file.read_text().replace('rgba="0.', 'rgba="0.1'))  # colours are no other robot
     pickle.loads(sent)
     file.write_text(file.read_text().replace('<mass value="', '<mass value="1'))
     with pytest.raises(ModelError, match=r"arm\.urdf .* was changed since; put it back, or load") as caught:
         pickle.loads(sent)
     assert back(caught.value).path == str(file)
+    with pytest.raises(ModelError, match="was changed since"):
+        pickle.dumps(model)  # nor is it sent: a worker of a pool that fails to read it would end in silence
 
 
 def test_a_robot_is_odd_once() -> None:
