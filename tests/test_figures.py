@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -176,6 +177,55 @@ def test_forces_are_those_of_the_wrenches(tumble: oo.Run) -> None:
         force = np.linalg.norm(tumble.trace.wrenches["drag"][:, names.index(name), :3], axis=1)
         np.testing.assert_array_equal(values, force)
     assert "drag\nforce [N]" in labels(figure) and "torque [N m]" in labels(figure)
+
+
+def test_rounding_is_drawn_as_none(tumble: oo.Run) -> None:
+    """A cannonball's radiation torque of 1e-23 N m filled its panel."""
+    force = np.full((3, 2, 6), [2e-6, 0.0, 0.0, 7e-23, 0.0, 0.0])
+    gradient = np.full((3, 2, 6), [0.0, 0.0, 0.0, 0.0, 4e-6, 0.0])
+    lever = np.full((3, 2, 6), [2e-6, 0.0, 0.0, 3e-13, 0.0, 0.0])  # 0.15 µm off: small, and real
+
+    def said(**wrenches: Any) -> list[list[str]]:
+        trace: Any = SavedTrace({"time": np.arange(3.0)} | {f"wrench_{n}": w for n, w in wrenches.items()})
+        return [
+            [text.get_text() for text in axes.texts]
+            for axes in figures.environment_forces(trace, ["base", "hand"]).axes
+        ]
+
+    assert said(light=force, gradient=gradient) == [[], ["none above rounding"], ["none"], []]
+    assert said(light=force) == [[], ["none above rounding"]]
+    assert said(light=lever, gradient=gradient) == [[], [], ["none"], []]
+    figures.as_bytes(figures.environment_forces(tumble.trace, tumble.model.body_names), "png")
+
+
+def test_an_attitude_that_is_rounding_is_flat() -> None:
+    body = {"rigid_body": {"mass": 100.0, "inertia": [10.0, 12.0, 8.0]}}
+    data = {"robot": body, "orbit": {"kind": "kepler", "semi_major_axis": 7e6, "inclination": 1.7},
+            "initial": {"frame": "lvlh"}, "simulation": {"duration": 3000.0, "time_step": 5.0}}  # fmt: skip
+
+    def axis(**initial: Any) -> tuple[str, float, float]:
+        trace = oo.run(data | {"initial": {"frame": "lvlh", **initial}}, quiet=True).trace
+        lower = figures.orbit_overview(trace).axes[-1]
+        drawn = max(float(np.abs(line.get_ydata()).max()) for line in lower.lines)
+        return lower.get_ylabel().split()[-1], drawn, lower.get_ylim()[1]
+
+    unit, drawn, top = axis()
+    assert unit == "[deg]" and 0.0 < drawn < 1e-9 and top == 1.0
+    unit, drawn, top = axis(angular_velocity=[0.0, 0.0, 1e-9])  # 3 µrad at the end
+    assert unit == "[µdeg]" and 100.0 < drawn < top < 1.2 * drawn
+
+
+def test_what_carrying_takes_away_is_said(tumble: oo.Run) -> None:
+    def about(told: figures.Subject) -> str:
+        (drawing,) = [one for one in figures.drawings(told) if one.name == "environment_forces"]
+        return drawing.caption
+
+    assert "carried" not in about(subject(tumble))
+    assert "share that moves all bodies alike is removed" in about(replace(subject(tumble), is_carried=True))
+    sgp4 = load("sgp4_orbit")
+    orbit = make_orbit(sgp4.orbit, Path())
+    told = figures.subject_of(tumble.trace, sgp4, tumble.model, orbit, None)
+    assert told.is_carried
 
 
 def test_the_ground_track_is_where_the_earth_says(tumble: oo.Run) -> None:

@@ -98,6 +98,12 @@ def legend_name(name: str) -> str:
     return f" {name}" if name.startswith("_") else name
 
 
+def calm(axes: Axes, rounding: float) -> None:
+    """Lines of zeros, and of no more than ``rounding`` (in the unit drawn), are drawn as what they are."""
+    if all(np.abs(line.get_ydata()).max() < rounding for line in axes.lines):
+        axes.set_ylim(-1.0, 1.0)
+
+
 def clock(trace: Trace) -> tuple[Floats, str]:
     """The time of each row, in a unit that fits the run, and the label of the axis."""
     time = np.asarray(trace.time)

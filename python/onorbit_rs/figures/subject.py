@@ -28,7 +28,10 @@ class Tool(NamedTuple):
 
 @dataclass(frozen=True)
 class Subject:
-    """A run to draw. ``model`` is None where the robot's file is gone, ``mu`` where there is no planet."""
+    """A run to draw. ``model`` is None where the robot's file is gone, ``mu`` where there is no planet.
+
+    ``is_carried`` where the robot goes along with a reference that does not fall freely.
+    """
 
     trace: Trace
     model: Model | None = None
@@ -37,6 +40,7 @@ class Subject:
     mu: float | None = None
     earth: Earth | None = None
     is_the_papers: bool = False
+    is_carried: bool = False
 
 
 def subject_of(
@@ -56,6 +60,7 @@ def subject_of(
     return Subject(
         trace, model, tuple(tools), joint_controls, None if orbit is None else orbit.mu, earth,
         is_the_papers=_is_the_papers(scenario),
+        is_carried=scenario.gravity_mode == "carried" or (orbit is not None and orbit.mu is None),
     )  # fmt: skip
 
 
