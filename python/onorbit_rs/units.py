@@ -30,6 +30,11 @@ def degrees_with_prefix(peak: float, unit: str = "deg") -> tuple[float, str]:
     return with_prefix(peak, unit) if ROUNDING_DEG <= peak < 0.01 else (1.0, unit)
 
 
+def digits(value: float) -> str:
+    """Four digits, and the whole number from ten thousand to ten million."""
+    return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
+
+
 def amount(value: float, unit: str) -> str:
     """``2e-6``, ``N`` as ``2 µN``."""
     factor, scaled = with_prefix(value, unit)

@@ -113,8 +113,8 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
         about = "Force and torque of every effect on every body; torques are about the body's centre of mass."
         if subject.is_carried:
             about += (
-                " The robot is carried along its reference, whose motion has them already: of drag and light the "
-                "share that moves all bodies alike is removed, of gravity the tides are left."
+                " The robot is carried along its reference, whose motion has them already: of drag and light "
+                "the share that moves all bodies alike is removed, of gravity the tides are left."
             )
         yield Drawing("environment_forces", about, partial(environment_forces, trace, model.body_names))
     if subject.mu is None or not has_local_frame(trace) or _angle_flown_deg(trace) <= WORTH_AN_ORBIT_DEG:
