@@ -263,6 +263,41 @@ def test_a_month_of_ground_track_is_dots_and_says_so() -> None:
     assert styles == ["None", "None"] and told[0] == "a dot every 90 min"
 
 
+def test_a_track_that_stays_in_place_fills_its_map() -> None:
+    """The start lay under the end, in the middle of an empty world."""
+    earth = oo.Earth("2026-03-20 12:00:00 UTC")
+    orbit = oo.Kepler(semi_major_axis=42164.17e3, inclination=0.002)
+
+    class Trace:
+        time = np.linspace(0.0, 86164.0, 500)
+        position_eci, velocity_eci = orbit.state(time)
+
+    trace: Any = Trace()
+    world, _ = figures.ground_track(trace, earth).axes
+    track, start, end = world.lines[:3]
+    low, high = world.get_ylim()
+    assert 0.5 < np.ptp(track.get_ydata()) / (high - low) < 1.0
+    assert start.get_markersize() > 2.0 * end.get_markersize() and start.get_markerfacecolor() == "none"
+
+
+def test_a_difference_of_one_row_is_seen_and_every_column_has_its_time() -> None:
+    spin = {"robot": {"rigid_body": {"mass": 10.0, "inertia": [1.0, 2.0, 3.0]}},
+            "simulation": {"duration": 1.0, "time_step": 0.1}}  # fmt: skip
+    compared = oo.compare(spin, spin)
+    values = np.zeros(len(compared.time))
+    values[5] = 7e-12
+    lone = (replace(compared.differences[0], values=values), *compared.differences[1:])
+    for measured in (lone, lone[:-1]):
+        panels = figures.differences(replace(compared, differences=measured)).axes[: len(measured)]
+        assert [bool(axes.get_xlabel()) for axes in panels[-3:]] == [False, True, True]
+        assert [axes.xaxis.get_tick_params()["labelbottom"] for axes in panels[-2:]] == [True, True]
+        axes = panels[0]
+        drawn = axes.transData.transform(axes.lines[0].get_xydata())  # type: ignore[arg-type]
+        assert np.isfinite(drawn).all() and len(drawn) == len(values)
+        low, high = axes.get_ylim()
+        assert low < 7e-12 < high and drawn[4, 1] < axes.transData.transform((0.0, low))[1]
+
+
 def test_a_robot_of_meshes_is_drawn_as_its_skeleton(reach: oo.Run, tmp_path: Path) -> None:
     urdf = oo.robots.path("humanoid_torso").read_text()
     urdf = re.sub(r"<(box|sphere|cylinder|capsule)\b[^>]*/>", '<mesh filename="mesh.stl"/>', urdf)
