@@ -9,7 +9,7 @@ import warnings
 from dataclasses import replace
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -348,11 +348,31 @@ def test_errors_of_joints_that_slide_are_in_metres(reach: oo.Run) -> None:
 
     assert drawn(slice(0, 1), model) == ["time [s]", "joint error [mm]"]
     assert drawn(slice(1, 3), model) == ["time [s]", "joint error [mrad]"]
-    assert drawn(slice(0, 7), model) == ["time [s]", "joint error [rad or m]"]
+    assert drawn(slice(0, 7), model) == ["joint error [mrad]", "time [s]", "joint error [mm]"]
     assert drawn(slice(0, 7), reach.model) == ["time [s]", "joint error [mrad]"]
     assert drawn(slice(0, 7), None) == ["time [s]", "joint error [rad or m]"]
     torques: Any = Trace(slice(0, 7))
-    assert labels(figures.joint_torques(torques, model)) == ["time [s]", "effort [N m or N]"]
+    figure = figures.joint_torques(torques, model)
+    assert labels(figure) == ["torque [mN m]", "time [s]", "force [mN]"]
+    assert [[line.get_label() for line in axes.lines[:-1]] for axes in figure.axes] == [names[1:], names[:1]]
+    np.testing.assert_allclose(figure.axes[1].lines[0].get_ydata(), 1e3 * errors[:, 0], rtol=1e-12)
+
+
+def test_of_many_joints_few_have_a_colour_and_no_two_the_same() -> None:
+    names = [f"joint_{n}" for n in range(20)]
+
+    class Trace:
+        time = np.linspace(0.0, 1.0, 5)
+        tracking: ClassVar = {"hold": np.outer(time, np.arange(20.0))}
+
+    trace: Any = Trace()
+    (axes,) = figures.control_errors(trace, "hold", names).axes
+    legend = axes.get_legend()
+    assert legend is not None
+    told = [text.get_text() for text in legend.get_texts()]
+    assert sorted(told) == sorted(["13 others, smaller", *names[13:]])
+    colours = {line.get_color() for line in axes.lines if line.get_label() in names}
+    assert len(colours) == 7
 
 
 def test_names_in_the_users_words_are_no_formulas_and_are_not_left_out(reach: oo.Run) -> None:
