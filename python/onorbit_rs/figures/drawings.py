@@ -119,9 +119,7 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
             )
         yield Drawing("environment_forces", about, partial(environment_forces, trace, model.body_names))
     if model is not None and has_local_frame(trace) and goes_far(trace, model):
-        about = (
-            "Paths relative to the reference orbit, in L: from beside the orbit, and from above."
-        )
+        about = "Paths relative to the reference orbit, in L: from beside the orbit, and from above."
         yield Drawing("relative_motion", about, partial(relative_motion, trace, subject.targets))
     if subject.mu is None or not has_local_frame(trace) or _angle_flown_deg(trace) <= WORTH_AN_ORBIT_DEG:
         return
