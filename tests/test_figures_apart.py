@@ -33,7 +33,23 @@ def test_rounding_is_drawn_as_none() -> None:
 
     assert said(light=force, gradient=gradient) == [[], ["none above rounding"], ["none"], []]
     assert said(light=force) == [[], ["none above rounding"]]
+    carried = np.full((3, 2, 6), [4e-20, 0.0, 0.0, 0.0, 0.0, 0.0])  # of 1e-5 N, all taken away
+    assert said(drag=carried) == [["none above rounding"], ["none"]]
     assert said(light=lever, gradient=gradient) == [[], [], ["none"], []]
+
+
+def test_an_error_that_is_rounding_is_flat() -> None:
+    class Trace:
+        time = np.arange(3.0)
+
+        def __init__(self, size: float) -> None:
+            self.position_error = self.attitude_error = np.outer([0.0, 1.0, -1.0], [size, 0.0, 0.0])
+
+    def top(size: float) -> float:
+        trace: Any = Trace(size)
+        return figures.tracking_errors(trace).axes[0].get_ylim()[1]
+
+    assert top(3e-16) == 1.0 and 3.0 < top(3e-12) < 4.0  # pm
 
 
 def test_an_attitude_that_is_rounding_is_flat() -> None:

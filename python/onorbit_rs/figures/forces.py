@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 MOST_BODIES = len(COLORS)
 """Each with a colour of its own; the others are grey."""
+LEAST = 1e-16
+"""N, N m; less is what is left of rounding where all of an effect is taken away, as of a carried body."""
 DECADES = 1e5
 """Below the largest of all bodies nothing is shown."""
 
@@ -57,7 +59,7 @@ def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
         is_last = row == len(wrenches) - 1
         for column, (what, unit) in enumerate((("force", "N"), ("torque", "N m"))):
             axes = panels[row, column]
-            rounding = ROUNDING * max(top[column], *peaks[effect])
+            rounding = max(ROUNDING * max(top[column], *peaks[effect]), LEAST)
             _plot_bodies(axes, time, _size(rows, column), bodies, shown, rounding)
             name = f"{legend_name(effect.replace('_', ' '))}\n" if column == 0 else ""
             tidy(axes, label if is_last else "", f"{name}{what} [{unit}]")

@@ -13,6 +13,7 @@ from onorbit_rs.figures.style import (
     INK,
     LINE,
     XYZ_COLORS,
+    calm,
     clock,
     legend_above,
     legend_height,
@@ -21,7 +22,7 @@ from onorbit_rs.figures.style import (
     plot_lines,
     tidy,
 )
-from onorbit_rs.units import OR, JointUnits, joint_units, with_prefix
+from onorbit_rs.units import OR, ROUNDING, JointUnits, joint_units, with_prefix
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -104,7 +105,7 @@ def _plot_joints(
     axes: Axes, time: Floats, columns: Floats, names: list[str], unit: str
 ) -> tuple[list[str], str]:
     """Symmetric about zero; returns what the legend says, and the unit with its prefix."""
-    peak = max(float(np.abs(columns).max()), 1e-12)
+    peak = max(float(np.abs(columns).max()), ROUNDING)
     factor, scaled = with_prefix(peak, unit) if peak < 0.1 or peak >= 1e3 else (1.0, unit)
     if OR in unit:
         factor, scaled = 1.0, unit
@@ -120,5 +121,6 @@ def _plot_error(axes: Axes, time: Floats, error: Floats, unit: str, what: str) -
     plot_lines(axes, time, factor * error, ("x", "y", "z"), XYZ_COLORS)
     plot_lines(axes, time, factor * norm[:, None], ("norm",), (INK,))
     axes.lines[-1].set(linestyle=(0, (3, 1.5)), linewidth=0.8 * LINE)
+    calm(axes, ROUNDING * factor)
     tidy(axes, "", f"{what} [{scaled_unit}]")
     legend_above(axes)
