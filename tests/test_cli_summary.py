@@ -177,3 +177,18 @@ def test_the_next_command_reads_the_robot_as_this_one_did(tmp_path: Path) -> Non
     assert told == "next: onorbit new r.xacro --package-path . --arg 'who=a b' --out FILE"
     made = onorbit("new", *words, cwd=tmp_path).stdout.splitlines()[0]
     assert made == "# Written by: onorbit new r.xacro --package-path . --arg 'who=a b'"
+
+
+def test_one_joint_is_one_joint(tmp_path: Path) -> None:
+    (tmp_path / "one.urdf").write_text(
+        '<robot name="one"><link name="a"><inertial><mass value="5"/>'
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+        '<link name="b"><inertial><origin xyz="0.3 0 0"/><mass value="1"/>'
+        '<inertia ixx=".1" iyy=".1" izz=".1" ixy="0" ixz="0" iyz="0"/>'
+        '</inertial></link><joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
+        '<axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="9" velocity="1"/></joint></robot>'
+    )
+    made = onorbit("new", "one.urdf", "--out", "one.yaml", cwd=tmp_path)
+    assert "moved by 1 joint)" in made.stdout, made
+    assert "one (1 joint, 6 kg)" in onorbit("check", "one.yaml", cwd=tmp_path).stdout
+    assert "2 bodies, 1 joint, " in onorbit("info", "one.urdf", cwd=tmp_path).stdout

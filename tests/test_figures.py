@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -178,6 +179,19 @@ def test_forces_are_those_of_the_wrenches(tumble: oo.Run) -> None:
     assert "drag\nforce [N]" in labels(figure) and "torque [N m]" in labels(figure)
 
 
+def test_what_carrying_takes_away_is_said(tumble: oo.Run) -> None:
+    def about(told: figures.Subject) -> str:
+        (drawing,) = [one for one in figures.drawings(told) if one.name == "environment_forces"]
+        return drawing.caption
+
+    assert "carried" not in about(subject(tumble))
+    assert "share that moves all bodies alike is removed" in about(replace(subject(tumble), is_carried=True))
+    sgp4 = load("sgp4_orbit")
+    orbit = make_orbit(sgp4.orbit, Path())
+    told = figures.subject_of(tumble.trace, sgp4, tumble.model, orbit, None)
+    assert told.is_carried
+
+
 def test_the_ground_track_is_where_the_earth_says(tumble: oo.Run) -> None:
     earth = oo.Earth(tumble.scenario.epoch)
     world, profile = figures.ground_track(tumble.trace, earth).axes
@@ -241,33 +255,6 @@ def test_errors_of_several_controllers_are_those_of_the_trace() -> None:
     error = np.asarray(run.trace.tracking["left"])[:, :3]
     ratio = np.abs(drawn).max() / np.abs(error).max()
     np.testing.assert_allclose(drawn, ratio * error, rtol=1e-9, atol=1e-12)
-
-
-def test_errors_of_joints_that_slide_are_in_metres(reach: oo.Run) -> None:
-    urdf = oo.robots.path("humanoid_torso").read_text()
-    names = list(reach.model.joint_names)
-    slider = re.compile(rf'(<joint name="{names[0]}" type=)"[a-z]+"')
-    model = oo.Model.from_urdf_string(slider.sub(r'\1"prismatic"', urdf))
-    assert [joint.kind == "prismatic" for joint in model.joints] == [True, *[False] * 6]
-    errors = np.linspace(0.0, 2e-3, 7 * 5).reshape(5, 7)
-
-    class Trace:
-        time, tau = np.linspace(0.0, 1.0, 5), errors
-
-        def __init__(self, columns: int | slice) -> None:
-            self.tracking = {"posture": errors[:, columns]}
-
-    def drawn(columns: slice, given: oo.Model | None) -> list[str]:
-        trace: Any = Trace(columns)
-        return labels(figures.control_errors(trace, "posture", names[columns], given))
-
-    assert drawn(slice(0, 1), model) == ["time [s]", "joint error [mm]"]
-    assert drawn(slice(1, 3), model) == ["time [s]", "joint error [mrad]"]
-    assert drawn(slice(0, 7), model) == ["time [s]", "joint error [rad or m]"]
-    assert drawn(slice(0, 7), reach.model) == ["time [s]", "joint error [mrad]"]
-    assert drawn(slice(0, 7), None) == ["time [s]", "joint error [rad or m]"]
-    torques: Any = Trace(slice(0, 7))
-    assert labels(figures.joint_torques(torques, model)) == ["time [s]", "effort [N m or N]"]
 
 
 def test_names_in_the_users_words_are_no_formulas_and_are_not_left_out(reach: oo.Run) -> None:

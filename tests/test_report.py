@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs.cli.summary import print_summary
 from onorbit_rs.exceptions import NotFoundError, OutputFolderError, ReadError, SimulationError
 from onorbit_rs.output.checks import CHECKS, GATE
 from onorbit_rs.output.read import read_summary, read_trace
@@ -167,8 +168,38 @@ def test_the_certificate_is_green_or_red(page: Page, folder: Path) -> None:
     broken = json.loads((folder / "summary.json").read_text())
     broken |= {"certificate_passed": False, "certificate_failures": "energy_balance_error_rel"}
     red = page_of(broken)
-    assert verdict_of(red) == ("verdict failed", "Certificate FAILED: energy_balance_error_rel")
+    assert verdict_of(red) == ("verdict failed", "Certificate FAILED: energy balance error")
     assert red.text.count("BROKEN") == 1
+    assert "Try a time_step shorter than 0.01 s." in red.text and "Try" not in page.text
+    assert "Try" not in page_of(broken | {"status": "interrupted"}).text
+
+
+def test_a_check_that_is_not_evaluated_is_called_so(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    summary = json.loads((folder / "summary.json").read_text())
+    for key in (value := "center_of_mass_error_rel", GATE + value):
+        del summary[key]
+    summary["certificate_not_evaluated"] = "center_of_mass_error_rel"
+    print_summary(summary, None)
+    assert page_of(summary).text.count("not evaluated") == capsys.readouterr().out.count("not evaluated") == 1
+
+
+ODD = (
+    '<robot name="odd"><link name="a"><inertial><mass value="1"/>{inertia}</inertial></link><link name="b">'
+    '<inertial><mass value="1"/>{inertia}</inertial></link><joint name="j" type="continuous">'
+    '<parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>'
+)
+
+
+def test_each_warning_has_a_line_of_its_own(tmp_path: Path) -> None:
+    inertia = '<inertia ixx="1" iyy="1" izz="3" ixy="0" ixz="0" iyz="0"/>'
+    (tmp_path / "odd.urdf").write_text(ODD.format(inertia=inertia))
+    settings = {"duration": 0.01, "time_step": 0.01}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        run = oo.run({"robot": str(tmp_path / "odd.urdf"), "simulation": settings}, quiet=True)
+    page = page_of(run.summary)
+    assert len(run.model.warnings) == 2 == [tag for tag, _ in page.tags].count("li")
+    assert all("; " in warning and warning in page.words for warning in run.model.warnings)
 
 
 @pytest.mark.parametrize("left", [{}, {"certificate_passed": None}])
@@ -335,6 +366,8 @@ def test_a_column_that_was_cut_is_named_with_its_shape(
         ("joint_limits_exceeded", "", "none", ""),
         ("base_displacement_max_m", None, "not finite", "m"),
         ("rows", 6001, "6001", ""),
+        ("simulated_s", 11657.0, "11657", "s"),
+        ("real_time_factor", 3.4283672e8, "3.428e+08", ""),
     ],
 )
 def test_numbers_read_well(key: str, value: Any, shown: str, unit: str) -> None:
@@ -353,7 +386,9 @@ def test_numbers_read_well(key: str, value: Any, shown: str, unit: str) -> None:
         ("tracking_joint_joint_error_max_m", "joint: error of a sliding joint, largest"),
         ("control_left_arm_result", "left_arm: goal"),
         ("joint_rate_final_max_rad_s", "joint rate at the end, largest"),
-        ("base_rotation_max_rad", "base rotation, largest"),
+        ("joint_rate_final_max_m_s", "rate of a sliding joint at the end, largest"),
+        ("joint_force_max_n", "force of a sliding joint, largest"),
+        ("base_rotation_max_rad", "base rotation in W, largest"),
     ],
 )
 def test_names_read_well(key: str, name: str) -> None:

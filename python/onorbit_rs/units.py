@@ -8,6 +8,10 @@ from typing import NamedTuple
 
 _PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"), (1e6, "M"))
 
+ROUNDING = 1e-12
+"""Of SI units, and as a share of what a number was taken from: what is smaller says nothing."""
+ROUNDING_DEG = 1e-9
+"""Of angles, whose errors add up over a run."""
 OR = " or "
 """Between two units of one label, which take no common prefix."""
 
@@ -19,6 +23,16 @@ def with_prefix(peak: float, unit: str) -> tuple[float, str]:
         fitting = [entry for entry in _PREFIXES if entry[0] <= peak * (1.0 + 1e-9)] or [_PREFIXES[0]]
         scale, prefix = fitting[-1]
     return 1.0 / scale, prefix + unit
+
+
+def degrees_with_prefix(peak: float, unit: str = "deg") -> tuple[float, str]:
+    """As :func:`with_prefix`, of degrees: plain from a hundredth on, and below :data:`ROUNDING_DEG`."""
+    return with_prefix(peak, unit) if ROUNDING_DEG <= peak < 0.01 else (1.0, unit)
+
+
+def digits(value: float) -> str:
+    """Four digits, and the whole number from ten thousand to ten million."""
+    return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
 
 
 def amount(value: float, unit: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument
-from onorbit_rs.cli.saying import say
+from onorbit_rs.cli.saying import count, say
 from onorbit_rs.printable import shell_word
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def print_checked(built: Built) -> None:
     settings = scenario.simulation
     plant = "" if scenario.plant == "native" else f" on {scenario.plant}"
     parts = [
-        f"{model.name} ({len(model.joint_names)} joints, {model.mass:.4g} kg)",
+        f"{model.name} ({count(len(model.joint_names), 'joint', 'joints')}, {model.mass:.4g} kg)",
         f"orbit {scenario.orbit.kind}" if scenario.orbit else "no orbit",
         *(effect.kind for effect in scenario.environment),
         ", ".join(law.kind for law in scenario.laws) or "no controller",

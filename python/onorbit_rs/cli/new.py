@@ -15,7 +15,7 @@ from onorbit_rs.cli.options import (
     in_words,
     of_file,
 )
-from onorbit_rs.cli.saying import say
+from onorbit_rs.cli.saying import count, say
 from onorbit_rs.cli.writing import claim, writing
 from onorbit_rs.printable import shell_word
 
@@ -52,6 +52,7 @@ def new(
     with writing(out):
         out.write_text(made.text, encoding="utf-8")
     if not quiet:
-        moved = f"{made.tool}, moved by {len(made.joints)} joints" if made.tool else "a body without joints"
+        joints = count(len(made.joints), "joint", "joints")
+        moved = f"{made.tool}, moved by {joints}" if made.tool else "a body without joints"
         say(f"scenario: {out} ({moved})")
         say(f"next: onorbit check {shell_word(out)}")

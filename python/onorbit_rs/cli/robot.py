@@ -8,6 +8,7 @@ from rich.table import Table
 from rich.tree import Tree
 
 from onorbit_rs.cli.printing import text
+from onorbit_rs.cli.saying import count
 from onorbit_rs.robots.describe import describe
 
 if TYPE_CHECKING:
@@ -22,10 +23,8 @@ _DEEPEST = 12
 def print_info(model: Model, console: Console) -> None:
     """The tree, then tables of bodies and joints, then what was odd."""
     about = describe(model)
-    counts = f"{_count(len(model.bodies), 'body', 'bodies')}, {_count(len(model.joints), 'joint', 'joints')}"
-    console.print(
-        f"[bold]{text(model.name)}[/bold]: {counts}, {_count(len(model.frames), 'frame', 'frames')}"
-    )
+    counts = f"{count(len(model.bodies), 'body', 'bodies')}, {count(len(model.joints), 'joint', 'joints')}"
+    console.print(f"[bold]{text(model.name)}[/bold]: {counts}, {count(len(model.frames), 'frame', 'frames')}")
     console.print(f"mass {model.mass:.6g} kg, nq = {model.nq}, nv = {model.nv}")
     console.print(f"joints at zero: centre of mass {_row(about['com_m'])} m from the base's origin,")
     console.print(f"principal moments about it {_row(about['principal_moments_kg_m2'])} kg m²")
@@ -118,7 +117,3 @@ def _axis(axis: list[float]) -> str:
 
 def _row(values: list[float], digits: int = 3) -> str:
     return " ".join(f"{value + 0.0:.{digits}g}" for value in values)
-
-
-def _count(number: int, one: str, many: str) -> str:
-    return f"{number} {one if number == 1 else many}"

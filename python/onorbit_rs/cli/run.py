@@ -96,8 +96,6 @@ def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
 
 def _uncertified(summary: dict[str, Any]) -> str:
     """What a run whose balances do not hold says last, and the way out."""
-    is_adaptive = summary["integrator"] == "dormand_prince"
-    way_out = (
-        "a smaller tolerance" if is_adaptive else f"a time_step shorter than {summary['time_step_s']:g} s"
-    )
-    return f"the certificate failed ({summary['certificate_failures']}): try {way_out}"
+    from onorbit_rs.output.checks import way_out
+
+    return f"the certificate failed ({summary['certificate_failures']}): try {way_out(summary)}"

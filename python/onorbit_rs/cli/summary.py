@@ -10,6 +10,7 @@ from onorbit_rs.cli.printing import new_console, new_table, print_table, text
 from onorbit_rs.output.checks import Check, checks
 from onorbit_rs.output.words import goal_of, tracking
 from onorbit_rs.printable import shell_word
+from onorbit_rs.units import digits
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 _ROWS = (
     ("joint_torque_max_nm", "joint torque, largest", "N m"),
     ("joint_force_max_n", "force of a sliding joint, largest", "N"),
-    ("base_rotation_max_rad", "base rotation, largest", "rad"),
+    ("base_rotation_max_rad", "base rotation in W, largest", "rad"),
     ("simulated_s", "simulated", "s"),
     ("wall_s", "wall clock of the simulation loop", "s"),
     ("real_time_factor", "times real time", ""),
@@ -88,7 +89,7 @@ def _numbers(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:
 def _said(value: Any, unit: str) -> str:
     if not isinstance(value, (int, float)):
         return "not finite"
-    return f"{value:.4g} {unit}".rstrip()
+    return f"{digits(value)} {unit}".rstrip()
 
 
 def _verdict(summary: dict[str, Any]) -> str:

@@ -41,8 +41,9 @@ def differences(compared: Comparison) -> Figure:
         axes.set_visible(False)
     for axes, difference in zip(panels.flat, measured, strict=False):
         _draw(axes, compared, difference)
-    for axes in panels[-1]:
+    for axes in panels.flat[max(0, len(measured) - COLUMNS) : len(measured)]:  # the lowest of each column
         axes.set_xlabel("time [s]", fontsize=NORMAL, color=INK)
+        axes.tick_params(labelbottom=True)
     return figure
 
 
@@ -61,5 +62,5 @@ def _draw(axes: Axes, compared: Comparison, difference: Difference) -> None:
         axes.text(0.5, 0.5, "no difference", transform=axes.transAxes, ha="center", **label)
     least, top = (float(above.min()), float(above.max())) if above.size else (0.0, 0.0)
     top = max(difference.allowed, top)
-    axes.set_yscale("log", nonpositive="mask")
+    axes.set_yscale("log", nonpositive="clip")  # one row among zeros is seen as a line that comes up
     axes.set_ylim(max(least, top * LOWEST) / 3.0, top * 20.0)

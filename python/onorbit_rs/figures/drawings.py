@@ -16,6 +16,7 @@ from onorbit_rs.figures.ledger import ledger
 from onorbit_rs.figures.manipulability import manipulability
 from onorbit_rs.figures.motion import base_motion, base_reaction
 from onorbit_rs.figures.orbit import orbit_overview
+from onorbit_rs.figures.relative import goes_far, relative_motion
 from onorbit_rs.figures.tracking import control_errors, joint_torques, tracking_errors
 from onorbit_rs.figures.trajectory import desired_trajectory, obtained_trajectory
 from onorbit_rs.planet import is_earth
@@ -111,7 +112,15 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
     yield Drawing("ledger", about, partial(ledger, trace))
     if trace.wrenches and model is not None:
         about = "Force and torque of every effect on every body; torques are about the body's centre of mass."
+        if subject.is_carried:
+            about += (
+                " The robot is carried along its reference, whose motion has them already: of drag and light "
+                "the share that moves all bodies alike is removed, of gravity the tides are left."
+            )
         yield Drawing("environment_forces", about, partial(environment_forces, trace, model.body_names))
+    if model is not None and has_local_frame(trace) and goes_far(trace, model):
+        about = "Paths relative to the reference orbit, in L: from beside the orbit, and from above."
+        yield Drawing("relative_motion", about, partial(relative_motion, trace, subject.targets))
     if subject.mu is None or not has_local_frame(trace) or _angle_flown_deg(trace) <= WORTH_AN_ORBIT_DEG:
         return
     about_earth = is_earth(subject.mu)

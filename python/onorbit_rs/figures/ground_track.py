@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from onorbit_rs.figures.style import (
@@ -31,6 +32,9 @@ _MOST_ROWS = 3_000
 LEAST_PER_REVOLUTION = 40
 """Points of one revolution that make a line; fewer would be chords, and are drawn as dots."""
 
+LOCAL_DEG = 20.0
+"""Extent of a track below which only its surroundings are drawn: a geostationary one is a dot on the map."""
+
 
 def ground_track(trace: Trace, earth: Earth) -> Figure:
     """Geodetic longitude and latitude under the base, on a plain grid, and its height above the ellipsoid.
@@ -43,6 +47,7 @@ def ground_track(trace: Trace, earth: Earth) -> Figure:
     position = np.ascontiguousarray(np.asarray(trace.position_eci)[rows])
     latitude, longitude, height = earth.geodetic(np.ascontiguousarray(trace.time[rows]), position)
     lat, lon = np.degrees(latitude), (np.degrees(longitude) + 180.0) % 360.0 - 180.0
+    lon = unwrapped if np.ptp(unwrapped := np.unwrap(lon, period=360.0)) < LOCAL_DEG else lon
     figure = new_figure(PAGE, 2.6)
     world, profile = figure.subplots(1, 2, width_ratios=(2.0, 1.0))
     look: dict[str, Any] = {"color": COLORS[0], "linewidth": LINE}
@@ -52,18 +57,32 @@ def ground_track(trace: Trace, earth: Earth) -> Figure:
         world.plot(lon, lat, label=f"a dot every {_span(apart)}", **look)
     else:
         world.plot(*_broken_at_the_date_line(lon, lat), **look)
-    world.plot(lon[0], lat[0], "o", color="white", markeredgecolor=INK, markersize=4, label="start")
-    world.plot(lon[-1], lat[-1], "s", color=OBTAINED, markersize=4, label="end")
+    # a ring with room for the end, where that is the same place
+    world.plot(lon[0], lat[0], "o", color="none", markeredgecolor=INK, markersize=7, label="start")
+    world.plot(lon[-1], lat[-1], "s", color=OBTAINED, markersize=3, label="end")
     tidy(world, "longitude, east [deg]", "geodetic latitude [deg]")
-    world.set(xlim=(-180.0, 180.0), ylim=(-90.0, 90.0), aspect="equal")
-    world.set_xticks(range(-180, 181, 60))
-    world.set_yticks(range(-90, 91, 30))
     world.axhline(0.0, color=INK, linewidth=0.5)
+    _set_window(world, lon, lat)
     legend_above(world)
     profile.plot(time[rows], height / 1e3, **look)
     tidy(profile, label, "height [km]")
     profile.ticklabel_format(axis="y", useOffset=False)
     return figure
+
+
+def _set_window(world: Axes, lon: Floats, lat: Floats) -> None:
+    """The whole map, or what is near a track that stays in place."""
+    sides = np.ptp(lon), np.ptp(lat)
+    if max(sides) >= LOCAL_DEG:
+        world.set(xlim=(-180.0, 180.0), ylim=(-90.0, 90.0), aspect="equal")
+        world.set_xticks(range(-180, 181, 60))
+        world.set_yticks(range(-90, 91, 30))
+        return
+    half = max(0.3 * sides[0], 0.6 * sides[1], 0.01)
+    x, y = ((one.max() + one.min()) / 2.0 for one in (lon, lat))
+    world.set(xlim=(x - 2.0 * half, x + 2.0 * half), ylim=(y - half, y + half), aspect="equal")
+    world.ticklabel_format(useOffset=False)
+    world.locator_params(nbins=5)
 
 
 def _revolutions(trace: Trace) -> float:

@@ -14,13 +14,14 @@ from onorbit_rs.figures.style import (
     LINE,
     PAGE,
     XYZ_COLORS,
+    calm,
     clock,
     legend_above,
     new_figure,
     plot_lines,
     tidy,
 )
-from onorbit_rs.units import with_prefix
+from onorbit_rs.units import ROUNDING, with_prefix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -65,19 +66,13 @@ def ledger(trace: Trace) -> Figure:
         plot_lines(panels[row, 0], time, factor * columns, names, COLORS if row == 2 else XYZ_COLORS)
         if row == 2:
             panels[row, 0].lines[1].set_linestyle((0, (3, 1.5)))  # it may lie upon the kinetic energy
-        _zero_in_sight(panels[row, 0], factor)
+        calm(panels[row, 0], ROUNDING * max(factor, 1.0))
         tidy(panels[row, 0], label if row == 2 else "", f"{what} [{scaled}]")
         legend_above(panels[row, 0])
         drift = np.linalg.norm(unexplained[row] - unexplained[row][0], axis=1)
         _plot_unexplained(panels[row, 1], time, drift)
         tidy(panels[row, 1], label if row == 2 else "", f"unexplained [{unit}]")
     return figure
-
-
-def _zero_in_sight(axes: Axes, factor: float) -> None:
-    """Lines of zeros, and of rounding below all prefixes, are drawn as what they are."""
-    if all(np.abs(line.get_ydata()).max() < (1.0 if factor > 1.0 else 1e-12) for line in axes.lines):
-        axes.set_ylim(-1.0, 1.0)
 
 
 def _plot_unexplained(axes: Axes, time: Floats, drift: Floats) -> None:

@@ -11,6 +11,7 @@ from onorbit_rs.figures.style import (
     COLUMN,
     INK,
     XYZ_COLORS,
+    calm,
     clock,
     legend_above,
     new_figure,
@@ -18,7 +19,7 @@ from onorbit_rs.figures.style import (
     tidy,
 )
 from onorbit_rs.rotations import angle_between, roll_pitch_yaw
-from onorbit_rs.units import with_prefix
+from onorbit_rs.units import ROUNDING, ROUNDING_DEG, degrees_with_prefix, with_prefix
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Trace
@@ -37,10 +38,13 @@ def base_motion(trace: Trace) -> Figure:
     panels = figure.subplots(2, 1, sharex=True)
     factor, unit = with_prefix(float(np.abs(position).max()), "m")
     plot_lines(panels[0], time, factor * position, ("x", "y", "z"), XYZ_COLORS)
+    calm(panels[0], ROUNDING * max(factor, 1.0))
     tidy(panels[0], "", f"position [{unit}]")
     if np.abs(angles[:, 1]).max() < STEEPEST_DEG:
-        plot_lines(panels[1], time, angles, ("roll", "pitch", "yaw"), XYZ_COLORS)
-        tidy(panels[1], label, "attitude [deg]")
+        factor, unit = degrees_with_prefix(float(np.abs(angles).max()))
+        plot_lines(panels[1], time, factor * angles, ("roll", "pitch", "yaw"), XYZ_COLORS)
+        calm(panels[1], ROUNDING_DEG * factor)
+        tidy(panels[1], label, f"attitude [{unit}]")
     else:
         plot_lines(panels[1], time, quat, ("x", "y", "z", "w"), (*XYZ_COLORS, INK))
         tidy(panels[1], label, "quaternion [1]")
@@ -57,13 +61,13 @@ def base_reaction(trace: Trace) -> Figure:
     rate = np.degrees(np.asarray(trace.v)[:, 3:6])
     figure = new_figure(COLUMN, 3.1)
     panels = figure.subplots(2, 1, sharex=True)
-    factor, unit = with_prefix(float(turned.max()), "deg")
-    factor, unit = (factor, unit) if turned.max() < 0.01 else (1.0, "deg")
+    factor, unit = degrees_with_prefix(float(turned.max()))
     plot_lines(panels[0], time, factor * turned, ("turned",), (INK,))
+    calm(panels[0], ROUNDING_DEG * factor)
     tidy(panels[0], "", f"turned by [{unit}]")
-    factor, unit = with_prefix(float(np.abs(rate).max()), "deg/s")
-    factor, unit = (factor, unit) if np.abs(rate).max() < 0.01 else (1.0, "deg/s")
+    factor, unit = degrees_with_prefix(float(np.abs(rate).max()), "deg/s")
     plot_lines(panels[1], time, factor * rate, ("x", "y", "z"), XYZ_COLORS)
+    calm(panels[1], ROUNDING_DEG * factor)
     tidy(panels[1], label, f"turn rate [{unit}]")
     legend_above(panels[1])
     return figure

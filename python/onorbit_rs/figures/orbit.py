@@ -13,6 +13,7 @@ from onorbit_rs.figures.style import (
     OBTAINED,
     PAGE,
     XYZ_COLORS,
+    calm,
     clock,
     legend_above,
     new_figure,
@@ -22,7 +23,7 @@ from onorbit_rs.figures.style import (
 )
 from onorbit_rs.planet import EARTH_RADIUS_KM
 from onorbit_rs.rotations import attitude_in_orbit, reference_motion_of
-from onorbit_rs.units import with_prefix
+from onorbit_rs.units import ROUNDING_DEG, degrees_with_prefix, with_prefix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,10 +55,13 @@ def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
     factor, unit = with_prefix(1e3 * float(np.abs(distance_km).max()), "m")
     factor, unit = (1e-3, "km") if "less" not in whose else (factor, unit)
     plot_lines(upper, time, 1e3 * factor * distance_km, ("distance",), COLORS)
-    plot_lines(lower, time, angles, ("roll", "pitch", "yaw"), XYZ_COLORS)
+    turn, turned = degrees_with_prefix(float(np.abs(angles).max()))
+    plot_lines(lower, time, turn * angles, ("roll", "pitch", "yaw"), XYZ_COLORS)
+    calm(lower, ROUNDING_DEG * turn)
     tidy(upper, "", f"{whose} [{unit}]")
-    tidy(lower, clock_label, "attitude\nrelative to L [deg]")
-    upper.ticklabel_format(axis="y", useOffset=False)
+    tidy(lower, clock_label, f"attitude\nrelative to L [{turned}]")
+    for axes in (upper, lower):  # an offset would lie on the legend
+        axes.ticklabel_format(axis="y", useOffset=False)
     upper.tick_params(labelbottom=False)
     legend_above(lower)
     figure.align_ylabels([upper, lower])

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 # Okabe and Ito, "Color Universal Design", 2008; their yellow is too pale for a line on white.
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7F7F7F", "#000000")
-DASHES = ("-", (0, (4, 1.2)), (0, (1.2, 1.2)))
-"""After all colours are used up, again with the next."""
 XYZ_COLORS = ("#D55E00", "#009E73", "#0072B2")
 DESIRED, OBTAINED = "#000000", "#D55E00"
 INK, FAINT_INK, FAINT = "#222222", "#8A8A8A", "#D9D9D9"
@@ -37,7 +35,7 @@ MOST_POINTS = 4_000
 """Of one line; longer ones keep the extremes of each stretch. A column of print has 1050 dots at 300 dpi."""
 LONGEST_NAME = 32
 """Letters of a name in a legend."""
-MOST_LINES = 16
+MOST_LINES = len(COLORS)
 """In one plot: as many as can be told apart."""
 
 _CLOCK = ((4 * 86400.0, 86400.0, "d"), (3 * 3600.0, 3600.0, "h"), (1200.0, 60.0, "min"))
@@ -98,6 +96,12 @@ def legend_name(name: str) -> str:
     return f" {name}" if name.startswith("_") else name
 
 
+def calm(axes: Axes, rounding: float) -> None:
+    """Lines of zeros, and of no more than ``rounding`` (in the unit drawn), are drawn as what they are."""
+    if all(np.abs(line.get_ydata()).max() < rounding for line in axes.lines):
+        axes.set_ylim(-1.0, 1.0)
+
+
 def clock(trace: Trace) -> tuple[Floats, str]:
     """The time of each row, in a unit that fits the run, and the label of the axis."""
     time = np.asarray(trace.time)
@@ -112,9 +116,7 @@ def plot_lines(
     """One line per column of ``columns`` (T, n)."""
     for index, name in enumerate(names):
         x, y = thin(time, columns[:, index])
-        dashes = DASHES[index // len(colors) % len(DASHES)]
-        color = colors[index % len(colors)]
-        axes.plot(x, y, color=color, linewidth=LINE, linestyle=dashes, label=legend_name(name))
+        axes.plot(x, y, color=colors[index], linewidth=LINE, label=legend_name(name))
 
 
 def plot_largest(axes: Axes, time: Floats, columns: Floats, names: Sequence[str]) -> list[str]:

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
+from onorbit_rs.figures.relative import Drifter
 from onorbit_rs.scenario.control import JOINT_LAWS
 from onorbit_rs.scenario.load import load
 from onorbit_rs.scenario.make_control import group, tool_of
@@ -28,7 +31,10 @@ class Tool(NamedTuple):
 
 @dataclass(frozen=True)
 class Subject:
-    """A run to draw. ``model`` is None where the robot's file is gone, ``mu`` where there is no planet."""
+    """A run to draw. ``model`` is None where the robot's file is gone, ``mu`` where there is no planet.
+
+    ``is_carried`` where the robot goes along with a reference that does not fall freely.
+    """
 
     trace: Trace
     model: Model | None = None
@@ -37,6 +43,8 @@ class Subject:
     mu: float | None = None
     earth: Earth | None = None
     is_the_papers: bool = False
+    is_carried: bool = False
+    targets: tuple[Drifter, ...] = ()
 
 
 def subject_of(
@@ -56,7 +64,17 @@ def subject_of(
     return Subject(
         trace, model, tuple(tools), joint_controls, None if orbit is None else orbit.mu, earth,
         is_the_papers=_is_the_papers(scenario),
+        is_carried=scenario.gravity_mode == "carried" or (orbit is not None and orbit.mu is None),
+        targets=_targets(scenario),
     )  # fmt: skip
+
+
+def _targets(scenario: Scenario) -> tuple[Drifter, ...]:
+    """Every target that a reference follows, once."""
+    parts = [scenario.reference, *(getattr(law, "reference", None) for law in scenario.laws)]
+    motions = [getattr(getattr(part, "frame", None), "target", None) for part in parts]
+    unique = {repr(motion): motion for motion in motions if motion is not None}
+    return tuple(Drifter(np.array(motion.position), np.array(motion.velocity)) for motion in unique.values())
 
 
 def _is_the_papers(scenario: Scenario) -> bool:

@@ -13,6 +13,7 @@ from onorbit_rs.figures.style import (
     INK,
     LINE,
     XYZ_COLORS,
+    calm,
     clock,
     legend_above,
     legend_height,
@@ -21,9 +22,11 @@ from onorbit_rs.figures.style import (
     plot_lines,
     tidy,
 )
-from onorbit_rs.units import OR, joint_units, with_prefix
+from onorbit_rs.units import OR, ROUNDING, JointUnits, joint_units, with_prefix
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Model, Trace
@@ -45,7 +48,7 @@ def tracking_errors(trace: Trace) -> Figure:
 def control_errors(trace: Trace, name: str, joints: list[str], model: Model | None = None) -> Figure:
     """The errors of one of several controllers: of its tool as in Fig. 6, or of each of its joints.
 
-    ``model`` tells which joints slide: their errors are in m, those of the others in rad.
+    ``model`` tells which joints slide: their errors are in m, in a panel of their own.
     """
     time, label = clock(trace)
     errors = np.asarray(trace.tracking[name])
@@ -56,34 +59,60 @@ def control_errors(trace: Trace, name: str, joints: list[str], model: Model | No
         _plot_error(panels[1], time, errors[:, 3:], "rad", "attitude error")
         tidy(panels[1], label, panels[1].get_ylabel())
         return figure
-    kinds = {} if model is None else {joint.name: joint.kind for joint in model.joints}
-    unit = joint_units(kinds[joint] for joint in joints if joint in kinds).position
-    return _many(time, label, errors, joints, "joint error", unit)
+    groups = [(rows, "joint error", units.position) for rows, units in _by_kind(joints, model)]
+    return _many(time, label, errors, joints, groups)
 
 
 def joint_torques(trace: Trace, model: Model) -> Figure:
-    """Fig. 7: the torque of every joint, held over each control step."""
+    """Fig. 7: the torque of every joint over each control step; apart, the force of those that slide."""
     time, label = clock(trace)
-    unit = joint_units(joint.kind for joint in model.joints).effort
-    what = "torque" if unit == "N m" else "effort"
-    return _many(time, label, np.asarray(trace.tau), list(model.joint_names), what, unit)
+    names = list(model.joint_names)
+    groups = [
+        (rows, "torque" if units.effort == "N m" else "force", units.effort)
+        for rows, units in _by_kind(names, model)
+    ]
+    return _many(time, label, np.asarray(trace.tau), names, groups)
 
 
-def _many(time: Floats, label: str, columns: Floats, names: list[str], what: str, unit: str) -> Figure:
-    """One plot of a line for each joint, symmetric about zero."""
-    peak = max(float(np.abs(columns).max()), 1e-12)
+def _by_kind(names: Sequence[str], model: Model | None) -> list[tuple[list[int], JointUnits]]:
+    """The joints that turn and those that slide, with their units; all together where that is not known."""
+    kinds = {} if model is None else {joint.name: joint.kind for joint in model.joints}
+    if not all(name in kinds for name in names):
+        return [(list(range(len(names))), joint_units(()))]
+    slides = [kinds[name] == "prismatic" for name in names]
+    rows = ([index for index, slide in enumerate(slides) if slide == kind] for kind in (False, True))
+    return [(found, joint_units(kinds[names[index]] for index in found)) for found in rows if found]
+
+
+def _many(
+    time: Floats, label: str, columns: Floats, names: list[str], groups: list[tuple[list[int], str, str]]
+) -> Figure:
+    """A panel for each of ``groups`` (columns, what they are, unit): a line for each joint."""
+    figure = new_figure(COLUMN, 2.2)
+    panels = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
+    height = 0.2
+    for axes, (rows, what, unit) in zip(panels, groups, strict=True):
+        shown, scaled = _plot_joints(axes, time, columns[:, rows], [names[row] for row in rows], unit)
+        tidy(axes, label if axes is panels[-1] else "", f"{what} [{scaled}]")
+        legend_above(axes)
+        height += 1.8 + legend_height(shown)
+    figure.align_ylabels(list(panels))
+    figure.set_figheight(height)
+    return figure
+
+
+def _plot_joints(
+    axes: Axes, time: Floats, columns: Floats, names: list[str], unit: str
+) -> tuple[list[str], str]:
+    """Symmetric about zero; returns what the legend says, and the unit with its prefix."""
+    peak = max(float(np.abs(columns).max()), ROUNDING)
     factor, scaled = with_prefix(peak, unit) if peak < 0.1 or peak >= 1e3 else (1.0, unit)
     if OR in unit:
         factor, scaled = 1.0, unit
-    figure = new_figure(COLUMN, 2.2)
-    axes = figure.subplots()
     shown = plot_largest(axes, time, factor * columns, names)
     axes.set_ylim(-1.08 * factor * peak, 1.08 * factor * peak)
     axes.axhline(0.0, color=INK, linewidth=0.5, zorder=0)
-    tidy(axes, label, f"{what} [{scaled}]")
-    legend_above(axes)
-    figure.set_figheight(2.0 + legend_height(shown))
-    return figure
+    return shown, scaled
 
 
 def _plot_error(axes: Axes, time: Floats, error: Floats, unit: str, what: str) -> None:
@@ -92,5 +121,6 @@ def _plot_error(axes: Axes, time: Floats, error: Floats, unit: str, what: str) -
     plot_lines(axes, time, factor * error, ("x", "y", "z"), XYZ_COLORS)
     plot_lines(axes, time, factor * norm[:, None], ("norm",), (INK,))
     axes.lines[-1].set(linestyle=(0, (3, 1.5)), linewidth=0.8 * LINE)
+    calm(axes, ROUNDING * factor)
     tidy(axes, "", f"{what} [{scaled_unit}]")
     legend_above(axes)

@@ -44,5 +44,13 @@ def checks(summary: dict[str, Any]) -> list[Check]:
     return found
 
 
+def way_out(summary: dict[str, Any]) -> str:
+    """What to try where balances do not hold; empty where the summary has not the integrator's settings."""
+    if summary.get("integrator") == "dormand_prince":
+        return "a smaller tolerance"
+    step = summary.get("time_step_s")
+    return f"a time_step shorter than {step:g} s" if isinstance(step, (int, float)) else ""
+
+
 def _names(summary: dict[str, Any], key: str) -> set[str]:
     return {name.strip() for name in str(summary.get(key) or "").split(",")}

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from onorbit_rs.output.checks import CHECKS
 from onorbit_rs.output.words import goal_of, tracking
-from onorbit_rs.units import with_prefix
+from onorbit_rs.units import digits, with_prefix
 
 # longest first: `_rad_s` ends in `_s` too
 _UNITS = (
@@ -21,6 +21,10 @@ _SCALED = ("m", "rad", "N m", "N", "J", "m/s²", "rad/s", "m/s")
 _NAMES = {
     "wall_s": "wall clock of the loop",
     "real_time_factor": "times real time",
+    "base_rotation_max_rad": "base rotation in W, largest",
+    "base_displacement_max_m": "base displacement in W, largest",
+    "joint_force_max_n": "force of a sliding joint, largest",
+    "joint_rate_final_max_m_s": "rate of a sliding joint at the end, largest",
     "rows": "rows of the trace",
     "rereferenced": "new reference orbits taken, having drifted too far off",
     "velocity_eci_source": "inertial velocity from",
@@ -99,4 +103,4 @@ def _shown(value: Any) -> str:
         return "yes" if value else "no"
     if not isinstance(value, float):
         return str(value) if value != "" else "none"
-    return f"{value:.4g}"
+    return digits(value)

@@ -10,12 +10,13 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-from onorbit_rs.output.checks import Check, checks
+from onorbit_rs.output.checks import Check, checks, way_out
 from onorbit_rs.printable import printable
 from onorbit_rs.report.numbers import Row, groups
+from onorbit_rs.units import digits
 
 _TEMPLATE = Path(__file__).with_name("page.html")
-_VERDICTS = {True: ("passed", "holds"), False: ("failed", "BROKEN"), None: ("faint", "does not apply")}
+_VERDICTS = {True: ("passed", "holds"), False: ("failed", "BROKEN"), None: ("faint", "not evaluated")}
 _TYPES = {"svg": "image/svg+xml", "png": "image/png"}
 
 
@@ -64,22 +65,26 @@ def _verdict(summary: dict[str, Any]) -> str:
     is_whole = status == "complete"
     has_passed = summary.get("certificate_passed")
     simulated = summary.get("simulated_s")
-    said = f"Run {status}" + (f", {simulated:g} s simulated" if isinstance(simulated, (int, float)) else "")
-    failures = escape(str(summary.get("certificate_failures") or "it is not said what"))
+    said = f"Run {status}" + (
+        f", {digits(simulated)} s simulated" if isinstance(simulated, (int, float)) else ""
+    )
     if has_passed is None:
         certificate, kind = "Certificate absent: nothing was checked", "neutral"
     elif has_passed:
         certificate, kind = "Certificate passed", "passed" if is_whole else "warned"
     else:
-        certificate, kind = f"Certificate FAILED: {failures}", "failed"
-    return (
-        f'<div class="verdict {kind}" id="verdict"><strong>{certificate}</strong><p>{escape(said)}.</p></div>'
-    )
+        broken = ", ".join(check.name for check in checks(summary) if check.holds is False)
+        broken = broken or str(summary.get("certificate_failures") or "it is not said what")
+        certificate, kind = f"Certificate FAILED: {broken}", "failed"
+        if is_whole and way_out(summary):
+            said += f". Try {way_out(summary)}"
+    lines = f"<strong>{escape(certificate)}</strong><p>{escape(said)}.</p>"
+    return f'<div class="verdict {kind}" id="verdict">{lines}</div>'
 
 
 def _remarks(summary: dict[str, Any], remarks: Sequence[str]) -> str:
     """Warnings of the robot's file, and what the page had to leave out."""
-    said = [str(summary["warnings"])] if summary.get("warnings") else []
+    said = str(summary.get("warnings") or "").splitlines()
     exceeded = str(summary.get("joint_limits_exceeded") or "")
     said += [f"joint limits were exceeded: {exceeded}"] if exceeded else []
     items = "".join(f"<li>{escape(text)}</li>" for text in (*said, *remarks))

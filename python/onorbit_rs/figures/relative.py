@@ -1,0 +1,118 @@
+"""How base and targets fly relative to the reference orbit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from onorbit_rs.figures.solids import robot_polygons, robot_skeleton
+from onorbit_rs.figures.style import (
+    COLORS,
+    INK,
+    LINE,
+    OBTAINED,
+    PAGE,
+    SMALL,
+    new_figure,
+    tidy,
+)
+from onorbit_rs.rotations import local_orbital_axes, reference_motion_of
+from onorbit_rs.thinning import evenly
+from onorbit_rs.units import with_prefix
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Model, Trace
+
+    Floats = NDArray[np.float64]
+
+WORTH_A_PATH = 3.0
+"""Sizes of the robot from which the path of its base is drawn."""
+_SIDES = 1.35
+"""Width of a panel as a part of its height."""
+_NEAR = 10.0
+"""Extents of the paths within which the reference is shown."""
+_MOST_ROWS = 3_000
+
+
+class Drifter(NamedTuple):
+    """A target that nothing acts on: its position at time zero, and its velocity, (3,), W, m and m/s."""
+
+    position: Floats
+    velocity: Floats
+
+
+def relative_motion(trace: Trace, targets: Sequence[Drifter] = ()) -> Figure:
+    """Paths of base and targets in L of the reference orbit: in its plane, and across it.
+
+    L is radial, along the track, along the orbit's normal: on a circular orbit a free base draws ellipses of
+    Hill's, twice as long as high. One metre is equally long along all axes.
+    """
+    paths = [path[evenly(len(path), _MOST_ROWS)] for path in paths_in_orbit(trace, targets)]
+    points = np.vstack(paths)
+    is_near = np.linalg.norm(points, axis=1).max() < _NEAR * np.ptp(points, axis=0).max()
+    if is_near:
+        points = np.vstack([points, np.zeros(3)])
+    factor, unit = with_prefix(float(np.ptp(points, axis=0).max()), "m")
+    figure = new_figure(PAGE, 3.0)
+    panels = figure.subplots(1, 2)
+    for axes, across, name in zip(panels, (0, 2), ("radial", "cross-track"), strict=True):
+        for index, path in enumerate(paths):
+            _plot_path(axes, factor * path[:, 1], factor * path[:, across], index)
+        if is_near:
+            axes.plot(0.0, 0.0, "+", color=INK, markersize=7, label="reference")
+        tidy(axes, f"along the track [{unit}]", f"{name} [{unit}]")
+        _set_window(axes, factor * points, across)
+    figure.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside upper left", frameon=False, fontsize=SMALL,
+        ncols=5, handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
+    )  # fmt: skip
+    return figure
+
+
+def _plot_path(axes: Axes, x: Floats, y: Floats, index: int) -> None:
+    """Of the base (0), or of a target; the legend names each kind once."""
+    path, start, end = ("base", "start", "end") if index == 0 else ("target", "_nolegend_", "_nolegend_")
+    path = "_nolegend_" if index > 1 else path
+    axes.plot(x, y, color=COLORS[0] if index == 0 else COLORS[2], linewidth=LINE, label=path)
+    axes.plot(x[0], y[0], "o", color="none", markeredgecolor=INK, markersize=6, label=start)
+    axes.plot(x[-1], y[-1], "s", color=OBTAINED, markersize=3, label=end)
+
+
+def paths_in_orbit(trace: Trace, targets: Sequence[Drifter] = ()) -> list[Floats]:
+    """Positions (T, 3), L, m, of the base and of each target."""
+    # W has inertial axes
+    rot_wl = local_orbital_axes(*reference_motion_of(trace))
+    places = [
+        np.asarray(trace.q)[:, :3],
+        *(target.position + np.outer(trace.time, target.velocity) for target in targets),
+    ]
+    return [np.einsum("tji,tj->ti", rot_wl, place) for place in places]
+
+
+def goes_far(trace: Trace, model: Model) -> bool:
+    """Whether the base's path in L is longer than :data:`WORTH_A_PATH` sizes of the robot."""
+    (base,) = paths_in_orbit(trace)
+    q = np.asarray(trace.q)[0]
+    faces, _ = robot_polygons(model, q)
+    corners = np.vstack([*faces, robot_skeleton(model, q).reshape(-1, 3), q[None, :3]])
+    size = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    return float(np.ptp(base, axis=0).max()) > WORTH_A_PATH * size
+
+
+def _set_window(axes: Axes, points: Floats, across: int) -> None:
+    """Both panels to one scale."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    sides = high - low
+    height = 1.15 * float(max(sides[1] / _SIDES, sides[0], sides[2]))
+    middle = (low + high) / 2.0
+    axes.set_xlim(middle[1] - _SIDES * height / 2.0, middle[1] + _SIDES * height / 2.0)
+    axes.set_ylim(middle[across] - height / 2.0, middle[across] + height / 2.0)
+    axes.set_aspect("equal")
+    axes.ticklabel_format(useOffset=False)
