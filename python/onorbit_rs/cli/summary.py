@@ -44,6 +44,9 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
     if summary.get("joint_limits_exceeded"):
         exceeded = text(summary["joint_limits_exceeded"])
         console.print(f"[yellow]joint limits were exceeded[/yellow]: {exceeded}", soft_wrap=True)
+    if summary.get("joint_efforts_at_limit"):
+        limited = text(summary["joint_efforts_at_limit"])
+        console.print(f"[yellow]joint efforts were at their limits[/yellow]: {limited}", soft_wrap=True)
     console.print(_verdict(summary), soft_wrap=True)
     lines = checks(summary)
     if lines:

@@ -64,6 +64,7 @@ class JointPidController(Part):
     i_limit: JointEffort | None = None
     """Largest share of the integral, N m."""
     effort_limit: JointEffort | None = None
+    """Largest effort, N m (N where a joint slides); the limits of the robot's file where not given."""
 
     @model_validator(mode="after")
     def _has_gains(self) -> Self:
