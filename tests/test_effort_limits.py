@@ -18,9 +18,7 @@ from onorbit_rs.scenario.build import build
 @pytest.fixture
 def robot(tmp_path: Path) -> str:
     """Two hinges whose file allows 0.5 and 50 N m."""
-    body = (
-        "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>"
-    )
+    body = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>"
     links = "".join(f"<link name='{name}'>{body}</link>" for name in ("base", "of_weak", "of_strong"))
     hinges = "".join(
         f"<joint name='{name}' type='revolute'><parent link='base'/><child link='of_{name}'/>"

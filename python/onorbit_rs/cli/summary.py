@@ -18,6 +18,7 @@ _ROWS = (
     ("joint_torque_max_nm", "joint torque, largest", "N m"),
     ("joint_force_max_n", "force of a sliding joint, largest", "N"),
     ("base_rotation_max_rad", "base rotation, largest", "rad"),
+    ("base_displacement_max_m", "base displacement, largest", "m"),
     ("simulated_s", "simulated", "s"),
     ("wall_s", "wall clock of the simulation loop", "s"),
     ("real_time_factor", "times real time", ""),

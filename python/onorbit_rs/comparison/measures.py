@@ -57,7 +57,9 @@ def measures(a: Rows, b: Rows) -> tuple[list[tuple[str, str, Floats, float, floa
             found.append((name, unit, values, largest, 0.0))
             continue
         _, drift = _measured("base position", "q", a["q"][:, :3], b["q"][:, :3])
-        found.append((name, unit, values, drift, _ROUNDING * largest + b.get("bend_error", np.zeros(1)).max()))
+        found.append(
+            (name, unit, values, drift, _ROUNDING * largest + b.get("bend_error", np.zeros(1)).max())
+        )
     return found, missing
 
 

@@ -62,7 +62,10 @@ def summarize(
         | versions(scenario.plant)
         | _settings(scenario)
         | _orbit(trace, scenario, built.orbit)
-        | {"warnings": "; ".join(built.model.warnings), "robot_fingerprint": fingerprint(built.model)}
+        | {
+            "warnings": "; ".join((*built.model.warnings, *built.doubts)),
+            "robot_fingerprint": fingerprint(built.model),
+        }
         | _versions()
     )
     return {key: json_value(value) for key, value in summary.items()}
