@@ -30,8 +30,7 @@ def turn_per_metre(model: Model, arm: Arm, q: Floats) -> Floats:
     rates = np.linalg.pinv(jacobian, rcond=1e-6)[:, :3]
     # vb = -Mbb⁻¹ Mbm q̇
     base = -np.linalg.solve(mass[:6, :6], mass[:6, 6:][:, columns] @ rates)
-    turns: Floats = base[3:]
-    return turns
+    return np.asarray(base[3:], dtype=np.float64)
 
 
 def calmest(turns: Floats) -> Floats:

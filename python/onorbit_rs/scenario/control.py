@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -53,6 +53,8 @@ class JointComputedTorqueController(Part):
 
 class JointPidController(Part):
     """A PID for each joint, after the interfaces of ROS Control. Gains are bare numbers, SI."""
+
+    other_words: ClassVar = {"kp": "p", "ki": "i", "kd": "d", "i_clamp": "i_limit"}
 
     kind: Literal["joint_pid"] = "joint_pid"
     interface: Literal["position", "velocity", "effort"] = "position"

@@ -53,8 +53,9 @@ def _left_behind(scenario: Scenario, flight: Flight, effects: Sequence[_core.Eff
     try:
         start, velocity = _leaving(orbit, is_sgp4=isinstance(part, Sgp4Orbit))
         fall = _core.Numerical(
-            start, velocity, environment=others, earth=flight.earth, mu=orbit.mu, axes=orbit.axes
-        ).state(times)[0]
+            start, velocity, environment=others, earth=flight.earth, mu=orbit.mu,
+            axes="TEME" if orbit.axes == "TEME" else "GCRF",
+        ).state(times)[0]  # fmt: skip
     except OnOrbitError:  # into the ground, or beyond what is known of Sun and Moon: the run says so
         return
     drift = float(np.linalg.norm(np.asarray(fall) - np.asarray(orbit.state(times)[0]), axis=1).max())

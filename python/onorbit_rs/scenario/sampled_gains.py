@@ -78,10 +78,8 @@ def _joint_mobility(law: Any, model: Model, q: Floats) -> Floats:
     """`(Mmm - Mmb Mbb⁻¹ Mbm)⁻¹` of the law's joints; the others held, which makes no joint lighter."""
     mass, rows = np.asarray(model.mass_matrix(q)), [6 + column for column in _columns(law, model)]
     coupling = mass[:6][:, rows]
-    mobility: Floats = np.linalg.inv(
-        mass[np.ix_(rows, rows)] - coupling.T @ np.linalg.solve(mass[:6, :6], coupling)
-    )
-    return mobility
+    left = mass[np.ix_(rows, rows)] - coupling.T @ np.linalg.solve(mass[:6, :6], coupling)
+    return np.asarray(np.linalg.inv(left), dtype=np.float64)
 
 
 def _tool_mobility(law: Any, scenario: Scenario, model: Model, q: Floats) -> Floats:
