@@ -15,8 +15,8 @@ from commands import onorbit, refusal
 import onorbit_rs as oo
 from onorbit_rs.drafting import draft
 from onorbit_rs.drafting.arm import find_arm
-from onorbit_rs.drafting.motion import configuration
-from onorbit_rs.drafting.reaction import turn_per_metre
+from onorbit_rs.drafting.motion import configuration, home, lines
+from onorbit_rs.drafting.reaction import GENTLE, calmest, turn_per_metre
 from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario import load
 
@@ -88,7 +88,38 @@ def test_every_bundled_robot_gets_a_scenario_that_certifies(robot: str, tmp_path
 def test_robots_of_others_get_one_too(shared: Path, name: str, tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text(draft(str(shared / "models" / name), beside=tmp_path).text)
-    assert ran(file)["base_rotation_max_rad"] < 0.4  # Canadarm2's turned by 121 degrees once
+    summary = ran(file)
+    assert summary["base_rotation_max_rad"] < 0.4  # Canadarm2's turned by 121 degrees once
+    assert summary["joint_limits_exceeded"] == ""  # Tiago's fingers left theirs
+    if "SSRMS" in name:  # 15 m long; along the axes 8 cm are all that is gentle
+        goal = load(file).controllers[0].reference.goal
+        assert np.linalg.norm(goal.displacement) > 0.3
+
+
+def fingers(friction: float) -> str:
+    """Seven joints with friction, and two light fingers that slide, shut at zero."""
+    held = arm(SEVEN, names="tool").replace("<axis", f'<dynamics friction="{friction}" damping="1"/><axis')
+    parts = [
+        f'<link name="finger_{side}"><inertial><mass value="0.05"/>'
+        '<inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+        f'<joint name="finger_{side}" type="prismatic"><parent link="tool"/><child link="finger_{side}"/>'
+        f'<axis xyz="{axis}"/><dynamics damping="1"/>'
+        '<limit lower="0" upper="0.045" effort="9" velocity="1"/></joint>'
+        for side, axis in (("left", "0 1 0"), ("right", "0 -1 0"))
+    ]
+    return held.replace("</robot>", "".join(parts) + "</robot>")
+
+
+@pytest.mark.parametrize("friction", [0.0, 2.0])
+def test_fingers_stay_within_their_limits_while_friction_holds_the_arm(
+    friction: float, tmp_path: Path
+) -> None:
+    """Held at 25 1/s² from the edge they slid out: the law counts on motions that friction stops."""
+    (tmp_path / "mine.urdf").write_text(fingers(friction))
+    file = tmp_path / "mine.yaml"
+    file.write_text(draft(str(tmp_path / "mine.urdf"), tool="tool", beside=tmp_path).text)
+    assert load(file).initial.joints["finger_left"] == 0.0225
+    assert ran(file)["joint_limits_exceeded"] == ""
 
 
 @pytest.mark.parametrize(
@@ -129,6 +160,24 @@ def test_an_arm_that_is_heavy_for_its_base_leaves_it_nearly_as_it_is(tmp_path: P
     assert 0.01 < ran(file)["base_rotation_max_rad"] < 0.4
 
 
+def test_the_line_goes_where_the_base_stays_calm() -> None:
+    """Of all directions the last singular vector turns the base least, and it is tried at full length."""
+    model = oo.Model.from_urdf_string(arm(SEVEN, names="tool", base=(1, 0.01)))
+    found = find_arm(model)
+    assert found is not None
+    pose = home(model, found)
+    turns = turn_per_metre(model, found, configuration(model, pose))
+    calm = calmest(turns)
+    rng = np.random.default_rng(3)
+    others = rng.normal(size=(200, 3))
+    others /= np.linalg.norm(others, axis=1)[:, None]
+    assert np.linalg.norm(turns @ calm) <= np.linalg.norm(others @ turns.T, axis=1).min()
+    longest = np.array(next(lines(model, found, pose))[0])
+    along_axes = GENTLE / np.linalg.norm(turns, axis=0).min()
+    assert np.linalg.norm(longest) > along_axes  # which the axes alone would have had to stay below
+    assert abs(longest @ calm) == pytest.approx(np.linalg.norm(longest), rel=1e-3)
+
+
 def test_a_turn_of_the_base_is_foretold() -> None:
     """A small motion, run: what the Jacobians of the start say, to the first order."""
     model = oo.robots.load("humanoid_torso")
@@ -136,7 +185,7 @@ def test_a_turn_of_the_base_is_foretold() -> None:
     found = find_arm(model)
     assert found is not None
     q = configuration(model, joints)
-    foretold = turn_per_metre(model, found, q)
+    foretold = np.linalg.norm(turn_per_metre(model, found, q), axis=0)
     for axis in range(3):
         step = np.zeros(3)
         step[axis] = 0.01
@@ -152,15 +201,15 @@ def test_a_turn_of_the_base_is_foretold() -> None:
 def test_every_section_and_number_has_a_comment() -> None:
     text = draft("humanoid_dual_arm").text
     data = yaml.safe_load(text)
-    lines = text.splitlines()
+    said = text.splitlines()
     for section in ("orbit", "environment", "controllers", "initial", "robot", "tool"):
-        line = next(line for line in lines if line.startswith(f"{section}:"))
+        line = next(line for line in said if line.startswith(f"{section}:"))
         assert "# " in line, line
     for words in ("semi_major_axis: 6778 km", "kp: 25 ", "displacement: ", "duration: ", "time_step: "):
-        line = next(line for line in lines if words in line)
+        line = next(line for line in said if words in line)
         assert "# " in line or line.rstrip().endswith(" s"), line
     assert {control["name"] for control in data["controllers"]} == {"arm", "hold"}
-    assert all(len(line) <= 110 for line in lines)
+    assert all(len(line) <= 110 for line in said)
 
 
 def test_what_stands_in_comments_works_when_it_is_uncommented(tmp_path: Path) -> None:

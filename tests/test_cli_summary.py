@@ -99,11 +99,14 @@ BLOWING = (
 
 def test_a_run_that_diverged_names_the_worst_joint_and_keeps_the_state_in_the_error(tmp_path: Path) -> None:
     (tmp_path / "blow.yaml").write_text(BLOWING)
-    with pytest.raises(SimulationError) as caught:
+    with pytest.raises(SimulationError) as caught, pytest.warns(UserWarning, match="errors grow"):
         oo.run(tmp_path / "blow.yaml", quiet=True)
     error = caught.value
     joint = oo.robots.load("humanoid_torso").joint_names[int(np.argmax(np.abs(error.v))) - 6]
-    said = refusal("run", "blow.yaml", cwd=tmp_path)
+    done = onorbit("run", "blow.yaml", cwd=tmp_path)
+    assert done.returncode == 2
+    warned, said = done.stderr.splitlines()[0], done.stderr.splitlines()[-1]
+    assert "controller.p corrects errors at 1.67e+04 1/s" in warned
     assert f"diverged at t = {error.time:.6g} s, in step {round(error.time / 0.01) + 1}:" in said
     assert f"joint '{joint}', {np.abs(error.v).max():.3g} rad/s" in said.replace("-", "")
     assert "try a time_step shorter than 0.01 s, or softer gains" in said

@@ -85,11 +85,33 @@ def test_runs_on_other_orbits_part_although_they_are_the_same_in_w() -> None:
     assert "orbit.semi_major_axis differs: 7000000 and 9000000" in compared.notes
 
 
+def test_orbits_two_metres_apart_part_however_large_they_are() -> None:
+    """A millionth of 7000 km is 7 m; the robots are on their references, where 1 µm counts."""
+    compared = oo.compare(orbiting(7.0e6), orbiting(7.0e6 + 2.0))
+    position = compared["inertial position"]
+    assert position.values[0] == pytest.approx(2.0)
+    assert position.parts_at == 0.0
+    assert position.allowed == pytest.approx(1.1e-6, rel=0.02)  # and the rounding of the orbit
+    assert not compared.agrees
+
+
+def test_a_tilt_that_rounds_away_is_no_parting() -> None:
+    """1e-15 rad at 7000 km are 7 nm, eight units in the last place."""
+    tilted = orbiting(7.0e6)
+    tilted["orbit"]["inclination"] += 1e-15
+    compared = oo.compare(orbiting(7.0e6), tilted)
+    assert 0.0 < compared["inertial position"].largest < 1e-7
+    assert compared.agrees
+
+
 def test_an_orbit_is_interpolated_along_its_bend() -> None:
     """A chord of 20 s is 400 m off the arc; the cubic is `h⁴ n⁴ r / 384 < 1 cm` off."""
     compared = oo.compare(orbiting(7.0e6, record_every=7), orbiting(7.0e6, record_every=20))
     assert any("interpolated" in note for note in compared.notes)
-    assert compared["inertial position"].largest < 0.01
+    assert 1e-3 < compared["inertial position"].largest < 0.01
+    assert compared["inertial position"].parts_at is None  # what the cubic errs by is no parting
+    compared = oo.compare(orbiting(7.0e6, record_every=7), orbiting(7.0e6 + 0.1, record_every=20))
+    assert compared["inertial position"].parts_at is not None  # control: 10 cm are more
 
 
 def test_settings_that_differ_are_noted_and_many_are_counted() -> None:

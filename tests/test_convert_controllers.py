@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
 from test_convert import ROBOT, onorbit, verdicts, write
 
 import onorbit_rs as oo
@@ -37,6 +38,7 @@ HEAD = """\
 DUAL = oo.robots.path("humanoid_dual_arm")
 
 
+@pytest.mark.filterwarnings("ignore:.*errors grow:UserWarning")  # these gains want a shorter control period
 def test_controllers_of_joints_of_their_own_run_at_once(tmp_path: Path) -> None:
     done = convert([*write(tmp_path, control="talos:\n" + SIDES + HEAD), DUAL])
     scenario = load(done.scenario)
@@ -59,6 +61,7 @@ def test_controllers_of_joints_of_their_own_run_at_once(tmp_path: Path) -> None:
     assert one.scenario["tool"] == "left_tool" and "controllers" not in one.scenario
 
 
+@pytest.mark.filterwarnings("ignore:.*errors grow:UserWarning")  # these gains want a shorter control period
 def test_gains_of_ros_control_become_those_of_a_pid(tmp_path: Path) -> None:
     joints = oo.robots.load("humanoid_torso").joint_names
     gains = "".join(

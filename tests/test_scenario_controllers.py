@@ -300,7 +300,7 @@ def test_a_controller_in_python_drives_its_group_beside_another(tmp_path: Path) 
     "data",
     [
         two(arm("right"), arm("left", start=0.1)),
-        one(tool="tool", controller={"kind": "compliance", "stiffness": 10, "damping": 1}),
+        one(tool="tool", controller={"kind": "compliance", "stiffness": 10, "damping": 0.1}),
         one(controller={"kind": "joint_pid", "p": 5, "d": 0.1, "interface": "position"}),
     ],
 )

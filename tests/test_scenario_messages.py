@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from onorbit_rs import run, scenarios
-from onorbit_rs.exceptions import DtypeError, InputError, NotFoundError, OnOrbitError
+from onorbit_rs import Model, robots, run, scenarios
+from onorbit_rs.exceptions import ControlError, DtypeError, InputError, NotFoundError, OnOrbitError
 from onorbit_rs.names import nearest
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
+from onorbit_rs.scenario.control import ComputedTorqueController
+from onorbit_rs.scenario.make_control import law_of
 
 ROBOT = "robot: humanoid_torso\n"
 RUN = "simulation: {duration: 1 s}\n"
@@ -110,6 +112,29 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
         LAW + "orbit: {semi_major_axis: 6778 km, gravity_mode: carried}\n",
         "5: orbit.gravity_mode",
         ("of kind 'kepler'", "sgp4, custom_path, fixed_frame"),
+    ),
+    "key of the orbit beside it": (
+        ORBIT + "gravity_mode: carried\n",
+        "6: gravity_mode",
+        ("unknown key; it belongs into 'orbit'",),
+    ),
+    "key of the simulation beside it": (ORBIT + "duration: 3 s\n", "6: duration", ("into 'simulation'",)),
+    "key of two parts beside them": (ORBIT + "attitude: 3\n", "6: attitude", ("into 'orbit' or 'initial'",)),
+    "kind beside all parts": (ORBIT + "kind: kepler\n", "6: kind", ("unknown key",)),
+    "gain by its other name": (
+        JOINTS + "controller: {kind: joint_pid, kp: 5}\n",
+        "3: controller.kp",
+        ("unknown key of kind 'joint_pid', did you mean 'p'?",),
+    ),
+    "gain of one of several by its other name": (
+        JOINTS + "controllers: [{name: a, kind: joint_pid, p: 1, kd: 5}]\n",
+        "3: controllers[0].kd",
+        ("did you mean 'd'?",),
+    ),
+    "two lines as a list": (
+        LAW + "orbit:\n  kind: sgp4\n  tle:\n    - 1 25544U\n    - 2 25544\n",
+        "7: orbit.tle",
+        ("must be one text: write 'tle: |'", "'line1' and 'line2'"),
     ),
     "air, misspelt": (
         ORBIT + "environment: [{kind: drag, atmosphere: exponantial}]\n",
@@ -271,6 +296,24 @@ def test_a_wrong_scenario_is_told_with_its_line_and_the_way_out(tmp_path: Path, 
     assert message.startswith(f"{file}:{place}: "), message
     assert all(word in message for word in words), message
     assert "more)" not in message and "\n" not in message and "pydantic" not in message.lower(), message
+
+
+def test_a_tool_on_few_joints_is_told_which_laws_do_without() -> None:
+    hinge = (
+        "<robot name='r'>"
+        + "".join(
+            f"<link name='{link}'><inertial><mass value='1'/>"
+            "<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>"
+            for link in ("base", "hand")
+        )
+        + "<joint name='j' type='continuous'><parent link='base'/><child link='hand'/></joint></robot>"
+    )
+    model = Model.from_urdf_string(hinge)
+    with pytest.raises(ControlError, match=r"moved by 1 joint.*take joint_computed_torque.*or compliance"):
+        law_of(ComputedTorqueController(), "hand", model, Path())
+    with pytest.raises(ControlError) as caught:  # control: a wrong gain is another matter
+        law_of(ComputedTorqueController(kp=-1.0), "tool", robots.load("humanoid_torso"), Path())
+    assert "compliance" not in str(caught.value)
 
 
 def test_an_empty_scenario_tells_how_to_begin(tmp_path: Path) -> None:

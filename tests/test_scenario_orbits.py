@@ -58,7 +58,10 @@ def test_an_element_set_can_be_written_in_three_ways(key: str, tmp_path: Path) -
 
 def test_points_come_with_units_or_from_a_file_beside_the_scenario(tmp_path: Path) -> None:
     (tmp_path / "path.csv").write_text(CSV)
-    from_file = orbit_of(written(tmp_path, {"kind": "custom_path", "file": "path.csv", "mu": oo.MU_EARTH}))
+    carried = {"gravity_mode": "carried"}  # straight on: no gravity flies that
+    from_file = orbit_of(
+        written(tmp_path, {"kind": "custom_path", "file": "path.csv", "mu": oo.MU_EARTH} | carried)
+    )
     inline = orbit_of(
         scenario(
             {
@@ -67,6 +70,7 @@ def test_points_come_with_units_or_from_a_file_beside_the_scenario(tmp_path: Pat
                 "positions": [["7000 km", 0, 0], ["7000 km", "75 km", 0], ["7000 km", "150 km", 0]],
                 "velocities": [[0, "7.5 km/s", 0]] * 3,
                 "mu": "398600.4418 km^3/s^2",
+                **carried,
             }
         )
     )

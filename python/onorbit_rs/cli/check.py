@@ -43,7 +43,7 @@ def described(built: Built) -> dict[str, Any]:
         "time_step_s": scenario.simulation.time_step,
         "integrator": scenario.simulation.integrator,
         "plant": scenario.plant,
-        "warnings": list(model.warnings),
+        "warnings": [*model.warnings, *built.doubts],
     }
 
 

@@ -19,6 +19,7 @@ _ROWS = (
     ("joint_torque_max_nm", "joint torque, largest", "N m"),
     ("joint_force_max_n", "force of a sliding joint, largest", "N"),
     ("base_rotation_max_rad", "base rotation in W, largest", "rad"),
+    ("base_displacement_max_m", "base displacement in W, largest", "m"),
     ("simulated_s", "simulated", "s"),
     ("wall_s", "wall clock of the simulation loop", "s"),
     ("real_time_factor", "times real time", ""),
@@ -45,6 +46,9 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
     if summary.get("joint_limits_exceeded"):
         exceeded = text(summary["joint_limits_exceeded"])
         console.print(f"[yellow]joint limits were exceeded[/yellow]: {exceeded}", soft_wrap=True)
+    if summary.get("joint_efforts_at_limit"):
+        limited = text(summary["joint_efforts_at_limit"])
+        console.print(f"[yellow]joint efforts were at their limits[/yellow]: {limited}", soft_wrap=True)
     console.print(_verdict(summary), soft_wrap=True)
     lines = checks(summary)
     if lines:

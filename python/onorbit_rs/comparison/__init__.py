@@ -37,7 +37,10 @@ class Difference:
     """Time of the largest, s."""
     final: float
     allowed: float
-    """The tolerance times the largest finite value of either run, which counts as 1 at least."""
+    """The tolerance times the scale of either run, which counts as 1 at least, and what the rows err by.
+
+    The scale is the largest finite value; of inertial positions, the largest distance from the reference.
+    """
     parts_at: float | None
     """First time beyond what is allowed, s; None where there is none."""
 
@@ -113,7 +116,8 @@ def compare(
         A folder that a run has written, a scenario (as :func:`onorbit_rs.run` takes it), which is run now, or
         the :class:`onorbit_rs.Run` itself. Without ``b``: the scenario of ``a`` on the other plant.
     tolerance : float
-        What counts as parted: a share of the largest value of a measure, or of 1 in its unit (m, rad, N m).
+        What counts as parted: a share of the largest value of a measure, or of 1 in its unit (m, rad, N m);
+        of inertial positions, of the largest distance from the reference.
 
     Returns
     -------
@@ -141,15 +145,13 @@ def compare(
     rows_a, rows_b, time, remarks = common_rows(first, second)
     found, missing = measures(rows_a, rows_b)
     differences = tuple(
-        _difference(name, unit, values, largest, time, share) for name, unit, values, largest in found
+        _difference(name, unit, values, share * max(1.0, scale) + error, time)
+        for name, unit, values, scale, error in found
     )
     return Comparison(first.name, second.name, share, time, differences, (*notes, *remarks, *missing))
 
 
-def _difference(
-    name: str, unit: str, values: Floats, largest: float, time: Floats, tolerance: float
-) -> Difference:
-    allowed = tolerance * max(1.0, largest)
+def _difference(name: str, unit: str, values: Floats, allowed: float, time: Floats) -> Difference:
     beyond = np.flatnonzero(~(np.isfinite(values) & (values <= allowed)))
     worst = int(np.argmax(np.where(np.isnan(values), np.inf, values)))
     parts_at = float(time[beyond[0]]) if beyond.size else None

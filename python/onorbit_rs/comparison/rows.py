@@ -102,7 +102,9 @@ def _between(rows: Rows, at: Floats) -> Rows:
             mixed = _turned(first, second, share)
         elif name == "position_eci" and "velocity_eci" in rows:
             rates = rows["velocity_eci"][before], rows["velocity_eci"][before + 1]
-            mixed = _bent(first, second, *rates, share, np.diff(time)[before][:, None])
+            step = np.diff(time)[before][:, None]
+            mixed = _bent(first, second, *rates, share, step)
+            made["bend_error"] = _bend_error(first, rates[0], share, step)
         else:
             mixed = first + share * (second - first)
         made[name] = mixed.reshape(len(at), *values.shape[1:])
@@ -116,6 +118,14 @@ def _bent(
     late = share * share * (3.0 - 2.0 * share)
     rates = share * (1.0 - share) * ((1.0 - share) * rate_a - share * rate_b)
     return first + late * (second - first) + step * rates
+
+
+def _bend_error(place: Floats, rate: Floats, share: Floats, step: Floats) -> Floats:
+    """Of the cubic, m: `s² (1 − s)² h⁴ |r⁗| / 24`, where a circle has `|r⁗| = v⁴ / r³`; twice that."""
+    radius, speed = (np.linalg.norm(rows, axis=1) for rows in (place, rate))
+    fourth = speed**4 / np.maximum(radius, 1.0) ** 3
+    error: Floats = 2.0 * ((share * (1.0 - share) * step**2) ** 2)[:, 0] * fourth / 24.0
+    return error
 
 
 def _turned(first: Floats, second: Floats, share: Floats) -> Floats:

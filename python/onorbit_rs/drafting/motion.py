@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onorbit_rs.drafting.arm import ENOUGH, Arm
-from onorbit_rs.drafting.reaction import GENTLE, turn_per_metre
+from onorbit_rs.drafting.reaction import GENTLE, calmest, turn_per_metre
 from onorbit_rs.yoshikawa import manipulability
 
 if TYPE_CHECKING:
@@ -58,6 +58,12 @@ def within(joint: Joint, value: float) -> float:
     return float(np.clip(value, low + 0.05 * min(high - low, 1.0), high - 0.05 * min(high - low, 1.0)))
 
 
+def at_rest(joint: Joint) -> float:
+    """Where a joint that is only held starts: at zero if there is room around it, fingers half open else."""
+    near = within(joint, 0.0)
+    return near if near == 0.0 or joint.kind != "prismatic" else sum(_limits(joint)) / 2.0
+
+
 def _middle_and_room(joint: Joint) -> tuple[float, float]:
     low, high = _limits(joint)
     middle = (low + high) / 2.0
@@ -88,15 +94,17 @@ def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[li
     shoulder = np.asarray(model.frame_pose(q, first.child))[:3, 3]
     reach = max(float(np.linalg.norm(tool - shoulder)), 0.05)
     away, turns = tool - shoulder, turn_per_metre(model, arm, q)
+    # across before along, since an arm is often stretched; then whatever keeps the base calm
+    ways = [*np.eye(3)[np.argsort(np.abs(away), kind="stable")], calmest(turns)]
     for share in (1.0, 0.5, 0.2, 0.1, 0.05):
         length = float(f"{share * _SHARE_OF_REACH * reach:.1g}")
         duration = max(4.0, float(f"{length / _SPEED:.1g}"))
-        # across before along, since an arm is often stretched; inwards before outwards
-        for axis in sorted(range(3), key=lambda axis: abs(away[axis])):
-            if turns[axis] * length > GENTLE:
+        for way in ways:
+            if np.linalg.norm(turns @ way) * length > GENTLE:
                 continue
-            for sign in (-1.0, 1.0) if away[axis] > 0.0 else (1.0, -1.0):
-                yield [sign * length if index == axis else 0.0 for index in range(3)], duration
+            inwards = -way if way @ away > 0.0 else way
+            for direction in (inwards, -inwards):
+                yield (length * direction.round(2) + 0.0).round(6).tolist(), duration
 
 
 def turns(model: Model, joints: dict[str, float]) -> Iterator[dict[str, float]]:

@@ -19,7 +19,7 @@ GENTLE = 0.35
 
 
 def turn_per_metre(model: Model, arm: Arm, q: Floats) -> Floats:
-    """By how much the base turns as its tool is moved by a metre along x, y or z of W: (3,), rad/m.
+    """How the base turns as its tool is moved by a metre along x, y or z of W: a column each, (3, 3), rad/m.
 
     Of the joint rates that move the tool alone, `q̇ = Jg⁺ ẋ`, the base takes `-Mbb⁻¹ Mbm q̇` at zero momentum.
     """
@@ -30,5 +30,10 @@ def turn_per_metre(model: Model, arm: Arm, q: Floats) -> Floats:
     rates = np.linalg.pinv(jacobian, rcond=1e-6)[:, :3]
     # vb = -Mbb⁻¹ Mbm q̇
     base = -np.linalg.solve(mass[:6, :6], mass[:6, 6:][:, columns] @ rates)
-    turns: Floats = np.linalg.norm(base[3:], axis=0)
-    return turns
+    return np.asarray(base[3:], dtype=np.float64)
+
+
+def calmest(turns: Floats) -> Floats:
+    """The direction of the tool that turns the base least, (3,): the last right singular vector."""
+    direction: Floats = np.linalg.svd(turns)[2][-1]
+    return direction

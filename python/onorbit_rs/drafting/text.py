@@ -73,12 +73,12 @@ def _control(plan: Plan) -> str:
     if not plan.arm:
         return ""
     law = _task_law(plan) if plan.displacement is not None else _joint_law(plan)
-    hold = _HOLD.replace("JOINTS", _wrapped(plan.others)) if plan.others else ""
+    hold = _HOLD.replace("JOINTS", _wrapped(plan.others)).replace("GAINS", _hold_gains(plan))
     return f"""
 controllers:                    # each drives joints of its own; joints without one are limp
   - name: arm
     joints: {_wrapped(plan.arm)}
-{law}{hold}"""
+{law}{hold if plan.others else ""}"""
 
 
 def _task_law(plan: Plan) -> str:
@@ -124,9 +124,16 @@ _HOLD = """\
   - name: hold                  # all other joints stay where they start
     kind: joint_computed_torque
     joints: JOINTS
-    kp: 25                      # 1/s^2
-    kd: 10                      # 1/s
-    reference: {kind: joint_hold}
+GAINS    reference: {kind: joint_hold}
+"""
+
+
+def _hold_gains(plan: Plan) -> str:
+    """Stiff where friction keeps the arm from moving as its law expects: light fingers feel that."""
+    why, kp, kd = (", high: friction in the arm jerks at them", 400, 40) if plan.friction else ("", 25, 10)
+    return f"""\
+    {f"kp: {kp}":<27} # 1/s^2{why}
+    {f"kd: {kd}":<27} # 1/s
 """
 
 

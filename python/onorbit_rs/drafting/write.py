@@ -14,7 +14,7 @@ import yaml
 
 from onorbit_rs import robots
 from onorbit_rs.drafting.arm import ENOUGH, Arm, find_arm
-from onorbit_rs.drafting.motion import home, lines, time_step, turns, within
+from onorbit_rs.drafting.motion import at_rest, home, lines, time_step, turns
 from onorbit_rs.drafting.reaction import GENTLE
 from onorbit_rs.drafting.text import Plan, draft_text
 from onorbit_rs.exceptions import FrameError, OnOrbitError, ScenarioError
@@ -115,8 +115,8 @@ def _plans(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Plan]:
     pose = home(model, arm)
     others = [name for name in model.joint_names if name not in arm.joints]
     for joint in model.joints:  # zero may be out of bounds, or at one
-        if joint.name in others and within(joint, 0.0) != 0.0:
-            pose[joint.name] = float(f"{within(joint, 0.0):.3g}")
+        if joint.name in others and at_rest(joint) != 0.0:
+            pose[joint.name] = float(f"{at_rest(joint):.3g}")
     plan = replace(
         plan, tool=arm.tool, arm=arm.joints, others=others, home=pose, time_step_s=time_step(model),
         friction=max(joint.friction for joint in model.joints if joint.name in arm.joints),
@@ -135,8 +135,7 @@ def _base_turn_of(plan: Plan) -> float | None:
     """
     built = build(load(yaml.safe_load(draft_text(plan, "trial"))))
     trace = built.simulation.run(plan.duration_s)
-    watched = set(plan.arm if plan.friction else built.model.joint_names)
-    if not all(passed for *_, passed in trace.certificate()) or watched & set(trace.joint_limits_exceeded()):
+    if not all(passed for *_, passed in trace.certificate()) or trace.joint_limits_exceeded():
         return None
     is_tracked = plan.displacement is not None and not plan.friction
     if is_tracked and np.linalg.norm(np.asarray(trace.position_error), axis=1).max() >= NEAR_ENOUGH_M:

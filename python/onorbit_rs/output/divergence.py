@@ -25,8 +25,11 @@ def divergence(stop: SimulationError, built: Built) -> str:
     worst = int(np.argmax(np.abs(rates)))
     name, unit = list(_rates(built))[worst]
     ways = ["a smaller tolerance" if is_adaptive else f"a time_step shorter than {settings.time_step:g} s"]
-    ways += ["softer gains"] if built.scenario.laws else []
-    ways += ["more damping of the joint"] if worst >= 6 else []
+    if settings.control_period is not None and built.scenario.laws:
+        ways += [f"a control_period shorter than {settings.control_period:g} s"]
+    ways += ["softer gains, those of rates too"] if built.scenario.laws else []
+    is_damped = any(joint.damping > 0.0 for joint in built.model.joints)
+    ways += ["less damping of the joints"] if is_damped and not is_adaptive else []
     return (
         f"the run diverged at t = {stop.time:.6g} s{step}: the state is no longer finite; the fastest when "
         f"it last was: {name}, {rates[worst]:.3g} {unit}; try {', or '.join(ways)}"

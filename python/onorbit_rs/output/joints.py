@@ -35,6 +35,21 @@ def joint_loads(trace: Trace, built: Built) -> Summary:
     return loads
 
 
+def efforts_at_limit(trace: Trace, built: Built) -> Summary:
+    """The joints under a PID whose effort was at its limit in a row: the law's, else the robot's own."""
+    names, tau = list(built.model.joint_names), np.abs(np.asarray(trace.tau)).max(axis=0)
+    pids = [law for law in built.scenario.laws if isinstance(law, JointPidController)]
+    reached = set()
+    for law in pids:
+        wanted = getattr(law, "joints", None)
+        columns = [names.index(name) for name in (names if wanted is None else group(wanted, names))]
+        own = [built.model.joints[column].effort for column in columns]
+        limits = own if law.effort_limit is None else np.broadcast_to(law.effort_limit, len(columns))
+        reached |= {column for column, limit in zip(columns, limits, strict=True)
+                    if limit is not None and tau[column] >= limit}  # fmt: skip
+    return {"joint_efforts_at_limit": ", ".join(names[column] for column in sorted(reached))} if pids else {}
+
+
 def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | None = None) -> Summary:
     """``KEY_joint_error_max_rad``, ``…_m`` of errors (T, joints); ``wanted`` are names or patterns."""
     slides = _slides(built, wanted)

@@ -9,7 +9,7 @@ import numpy as np
 
 from onorbit_rs import _core
 from onorbit_rs.output.checks import CHECKS, GATE
-from onorbit_rs.output.joints import joint_errors, joint_loads, single_errors
+from onorbit_rs.output.joints import efforts_at_limit, joint_errors, joint_loads, single_errors
 from onorbit_rs.plants import versions
 from onorbit_rs.printable import json_value
 from onorbit_rs.robots.fingerprint import fingerprint
@@ -62,7 +62,10 @@ def summarize(
         | versions(scenario.plant)
         | _settings(scenario)
         | _orbit(trace, scenario, built.orbit)
-        | {"warnings": "\n".join(built.model.warnings), "robot_fingerprint": fingerprint(built.model)}
+        | {
+            "warnings": "\n".join((*built.model.warnings, *built.doubts)),
+            "robot_fingerprint": fingerprint(built.model),
+        }
         | _versions()
     )
     return {key: json_value(value) for key, value in summary.items()}
@@ -122,7 +125,7 @@ def _controls(trace: Trace, built: Built) -> Summary:
 
 def _motion(trace: Trace, built: Built) -> Summary:
     q = np.asarray(trace.q)
-    motion = joint_loads(trace, built)
+    motion = joint_loads(trace, built) | efforts_at_limit(trace, built)
     motion["base_rotation_max_rad"] = angle_between(q[:, 3:7], q[0, 3:7]).max()
     motion["base_displacement_max_m"] = np.linalg.norm(q[:, :3] - q[0, :3], axis=1).max()
     return motion

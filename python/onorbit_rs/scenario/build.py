@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core, robots
+from onorbit_rs.scenario.doubts import doubts
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
 from onorbit_rs.scenario.make_orbit import integrated, make_orbit
@@ -38,10 +40,14 @@ class Built:
     simulation: _core.Simulation
     reference: _core.Reference | _core.JointReference | None
     """What a single controller tracks."""
+    doubts: tuple[str, ...] = ()
+    """What runs, but hardly as it was meant."""
 
 
 def build(scenario: Scenario) -> Built:
     """Robot, orbit, start and simulation of a scenario, and one step as a trial; a run starts afresh.
+
+    Warns of what runs, but hardly as it was meant.
 
     Raises
     ------
@@ -72,7 +78,8 @@ def build(scenario: Scenario) -> Built:
     with located(scenario, "tool"):
         tool_pose = None if tool is None else model.frame_pose(q, tool)
     start = Start(model, q, tool_pose, orbit, beside)
-    try_effects(scenario, effects, Flight(model, q, v, orbit, earth))
+    flight = Flight(model, q, v, orbit, earth)
+    try_effects(scenario, effects, flight)
     with located(scenario, "plant"):
         plant = make_plant(scenario, model)
     settings = scenario.simulation.model_dump(exclude_none=True, exclude={"duration"})
@@ -90,7 +97,10 @@ def build(scenario: Scenario) -> Built:
         return made, reference
 
     try_one_step(scenario, simulation()[0])  # a controller in Python may remember it: the run gets another
-    return Built(scenario, model, orbit, earth, q, v, *simulation())
+    doubtful = tuple(doubts(scenario, flight, effects))
+    for doubt in doubtful:
+        warnings.warn(doubt, stacklevel=2)
+    return Built(scenario, model, orbit, earth, q, v, *simulation(), doubtful)
 
 
 def _check_rows(scenario: Scenario) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -54,6 +54,8 @@ class JointComputedTorqueController(Part):
 class JointPidController(Part):
     """A PID for each joint, after the interfaces of ROS Control. Gains are bare numbers, SI."""
 
+    other_words: ClassVar = {"kp": "p", "ki": "i", "kd": "d", "i_clamp": "i_limit"}
+
     kind: Literal["joint_pid"] = "joint_pid"
     interface: Literal["position", "velocity", "effort"] = "position"
     """What the reference says; of ``effort``, its positions are the efforts, N m (N)."""
@@ -64,6 +66,7 @@ class JointPidController(Part):
     i_limit: JointEffort | None = None
     """Largest share of the integral, N m."""
     effort_limit: JointEffort | None = None
+    """Largest effort, N m (N where a joint slides); the limits of the robot's file where not given."""
 
     @model_validator(mode="after")
     def _has_gains(self) -> Self:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core
-from onorbit_rs.exceptions import FrameError
+from onorbit_rs.exceptions import ControlError, FrameError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario import control as laws
 from onorbit_rs.scenario.python_controller import python_controller
@@ -66,7 +66,14 @@ def law_of(part: Any, tool: str | None, model: _core.Model, folder: Path) -> Any
         return python_controller(part, folder)
     kind, law = next((kind, law) for kind, law in _LAWS.items() if isinstance(part, kind))
     gains = _as_arrays(part.model_dump(include=set(kind.model_fields) - {"kind"}, exclude_none=True))
-    return law(model, tool, **gains) if isinstance(part, laws.TASK_LAWS) else law(**gains)
+    if not isinstance(part, laws.TASK_LAWS):
+        return law(**gains)
+    try:
+        return law(model, tool, **gains)
+    except ControlError as error:
+        if error.name is None:  # no gain is wrong: too few joints move the tool
+            error.message += "; take joint_computed_torque for the joints, or compliance for the tool"
+        raise
 
 
 _LAWS: dict[Any, Any] = {

@@ -54,7 +54,8 @@ def of_kind(union: Any) -> BeforeValidator:
 
     ``gravity_gradient`` means ``{kind: gravity_gradient}``.
     """
-    keys = {get_args(part.model_fields["kind"].annotation)[0]: part.yaml_keys() for part in get_args(union)}
+    parts = {get_args(part.model_fields["kind"].annotation)[0]: part for part in get_args(union)}
+    keys = {kind: part.yaml_keys() for kind, part in parts.items()}
     kinds = ", ".join(keys)
 
     def read(value: Any) -> Any:
@@ -68,8 +69,10 @@ def of_kind(union: Any) -> BeforeValidator:
         own = keys.get(str(value["kind"]), [*value])  # of an unknown kind nothing is known
         for key in value:
             others = [kind for kind, theirs in keys.items() if key in theirs]
-            if key not in own and others:
-                raise unknown_key(key, f" of kind '{value['kind']}'; it belongs to {', '.join(others)}")
+            if key not in own and others:  # so the kind is known
+                meant = parts[str(value["kind"])].other_words.get(str(key))
+                way_out = f", did you mean {meant!r}?" if meant else f"; it belongs to {', '.join(others)}"
+                raise unknown_key(key, f" of kind '{value['kind']}'{way_out}")
         return value
 
     return BeforeValidator(read)

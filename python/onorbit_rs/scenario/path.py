@@ -29,13 +29,23 @@ GravityMode = Annotated[
 """``true``: the robot falls away from a reference that does not fall freely; ``carried``: it goes along."""
 
 
+def _text_of_lines(value: Any) -> Any:
+    """The lines as one text; a list of them is answered with how YAML writes that."""
+    if isinstance(value, list):
+        raise wrong(
+            "must be one text: write 'tle: |' and under it the two lines, indented, or give 'line1' and"
+            " 'line2'"
+        )
+    return value
+
+
 class Sgp4Orbit(Part):
     """An element set: two lines, their text, or a file with them; time zero is its epoch."""
 
     kind: Literal["sgp4"] = "sgp4"
     line1: str | None = None
     line2: str | None = None
-    tle: str | None = None
+    tle: Annotated[str, BeforeValidator(_text_of_lines)] | None = None
     """Two lines, or three with a name before them."""
     tle_file: FilePath | None = None
     omm_file: FilePath | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
@@ -15,7 +15,7 @@ from onorbit_rs.scenario.earth import EarthPart, Epoch
 from onorbit_rs.scenario.environment import BodyWrenchEffect, Effect
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.part import Part
-from onorbit_rs.scenario.path import Orbit
+from onorbit_rs.scenario.path import AnyOrbit, Orbit
 from onorbit_rs.scenario.plant import check_plant
 from onorbit_rs.scenario.reference_parts import Reference
 from onorbit_rs.scenario.refusals import misfit
@@ -69,6 +69,14 @@ class Scenario(Part):
         scenario = cls.__new__(cls)
         cls.__pydantic_validator__.validate_python(data, self_instance=scenario)
         return scenario
+
+    @classmethod
+    def _hint(cls, key: str, free: list[str]) -> str:
+        """The part that a key belongs into, where it is one's own word."""
+        parts = {"orbit": get_args(AnyOrbit), "initial": [InitialState], "simulation": [SimulationSettings]}
+        homes = [repr(name) for name, kinds in parts.items()
+                 if key != "kind" and any(key in part.yaml_keys() for part in kinds)]  # fmt: skip
+        return f"; it belongs into {' or '.join(homes)}" if homes else super()._hint(key, free)
 
     @property
     def file(self) -> Path | None:
