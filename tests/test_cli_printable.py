@@ -55,6 +55,7 @@ def test_no_command_prints_a_name_that_steers(tmp_path: Path) -> None:
         ("check", f"{EVIL}.yaml"),
         ("run", f"{EVIL}.yaml", "--out", EVIL),
         ("show", EVIL, "--no-viewer"),
+        ("show", EVIL),
         ("show", EVIL, "--json"),
         ("report", EVIL, "--no-pdf"),
         ("compare", EVIL, f"{EVIL}.yaml"),

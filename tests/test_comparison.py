@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -212,10 +213,19 @@ def test_an_impact_counts_with_the_row_after_it() -> None:
     assert rows["tau"].ravel().tolist() == [0.0, 2.0, 3.0]
 
 
-@pytest.mark.parametrize("tolerance", [0.0, -1.0, float("nan"), float("inf")])
-def test_a_tolerance_that_is_none_is_refused(tolerance: float) -> None:
+@pytest.mark.parametrize(
+    "tolerance", [0.0, -1.0, float("nan"), float("inf"), True, "1", pytest.param(10**400, id="vast")]
+)
+def test_a_tolerance_that_is_none_is_refused(tolerance: Any) -> None:
     with pytest.raises(InputError, match="tolerance is"):
         oo.compare(spin(0.1), spin(0.1), tolerance=tolerance)
+
+
+@pytest.mark.parametrize("one", [np.int64(1), np.float32(1.0), Fraction(1)])
+def test_any_number_is_a_tolerance_and_a_period_of_checkpoints(one: Any) -> None:
+    run = oo.run(spin(0.1), quiet=True, checkpoint_every=one)
+    compared = oo.compare(run, run, tolerance=one)
+    assert json.loads(json.dumps(compared.as_dict()))["tolerance"] == 1.0
 
 
 def test_an_unknown_measure_is_answered_with_those_there_are() -> None:

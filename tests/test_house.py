@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -163,6 +164,20 @@ def test_a_scenario_knows_no_pictures() -> None:
     for file in (PACKAGE / "scenario").glob("*.py"):
         for name, _ in imports(file):
             assert not name.startswith(("onorbit_rs.viewer", "onorbit_rs.figures", "onorbit_rs.cli")), file
+
+
+def test_no_module_uses_one_that_uses_it() -> None:
+    """Not from within a function either, where an import hides."""
+    modules = {
+        ".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts): file
+        for file in PACKAGE.rglob("*.py")
+        if file.stem != "__init__"
+    }
+    uses = {
+        module: {name for name, is_for_types in imports(file) if not is_for_types and name in modules}
+        for module, file in modules.items()
+    }
+    assert list(TopologicalSorter(uses).static_order())  # a CycleError names the circle
 
 
 HEAVY = {"rerun", "matplotlib", "mujoco", "numpy", "pydantic", "yaml", "rich"}

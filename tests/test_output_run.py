@@ -14,7 +14,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs import keeping
-from onorbit_rs.exceptions import OutputNotEmptyError, RunInterrupted, SimulationError
+from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError, RunInterrupted, SimulationError
 from onorbit_rs.output.summary import summarize
 from onorbit_rs.scenario import load
 
@@ -144,3 +144,37 @@ def test_an_interrupted_run_keeps_its_trace(tmp_path: Path) -> None:
     with np.load(tmp_path / "out" / "trace.npz") as stored:
         assert 0.0 < stored["time"][-1] < 36_000.0
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["status"] == "interrupted"
+
+
+def raising(tmp_path: Path, what: str) -> dict[str, Any]:
+    """A scenario whose controller raises at its fourth call."""
+    (tmp_path / "mine.py").write_text(f"""
+import numpy as np
+import onorbit_rs
+class Raises(onorbit_rs.Controller):
+    def update(self, t, state):
+        if t > 0.005:
+            raise {what}
+        return np.zeros(len(state.joints))
+""")
+    control = {"kind": "python", "file": str(tmp_path / "mine.py"), "class": "Raises"}
+    return short_reach() | {"controller": control}
+
+
+@pytest.mark.parametrize("end", ["RuntimeError", "RunInterrupted", "SimulationError"])
+def test_a_full_disk_takes_the_place_of_no_other_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end: str
+) -> None:
+    def full(folder: Any, trace: Any) -> None:
+        raise OutputFolderError("cannot write trace.npz: No space left on device")
+
+    monkeypatch.setattr(keeping, "write_trace", full)
+    what = {"RuntimeError": "RuntimeError('mine')", "RunInterrupted": "KeyboardInterrupt"}.get(end)
+    scenario = diverging() if what is None else raising(tmp_path, what)
+    with pytest.raises(BaseException) as caught:
+        oo.run(scenario, out=tmp_path / "out", quiet=True)
+    own = caught.value
+    assert type(own).__name__ == end
+    notes = getattr(own, "__notes__", [])
+    assert "be written: cannot write trace.npz: No space left" in "; ".join([str(own), *notes])
+    assert "rows so far are in" not in str(notes) and "so far is in" not in str(own)

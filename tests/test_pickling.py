@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import pickle
+import subprocess
+import sys
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -13,7 +16,8 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs import robots
-from onorbit_rs.exceptions import ModelError
+from onorbit_rs.exceptions import ModelError, NotFoundError
+from onorbit_rs.output.read import read_trace
 from onorbit_rs.scenario import load
 
 
@@ -38,6 +42,21 @@ def same(a: Any, b: Any) -> None:
     assert a.joint_limits_exceeded() == b.joint_limits_exceeded()
 
 
+@pytest.mark.parametrize("copied", ["pickle.loads(pickle.dumps(trace))", "copy.deepcopy(trace)"])
+def test_a_trace_needs_nothing_but_the_engine_to_be_copied(copied: str) -> None:
+    """It said "cannot pickle" where nothing had loaded the folder of outputs before."""
+    program = f"""
+import copy, pickle, sys
+import onorbit_rs as oo
+model = oo.Model.rigid_body(120.0, [[4.0, 0, 0], [0, 22.0, 0], [0, 0, 24.0]])
+trace = oo.Simulation(model, model.neutral(), [0.0] * 6).run(0.1)
+assert "onorbit_rs.output" not in sys.modules
+assert ({copied}.q == trace.q).all()
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert not done.stderr
+
+
 @pytest.mark.parametrize(
     ("name", "settings"), [("dual_arm_reach", {}), ("humanoid_reach", {"record_wrenches": True})]
 )
@@ -46,9 +65,22 @@ def test_a_trace_comes_back_with_all_it_had(name: str, settings: dict[str, Any])
     assert run.trace.tracking or run.trace.wrenches
     there = pickle.loads(pickle.dumps(run.trace))
     same(run.trace, there)
-    same(there, pickle.loads(pickle.dumps(there)))
+    again = pickle.loads(pickle.dumps(there))
+    same(there, again)
+    for column in (run.trace.q, there.q, again.q, copy.deepcopy(there).q, *again.tracking.values()):
+        with pytest.raises(ValueError, match="read-only"):
+            column[0] = 0.0
     with pytest.raises(AttributeError, match="no column 'colour'"):
         _ = there.colour
+
+
+def test_a_column_that_a_run_has_nothing_for_is_none_wherever_it_is_read(tmp_path: Path) -> None:
+    scenario = {"robot": "humanoid_torso", "simulation": {"duration": 0.01}}
+    here = oo.run(scenario, tmp_path / "out", quiet=True).trace
+    missing = [name for name in dir(oo.Trace) if getattr(here, name) is None and not name.startswith("_")]
+    assert {"tool_pose", "position_eci"} < set(missing)
+    for there in (pickle.loads(pickle.dumps(here)), read_trace(tmp_path / "out")):
+        assert [getattr(there, name) for name in missing] == [None] * 7
 
 
 def test_runs_come_back_from_processes() -> None:
@@ -63,13 +95,37 @@ def test_runs_come_back_from_processes() -> None:
         assert there.summary["certificate_passed"] and there.scenario.resolved() == scenario.resolved()
 
 
-def test_a_run_does_not_arrive_with_another_robot(tmp_path: Path) -> None:
-    urdf = tmp_path / "arm.urdf"
-    text = robots.path("humanoid_torso").read_text()
+TORSO = robots.path("humanoid_torso").read_text()
+
+
+def of_arm(urdf: Path, text: str = TORSO) -> oo.Run:
     urdf.write_text(text)
-    run = oo.run({"robot": str(urdf), "simulation": {"duration": 0.01}}, quiet=True)
+    return oo.run({"robot": str(urdf), "simulation": {"duration": 0.01}}, quiet=True)
+
+
+def test_a_run_does_not_show_another_robot(tmp_path: Path) -> None:
+    urdf = tmp_path / "arm.urdf"
+    run = of_arm(urdf)
     sent = pickle.dumps(run)
-    assert pickle.loads(sent).model.mass == run.model.mass
-    urdf.write_text(text.replace('<mass value="', '<mass value="1'))
+    arrived = pickle.loads(sent)
+    assert arrived.model.mass == run.model.mass and arrived.model is arrived.model
+    urdf.write_text(TORSO.replace('<mass value="', '<mass value="1'))
     with pytest.raises(ModelError, match="changed since the run"):
-        pickle.loads(sent)
+        _ = pickle.loads(sent).model
+
+
+def without_its_robot(urdf: Path) -> oo.Run:
+    run = of_arm(urdf)
+    urdf.unlink()
+    return run
+
+
+def test_a_run_whose_robot_is_gone_comes_out_of_a_pool(tmp_path: Path) -> None:
+    """The thread that takes a pool's results dies of what raises while it is unpickled: get() hung."""
+    with get_context("spawn").Pool(1) as pool:
+        run = pool.apply_async(without_its_robot, (tmp_path / "arm.urdf",)).get(timeout=60)
+    assert run.trace.is_complete and run.summary["certificate_passed"]
+    assert oo.compare(run, of_arm(tmp_path / "arm.urdf")).agrees
+    (tmp_path / "arm.urdf").unlink()
+    with pytest.raises(NotFoundError, match=r"arm\.urdf"):
+        _ = run.model

@@ -312,7 +312,9 @@ def test_a_part_of_one_name_is_near_it() -> None:
     assert nearest("arm", ("arm_left_link", "arm_right_link")) is None
 
 
-@pytest.mark.parametrize("every", ["5", None, -1.0, float("nan"), float("inf")])
+@pytest.mark.parametrize(
+    "every", ["5", None, True, -1.0, float("nan"), float("inf"), pytest.param(10**400, id="vast")]
+)
 def test_a_period_of_checkpoints_that_is_none_is_told(every: object) -> None:
     with pytest.raises(InputError, match=r"checkpoint_every is .* it must be finite, zero or positive"):
         run("free_tumble", quiet=True, checkpoint_every=every)  # type: ignore[arg-type]  # that is what is tested

@@ -15,8 +15,10 @@ from rerun.chunk import RrdReader
 import onorbit_rs as oo
 from onorbit_rs import viewer
 from onorbit_rs.appearance import shapes
+from onorbit_rs.exceptions import ViewerError
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
+from onorbit_rs.viewer.encoded import Encoded
 from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.series import series_of
 
@@ -180,8 +182,27 @@ def test_a_recording_that_was_cut_short_is_not_passed_on(
                 os.truncate(entry, 1000)
 
     monkeypatch.setattr(rr.RecordingStream, "flush", flush_and_cut)
-    with pytest.raises(oo.OnOrbitError, match="did not encode the recording to its end"):
+    with pytest.raises(ViewerError, match="did not encode the recording: it stops before its end"):
         viewer.write_recording(tmp_path / "run.rrd", reach[1], viewer.Setting.of(reach[0]))
+
+
+@on_linux
+def test_an_encoder_that_does_not_answer_is_the_viewers_error_and_keeps_no_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def silent(self: rr.RecordingStream, **options: float) -> None:
+        raise RuntimeError("no answer")
+
+    def in_memory() -> int:
+        return sum("run.rrd" in str(entry.resolve()) for entry in Path("/proc/self/fd").iterdir())
+
+    recording = rr.RecordingStream("onorbit", send_properties=False)
+    encoded = Encoded(recording)
+    both = in_memory()  # ours and rerun's
+    monkeypatch.setattr(rr.RecordingStream, "flush", silent)
+    with pytest.raises(ViewerError, match="did not encode the recording: no answer"):
+        encoded.write_to(tmp_path / "run.rrd")
+    assert in_memory() < both
 
 
 def test_longer_traces_are_thinned_to_their_last_row_and_it_is_said(
@@ -210,8 +231,3 @@ def test_a_body_without_geometry_is_drawn_as_the_box_of_its_inertia() -> None:
     assert box.kind == "box" and box.link == "base"
     extent = np.abs(box.pose[:3, :3]) @ np.array(box.size)
     np.testing.assert_allclose(extent, sides, rtol=1e-12)
-
-
-def test_no_recording_no_picture(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match="no such recording"):
-        viewer.take_screenshot(tmp_path / "run.rrd", tmp_path / "run.png")

@@ -88,6 +88,10 @@ def test_the_viewer_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPatc
         def poll(self) -> int:
             return 1
 
+        def kill(self) -> None: ...
+
+        def wait(self) -> None: ...
+
     def popen(command: list[str], **_: object) -> Process:
         commands.append(command)
         return Process()
@@ -103,21 +107,37 @@ def test_the_viewer_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPatc
     assert screen.url_of(9876) == "rerun+http://127.0.0.1:9876/proxy"
 
 
+def viewer_that_hangs(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
+    """A program in its place that answers nobody; the list is where it is put when it is started."""
+    started = []
+    popen = subprocess.Popen
+
+    def start(command: list[str], **options: Any) -> subprocess.Popen[bytes]:
+        started.append(popen([sys.executable, "-c", "import time; time.sleep(60)"], **options))
+        return started[0]
+
+    monkeypatch.setattr(screen.subprocess, "Popen", start)
+    return started
+
+
 def test_a_viewer_that_hangs_is_not_waited_for_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    ended = []
-
-    class Process:
-        def poll(self) -> None:
-            return None
-
-        def kill(self) -> None:
-            ended.append("killed")
-
-    monkeypatch.setattr(screen.subprocess, "Popen", lambda *_, **__: Process())
+    started = viewer_that_hangs(monkeypatch)
     monkeypatch.setattr(screen, "START_PATIENCE_S", 0.2)
     with pytest.raises(ViewerError, match=r"did not start: it does not answer within 0\.2 s"):
         screen.open_viewer()
-    assert ended == ["killed"]
+    assert started[0].returncode is not None  # ended, and no zombie
+
+
+def test_ctrl_c_leaves_no_viewer_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    started = viewer_that_hangs(monkeypatch)
+
+    def ctrl_c(port: int) -> bool:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(screen, "listens", ctrl_c)
+    with pytest.raises(KeyboardInterrupt):
+        screen.open_viewer()
+    assert started[0].returncode is not None
 
 
 GONE = """

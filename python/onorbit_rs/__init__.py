@@ -11,6 +11,7 @@ SI and radians everywhere; frames and layouts are those of ``docs/``: ``q = [p(3
 
 from __future__ import annotations
 
+import copyreg
 import importlib
 from typing import TYPE_CHECKING
 
@@ -169,6 +170,16 @@ if not TYPE_CHECKING:  # or every misspelt name would have a type
             raise AttributeError(f"module 'onorbit_rs' has no attribute {name!r}")
         globals()[name] = found = getattr(importlib.import_module(f"onorbit_rs.{_LATER[name]}"), name)
         return found
+
+
+def _reduced(trace: Trace) -> tuple[object, ...]:
+    """How a trace pickles; what of it travels is numpy's, and loaded when the first one does."""
+    from onorbit_rs.output.travel import reduced
+
+    return reduced(trace)
+
+
+copyreg.pickle(Trace, _reduced)
 
 
 def __dir__() -> list[str]:

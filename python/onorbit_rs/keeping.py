@@ -43,9 +43,14 @@ def finished(
 def keep_failed(error: Exception, built: Built, folder: OutputFolder | None) -> None:
     """Write the rows there are of a run that ended by an error other than its own divergence, and note it."""
     trace = getattr(error, "trace", None)
-    if folder is not None and trace is not None and len(trace.time) > 0:
+    if folder is None or trace is None or len(trace.time) == 0:
+        return
+    try:
         _write_rows(trace, "failed", built, folder)
         discard_checkpoint(folder)
+    except Exception as full:  # the run's own error is the one to tell
+        error.add_note(f"its rows could not be written: {full}")
+    else:
         error.add_note(f"the rows so far are in {folder.path}")
 
 
@@ -63,6 +68,19 @@ def keep_stopped(
         stop.message = f"stopped by Ctrl-C at t = {stop.time:g} s of {duration:g} s"
     if folder is None:
         return
+    try:
+        _keep_rows(stop, built, folder, tell)
+    except Exception as full:  # the run's own end is the one to tell
+        stop.message += f"; not all of it could be written: {full}"
+
+
+def _keep_rows(
+    stop: SimulationError | RunInterrupted,
+    built: Built,
+    folder: OutputFolder,
+    tell: Callable[[str], None],
+) -> None:
+    """The folder of a run that stopped early."""
     if stop.trace is None or len(stop.trace.time) == 0:
         folder.discard()
         return

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import os
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +23,7 @@ from onorbit_rs.output import (
 from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.plants import versions
 from onorbit_rs.progress import doing, progress_bar
+from onorbit_rs.reals import real
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build, make_robot
 from onorbit_rs.watching import CHECKPOINT_EVERY, watched
@@ -36,28 +37,37 @@ class Run:
     """What a run gave.
 
     ``trace`` has the columns, ``summary`` is the dict of ``summary.json``, ``out`` the folder or None. A run
-    pickles, for :mod:`multiprocessing`: its rows travel, its robot is read again where they arrive.
+    pickles, for :mod:`multiprocessing`: its rows travel, its robot is read again when it is asked for.
     """
 
     trace: Trace
     summary: dict[str, Any]
-    model: Model
     scenario: Scenario
     out: Path | None
+    _ran: Model | None = field(default=None, repr=False, compare=False)
+    """None after a journey."""
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Its parts without the robot, which the scenario names."""
-        return _arrived, (self.trace, self.summary, self.scenario, self.out)
+        """Data alone: ``multiprocessing.Pool`` waits for ever for what raises while it is unpickled."""
+        return Run, (self.trace, self.summary, self.scenario, self.out)
 
+    @cached_property
+    def model(self) -> Model:
+        """The robot that ran; of a run from another process as the scenario names it.
 
-def _arrived(trace: Trace, summary: dict[str, Any], scenario: Scenario, out: Path | None) -> Run:
-    """A run from another process."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what the robot's file is like was told when it ran
-        model = make_robot(scenario)
-    if was_changed(model, summary):
-        raise ModelError(CHANGED)
-    return Run(trace, summary, model, scenario, out)
+        Raises
+        ------
+        OnOrbitError
+            Its file is gone or cannot be read, or was changed since (``ModelError``).
+        """
+        if self._ran is not None:
+            return self._ran
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what the robot's file is like was told when it ran
+            model = make_robot(self.scenario)
+        if was_changed(model, self.summary):
+            raise ModelError(CHANGED)
+        return model
 
 
 def run(
@@ -96,7 +106,7 @@ def run(
     RunInterrupted
         Ctrl-C; its trace so far is in the exception and in ``out``.
     """
-    _check_period(checkpoint_every)
+    every = _checked_period(checkpoint_every)
     checked = load(scenario)
     built = build(checked)
     folder = None if out is None else OutputFolder.claim(out, force=force)
@@ -104,7 +114,7 @@ def run(
         return _go(built, None, quiet=quiet, view=view)
     write_scenario(folder, checked)
     writer = CheckpointWriter(folder, _digest(checked))
-    return _go(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=checkpoint_every)
+    return _go(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=every)
 
 
 def resume(
@@ -134,7 +144,7 @@ def resume(
     OnOrbitError
         As :func:`run`.
     """
-    _check_period(checkpoint_every)
+    every = _checked_period(checkpoint_every)
     folder = OutputFolder(Path(out))
     if not (folder.path / "scenario.yaml").is_file():
         what = "no run in this folder (no scenario.yaml)" if folder.path.is_dir() else "no such folder"
@@ -145,17 +155,19 @@ def resume(
     writer = CheckpointWriter(folder, digest, rows=rows)
     return _go(
         build(scenario), folder, quiet=quiet, view=view,
-        checkpoint=writer, checkpoint_every=checkpoint_every, resume=checkpoint,
+        checkpoint=writer, checkpoint_every=every, resume=checkpoint,
     )  # fmt: skip
 
 
-def _check_period(checkpoint_every: float) -> None:
+def _checked_period(checkpoint_every: float) -> float:
     """Before anything is written, and also where nothing is."""
-    if not isinstance(checkpoint_every, (int, float)) or not 0.0 <= checkpoint_every < math.inf:
+    every = real(checkpoint_every)
+    if every is None or every < 0.0:
         raise InputError(
             f"checkpoint_every is {checkpoint_every!r} s of wall clock, it must be finite, zero or positive",
             name="checkpoint_every", got=checkpoint_every, expected=">= 0",
         )  # fmt: skip
+    return every
 
 
 def _digest(scenario: Scenario) -> str:
@@ -175,7 +187,7 @@ def _go(
             else:
                 trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
             summary = finished(trace, built, folder, progress.tell)
-            return Run(trace, summary, built.model, scenario, folder.path if folder else None)
+            return Run(trace, summary, scenario, folder.path if folder else None, built.model)
     except (SimulationError, RunInterrupted) as stop:
         with doing("stopped, writing what there is", quiet=quiet) as tell:
             keep_stopped(stop, built, folder, tell)

@@ -11,7 +11,7 @@ import typer
 from onorbit_rs.cli.failing import as_far_as_read
 from onorbit_rs.cli.options import FolderArgument, JsonOption
 from onorbit_rs.cli.saying import say
-from onorbit_rs.cli.writing import claim, writing
+from onorbit_rs.cli.writing import claim
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.printable import shell_word
 
@@ -73,7 +73,7 @@ def open_viewer(folder: Path) -> None:
 
     recording = folder / "run.rrd"
     if not recording.is_file():
-        typer.echo(f"there is no recording here: {recording}")
+        say(f"there is no recording here: {recording}")
         return
     way_out = (
         f"save a picture with: onorbit show {shell_word(folder)} --picture FILE.png, "
@@ -102,10 +102,11 @@ def save_picture(folder: Path, picture: Path, at_s: float) -> None:
 
     Raises
     ------
+    NotFoundError, ViewerError
+        There is no recording, or the viewer does not show it.
     OutputFolderError
         It cannot be written.
     """
     from onorbit_rs import viewer
 
-    with writing(picture):
-        viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s)
+    viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s)

@@ -14,6 +14,7 @@ from onorbit_rs.comparison.settings import settings_apart
 from onorbit_rs.comparison.words import as_text
 from onorbit_rs.exceptions import CompareError, InputError, OnOrbitError
 from onorbit_rs.printable import json_value
+from onorbit_rs.reals import real
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -129,7 +130,8 @@ def compare(
     OnOrbitError
         As :func:`onorbit_rs.run`, and for folders without a run.
     """
-    if not isinstance(tolerance, (int, float)) or not 0.0 < tolerance < np.inf:
+    share = real(tolerance)
+    if share is None or share <= 0.0:
         raise InputError(
             f"tolerance is {tolerance!r}, it must be a positive number", name="tolerance", got=tolerance
         )
@@ -139,9 +141,9 @@ def compare(
     rows_a, rows_b, time, remarks = common_rows(first, second)
     found, missing = measures(rows_a, rows_b)
     differences = tuple(
-        _difference(name, unit, values, largest, time, tolerance) for name, unit, values, largest in found
+        _difference(name, unit, values, largest, time, share) for name, unit, values, largest in found
     )
-    return Comparison(first.name, second.name, tolerance, time, differences, (*notes, *remarks, *missing))
+    return Comparison(first.name, second.name, share, time, differences, (*notes, *remarks, *missing))
 
 
 def _difference(

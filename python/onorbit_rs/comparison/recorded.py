@@ -14,15 +14,13 @@ import numpy as np
 from onorbit_rs.exceptions import DtypeError, ModelError, NotFoundError
 from onorbit_rs.output import with_absolute_paths
 from onorbit_rs.output.read import read_summary, read_trace
-from onorbit_rs.robots.fingerprint import fingerprint, is_another
+from onorbit_rs.robots.fingerprint import is_another
 from onorbit_rs.running import Run, run
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import make_robot
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from onorbit_rs._core import Model
 
 Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | Run
 """A folder that a run has written, a scenario as :func:`onorbit_rs.run` takes it, or a run."""
@@ -35,8 +33,8 @@ class Recorded:
     name: str
     columns: dict[str, NDArray[np.float64]]
     scenario: Scenario
-    model: Model | None = None
-    """Of a run that is in memory."""
+    run: Run | None = None
+    """The one that is in memory."""
     fingerprint: str | None = None
     """Of its robot, as it was when it ran; runs of earlier versions have none."""
 
@@ -54,15 +52,13 @@ class Recorded:
         OnOrbitError
             It is no longer there, cannot be read, or is another by now.
         """
-        model = self.model
-        if model is None:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # what the file is like was told when it ran
-                model = make_robot(self.scenario)
-            if is_another(model, self.fingerprint):
-                raise ModelError(
-                    f"{self.robot} was changed since {self.name} was recorded", path=str(self.robot)
-                )
+        if self.run is not None:
+            return list(self.run.model.joint_names)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what the file is like was told when it ran
+            model = make_robot(self.scenario)
+        if is_another(model, self.fingerprint):
+            raise ModelError(f"{self.robot} was changed since {self.name} was recorded", path=str(self.robot))
         return list(model.joint_names)
 
 
@@ -100,7 +96,7 @@ def _of_run(made: Run) -> Recorded:
     trace = made.trace
     columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
     name = f"{made.scenario.name} ({made.scenario.plant})" if made.out is None else str(made.out)
-    return Recorded(name, columns, made.scenario, made.model, fingerprint(made.model))
+    return Recorded(name, columns, made.scenario, made, made.summary.get("robot_fingerprint"))
 
 
 def _of_folder(folder: Path) -> Recorded:

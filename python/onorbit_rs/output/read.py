@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Trace
 
 
+OPTIONAL = (
+    "tool_pose", "reference_pose", "position_error", "attitude_error", "position_eci", "velocity_eci",
+    "reference_residual",
+)  # fmt: skip
+"""Columns that a run without tool, reference or orbit has not."""
+
+
 @dataclass(frozen=True)
 class SavedTrace:
     """Columns under their names, as a :class:`onorbit_rs.Trace` has them."""
@@ -26,7 +33,9 @@ class SavedTrace:
     arrays: Mapping[str, Any]
 
     def __getattr__(self, name: str) -> Any:
-        """A column."""
+        """A column; None where the run had nothing for it."""
+        if name in OPTIONAL:
+            return self.arrays.get(name)
         if name.startswith("__") or name == "arrays" or name not in self.arrays:
             raise AttributeError(f"the trace has no column {name!r}")
         return self.arrays[name]

@@ -2,25 +2,35 @@
 
 from __future__ import annotations
 
-import copyreg
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs._core import Trace
 from onorbit_rs.output.read import SavedTrace
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Trace
 
 
 @dataclass(frozen=True)
 class TravelledTrace(SavedTrace):
-    """What a pickled :class:`onorbit_rs.Trace` comes back as."""
+    """What a pickled :class:`onorbit_rs.Trace` comes back as: no instance of it, read-only as it."""
 
     is_complete: bool
     wall_s: float
     results: Sequence[Any]
     told: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        """Columns out of a pickle can be written."""
+        for rows in self.arrays.values():
+            rows.setflags(write=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Its fields, to be made anew."""
+        return TravelledTrace, tuple(getattr(self, part.name) for part in fields(self))
 
     def certificate(self) -> Any:
         """As the trace gave it."""
@@ -42,10 +52,8 @@ def arrays_of(trace: Trace) -> dict[str, Any]:
     return arrays | {f"wrench_{name}": np.asarray(rows) for name, rows in trace.wrenches.items()}
 
 
-def _reduced(trace: Trace) -> tuple[Any, ...]:
+def reduced(trace: Trace) -> tuple[Any, ...]:
+    """How a trace pickles (``__reduce__``)."""
     told = {"certificate": trace.certificate(), "joint_limits_exceeded": trace.joint_limits_exceeded()}
     arrays = arrays_of(trace) | {"rereferenced": np.asarray(trace.rereferenced)}
     return TravelledTrace, (arrays, trace.is_complete, trace.wall_s, list(trace.results), told)
-
-
-copyreg.pickle(Trace, _reduced)

@@ -99,7 +99,12 @@ def _start(port: int, *arguments: str) -> None:
             )
         except OSError as error:
             raise _not_started(str(error)) from error
-        _await_window(viewer, port, said)
+        try:
+            _await_window(viewer, port, said)
+        except BaseException:  # Ctrl-C, too: it has a session of its own and would stay
+            viewer.kill()
+            viewer.wait()
+            raise
 
 
 def _await_window(viewer: subprocess.Popen[bytes], port: int, said: IO[str]) -> None:
@@ -116,7 +121,6 @@ def _await_window(viewer: subprocess.Popen[bytes], port: int, said: IO[str]) -> 
             asked.start()
         time.sleep(0.05)
     if not answered.is_set() and not listens(port):
-        viewer.kill()
         raise _not_started(f"it does not answer within {START_PATIENCE_S:g} s")
 
 

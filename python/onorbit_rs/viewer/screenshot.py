@@ -8,14 +8,17 @@ Needs a Vulkan driver; Debian's ``mesa-vulkan-drivers`` and ``libegl1`` draw in 
 from __future__ import annotations
 
 import subprocess
+import tempfile
 import time
 from pathlib import Path
+from typing import IO
 
 from rerun.experimental import ViewerClient
 
 from onorbit_rs.exceptions import NotFoundError, ViewerError
+from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.viewer.rows import TIMELINE
-from onorbit_rs.viewer.screen import command_of, environment, free_port, listens, reason, url_of
+from onorbit_rs.viewer.screen import command_of, environment, free_port, reason, url_of
 
 SETTLE_S = 3.0
 """Wall-clock time given to the viewer to load fonts and draw, before and after moving in time."""
@@ -42,7 +45,9 @@ def take_screenshot(
     NotFoundError
         No such recording.
     ViewerError
-        The viewer did not start; says why.
+        The viewer did not start, or does not show the recording; says why.
+    OutputFolderError
+        The picture cannot be written.
     """
     if not recording.is_file():
         raise NotFoundError(f"no such recording: {recording}", path=str(recording), kind="recording")
@@ -53,45 +58,56 @@ def take_screenshot(
         "--hide-welcome-screen",
         *("--window-size", f"{width}x{height}", str(recording.resolve())),
     ]
-    with subprocess.Popen(
-        command, env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-    ) as viewer:
+    with tempfile.TemporaryFile("w+", errors="replace") as said:  # a pipe that nobody reads stops who writes
         try:
-            client = _connect(port, viewer)
-            time.sleep(SETTLE_S)
-            _go_to(client, at_s)
-            time.sleep(SETTLE_S)
-            picture.write_bytes(client.take_screenshot())
+            viewer = subprocess.Popen(command, env=environment(), stdout=subprocess.DEVNULL, stderr=said)
+        except OSError as error:
+            raise _not_started(str(error)) from error
+        try:
+            image = _seen(_connect(port, viewer, said), viewer, at_s)
         finally:
             viewer.kill()
+            viewer.wait()
+    with OutputFolder(picture.parent).refusals(picture.name):
+        picture.write_bytes(image)
     return picture
 
 
-def _go_to(client: ViewerClient, at_s: float, patience_s: float = 60.0) -> None:
-    """Move to a time, once the recording has been read."""
+def _seen(
+    client: ViewerClient, viewer: subprocess.Popen[bytes], at_s: float, patience_s: float = 60.0
+) -> bytes:
+    """What is shown at a time, once the recording has been read, as PNG."""
+    time.sleep(SETTLE_S)
     deadline = time.monotonic() + patience_s
     while True:
         try:
             client.set_time(TIMELINE, duration=at_s, play_state="paused")
-            return
+            time.sleep(SETTLE_S)
+            return client.take_screenshot()
         except OSError as error:  # no recording yet
-            if time.monotonic() > deadline:
+            if time.monotonic() > deadline or viewer.poll() is not None:
                 raise ViewerError(
                     f"the viewer does not show the recording: {error}", reason=str(error)
                 ) from error
             time.sleep(0.2)
 
 
-def _connect(port: int, viewer: subprocess.Popen[str], patience_s: float = 30.0) -> ViewerClient:
-    """A client of the viewer, once it listens."""
+def _connect(
+    port: int, viewer: subprocess.Popen[bytes], said: IO[str], patience_s: float = 30.0
+) -> ViewerClient:
+    """A client of the viewer, once it answers."""
     deadline = time.monotonic() + patience_s
     while time.monotonic() < deadline and viewer.poll() is None:
-        if listens(port):
+        try:
             return ViewerClient.connect(url_of(port))
-        time.sleep(0.1)
-    viewer.kill()
-    why = reason(viewer.stderr.read() if viewer.stderr else "")
-    raise ViewerError(
+        except OSError:  # not yet
+            time.sleep(0.1)
+    said.seek(0)
+    raise _not_started(reason(said.read()))
+
+
+def _not_started(why: str) -> ViewerError:
+    return ViewerError(
         f"the headless viewer did not start: {why}; it needs a Vulkan driver "
         "(Debian: mesa-vulkan-drivers and libegl1)",
         reason=why,

@@ -4,35 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from onorbit_rs.appearance import shapes
 from onorbit_rs.geometry import Shape, extent
 from onorbit_rs.printable import printable
+from onorbit_rs.viewer.targets import PathFrame, Target, path_frame, targets
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Earth, Model, Orbit
     from onorbit_rs.scenario.build import Built
 
     Floats = NDArray[np.float64]
-
-PathFrame = Literal["world", "lvlh", "base"]
-
-
-@dataclass(frozen=True)
-class Target:
-    """A spacecraft that nothing acts on: pose at time zero, constant velocity and spin; W axes, m, rad."""
-
-    position: Floats
-    quat_xyzw: Floats
-    velocity: Floats
-    spin: Floats
-    size: tuple[float, ...] = ()
-    """Edges of its box, m; axes alone are drawn where empty."""
 
 
 @dataclass(frozen=True)
@@ -53,8 +39,6 @@ class Setting:
     @classmethod
     def of(cls, built: Built) -> Setting:
         """Of a scenario."""
-        from onorbit_rs.viewer.targets import path_frame, targets
-
         scenario = built.scenario
         return cls(
             built.model,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import rerun as rr
 
 from onorbit_rs.rotations import product
+from onorbit_rs.scenario.start import quaternion_of
 from onorbit_rs.viewer.axes import log_axes
 from onorbit_rs.viewer.colors import TARGET
 from onorbit_rs.viewer.frames import WORLD, send_frame
@@ -19,9 +21,23 @@ if TYPE_CHECKING:
 
     from onorbit_rs.scenario import Scenario
     from onorbit_rs.viewer.rows import Rows
-    from onorbit_rs.viewer.setting import PathFrame, Setting, Target
+    from onorbit_rs.viewer.setting import Setting
 
     Floats = NDArray[np.float64]
+
+PathFrame = Literal["world", "lvlh", "base"]
+
+
+@dataclass(frozen=True)
+class Target:
+    """A spacecraft that nothing acts on: pose at time zero, constant velocity and spin; W axes, m, rad."""
+
+    position: Floats
+    quat_xyzw: Floats
+    velocity: Floats
+    spin: Floats
+    size: tuple[float, ...] = ()
+    """Edges of its box, m; axes alone are drawn where empty."""
 
 
 def path_frame(scenario: Scenario) -> PathFrame:
@@ -33,9 +49,6 @@ def path_frame(scenario: Scenario) -> PathFrame:
 
 def targets(scenario: Scenario) -> tuple[Target, ...]:
     """Every target that a reference follows, once."""
-    from onorbit_rs.scenario.start import quaternion_of
-    from onorbit_rs.viewer.setting import Target
-
     found: dict[str, Target] = {}
     for reference in _references(scenario):
         motion = getattr(reference.frame, "target", None)

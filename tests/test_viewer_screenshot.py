@@ -1,0 +1,82 @@
+"""A picture without a screen: who is to blame where there is none."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from onorbit_rs import viewer
+from onorbit_rs.cli.show import save_picture
+from onorbit_rs.exceptions import NotFoundError, OutputFolderError, ViewerError
+from onorbit_rs.viewer import screenshot
+
+LOUD = "import sys; sys.stderr.write('driver: ' + 'x' * 1_000_000 + '\\nno such device\\n'); sys.exit(1)"
+LASTS = "import time; time.sleep({})"
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(screenshot, "SETTLE_S", 0.0)
+    (tmp_path / "run.rrd").touch()
+    return tmp_path
+
+
+def viewer_is(monkeypatch: pytest.MonkeyPatch, program: str, refusals: int = 0, image: Any = None) -> None:
+    """A program in the viewer's place, whose client refuses to connect so many times."""
+    refused = iter(range(refusals))
+
+    class Client:
+        @classmethod
+        def connect(cls, url: str) -> Client:
+            if next(refused, None) is not None:
+                raise ConnectionError("transport error")
+            return cls()
+
+        def set_time(self, *_: Any, **__: Any) -> None: ...
+
+        def take_screenshot(self) -> Any:
+            if image is None:
+                raise ConnectionError("transport error")
+            return image
+
+    monkeypatch.setattr(screenshot, "command_of", lambda port: [sys.executable, "-c", program])
+    monkeypatch.setattr(screenshot, "ViewerClient", Client)
+
+
+def test_no_recording_no_picture(tmp_path: Path) -> None:
+    with pytest.raises(NotFoundError, match="no such recording"):
+        viewer.take_screenshot(tmp_path / "run.rrd", tmp_path / "run.png")
+
+
+def test_a_viewer_that_says_much_before_it_ends_is_heard(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its stderr was a pipe that nobody read: it stopped there, and was told to have printed nothing."""
+    viewer_is(monkeypatch, LOUD, refusals=10**9)
+    with pytest.raises(ViewerError, match="did not start: no such device; it needs a Vulkan driver"):
+        viewer.take_screenshot(folder / "run.rrd", folder / "run.png")
+
+
+def test_a_viewer_that_ends_is_not_a_picture_that_cannot_be_written(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    viewer_is(monkeypatch, LASTS.format(0.5))
+    with pytest.raises(ViewerError, match="does not show the recording: transport error"):
+        save_picture(folder, folder / "run.png", 0.0)
+    assert not (folder / "run.png").exists()
+
+
+def test_a_viewer_that_cannot_be_started_says_so(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(screenshot, "command_of", lambda port: [str(folder / "none")])
+    with pytest.raises(ViewerError, match=r"did not start: .*No such file"):
+        viewer.take_screenshot(folder / "run.rrd", folder / "run.png")
+
+
+def test_a_viewer_that_answers_later_is_waited_for(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    viewer_is(monkeypatch, LASTS.format(60), refusals=3, image=b"PNG")
+    assert viewer.take_screenshot(folder / "run.rrd", folder / "run.png").read_bytes() == b"PNG"
+    with pytest.raises(OutputFolderError, match=r"cannot write .*none/run\.png: No such file"):
+        viewer.take_screenshot(folder / "run.rrd", folder / "none" / "run.png")
