@@ -137,6 +137,12 @@ def test_the_recording_holds_the_numbers_of_the_trace(reach: tuple[Built, oo.Tra
     assert trail == 2
 
 
+def test_plots_show_the_least_and_the_most_of_what_falls_on_a_pixel(recording: Path) -> None:
+    """The mean of a torque that chatters between ±100 N m is next to nothing."""
+    (policy,) = column(recording, "/plots/joint_torque", "SeriesLines:aggregation_policy", static=True)
+    assert policy == [rr.components.AggregationPolicy.MinMax.value]
+
+
 def test_no_wall_clock_and_a_blueprint(recording: Path) -> None:
     reader = RrdReader(recording)
     names = {name for chunk in reader.stream().to_chunks() for name in chunk.timeline_names}

@@ -8,6 +8,7 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.viewer.frames import COMPASS, DESIRED, FOLLOW, fix_frame, of_link, put_in
+from onorbit_rs.viewer.letters import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,7 +44,7 @@ def log_axes(
             start + 1.1 * length * np.eye(3)[-len(names) :],
             colors=colors[-len(names) :],
             radii=[0.0],
-            labels=list(names),
+            labels=[shown(name) for name in names],
             show_labels=True,
         )
         recording.log(f"{path}/names", labels, static=True, strict=True)

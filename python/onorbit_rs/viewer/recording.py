@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.printable import printable
 from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.axes import log_all_axes
 from onorbit_rs.viewer.blueprint import layout
 from onorbit_rs.viewer.encoded import Encoded
 from onorbit_rs.viewer.flight import is_apart, log_flight, log_whole_flight, send_flight
 from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames
+from onorbit_rs.viewer.letters import shown, shown_lines
 from onorbit_rs.viewer.notes import about_meshes
 from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
 from onorbit_rs.viewer.rows import Rows
@@ -98,7 +98,7 @@ def new_recording(setting: Setting) -> rr.RecordingStream:
     recording.set_log_time_enabled(False)
     recording.set_log_tick_enabled(False)
     if setting.name:
-        recording.send_recording_name(printable(setting.name))
+        recording.send_recording_name(shown(setting.name))
     return recording
 
 
@@ -133,7 +133,7 @@ def open_stage(
     for series in plots:
         log_style(recording, series)
     if notes:
-        text = rr.TextDocument(notes, media_type=rr.MediaType.MARKDOWN)
+        text = rr.TextDocument(shown_lines(notes), media_type=rr.MediaType.MARKDOWN)
         recording.log("notes", text, static=True, strict=True)
     return stage
 

@@ -21,6 +21,7 @@ from onorbit_rs.viewer.frames import (
     put_in,
     send_frame,
 )
+from onorbit_rs.viewer.letters import shown
 from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.solids import log_shape
 
@@ -51,7 +52,7 @@ _POSES = {"desired": "reference_pose", "obtained": "tool_pose"}
 def log_robot(recording: rr.RecordingStream, setting: Setting) -> None:
     """Its shapes, each in the frame of its link."""
     for index, shape in enumerate(setting.shapes):
-        path = rr.new_entity_path(["world", "robot", shape.link, f"visual_{index}"])
+        path = rr.new_entity_path(["world", "robot", shown(shape.link), f"visual_{index}"])
         if log_shape(recording, path, shape):
             put_in(recording, path, of_link(shape.link))
 

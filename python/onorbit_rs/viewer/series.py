@@ -11,6 +11,7 @@ import rerun as rr
 
 from onorbit_rs.rotations import roll_pitch_yaw
 from onorbit_rs.units import joint_units
+from onorbit_rs.viewer.letters import shown
 from onorbit_rs.viewer.wrenches import centers_of_bodies, torque_about_center
 
 if TYPE_CHECKING:
@@ -84,7 +85,10 @@ def _of_tools(rows: Rows, model: Model) -> Iterator[Series]:
 
 
 def _of_joints(rows: Rows, model: Model) -> Iterator[Series]:
-    names, units = tuple(model.joint_names), joint_units(joint.kind for joint in model.joints)
+    names, units = (
+        tuple(shown(name) for name in model.joint_names),
+        joint_units(joint.kind for joint in model.joints),
+    )
     if not names:
         return
     title = "Joint torques" if units.effort == "N m" else "Joint efforts"
@@ -127,6 +131,7 @@ def log_style(recording: rr.RecordingStream, series: Series) -> None:
         names=list(series.names),
         colors=[colors[index % len(colors)] for index in range(count)],
         widths=[1.5] * count,
+        aggregation_policy=rr.components.AggregationPolicy.MinMax,  # the mean of chatter is none
     )
     recording.log(series.path, style, static=True, strict=True)
 
