@@ -15,14 +15,15 @@ from recordings import chunks
 from rerun.chunk import RrdReader
 
 import onorbit_rs as oo
-from onorbit_rs import viewer
 from onorbit_rs.viewer.letters import shown
 from onorbit_rs.viewer.screen import command_of
 
 _ROBOT = """<robot name="腕">
-<link name="基"><inertial><mass value="50"/><inertia ixx="3" iyy="4" izz="5" ixy="0" ixz="0" iyz="0"/></inertial>
+<link name="基"><inertial><mass value="50"/>
+<inertia ixx="3" iyy="4" izz="5" ixy="0" ixz="0" iyz="0"/></inertial>
 <visual><geometry><box size="0.6 0.6 0.6"/></geometry></visual></link>
-<link name="連"><inertial><mass value="3"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<link name="連"><inertial><mass value="3"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
 <visual><geometry><box size="0.4 0.1 0.1"/></geometry></visual></link>
 <joint name="関節" type="revolute"><parent link="基"/><child link="連"/><axis xyz="0 0 1"/>
 <limit lower="-2" upper="2" velocity="1" effort="20"/></joint>
@@ -75,7 +76,8 @@ def _texts(path: Path) -> list[str]:
     """All there is in a recording and its blueprint."""
     reader = RrdReader(path)
     found: list[str] = []
-    for chunk in [*chunks(path), *(c for b in reader.blueprints() for c in reader.stream(store=b).to_chunks())]:
+    (blueprint,) = reader.blueprints()
+    for chunk in [*chunks(path), *reader.stream(store=blueprint).to_chunks()]:
         found.append(chunk.entity_path)
         for values in chunk.to_record_batch().columns:
             if "string" in str(values.type):

@@ -1,4 +1,4 @@
-"""Text as the viewer can show it: a letter that its font lacks ends the whole viewer, so it is told by its code."""
+"""Text as the viewer can show it: a letter that its font lacks would end it, and is told by its code."""
 
 from __future__ import annotations
 
