@@ -118,9 +118,11 @@ def test_sliding_joints_slide(tmp_path: Path) -> None:
     model = oo.Model.from_urdf_string(text)
     rates = np.array([0, 0, 0, 0.1, 0.2, 0.3, 0.4, 0.5])
     trace = oo.Simulation(model, model.neutral(), rates, time_step=0.1).run(1.0)
-    plots = {plot.path: plot.unit for plot in series_of(Rows.of_trace(trace), model)}
+    plots = {plot.path: plot.unit for plot in series_of(Rows.of_trace(trace), viewer.Setting(model))}
     units = [plots[f"plots/joint_{name}"] for name in ("torque", "position", "rate")]
-    assert units == ["N m or N", "rad or m", "rad/s or m/s"]
+    assert units == ["N m", "rad", "rad/s"]
+    units = [plots[f"plots/slide_{name}"] for name in ("force", "position", "rate")]
+    assert units == ["N", "m", "m/s"]
     tree = FrameTree(viewer.write_recording(tmp_path / "run.rrd", trace, viewer.Setting(model)))
     for link in model.body_names:
         np.testing.assert_allclose(tree.pose(f"robot/{link}"), model.frame_pose(trace.q, link), atol=SINGLE)

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 WORTH_SHOWING = 1e-3
 """Least momentum, as a share of what the kinetic energy would give to one rigid body, to be drawn."""
 
+ROUNDING = 1e-9
+"""A net force below it, in units of the largest on a body, is none."""
+
 _FIRST_LINE, _LINE_HEIGHT = 0.5, 0.085
 """Of the legend, in sizes of the robot."""
 
@@ -71,6 +74,8 @@ class Arrows:
         centers = centers_of_bodies(rows, self.setting.model)
         for effect, hue in hues(rows.wrenches).items():
             wrenches, path, name = rows.wrenches[effect], f"world/arrows/{effect}", effect.replace("_", " ")
+            if 0.0 < ROUNDING * _peak(wrenches[:, :, :3]) > _peak(wrenches[:, :, :3].sum(axis=1)):
+                name = f"differential {name}"  # of a robot that is carried: less what all bodies share
             force = _Kind(f"{path}/force", f"{name} force", "N", hue.full)
             torque = _Kind.of_turning(f"{path}/torque", f"{name} torque", "N m", hue.pale)
             self._send(rows, force, centers, wrenches[:, :, :3])

@@ -73,7 +73,7 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
     notes += about_meshes(setting.model)
     recording = new_recording(setting)
     encoded = Encoded(recording)
-    plots = list(series_of(rows, setting.model))
+    plots = list(series_of(rows, setting))
     stage = open_stage(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
     for series in plots:
         send_series(recording, rows, series)
