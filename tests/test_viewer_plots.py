@@ -1,4 +1,4 @@
-"""Plots tell numbers: units that fit, two ticks at least, a colour for one line alone, no rounding for a signal."""
+"""Plots tell numbers: units that fit, two ticks, a colour for one line alone, no rounding for a signal."""
 
 from __future__ import annotations
 
