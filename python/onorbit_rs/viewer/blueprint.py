@@ -27,7 +27,10 @@ PLAYS_IN_S = 40.0
 
 _SPACE = (12, 14, 20)
 
-_LARGE = ("arrows", "axes/base", "axes/inertial", "axes/lvlh", "flight")
+_LARGE = ("arrows", "axes", "flight")
+_SOLID, _HIDDEN = ("robot", "target"), 0.02
+"""What a shorter path, in sizes of the robot, would be hidden in or behind."""
+
 _TRAILS_UNTIL_NOW: dict[Any, Any] = dict.fromkeys(TRAILS.values(), UNTIL_NOW)
 
 
@@ -45,7 +48,7 @@ def layout(
     axes = "W (inertial axes)" if rows.quat_wl is None else "L (local orbital frame)"
     robot = rrb.Spatial3DView(
         origin="world",
-        contents=["$origin/**", "- $origin/flight/**"],
+        contents=["$origin/**", "- $origin/flight/**", "- $origin/near/**"],
         name=f"{setting.robot}: the eye follows the base, axes of {axes}",
         spatial_information=rrb.SpatialInformation(FOLLOW, show_axes=False),
         eye_controls=stage.eye(),
@@ -60,7 +63,7 @@ def layout(
         below.append(flight_view(rows, setting))
     if has_notes:
         below.append(rrb.TextDocumentView(origin="notes", name="Notes"))
-    close_up = _close_up(rows, setting, stage) if "reference_pose" in rows and not is_live else None
+    close_up = near_path(rows, setting, stage) if "reference_pose" in rows and not is_live else None
     top = robot if close_up is None else rrb.Tabs(robot, close_up, active_tab=0)
     left = rrb.Vertical(top, rrb.Horizontal(*below), row_shares=[5, 3]) if below else top
     return rrb.Blueprint(
@@ -78,7 +81,7 @@ def layout(
     )
 
 
-def _close_up(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
+def near_path(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
     """The path of the tool from near, in the frame in which it is drawn; None where it goes nowhere."""
     points, frame = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
     low, high = points.min(axis=0), points.max(axis=0)
@@ -86,10 +89,12 @@ def _close_up(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
     if length < MOVES * stage.size:
         return None
     center = (low + high) / 2.0
+    is_short = length < _HIDDEN * stage.size
+    left_out = (*_LARGE, *_SOLID) if is_short else _LARGE
     return rrb.Spatial3DView(
         origin="world",
-        contents=["$origin/**", *(f"- /world/{part}/**" for part in _LARGE)],
-        name="Tool and its path",
+        contents=["$origin/**", *(f"- /world/{part}/**" for part in left_out)],
+        name="Path of the tool, without the robot" if is_short else "Tool and its path",
         spatial_information=rrb.SpatialInformation(frame, show_axes=False),
         eye_controls=rrb.EyeControls3D(
             position=center + 2.2 * length * np.array([0.5, -0.75, 0.45]), look_target=center,

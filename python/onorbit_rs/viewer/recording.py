@@ -25,12 +25,12 @@ from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, se
 from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.scene import (
     MOST_TRAIL_PIECES,
+    NEAR,
     log_path,
     log_robot,
     path_length,
     send_desired,
     send_trails,
-    tool_axes,
 )
 from onorbit_rs.viewer.series import Series, log_style, send_series, series_of
 from onorbit_rs.viewer.stage import Stage
@@ -122,7 +122,7 @@ def open_stage(
     in_orbit = rows.quat_wl is not None
     log_all_axes(
         recording, setting, stage.size, (stage.inertial_at, stage.local_at),
-        tool_length=tool_axes(stage.size, path_length(rows, setting)), in_orbit=in_orbit,
+        near=NEAR * path_length(rows, setting), in_orbit=in_orbit,
         has_reference="reference_pose" in rows,
     )  # fmt: skip
     log_targets(recording, setting, stage.size)

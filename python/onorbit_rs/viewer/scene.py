@@ -34,8 +34,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 MOST_TRAIL_PIECES = 1000
-MOVES = 0.02
+MOVES = 1e-3
 """A tool that should go less far, in sizes of the robot, holds its pose."""
+
+NEAR = 0.25
+"""Length of axes seen from near, in lengths of the path."""
 
 COLORS = {"desired": (240, 240, 240), "obtained": (255, 96, 64)}
 TRAILS = {name: f"world/tool/{name}/trail" for name in COLORS}
@@ -78,16 +81,10 @@ def log_path(recording: rr.RecordingStream, rows: Rows, setting: Setting, size: 
     put_in(recording, path, frame)
     line = rr.LineStrips3D([_thinned(points)], colors=[color], radii=rr.Radius.ui_points(1.2))
     recording.log(path, line, static=True, strict=True)
-    length = path_length(rows, setting)
-    if length > MOVES * size:
+    if (length := path_length(rows, setting)) > MOVES * size:
         pose_wp = _pose_of_path_frame(rows, setting)
         fix_frame(recording, frame, GOAL, np.linalg.inv(pose_wp) @ rows["reference_pose"][-1])
-        log_axes(recording, "world/tool/desired/goal", GOAL, tool_axes(size, length), brightness=0.6)
-
-
-def tool_axes(size: float, path_m: float) -> float:
-    """Length of the axes at a tool: small beside the robot and beside its path, m."""
-    return min(0.14 * size, 0.35 * path_m) if path_m > MOVES * size else 0.14 * size
+        log_axes(recording, "world/tool/desired/goal", GOAL, NEAR * length, brightness=0.6)
 
 
 def send_trails(recording: rr.RecordingStream, rows: Rows, setting: Setting, most: int, *names: str) -> None:

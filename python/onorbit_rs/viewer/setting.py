@@ -66,7 +66,7 @@ class Setting:
         return self.model.body_names[0]
 
     def extent(self, q: Floats) -> tuple[Floats, float]:
-        """Centre and size of the robot in a configuration, axes of the base, m."""
+        """Centre and size of the robot in all of some configurations (k, 7 + n), axes of the base, m."""
         at_origin = q.copy()
-        at_origin[:7] = [0, 0, 0, 0, 0, 0, 1]
+        at_origin[:, :7] = [0, 0, 0, 0, 0, 0, 1]
         return extent(self.model, self.shapes, at_origin)
