@@ -228,6 +228,11 @@ def test_what_is_refused(dual: oo.Model, q: Any) -> None:
         at_rest(dual, q, [right], reference=hold)
     with pytest.raises(ControlError, match="'position', 'velocity' and 'effort'"):
         oo.JointPid(interface="positon")  # type: ignore[arg-type]
+    for interface in ("position", "velocity"):  # its limits are no gains
+        with pytest.raises(ControlError, match=f"interface {interface} without gains does nothing: give 'p'"):
+            oo.JointPid(interface=interface, effort_limit=3.0)  # type: ignore[arg-type]
+    oo.JointPid(interface="effort")
+    oo.JointPid(p=0.0)  # asked for
     with pytest.raises(ControlError, match="negative"):
         oo.JointComputedTorque(kp=-1)
     with pytest.raises(ShapeError, match="one number of joints"):

@@ -15,8 +15,10 @@ from onorbit_rs.exceptions import (
     EarthError,
     EffectError,
     InputError,
+    NotFoundError,
     OnOrbitError,
     OrbitError,
+    ReadError,
     ScenarioError,
 )
 from onorbit_rs.scenario import load
@@ -90,6 +92,17 @@ def test_lists_are_asked_for_by_name() -> None:
         oo.propagate([ORBIT], [0.0], out=out)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="threads is -1, it must be at least 1; leave it out"):
         oo.propagate([ORBIT], [0.0], threads=-1)
+
+
+def test_tables_that_are_not_there_are_told_without_the_words_of_the_system(tmp_path: Path) -> None:
+    for what, read in (
+        ("space weather table", lambda path: oo.Nrlmsise00(table=path)),
+        ("Earth-orientation table", lambda path: oo.Earth("2024-03-01T12:00:00 UTC", eop=path)),
+    ):
+        with pytest.raises(NotFoundError, match=rf"none\.csv: there is no such {what}$"):
+            read(tmp_path / "none.csv")
+        with pytest.raises(ReadError, match=rf"the {what} cannot be read: is a directory$"):
+            read(tmp_path)
 
 
 def test_messages_name_the_file(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.exceptions import GravityError
+from onorbit_rs.exceptions import GravityError, NotFoundError, ReadError
 from onorbit_rs.validation import fields as typed
 from onorbit_rs.validation import gravity
 from onorbit_rs.validation.case import table
@@ -73,8 +73,17 @@ def test_a_gfc_file_is_read_and_a_broken_one_refused(tmp_path: Path) -> None:
     with pytest.raises(GravityError, match=r"tiny.gfc:10: 'gfc 2 1 0' is no row") as row:
         oo.GravityField.from_gfc(write([*rows[:2], "gfc 2 1 0", rows[3]]))
     assert row.value.line == 10
-    with pytest.raises(GravityError, match="cannot read"):
+
+
+def test_a_file_of_a_field_that_cannot_be_read(tmp_path: Path) -> None:
+    with pytest.raises(NotFoundError, match=r"none\.gfc: there is no such file$") as missing:
         oo.GravityField.from_gfc(tmp_path / "none.gfc")
+    assert missing.value.path == str(tmp_path / "none.gfc")
+    with pytest.raises(ReadError, match=r"cannot be read: is a directory$"):
+        oo.GravityField.from_gfc(tmp_path)
+    (tmp_path / "latin.gfc").write_bytes(b"modelname T\xfcbingen")
+    with pytest.raises(ReadError, match="not UTF-8"):
+        oo.GravityField.from_gfc(tmp_path / "latin.gfc")
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import OrbitError, ScenarioError
+from onorbit_rs.planet import is_earth
 
 # Lobatto collocation with 16 nodes in numpy's longdouble, 160 steps a day; start: GMAT's case leo_1day
 R0, V0 = np.array([-2436450.0, -2436450.0, 6891037.0]), np.array([5088.611, -5088.611, 0.0])
@@ -76,6 +77,18 @@ def test_a_scenario_coasts_on_it() -> None:
     assert np.allclose(trace.position_eci, free, rtol=0, atol=1e-5)
     with pytest.raises(ScenarioError, match="secular_j2"):
         oo.Scenario(**SCENARIO, orbit=orbit | {"secular_j2": True})
+
+
+@pytest.mark.parametrize("share", [0.9899, 0.9901, 0.999, 4e14 / oo.MU_EARTH, 1.0, 1.0099, 1.0101])
+def test_pictures_and_engine_know_one_earth(share: float) -> None:
+    """6000 km from its centre the Earth is ground; of other planets nobody knows."""
+    mu = share * oo.MU_EARTH
+    is_ground = False
+    try:
+        oo.Numerical([6e6, 0.0, 0.0], [0.0, 8e3, 0.0], mu=mu)
+    except OrbitError:
+        is_ground = True
+    assert is_ground == is_earth(mu) == (abs(share - 1.0) < 0.01)
 
 
 def test_secular_rates_are_an_option_of_kepler() -> None:

@@ -146,19 +146,28 @@ def test_an_interrupted_run_keeps_its_trace(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["status"] == "interrupted"
 
 
-def raising(tmp_path: Path, what: str) -> dict[str, Any]:
-    """A scenario whose controller raises at its fourth call."""
+def raising(tmp_path: Path, what: str, when: str = "t > 0.005") -> dict[str, Any]:
+    """A scenario whose controller raises at some time."""
     (tmp_path / "mine.py").write_text(f"""
+import pathlib
 import numpy as np
 import onorbit_rs
 class Raises(onorbit_rs.Controller):
     def update(self, t, state):
-        if t > 0.005:
+        if {when}:
             raise {what}
         return np.zeros(len(state.joints))
 """)
     control = {"kind": "python", "file": str(tmp_path / "mine.py"), "class": "Raises"}
     return short_reach() | {"controller": control}
+
+
+def test_an_error_before_the_first_row_is_itself(tmp_path: Path) -> None:
+    """Of the run alone: the step that is tried before the folder is made goes well."""
+    begun = f"pathlib.Path({str(tmp_path / 'out')!r}).exists()"
+    with pytest.raises(RuntimeError, match="mine"):
+        oo.run(raising(tmp_path, "RuntimeError('mine')", begun), out=tmp_path / "out", quiet=True)
+    assert [file.name for file in (tmp_path / "out").iterdir()] == ["scenario.yaml"]
 
 
 @pytest.mark.parametrize("end", ["RuntimeError", "RunInterrupted", "SimulationError"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs.exceptions import ModelError
 
 EARTH = oo.Earth("2024-03-01T12:00:00 UTC")
 BALL = oo.Cannonball(1.5, drag_coefficient=2.0, reflectivity=1.3)
@@ -83,6 +85,29 @@ def test_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     built = oo.ModelBuilder("built", base="base", mass=1.0, inertia=np.eye(3)).build()
     with pytest.raises(TypeError, match="link by link"):
         pickle.dumps(built)
+
+
+def test_a_robot_does_not_come_back_as_another(tmp_path: Path) -> None:
+    file = tmp_path / "arm.urdf"
+    file.write_text(oo.robots.path("humanoid_torso").read_text())
+    model = oo.Model.from_urdf(file)
+    sent = pickle.dumps(model)
+    file.write_text(file.read_text().replace('rgba="0.', 'rgba="0.1'))  # colours are no other robot
+    pickle.loads(sent)
+    file.write_text(file.read_text().replace('<mass value="', '<mass value="1'))
+    with pytest.raises(ModelError, match=r"arm\.urdf .* was changed since; put it back, or load") as caught:
+        pickle.loads(sent)
+    assert back(caught.value).path == str(file)
+    with pytest.raises(ModelError, match="was changed since"):
+        pickle.dumps(model)  # nor is it sent: a worker of a pool that fails to read it would end in silence
+
+
+def test_a_robot_is_odd_once() -> None:
+    with pytest.warns(UserWarning, match="triangle"):
+        odd = oo.Model.rigid_body(1.0, np.diag([5.0, 1.0, 1.0]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert back(odd).warnings == odd.warnings != []
 
 
 def test_surfaces_are_kept_as_they_were_given() -> None:

@@ -16,7 +16,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs import robots
-from onorbit_rs.exceptions import ModelError, NotFoundError
+from onorbit_rs.exceptions import ModelError, NotFoundError, SimulationError
 from onorbit_rs.output.read import read_trace
 from onorbit_rs.scenario import load
 
@@ -93,6 +93,36 @@ def test_runs_come_back_from_processes() -> None:
         assert oo.compare(here, there, tolerance=1e-300).agrees
         assert there.model.joint_names == here.model.joint_names
         assert there.summary["certificate_passed"] and there.scenario.resolved() == scenario.resolved()
+
+
+def test_an_error_brings_the_rows_so_far_along() -> None:
+    data = load("free_tumble").resolved()
+    data["environment"] = [
+        {"kind": "body_wrench", "body": "torso", "force": [0, 0, 0], "torque": [1e9, 1e9, 0]}
+    ]
+    data["simulation"] = {"duration": 10.0, "time_step": 0.1}
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        error = pool.submit(oo.run, data).exception()
+    assert (
+        isinstance(error, SimulationError) and error.time > 0.0 and str(error).startswith("the run diverged")
+    )
+    assert error.trace.time[-1] <= error.time and error.trace.q.shape[1] == len(error.q)
+    assert not error.trace.is_complete
+
+
+class Fails(oo.Controller):
+    def update(self, t: float, state: Any) -> Any:
+        raise ArithmeticError("mine")
+
+
+def test_an_error_before_the_first_row_travels_too() -> None:
+    model = robots.load("humanoid_torso")
+    simulation = oo.Simulation(model, model.neutral(), np.zeros(model.nv), controller=Fails())
+    with pytest.raises(ArithmeticError, match="mine") as caught:
+        simulation.run(0.1)
+    here, there = caught.value.trace, pickle.loads(pickle.dumps(caught.value)).trace
+    assert len(here) == len(there) == 0 and here.time is there.time is None
+    same(here, there)
 
 
 TORSO = robots.path("humanoid_torso").read_text()

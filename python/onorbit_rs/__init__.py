@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import copyreg
 import importlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from onorbit_rs import exceptions, relative, robots, scenarios
 from onorbit_rs._core import (
@@ -172,7 +172,7 @@ if not TYPE_CHECKING:  # or every misspelt name would have a type
         return found
 
 
-def _reduced(trace: Trace) -> tuple[object, ...]:
+def _reduced(trace: Trace) -> tuple[Any, ...]:
     """How a trace pickles; what of it travels is numpy's, and loaded when the first one does."""
     from onorbit_rs.output.travel import reduced
 

@@ -87,16 +87,11 @@ class _Fields(BaseException):
         return self.message
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_rebuild, (type(self), self.message, _picklable(self.__dict__)))
+        return (_rebuild, (type(self), self.message, self.__dict__))
 
 
 def _rebuild(cls: type[_Fields], message: str, fields: dict[str, Any]) -> _Fields:
     return cls(message, **{name: value for name, value in fields.items() if name != "message"})
-
-
-def _picklable(fields: dict[str, Any]) -> dict[str, Any]:
-    """Fields without the trace: a pickled error travels between processes, a trace stays where it is."""
-    return {name: value for name, value in fields.items() if name != "trace"}
 
 
 class OnOrbitError(_Fields, Exception):
@@ -218,7 +213,7 @@ class ControlError(OnOrbitError, ValueError):
 
 
 class SimulationError(OnOrbitError, ArithmeticError):
-    """The run diverged; ``trace`` holds what was recorded until then (it does not pickle)."""
+    """The run diverged; ``trace`` holds what was recorded until then."""
 
     time: Any = None
     q: Any = None
@@ -309,7 +304,7 @@ class ViewerError(OnOrbitError, RuntimeError):
 
 
 class RunInterrupted(_Fields, KeyboardInterrupt):
-    """Ctrl-C during a run; ``trace`` holds the run so far (it does not pickle)."""
+    """Ctrl-C during a run; ``trace`` holds the run so far."""
 
     time: Any = None
     trace: Any = None

@@ -43,7 +43,7 @@ def finished(
 def keep_failed(error: Exception, built: Built, folder: OutputFolder | None) -> None:
     """Write the rows there are of a run that ended by an error other than its own divergence, and note it."""
     trace = getattr(error, "trace", None)
-    if folder is None or trace is None or len(trace.time) == 0:
+    if folder is None or trace is None or len(trace) == 0:
         return
     try:
         _write_rows(trace, "failed", built, folder)
@@ -81,7 +81,7 @@ def _keep_rows(
     tell: Callable[[str], None],
 ) -> None:
     """The folder of a run that stopped early."""
-    if stop.trace is None or len(stop.trace.time) == 0:
+    if stop.trace is None or len(stop.trace) == 0:
         folder.discard()
         return
     diverged = isinstance(stop, SimulationError)

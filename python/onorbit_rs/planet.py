@@ -9,5 +9,5 @@ EARTH_RADIUS_KM, EARTH_FLATTENING = 6378.137, 1.0 / 298.257
 
 
 def is_earth(mu: float | None) -> bool:
-    """Whether a planet of this ``mu``, m³/s², is the Earth: within 1 %, as a rounded 4e14 is."""
+    """Whether a planet of this ``mu``, m³/s², is the Earth: to 1 %, as a rounded 4e14 and in the engine."""
     return mu is not None and abs(mu / MU_EARTH - 1.0) < 1e-2

@@ -8,7 +8,7 @@ use onorbit_core::batch::{
     Evaluator, InputError, Kernel, Rollout, RolloutControl, Rows, Times, Wrenches, kepler_states, propagate,
 };
 use onorbit_core::control::ComputedTorque;
-use onorbit_core::model::Model;
+use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};
 use onorbit_core::orbit::{Elements, Kepler, Orbit, OrbitError, Size, StateRows};
 use onorbit_core::reference::{Hold, TaskReference};
 use onorbit_core::simulation::Integrator;
@@ -80,11 +80,23 @@ fn frames_the_robot_does_not_have_are_refused() {
     assert_eq!(error, InputError::UnknownFrame { frame: usize::MAX, count });
 }
 
+/// A base of this mass, kg, with one arm.
+fn with_base_of(mass: f64) -> Model {
+    let mut random = Random::new(7);
+    let base = Link::new("base", Some(Inertial { mass, ..random.inertial() }));
+    let mut builder = ModelBuilder::new("two", base).unwrap();
+    let joint = Joint::new("joint", JointKind::Revolute(random.vector()), random.pose());
+    builder.add("base", joint, Link::new("arm", Some(random.inertial()))).unwrap();
+    builder.build().unwrap()
+}
+
 #[test]
 fn one_state_is_one_state_of_any_robot() {
     let (small, large) = (random_model(3, 4), random_model(5, 9));
+    let heavier = with_base_of(5.0); // two as long as each other, whose bases alone differ
+    let lighter = with_base_of(2.0);
     let mut evaluator = Evaluator::new(&small);
-    for model in [&large, &small] {
+    for model in [&large, &small, &heavier, &lighter] {
         let (q, v) = random_state(model, &mut Random::new(30));
         let inputs = [Rows { data: &q, width: model.nq() }, Rows { data: &v, width: model.nv() }];
         let (mut one, mut same) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);

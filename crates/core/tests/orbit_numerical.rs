@@ -58,11 +58,11 @@ fn it_names_the_field_it_obeys_and_kepler_does_not() {
 fn an_orbit_that_enters_the_planet_ends_there_and_says_when() {
     let (kepler, numerical) = both(ellipse(7e6, 0.6));
     let failure = (0..10_000).map(f64::from).find_map(|t| numerical.state(t).err()).expect("it falls");
-    let OrbitError::BelowSurface { time, distance, smallest_radius } = failure.clone() else {
+    let OrbitError::BelowSurface { time, distance, minimum } = failure.clone() else {
         panic!("{failure}");
     };
     let there = kepler.state(time).expect("a state").position.norm();
-    assert!(distance < smallest_radius && smallest_radius - there < 1.0, "{there} {smallest_radius}");
+    assert!(distance < minimum && minimum - there < 1.0, "{there} {minimum}");
     // later times say the same, earlier ones remain
     assert_eq!(numerical.state(1e6).expect_err("it fell"), failure);
     assert!(numerical.state(time - 1.0).is_ok());

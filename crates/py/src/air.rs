@@ -2,7 +2,7 @@
 
 use crate::arrays::{Input, fresh, wrong_shape, zeros};
 use crate::earth::PyEarth;
-use crate::errors::{IntoPython, fields, in_file, plain, raise};
+use crate::errors::{IntoPython, fields, in_file, plain, raise, unreadable};
 use crate::made::{Made, absolute};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::atmosphere::{
@@ -264,12 +264,8 @@ fn activity(ap: Any<'_, '_>) -> PyResult<MagneticActivity> {
 }
 
 fn read_table(py: Python<'_>, path: &std::path::Path, three_hourly: bool) -> PyResult<SpaceWeatherTable> {
-    let text = std::fs::read_to_string(path).map_err(|error| {
-        let is_missing = error.kind() == std::io::ErrorKind::NotFound;
-        let class = if is_missing { "NotFoundError" } else { "ReadError" };
-        let message = format!("{}: the space weather table cannot be read: {error}", path.display());
-        raise(py, class, &message, &fields!(py, "path": path, "kind": "space weather"))
-    })?;
+    let text =
+        std::fs::read_to_string(path).map_err(|error| unreadable(py, path, "space weather table", &error))?;
     let table = SpaceWeatherTable::from_csv(&text)
         .map_err(|error| in_file(py, path, error))?
         .named(format!("the table {}", path.display()));

@@ -4,28 +4,54 @@ use crate::errors::{fields, raise, shape_error};
 use numpy::{
     IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
+use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
-use pyo3::types::{PyString, PyTuple};
+use pyo3::types::{PyBool, PyString, PyTuple};
 use pyo3::{PyClass, PyTypeInfo};
 
-/// A whole number that is not negative.
-#[derive(Clone, Copy)]
-pub(crate) struct Count(pub(crate) usize);
-
-impl<'py> FromPyObject<'_, 'py> for Count {
-    type Error = PyErr;
-
-    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        match value.extract::<i64>() {
-            Ok(count) => usize::try_from(count).map(Self).map_err(|_| {
-                let py = value.py();
-                let message =
-                    format!("{count} is no number of steps or rows: a whole number of at least 0 is needed");
-                raise(py, "InputError", &message, &fields!(py, "got": count, "expected": "at least 0"))
-            }),
-            Err(error) => Err(error),
+/// A whole number; no float, no truth value and no text stands for one.
+pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
+    let py = value.py();
+    let number = if value.is_instance_of::<PyBool>() { None } else { Some(value.extract::<i64>()) };
+    match number {
+        Some(Ok(number)) => Ok(number),
+        Some(Err(error)) if error.is_instance_of::<PyOverflowError>(py) => {
+            let (limit, got) = (i64::MAX, value.str());
+            let got = got.map_or_else(|_| "of thousands of digits".to_owned(), |got| got.to_string());
+            let message = format!("{name} is {got}, no count goes beyond {limit}");
+            Err(raise(
+                py,
+                "InputError",
+                &message,
+                &fields!(py, "name": name, "got": value, "expected": limit),
+            ))
+        }
+        _ => {
+            let got = value.get_type().name().map_or_else(|_| "object".to_owned(), |got| got.to_string());
+            let message = format!("{name} is of type {got}, a whole number (int) is needed");
+            Err(raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": "int")))
         }
     }
+}
+
+/// A whole number of at least `least`; `hint` ends what is said of a smaller one.
+fn count(value: &Bound<'_, PyAny>, name: &str, least: usize, hint: &str) -> PyResult<usize> {
+    let number = whole(value, name)?;
+    usize::try_from(number).ok().filter(|count| *count >= least).ok_or_else(|| {
+        let (py, expected) = (value.py(), format!("at least {least}"));
+        let message = format!("{name} is {number}, it must be {expected}{hint}");
+        raise(py, "InputError", &message, &fields!(py, "name": name, "got": number, "expected": expected))
+    })
+}
+
+/// How many steps to take.
+pub(crate) fn steps(value: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count(value, "steps", 0, "")
+}
+
+/// Steps from one recorded row to the next.
+pub(crate) fn record_every(value: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count(value, "record_every", 1, " step")
 }
 
 /// How many threads to run on.
@@ -36,13 +62,7 @@ impl<'py> FromPyObject<'_, 'py> for Threads {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        let count = value.extract::<i64>()?;
-        usize::try_from(count).ok().filter(|count| *count > 0).map(Self).ok_or_else(|| {
-            let py = value.py();
-            let message = format!("threads is {count}, it must be at least 1; leave it out for all cores");
-            let fields = fields!(py, "name": "threads", "got": count, "expected": "at least 1");
-            raise(py, "InputError", &message, &fields)
-        })
+        count(&value, "threads", 1, "; leave it out for all cores").map(Self)
     }
 }
 

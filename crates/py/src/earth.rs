@@ -1,7 +1,7 @@
 //! The turning Earth, and the sky above it.
 
 use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
-use crate::errors::{IntoPython, fields, in_file, raise};
+use crate::errors::{IntoPython, fields, in_file, raise, unreadable};
 use crate::orbit::times;
 use onorbit_core::earth::{
     Axes, Earth, EarthError, EarthParameters, Epoch, Kernel, KernelSegment, ROTATION_RATE,
@@ -262,13 +262,8 @@ fn instant(epoch: Any<'_, '_>) -> PyResult<Epoch> {
 fn table_of(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
     let py = eop.py();
     if let Ok(path) = eop.extract::<PathBuf>() {
-        let text = std::fs::read_to_string(&path).map_err(|error| {
-            let (is_missing, path) =
-                (error.kind() == std::io::ErrorKind::NotFound, path.display().to_string());
-            let class = if is_missing { "NotFoundError" } else { "ReadError" };
-            let message = format!("the Earth-orientation table {path} cannot be read: {error}");
-            raise(py, class, &message, &fields!(py, "path": path, "kind": "Earth-orientation table"))
-        })?;
+        let text = std::fs::read_to_string(&path)
+            .map_err(|error| unreadable(py, &path, "Earth-orientation table", &error))?;
         return EarthParameters::read(&text).map_err(|error| in_file(py, &path, error));
     }
     let rows = Input::new(eop, "eop")?;

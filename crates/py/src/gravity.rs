@@ -1,6 +1,6 @@
 //! The gravity of a run: its planet's field among the effects.
 
-use crate::arrays::{Input, fresh, shape_text, wrong_shape, zeros};
+use crate::arrays::{Input, fresh, shape_text, whole, wrong_shape, zeros};
 use crate::environment::PyEffect;
 use crate::errors::{IntoPython, fields, plain, raise};
 use onorbit_core::earth::{Earth, EarthError};
@@ -81,13 +81,16 @@ impl PyGravityField {
     fn new(
         py: Python<'_>,
         model: &str,
-        degree: i64,
-        order: Option<i64>,
+        #[pyo3(from_py_with = degree_of)] degree: usize,
+        #[pyo3(from_py_with = order_of)] order: Option<usize>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let keywords = fields!(py, "model": model, "degree": degree, "order": order);
-        let degree = whole(py, "degree", degree)?;
-        let order = order.map_or(Ok(degree), |order| whole(py, "order", order))?;
-        Self::wrap(py, GravityField::bundled(model, degree, order), "GravityField", &keywords)
+        Self::wrap(
+            py,
+            GravityField::bundled(model, degree, order.unwrap_or(degree)),
+            "GravityField",
+            &keywords,
+        )
     }
 
     /// Zonal harmonics alone, in closed form: ``J2`` to ``J<degree>`` of the Earth (EGM2008), ``degree`` 2 to 6; or those in
@@ -96,7 +99,7 @@ impl PyGravityField {
     #[pyo3(signature = (degree=None, *, j=None, mu=None, radius=None))]
     fn zonal<'py>(
         py: Python<'py>,
-        degree: Option<i64>,
+        #[pyo3(from_py_with = some_degree)] degree: Option<usize>,
         j: Option<Any<'_, 'py>>,
         mu: Option<f64>,
         radius: Option<f64>,
@@ -104,7 +107,7 @@ impl PyGravityField {
         let (field, keywords) = match (degree, j, mu, radius) {
             (degree, None, None, None) => {
                 let degree = degree.unwrap_or(6);
-                (GravityField::zonal(whole(py, "degree", degree)?), fields!(py, "degree": degree))
+                (GravityField::zonal(degree), fields!(py, "degree": degree))
             }
             (None, Some(j), Some(mu), Some(radius)) => {
                 let input = Input::new(j, "j")?;
@@ -130,12 +133,10 @@ impl PyGravityField {
     fn from_gfc<'py>(
         py: Python<'py>,
         path: PathBuf,
-        degree: Option<i64>,
-        order: Option<i64>,
+        #[pyo3(from_py_with = some_degree)] degree: Option<usize>,
+        #[pyo3(from_py_with = order_of)] order: Option<usize>,
     ) -> PyResult<Bound<'py, Self>> {
         let keywords = fields!(py, "path": &path, "degree": degree, "order": order);
-        let degree = degree.map(|degree| whole(py, "degree", degree)).transpose()?;
-        let order = order.map(|order| whole(py, "order", order)).transpose()?;
         Bound::new(
             py,
             Self::wrap(py, GravityField::from_gfc(&path, degree, order), "GravityField.from_gfc", &keywords)?,
@@ -153,8 +154,8 @@ impl PyGravityField {
         s: Any<'_, 'py>,
         mu: f64,
         radius: f64,
-        degree: Option<i64>,
-        order: Option<i64>,
+        #[pyo3(from_py_with = some_degree)] degree: Option<usize>,
+        #[pyo3(from_py_with = order_of)] order: Option<usize>,
     ) -> PyResult<Bound<'py, Self>> {
         let keywords = fields!(
             py, "c": c, "s": s, "mu": mu, "radius": radius, "degree": degree, "order": order,
@@ -166,8 +167,8 @@ impl PyGravityField {
                 return Err(wrong_shape(py, name, &shape_text(&[size, size]), input.shape()));
             }
         }
-        let degree = degree.map_or(Ok(size - 1), |degree| whole(py, "degree", degree))?;
-        let order = order.map_or(Ok(degree), |order| whole(py, "order", order))?;
+        let degree = degree.unwrap_or(size - 1);
+        let order = order.unwrap_or(degree);
         let field = Coefficients::new("coefficients", mu, radius, size - 1, c.data(), s.data())
             .and_then(|coefficients| GravityField::new(&coefficients, degree, order));
         Bound::new(py, Self::wrap(py, field, "GravityField.from_coefficients", &keywords)?)
@@ -247,10 +248,22 @@ impl PyGravityField {
     }
 }
 
-/// A degree or an order.
-fn whole(py: Python<'_>, name: &str, value: i64) -> PyResult<usize> {
-    usize::try_from(value).map_err(|_| {
-        let message = format!("{name} is {value}, it must be zero or positive");
-        raise(py, "GravityError", &message, &fields!(py, "name": name, "got": value))
+fn degree_of(value: Any<'_, '_>) -> PyResult<usize> {
+    degree_or_order(value, "degree")
+}
+
+fn some_degree(value: Any<'_, '_>) -> PyResult<Option<usize>> {
+    if value.is_none() { Ok(None) } else { degree_of(value).map(Some) }
+}
+
+fn order_of(value: Any<'_, '_>) -> PyResult<Option<usize>> {
+    if value.is_none() { Ok(None) } else { degree_or_order(value, "order").map(Some) }
+}
+
+fn degree_or_order(value: Any<'_, '_>, name: &str) -> PyResult<usize> {
+    let number = whole(value, name)?;
+    usize::try_from(number).map_err(|_| {
+        let message = format!("{name} is {number}, it must be zero or positive");
+        raise(value.py(), "GravityError", &message, &fields!(value.py(), "name": name, "got": number))
     })
 }

@@ -18,6 +18,20 @@ impl Made {
     pub(crate) fn again<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
         Ok((py.import("onorbit_rs.rebuild")?.getattr("rebuild")?, self.0.clone_ref(py)))
     }
+
+    /// What `__reduce__` of a robot returns: its file may be another by the time it is read again. It is read here
+    /// once, too: what is refused where it is sent is told, an error on arrival stops a worker of a pool in silence.
+    pub(crate) fn robot_again<'py>(
+        &self,
+        robot: &Bound<'py, PyAny>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let py = robot.py();
+        let print = py.import("onorbit_rs.robots.fingerprint")?.call_method1("fingerprint", (robot,))?;
+        let rebuild = py.import("onorbit_rs.rebuild")?.getattr("rebuild_robot")?;
+        let arguments = self.0.bind(py).add((print,))?;
+        rebuild.call1(arguments.cast::<PyTuple>()?)?;
+        Ok((rebuild, arguments))
+    }
 }
 
 /// A path that means the same in another folder.

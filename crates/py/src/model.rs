@@ -121,9 +121,9 @@ impl PyModel {
         Self::wrap(py, model, Some(Made::by("Model.rigid_body", &keywords)?))
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
-        match &self.made {
-            Some(made) => made.again(py),
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        match &slf.get().made {
+            Some(made) => made.robot_again(slf),
             None => Err(PyTypeError::new_err(
                 "a model built link by link does not pickle: build it where it is needed, or write it as URDF",
             )),

@@ -1,6 +1,6 @@
 //! Many runs at once.
 
-use crate::arrays::{Count, Input, Threads, shape_text, wrong_shape};
+use crate::arrays::{self, Input, Threads, shape_text, steps, wrong_shape};
 use crate::control::PyComputedTorque;
 use crate::errors::{IntoPython, fields, plain, raise};
 use crate::model::PyModel;
@@ -31,18 +31,18 @@ pub(crate) fn rollout<'py>(
     model: &PyModel,
     q0: Any<'_, 'py>,
     v0: Any<'_, 'py>,
-    steps: Count,
+    #[pyo3(from_py_with = steps)] steps: usize,
     time_step: f64,
     tau: Option<Any<'_, 'py>>,
     controller: Option<Any<'_, 'py>>,
     reference: Option<Any<'_, 'py>>,
     integrator: &str,
-    record_every: Option<Count>,
+    record_every: Option<Any<'_, 'py>>,
     threads: Option<Threads>,
     out: Option<Any<'_, 'py>>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let core = &*model.model;
-    let (steps, record_every) = (steps.0, record_every.map(|count| count.0));
+    let record_every = record_every.map(arrays::record_every).transpose()?;
     let (q0, v0) = (Input::new(q0, "q0")?, Input::new(v0, "v0")?);
     let batch = batch_of(py, &q0, "q0", core.nq())?;
     if batch_of(py, &v0, "v0", core.nv())? != batch {
@@ -56,9 +56,6 @@ pub(crate) fn rollout<'py>(
     if !(time_step.is_finite() && time_step > 0.0) {
         let message = format!("time_step is {time_step} s, it must be positive and finite");
         return Err(raise(py, "InputError", &message, &fields!(py, "name": "time_step", "got": time_step)));
-    }
-    if record_every == Some(0) {
-        return Err(plain(py, "InputError", "record_every is 0, it must be at least 1 step"));
     }
     let tau = tau.map(|tau| Input::new(tau, "tau")).transpose()?;
     let inputs: Vec<Input<'py>> = [q0, v0].into_iter().chain(tau).collect();

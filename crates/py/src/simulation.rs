@@ -1,6 +1,6 @@
 //! Runs.
 
-use crate::arrays::{Input, fixed, wrong_shape};
+use crate::arrays::{Input, fixed, record_every, wrong_shape};
 use crate::checkpoint::{Keeper, PyCheckpoint};
 use crate::control::{Robot, control_law};
 use crate::earth::PyEarth;
@@ -75,7 +75,7 @@ impl PySimulation {
         time_step: f64,
         control_period: Option<f64>,
         integrator: &str,
-        record_every: i64,
+        #[pyo3(from_py_with = record_every)] record_every: usize,
         reference_start_tolerance: Option<Any<'_, '_>>,
         tolerance: f64,
         enforce_limits: bool,
@@ -91,11 +91,6 @@ impl PySimulation {
                 return Err(wrong_shape(py, name, &format!("({n},)"), input.shape()));
             }
         }
-        let Some(record_every) = usize::try_from(record_every).ok().filter(|every| *every > 0) else {
-            let message = format!("record_every is {record_every}, it must be at least 1 step");
-            let fields = fields!(py, "name": "record_every", "got": record_every);
-            return Err(raise(py, "InputError", &message, &fields));
-        };
         let mut simulation = Simulation::new(Arc::clone(&core), q.data().to_vec(), v.data().to_vec());
         simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
         simulation.earth = earth.map(|earth| earth.get().beneath(simulation.orbit.as_deref()));

@@ -19,13 +19,6 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Trace
 
 
-OPTIONAL = (
-    "tool_pose", "reference_pose", "position_error", "attitude_error", "position_eci", "velocity_eci",
-    "reference_residual",
-)  # fmt: skip
-"""Columns that a run without tool, reference or orbit has not."""
-
-
 @dataclass(frozen=True)
 class SavedTrace:
     """Columns under their names, as a :class:`onorbit_rs.Trace` has them."""
@@ -34,7 +27,7 @@ class SavedTrace:
 
     def __getattr__(self, name: str) -> Any:
         """A column; None where the run had nothing for it."""
-        if name in OPTIONAL:
+        if name in _COLUMNS:
             return self.arrays.get(name)
         if name.startswith("__") or name == "arrays" or name not in self.arrays:
             raise AttributeError(f"the trace has no column {name!r}")
@@ -111,6 +104,9 @@ def _widths(n: int) -> dict[str, tuple[int, ...]]:
         "tool_pose": pose, "reference_pose": pose, "position_error": three, "attitude_error": three,
         "position_eci": three, "velocity_eci": three, "reference_residual": three,
     }  # fmt: skip
+
+
+_COLUMNS = ("time", *_widths(0))
 
 
 def read_summary(folder: Path) -> dict[str, Any]:

@@ -42,7 +42,7 @@ class TravelledTrace(SavedTrace):
 
     def __len__(self) -> int:
         """Rows."""
-        return len(self.arrays["time"])
+        return len(self.arrays.get("time", ()))
 
 
 def arrays_of(trace: Trace) -> dict[str, Any]:

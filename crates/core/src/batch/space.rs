@@ -5,8 +5,8 @@ use super::kernel::{Kernel, OUTPUTS};
 use super::side_by_side::{Places, gather, scatter};
 use super::work::Work;
 use crate::dynamics::FrameWrench;
-use crate::model::Model;
-use crate::spatial::{Force, Quat, Real};
+use crate::model::{Model, Node};
+use crate::spatial::{Force, Quat, Real, Sym3, Vec3};
 use std::ops::Range;
 
 /// Rows of an input: all numbers, and how many a row has.
@@ -41,6 +41,8 @@ impl Call<'_> {
 #[derive(Clone, Debug)]
 pub(super) struct Space<S> {
     work: Work<S>,
+    /// Of the robot it is room for: mass, centre of mass and inertia of the base, which are placed once.
+    base: (f64, Vec3<f64>, Sym3<f64>),
     inputs: [Vec<S>; 3],
     outputs: [Vec<S>; OUTPUTS],
     /// Whether no input is so large that products of it may overflow.
@@ -50,12 +52,12 @@ pub(super) struct Space<S> {
 impl<S: Real> Space<S> {
     pub(super) fn new(model: &Model) -> Self {
         let (inputs, outputs) = (Default::default(), Default::default());
-        Self { work: Work::new(model), inputs, outputs, is_tame: true }
+        Self { work: Work::new(model), base: base_of(model), inputs, outputs, is_tame: true }
     }
 
     /// Whether it is room for this robot.
     pub(super) fn fits(&self, model: &Model) -> bool {
-        self.work.data.bodies.len() == model.nodes().len()
+        self.work.data.bodies.len() == model.nodes().len() && self.base == base_of(model)
     }
 
     /// Computes the states `range` (at most one per lane) into rows of their own; whether inputs and outputs are
@@ -117,6 +119,11 @@ impl<S: Real> Space<S> {
         }
         is_fine
     }
+}
+
+fn base_of(model: &Model) -> (f64, Vec3<f64>, Sym3<f64>) {
+    let Node { mass, com, about_com, .. } = model.nodes()[0];
+    (mass, com, about_com)
 }
 
 fn places(width: usize, range: &Range<usize>) -> Places {

@@ -67,9 +67,8 @@ impl Effect for DifferentialGravity {
     }
 
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::InsidePlanet`] where the
-    /// reference or a body comes nearer to the centre than any planet of that mass allows, and
-    /// [`EnvironmentError::Gravity`].
+    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::InsidePlanet`] where the reference or a body is below
+    /// the lowest ground that a planet of that `μ` can have, and [`EnvironmentError::Gravity`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }

@@ -44,7 +44,9 @@ pub enum GravityError {
         "{name}[{degree}, {order}] is {value}: no such term exists, rows are degrees and columns orders, s[:, 0] is zero"
     )]
     NoSuchTerm { name: &'static str, degree: usize, order: usize, value: f64 },
-    #[error("cannot read {file}: {reason}")]
+    #[error("{file}: there is no such file")]
+    NotFound { file: String },
+    #[error("{file}: cannot be read: {reason}")]
     Unreadable { file: String, reason: String },
     #[error("{file}: {key} is {got}, {expected} is needed")]
     Header { file: String, key: &'static str, got: String, expected: &'static str },

@@ -7,6 +7,7 @@ use super::harmonics::Harmonics;
 use super::point_mass::SURFACE;
 use super::zonal::{self, Zonal};
 use nalgebra::{Matrix3, Vector3};
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Models that come with the engine, to degree and order 70.
@@ -82,9 +83,16 @@ impl GravityField {
     /// line where there is one; and what [`GravityField::new`] says.
     pub fn from_gfc(path: &Path, degree: Option<usize>, order: Option<usize>) -> Result<Self, GravityError> {
         let file = path.display().to_string();
-        let read = std::fs::read_to_string(path);
-        let text =
-            read.map_err(|error| GravityError::Unreadable { file: file.clone(), reason: error.to_string() })?;
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            let file = file.clone();
+            match error.kind() {
+                ErrorKind::NotFound => GravityError::NotFound { file },
+                ErrorKind::InvalidData => {
+                    GravityError::Unreadable { file, reason: "not UTF-8 text".to_owned() }
+                }
+                kind => GravityError::Unreadable { file, reason: kind.to_string() },
+            }
+        })?;
         let coefficients = gfc::read(&file, &text, degree)?;
         let degree = degree.unwrap_or(coefficients.degree());
         Self::new(&coefficients, degree, order.unwrap_or(degree))

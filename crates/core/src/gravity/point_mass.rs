@@ -42,9 +42,9 @@ pub(crate) fn tide<S: Real>(mu: f64, origin: &Vec3<f64>, offset: Vec3<S>) -> (Ve
     ((offset - origin_s * f) * (s(-mu) * a * inverse), distance)
 }
 
-/// Whether this is the Earth's `μ`, m³/s², in whatever version: no other planet's is near it.
+/// Whether this is the Earth's `μ`, m³/s², in whatever version, a rounded 4e14 included: no other planet's is near it.
 pub(crate) fn is_earth(mu: f64) -> bool {
-    (mu / 3.986e14 - 1.0).abs() < 1e-3
+    (mu / 3.986_004_418e14 - 1.0).abs() < 1e-2 // as in onorbit_rs/planet.py
 }
 
 /// Share of a planet's largest radius from which on there is an outside: the Earth's poles lie at 0.9966 of it.

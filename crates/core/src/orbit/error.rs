@@ -168,26 +168,26 @@ pub enum OrbitError {
     /// The orbit lies inside the planet.
     #[error(
         "the orbit is inside the planet at t = {time} s: {distance} m from its centre, \
-         at least {smallest_radius} m are accepted: end the run earlier, or raise the orbit"
+         at least {minimum} m are accepted: end the run earlier, or raise the orbit"
     )]
     BelowSurface {
         /// When, s.
         time: f64,
         /// Distance from the planet's centre, m.
         distance: f64,
-        /// Smallest distance at which there is a field, m.
-        smallest_radius: f64,
+        /// Of the planet's lowest ground, or of where its field ends: distance from the centre, m.
+        minimum: f64,
     },
     /// The orbit begins inside the planet.
     #[error(
-        "the orbit begins inside the planet: {distance} m from its centre, at least {smallest_radius} m are \
+        "the orbit begins inside the planet: {distance} m from its centre, at least {minimum} m are \
          accepted (m and m/s from the centre are needed: are these kilometres, or an altitude?)"
     )]
     BeginsBelowSurface {
         /// Distance from the planet's centre, m.
         distance: f64,
-        /// Smallest distance at which there is a field, m.
-        smallest_radius: f64,
+        /// Of the planet's lowest ground, or of where its field ends: distance from the centre, m.
+        minimum: f64,
     },
     /// The time is more steps away than are kept.
     #[error(

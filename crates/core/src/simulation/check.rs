@@ -49,6 +49,18 @@ impl Simulation {
         if let (Some(orbit), Some(earth)) = (&self.orbit, &self.earth) {
             earth.fits(orbit.axes(), orbit.epoch())?;
         }
+        self.check_control()?;
+        match (self.tool, &self.reference) {
+            (None, Some(_)) => Err(SimulationError::NeedsTool),
+            (Some(tool), Some(reference)) => {
+                check_start(&self.model, &self.q, tool, reference, self.reference_start_tolerance)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The frames that are followed, and whether the law can work on this robot.
+    fn check_control(&self) -> Result<(), SimulationError> {
         let tracked = match &self.control {
             ControlLaw::ComputedTorque(law) => Some(law.frame),
             _ => None,
@@ -76,15 +88,7 @@ impl Simulation {
             let tolerance = self.reference_start_tolerance;
             check_control_starts(&self.model, &self.q, controls, tolerance)?;
         }
-        if self.reference.is_some() && self.tool.is_none() {
-            return Err(SimulationError::NeedsTool);
-        }
-        match (self.tool, &self.reference) {
-            (Some(tool), Some(reference)) => {
-                check_start(&self.model, &self.q, tool, reference, self.reference_start_tolerance)
-            }
-            _ => Ok(()),
-        }
+        Ok(())
     }
 
     /// Refuses two effects that do the same to a body; gravity is always there around a planet.

@@ -38,9 +38,9 @@ impl PyJointComputedTorque {
 /// A PID for each joint, as ROS Control has it: ``tau = p e + i ∫e dt + d e'``.
 ///
 /// ``interface`` says what the reference commands: ``position``, ``velocity``, or ``effort`` (its positions are the
-/// efforts, N m, and there are no gains). Gains are numbers or (k,), per rad (m) of error; ``i_limit`` bounds the share of
-/// the integral, ``effort_limit`` the whole (the limits of the URDF where None, ``inf`` for none), N m (N). The integral
-/// does not grow further into a limit. Raises ``ControlError``.
+/// efforts, N m, and there are no gains). Gains are numbers or (k,), per rad (m) of error, at least one of them given;
+/// ``i_limit`` bounds the share of the integral, ``effort_limit`` the whole (the limits of the URDF where None, ``inf`` for
+/// none), N m (N). The integral does not grow further into a limit. Raises ``ControlError``.
 #[pyclass(name = "JointPid", frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointPid {
     pub(super) law: JointPid,
@@ -61,6 +61,14 @@ impl PyJointPid {
         i_limit: Option<Any<'_, '_>>,
         effort_limit: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
+        let lacks_gains = [&p, &i, &d].iter().all(|gain| gain.is_none());
+        if lacks_gains && matches!(interface, "position" | "velocity") {
+            let message = format!(
+                "a PID of interface {interface} without gains does nothing: give 'p', 'i' or 'd', or no controller where \
+                 the joints are to be limp"
+            );
+            return Err(raise(py, "ControlError", &message, &fields!(py, "name": "gains")));
+        }
         let interface = match interface {
             "position" => Interface::Position,
             "velocity" => Interface::Velocity,

@@ -26,7 +26,10 @@ impl IntoPython for GravityError {
             Self::WrongLength { name, expected, got } => {
                 fields!(py, "name": name, "got": got, "expected": expected)
             }
-            Self::Unreadable { file, .. } | Self::Truncated { file, .. } => fields!(py, "path": file),
+            Self::NotFound { file } | Self::Unreadable { file, .. } => {
+                fields!(py, "path": file, "kind": "gravity field")
+            }
+            Self::Truncated { file, .. } => fields!(py, "path": file),
             Self::Header { file, key, .. } => fields!(py, "path": file, "name": key),
             Self::Row { file, line, .. }
             | Self::CutRow { file, line, .. }
@@ -48,6 +51,11 @@ impl IntoPython for GravityError {
             }
             _ => fields!(py,),
         };
-        raise(py, "GravityError", &self.to_string(), &fields)
+        let class = match &self {
+            Self::NotFound { .. } => "NotFoundError",
+            Self::Unreadable { .. } => "ReadError",
+            _ => "GravityError",
+        };
+        raise(py, class, &self.to_string(), &fields)
     }
 }

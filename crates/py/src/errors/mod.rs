@@ -14,6 +14,8 @@ pub(crate) use simulation::SimulationErrorExt;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::io::ErrorKind;
+use std::path::Path;
 
 /// An error of the core that knows its Python class.
 pub(crate) trait IntoPython {
@@ -33,13 +35,24 @@ pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'
 }
 
 /// The error, with the file that it is about before its message.
-pub(crate) fn in_file(py: Python<'_>, path: &std::path::Path, error: impl IntoPython) -> PyErr {
+pub(crate) fn in_file(py: Python<'_>, path: &Path, error: impl IntoPython) -> PyErr {
     let error = error.into_python(py);
     let value = error.value(py);
     let told = value.getattr("message").and_then(|message| message.extract::<String>());
     let message = format!("{}: {}", path.display(), told.unwrap_or_else(|_| value.to_string()));
     let _ = value.setattr("message", message); // without it the message stays as it was
     error
+}
+
+/// A text file of ours that cannot be read; `what` it was to be. Not in the words of the system, which differ.
+pub(crate) fn unreadable(py: Python<'_>, path: &Path, what: &str, error: &std::io::Error) -> PyErr {
+    let file = path.display();
+    let (class, message) = match error.kind() {
+        ErrorKind::NotFound => ("NotFoundError", format!("{file}: there is no such {what}")),
+        ErrorKind::InvalidData => ("ReadError", format!("{file}: the {what} cannot be read: not UTF-8 text")),
+        kind => ("ReadError", format!("{file}: the {what} cannot be read: {kind}")),
+    };
+    raise(py, class, &message, &fields!(py, "path": file.to_string(), "kind": what))
 }
 
 /// An error without fields.

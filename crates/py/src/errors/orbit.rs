@@ -35,13 +35,12 @@ impl IntoPython for OrbitError {
             Self::NotClosed { eccentricity } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": "eccentricity", "got": eccentricity))
             }
-            Self::BelowSurface { time, distance, smallest_radius } => {
-                let fields =
-                    fields!(py, "name": "t", "time": time, "got": distance, "expected": smallest_radius);
+            Self::BelowSurface { time, distance, minimum } => {
+                let fields = fields!(py, "name": "t", "time": time, "got": distance, "expected": minimum);
                 raise(py, "OrbitError", &message, &fields)
             }
-            Self::BeginsBelowSurface { distance, smallest_radius } => {
-                let fields = fields!(py, "name": "r", "got": distance, "expected": smallest_radius);
+            Self::BeginsBelowSurface { distance, minimum } => {
+                let fields = fields!(py, "name": "r", "got": distance, "expected": minimum);
                 raise(py, "OrbitError", &message, &fields)
             }
             Self::TooManySteps { time, .. } | Self::StepTooShort { time, .. } => {

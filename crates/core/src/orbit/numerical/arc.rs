@@ -21,7 +21,7 @@ const MOST_STEPS: usize = 1 << 18;
 #[derive(Debug)]
 pub(super) struct Arcs {
     mu: f64,
-    smallest_radius: f64,
+    minimum: f64,
     after: RwLock<Half>,
     before: RwLock<Half>,
     initial: Start,
@@ -39,14 +39,14 @@ struct Half {
 
 impl Arcs {
     pub(super) fn new(t0: f64, r: Vector3<f64>, v: Vector3<f64>, mu: f64) -> Result<Self, OrbitError> {
-        let smallest_radius = crate::gravity::lowest_ground_cubed(mu).cbrt();
+        let minimum = crate::gravity::lowest_ground_cubed(mu).cbrt();
         let distance = r.norm();
-        if distance < smallest_radius {
-            return Err(OrbitError::BeginsBelowSurface { distance, smallest_radius });
+        if distance < minimum {
+            return Err(OrbitError::BeginsBelowSurface { distance, minimum });
         }
         let (initial, length) = (Start::new(t0, r, v), FIRST * (distance.powi(3) / mu).sqrt());
         let half = |length| RwLock::new(Half { steps: Vec::new(), next: (initial, length), ended: None });
-        Ok(Self { mu, smallest_radius, after: half(length), before: half(-length), initial })
+        Ok(Self { mu, minimum, after: half(length), before: half(-length), initial })
     }
 
     /// The state at `t`, steps to it being made where they are missing.
@@ -85,14 +85,14 @@ impl Arcs {
         if half.steps.len() == MOST_STEPS {
             return Err(OrbitError::TooManySteps { time, epoch: self.initial.time, steps: MOST_STEPS });
         }
-        let smallest_radius = self.smallest_radius;
+        let minimum = self.minimum;
         let shortest = SHORTEST * (distance.powi(3) / self.mu).sqrt();
         let mut outside = |t: f64, r: &Vector3<f64>| {
             let distance = r.norm();
-            if distance >= smallest_radius {
+            if distance >= minimum {
                 field(t, r)
             } else {
-                Err(OrbitError::BelowSurface { time: t, distance, smallest_radius })
+                Err(OrbitError::BelowSurface { time: t, distance, minimum })
             }
         };
         loop {

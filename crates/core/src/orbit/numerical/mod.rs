@@ -37,7 +37,7 @@ impl Numerical {
         let arcs = Arcs::new(t0, r, v, gravity.mu())?;
         gravity.acceleration(t0, &r).map_err(|error| match error {
             GravityError::BelowSurface { distance, minimum } => {
-                OrbitError::BeginsBelowSurface { distance, smallest_radius: minimum }
+                OrbitError::BeginsBelowSurface { distance, minimum }
             }
             error => error.into(),
         })?;
@@ -76,7 +76,7 @@ impl Orbit for Numerical {
         self.arcs.state(finite("time", t)?, |time, r| {
             self.gravity.acceleration(time, r).map_err(|error| match error {
                 GravityError::BelowSurface { distance, minimum } => {
-                    OrbitError::BelowSurface { time, distance, smallest_radius: minimum }
+                    OrbitError::BelowSurface { time, distance, minimum }
                 }
                 error => error.into(),
             })
