@@ -14,7 +14,6 @@ from onorbit_rs.viewer.blueprint import near_path
 from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.stage import Stage
 
-
 MAST = """<robot name="slider">
 <link name="box"><inertial><mass value="50"/>
 <inertia ixx="3" iyy="3" izz="3" ixy="0" ixz="0" iyz="0"/></inertial>
