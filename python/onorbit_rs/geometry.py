@@ -38,10 +38,10 @@ class Shape:
 
 
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
-    """Centre (3,), W, and diagonal of the box around a robot in all configurations (k, nq), m."""
+    """Centre (3,), W, and diameter of a ball that holds a robot in all configurations (k, nq), m."""
     corners = np.vstack([_corners(model, row, shape) for row in q for shape in robot])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    return (low + high) / 2.0, max(float(np.linalg.norm(high - low)), 0.1)
+    center = (corners.min(axis=0) + corners.max(axis=0)) / 2.0
+    return center, max(2.0 * float(np.linalg.norm(corners - center, axis=1).max()), 0.1)
 
 
 def box_around(model: Model, shape: Shape) -> tuple[Floats, Floats]:

@@ -103,8 +103,9 @@ class Arrows:
     def _send(self, rows: Rows, kind: _Kind, origins: Floats, vectors: Floats) -> None:
         """Arrows (T, n, 3) at origins (T, n, 3), W."""
         path, to_surface = kind.path, self._to_surface(rows, origins, vectors)
-        longest = max(kind.longest * self.stage.size - _peak(to_surface), LEAST_LENGTH * self.stage.size)
-        scale = max(round_up(_peak(vectors) / longest), self._scales.get(path, 0.0))
+        room = kind.longest * self.stage.size - np.linalg.norm(to_surface, axis=2, keepdims=True)
+        needed = _peak(vectors / np.maximum(room, LEAST_LENGTH * self.stage.size))
+        scale = max(round_up(needed), self._scales.get(path, 0.0))
         if scale == 0.0 or not np.isfinite(scale):
             return
         count, each = vectors.shape[:2]
@@ -124,7 +125,9 @@ class Arrows:
         self.recording.send_columns(path, [rows.times], parts, strict=True)
 
     def _to_surface(self, rows: Rows, origins: Floats, vectors: Floats) -> Floats:
-        """(T, n, 3) from where arrows start to where they leave the base, which would hide them; W, m."""
+        """(T, n, 3) from where arrows start to where they leave the base, which would hide the first; m."""
+        found = np.zeros(vectors.shape)
+        origins, vectors = origins[:, :1], vectors[:, :1]
         rot_wb = matrix_from_quaternion(rows["q"][:, 3:7])
         lengths = np.linalg.norm(vectors, axis=2, keepdims=True)
         ahead = vectors / np.where(lengths > 0.0, lengths, 1.0)
@@ -139,7 +142,8 @@ class Arrows:
                 is_inside = (np.abs(start) < half).all(axis=2, keepdims=True)
                 way = np.maximum(way, np.where(is_inside, to_faces.min(axis=2, keepdims=True), 0.0))
         way[lengths == 0.0] = 0.0
-        return way * ahead
+        found[:, :1] = way * ahead
+        return found
 
     def _introduce(self, kind: _Kind, meaning: str) -> None:
         """The look of arrows, and the place of the line that tells their scale."""
