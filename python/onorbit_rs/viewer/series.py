@@ -69,7 +69,7 @@ def series_of(rows: Rows, setting: Setting, *, is_live: bool = False) -> Iterato
 
 def _fitted(series: Series) -> Series:
     """Rerun's axes tell four decimals and no exponents: small values want a smaller unit."""
-    peak = float(np.abs(series.values).max(initial=0.0))
+    peak = float(max(series.values.max(initial=0.0), -series.values.min(initial=0.0)))
     if peak < (np.degrees(ROUNDING) if series.unit == "deg" else ROUNDING):
         return replace(series, values=np.zeros_like(series.values))
     if LEAST_PEAK <= peak <= LARGEST_PEAK or series.path.startswith("exact/") or OR in series.unit:
