@@ -118,9 +118,11 @@ def test_sliding_joints_slide(tmp_path: Path) -> None:
     model = oo.Model.from_urdf_string(text)
     rates = np.array([0, 0, 0, 0.1, 0.2, 0.3, 0.4, 0.5])
     trace = oo.Simulation(model, model.neutral(), rates, time_step=0.1).run(1.0)
-    plots = {plot.path: plot.unit for plot in series_of(Rows.of_trace(trace), model)}
+    plots = {plot.path: plot.unit for plot in series_of(Rows.of_trace(trace), viewer.Setting(model))}
     units = [plots[f"plots/joint_{name}"] for name in ("torque", "position", "rate")]
-    assert units == ["N m or N", "rad or m", "rad/s or m/s"]
+    assert units == ["N m", "rad", "rad/s"]
+    units = [plots[f"plots/slide_{name}"] for name in ("force", "position", "rate")]
+    assert units == ["N", "m", "m/s"]
     tree = FrameTree(viewer.write_recording(tmp_path / "run.rrd", trace, viewer.Setting(model)))
     for link in model.body_names:
         np.testing.assert_allclose(tree.pose(f"robot/{link}"), model.frame_pose(trace.q, link), atol=SINGLE)
@@ -135,6 +137,12 @@ def test_the_recording_holds_the_numbers_of_the_trace(reach: tuple[Built, oo.Tra
         len(strip[0]) for strip in column(recording, "/world/tool/obtained/trail", "LineStrips3D:strips")
     }
     assert trail == 2
+
+
+def test_plots_show_the_least_and_the_most_of_what_falls_on_a_pixel(recording: Path) -> None:
+    """The mean of a torque that chatters between ±100 N m is next to nothing."""
+    (policy,) = column(recording, "/plots/joint_torque", "SeriesLines:aggregation_policy", static=True)
+    assert policy == [rr.components.AggregationPolicy.MinMax.value]
 
 
 def test_no_wall_clock_and_a_blueprint(recording: Path) -> None:

@@ -38,31 +38,39 @@ class Shape:
 
 
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
-    """Centre (3,), W, and diagonal of the box around a robot, m."""
-    corners = np.vstack([_corners(model, q, shape) for shape in robot])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    return (low + high) / 2.0, max(float(np.linalg.norm(high - low)), 0.1)
+    """Centre (3,), W, and diameter of a ball that holds a robot in all configurations (k, nq), m."""
+    corners = np.vstack([_corners(model, row, shape) for row in q for shape in robot])
+    center = (corners.min(axis=0) + corners.max(axis=0)) / 2.0
+    return center, max(2.0 * float(np.linalg.norm(corners - center, axis=1).max()), 0.1)
 
 
-def _corners(model: Model, q: Floats, shape: Shape) -> Floats:
-    """(8, 3) corners of a box around a shape, W, m; a mesh counts as the box with its body's inertia."""
-    pose = np.asarray(model.frame_pose(q, shape.link)).reshape(4, 4)
+def box_around(model: Model, shape: Shape) -> tuple[Floats, Floats]:
+    """Pose (4, 4) in its link and half edges (3,) of a box around a shape, m.
+
+    A mesh counts as the box with its body's inertia.
+    """
+    pose = np.eye(4)
     if shape.kind == "mesh":
         body = next((body for body in model.bodies if body.name == shape.link and body.mass > 0.0), None)
         size = np.full(3, 0.1)
         if body is not None:
             size, axes = box_of_inertia(body.mass, np.array(body.inertia))
-            pose = pose @ pose_of(axes, np.array(body.com))
-        half = size / 2.0
+            pose = pose_of(axes, np.array(body.com))
+        return pose, size / 2.0
+    if shape.kind == "box":
+        half = np.array(shape.size) / 2.0
+    elif shape.kind == "sphere":
+        half = np.full(3, shape.size[0])
     else:
-        pose = pose @ shape.pose
-        if shape.kind == "box":
-            half = np.array(shape.size) / 2.0
-        elif shape.kind == "sphere":
-            half = np.full(3, shape.size[0])
-        else:
-            radius, length = shape.size
-            half = np.array([radius, radius, length / 2.0 + (radius if shape.kind == "capsule" else 0.0)])
+        radius, length = shape.size
+        half = np.array([radius, radius, length / 2.0 + (radius if shape.kind == "capsule" else 0.0)])
+    return shape.pose, half
+
+
+def _corners(model: Model, q: Floats, shape: Shape) -> Floats:
+    """(8, 3) corners of the box around a shape, W, m."""
+    in_link, half = box_around(model, shape)
+    pose = np.asarray(model.frame_pose(q, shape.link)).reshape(4, 4) @ in_link
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     corners: Floats = signs * half @ pose[:3, :3].T + pose[:3, 3]
     return corners

@@ -8,6 +8,7 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.viewer.frames import COMPASS, DESIRED, FOLLOW, fix_frame, of_link, put_in
+from onorbit_rs.viewer.letters import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,7 +44,7 @@ def log_axes(
             start + 1.1 * length * np.eye(3)[-len(names) :],
             colors=colors[-len(names) :],
             radii=[0.0],
-            labels=list(names),
+            labels=[shown(name) for name in names],
             show_labels=True,
         )
         recording.log(f"{path}/names", labels, static=True, strict=True)
@@ -55,19 +56,24 @@ def log_all_axes(
     size: float,
     places: tuple[Floats, Floats],
     *,
-    tool_length: float,
+    near: float,
     in_orbit: bool,
     has_reference: bool,
 ) -> None:
     """Axes of the base, the tool and what it should be at, and beside the robot those of I and of L.
 
     ``places`` are where the two are shown, in ``follow``, m.
+    ``near`` is the length of the tool's for the view of its path from near, which may be zero, m.
     """
     log_axes(recording, "world/axes/base", of_link(setting.base), 0.45 * size, ("x B", "y B", "z B"))
     if setting.tool is not None:
-        log_axes(recording, "world/axes/tool", of_link(setting.tool), tool_length, (setting.tool,))
+        log_axes(recording, "world/axes/tool", of_link(setting.tool), 0.1 * size, (setting.tool,))
+        if near > 0.0:
+            log_axes(recording, "world/near/tool", of_link(setting.tool), near)
     if has_reference:
-        log_axes(recording, "world/axes/desired", DESIRED, tool_length, brightness=0.6)
+        log_axes(recording, "world/axes/desired", DESIRED, 0.1 * size, brightness=0.6)
+        if near > 0.0:
+            log_axes(recording, "world/near/desired", DESIRED, near, brightness=0.6)
     inertial, local = places
     if in_orbit:
         log_axes(recording, "world/axes/inertial", COMPASS, 0.2 * size, ("x I", "y I", "z I"))

@@ -12,6 +12,7 @@ from onorbit_rs.viewer.colors import BACKGROUND
 from onorbit_rs.viewer.flight import flight_view, is_apart
 from onorbit_rs.viewer.frames import FOLLOW
 from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL, shows_sun, to_eye
+from onorbit_rs.viewer.plots import plots_in_groups
 from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.scene import MOVES, TRAILS, UNTIL_NOW, on_path
 
@@ -24,29 +25,12 @@ if TYPE_CHECKING:
 PLAYS_IN_S = 40.0
 """Longest wall-clock time a recording takes to play; shorter runs play in real time."""
 
-_FIRST = (
-    "plots/tool_position_error",
-    "plots/tool_attitude_error",
-    "plots/joint_torque",
-    "plots/base_attitude",
-)
-_FIRST_ADRIFT = (
-    "plots/base_attitude_lvlh",
-    "plots/base_rate",
-    "plots/drag/force",
-    "plots/gravity_gradient/torque",
-    "plots/angular_momentum",
-    "plots/joint_position",
-    "plots/base_attitude",
-    "plots/energy",
-)
-_MOST_IN_A_COLUMN = 4
-_FOR_LEGENDS = 1.24
-"""Plots go on for so much longer than the run, in units of it: legends stand there."""
-
 _SPACE = (12, 14, 20)
 
-_LARGE = ("arrows", "axes/base", "axes/inertial", "axes/lvlh", "flight")
+_LARGE = ("arrows", "axes", "flight")
+_SOLID, _HIDDEN = ("robot", "target"), 0.02
+"""What a shorter path, in sizes of the robot, would be hidden in or behind."""
+
 _TRAILS_UNTIL_NOW: dict[Any, Any] = dict.fromkeys(TRAILS.values(), UNTIL_NOW)
 
 
@@ -64,7 +48,7 @@ def layout(
     axes = "W (inertial axes)" if rows.quat_wl is None else "L (local orbital frame)"
     robot = rrb.Spatial3DView(
         origin="world",
-        contents=["$origin/**", "- $origin/flight/**"],
+        contents=["$origin/**", "- $origin/flight/**", "- $origin/near/**"],
         name=f"{setting.robot}: the eye follows the base, axes of {axes}",
         spatial_information=rrb.SpatialInformation(FOLLOW, show_axes=False),
         eye_controls=stage.eye(),
@@ -79,11 +63,11 @@ def layout(
         below.append(flight_view(rows, setting))
     if has_notes:
         below.append(rrb.TextDocumentView(origin="notes", name="Notes"))
-    close_up = _close_up(rows, setting, stage) if "reference_pose" in rows and not is_live else None
+    close_up = near_path(rows, setting, stage) if "reference_pose" in rows and not is_live else None
     top = robot if close_up is None else rrb.Tabs(robot, close_up, active_tab=0)
     left = rrb.Vertical(top, rrb.Horizontal(*below), row_shares=[5, 3]) if below else top
     return rrb.Blueprint(
-        rrb.Horizontal(left, _plots(plots, duration_s), column_shares=[3, 2]),
+        rrb.Horizontal(left, plots_in_groups(plots, duration_s, is_live=is_live), column_shares=[3, 2]),
         rrb.TimePanel(
             state="collapsed",
             timeline=TIMELINE,
@@ -97,7 +81,7 @@ def layout(
     )
 
 
-def _close_up(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
+def near_path(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
     """The path of the tool from near, in the frame in which it is drawn; None where it goes nowhere."""
     points, frame = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
     low, high = points.min(axis=0), points.max(axis=0)
@@ -105,10 +89,12 @@ def _close_up(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
     if length < MOVES * stage.size:
         return None
     center = (low + high) / 2.0
+    is_short = length < _HIDDEN * stage.size
+    left_out = (*_LARGE, *_SOLID) if is_short else _LARGE
     return rrb.Spatial3DView(
         origin="world",
-        contents=["$origin/**", *(f"- /world/{part}/**" for part in _LARGE)],
-        name="Tool and its path",
+        contents=["$origin/**", *(f"- /world/{part}/**" for part in left_out)],
+        name="Path of the tool, without the robot" if is_short else "Tool and its path",
         spatial_information=rrb.SpatialInformation(frame, show_axes=False),
         eye_controls=rrb.EyeControls3D(
             position=center + 2.2 * length * np.array([0.5, -0.75, 0.45]), look_target=center,
@@ -143,39 +129,4 @@ def _orbit(rows: Rows, setting: Setting) -> rrb.View:
         background=_SPACE,
         line_grid=False,
         overrides={ORBIT_TRAIL: UNTIL_NOW},
-    )
-
-
-def _plots(plots: Sequence[Series], duration_s: float) -> rrb.Tabs:
-    """An overview, and a tab for each group."""
-    by_path = {plot.path: plot for plot in plots}
-    wanted = _FIRST if _FIRST[0] in by_path else _FIRST_ADRIFT
-    first = [by_path[path] for path in wanted if path in by_path][:_MOST_IN_A_COLUMN]
-    tabs = {"Overview": first}
-    for plot in plots:
-        tabs.setdefault(plot.group, []).append(plot)
-    return rrb.Tabs(
-        *(
-            rrb.Vertical(
-                *(_plot(plot, duration_s) for plot in group),
-                row_shares=[min(max(4, len(plot.names)), 9) for plot in group],
-                name=name,
-            )
-            for name, group in tabs.items()
-        ),
-        active_tab=0,
-    )
-
-
-def _plot(series: Series, duration_s: float) -> rrb.TimeSeriesView:
-    """A plot that shows the whole run from the start."""
-    whole = rrb.TimeRange(
-        start=rrb.TimeRangeBoundary.absolute(seconds=0.0),
-        end=rrb.TimeRangeBoundary.absolute(seconds=_FOR_LEGENDS * duration_s),
-    )
-    return rrb.TimeSeriesView(
-        origin=series.path,
-        name=f"{series.title} [{series.unit}]",
-        axis_x=rrb.TimeAxis(view_range=whole),
-        plot_legend=rrb.PlotLegend(rrb.Corner2D.RightTop),
     )

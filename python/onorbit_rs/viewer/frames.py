@@ -13,6 +13,7 @@ import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
 import rerun as rr
 
 from onorbit_rs.rotations import conjugate, product, quaternion_from_matrix
+from onorbit_rs.viewer.letters import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +32,7 @@ ORIGIN = np.zeros(3)
 
 def of_link(link: str) -> str:
     """Name of the frame of a link or of a frame fixed to one."""
-    return f"robot/{link}"
+    return f"robot/{shown(link)}"
 
 
 def send_frame(

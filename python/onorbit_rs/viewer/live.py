@@ -95,7 +95,7 @@ class LiveView:
 
     def _send(self, rows: Rows) -> None:
         recording, setting = self._recording, self._setting
-        plots = list(series_of(rows, setting.model, is_live=True))
+        plots = list(series_of(rows, setting, is_live=True))
         if self._stage is None:
             self._stage = open_stage(recording, rows, setting, plots, self._duration_s, is_live=True)
             self._arrows = Arrows(recording, setting, self._stage)

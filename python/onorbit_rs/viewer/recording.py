@@ -13,24 +13,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.printable import printable
 from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.axes import log_all_axes
 from onorbit_rs.viewer.blueprint import layout
 from onorbit_rs.viewer.encoded import Encoded
 from onorbit_rs.viewer.flight import is_apart, log_flight, log_whole_flight, send_flight
 from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames
+from onorbit_rs.viewer.letters import shown, shown_lines
 from onorbit_rs.viewer.notes import about_meshes
 from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
 from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.scene import (
     MOST_TRAIL_PIECES,
+    NEAR,
     log_path,
     log_robot,
     path_length,
     send_desired,
     send_trails,
-    tool_axes,
 )
 from onorbit_rs.viewer.series import Series, log_style, send_series, series_of
 from onorbit_rs.viewer.stage import Stage
@@ -73,7 +73,7 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
     notes += about_meshes(setting.model)
     recording = new_recording(setting)
     encoded = Encoded(recording)
-    plots = list(series_of(rows, setting.model))
+    plots = list(series_of(rows, setting))
     stage = open_stage(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
     for series in plots:
         send_series(recording, rows, series)
@@ -98,7 +98,7 @@ def new_recording(setting: Setting) -> rr.RecordingStream:
     recording.set_log_time_enabled(False)
     recording.set_log_tick_enabled(False)
     if setting.name:
-        recording.send_recording_name(printable(setting.name))
+        recording.send_recording_name(shown(setting.name))
     return recording
 
 
@@ -122,7 +122,7 @@ def open_stage(
     in_orbit = rows.quat_wl is not None
     log_all_axes(
         recording, setting, stage.size, (stage.inertial_at, stage.local_at),
-        tool_length=tool_axes(stage.size, path_length(rows, setting)), in_orbit=in_orbit,
+        near=NEAR * path_length(rows, setting), in_orbit=in_orbit,
         has_reference="reference_pose" in rows,
     )  # fmt: skip
     log_targets(recording, setting, stage.size)
@@ -133,7 +133,7 @@ def open_stage(
     for series in plots:
         log_style(recording, series)
     if notes:
-        text = rr.TextDocument(notes, media_type=rr.MediaType.MARKDOWN)
+        text = rr.TextDocument(shown_lines(notes), media_type=rr.MediaType.MARKDOWN)
         recording.log("notes", text, static=True, strict=True)
     return stage
 

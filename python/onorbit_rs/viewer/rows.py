@@ -19,6 +19,7 @@ from onorbit_rs.rotations import (
     reference_motion,
 )
 from onorbit_rs.thinning import evenly
+from onorbit_rs.viewer.letters import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,8 +49,8 @@ class Rows:
         """Some of a trace, or all of it."""
         return cls(
             {name: np.asarray(getattr(trace, name))[chosen] for name in trace.columns()},
-            {name: np.asarray(values)[chosen] for name, values in trace.wrenches.items()},
-            {name: np.asarray(values)[chosen] for name, values in trace.tracking.items()},
+            {shown(name): np.asarray(values)[chosen] for name, values in trace.wrenches.items()},
+            {shown(name): np.asarray(values)[chosen] for name, values in trace.tracking.items()},
         )
 
     @classmethod
@@ -62,7 +63,7 @@ class Rows:
             if kind is not None:
                 width = _PARTS[kind]
                 shaped = values if width is None else values.reshape(len(values), -1, width)
-                parts[kind][name.removeprefix(kind)] = shaped
+                parts[kind][shown(name.removeprefix(kind))] = shaped
             elif name in _POSES:
                 plain[name] = values.reshape(-1, 4, 4)
             else:

@@ -21,6 +21,7 @@ from onorbit_rs.viewer.frames import (
     put_in,
     send_frame,
 )
+from onorbit_rs.viewer.letters import shown
 from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.solids import log_shape
 
@@ -33,8 +34,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 MOST_TRAIL_PIECES = 1000
-MOVES = 0.02
+MOVES = 1e-3
 """A tool that should go less far, in sizes of the robot, holds its pose."""
+
+NEAR = 0.25
+"""Length of axes seen from near, in lengths of the path."""
 
 COLORS = {"desired": (240, 240, 240), "obtained": (255, 96, 64)}
 TRAILS = {name: f"world/tool/{name}/trail" for name in COLORS}
@@ -51,7 +55,7 @@ _POSES = {"desired": "reference_pose", "obtained": "tool_pose"}
 def log_robot(recording: rr.RecordingStream, setting: Setting) -> None:
     """Its shapes, each in the frame of its link."""
     for index, shape in enumerate(setting.shapes):
-        path = rr.new_entity_path(["world", "robot", shape.link, f"visual_{index}"])
+        path = rr.new_entity_path(["world", "robot", shown(shape.link), f"visual_{index}"])
         if log_shape(recording, path, shape):
             put_in(recording, path, of_link(shape.link))
 
@@ -77,16 +81,10 @@ def log_path(recording: rr.RecordingStream, rows: Rows, setting: Setting, size: 
     put_in(recording, path, frame)
     line = rr.LineStrips3D([_thinned(points)], colors=[color], radii=rr.Radius.ui_points(1.2))
     recording.log(path, line, static=True, strict=True)
-    length = path_length(rows, setting)
-    if length > MOVES * size:
+    if (length := path_length(rows, setting)) > MOVES * size:
         pose_wp = _pose_of_path_frame(rows, setting)
         fix_frame(recording, frame, GOAL, np.linalg.inv(pose_wp) @ rows["reference_pose"][-1])
-        log_axes(recording, "world/tool/desired/goal", GOAL, tool_axes(size, length), brightness=0.6)
-
-
-def tool_axes(size: float, path_m: float) -> float:
-    """Length of the axes at a tool: small beside the robot and beside its path, m."""
-    return min(0.14 * size, 0.35 * path_m) if path_m > MOVES * size else 0.14 * size
+        log_axes(recording, "world/tool/desired/goal", GOAL, NEAR * length, brightness=0.6)
 
 
 def send_trails(recording: rr.RecordingStream, rows: Rows, setting: Setting, most: int, *names: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -21,6 +22,7 @@ START_PATIENCE_S = 20.0
 """Wall-clock time given to the viewer to start."""
 
 _BINARIES = ("rerun", "rerun.exe", "Rerun.app/Contents/MacOS/Rerun")
+_PANIC = re.compile(r"panicked at '(.*)'$", re.MULTILINE)
 _LOCAL = "127.0.0.1"
 
 
@@ -85,7 +87,9 @@ def free_port() -> int:
 
 
 def reason(printed: str) -> str:
-    """The last thing that a viewer said, without the places in its code that it names before."""
+    """What ended a viewer: its panic, or the last thing that it said, without places in its code."""
+    if panic := _PANIC.search(printed):
+        return panic[1]
     lines = printed.strip().splitlines()
     return lines[-1].rsplit(": ", 1)[-1] if lines else "it printed nothing"
 

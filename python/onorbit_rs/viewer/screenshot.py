@@ -64,7 +64,7 @@ def take_screenshot(
         except OSError as error:
             raise _not_started(str(error)) from error
         try:
-            image = _seen(_connect(port, viewer, said), viewer, at_s)
+            image = _seen(_connect(port, viewer, said), viewer, said, at_s)
         finally:
             viewer.kill()
             viewer.wait()
@@ -74,7 +74,11 @@ def take_screenshot(
 
 
 def _seen(
-    client: ViewerClient, viewer: subprocess.Popen[bytes], at_s: float, patience_s: float = 60.0
+    client: ViewerClient,
+    viewer: subprocess.Popen[bytes],
+    said: IO[str],
+    at_s: float,
+    patience_s: float = 60.0,
 ) -> bytes:
     """What is shown at a time, once the recording has been read, as PNG."""
     time.sleep(SETTLE_S)
@@ -85,10 +89,11 @@ def _seen(
             time.sleep(SETTLE_S)
             return client.take_screenshot()
         except OSError as error:  # no recording yet
-            if time.monotonic() > deadline or viewer.poll() is not None:
-                raise ViewerError(
-                    f"the viewer does not show the recording: {error}", reason=str(error)
-                ) from error
+            has_ended = viewer.poll() is not None
+            if has_ended or time.monotonic() > deadline:
+                said.seek(0)
+                why = reason(said.read()) if has_ended else str(error)
+                raise ViewerError(f"the viewer does not show the recording: {why}", reason=why) from error
             time.sleep(0.2)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from onorbit_rs.appearance import shapes
 from onorbit_rs.geometry import Shape, extent
-from onorbit_rs.printable import printable
+from onorbit_rs.viewer.letters import shown
 from onorbit_rs.viewer.targets import PathFrame, Target, path_frame, targets
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ class Setting:
     @property
     def robot(self) -> str:
         """Its name, as labels show it."""
-        return printable(self.model.name)
+        return shown(self.model.name)
 
     @property
     def base(self) -> str:
@@ -66,7 +66,7 @@ class Setting:
         return self.model.body_names[0]
 
     def extent(self, q: Floats) -> tuple[Floats, float]:
-        """Centre and size of the robot in a configuration, axes of the base, m."""
+        """Centre and size of the robot in all of some configurations (k, 7 + n), axes of the base, m."""
         at_origin = q.copy()
-        at_origin[:7] = [0, 0, 0, 0, 0, 0, 1]
+        at_origin[:, :7] = [0, 0, 0, 0, 0, 0, 1]
         return extent(self.model, self.shapes, at_origin)

@@ -9,6 +9,7 @@ import numpy as np
 import rerun.blueprint as rrb
 
 from onorbit_rs.rotations import matrix_from_quaternion
+from onorbit_rs.thinning import evenly
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,6 +25,9 @@ _TO_EYE = np.array([0.5, -0.8, 0.34])
 _NEAR = 4.0
 """A target farther away than so many sizes of the robot does not move the eye back."""
 
+_POSES = 12
+"""Moments of a run that are looked at."""
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -36,9 +40,9 @@ class Stage:
 
     @classmethod
     def of(cls, rows: Rows, setting: Setting) -> Stage:
-        """From the first row."""
+        """From where the robot reaches within these rows, and how the base stands in the first."""
         q = rows["q"][0]
-        center, size = setting.extent(q)
+        center, size = setting.extent(rows["q"][evenly(len(rows), _POSES)])
         quat = q[3:7] if rows.quat_lb is None else rows.quat_lb[0]
         rot_fb = matrix_from_quaternion(quat)
         center = rot_fb @ center

@@ -82,7 +82,7 @@ def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) ->
     """Their axes, and their boxes where the scenario tells a size."""
     for index, target in enumerate(setting.targets):
         path = f"world/target/{index}"
-        log_axes(recording, path, frame_of_target(index), 0.3 * size, ("x T", "y T", "z T"))
+        log_axes(recording, path, frame_of_target(index), 0.25 * size, ("x T", "y T", "z T"))
         if target.size:
             box = rr.Boxes3D(sizes=[target.size], colors=[TARGET], fill_mode=rr.components.FillMode.Solid)
             recording.log(path, box, static=True, strict=True)

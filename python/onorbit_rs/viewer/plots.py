@@ -1,0 +1,101 @@
+"""The plots beside the picture: an overview, and a tab for each group."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import rerun.blueprint as rrb
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs.viewer.series import Series
+
+    Floats = NDArray[np.float64]
+
+_FIRST = (
+    "plots/tool_position_error",
+    "plots/tool_attitude_error",
+    "plots/joint_torque",
+    "plots/base_attitude",
+    "plots/slide_force",
+)
+_FIRST_ADRIFT = (
+    "plots/base_attitude_lvlh",
+    "plots/base_rate",
+    "plots/drag/force",
+    "plots/gravity_gradient/torque",
+    "plots/angular_momentum",
+    "plots/joint_position",
+    "plots/slide_position",
+    "plots/base_attitude",
+    "plots/energy",
+)
+_MOST_IN_A_COLUMN = 4
+_LOW = 4
+"""Share of the column that a plot of few lines has."""
+
+_MOST_TICKS = 6.0
+"""So many steps from tick to tick have room for their numbers in a low plot."""
+
+_FOR_LEGENDS = 1.24
+"""Plots go on for so much longer than the run, in units of it: legends stand there."""
+
+
+def plots_in_groups(plots: Sequence[Series], duration_s: float, *, is_live: bool) -> rrb.Tabs:
+    """An overview, and a tab for each group."""
+    by_path = {plot.path: plot for plot in plots}
+    wanted = _FIRST if _FIRST[0] in by_path else _FIRST_ADRIFT
+    first = [by_path[path] for path in wanted if path in by_path][:_MOST_IN_A_COLUMN]
+    tabs = {"Overview": first}
+    for plot in plots:
+        tabs.setdefault(plot.group, []).append(plot)
+    return rrb.Tabs(
+        *(
+            rrb.Vertical(
+                *(_plot(plot, duration_s, is_live=is_live) for plot in group),
+                row_shares=[min(max(_LOW, len(plot.names)), 9) for plot in group],
+                name=name,
+            )
+            for name, group in tabs.items()
+        ),
+        active_tab=0,
+    )
+
+
+def _plot(series: Series, duration_s: float, *, is_live: bool) -> rrb.TimeSeriesView:
+    """A plot that shows the whole run from the start."""
+    whole = rrb.TimeRange(
+        start=rrb.TimeRangeBoundary.absolute(seconds=0.0),
+        end=rrb.TimeRangeBoundary.absolute(seconds=_FOR_LEGENDS * duration_s),
+    )
+    is_low = len(series.names) <= _LOW
+    return rrb.TimeSeriesView(
+        origin=series.path,
+        name=f"{series.title} [{series.unit}]",
+        axis_x=rrb.TimeAxis(view_range=whole),
+        axis_y=rrb.ScalarAxis(range=None if is_live or not is_low else with_two_ticks(series.values)),
+        plot_legend=rrb.PlotLegend(rrb.Corner2D.RightTop),
+    )
+
+
+def with_two_ticks(values: Floats) -> tuple[float, float] | None:
+    """A range in which a low plot has two numbers; None where it has them anyhow.
+
+    Rerun has ticks at multiples of powers of ten alone, and leaves out those that stand near each other.
+    """
+    low, high = float(values.min(initial=np.inf)), float(values.max(initial=-np.inf))
+    if not 0.0 < high - low < np.inf:
+        return None
+    step = 10.0 ** math.ceil(math.log10((high - low) / _MOST_TICKS))
+    below, above = step * math.floor(low / step), step * math.ceil(high / step)
+    inside = math.floor(high / step) - math.ceil(low / step) + 1
+    if inside > 1:
+        return None
+    if inside == 1 and above - below > 1.5 * step:  # the nearer of the next two is enough
+        below, above = (low, above) if above - high <= low - below else (below, high)
+    margin = 0.05 * (above - below)
+    return below - margin, above + margin

@@ -1,0 +1,59 @@
+"""Where the eye is: it sees the robot wherever it reaches, and its tool's path from near."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+import onorbit_rs as oo
+from onorbit_rs import viewer
+from onorbit_rs.scenario import Scenario, load
+from onorbit_rs.scenario.build import build
+from onorbit_rs.viewer.blueprint import near_path
+from onorbit_rs.viewer.rows import Rows
+from onorbit_rs.viewer.stage import Stage
+
+MAST = """<robot name="slider">
+<link name="box"><inertial><mass value="50"/>
+<inertia ixx="3" iyy="3" izz="3" ixy="0" ixz="0" iyz="0"/></inertial>
+<visual><geometry><box size="0.6 0.6 0.6"/></geometry></visual></link>
+<link name="mast"><inertial><mass value="2"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<visual><geometry><box size="0.1 0.1 0.5"/></geometry></visual></link>
+<joint name="extend" type="prismatic"><parent link="box"/><child link="mast"/><axis xyz="0 0 1"/>
+<limit lower="0" upper="3" effort="10" velocity="1"/></joint></robot>"""
+
+
+def test_the_eye_sees_the_robot_wherever_it_reaches() -> None:
+    """It was fitted to the start: a mast that came out left the picture."""
+    model = oo.Model.from_urdf_string(MAST)
+    rates = np.array([0.0, 0, 0, 0, 0, 0, 1.0])
+    rows = Rows.of_trace(oo.Simulation(model, model.neutral(), rates, time_step=0.1).run(2.0))
+    stage = Stage.of(rows, viewer.Setting(model))
+    first = Stage.of(Rows({name: values[:1] for name, values in rows.columns.items()}), viewer.Setting(model))
+    top = np.array([0.0, 0.0, rows["q"][-1, 7] + 0.25])
+    assert np.linalg.norm(top - stage.rot_fb.T @ stage.center) < stage.size / 2.0
+    assert np.linalg.norm(top - first.rot_fb.T @ first.center) > first.size
+
+
+def test_a_short_path_is_seen_from_near_and_nothing_hides_it() -> None:
+    setting, rows = rows_of("humanoid_reach")
+    stage, middle = Stage.of(rows, setting), rows["reference_pose"][:, :3, 3].mean(axis=0)
+    for scale, name in ((1.0, "Tool and its path"), (0.02, "Path of the tool, without the robot")):
+        pose = rows["reference_pose"].copy()
+        pose[:, :3, 3] = middle + scale * (pose[:, :3, 3] - middle)
+        moved = Rows({**rows.columns, "reference_pose": pose})
+        view = near_path(moved, replace(setting, path_frame="world"), stage)
+        assert view is not None and view.name == name
+        assert ("- /world/robot/**" in list(view.contents)) == (scale < 1.0)  # type: ignore[arg-type]
+    pose[:, :3, 3] = middle
+    held = Rows({**rows.columns, "reference_pose": pose})
+    assert near_path(held, replace(setting, path_frame="world"), stage) is None
+
+
+def rows_of(name: str) -> tuple[viewer.Setting, Rows]:
+    """Of a bundled scenario, every column of its own."""
+    built = build(Scenario(**load(name).resolved() | {"simulation": {"duration": 4.0, "time_step": 0.01}}))
+    columns = Rows.of_trace(built.simulation.run(4.0)).columns
+    return viewer.Setting.of(built), Rows({name: values.copy() for name, values in columns.items()})
