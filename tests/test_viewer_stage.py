@@ -57,3 +57,19 @@ def rows_of(name: str) -> tuple[viewer.Setting, Rows]:
     built = build(Scenario(**load(name).resolved() | {"simulation": {"duration": 4.0, "time_step": 0.01}}))
     columns = Rows.of_trace(built.simulation.run(4.0)).columns
     return viewer.Setting.of(built), Rows({name: values.copy() for name, values in columns.items()})
+
+
+def test_the_tool_s_name_stands_off_the_robot_and_above_the_tool() -> None:
+    """It stood at the tip of the tool's z, which may point back along the arm: on the forearm."""
+    setting, rows = rows_of("humanoid_reach")
+    stage = Stage.of(rows, setting)
+    pose = setting.tool_pose(rows["q"])
+    center = stage.rot_fb.T @ stage.center
+    names = {"z": np.array([0.0, 0, 0.11 * stage.size]), "beside": stage.beside_tool(rows, setting)}
+    off, up = {}, {}
+    for name, place in names.items():
+        beside = pose[:, :3, 3] + pose[:, :3, :3] @ place
+        off[name] = np.linalg.norm(beside - center, axis=1) - np.linalg.norm(pose[:, :3, 3] - center, axis=1)
+        up[name] = beside[:, 2] - pose[:, 2, 3]
+    assert off["beside"].min() > 0.05 * stage.size and up["beside"].min() > 0.05 * stage.size
+    assert off["z"].min() < 0.0

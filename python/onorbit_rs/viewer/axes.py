@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _COLORS = np.array([(235, 80, 70), (80, 200, 100), (90, 145, 250)])
+_NAME = (235, 235, 235)
 
 
 def log_axes(
@@ -30,7 +31,7 @@ def log_axes(
     origin: Floats | None = None,
     brightness: float = 1.0,
 ) -> None:
-    """Axes of a frame, static; the tips carry ``names``, if any; a single one stands at z."""
+    """Axes of a frame, static; the tips carry ``names``, if any."""
     colors = (_COLORS * brightness).astype(np.uint8)
     start = np.zeros(3) if origin is None else origin
     put_in(recording, path, frame)
@@ -41,13 +42,20 @@ def log_axes(
     if names:
         put_in(recording, f"{path}/names", frame)
         labels = rr.Points3D(
-            start + 1.1 * length * np.eye(3)[-len(names) :],
-            colors=colors[-len(names) :],
+            start + 1.1 * length * np.eye(3),
+            colors=colors,
             radii=[0.0],
             labels=[shown(name) for name in names],
             show_labels=True,
         )
         recording.log(f"{path}/names", labels, static=True, strict=True)
+
+
+def _log_name(recording: rr.RecordingStream, path: str, frame: str, name: str, place: Floats) -> None:
+    """A name beside a frame, static."""
+    put_in(recording, path, frame)
+    label = rr.Points3D([place], colors=[_NAME], radii=[0.0], labels=[shown(name)], show_labels=True)
+    recording.log(path, label, static=True, strict=True)
 
 
 def log_all_axes(
@@ -57,19 +65,23 @@ def log_all_axes(
     places: tuple[Floats, Floats],
     *,
     near: float,
+    tool_name_at: Floats | None,
     in_orbit: bool,
     has_reference: bool,
 ) -> None:
     """Axes of the base, the tool and what it should be at, and beside the robot those of I and of L.
 
     ``places`` are where the two are shown, in ``follow``, m.
+    ``tool_name_at`` is where the tool's name stands, in its axes, m.
     ``near`` is the length of the tool's for the view of its path from near, which may be zero, m.
     """
     log_axes(recording, "world/axes/base", of_link(setting.base), 0.45 * size, ("x B", "y B", "z B"))
     if setting.tool is not None:
-        log_axes(recording, "world/axes/tool", of_link(setting.tool), 0.1 * size, (setting.tool,))
+        log_axes(recording, "world/axes/tool", of_link(setting.tool), 0.1 * size)
         if near > 0.0:
             log_axes(recording, "world/near/tool", of_link(setting.tool), near)
+    if setting.tool is not None and tool_name_at is not None:
+        _log_name(recording, "world/axes/tool/names", of_link(setting.tool), setting.tool, tool_name_at)
     if has_reference:
         log_axes(recording, "world/axes/desired", DESIRED, 0.1 * size, brightness=0.6)
         if near > 0.0:

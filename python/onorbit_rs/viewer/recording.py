@@ -123,6 +123,7 @@ def open_stage(
     log_all_axes(
         recording, setting, stage.size, (stage.inertial_at, stage.local_at),
         near=NEAR * path_length(rows, setting), in_orbit=in_orbit,
+        tool_name_at=None if setting.tool is None else stage.beside_tool(rows, setting),
         has_reference="reference_pose" in rows,
     )  # fmt: skip
     log_targets(recording, setting, stage.size)

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from onorbit_rs.appearance import shapes
 from onorbit_rs.geometry import Shape, extent
 from onorbit_rs.viewer.letters import shown
 from onorbit_rs.viewer.targets import PathFrame, Target, path_frame, targets
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Earth, Model, Orbit
@@ -67,6 +68,16 @@ class Setting:
 
     def extent(self, q: Floats) -> tuple[Floats, float]:
         """Centre and size of the robot in all of some configurations (k, 7 + n), axes of the base, m."""
-        at_origin = q.copy()
-        at_origin[:, :7] = [0, 0, 0, 0, 0, 0, 1]
-        return extent(self.model, self.shapes, at_origin)
+        return extent(self.model, self.shapes, _at_origin(q))
+
+    def tool_pose(self, q: Floats) -> Floats:
+        """Of the tool in some configurations (k, 7 + n), axes of the base: (k, 4, 4), m."""
+        assert self.tool is not None
+        return np.asarray(self.model.frame_pose(_at_origin(q), self.tool))
+
+
+def _at_origin(q: Floats) -> Floats:
+    """Configurations (k, 7 + n) with the base in the origin of the world."""
+    moved = q.copy()
+    moved[:, :7] = [0, 0, 0, 0, 0, 0, 1]
+    return moved

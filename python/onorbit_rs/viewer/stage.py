@@ -59,6 +59,17 @@ class Stage:
         place: Floats = self.center + self.size * (right * x + up * y - behind * z)
         return place
 
+    def beside_tool(self, rows: Rows, setting: Setting) -> Floats:
+        """Where the tool's name stands in its axes, m: off the robot and upwards, over the whole run."""
+        pose = setting.tool_pose(rows["q"][evenly(len(rows), _POSES)])
+        off = pose[:, :3, 3] - self.rot_fb.T @ self.center
+        sight = _TO_EYE / np.linalg.norm(_TO_EYE)
+        off -= np.outer(off @ sight, sight)  # as it is seen
+        off = off / np.linalg.norm(off, axis=1, keepdims=True).clip(1e-9) + [0.0, 0.0, 1.0]
+        direction = np.einsum("kji,kj->i", pose[:, :3, :3], off)
+        place: Floats = 0.11 * self.size * direction / max(float(np.linalg.norm(direction)), 1e-9)
+        return place
+
     def _sight(self) -> Floats:
         """Unit vectors (3, 3): to the right, up, and towards the eye, as seen at the start."""
         to_eye = self.rot_fb @ _TO_EYE
