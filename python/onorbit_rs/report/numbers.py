@@ -40,7 +40,17 @@ _GROUPS = (
         "Simulation",
         ("simulated_s", "wall_s", "real_time_factor", "rows", "time_step_s", "integrator", "plant"),
     ),
-    ("Versions", ("onorbit_rs_version", "instruction_set", "python_version", "numpy_version")),
+    (
+        "Versions",
+        (
+            "onorbit_rs_version",
+            "instruction_set",
+            "python_version",
+            "numpy_version",
+            "mujoco_version",
+            "robot_fingerprint",
+        ),
+    ),
 )
 _ONLY_IF_ANY = ("rereferenced", "joint_dissipation_j")
 """Say nothing where they are 0."""
