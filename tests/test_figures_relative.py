@@ -10,9 +10,10 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs import figures
-from onorbit_rs.figures.relative import Drifter, paths_in_orbit
+from onorbit_rs.figures.relative import paths_in_orbit
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.make_orbit import make_orbit
+from onorbit_rs.scenario.targets import Target
 
 RADIUS = 7e6
 RATE = np.sqrt(398600.4418e9 / RADIUS**3)
@@ -73,7 +74,10 @@ def test_a_reference_far_away_is_left_out() -> None:
 
 def test_targets_fly_beside() -> None:
     run = hill()
-    beside = Drifter(np.array([10.0, 0.0, 0.0]), np.array([0.0, 0.02, 0.0]))
+    beside = Target(
+        position=np.array([10.0, 0.0, 0.0]), quat_xyzw=np.array([0.0, 0.0, 0.0, 1.0]),
+        velocity=np.array([0.0, 0.02, 0.0]), spin=np.zeros(3),
+    )  # fmt: skip
     _, path = paths_in_orbit(run.trace, [beside])
     lengths = np.linalg.norm(beside.position + np.outer(run.trace.time, beside.velocity), axis=1)
     np.testing.assert_allclose(np.linalg.norm(path, axis=1), lengths, rtol=1e-12)  # L turns, and no more

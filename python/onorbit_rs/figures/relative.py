@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Model, Trace
+    from onorbit_rs.scenario.targets import Target
 
     Floats = NDArray[np.float64]
 
@@ -41,14 +42,7 @@ _NEAR = 10.0
 _MOST_ROWS = 3_000
 
 
-class Drifter(NamedTuple):
-    """A target that nothing acts on: its position at time zero, and its velocity, (3,), W, m and m/s."""
-
-    position: Floats
-    velocity: Floats
-
-
-def relative_motion(trace: Trace, targets: Sequence[Drifter] = ()) -> Figure:
+def relative_motion(trace: Trace, targets: Sequence[Target] = ()) -> Figure:
     """Paths of base and targets in L of the reference orbit: in its plane, and across it.
 
     L is radial, along the track, along the orbit's normal: on a circular orbit a free base draws ellipses of
@@ -85,13 +79,13 @@ def _plot_path(axes: Axes, x: Floats, y: Floats, index: int) -> None:
     axes.plot(x[-1], y[-1], "s", color=OBTAINED, markersize=3, label=end)
 
 
-def paths_in_orbit(trace: Trace, targets: Sequence[Drifter] = ()) -> list[Floats]:
+def paths_in_orbit(trace: Trace, targets: Sequence[Target] = ()) -> list[Floats]:
     """Positions (T, 3), L, m, of the base and of each target."""
     # W has inertial axes
     rot_wl = local_orbital_axes(*reference_motion_of(trace))
     places = [
         np.asarray(trace.q)[:, :3],
-        *(target.position + np.outer(trace.time, target.velocity) for target in targets),
+        *(target.position_at(np.asarray(trace.time)) for target in targets),
     ]
     return [np.einsum("tji,tj->ti", rot_wl, place) for place in places]
 

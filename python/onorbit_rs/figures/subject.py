@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
-from onorbit_rs.figures.relative import Drifter
 from onorbit_rs.scenario.control import JOINT_LAWS
 from onorbit_rs.scenario.load import load
 from onorbit_rs.scenario.make_control import group, tool_of
+from onorbit_rs.scenario.targets import Target, targets
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Earth, Model, Orbit, Trace
@@ -44,7 +42,7 @@ class Subject:
     earth: Earth | None = None
     is_the_papers: bool = False
     is_carried: bool = False
-    targets: tuple[Drifter, ...] = ()
+    targets: tuple[Target, ...] = ()
 
 
 def subject_of(
@@ -65,16 +63,8 @@ def subject_of(
         trace, model, tuple(tools), joint_controls, None if orbit is None else orbit.mu, earth,
         is_the_papers=_is_the_papers(scenario),
         is_carried=scenario.gravity_mode == "carried" or (orbit is not None and orbit.mu is None),
-        targets=_targets(scenario),
+        targets=targets(scenario),
     )  # fmt: skip
-
-
-def _targets(scenario: Scenario) -> tuple[Drifter, ...]:
-    """Every target that a reference follows, once."""
-    parts = [scenario.reference, *(getattr(law, "reference", None) for law in scenario.laws)]
-    motions = [getattr(getattr(part, "frame", None), "target", None) for part in parts]
-    unique = {repr(motion): motion for motion in motions if motion is not None}
-    return tuple(Drifter(np.array(motion.position), np.array(motion.velocity)) for motion in unique.values())
 
 
 def _is_the_papers(scenario: Scenario) -> bool:

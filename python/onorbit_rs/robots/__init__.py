@@ -7,8 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from onorbit_rs.exceptions import NotFoundError
-from onorbit_rs.names import did_you_mean, nearest
+from onorbit_rs import bundled
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
@@ -18,7 +17,7 @@ _FOLDER = Path(__file__).parent
 
 def names() -> list[str]:
     """Names that :func:`load` and a scenario's ``robot`` take."""
-    return sorted(file.stem for file in _FOLDER.glob("*.urdf"))
+    return bundled.names(_FOLDER, ".urdf")
 
 
 def path(name: str) -> Path:
@@ -29,10 +28,7 @@ def path(name: str) -> Path:
     NotFoundError
         No bundled robot has this name; suggests the nearest.
     """
-    if name not in names():
-        message = f"no bundled robot is named {name!r}{did_you_mean(name, names())}"
-        raise NotFoundError(message, path=name, kind="robot", suggestion=nearest(name, names()))
-    return _FOLDER / f"{name}.urdf"
+    return bundled.path(name, "robot", _FOLDER, ".urdf")
 
 
 def load(

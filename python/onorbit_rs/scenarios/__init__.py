@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from onorbit_rs.exceptions import NotFoundError
-from onorbit_rs.names import did_you_mean, nearest
+from onorbit_rs import bundled
 
 _FOLDER = Path(__file__).parent
 
 
 def names() -> list[str]:
     """Names that ``onorbit run`` and :func:`onorbit_rs.run` take."""
-    return sorted(file.stem for file in _FOLDER.glob("*.yaml"))
+    return bundled.names(_FOLDER, ".yaml")
 
 
 def path(name: str) -> Path:
@@ -23,7 +22,4 @@ def path(name: str) -> Path:
     NotFoundError
         No bundled scenario has this name; suggests the nearest.
     """
-    if name not in names():
-        message = f"no bundled scenario is named {name!r}{did_you_mean(name, names())}"
-        raise NotFoundError(message, path=name, kind="scenario", suggestion=nearest(name, names()))
-    return _FOLDER / f"{name}.yaml"
+    return bundled.path(name, "scenario", _FOLDER, ".yaml")

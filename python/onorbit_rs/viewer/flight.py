@@ -14,7 +14,7 @@ from onorbit_rs.viewer.axes import log_axes
 from onorbit_rs.viewer.colors import BACKGROUND, ROBOT, TARGET
 from onorbit_rs.viewer.frames import FOLLOW, LOCAL, ORIGIN, put_in
 from onorbit_rs.viewer.scene import UNTIL_NOW, send_trail
-from onorbit_rs.viewer.targets import frame_of_target, position_of
+from onorbit_rs.viewer.targets import frame_of_target
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -110,7 +110,7 @@ def _fliers(rows: Rows, setting: Setting) -> list[_Flier]:
         return []
     found = [("base", FOLLOW, setting.robot, ROBOT, rows["q"][:, :3])]
     for index, target in enumerate(setting.targets):
-        place = position_of(target, rows["time"])
+        place = target.position_at(rows["time"])
         found.append((f"target_{index}", frame_of_target(index), "target", TARGET, place))
     return [
         _Flier(f"world/flight/{name}", frame, label, color, np.einsum("tji,tj->ti", rows.rot_wl, place))

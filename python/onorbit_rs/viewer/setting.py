@@ -10,8 +10,9 @@ import numpy as np
 
 from onorbit_rs.appearance import shapes
 from onorbit_rs.geometry import Shape, extent
+from onorbit_rs.scenario.targets import Target, targets
 from onorbit_rs.viewer.letters import shown
-from onorbit_rs.viewer.targets import PathFrame, Target, path_frame, targets
+from onorbit_rs.viewer.targets import PathFrame, path_frame
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
