@@ -9,6 +9,11 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString, PyTuple};
 use pyo3::{PyClass, PyTypeInfo};
 
+/// What kind of thing was given, for a message.
+pub(crate) fn type_name(value: &Bound<'_, PyAny>) -> String {
+    value.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string())
+}
+
 /// A whole number; no float, no truth value and no text stands for one.
 pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
     let py = value.py();
@@ -27,7 +32,7 @@ pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
             ))
         }
         _ => {
-            let got = value.get_type().name().map_or_else(|_| "object".to_owned(), |got| got.to_string());
+            let got = type_name(value);
             let message = format!("{name} is of type {got}, a whole number (int) is needed");
             Err(raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": "int")))
         }
@@ -74,7 +79,7 @@ pub(crate) fn list_of<'py, T: PyClass>(
 ) -> PyResult<Vec<Bound<'py, T>>> {
     let py = value.py();
     let refuse = |says: &str, got: &Bound<'py, PyAny>| {
-        let got = got.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string());
+        let got = type_name(got);
         let message = format!("{name} {says} {got}, a list of {what} is needed");
         raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
     };

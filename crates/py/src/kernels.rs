@@ -1,6 +1,6 @@
 //! The dynamics of a model: one state `(n,)` or a batch `(B, n)`.
 
-use crate::arrays::{Input, Threads, wrong_shape};
+use crate::arrays::{Input, Threads, type_name, wrong_shape};
 use crate::errors::{IntoPython, fields, raise};
 use crate::model::PyModel;
 use crate::output::{Output, outputs};
@@ -92,7 +92,7 @@ fn wrenches<'py>(
 ) -> PyResult<Vec<usize>> {
     let Some(external) = external else { return Ok(Vec::new()) };
     let Ok(external) = external.cast::<PyDict>() else {
-        let (py, got) = (external.py(), external.get_type().name()?.to_string());
+        let (py, got) = (external.py(), type_name(external));
         let message = format!(
             "external is {got}, a dict of wrenches by the frames they act on is needed, such as \
              {{'{}': [fx, fy, fz, tx, ty, tz]}}",

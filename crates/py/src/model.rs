@@ -1,6 +1,6 @@
 //! The robot.
 
-use crate::arrays::{Threads, array_of, fixed};
+use crate::arrays::{Threads, array_of, fixed, type_name};
 use crate::derivatives::{PyFreeFloatingDerivatives, free_floating_derivatives, three};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
@@ -50,7 +50,7 @@ impl PyModel {
     pub(crate) fn frame(&self, name: &Bound<'_, PyAny>) -> PyResult<usize> {
         let py = name.py();
         let Ok(text) = name.cast::<PyString>() else {
-            let got = name.get_type().name()?.to_string();
+            let got = type_name(name);
             let message = format!("frame is of type {got}, a name is needed");
             let fields = fields!(py, "name": "frame", "expected": "str", "got": got);
             return Err(raise(py, "DtypeError", &message, &fields));

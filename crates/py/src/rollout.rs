@@ -1,6 +1,6 @@
 //! Many runs at once.
 
-use crate::arrays::{self, Input, Threads, shape_text, steps, wrong_shape};
+use crate::arrays::{self, Input, Threads, shape_text, steps, type_name, wrong_shape};
 use crate::control::PyComputedTorque;
 use crate::errors::{IntoPython, fields, plain, raise};
 use crate::model::PyModel;
@@ -104,7 +104,7 @@ pub(crate) fn rollout<'py>(
 fn law_of<'a, 'py>(controller: Any<'a, 'py>) -> PyResult<&'a Bound<'py, PyComputedTorque>> {
     controller.cast::<PyComputedTorque>().map_err(|_| {
         let py = controller.py();
-        let got = controller.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string());
+        let got = type_name(controller);
         let message = format!(
             "controller is {got}, a rollout runs ComputedTorque or torques given as tau: run other controllers in a \
              Simulation"

@@ -1,6 +1,6 @@
 //! What bodies show to wind and light; bound to a robot when the simulation is made.
 
-use crate::arrays::{Input, wrong_shape};
+use crate::arrays::{Input, type_name, wrong_shape};
 use crate::errors::{IntoPython, fields, raise};
 use crate::made::Made;
 use onorbit_core::environment::surfaces::{Covering, Optics, Surface, SurfaceError, Surfaces};
@@ -89,7 +89,7 @@ impl Spread {
         let kind = |value: Any<'_, '_>| match value.cast::<PySurface>() {
             Ok(surface) => Ok(surface.get().kind.clone()),
             Err(_) => {
-                let got = value.get_type().name()?.to_string();
+                let got = type_name(value);
                 let message = format!(
                     "surfaces holds {got}; Faces, Plates or Cannonball is needed, or a dict of them by body"
                 );

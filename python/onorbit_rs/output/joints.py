@@ -8,7 +8,7 @@ import numpy as np
 
 from onorbit_rs import _core
 from onorbit_rs.scenario.control import JOINT_LAWS, JointPidController
-from onorbit_rs.scenario.make_control import group
+from onorbit_rs.scenario.make_control import columns_of, group
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -41,8 +41,7 @@ def efforts_at_limit(trace: Trace, built: Built) -> Summary:
     pids = [law for law in built.scenario.laws if isinstance(law, JointPidController)]
     reached = set()
     for law in pids:
-        wanted = getattr(law, "joints", None)
-        columns = [names.index(name) for name in (names if wanted is None else group(wanted, names))]
+        columns = columns_of(law, names)
         own = [built.model.joints[column].effort for column in columns]
         limits = own if law.effort_limit is None else np.broadcast_to(law.effort_limit, len(columns))
         reached |= {column for column, limit in zip(columns, limits, strict=True)

@@ -60,6 +60,12 @@ def group(wanted: list[str], joints: list[str]) -> list[str]:
     return found
 
 
+def columns_of(law: Any, joints: list[str]) -> list[int]:
+    """Where the joints that a law drives stand among those of the robot: all, or those of its group."""
+    wanted = getattr(law, "joints", None)
+    return [joints.index(name) for name in (joints if wanted is None else group(wanted, joints))]
+
+
 def law_of(part: Any, tool: str | None, model: _core.Model, folder: Path) -> Any:
     """The law of a controller, or the user's own object."""
     if isinstance(part, laws.PythonController):

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from onorbit_rs.scenario import control as laws
-from onorbit_rs.scenario.make_control import group, tool_of
+from onorbit_rs.scenario.make_control import columns_of, tool_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,7 +49,7 @@ def _gains(
     law: Any, scenario: Scenario, model: Model, q: Floats
 ) -> Iterator[tuple[str, Literal[1, 2], Floats]]:
     """The key of each gain, and the acceleration that it answers a rate (1) or a position (2) with."""
-    joints = len(_columns(law, model))
+    joints = len(columns_of(law, model.joint_names))
     if isinstance(law, laws.ComputedTorqueController):
         yield "kd", 1, _square(law.kd, 6)
         yield "kp", 2, _square(law.kp, 6)
@@ -68,15 +68,10 @@ def _gains(
         yield "stiffness", 2, mobility @ _square(law.stiffness, 6)
 
 
-def _columns(law: Any, model: Model) -> list[int]:
-    names = list(model.joint_names)
-    wanted = getattr(law, "joints", None)
-    return [names.index(name) for name in (names if wanted is None else group(wanted, names))]
-
-
 def _joint_mobility(law: Any, model: Model, q: Floats) -> Floats:
     """`(Mmm - Mmb Mbb⁻¹ Mbm)⁻¹` of the law's joints; the others held, which makes no joint lighter."""
-    mass, rows = np.asarray(model.mass_matrix(q)), [6 + column for column in _columns(law, model)]
+    mass = np.asarray(model.mass_matrix(q))
+    rows = [6 + column for column in columns_of(law, model.joint_names)]
     coupling = mass[:6][:, rows]
     left = mass[np.ix_(rows, rows)] - coupling.T @ np.linalg.solve(mass[:6, :6], coupling)
     return np.asarray(np.linalg.inv(left), dtype=np.float64)
@@ -86,7 +81,8 @@ def _tool_mobility(law: Any, scenario: Scenario, model: Model, q: Floats) -> Flo
     """`Jg M*⁻¹ Jgᵀ`: what a wrench that the law wants at the tool accelerates it by."""
     tool = tool_of(law, scenario.tool)
     assert tool is not None  # the schema lets no task without one through
-    jacobian = np.asarray(model.free_floating(q, np.zeros(model.nv), tool).jacobian)[:, _columns(law, model)]
+    columns = columns_of(law, model.joint_names)
+    jacobian = np.asarray(model.free_floating(q, np.zeros(model.nv), tool).jacobian)[:, columns]
     mobility: Floats = jacobian @ _joint_mobility(law, model, q) @ jacobian.T
     return mobility
 

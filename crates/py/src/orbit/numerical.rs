@@ -1,7 +1,7 @@
 //! References integrated in the full gravity field.
 
 use super::{Any, PyOrbit, base, vector};
-use crate::arrays::array_of;
+use crate::arrays::{array_of, type_name};
 use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
 use crate::errors::{IntoPython, fields, raise};
@@ -81,8 +81,7 @@ fn made(
 ) -> PyResult<PyClassInitializer<PyNumerical>> {
     let turning = earth.map(|earth| Arc::new(earth.get().earth.in_axes(axes)));
     let others = environment.iter().filter(|effect| !effect.get().is_gravity());
-    let others =
-        others.map(|effect| Ok(effect.get_type().name()?.to_string())).collect::<PyResult<Vec<_>>>()?;
+    let others: Vec<_> = others.map(|effect| type_name(effect)).collect();
     if !others.is_empty() {
         let message = format!(
             "{} would act on the robot, not on the reference, which falls freely: leave out what is no \

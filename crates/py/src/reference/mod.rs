@@ -5,7 +5,7 @@ mod joint;
 mod task;
 mod timing;
 
-use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
+use crate::arrays::{Input, fixed, fresh, type_name, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use crate::orbit::{PyOrbit, times};
 use numpy::PyArrayDyn;
@@ -135,7 +135,7 @@ pub(crate) fn is_of_joints(value: Any<'_, '_>) -> bool {
 
 fn no_reference(value: Any<'_, '_>, expected: &str) -> PyErr {
     let py = value.py();
-    let got = value.get_type().name().map_or_else(|_| "?".to_owned(), |name| name.to_string());
+    let got = type_name(value);
     let message = format!("reference is of type {got}, a {expected} is needed");
     raise(py, "DtypeError", &message, &fields!(py, "name": "reference", "expected": expected, "got": got))
 }
