@@ -130,7 +130,14 @@ impl<S: Real> Motion<S> {
     /// Velocity of the body-fixed point at `p`: `v + ω × p`.
     #[inline(always)]
     pub fn at(self, p: Vec3<S>) -> Vec3<S> {
-        self.linear + self.angular.cross(p)
+        self.angular.cross_add(p, self.linear)
+    }
+
+    /// The same motion with its linear part taken at the point `p`.
+    #[inline(always)]
+    #[must_use]
+    pub fn referred_to(self, p: Vec3<S>) -> Self {
+        Self::new(self.at(p), self.angular)
     }
 }
 
@@ -138,6 +145,13 @@ impl<S: Real> Force<S> {
     /// The wrench of `force` acting at `p` plus a free `moment`, about the origin.
     #[inline(always)]
     pub fn at(force: Vec3<S>, moment: Vec3<S>, p: Vec3<S>) -> Self {
-        Self::new(force, moment + p.cross(force))
+        Self::new(force, p.cross_add(force, moment))
+    }
+
+    /// A wrench whose moment is about the point `p`, with its moment about the origin instead.
+    #[inline(always)]
+    #[must_use]
+    pub fn from_point(self, p: Vec3<S>) -> Self {
+        Self::at(self.linear, self.angular, p)
     }
 }

@@ -59,7 +59,7 @@ fn kernel<S: Real>(model: &Model, data: &Data<S>, work: &mut Derivatives<S>, dq:
             dv[i * nv + j] += force[i];
         }
         for k in 1..nodes.len() {
-            dv[(k + 5) * nv + j] += carried.dot(work.bodies[k].reach);
+            dv[(k + 5) * nv + j] += carried.dot(work.bodies[k].coupling);
         }
     }
 }
