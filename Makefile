@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -62,6 +62,11 @@ bench: $(VENV)/.built $(VENV)/.benched ## against Pinocchio and MuJoCo, built fr
 
 bench-quick: $(VENV)/.built $(VENV)/.benched ## the same in a minute or two, not kept
 	$(BIN)/python benches/versus --rounds 3 --seconds 0.05 --no-save
+
+# REV= another revision; ROUNDS= how many; ROWS= only rows whose name contains it; or BUILT='other-tree this-tree'
+bench-against: $(VENV)/.built $(VENV)/.tested ## this tree's speed against REV=revision, alternated; fails if a row is slower
+	$(BIN)/python benches/versus/against.py $(if $(BUILT),--built $(BUILT),$(if $(REV),$(REV),HEAD)) \
+		$(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(ROWS),--rows '$(ROWS)')
 
 bench-rust: $(VENV)/.built $(VENV)/.tested ## criterion for the kernels, pytest-benchmark for the border
 	cargo bench -p onorbit-core
