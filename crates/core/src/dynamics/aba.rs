@@ -83,23 +83,23 @@ fn kernel<S: Real>(
         |k, node, body, load| {
             let (articulated, force) = with_own(body, load);
             // U = IA S,  D = Sᵀ U + rotor,  u = τ − Sᵀ p
-            body.reach = articulated_force(node, body.axis(), &articulated);
+            let reach = articulated_force(node, body.axis(), &articulated);
             if is_locked(k) {
                 body.force = force; // read for these alone, and a store of lanes is dear
             }
             // a locked joint hands on all of IA: as if nothing could move it, 1/D = 0
             body.inverse_pivot = match is_locked(k) {
                 true => S::of(0.0),
-                false => {
-                    S::of(1.0) / (joint_effort(node, body.axis(), body.reach) + S::of(node.rotor_inertia))
-                }
+                false => S::of(1.0) / (joint_effort(node, body.axis(), reach) + S::of(node.rotor_inertia)),
             };
             body.drive = tau[k + 5] - joint_effort(node, body.axis(), force);
-            // Ia = IA − U Uᵀ/D,  pa = p + U u/D
+            // Ia = IA − U Uᵀ/D,  pa = p + U u/D about the parent's origin: IA moves there while D is divided by
+            body.reach = reach.from_point(body.offset);
             let yielding = body.reach * -body.inverse_pivot;
-            let (handed, force) =
-                (articulated.add_parallel(body.reach, yielding), yielding.scale_add(-body.drive, force));
-            (handed.from_point(body.offset), force.from_point(body.offset))
+            (
+                articulated.from_point(body.offset).add_parallel(body.reach, yielding),
+                yielding.scale_add(-body.drive, force.from_point(body.offset)),
+            )
         },
     );
 
@@ -118,14 +118,13 @@ fn kernel<S: Real>(
         #[inline(always)]
         |k, node, body, carried: Motion<S>| {
             // q̈ = (u − Uᵀ a_p)/D,  a = a_p + S q̈, beside that of no q̈
-            let carried = carried.referred_to(body.offset);
             let pull = body.reach * -body.inverse_pivot;
             let acceleration = carried.dot_add(pull, body.drive * body.inverse_pivot);
             if is_locked(k) {
                 body.drive = carried.dot(body.reach) - body.drive; // λ = Uᵀ a_p − u
             }
             a[k + 5] = acceleration;
-            let response = along(node, body.axis(), acceleration, carried);
+            let response = along(node, body.axis(), acceleration, carried.referred_to(body.offset));
             body.acceleration += response;
             if node.is_fork {
                 body.response = response;

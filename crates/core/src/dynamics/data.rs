@@ -34,7 +34,7 @@ pub struct BodyData<S> {
     pub composite: SpatialInertia<S>,
     /// Inertia of the subtree, articulated. Set by ABA, of the base alone.
     pub articulated: ArticulatedInertia<S>,
-    /// `U = IA S`. Set by ABA.
+    /// `U = IA S`, about the parent's origin. Set by ABA.
     pub reach: Force<S>,
     /// `1 / (Sᵀ U + rotor)`. Set by ABA.
     pub inverse_pivot: S,

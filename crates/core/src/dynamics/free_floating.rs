@@ -10,7 +10,7 @@ use super::kinematics::{
 use super::rnea::{accelerations, net_force};
 use super::subspace::{composite_force, joint_effort, subspace};
 use super::walk::{inward, load};
-use crate::model::Model;
+use crate::model::{Model, Node};
 use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, Vec3};
 
 /// `M* q̈ + c* = τ + Q*` and `ẍ = Jg q̈ + d` for one frame; exact for any momentum and any wrench.
@@ -179,30 +179,7 @@ fn kernel<S: Real>(
     (bodies[0].composite, out.base_bias) = (composite, bias);
     let inverse = composite.inverse();
 
-    for (k, row) in (1..).zip(out.inertia.chunks_exact_mut(n.max(1))) {
-        // Mmm, and the column of Mbm where the force has arrived at the base
-        let (mut force, mut ancestor, row) = (bodies[k].force, k, &mut row[..k]);
-        for j in (1..=k).rev() {
-            let mut entry = S::of(0.0);
-            if j == ancestor {
-                entry = joint_effort(&nodes[j], bodies[j].axis(), force);
-                (force, ancestor) = (force.from_point(bodies[j].offset), nodes[j].parent);
-            }
-            row[j - 1] = entry;
-        }
-        row[k - 1] += S::of(nodes[k].rotor_inertia);
-        out.coupling[k - 1] = force;
-        out.recoil[k - 1] = -inverse.apply(force);
-        // M* = Mmm − Mbmᵀ (Mbb⁻¹ Mbm)
-        for (entry, recoil) in row.iter_mut().zip(&out.recoil[..k]) {
-            *entry = recoil.dot_add(force, *entry);
-        }
-    }
-    for k in 0..n {
-        for j in 0..k {
-            out.inertia[j * n + k] = out.inertia[k * n + j];
-        }
-    }
+    mobility(nodes, bodies, &inverse, out);
 
     let (net, outside) = (inverse.apply(bias), inverse.apply(outside)); // Mbb⁻¹ (cb − Qb), Mbb⁻¹ Qb
     for (k, coupling) in out.coupling.iter().enumerate() {
@@ -212,6 +189,42 @@ fn kernel<S: Real>(
     }
     out.drift = classical(model, data, q, frame, data.bodies[model.frames()[frame].body].acceleration);
     reduce_task(model, data, q, frame, &inverse, out);
+}
+
+/// `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `Mbm` and the base's recoil from the forces `I^c S` of all joints.
+#[inline(always)]
+fn mobility<S: Real>(
+    nodes: &[Node],
+    bodies: &[BodyData<S>],
+    inverse: &InverseInertia<S>,
+    out: &mut FreeFloating<S>,
+) {
+    let n = nodes.len() - 1;
+    for (k, row) in (1..).zip(out.inertia.chunks_exact_mut(n.max(1))) {
+        // S_jᵀ I^c S_k at the origin of each ancestor j; where the force has arrived at the base it is the column of Mbm
+        let (Force { linear, angular }, mut lever) = (bodies[k].force, Vec3::zero());
+        let (mut ancestor, row) = (k, &mut row[..k]);
+        for j in (1..=k).rev() {
+            let mut entry = S::of(0.0);
+            if j == ancestor {
+                let (node, body) = (&nodes[j], &bodies[j]);
+                entry = joint_effort(node, body.axis(), Force::at(linear, angular, lever));
+                (lever, ancestor) = (lever + body.offset, node.parent);
+            }
+            row[j - 1] = entry;
+        }
+        row[k - 1] += S::of(nodes[k].rotor_inertia);
+        let force = Force::at(linear, angular, lever);
+        (out.coupling[k - 1], out.recoil[k - 1]) = (force, -inverse.apply(force));
+        for (entry, recoil) in row.iter_mut().zip(&out.recoil[..k]) {
+            *entry += recoil.dot(force);
+        }
+    }
+    for k in 0..n {
+        for j in 0..k {
+            out.inertia[j * n + k] = out.inertia[k * n + j];
+        }
+    }
 }
 
 /// Wrenches from outside on a subtree.

@@ -65,7 +65,7 @@ pub fn frame_drift<S: Real>(model: &Model, data: &Data<S>, q: &[S], v: &[S], fra
             let mut k = index.body;
             while k > 0 {
                 let (node, body) = (&model.nodes()[k], &data.bodies[k]);
-                spatial += velocity_product(node, body, v[k + 5], Motion::zero()).referred_to(lever);
+                spatial += velocity_product(node, body, v[k + 5]).referred_to(lever);
                 (lever, k) = (lever + body.offset, node.parent);
             }
             classical(model, data, q, frame, spatial)

@@ -95,7 +95,11 @@ pub(super) fn accelerations<S: Real>(nodes: &[Node], bodies: &mut [BodyData<S>],
         |body| body.acceleration,
         #[inline(always)]
         |k, node, body, carrier: Motion<S>| {
-            body.acceleration = velocity_product(node, body, v[k + 5], carrier.referred_to(body.offset));
+            let own = velocity_product(node, body, v[k + 5]);
+            body.acceleration = Motion::new(
+                carrier.linear + carrier.angular.cross_add(body.offset, own.linear),
+                carrier.angular + own.angular,
+            );
             if let Some(a) = a {
                 body.acceleration = along(node, body.axis(), a[k + 5], body.acceleration);
             }

@@ -34,15 +34,13 @@ pub(super) fn joint_effort<S: Real>(node: &Node, z: Vec3<S>, f: Force<S>) -> S {
     }
 }
 
-/// `v × S q̇ + m`: what the joint's rate adds to an acceleration, `v` being the body's own twist.
+/// `v × S q̇`: what the joint's rate adds to an acceleration, `v` being the body's own twist.
 #[inline(always)]
-pub(super) fn velocity_product<S: Real>(node: &Node, body: &BodyData<S>, rate: S, m: Motion<S>) -> Motion<S> {
+pub(super) fn velocity_product<S: Real>(node: &Node, body: &BodyData<S>, rate: S) -> Motion<S> {
     let (v, moved) = (&body.velocity, body.axis() * rate);
     match node.axis {
-        Axis::Revolute => {
-            Motion::new(v.linear.cross_add(moved, m.linear), v.angular.cross_add(moved, m.angular))
-        }
-        Axis::Prismatic => Motion::new(v.angular.cross_add(moved, m.linear), m.angular),
+        Axis::Revolute => Motion::new(v.linear.cross(moved), v.angular.cross(moved)),
+        Axis::Prismatic => Motion::new(v.angular.cross(moved), Vec3::zero()),
     }
 }
 

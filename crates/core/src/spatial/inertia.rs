@@ -80,24 +80,28 @@ impl<S: Real> SpatialInertia<S> {
         )
     }
 
-    /// An inertia about the point `r`, about the origin instead: with `h' = h + m r` and `g = h + h'`,
+    /// An inertia about the point `r`, about the origin instead: with `h' = h + m r`,
     ///
-    /// `I_o' = I_o + (g · r) 1 − ½ (g rᵀ + r gᵀ)`.
+    /// `I_o' = I_o + 2 (h · r) 1 − (h rᵀ + r hᵀ) + m (r² 1 − r rᵀ)`.
     #[inline(always)]
     #[must_use]
     pub fn from_point(&self, r: Vec3<S>) -> Self {
-        let moment = r.scale_add(self.mass, self.moment);
-        let (g, half, i) = (self.moment + moment, r * S::of(-0.5), &self.about_origin);
-        let (x, y, z) = (g.x * r.x, g.y * r.y, g.z * r.z);
+        let (h, i, twice, mr) = (self.moment, &self.about_origin, r + r, r * self.mass);
+        let (x, y, z) = (
+            h.x.mul_add(twice.x, mr.x * r.x),
+            h.y.mul_add(twice.y, mr.y * r.y),
+            h.z.mul_add(twice.z, mr.z * r.z),
+        );
+        let product = |a: S, p: S, b: S, q: S, own: S| a.mul_add(p, b.mul_add(q, own));
         let about_origin = Sym3::new(
             i.xx + (y + z),
             i.yy + (x + z),
             i.zz + (x + y),
-            g.x.mul_add(half.y, g.y.mul_add(half.x, i.xy)),
-            g.x.mul_add(half.z, g.z.mul_add(half.x, i.xz)),
-            g.y.mul_add(half.z, g.z.mul_add(half.y, i.yz)),
+            i.xy - product(h.x, r.y, h.y, r.x, mr.x * r.y),
+            i.xz - product(h.x, r.z, h.z, r.x, mr.x * r.z),
+            i.yz - product(h.y, r.z, h.z, r.y, mr.y * r.z),
         );
-        Self { mass: self.mass, moment, about_origin }
+        Self { mass: self.mass, moment: h + mr, about_origin }
     }
 
     /// Centre of mass, m. The mass must not be zero.

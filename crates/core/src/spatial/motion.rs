@@ -130,7 +130,7 @@ impl<S: Real> Motion<S> {
     /// Velocity of the body-fixed point at `p`: `v + ω × p`.
     #[inline(always)]
     pub fn at(self, p: Vec3<S>) -> Vec3<S> {
-        self.angular.cross_add(p, self.linear)
+        self.linear + self.angular.cross(p)
     }
 
     /// The same motion with its linear part taken at the point `p`.
@@ -145,7 +145,7 @@ impl<S: Real> Force<S> {
     /// The wrench of `force` acting at `p` plus a free `moment`, about the origin.
     #[inline(always)]
     pub fn at(force: Vec3<S>, moment: Vec3<S>, p: Vec3<S>) -> Self {
-        Self::new(force, p.cross_add(force, moment))
+        Self::new(force, moment + p.cross(force))
     }
 
     /// A wrench whose moment is about the point `p`, with its moment about the origin instead.

@@ -31,13 +31,13 @@ pub(super) fn inverse_mass<S: Real>(
             term.left = zero;
         }
         terms[j].left = S::of(1.0);
-        let mut force = (bodies[j].reach * bodies[j].inverse_pivot).from_point(bodies[j].offset);
+        let mut force = bodies[j].reach * bodies[j].inverse_pivot;
         let mut i = nodes[j].parent;
         while i > 0 {
             let left = -joint_effort(&nodes[i], bodies[i].axis(), force);
             terms[i].left = left;
-            force =
-                bodies[i].reach.scale_add(left * bodies[i].inverse_pivot, force).from_point(bodies[i].offset);
+            let moved = force.from_point(bodies[i].offset);
+            force = bodies[i].reach.scale_add(left * bodies[i].inverse_pivot, moved);
             i = nodes[i].parent;
         }
         // a_0 = −IA⁻¹ P
@@ -48,9 +48,9 @@ pub(super) fn inverse_mass<S: Real>(
         }
         for k in 1..=j {
             // q̈ = (u − Uᵀ a_p)/D,  a = a_p + S q̈
-            let carried = terms[nodes[k].parent].response.referred_to(bodies[k].offset);
+            let carried = terms[nodes[k].parent].response;
             let x = (terms[k].left - carried.dot(bodies[k].reach)) * bodies[k].inverse_pivot;
-            terms[k].response = along(&nodes[k], bodies[k].axis(), x, carried);
+            terms[k].response = along(&nodes[k], bodies[k].axis(), x, carried.referred_to(bodies[k].offset));
             out[(k + 5) * nv + j + 5] = x;
             out[(j + 5) * nv + k + 5] = x;
         }

@@ -52,12 +52,16 @@ fn kernel<S: Real>(
     let (nodes, nv, frame) = (model.nodes(), model.nv(), &model.frames()[frame]);
     let inverse = give_way(data, &work.force);
     work.gather(nodes, data);
+    for (k, coupling) in work.coupling.iter_mut().enumerate() {
+        *coupling = work.bodies[k + 1].reach.from_point(data.bodies[k + 1].pos_b);
+    }
     let point = Point::new(base_rotation(q), data, frame);
+    let mut lever = frame_offset(data, frame); // from the joint's origin to the frame's
     for out in [&mut *torque_q, torque_v, acceleration_q, acceleration_v, velocity_q] {
         out.fill(S::of(0.0));
     }
 
-    for j in 1..nodes.len() {
+    for j in (1..nodes.len()).rev() {
         let rows = work.joint_columns(nodes, &data.bodies, j);
         // ∂a_b = −Mbb⁻¹ ∂τ_b,  ∂τ_m + Mbmᵀ ∂a_b
         let (back_q, back_v) = (recoil(&inverse, rows, 0), recoil(&inverse, rows, 1));
@@ -65,20 +69,20 @@ fn kernel<S: Real>(
             torque_q[(row.index - 6) * nv + j + 5] = row.values[0];
             torque_v[(row.index - 6) * nv + j + 5] = row.values[1];
         }
-        for k in 1..nodes.len() {
-            torque_q[(k - 1) * nv + j + 5] += back_q.dot(work.bodies[k].coupling);
-            torque_v[(k - 1) * nv + j + 5] += back_v.dot(work.bodies[k].coupling);
+        for (k, coupling) in work.coupling.iter().enumerate() {
+            torque_q[k * nv + j + 5] += back_q.dot(*coupling);
+            torque_v[k * nv + j + 5] += back_v.dot(*coupling);
         }
         let term = &work.bodies[j];
         let (mut to_q, mut to_v) = (back_q.referred_to(point.position), back_v.referred_to(point.position));
-        if (j..term.end).contains(&frame.body) {
+        if (j..nodes[j].end).contains(&frame.body) {
             // carried along: s × ẍ;  what comes through the joint: Ψ̈ + 2 Ψ̇ × ẋ, or 2 Ψ̇ + 2 s × ẋ
             let s = subspace(&nodes[j], data.bodies[j].axis()).angular;
-            let lever = work.bodies[frame.body].lever + point.offset;
             let (rate, rate2) = (term.rate.referred_to(lever), term.rate2.referred_to(lever));
             to_q += turn(s, point.acceleration) + rate2 + point.coriolis(term.rate.angular);
             to_v += rate * S::of(2.0) + point.coriolis(s);
             point.write(velocity_q, nv, j + 5, turn(s, point.velocity) + rate);
+            lever += data.bodies[j].offset;
         }
         point.write(acceleration_q, nv, j + 5, to_q);
         point.write(acceleration_v, nv, j + 5, to_v);
@@ -91,8 +95,8 @@ fn kernel<S: Real>(
         for row in &rows[6..] {
             torque_v[(row.index - 6) * nv + m + 3] = row.values[m];
         }
-        for k in 1..nodes.len() {
-            torque_v[(k - 1) * nv + m + 3] += back.dot(work.bodies[k].coupling);
+        for (k, coupling) in work.coupling.iter().enumerate() {
+            torque_v[k * nv + m + 3] += back.dot(*coupling);
         }
         point.write(acceleration_v, nv, m + 3, back.referred_to(point.position) + point.coriolis(axis));
         point.write(acceleration_q, nv, m + 3, turn(axis, point.acceleration));
@@ -127,8 +131,6 @@ fn turn<S: Real>(s: Vec3<S>, m: Motion<S>) -> Motion<S> {
 /// A frame's origin: twist and acceleration of the point, in B axes.
 struct Point<S> {
     rot_wb: Mat3<S>,
-    /// From the origin of its body.
-    offset: Vec3<S>,
     /// From the base's origin.
     position: Vec3<S>,
     velocity: Motion<S>,
@@ -141,7 +143,6 @@ impl<S: Real> Point<S> {
         let (body, offset) = (&data.bodies[frame.body], frame_offset(data, frame));
         Self {
             rot_wb,
-            offset,
             position: body.pos_b + offset,
             velocity: body.velocity.referred_to(offset),
             acceleration: point_acceleration(body.acceleration, body.velocity, offset),

@@ -15,6 +15,8 @@ pub struct Derivatives<S> {
     joint: Vec<Row<S, 2>>,
     /// Rows for the base's three rates of turn.
     base: Vec<Row<S, 3>>,
+    /// Columns of `Mbm`: `I_C S` about the base's origin.
+    pub(super) coupling: Vec<Force<S>>,
     /// Generalized accelerations, `(nv,)`.
     pub(super) acceleration: Vec<S>,
     /// Generalized forces, `(nv,)`.
@@ -31,8 +33,6 @@ pub(super) struct Row<S, const N: usize> {
 /// Quantities of one body and its subtree `C`, in base axes about the body's origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Terms<S> {
-    /// One past the last body of the subtree: bodies are numbered depth first.
-    pub(super) end: usize,
     /// `I_C`.
     pub(super) inertia: SpatialInertia<S>,
     /// `2B_C`.
@@ -43,12 +43,8 @@ pub(super) struct Terms<S> {
     pub(super) rate: Motion<S>,
     /// `Ψ̈ = a × S + v × Ψ̇`.
     pub(super) rate2: Motion<S>,
-    /// `I_C S`.
+    /// `I_C S`, about the origin of the joint whose column is formed next; after all of them about the base's.
     pub(super) reach: Force<S>,
-    /// `I_C S` about the base's origin: column of `Mbm`.
-    pub(super) coupling: Force<S>,
-    /// Origin of the body from that of the joint whose column is formed.
-    pub(super) lever: Vec3<S>,
     /// `2B_Cᵀ S`, of which only the angular half is not zero.
     pub(super) reach_coriolis: Vec3<S>,
     /// Acceleration of the body for a column of `M⁻¹`.
@@ -61,31 +57,23 @@ impl<S: Real> Derivatives<S> {
     /// Space for `model`.
     pub fn new(model: &Model) -> Self {
         let nodes = model.nodes();
-        let one = |k| Terms {
-            end: k + 1,
+        let one = Terms {
             inertia: SpatialInertia::zero(),
             coriolis: Coriolis::default(),
             force: Force::zero(),
             rate: Motion::zero(),
             rate2: Motion::zero(),
             reach: Force::zero(),
-            coupling: Force::zero(),
-            lever: Vec3::zero(),
             reach_coriolis: Vec3::zero(),
             response: Motion::zero(),
             left: S::of(0.0),
         };
-        let mut bodies: Vec<_> = (0..nodes.len()).map(one).collect();
-        for k in (1..nodes.len()).rev() {
-            let end = bodies[k].end;
-            let parent = &mut bodies[nodes[k].parent];
-            parent.end = parent.end.max(end);
-        }
         let nv = model.nv();
         Self {
-            bodies,
+            bodies: vec![one; nodes.len()],
             joint: vec![Row { index: 0, values: [S::of(0.0); 2] }; nv],
             base: vec![Row { index: 0, values: [S::of(0.0); 3] }; nv],
+            coupling: vec![Force::zero(); nodes.len() - 1],
             acceleration: vec![S::of(0.0); nv],
             force: vec![S::of(0.0); nv],
         }
@@ -108,7 +96,6 @@ impl<S: Real> Derivatives<S> {
             term.rate = body.velocity.cross(unit);
             term.rate2 = body.acceleration.cross(unit) + body.velocity.cross(term.rate);
             term.reach = composite_force(&nodes[k], body.axis(), &term.inertia);
-            term.coupling = term.reach.from_point(body.pos_b);
             term.reach_coriolis = term.coriolis.transpose_apply(unit);
             parent.inertia += term.inertia.from_point(body.offset);
             parent.coriolis += term.coriolis.from_point(body.offset);
@@ -117,6 +104,8 @@ impl<S: Real> Derivatives<S> {
     }
 
     /// Rows of `∂τ/∂q_j` and `∂τ/∂q̇_j` that are not zero: of the base, the joints that carry `j`, its subtree.
+    ///
+    /// Must be called for every joint once, the last one first.
     #[inline(always)]
     pub(super) fn joint_columns(&mut self, nodes: &[Node], bodies: &[BodyData<S>], j: usize) -> &[Row<S, 2>] {
         let (term, unit) = (self.bodies[j], subspace(&nodes[j], bodies[j].axis()));
@@ -141,17 +130,12 @@ impl<S: Real> Derivatives<S> {
         for i in 0..6 {
             self.joint[i] = Row { index: i, values: [base_q[i], base_v[i]] };
         }
-        for k in j..term.end {
-            // Sᵀ (2B_C Ψ̇_j + I_C Ψ̈_j),  Sᵀ (2B_C S_j + 2 I_C Ψ̇_j), with I_C S about the origin of j
-            let lever = match k == j {
-                true => Vec3::zero(),
-                false => self.bodies[nodes[k].parent].lever + bodies[k].offset,
-            };
-            let below = &mut self.bodies[k];
-            below.lever = lever;
-            let reach = below.reach.from_point(lever);
-            let row_q = below.reach_coriolis.dot_add(term.rate.angular, term.rate2.dot(reach));
-            let row_v = below.reach_coriolis.dot_add(unit.angular, term.rate.dot(reach) * two);
+        for k in j..nodes[j].end {
+            // Sᵀ (2B_C Ψ̇_j + I_C Ψ̈_j),  Sᵀ (2B_C S_j + 2 I_C Ψ̇_j)
+            let Terms { reach, reach_coriolis, .. } = &mut self.bodies[k];
+            let row_q = reach_coriolis.dot_add(term.rate.angular, term.rate2.dot(*reach));
+            let row_v = reach_coriolis.dot_add(unit.angular, term.rate.dot(*reach) * two);
+            *reach = reach.from_point(bodies[j].offset);
             self.joint[count] = Row { index: k + 5, values: [row_q, row_v] };
             count += 1;
         }
