@@ -82,7 +82,9 @@ class ExactTree:
             axes.append(z)
         return self._collect(rot, pos, w, alpha, acc, axes, a)
 
-    def _collect(self, rot: Any, pos: Any, w: Any, alpha: Any, acc: Any, axes: Any, a: mp.matrix) -> mp.matrix:
+    def _collect(
+        self, rot: Any, pos: Any, w: Any, alpha: Any, acc: Any, axes: Any, a: mp.matrix
+    ) -> mp.matrix:
         tau = mp.zeros(self.nv, 1)
         self.size = np.zeros(self.nv)
         force = [mp.zeros(3, 1) for _ in self.parts]
@@ -98,14 +100,18 @@ class ExactTree:
             if k == 0:
                 continue
             slides = part.kind == "prismatic"
-            tau[5 + k] = dot(axes[k], force[k] if slides else moment[k]) + mp.mpf(part.rotor_inertia) * a[5 + k]
+            tau[5 + k] = (
+                dot(axes[k], force[k] if slides else moment[k]) + mp.mpf(part.rotor_inertia) * a[5 + k]
+            )
             p = self.index[str(part.parent)]
             force[p] += force[k]
             moment[p] += moment[k] + cross(pos[k] - pos[p], force[k])
         tau[0:3], tau[3:6] = force[0], moment[0]
         return tau
 
-    def _add_sizes(self, k: int, com: mp.matrix, pos: Any, moments: list[mp.matrix], force: mp.matrix) -> None:
+    def _add_sizes(
+        self, k: int, com: mp.matrix, pos: Any, moments: list[mp.matrix], force: mp.matrix
+    ) -> None:
         """Adds what body `k` contributes to `size`, without regard to direction: `|f|`, or `|n| + |lever| |f|`.
 
         Rounding the data of the body (an inertia, the direction of an axis) changes a row by about one unit in the last
