@@ -205,7 +205,9 @@ def test_a_controller_that_keeps_anything_else_is_told_and_runs_on() -> None:
 
     model = oo.robots.load("humanoid_torso")
     simulation = oo.Simulation(model, model.neutral(), np.zeros(model.nv), controller=Odd(model))
-    with pytest.warns(UserWarning, match=r"no checkpoints.*state\['file'\] is of type pathlib.*numeric NumPy"):
+    with pytest.warns(
+        UserWarning, match=r"no checkpoints.*state\['file'\] is of type pathlib.*numeric NumPy"
+    ):
         assert simulation.run(10.0, checkpoint=lambda _: None, checkpoint_every=0.0).time[-1] == 10.0
 
 

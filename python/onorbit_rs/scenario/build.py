@@ -145,5 +145,8 @@ def make_robot(scenario: Scenario) -> _core.Model:
     beside = scenario.file.parent if scenario.file else Path()
     packages = [beside / folder for folder in robot.package_paths]
     return _core.Model.from_urdf(
-        beside / robot.urdf, package_paths=packages or None, xacro_arguments=robot.xacro_arguments or None
+        beside / robot.urdf,
+        package_paths=packages or None,
+        xacro_arguments=robot.xacro_arguments or None,
+        xacro=robot.xacro,
     )

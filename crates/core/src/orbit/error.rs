@@ -224,9 +224,19 @@ pub enum OrbitError {
     Path(#[from] PathError),
 }
 
-/// `value` if it is finite.
+/// Largest size of an input: products of five of them are still numbers.
+pub(crate) const LARGEST: f64 = 1e60;
+
+/// Returns `value` if it is finite and not too large.
 pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, OrbitError> {
-    if value.is_finite() { Ok(value) } else { Err(OrbitError::NotFinite { name, value }) }
+    if !value.is_finite() {
+        return Err(OrbitError::NotFinite { name, value });
+    }
+    if value.abs() > LARGEST {
+        let expected = "a number between -1e60 and 1e60 (in SI units)";
+        return Err(OrbitError::OutOfRange { name, value, expected });
+    }
+    Ok(value)
 }
 
 /// `value` if it is finite and greater than zero.
