@@ -1,7 +1,7 @@
 """Plain data as text and back: what a checkpoint keeps of a controller written in Python.
 
-Numbers, text, lists, tuples, mappings and numeric arrays go through JSON, bit for bit; nothing else does. Reading
-such text creates these types alone, whatever the text says.
+Numbers, text, lists, tuples, mappings and numeric arrays go through JSON, bit for bit; nothing else does.
+Reading such text creates these types alone, whatever the text says.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ def decode(text: bytes) -> Any:
     """
     if text.startswith(b"\x80"):
         raise CheckpointError(
-            "the checkpoint keeps the state of a Python controller as a pickle, as earlier versions of onorbit_rs "
-            "wrote it; reading a pickle can run any code, so it is refused: run the scenario again"
+            "the checkpoint keeps the state of a Python controller as a pickle, as earlier versions of "
+            "onorbit_rs wrote it; reading a pickle can run any code, so it is refused: run the scenario again"
         )
     try:
         data = json.loads(text)
@@ -166,7 +166,7 @@ def _name(kind: type) -> str:
 def _refused(place: str, why: str, value: object) -> ControlError:
     hint = " (return the data itself, not a pickle of it)" if isinstance(value, bytes) else ""
     return ControlError(
-        f"{place} {why}{hint}; a checkpoint keeps only {ALLOWED}: return such data from get_state() and put it "
-        "back in set_state()",
+        f"{place} {why}{hint}; a checkpoint keeps only {ALLOWED}: return such data from get_state() and put "
+        "it back in set_state()",
         name=place, got=_name(type(value)), expected=ALLOWED,
     )  # fmt: skip

@@ -10,7 +10,6 @@ import re
 import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from onorbit_rs.exceptions import ModelError, NotFoundError, ReadError
 from onorbit_rs.names import did_you_mean

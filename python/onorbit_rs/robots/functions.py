@@ -137,11 +137,7 @@ _PYTHON: dict[str, Any] = {
 
 _MATH: dict[str, Any] = {
     name: getattr(math, name)
-    for name in (
-        "acos acosh asin asinh atan atan2 atanh ceil copysign cos cosh degrees erf exp expm1 fabs floor fmod "
-        "frexp fsum gamma gcd hypot isclose isfinite isinf isnan ldexp lgamma log log10 log1p log2 modf pow "
-        "radians remainder sin sinh sqrt tan tanh trunc pi e tau inf nan"
-    ).split()
+    for name in ["acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "ceil", "copysign", "cos", "cosh", "degrees", "erf", "exp", "expm1", "fabs", "floor", "fmod", "frexp", "fsum", "gamma", "gcd", "hypot", "isclose", "isfinite", "isinf", "isnan", "ldexp", "lgamma", "log", "log10", "log1p", "log2", "modf", "pow", "radians", "remainder", "sin", "sinh", "sqrt", "tan", "tanh", "trunc", "pi", "e", "tau", "inf", "nan"]
 } | {"factorial": _factorial}
 
 FUNCTIONS: dict[str, Any] = (
@@ -162,10 +158,7 @@ MAPPED = ("float", "int", "str", "bool", "abs", "len")
 METHODS: dict[tuple[type, str], Callable[..., Any]] = {
     **{
         (str, name): getattr(str, name)
-        for name in (
-            "lower upper strip lstrip rstrip startswith endswith split rsplit title capitalize find count index "
-            "isdigit isalpha"
-        ).split()
+        for name in ["lower", "upper", "strip", "lstrip", "rstrip", "startswith", "endswith", "split", "rsplit", "title", "capitalize", "find", "count", "index", "isdigit", "isalpha"]
     },
     (str, "replace"): _replace,
     (str, "join"): _join,
