@@ -1,4 +1,4 @@
-"""Checkpoints keep plain data of Python controllers: the same values back, and no code from a stranger's folder."""
+"""Checkpoints keep plain data of Python controllers: the same values come back, and no code."""
 
 from __future__ import annotations
 
@@ -120,12 +120,13 @@ def state_text(state: Any) -> bytes:
         state_text({"array": {"dtype": "<f8", "shape": [-1], "order": "C", "data": "AAAAAAAAAAA="}}),
         state_text({"array": {"dtype": "<f8", "shape": [1], "order": "C", "data": "not base64"}}),
         state_text({"array": {"dtype": "<f8", "shape": [1], "order": "X", "data": "AAAAAAAAAAA="}}),
-        state_text({"array": 1}), state_text({"again": 3}), state_text({"a": 1, "b": 2}), state_text({"eval": "1"}),
+        state_text({"array": 1}), state_text({"again": 3}), state_text({"a": 1, "b": 2}),
+        state_text({"eval": "1"}),
         state_text({"dict": [[[], 1]]}), state_text({"dict": 7}), state_text({"float": "x"}),
     ],
 )  # fmt: skip
 def test_a_broken_state_is_refused(text: bytes) -> None:
-    with pytest.raises(CheckpointError, match="is broken.*run the scenario again"):
+    with pytest.raises(CheckpointError, match=r"is broken.*run the scenario again"):
         decode(text)
 
 
@@ -191,7 +192,7 @@ def test_a_checkpoint_with_a_pickle_runs_no_code(tmp_path: Path) -> None:
     simulation, kept = stopped(Integral(oo.robots.load("humanoid_torso")))
     record = json.loads(kept[-1].state)
     record["controls"]["users"] = [list(evil)]
-    with pytest.raises(CheckpointError, match="pickle.*refused: run the scenario again"):
+    with pytest.raises(CheckpointError, match=r"pickle.*refused: run the scenario again"):
         simulation.run(30.0, resume=put_together(kept, json.dumps(record)))
     assert not file.exists()
     pickle.loads(evil)  # control: the payload works

@@ -40,9 +40,7 @@ def check(
     elif not quiet:
         print_checked(built)
         for source in unrun:
-            say(
-                f"not run: {source}, which onorbit run will execute (its source was read; --trust constructs it)"
-            )
+            say(f"not run: {source}, which onorbit run will execute (--trust constructs its controller)")
         say(f"next: onorbit run {shell_word(scenario)} --out DIR")
 
 

@@ -60,7 +60,8 @@ def of_file(
     values = as_mapping(arguments)
     if (packages or arguments or xacro) and not robots.is_file(robot):
         raise InputError(
-            f"--package-path, --arg and --xacro are for a robot's file, and {robot!r} is a name, not a path of one",
+            f"--package-path, --arg and --xacro are for a robot's file, and {robot!r} is a name, not a path "
+            "of one",
             name="robot", got=robot,
         )  # fmt: skip
     for folder in packages or ():

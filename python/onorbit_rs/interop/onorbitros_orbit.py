@@ -87,7 +87,7 @@ def _element(source: Source, name: str, key: str | None) -> float:
     if name == "semi_major_axis" and not (1e3 < value < 1e6):
         raise source.fail(
             key,
-            f"{value:g} km is not the semi-major axis of an ellipse around the Earth, between 1e3 and 1e6 km; "
+            f"{value:g} km is not the semi-major axis of an ellipse around the Earth (1e3 to 1e6 km); "
             "OnOrbitROS counts it in km and knows ellipses only",
         )
     if name == "eccentricity" and not (0.0 <= value < 1.0):

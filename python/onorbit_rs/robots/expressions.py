@@ -1,9 +1,9 @@
 """Values of the expressions in a xacro file, computed from their syntax tree.
 
 Nothing is compiled or executed. Numbers, text, truth values, lists and mappings exist, with arithmetic,
-comparisons, ``a if b else c``, indexing, and calls of the functions in :mod:`onorbit_rs.robots.functions`. There is
-no attribute of any object, no lambda, no comprehension and no assignment; sizes and the work of a whole file are
-bounded.
+comparisons, ``a if b else c``, indexing, and calls of the functions in :mod:`onorbit_rs.robots.functions`.
+There is no attribute of any object, no lambda, no comprehension and no assignment; sizes and the work of a
+whole file are bounded.
 """
 
 from __future__ import annotations
@@ -69,8 +69,8 @@ def evaluate(text: str, names: Callable[[str], Any], functions: Mapping[str, Any
     text : str
         The expression, as between ``${`` and ``}``.
     names : callable
-        The value of a property by its name, or for a namespace such a callable; raises KeyError for one that is
-        not defined.
+        The value of a property by its name, or for a namespace such a callable; raises KeyError for one that
+        is not defined.
     functions : mapping
         Functions and constants by their names, as ``sqrt`` and ``math.sqrt``.
     work : Work
@@ -79,7 +79,7 @@ def evaluate(text: str, names: Callable[[str], Any], functions: Mapping[str, Any
     Raises
     ------
     ValueError
-        The expression is too long, cannot be parsed, holds something that has no place in it or grows too large.
+        The expression is too long, cannot be parsed, holds what has no place in it, or grows too large.
     NameError, TypeError, ArithmeticError, LookupError
         As Python raises them.
     """
@@ -255,6 +255,6 @@ class _Evaluation:
 def _refused(node: ast.AST) -> ValueError:
     what = ast.unparse(node) if isinstance(node, ast.expr) else type(node).__name__
     return ValueError(
-        f"{what!r} has no place in a xacro expression: numbers, text, lists, mappings, arithmetic, comparisons, "
-        "conditions, indexing and calls of listed functions are evaluated"
+        f"{what!r} has no place in a xacro expression: numbers, text, lists, mappings, arithmetic, "
+        "comparisons, conditions, indexing and calls of listed functions are evaluated"
     )

@@ -17,9 +17,10 @@ MAX_BITS = 2048
 
 
 class Work:
-    """What the expansion of a file may cost, in steps of about a microsecond; large robots take a tenth of it."""
+    """What the expansion of a file may cost, in steps of about a microsecond; large robots take a tenth."""
 
     def __init__(self, steps: int = 4_000_000) -> None:
+        """For so many steps."""
         self._steps, self._left = steps, steps
 
     def spend(self, steps: int) -> None:
@@ -126,7 +127,8 @@ def _check(is_bounded: bool, what: str) -> None:
 
 
 _PYTHON: dict[str, Any] = {
-    "list": list, "dict": dict, "tuple": tuple, "len": len, "str": str, "float": float, "int": int, "bool": bool,
+    "list": list, "dict": dict, "tuple": tuple, "len": len, "str": str, "float": float, "int": int,
+    "bool": bool,
     "min": min, "max": max, "round": _round, "abs": abs, "all": all, "any": any, "sum": _sum, "range": _range,
     "sorted": sorted, "divmod": divmod, "ord": ord,
     "map": lambda function, *values: list(map(function, *values)),
@@ -137,8 +139,14 @@ _PYTHON: dict[str, Any] = {
 
 _MATH: dict[str, Any] = {
     name: getattr(math, name)
-    for name in ["acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "ceil", "copysign", "cos", "cosh", "degrees", "erf", "exp", "expm1", "fabs", "floor", "fmod", "frexp", "fsum", "gamma", "gcd", "hypot", "isclose", "isfinite", "isinf", "isnan", "ldexp", "lgamma", "log", "log10", "log1p", "log2", "modf", "pow", "radians", "remainder", "sin", "sinh", "sqrt", "tan", "tanh", "trunc", "pi", "e", "tau", "inf", "nan"]
-} | {"factorial": _factorial}
+    for name in (
+        "acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "ceil", "copysign", "cos", "cosh",
+        "degrees", "erf", "exp", "expm1", "fabs", "floor", "fmod", "frexp", "fsum", "gamma", "gcd",
+        "hypot", "isclose", "isfinite", "isinf", "isnan", "ldexp", "lgamma", "log", "log10", "log1p",
+        "log2", "modf", "pow", "radians", "remainder", "sin", "sinh", "sqrt", "tan", "tanh", "trunc",
+        "pi", "e", "tau", "inf", "nan",
+    )
+} | {"factorial": _factorial}  # fmt: skip
 
 FUNCTIONS: dict[str, Any] = (
     {"xacro.tokenize": _tokenize, "true": True, "false": False}
@@ -158,7 +166,24 @@ MAPPED = ("float", "int", "str", "bool", "abs", "len")
 METHODS: dict[tuple[type, str], Callable[..., Any]] = {
     **{
         (str, name): getattr(str, name)
-        for name in ["lower", "upper", "strip", "lstrip", "rstrip", "startswith", "endswith", "split", "rsplit", "title", "capitalize", "find", "count", "index", "isdigit", "isalpha"]
+        for name in (
+            "lower",
+            "upper",
+            "strip",
+            "lstrip",
+            "rstrip",
+            "startswith",
+            "endswith",
+            "split",
+            "rsplit",
+            "title",
+            "capitalize",
+            "find",
+            "count",
+            "index",
+            "isdigit",
+            "isalpha",
+        )
     },
     (str, "replace"): _replace,
     (str, "join"): _join,

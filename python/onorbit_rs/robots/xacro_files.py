@@ -20,6 +20,7 @@ class Files:
     """Opens what one xacro file includes or loads, and finds packages for it."""
 
     def __init__(self, file: Path, package_paths: Sequence[Path], work: Work) -> None:
+        """For a file, which may read from its own package and those in ``package_paths``."""
         self._above = list(file.absolute().parents)
         self._given = [folder.absolute() for folder in package_paths]
         self._work = work
@@ -56,7 +57,7 @@ class Files:
         OSError
             There is no such file or it cannot be read.
         ValueError
-            It lies elsewhere, is not a regular file of at most 16 MiB, is not UTF-8 text or has a document type.
+            It lies elsewhere, is no regular file of at most 16 MiB, is not UTF-8 text or has a document type.
         """
         path = Path(name)
         held = path.stat()
@@ -86,6 +87,7 @@ class Environment:
     """``$(env NAME)`` and ``$(optenv NAME default)``, answered from the arguments that were given."""
 
     def __init__(self, values: dict[str, str], used: set[str]) -> None:
+        """Of these arguments; ``used`` receives the names that were asked for."""
         self._values, self._used = values, used
 
     def required(self, name: str) -> str:

@@ -1,4 +1,4 @@
-"""Parts of PyPI's xacro that evaluate, open files or read the environment, replaced while a file is expanded."""
+"""Replaces the parts of PyPI's xacro that evaluate, open files or read the environment."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def _file_functions(xacro: Any, files: Files, work: Work) -> dict[str, Any]:
         raise ValueError(" ".join(map(str, words)))
 
     def warning(*words: Any) -> str:
-        print("warning:", *words, file=sys.stderr)
+        sys.stderr.write(f"warning: {' '.join(map(str, words))}\n")  # collected by expand
         return ""
 
     def load_yaml(name: str) -> Any:

@@ -47,8 +47,8 @@ class Built:
 def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     """Robot, orbit, start and simulation of a scenario, and one step as a trial; a run starts afresh.
 
-    Warns of what runs, but hardly as it was meant. Without ``runs_code`` the source of controllers in Python is
-    read and not run; stand-ins take their places, and what is built must not be run.
+    Warns of what runs, but hardly as it was meant. Without ``runs_code`` the source of controllers in Python
+    is read and not run; stand-ins take their places, and what is built must not be run.
 
     Raises
     ------
