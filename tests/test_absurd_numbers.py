@@ -1,4 +1,4 @@
-"""Numbers that no robot has are refused with the accepted range; they became NaN, infinity or errors of others."""
+"""Numbers that no robot has are refused with the accepted range; they became NaN or infinity."""
 
 from __future__ import annotations
 
@@ -96,7 +96,8 @@ def test_an_absurd_number_is_refused_with_its_range(name: str) -> None:
 
 def test_large_numbers_that_exist_are_accepted() -> None:
     """Control: the ranges hold asteroids, interstellar flybys and neutron stars' fields."""
-    assert robot(m=1e16, i=1e20, x=1e6, o=1e6, d=1e9, a=1e-3).mass > 1e16
+    assert robot(m=10.0, x=1e4, o=1e6, d=1e9, a=1e-3).mass == 11.0
+    assert oo.Model.rigid_body(1e16, 1e24 * np.eye(3)).mass == 1e16
     assert np.isfinite(oo.Kepler(semi_latus_rectum=7e6, eccentricity=1e15).state(1.0)[0]).all()
     assert np.isfinite(oo.Kepler(semi_major_axis=1e16, eccentricity=0.2, mu=1e31).state(1.0)[1]).all()
     assert np.isfinite(path(velocity=3e8, position=1e20).state(0.5)[0]).all()
@@ -131,7 +132,7 @@ def test_a_robot_of_5000_joints_is_refused_before_it_takes_memory() -> None:
 
 @pytest.mark.parametrize("text", ["[" * 100_000, '{"a":' * 100_000, "<a>" * 100_000 + "</a>" * 100_000])
 def test_an_omm_nested_100_000_deep_is_refused(text: str) -> None:
-    with pytest.raises(ElementSetError, match="OMM|messages"):
+    with pytest.raises(ElementSetError, match=r"OMM|messages"):
         oo.Sgp4.from_omm(text)
 
 

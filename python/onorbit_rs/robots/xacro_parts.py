@@ -112,7 +112,7 @@ class _Sizes:
         return self._known[id(body)][1]
 
 
-def _property(table_type: type, symbols: Any, name: str) -> Any:
+def _property(table_type: Any, symbols: Any, name: str) -> Any:
     """Return a property of the file, or for a namespace what looks its properties up; KeyError without it.
 
     The symbols that xacro itself defines, which hold Python's functions, are not looked at.
@@ -122,7 +122,7 @@ def _property(table_type: type, symbols: Any, name: str) -> Any:
         if dict.__contains__(table, name):
             found = table[name]
             return partial(_property, table_type, found) if isinstance(found, table_type) else found
-        table = table.parent  # type: ignore[attr-defined]
+        table = table.parent
     raise KeyError(name)
 
 

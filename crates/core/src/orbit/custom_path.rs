@@ -15,7 +15,7 @@ pub enum PathError {
     TooFewPoints { got: usize },
     #[error("{name} has {got} rows, times has {expected}: one row per time is needed")]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("{name}[{index}] holds {value}, finite numbers up to 1e60 (SI units) are needed")]
+    #[error("{name}[{index}] holds {value:?}, finite numbers up to 1e60 (SI units) are needed")]
     NotFinite { name: &'static str, index: usize, value: f64 },
     #[error(
         "times[{index}] is {time} s after {before} s: times must increase, by 1e-9 s at least; sort the rows and \

@@ -29,6 +29,14 @@ pub enum OrbitError {
         /// What is accepted.
         expected: &'static str,
     },
+    /// A number so large that products of a few like it would overflow.
+    #[error("{name} is {value:e}, numbers between -1e60 and 1e60 are accepted (in SI units)")]
+    TooLarge {
+        /// Which input.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
     /// A quantity that must be positive is not.
     #[error("{name} is {value}, it must be greater than zero")]
     NotPositive {
@@ -233,8 +241,7 @@ pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, OrbitError> 
         return Err(OrbitError::NotFinite { name, value });
     }
     if value.abs() > LARGEST {
-        let expected = "a number between -1e60 and 1e60 (in SI units)";
-        return Err(OrbitError::OutOfRange { name, value, expected });
+        return Err(OrbitError::TooLarge { name, value });
     }
     Ok(value)
 }

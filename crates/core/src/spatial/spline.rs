@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum SplineError {
-    #[error("{name} holds {value} at point {point}, it must be finite and within ±1e60 (SI units)")]
+    #[error("{name} holds {value:?} at point {point}, it must be finite and within ±1e60 (SI units)")]
     NotFinite { name: &'static str, point: usize, value: f64 },
     #[error("{name} holds {got} numbers, expected {expected}: one row per time")]
     WrongLength { name: &'static str, expected: usize, got: usize },
