@@ -13,7 +13,7 @@ from onorbit_rs.cli.options import JsonOption
 from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim
 from onorbit_rs.exceptions import InputError
-from onorbit_rs.output.files import replacing
+from onorbit_rs.files import replacing
 
 if TYPE_CHECKING:
     from rich.table import Table

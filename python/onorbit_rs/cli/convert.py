@@ -9,7 +9,7 @@ import typer
 
 from onorbit_rs.cli.saying import complain, say
 from onorbit_rs.cli.writing import claim
-from onorbit_rs.output.files import replacing
+from onorbit_rs.files import replacing
 from onorbit_rs.printable import printable, shell_word
 
 

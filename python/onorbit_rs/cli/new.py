@@ -17,7 +17,7 @@ from onorbit_rs.cli.options import (
 )
 from onorbit_rs.cli.saying import count, say
 from onorbit_rs.cli.writing import claim
-from onorbit_rs.output.files import replacing
+from onorbit_rs.files import replacing
 from onorbit_rs.printable import shell_word
 
 

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError
-from onorbit_rs.output.files import exists, is_link, refusals
+from onorbit_rs.files import exists, is_link, refusals
 
 
 def claim(file: Path | None, *, force: bool) -> None:

@@ -18,7 +18,7 @@ import numpy as np
 
 from onorbit_rs import _core
 from onorbit_rs.exceptions import CheckpointError, OnOrbitError
-from onorbit_rs.output.files import open_to_change, open_to_read, read_bounded, refusals, sync, sync_folder
+from onorbit_rs.files import open_to_change, open_to_read, read_bounded, refusals, sync, sync_folder
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import CHECKPOINT, STATE
 from onorbit_rs.output.sealed import sealed, unsealed

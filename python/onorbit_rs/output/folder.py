@@ -14,7 +14,7 @@ from onorbit_rs.exceptions import (
     OutputNotEmptyError,
     OutputNotWritableError,
 )
-from onorbit_rs.output.files import (
+from onorbit_rs.files import (
     create,
     exists,
     is_real_folder,

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from onorbit_rs.exceptions import OutputInUseError
-from onorbit_rs.output.files import open_to_change, open_to_read, remove
+from onorbit_rs.files import open_to_change, open_to_read, remove
 from onorbit_rs.printable import printable, shell_word
 
 LOCK = ".onorbit.lock"

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
 from onorbit_rs.exceptions import IntegrityError, ReadError
-from onorbit_rs.output.files import exists, open_to_read, read_bounded, sha256_of
+from onorbit_rs.files import exists, open_to_read, read_bounded, sha256_of
 from onorbit_rs.output.sealed import sealed, unsealed
 from onorbit_rs.printable import printable, shell_word
 

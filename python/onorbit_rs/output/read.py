@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 from onorbit_rs.exceptions import IntegrityError, NotFoundError, OnOrbitError, ReadError
 from onorbit_rs.output.checkpoint import has_checkpoint
-from onorbit_rs.output.files import open_to_read
+from onorbit_rs.files import open_to_read
 from onorbit_rs.output.lock import owner_of
 from onorbit_rs.output.manifest import MANIFEST, SCENARIO, SUMMARY, TRACE, read_manifest
 from onorbit_rs.output.npz import read_arrays

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from onorbit_rs.output.files import refusals, sync, sync_folder
+from onorbit_rs.files import refusals, sync, sync_folder
 from onorbit_rs.output.manifest import Entry, Manifest
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from typing import IO
 from rerun.experimental import ViewerClient
 
 from onorbit_rs.exceptions import NotFoundError, ViewerError
-from onorbit_rs.output.files import replacing
+from onorbit_rs.files import replacing
 from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.screen import command_of, environment, free_port, reason, url_of
 
