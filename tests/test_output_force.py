@@ -11,6 +11,7 @@ import pytest
 from commands import SPIN, onorbit, refusal
 
 import onorbit_rs as oo
+from onorbit_rs import figures
 from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError, ReadError
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import MANIFEST, RESULTS
@@ -28,9 +29,16 @@ def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def _spin(where: Path, *more: str) -> Path:
     (where / "mine.yaml").write_text(SPIN)
-    done = onorbit("run", "mine.yaml", "--out", "out", *more, cwd=where)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("onorbit_rs.keeping.write_pictures", _write_a_figure)
+        done = onorbit("run", "mine.yaml", "--out", "out", *more, cwd=where)
     assert done.returncode == 0, done.stderr
     return where / "out"
+
+
+def _write_a_figure(folder: OutputFolder, *_: Any, **__: Any) -> None:
+    with folder.replacing() as files, files.writing("figures/ledger.png") as path:
+        path.write_bytes(b"a figure")
 
 
 @pytest.fixture
@@ -43,7 +51,8 @@ def test_force_removes_no_picture_of_a_folder_that_never_held_a_run(tmp_path: Pa
     pictures = tmp_path / "out" / "figures"
     pictures.mkdir(parents=True)
     (pictures / "holiday.png").write_text(PRECIOUS)
-    _spin(tmp_path, "--force")
+    for _ in range(2):
+        _spin(tmp_path, "--force")
     assert (pictures / "holiday.png").read_text() == PRECIOUS
     assert (pictures / "ledger.png").is_file()
 
@@ -109,15 +118,18 @@ def test_links_planted_during_a_run_are_refused_at_its_end(tmp_path: Path) -> No
     assert {file.name for file in tmp_path.iterdir()} == {"precious", "out"}
 
 
-@pytest.mark.parametrize("name", ["report.html", "figures/ledger.pdf"])
-def test_a_report_replaces_no_file_that_no_run_wrote(copy: Path, tmp_path: Path, name: str) -> None:
-    (copy / name).write_text(PRECIOUS)
-    with pytest.raises(OutputNotEmptyError, match=f"{name}: it is there"):
-        write_report(copy, pdf=True)
-    assert (copy / name).read_text() == PRECIOUS and not list(copy.glob(".*"))
-    (copy / name).unlink()
-    for _ in range(2):
-        write_report(copy, pdf=True)  # its own it replaces
+def test_a_report_replaces_no_file_that_no_run_wrote(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    every = figures.drawings
+    monkeypatch.setattr(figures, "drawings", lambda run: [one for one in every(run) if one.name == "ledger"])
+    for name in ("report.html", "figures/ledger.pdf"):
+        (copy / name).write_text(PRECIOUS)
+        with pytest.raises(OutputNotEmptyError, match=f"{name}: it is there"):
+            write_report(copy, pdf=True)
+        assert (copy / name).read_text() == PRECIOUS and not list(copy.glob(".*"))
+        (copy / name).unlink()
+    for pdf in (True, False):
+        write_report(copy, pdf=pdf)  # its own it replaces
+    assert (copy / "figures" / "ledger.pdf").is_file()
     assert oo.compare(copy, copy).agrees
 
 

@@ -31,13 +31,11 @@ def open_to_read(file: Path) -> BinaryIO:
         raise
 
 
-def read_bounded(file: Path, most: int) -> bytes:
-    """Content of a regular file of at most ``most`` bytes; ValueError where it is larger."""
-    with open_to_read(file) as stream:
-        content = stream.read(most + 1)
-    if len(content) > most:
+def read_bounded(stream: BinaryIO, most: int) -> bytes:
+    """Content of a file that was opened to read, at most ``most`` bytes; ValueError where it is larger."""
+    if os.fstat(stream.fileno()).st_size > most:
         raise ValueError(f"it is larger than {most} bytes")
-    return content
+    return stream.read()
 
 
 def open_to_change(file: Path) -> BinaryIO:

@@ -47,15 +47,16 @@ def show(
     summary = saved.summary()
     _check_moment(at or 0.0, float(summary.get("simulated_s") or 0.0))
     claim(picture, force=force)
+    if (picture is not None or (viewer and not as_json)) and (folder / RECORDING).is_file():
+        saved.check(RECORDING)
+    remark = None if as_json else remark_on_robot(saved, summary)
     with as_far_as_read():
         if as_json:
             print_json(summary)
         else:
             print_summary(summary, folder, is_new=False)
-            if (remark := remark_on_robot(saved, summary)) is not None:
+            if remark is not None:
                 say(f"note: {remark}")
-    if (picture is not None or (viewer and not as_json)) and (folder / RECORDING).is_file():
-        saved.check(RECORDING)
     if picture is not None:
         save_picture(folder, picture, at or 0.0)
         if not as_json:

@@ -126,7 +126,8 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
         )
     file = path / STATE
     try:
-        record = unsealed(read_bounded(file, _MOST))
+        with open_to_read(file) as stream:
+            record = unsealed(read_bounded(stream, _MOST))
         found, rows, wall = str(record["fingerprint"]), int(record["rows"]), float(record["wall_s"])
         if found != digest:
             raise _refused(

@@ -89,7 +89,8 @@ def read_manifest(folder: Path) -> Manifest | None:
     if not exists(file):
         return None
     try:
-        record = unsealed(read_bounded(file, _MOST))
+        with open_to_read(file) as stream:
+            record = unsealed(read_bounded(stream, _MOST))
         if record["format"] != _FORMAT:
             raise ValueError(f"its format is {record['format']!r}, this version reads {_FORMAT}")
         files = {name: _entry(name, entry) for name, entry in record["files"].items()}

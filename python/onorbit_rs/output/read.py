@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 from onorbit_rs.exceptions import IntegrityError, NotFoundError, OnOrbitError, ReadError
 from onorbit_rs.output.checkpoint import has_checkpoint
-from onorbit_rs.files import open_to_read
+from onorbit_rs.files import open_to_read, read_bounded
+from onorbit_rs.output.checks import CHECKS, GATE
 from onorbit_rs.output.lock import owner_of
 from onorbit_rs.output.manifest import MANIFEST, SCENARIO, SUMMARY, TRACE, read_manifest
 from onorbit_rs.output.npz import read_arrays
@@ -86,7 +87,7 @@ class SavedRun:
         file = self.folder / SUMMARY
         try:
             with self.opened(SUMMARY) as stream:
-                return _checked(_from_json(stream.read(_MOST + 1)))
+                return _checked(_from_json(read_bounded(stream, _MOST)))
         except OnOrbitError:
             raise
         except FileNotFoundError as error:
@@ -214,8 +215,12 @@ def _checked(summary: Any) -> dict[str, Any]:
     if not isinstance(summary, dict):
         raise TypeError(f"it holds a {type(summary).__name__}, not a mapping")
     for name, value in summary.items():
-        if not isinstance(value, (str, int, float, type(None))):
-            raise TypeError(f"{name} is {_brief(value)}, expected a number, a word or null")
+        if name in CHECKS or name.startswith(GATE):
+            kinds, words = (int, float, type(None)), "a number"
+        else:
+            kinds, words = (str, int, float, type(None)), "a number, a word or null"
+        if not isinstance(value, kinds):
+            raise TypeError(f"{name} is {_brief(value)}, expected {words}")
     for name, (kind, words) in _KINDS.items():
         if name in summary and not isinstance(summary[name], kind):
             raise TypeError(f"{name} is {_brief(summary[name])}, expected {words}")
@@ -227,8 +232,6 @@ def _brief(value: Any) -> str:
 
 
 def _from_json(text: bytes) -> Any:
-    if len(text) > _MOST:
-        raise ValueError(f"it is larger than {_MOST} bytes")
     try:
         return json.loads(text)
     except RecursionError:
