@@ -1,4 +1,4 @@
-"""``--force`` and the files of a run: nothing that no run wrote is removed, nothing is written through a link."""
+"""``--force`` removes nothing that no run wrote, and nothing is written through a link."""
 
 from __future__ import annotations
 
@@ -138,7 +138,13 @@ def test_a_manifest_of_a_stranger_names_nothing_outside_the_folder(copy: Path, t
     precious.write_text(PRECIOUS)
     record: dict[str, Any] = unsealed((copy / MANIFEST).read_bytes())
     entry = record["files"]["trace.npz"]
-    for name in ("../precious.png", str(precious), "figures/../../precious.png", "mine.txt", "figures/a\0.png"):
+    for name in (
+        "../precious.png",
+        str(precious),
+        "figures/../../precious.png",
+        "mine.txt",
+        "figures/a\0.png",
+    ):
         (copy / MANIFEST).write_bytes(sealed(record | {"files": {name: entry}}))
         with pytest.raises(ReadError, match="no run writes"):
             OutputFolder.claim(copy, force=True)

@@ -14,6 +14,7 @@ import pytest
 from commands import SPIN, onorbit, refusal
 
 import onorbit_rs as oo
+from onorbit_rs import figures
 from onorbit_rs.exceptions import CheckpointError, IntegrityError, OnOrbitError, RunInterrupted
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import MANIFEST
@@ -153,10 +154,15 @@ def test_a_file_that_its_user_edited_is_named_with_the_way_out(
 ) -> None:
     out = Path(shutil.copytree(recorded, tmp_path / "out"))
     file = out / name
-    for content, why in ((file.read_bytes() + b"\n", "bytes, not"), (b"%" + file.read_bytes()[1:], "SHA-256")):
+    for content, why in (
+        (file.read_bytes() + b"\n", "bytes, not"),
+        (b"%" + file.read_bytes()[1:], "SHA-256"),
+    ):
         file.write_bytes(content)
         for ask in (write_report, oo.compare):
-            with pytest.raises(IntegrityError, match=f"{name} in .* was changed since the run.*{why}") as caught:
+            with pytest.raises(
+                IntegrityError, match=f"{name} in .* was changed since the run.*{why}"
+            ) as caught:
                 ask(out)
             assert caught.value.path == str(file) and "onorbit run " in str(caught.value)
             assert caught.value.expected != caught.value.got and isinstance(caught.value, OSError)
@@ -174,13 +180,16 @@ def test_a_recording_that_was_changed_is_not_opened(recorded: Path, tmp_path: Pa
     assert done.returncode == 2 and "run.rrd in " in done.stderr
 
 
-def test_a_folder_of_an_earlier_version_is_read_with_a_warning(recorded: Path, tmp_path: Path) -> None:
+def test_a_folder_of_an_earlier_version_is_read_with_a_warning(
+    recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     out = Path(shutil.copytree(recorded, tmp_path / "out"))
     (out / MANIFEST).unlink()
     with pytest.warns(UserWarning, match="has no manifest.json, as folders of earlier versions"):
         assert read_summary(out) == read_summary(recorded)
     done = onorbit("show", out, "--no-viewer")
     assert done.returncode == 0 and len(done.stderr.splitlines()) == 1
+    monkeypatch.setattr(figures, "drawings", lambda subject: [])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         write_report(out)

@@ -1,4 +1,4 @@
-"""One writer per folder: two commands on one folder left the scenario of one with the numbers of the other."""
+"""One writer per folder: two at once left the scenario of one with the numbers of the other."""
 
 from __future__ import annotations
 
@@ -77,7 +77,9 @@ def test_two_runs_at_once_leave_one_of_them_whole(tmp_path: Path) -> None:
         (tmp_path / f"{name}.yaml").write_text(text.replace("time_step: 10 ms", "time_step: 1 ms"))
     command = [sys.executable, "-m", "onorbit_rs", "run"]
     running = [
-        subprocess.Popen([*command, f"{name}.yaml", "-q", "--out", "out"], cwd=tmp_path, stderr=subprocess.PIPE)
+        subprocess.Popen(
+            [*command, f"{name}.yaml", "-q", "--out", "out"], cwd=tmp_path, stderr=subprocess.PIPE
+        )
         for name in "ab"
     ]
     said = [process.communicate(timeout=100)[1].decode() for process in running]
@@ -91,6 +93,7 @@ def test_two_runs_at_once_leave_one_of_them_whole(tmp_path: Path) -> None:
 def test_two_threads_exclude_each_other_as_two_processes_do(tmp_path: Path) -> None:
     results: list[str] = []
     with OutputFolder.claim(tmp_path):
+
         def second() -> None:
             try:
                 OutputFolder.claim(tmp_path).close()
@@ -173,6 +176,7 @@ def test_a_folder_that_cannot_be_locked_is_written_with_a_warning(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Some network file systems have no locks."""
+
     def refused(descriptor: int, *, is_shared: bool) -> None:
         raise OSError(38, "Function not implemented")
 

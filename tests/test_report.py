@@ -321,16 +321,6 @@ def test_a_run_that_was_killed_is_to_be_resumed(folder: Path, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    "spoilt",
-    ["[]", "null", "3", '{"certificate_passed": "yes"}', '{"simulated_s": "long"}', '{"status": 1}', "{"],
-)
-def test_a_summary_that_is_none_is_refused_with_the_way_out(tmp_path: Path, spoilt: str) -> None:
-    (tmp_path / "summary.json").write_text(spoilt)
-    with pytest.raises(ReadError, match=r"cannot read .*: .*; run it again: onorbit run .* --force"):
-        read_summary(tmp_path)
-
-
-@pytest.mark.parametrize(
     ("name", "cut"),
     [
         ("q", lambda q: q[:10]),

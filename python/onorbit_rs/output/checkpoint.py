@@ -59,7 +59,7 @@ class CheckpointWriter:
             if not self._has_warned:
                 self._has_warned = True
                 warnings.warn(
-                    f"a checkpoint could not be written: {error}; the run goes on and tries again at the next",
+                    f"a checkpoint could not be written: {error}; the run goes on and tries again next time",
                     UserWarning, stacklevel=2,
                 )  # fmt: skip
             return False
@@ -88,7 +88,9 @@ class CheckpointWriter:
         }
         content = sealed(record)
         if len(content) > _MOST:
-            raise _refused(f"the state of the run takes {len(content)} bytes, at most {_MOST} are kept", self._path)
+            raise _refused(
+                f"the state of the run takes {len(content)} bytes, at most {_MOST} are kept", self._path
+            )
         sync_folder(self._path)
         self._replace_state(content)
         self._rows, self._digests = self._rows + new_rows, digests
@@ -196,10 +198,10 @@ def _column(file: Path, rows: int, width: int) -> tuple[Any, _Hash]:
         if min(rows, width) < 0 or size < 8 * count:
             raise ValueError(f"it holds {size // 8} numbers, {count} are needed")
         stream.seek(0)
-        values = np.empty(count, dtype="<f8")
-        if stream.readinto(memoryview(values).cast("B")) != 8 * count:  # type: ignore[attr-defined]
-            raise ValueError("it could not be read to its end")
-    return values.reshape(rows, width), hashlib.sha256(memoryview(values).cast("B"))
+        content = stream.read(8 * count)
+    if len(content) != 8 * count:
+        raise ValueError("it could not be read to its end")
+    return np.frombuffer(content, dtype="<f8").reshape(rows, width), hashlib.sha256(content)
 
 
 def _refused(message: str, path: Path) -> CheckpointError:

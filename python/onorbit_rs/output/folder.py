@@ -216,9 +216,7 @@ class OutputFolder:
 def _make(folder: Path) -> None:
     try:
         if folder.exists() and not folder.is_dir():
-            raise OutputNotWritableError(
-                f"output path is a file, not a folder: {folder}", path=str(folder)
-            )
+            raise OutputNotWritableError(f"output path is a file, not a folder: {folder}", path=str(folder))
         folder.mkdir(parents=True, exist_ok=True)
         next(folder.iterdir(), None)
     except OSError as error:
@@ -229,9 +227,7 @@ def _make(folder: Path) -> None:
 
 def _is_empty(folder: Path) -> bool:
     """But for the lock of a process that was killed, and what it had begun to write."""
-    return not any(
-        file.name != LOCK and not file.name.startswith(".partial-") for file in folder.iterdir()
-    )
+    return not any(file.name != LOCK and not file.name.startswith(".partial-") for file in folder.iterdir())
 
 
 def _removal_order(name: str) -> int:

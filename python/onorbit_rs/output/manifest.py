@@ -99,7 +99,7 @@ def read_manifest(folder: Path) -> Manifest | None:
             raise ValueError("it names files that no checkpoint has")
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise ReadError(
-            f"cannot read {file}: {error}; nobody knows any more what the run wrote: run it again into another "
+            f"cannot read {file}: {error}; what the run wrote is no longer known: run it again into another "
             f"folder: onorbit run {shell_word(folder / SCENARIO)}, or remove {MANIFEST} to read the folder "
             "unchecked",
             path=str(file), kind="manifest",

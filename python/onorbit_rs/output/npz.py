@@ -59,7 +59,9 @@ def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Any:
         magic, length = stream.read(8), int.from_bytes(stream.read(2), "little")
         header = _HEADER.fullmatch(stream.read(length))
         if magic != _MAGIC or header is None:
-            raise ValueError(f"{member.filename} is not an array of real numbers in the format that a run writes")
+            raise ValueError(
+                f"{member.filename} is not an array of real numbers in the format that a run writes"
+            )
         dtype = np.dtype(header["kind"].decode())
         shape = tuple(int(number) for number in header["shape"].split(b",") if number.strip())
         left, needed = member.file_size - 10 - length, math.prod(shape) * dtype.itemsize

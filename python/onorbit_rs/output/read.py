@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 from onorbit_rs.exceptions import IntegrityError, NotFoundError, OnOrbitError, ReadError
-from onorbit_rs.output.checkpoint import has_checkpoint
 from onorbit_rs.files import open_to_read, read_bounded
+from onorbit_rs.output.checkpoint import has_checkpoint
 from onorbit_rs.output.checks import CHECKS, GATE
 from onorbit_rs.output.lock import owner_of
 from onorbit_rs.output.manifest import MANIFEST, SCENARIO, SUMMARY, TRACE, read_manifest
@@ -78,9 +78,14 @@ class SavedRun:
             raise ReadError(message, path=str(file), kind=name) from error
 
     def check(self, name: str) -> None:
-        """Raise :class:`IntegrityError` where a file is not what the run wrote."""
-        with self.opened(name):
-            pass
+        """Raise :class:`IntegrityError` where a file was changed since, ReadError where it is gone."""
+        try:
+            with self.opened(name):
+                pass
+        except OSError as error:
+            if isinstance(error, OnOrbitError):
+                raise
+            raise _unreadable(self.folder / name, name, error) from error
 
     def summary(self) -> dict[str, Any]:
         """``summary.json``; raises as :func:`read_summary`."""
@@ -98,7 +103,9 @@ class SavedRun:
         except (ValueError, TypeError) as error:
             here = shell_word(self.folder)
             again = f"run it again: onorbit run {shell_word(self.folder / SCENARIO)} --out {here} --force"
-            raise ReadError(f"cannot read {file}: {error}; {again}", path=str(file), kind="summary") from error
+            raise ReadError(
+                f"cannot read {file}: {error}; {again}", path=str(file), kind="summary"
+            ) from error
 
     def trace(self) -> Trace:
         """``trace.npz``; raises as :func:`read_trace`."""
@@ -141,14 +148,16 @@ class SavedRun:
     def scenario(self) -> Scenario:
         """The scenario of the run; raises as :meth:`scenario_text`, and :class:`ScenarioError`."""
         self.scenario_text()
-        return load(self.folder / SCENARIO)
+        scenario = load(self.folder / SCENARIO)
+        self.check(SCENARIO)  # nobody replaced it meanwhile
+        return scenario
 
     def _warn(self) -> None:
         if not self._has_warned:
             self._has_warned = True
             warnings.warn(
-                f"{self.folder} has no {MANIFEST}, as folders of earlier versions: nobody knows whether its files "
-                "were changed since the run wrote them",
+                f"{self.folder} has no {MANIFEST}, as folders of earlier versions: whether its files were "
+                "changed since the run wrote them is not known",
                 UserWarning, stacklevel=2,
             )  # fmt: skip
 
@@ -216,11 +225,10 @@ def _checked(summary: Any) -> dict[str, Any]:
         raise TypeError(f"it holds a {type(summary).__name__}, not a mapping")
     for name, value in summary.items():
         if name in CHECKS or name.startswith(GATE):
-            kinds, words = (int, float, type(None)), "a number"
-        else:
-            kinds, words = (str, int, float, type(None)), "a number, a word or null"
-        if not isinstance(value, kinds):
-            raise TypeError(f"{name} is {_brief(value)}, expected {words}")
+            if not isinstance(value, (int, float, type(None))):
+                raise TypeError(f"{name} is {_brief(value)}, expected a number")
+        elif not isinstance(value, (str, int, float, type(None))):
+            raise TypeError(f"{name} is {_brief(value)}, expected a number, a word or null")
     for name, (kind, words) in _KINDS.items():
         if name in summary and not isinstance(summary[name], kind):
             raise TypeError(f"{name} is {_brief(summary[name])}, expected {words}")

@@ -66,9 +66,7 @@ def write_report(
         return _write_report(out.path, files, pdf=pdf, tell=tell)
 
 
-def _write_report(
-    folder: Path, files: Replacement, *, pdf: bool, tell: Callable[[str, float], None]
-) -> Path:
+def _write_report(folder: Path, files: Replacement, *, pdf: bool, tell: Callable[[str, float], None]) -> Path:
     """The page and its figures; returns where the page will be."""
     saved = SavedRun(folder)
     summary = saved.summary()
@@ -97,9 +95,7 @@ def _write_report(
     return folder / REPORT
 
 
-def _subject(
-    saved: SavedRun, scenario: Scenario, summary: dict[str, Any], remarks: list[str]
-) -> Subject:
+def _subject(saved: SavedRun, scenario: Scenario, summary: dict[str, Any], remarks: list[str]) -> Subject:
     """What there is to draw; a robot, an orbit or an Earth whose files are gone or changed is a remark."""
     from onorbit_rs import figures
 
