@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 
@@ -149,6 +149,7 @@ class OutputFolder:
             raise OSError(f"{folder} is not a folder itself")
         if not set(names) <= set(manifest.checkpoint):
             self.write_manifest(Manifest(manifest.files, names))
+            sync_folder(self.path)
 
     def write_manifest(self, manifest: Manifest) -> None:
         """Replace ``manifest.json``."""
@@ -159,7 +160,6 @@ class OutputFolder:
             temporary.replace(self.path / MANIFEST)
         finally:
             temporary.unlink(missing_ok=True)
-        sync_folder(self.path)
         self.manifest = manifest
 
     def temporary(self, name: str) -> Path:
@@ -174,7 +174,12 @@ class OutputFolder:
             remove(self.path / name)
 
     def discard_checkpoint(self) -> None:
-        """Remove the files of the checkpoint that the manifest names, and its folder if it is empty then."""
+        """Remove the checkpoint of a run that ended; one that cannot be removed does no harm."""
+        with suppress(OSError):
+            self._remove_checkpoint()
+
+    def _remove_checkpoint(self) -> None:
+        """The files that the manifest names, and the folder if it is empty then."""
         folder = self.path / CHECKPOINT
         if self.manifest is None or not is_real_folder(folder):
             return
@@ -204,7 +209,7 @@ class OutputFolder:
         if exists(checkpoint) and any(file.name not in manifest.checkpoint for file in checkpoint.iterdir()):
             raise _foreign(checkpoint)
         try:
-            self.discard_checkpoint()
+            self._remove_checkpoint()
             for name in sorted(manifest.files, key=_removal_order):
                 remove(self.path / name)
             remove(self.path / MANIFEST)

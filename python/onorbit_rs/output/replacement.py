@@ -47,11 +47,21 @@ class Replacement:
             if folder.manifest is not None:  # a folder of an earlier version stays without
                 manifest = folder.manifest
                 folder.write_manifest(Manifest({**manifest.files, **entries}, manifest.checkpoint))
-            for name, (temporary, _) in self._written.items():
-                (folder.path / name).parent.mkdir(exist_ok=True)
-                temporary.replace(folder.path / name)
-            for parent in {(folder.path / name).parent for name in self._written}:
+            try:
+                self._rename()
+            except KeyboardInterrupt:  # what was begun is brought to its end
+                self._rename()
+                raise
+            for parent in {folder.path, *((folder.path / name).parent for name in entries)}:
                 sync_folder(parent)
+
+    def _rename(self) -> None:
+        for name, (temporary, _) in list(self._written.items()):
+            file = self._folder.path / name
+            file.parent.mkdir(exist_ok=True)
+            if temporary.exists():
+                temporary.replace(file)
+            del self._written[name]
 
     def discard(self) -> None:
         """Remove what was not renamed."""
