@@ -20,6 +20,7 @@ import onorbit_rs as oo
 from onorbit_rs.exceptions import OutputFolderError, OutputNotWritableError
 from onorbit_rs.output import checkpoint as checkpoints
 from onorbit_rs.output.folder import OutputFolder
+from onorbit_rs.output.relay import Relay
 from onorbit_rs.scenario import load
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
@@ -53,7 +54,7 @@ def test_a_checkpoint_that_cannot_be_written_warns_once_and_the_run_goes_on(
     append = checkpoints._append
 
     def full_at_times(file: Path, content: bytes, *, after: int) -> None:
-        if file.name == "q.f64" and calls["failed"] < 3:
+        if file.name == "q.f64" and calls["failed"] < 1:
             calls["failed"] += 1
             append(file, content[:100], after=after)
             raise OSError(28, "No space left on device")
@@ -70,11 +71,11 @@ def test_a_checkpoint_that_cannot_be_written_warns_once_and_the_run_goes_on(
         discard(folder)
 
     monkeypatch.setattr(OutputFolder, "discard_checkpoint", keep)
-    data = tumbling(2.0)
+    data = tumbling()
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         whole = oo.run(data, tmp_path / "out", quiet=True, checkpoint_every=0.0)
-    assert calls["failed"] == 3 and calls["written"] > 10 and len(kept) == 1
+    assert calls["failed"] == 1 and calls["written"] > 1 and len(kept) == 1
     (said,) = {str(warning.message) for warning in told if "checkpoint" in str(warning.message)}
     assert "No space left on device; the run goes on and tries again next time" in said
     monkeypatch.setattr(OutputFolder, "discard_checkpoint", discard)
@@ -199,3 +200,23 @@ def test_a_limit_of_file_sizes_is_an_error_of_the_folder(tmp_path: Path) -> None
     ):
         raise OSError(27, "File too large")
     assert not list(tmp_path.iterdir())
+
+
+def test_rows_that_a_watched_run_could_not_write_come_again() -> None:
+    """The viewer takes every checkpoint, the writer some: none of its rows are lost where it fails."""
+
+    class Live:
+        def take(self, columns: Any) -> None: ...
+
+    written: list[list[float]] = []
+    answers = iter([False, False, True, True])
+
+    def writer(checkpoint: oo.Checkpoint) -> bool:
+        written.append(checkpoint.columns["time"].ravel().tolist())
+        return next(answers)
+
+    relay = Relay(Live(), writer, 0.0)  # type: ignore[arg-type]
+    for row in range(4):
+        relay(oo.Checkpoint("{}", {"time": np.full((1, 1), float(row))}))
+    relay.hand_on()
+    assert written == [[0.0], [0.0, 1.0], [0.0, 1.0, 2.0], [3.0]]

@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from commands import SPIN, onorbit, refusal
+from matplotlib.figure import Figure
 
 import onorbit_rs as oo
 from onorbit_rs import figures
@@ -119,8 +121,8 @@ def test_links_planted_during_a_run_are_refused_at_its_end(tmp_path: Path) -> No
 
 
 def test_a_report_replaces_no_file_that_no_run_wrote(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    every = figures.drawings
-    monkeypatch.setattr(figures, "drawings", lambda run: [one for one in every(run) if one.name == "ledger"])
+    drawing = SimpleNamespace(name="ledger", caption="nothing", draw=Figure)
+    monkeypatch.setattr(figures, "drawings", lambda subject: [drawing])
     for name in ("report.html", "figures/ledger.pdf"):
         (copy / name).write_text(PRECIOUS)
         with pytest.raises(OutputNotEmptyError, match=f"{name}: it is there"):

@@ -34,6 +34,15 @@ time.sleep(60)
 """
 
 
+WITHOUT_PICTURES = """
+import sys
+from onorbit_rs import keeping
+from onorbit_rs.cli import main
+keeping.write_pictures = lambda *_, **__: None
+main(sys.argv[1:])
+"""
+
+
 @pytest.fixture
 def holder(tmp_path: Path) -> Any:
     """Another process that writes the folder."""
@@ -46,7 +55,9 @@ def holder(tmp_path: Path) -> Any:
     process.communicate()
 
 
-def test_a_second_command_on_a_folder_is_told_who_writes_it(tmp_path: Path, holder: Any) -> None:
+def test_a_second_command_is_told_who_writes_until_that_process_is_killed(
+    tmp_path: Path, holder: Any
+) -> None:
     (tmp_path / "mine.yaml").write_text(SPIN)
     for force in ((), ("--force",)):
         said = refusal("run", tmp_path / "mine.yaml", "--out", tmp_path / "out", *force)
@@ -57,10 +68,7 @@ def test_a_second_command_on_a_folder_is_told_who_writes_it(tmp_path: Path, hold
     assert caught.value.command.startswith("-c ") and caught.value.since.startswith("20")
     with pytest.raises(NotFoundError, match=rf"process {holder.pid} on .* is writing it"):
         oo.compare(tmp_path / "out")
-
-
-def test_a_lock_ends_with_its_process_and_its_half_written_files_go(tmp_path: Path, holder: Any) -> None:
-    out = tmp_path / "out"
+    out = tmp_path / "out"  # the lock ends with its process, and its half-written files go
     assert owner_of(out) is not None and list(out.glob(".partial-*"))
     holder.kill()
     holder.wait()
@@ -75,7 +83,7 @@ def test_two_runs_at_once_leave_one_of_them_whole(tmp_path: Path) -> None:
     for name, rate in (("a", 0.1), ("b", 0.7)):
         text = SPIN.replace("0.1, 0.2, 0.3", f"0, 0, {rate}").replace("duration: 0.1 s", "duration: 20 s")
         (tmp_path / f"{name}.yaml").write_text(text.replace("time_step: 10 ms", "time_step: 1 ms"))
-    command = [sys.executable, "-m", "onorbit_rs", "run"]
+    command = [sys.executable, "-c", WITHOUT_PICTURES, "run"]
     running = [
         subprocess.Popen(
             [*command, f"{name}.yaml", "-q", "--out", "out"], cwd=tmp_path, stderr=subprocess.PIPE
@@ -85,7 +93,7 @@ def test_two_runs_at_once_leave_one_of_them_whole(tmp_path: Path) -> None:
     said = [process.communicate(timeout=100)[1].decode() for process in running]
     codes = [process.returncode for process in running]
     assert sorted(codes) == [0, 2], said
-    assert "out is " in said[codes.index(2)]
+    assert "is in use: process " in said[codes.index(2)] or "is not empty: out" in said[codes.index(2)]
     again = oo.run(tmp_path / f"{'ab'[codes.index(0)]}.yaml", quiet=True)
     assert oo.compare(tmp_path / "out", again, tolerance=1e-300).agrees
 
@@ -127,7 +135,7 @@ def test_a_forked_child_does_not_keep_the_lock(tmp_path: Path) -> None:
 
 
 def _race(folder: str, counter: Any, wins: Any) -> None:
-    for _ in range(40):
+    for _ in range(30):
         try:
             taken = FolderLock(Path(folder))
         except OutputInUseError:
@@ -143,13 +151,13 @@ def _race(folder: str, counter: Any, wins: Any) -> None:
 def test_a_lock_whose_file_is_removed_and_made_anew_has_one_owner(tmp_path: Path) -> None:
     context = multiprocessing.get_context("spawn")
     counter, wins = context.Value("i", 0), context.Value("i", 0)
-    workers = [context.Process(target=_race, args=(str(tmp_path), counter, wins)) for _ in range(3)]
+    workers = [context.Process(target=_race, args=(str(tmp_path), counter, wins)) for _ in range(2)]
     for worker in workers:
         worker.start()
     for worker in workers:
         worker.join(60)
         assert worker.exitcode == 0
-    assert counter.value == 0 and wins.value >= 40, "each time a lock was taken, nobody else had one"
+    assert counter.value == 0 and wins.value >= 15, "each time a lock was taken, nobody else had one"
     assert not list(tmp_path.iterdir())
 
 
