@@ -220,3 +220,21 @@ def test_rows_that_a_watched_run_could_not_write_come_again() -> None:
         relay(oo.Checkpoint("{}", {"time": np.full((1, 1), float(row))}))
     relay.hand_on()
     assert written == [[0.0], [0.0, 1.0], [0.0, 1.0, 2.0], [3.0]]
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="names of open files are told by Linux alone")
+def test_results_are_on_the_disk_before_the_checkpoint_is_removed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    events: list[str] = []
+    fsync = os.fsync
+
+    def told(descriptor: int) -> None:
+        events.append(Path(f"/proc/self/fd/{descriptor}").readlink().name.rpartition("-")[2])
+        fsync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", told)
+    monkeypatch.setattr(OutputFolder, "discard_checkpoint", lambda folder: events.append("removed"))
+    oo.run(tumbling(0.1), tmp_path / "out", quiet=True)
+    results = events[events.index("trace.npz") :]
+    assert results == ["trace.npz", "summary.json", "manifest.json", "out", "removed"], events

@@ -68,7 +68,8 @@ class FolderLock:
         """Let others write the folder; twice does no harm."""
         if self._descriptor in _held:
             with contextlib.suppress(OSError):  # Windows removes no open file, and others may open it next
-                remove(self.path)
+                if _is_at(self.path, self._descriptor):
+                    remove(self.path)
             _held.discard(self._descriptor)
             os.close(self._descriptor)
 
@@ -120,7 +121,8 @@ def _owner(file: Path) -> Owner | None:
 
 
 def _this_process(token: str) -> Owner:
-    words = ["onorbit" if Path(sys.argv[0]).stem in ("onorbit", "__main__") else sys.argv[0], *sys.argv[1:]]
+    program, *words = sys.argv or ["python"]
+    words.insert(0, "onorbit" if Path(program).stem in ("onorbit", "__main__") else program)
     command = " ".join(map(shell_word, words))[:500]
     since = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M:%S %z")
     return Owner(os.getpid(), socket.gethostname(), command, since, token)
