@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import SPIN, onorbit, refusal
+from results import listed
 
 import onorbit_rs as oo
 from onorbit_rs.cli.summary import print_summary
@@ -130,6 +131,7 @@ def test_checkpoints_without_a_folder_are_refused_with_the_way_out() -> None:
 
 def test_a_moment_is_looked_at_before_anything_is_printed(tmp_path: Path) -> None:
     (tmp_path / "summary.json").write_text('{"simulated_s": 1.0}')
+    listed(tmp_path)
     for moment in ("7", "nan", "-1"):
         assert "outside the run" in refusal("show", ".", "--picture", "p.png", "--at", moment, cwd=tmp_path)
     assert "add --picture FILE" in refusal("show", ".", "--at", "0.5", cwd=tmp_path)

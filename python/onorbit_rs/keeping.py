@@ -9,7 +9,7 @@ import numpy as np
 from onorbit_rs.exceptions import RunInterrupted, SimulationError
 from onorbit_rs.output import (
     OutputFolder,
-    discard_checkpoint,
+    has_checkpoint,
     summarize,
     write_pictures,
     write_summary,
@@ -33,10 +33,11 @@ def finished(
     summary = summarize(trace, built)
     if folder is not None:
         tell("writing the trace")
-        write_trace(folder, trace)
-        write_summary(folder, summary)
+        with folder.replacing() as files:
+            write_trace(files, trace)
+            write_summary(files, summary)
         write_pictures(folder, trace, summary, built, tell=tell)
-        discard_checkpoint(folder)
+        folder.discard_checkpoint()
     return summary
 
 
@@ -47,7 +48,7 @@ def keep_failed(error: Exception, built: Built, folder: OutputFolder | None) -> 
         return
     try:
         _write_rows(trace, "failed", built, folder)
-        discard_checkpoint(folder)
+        folder.discard_checkpoint()
     except Exception as full:  # the run's own error is the one to tell
         error.add_note(f"its rows could not be written: {full}")
     else:
@@ -88,9 +89,10 @@ def _keep_rows(
     summary = _write_rows(stop.trace, "diverged" if diverged else "interrupted", built, folder)
     stop.message += f"; the trace so far is in {folder.path}"
     if diverged:  # such numbers make no picture, and there is nothing to go on to
-        discard_checkpoint(folder)
+        folder.discard_checkpoint()
     else:
-        stop.message += f"; go on with: onorbit resume {shell_word(folder.path)}"
+        if has_checkpoint(folder.path):
+            stop.message += f"; go on with: onorbit resume {shell_word(folder.path)}"
         write_pictures(folder, stop.trace, summary, built, tell=tell)
 
 
@@ -98,6 +100,7 @@ def _write_rows(trace: Trace, status: str, built: Built, folder: OutputFolder) -
     """Trace and summary of a run, whole or not; returns the summary."""
     with np.errstate(all="ignore"):  # of one that diverged: numbers near the end of the range of floats
         summary = summarize(trace, built, status=status)
-    write_trace(folder, trace)
-    write_summary(folder, summary)
+    with folder.replacing() as files:
+        write_trace(files, trace)
+        write_summary(files, summary)
     return summary

@@ -156,7 +156,8 @@ impl PySimulation {
     /// Run from the given state for ``duration`` s and return the :class:`Trace`.
     ///
     /// ``progress(t, duration)`` is called at a steady wall-clock pace. ``checkpoint(c)`` is handed a :class:`Checkpoint` every
-    /// ``checkpoint_every`` s of wall clock (at most twenty a second) and at Ctrl-C; with ``resume`` the run goes on from one, to the same bits.
+    /// ``checkpoint_every`` s of wall clock (at most twenty a second) and at Ctrl-C; where it returns False, the next one has its
+    /// rows again. With ``resume`` the run goes on from a checkpoint, to the same bits.
     /// Ctrl-C raises ``RunInterrupted``, a diverging run ``SimulationError``; both carry the trace so far.
     #[pyo3(signature = (duration, *, progress=None, checkpoint=None, checkpoint_every=30.0, resume=None))]
     fn run(

@@ -17,7 +17,8 @@ from onorbit_rs.cli.options import (
     of_file,
 )
 from onorbit_rs.cli.saying import count, say
-from onorbit_rs.cli.writing import claim, writing
+from onorbit_rs.cli.writing import claim
+from onorbit_rs.files import replacing
 from onorbit_rs.printable import shell_word
 
 
@@ -51,8 +52,8 @@ def new(
     if out is None:
         typer.echo(made.text, nl=False)
         return
-    with writing(out):
-        out.write_text(made.text, encoding="utf-8")
+    with replacing(out) as file:
+        file.write_text(made.text, encoding="utf-8")
     if not quiet:
         joints = count(len(made.joints), "joint", "joints")
         moved = f"{made.tool}, moved by {joints}" if made.tool else "a body without joints"
