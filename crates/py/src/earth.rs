@@ -2,6 +2,7 @@
 
 use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, in_file, raise, unreadable};
+use crate::interrupt::in_pieces;
 use crate::orbit::times;
 use onorbit_core::earth::{
     Axes, Earth, EarthError, EarthParameters, Epoch, Kernel, KernelSegment, ROTATION_RATE,
@@ -212,7 +213,10 @@ impl PyEarth {
         let (times, shape) = times(t)?;
         let result = zeros(py, &[&shape, tail].concat())?;
         let into = fresh(&result);
-        py.detach(|| fill(&self.earth, &times, into)).map_err(|error| error.into_python(py))?;
+        let width = tail.iter().product::<usize>();
+        in_pieces(py, times.len(), 4096, |range| {
+            fill(&self.earth, &times[range.clone()], &mut into[width * range.start..width * range.end])
+        })?;
         Ok(result.into_any())
     }
 
@@ -230,7 +234,10 @@ impl PyEarth {
         }
         let result = zeros(py, &expected)?;
         let (positions, into) = (r.data(), fresh(&result));
-        py.detach(|| fill(&self.earth, &times, positions, into)).map_err(|error| error.into_python(py))?;
+        in_pieces(py, times.len(), 4096, |range| {
+            let places = 3 * range.start..3 * range.end;
+            fill(&self.earth, &times[range], &positions[places.clone()], &mut into[places])
+        })?;
         Ok(result.into_any())
     }
 }

@@ -11,7 +11,7 @@ mod simulation;
 
 pub(crate) use simulation::SimulationErrorExt;
 
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyException, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::io::ErrorKind;
@@ -30,8 +30,19 @@ pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'
     };
     match make() {
         Ok(error) => PyErr::from_value(error),
+        Err(interrupt) if is_interrupt(py, &interrupt) => {
+            // a Ctrl-C was pending: it is raised, and the error is what it came during
+            let context = make().map(PyErr::from_value).ok();
+            interrupt.set_context(py, context);
+            interrupt
+        }
         Err(_) => PyRuntimeError::new_err(message.to_owned()),
     }
+}
+
+/// Whether this is a Ctrl-C, or what else ends a program: no error of a call.
+pub(crate) fn is_interrupt(py: Python<'_>, error: &PyErr) -> bool {
+    !error.is_instance_of::<PyException>(py)
 }
 
 /// The error, with the file that it is about before its message.
