@@ -7,7 +7,7 @@ use crate::interrupt::in_pieces;
 use crate::made::{Made, absolute};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::atmosphere::{
-    Atmosphere, AtmosphereError, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer,
+    Atmosphere, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer,
     MagneticActivity, Nrlmsise00, SpaceIndices, SpaceWeather, SpaceWeatherTable, densities_at,
     densities_over,
 };

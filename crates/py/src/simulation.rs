@@ -263,9 +263,8 @@ impl PySimulation {
             (_, last) => (last.copied(), false),
         };
         let trace = Py::new(py, trace).ok();
-        let (Some(ctrl_c), Some(time)) = (ctrl_c, time) else {
-            return error.into_python_with(py, trace);
-        };
+        let Some(ctrl_c) = ctrl_c else { return error.into_python_with(py, trace) };
+        let Some(time) = time else { return ctrl_c };
         let interrupted = SimulationError::Interrupted { time }.into_python_with(py, trace);
         if !is_interrupted {
             interrupted.set_context(py, Some(error.into_python_with(py, None)));

@@ -5,6 +5,7 @@ from __future__ import annotations
 from onorbit_rs.output.checkpoint import (
     CheckpointWriter,
     discard_checkpoint,
+    has_checkpoint,
     read_checkpoint,
     scenario_digest,
 )
@@ -22,6 +23,7 @@ __all__ = [
     "CheckpointWriter",
     "OutputFolder",
     "discard_checkpoint",
+    "has_checkpoint",
     "read_checkpoint",
     "scenario_digest",
     "summarize",
