@@ -156,7 +156,7 @@ def test_a_second_ctrl_c_ends_the_figures_of_an_interrupted_run(
     data["simulation"] |= {"duration": 1000.0, "time_step": 1e-4, "record_every": 100}
     timer = threading.Timer(0.5, _thread.interrupt_main)
     timer.start()
-    with pytest.raises(oo.exceptions.RunInterrupted, match="onorbit resume .*onorbit report .* draws them"):
+    with pytest.raises(oo.exceptions.RunInterrupted, match=r"onorbit resume .*onorbit report .* draws them"):
         oo.run(data, tmp_path / "out", quiet=True)
     assert (tmp_path / "out" / "checkpoint" / "state.json").is_file()
 

@@ -2,15 +2,15 @@
 
 use crate::arrays::{Input, fresh, wrong_shape, zeros};
 use crate::earth::PyEarth;
-use crate::errors::{IntoPython, fields, in_file, plain, raise, unreadable};
+use crate::errors::{IntoPython, LARGEST_TABLE, fields, in_file, plain, raise, unreadable};
 use crate::interrupt::in_pieces;
 use crate::made::{Made, absolute};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::atmosphere::{
-    Atmosphere, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer,
-    MagneticActivity, Nrlmsise00, SpaceIndices, SpaceWeather, SpaceWeatherTable, densities_at,
-    densities_over,
+    Atmosphere, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer, MagneticActivity,
+    Nrlmsise00, SpaceIndices, SpaceWeather, SpaceWeatherTable, densities_at, densities_over,
 };
+use onorbit_core::text_file::read_text;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
@@ -270,8 +270,8 @@ fn activity(ap: Any<'_, '_>) -> PyResult<MagneticActivity> {
 }
 
 fn read_table(py: Python<'_>, path: &std::path::Path, three_hourly: bool) -> PyResult<SpaceWeatherTable> {
-    let text =
-        std::fs::read_to_string(path).map_err(|error| unreadable(py, path, "space weather table", &error))?;
+    let text = read_text(path, LARGEST_TABLE)
+        .map_err(|error| unreadable(py, path, "space weather table", &error))?;
     let table = SpaceWeatherTable::from_csv(&text)
         .map_err(|error| in_file(py, path, error))?
         .named(format!("the table {}", path.display()));
