@@ -56,7 +56,7 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
 
 
 def _check_records(path: str | Path) -> None:
-    """Refuse summaries of another size, and records that lead in a circle, which jplephem follows for ever."""
+    """Refuse summaries of another size, and records in a circle, which jplephem follows for ever."""
     from jplephem.daf import DAF
 
     with Path(path).open("rb") as stream:
@@ -73,7 +73,8 @@ def _check_records(path: str | Path) -> None:
 def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
     """Pairs of centre and target that lead to a body."""
     centres = {target: center for center, target in kernel.pairs}
-    body, chain = BODIES[name], []
+    body = BODIES[name]
+    chain: list[tuple[int, int]] = []
     while body in centres and body != SOLAR_SYSTEM and len(chain) < len(centres):
         chain.append((centres[body], body))
         body = centres[body]
