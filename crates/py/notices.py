@@ -36,7 +36,7 @@ def linked_crates() -> list[dict[str, Any]]:
 
 
 def _linked_on(target: str) -> dict[str, dict[str, Any]]:
-    """Normal dependencies of the module, without macros (they run in the compiler) and what only those need."""
+    """Normal dependencies of the module, without macros, which run in the compiler, and their own."""
     command = ["cargo", "metadata", "--locked", "--offline", "--format-version", "1"]
     done = subprocess.run(
         [*command, "--filter-platform", target], cwd=ROOT, capture_output=True, text=True, check=True

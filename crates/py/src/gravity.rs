@@ -3,7 +3,7 @@
 use crate::arrays::{Input, fresh, shape_text, whole, wrong_shape, zeros};
 use crate::environment::PyEffect;
 use crate::errors::{IntoPython, fields, plain, raise};
-use crate::interrupt::in_pieces;
+use crate::interrupt::{in_pieces, unheard};
 use onorbit_core::earth::{Earth, EarthError};
 use onorbit_core::gravity::{Coefficients, Gravity, GravityError, GravityField};
 use pyo3::prelude::*;
@@ -138,10 +138,8 @@ impl PyGravityField {
         #[pyo3(from_py_with = order_of)] order: Option<usize>,
     ) -> PyResult<Bound<'py, Self>> {
         let keywords = fields!(py, "path": &path, "degree": degree, "order": order);
-        Bound::new(
-            py,
-            Self::wrap(py, GravityField::from_gfc(&path, degree, order), "GravityField.from_gfc", &keywords)?,
-        )
+        let field = unheard(py, move || GravityField::from_gfc(&path, degree, order))?;
+        Bound::new(py, Self::wrap(py, field, "GravityField.from_gfc", &keywords)?)
     }
 
     /// From fully normalised coefficients ``c`` and ``s``, both (n, n), ``c[degree, order]``; ``c[0, 0]`` is taken for 1.

@@ -32,6 +32,26 @@ pub(crate) fn batch<R: Send>(
     interruptible(py, &stop, || work(Threads { count, stop: Some(&stop) }))
 }
 
+/// Runs `work` on a thread of its own; Ctrl-C meanwhile raises at once and leaves `work` to end unheard.
+///
+/// For what cannot be stopped from outside: a file that is parsed, a certificate.
+pub(crate) fn unheard<R: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> R + Send + 'static,
+) -> PyResult<R> {
+    let (done, finished) = mpsc::channel();
+    let worker = std::thread::spawn(move || {
+        let result = work();
+        let _ = done.send(()); // nobody receives it after a Ctrl-C
+        result
+    });
+    let finished = Mutex::new(finished);
+    while py.detach(|| wait(&finished)) == Err(mpsc::RecvTimeoutError::Timeout) {
+        py.check_signals()?;
+    }
+    py.detach(|| worker.join()).map_err(|panic| std::panic::resume_unwind(panic))
+}
+
 /// Integrates an orbit as far as `times` need it, interruptible.
 pub(crate) fn prepare(py: Python<'_>, orbit: &dyn Orbit, times: &[f64]) -> PyResult<()> {
     if orbit.prepare(times, 0) {
