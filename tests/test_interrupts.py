@@ -104,9 +104,24 @@ def test_an_orbit_that_was_interrupted_goes_on_with_the_same_bits() -> None:
     assert np.array_equal(whole.state(20_000.0), parts.state(20_000.0))
 
 
-def with_ctrl_c_pending(call: Callable[[], Any]) -> None:
+def with_ctrl_c_pending(call: Callable[[], Any], returned: list[Any] | None = None) -> None:
     """Call with a Ctrl-C that Python has not handled: nothing of Python runs between the two."""
-    list(map(operator.call, [ctypes.pythonapi.PyErr_SetInterrupt, call]))
+    returned = [] if returned is None else returned
+    returned.extend(map(operator.call, [ctypes.pythonapi.PyErr_SetInterrupt, call]))
+
+
+def test_ctrl_c_is_heard_within_a_certificate_and_a_batch() -> None:
+    """Each takes at least twice the pace at which signals are checked."""
+    model = oo.robots.load("humanoid_torso")
+    v = np.full(model.nv, 0.01)
+    trace = oo.Simulation(model, model.neutral(), v, time_step=1e-3, record_every=1).run(50.0)
+    q = np.tile(model.neutral(), (400_000, 1))
+    for call in (trace.certificate, partial(model.mass_matrix, q, threads=1)):
+        returned: list[Any] = []
+        with pytest.raises(KeyboardInterrupt):
+            with_ctrl_c_pending(call, returned)
+        assert len(returned) == 1, f"{call} came to its end"
+    assert all(passed for *_, passed in trace.certificate())
 
 
 def test_a_refusal_with_ctrl_c_pending_is_no_bare_runtime_error() -> None:
