@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart notices clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -26,6 +26,10 @@ $(VENV)/.built: $(RUST) pyproject.toml README.md | $(BIN)/maturin
 $(VENV)/.tested: pyproject.toml | $(VENV)/.built
 	$(MATURIN) --extras test,lint
 	@touch $@
+
+.PHONY: notices
+notices: ## THIRD_PARTY_NOTICES.txt, from the licences of the crates that the module links
+	$(PYTHON) crates/py/notices.py
 
 demo: $(VENV)/.built ## the paper's experiment: builds, runs, leaves out/humanoid_reach
 	$(BIN)/onorbit run humanoid_reach --out out/humanoid_reach --force
@@ -76,9 +80,6 @@ bench-everything: $(VENV)/.built ## humanoid_reach with the whole environment on
 
 bench-spart: $(VENV)/.built $(VENV)/.tested ## forward dynamics against SPART, compiled from PyPI's spartpy, alternated
 	$(BIN)/python benches/compare_spart.py
-
-notices: ## THIRD_PARTY_NOTICES.txt, from the licences of the crates that the module links
-	$(PYTHON) crates/py/notices.py
 
 clean: ## forgets builds and the environment
 	rm -rf target $(VENV) out

@@ -14,7 +14,7 @@ from commands import refusal
 from test_earth import kernel, series
 
 import onorbit_rs as oo
-from onorbit_rs import files
+from onorbit_rs import reading
 from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError
 from onorbit_rs.interop import onorbitros
 from onorbit_rs.robots.expand import expand
@@ -92,9 +92,9 @@ def test_check_of_a_pipe_ends(tmp_path: Path) -> None:
 def test_no_file_is_read_beyond_its_limit(tmp_path: Path) -> None:
     file = tmp_path / "mine.txt"
     file.write_text("1234")
-    assert files.read_text(file, 4) == "1234"
+    assert reading.read_text(file, 4) == "1234"
     with pytest.raises(ReadError, match="larger than 3 bytes"):
-        files.read_text(file, 3)
+        reading.read_text(file, 3)
     with file.open("wb") as stream:
         stream.truncate(100_000_001)  # takes no room on the disk
     for name in ("scenario", "TLE", "OMM", "URDF", "Earth orientation", "space weather", "OnOrbitROS"):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.exceptions import EarthError, ReadError
-from onorbit_rs.files import check_regular
+from onorbit_rs.reading import check_regular
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,8 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from onorbit_rs.cli.completing import robot_names, scenario_names
-from onorbit_rs.exceptions import InputError, OnOrbitError
-from onorbit_rs.files import LARGEST_TEXT, read_bytes
+from onorbit_rs.exceptions import InputError
 from onorbit_rs.printable import shell_word
 
 ScenarioArgument = Annotated[
@@ -83,8 +82,8 @@ def in_words(robot: str, packages: list[Path] | None, arguments: list[str] | Non
 def _may_be_xacro(file: Path) -> bool:
     """By its ending or by what is in it; who reads it says what is wrong with one that cannot be read."""
     try:
-        return file.suffix.lower() == ".xacro" or b"xacro" in read_bytes(file, LARGEST_TEXT, "robot")
-    except OnOrbitError:
+        return file.suffix.lower() == ".xacro" or b"xacro" in file.read_bytes()
+    except OSError:
         return True
 
 

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs import _core
-from onorbit_rs.exceptions import NotFoundError, OnOrbitError
-from onorbit_rs.files import read_text
+from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError
 from onorbit_rs.output.folder import FIGURES, REPORT, OutputFolder
 from onorbit_rs.output.read import read_summary, read_trace
 from onorbit_rs.output.robot import CHANGED, was_changed
@@ -86,9 +85,11 @@ def write_report(
 
 def _scenario(file: Path) -> tuple[str, Scenario]:
     try:
-        text = read_text(file, kind="scenario")
-    except NotFoundError as error:
+        text = file.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
         raise NotFoundError(f"no scenario in this folder: {file}", path=str(file), kind="scenario") from error
+    except (OSError, ValueError) as error:
+        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="scenario") from error
     return text, load(file)
 
 

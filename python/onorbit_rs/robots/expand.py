@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from onorbit_rs.exceptions import ModelError, NotFoundError, OnOrbitError, ReadError
-from onorbit_rs.files import LARGEST_TEXT, check_regular, read_bytes
+from onorbit_rs import reading
+from onorbit_rs.exceptions import ModelError, NotFoundError, ReadError
 from onorbit_rs.names import did_you_mean
 
 _LOCK = threading.Lock()  # xacro keeps its state in globals
@@ -50,7 +50,7 @@ def expand(
         raise NotFoundError(f"{file}: there is no such file", path=str(file), kind="robot")
     if file.is_dir():
         raise ReadError(f"{file}: this is a folder, not a xacro file", path=str(file), kind="robot")
-    check_regular(file, "robot")
+    reading.check_regular(file, "robot")
     try:
         xacro = importlib.import_module("xacro")
     except ImportError as error:
@@ -68,8 +68,6 @@ def expand(
         with _LOCK, _patched(xacro, folders, remarks, used), contextlib.redirect_stderr(said):
             document = xacro.process_file(str(file), mappings=dict(values))
             text = document.documentElement.toxml()
-    except OnOrbitError:
-        raise
     except RecursionError:
         raise ModelError(f"{file}: macros, includes or elements nested too deep", path=str(file)) from None
     except OSError as error:
@@ -87,7 +85,7 @@ def expand(
 
 
 def _check_text(file: Path) -> None:
-    raw = read_bytes(file, LARGEST_TEXT, "robot")
+    raw = file.read_bytes()
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

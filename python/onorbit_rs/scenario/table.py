@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onorbit_rs.exceptions import ReadError
-from onorbit_rs.files import LARGEST_TABLE, read_text
 from onorbit_rs.names import did_you_mean
+from onorbit_rs.reading import LARGEST_TABLE, read_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

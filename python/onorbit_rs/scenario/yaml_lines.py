@@ -12,7 +12,7 @@ from typing import Any
 import yaml
 
 from onorbit_rs.exceptions import ScenarioError
-from onorbit_rs.files import read_head
+from onorbit_rs.reading import read_head
 from onorbit_rs.scenario.place import scenario_error
 
 Location = tuple[str | int, ...]

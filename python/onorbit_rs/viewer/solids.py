@@ -9,8 +9,8 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.exceptions import OnOrbitError
-from onorbit_rs.files import LARGEST_MESH, read_bytes, read_head
 from onorbit_rs.geometry import GREY, Shape
+from onorbit_rs.reading import LARGEST_MESH, read_bytes, read_head
 from onorbit_rs.rotations import quaternion_from_matrix
 
 MESHES = {
