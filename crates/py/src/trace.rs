@@ -73,11 +73,11 @@ macro_rules! columns {
             /// Values are relative to scales that do not vanish: see the concepts in the documentation.
             fn certificate(this: &Bound<'_, Self>) -> PyResult<Vec<(&'static str, f64, f64, bool)>> {
                 let of = |this: &PyTrace| certify(&this.model, &this.trace).checks();
-                let checks = if this.get().trace.rows() < LONG_TRACE {
-                    this.py().detach(|| of(this.get()))
+                let (own, shared) = (this.get(), this.clone().unbind());
+                let checks = if own.trace.rows() < LONG_TRACE {
+                    this.py().detach(|| of(own))
                 } else {
-                    let this_too = this.clone().unbind();
-                    unheard(this.py(), move || of(this_too.get()))?
+                    unheard(this.py(), move || of(shared.get()))?
                 };
                 Ok(checks.iter().map(|check| (check.name, check.value, check.gate, check.passed())).collect())
             }
