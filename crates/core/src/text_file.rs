@@ -11,9 +11,9 @@ use thiserror::Error;
 pub enum TextFileError {
     #[error("there is no such file")]
     NotFound,
-    #[error("this is a folder")]
+    #[error("is a directory")]
     Folder,
-    #[error("this is a pipe or a device: save its content as a file")]
+    #[error("a pipe or a device: save its content as a file")]
     NotRegular,
     #[error("larger than {limit} bytes")]
     TooLarge { limit: usize },
