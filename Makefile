@@ -27,6 +27,10 @@ $(VENV)/.tested: pyproject.toml | $(VENV)/.built
 	$(MATURIN) --extras test,lint
 	@touch $@
 
+.PHONY: notices
+notices: ## THIRD_PARTY_NOTICES.txt, from the licences of the crates that the module links
+	$(PYTHON) crates/py/notices.py
+
 demo: $(VENV)/.built ## the paper's experiment: builds, runs, leaves out/humanoid_reach
 	$(BIN)/onorbit run humanoid_reach --out out/humanoid_reach --force
 

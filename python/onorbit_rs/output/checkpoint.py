@@ -159,7 +159,9 @@ def scenario_digest(scenario: dict[str, Any]) -> str:
         file = Path(text)
         try:
             if file.is_absolute() and file.is_file():
-                digest.update(file.read_bytes())
+                with file.open("rb") as stream:  # a SPICE kernel is larger than the memory
+                    for part in iter(lambda: stream.read(1 << 20), b""):
+                        digest.update(part)
         except OSError:  # a text too long for a path; a file that closed itself is told by who reads it
             continue
     return digest.hexdigest()

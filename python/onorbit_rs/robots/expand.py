@@ -11,6 +11,7 @@ import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from onorbit_rs import reading
 from onorbit_rs.exceptions import ModelError, NotFoundError, ReadError
 from onorbit_rs.names import did_you_mean
 from onorbit_rs.robots.functions import Work
@@ -49,6 +50,7 @@ def expand(
         raise NotFoundError(f"{file}: there is no such file", path=str(file), kind="robot")
     if file.is_dir():
         raise ReadError(f"{file}: this is a folder, not a xacro file", path=str(file), kind="robot")
+    reading.check_regular(file, "robot")
     try:
         xacro = importlib.import_module("xacro")
     except ImportError as error:

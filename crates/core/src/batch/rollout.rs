@@ -2,7 +2,7 @@
 
 use super::input::{InputError, check_finite, check_frame, check_quaternions, check_whole};
 use super::side_by_side::{Places, gather, scatter};
-use super::threads::for_each;
+use super::threads::{Threads, for_each};
 use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
 use crate::model::{Model, neutral};
 use crate::reference::TaskReference;
@@ -119,7 +119,7 @@ impl Rollout<'_> {
         let (q_rows, v_rows) = (S::LANES * self.rows() * model.nq(), S::LANES * self.rows() * model.nv());
         let diverged = AtomicUsize::new(count);
         for_each(
-            self.threads,
+            Threads { count: self.threads, stop: Some(self.stop) },
             q.chunks_mut(q_rows).zip(v.chunks_mut(v_rows)).enumerate(),
             || Lanes::<S>::new(self, model),
             |lanes, (group, (q, v))| {
