@@ -172,6 +172,7 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
     let amounts = [
         ("damping", joint.damping),
         ("friction", joint.friction),
+        ("static friction", joint.static_friction.unwrap_or(0.0)),
         ("rotor inertia", joint.rotor_inertia),
         ("velocity limit", joint.limits.velocity.unwrap_or(0.0)),
         ("effort limit", joint.limits.effort.unwrap_or(0.0)),
@@ -183,6 +184,10 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
         if value < 0.0 {
             return Err(ModelError::Negative { joint: name(), what, value });
         }
+    }
+    if let Some(at_rest) = joint.static_friction.filter(|at_rest| *at_rest < joint.friction) {
+        let moving = joint.friction;
+        return Err(ModelError::StaticBelowKinetic { joint: name(), at_rest, moving });
     }
     match joint.limits.position {
         Some((lower, upper)) if lower.is_nan() || upper.is_nan() => {
