@@ -52,7 +52,7 @@ class JointComputedTorqueController(Part):
 
 
 class JointPidController(Part):
-    """A PID for each joint, after the interfaces of ROS Control; friction is not compensated. Gains: bare, SI."""
+    """A PID for each joint, after the interfaces of ROS Control; ignores friction. Gains: bare SI numbers."""
 
     other_words: ClassVar = {"kp": "p", "ki": "i", "kd": "d", "i_clamp": "i_limit"}
 
