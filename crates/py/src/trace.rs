@@ -149,6 +149,9 @@ columns! {
     v: |t| &[t.model.nv()];
     /// Joint torque held from this row's time to the next step, (T, n), N m.
     tau: |t| &[t.model.joint_count()];
+    /// Share of ``tau`` that compensates Coulomb friction, (T, n), N m; where a controller compensates it and
+    /// no other engine moves the robot.
+    friction_compensation: |t| &[t.model.joint_count().max(1)];
     /// Acceleration just after this row's time, (T, nv).
     acceleration: |t| &[t.model.nv()];
     /// Linear momentum, and angular about the system's centre of mass, (T, 6), kg m/s and kg m²/s, W axes.

@@ -121,7 +121,6 @@ def _plans(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Plan]:
             pose[joint.name] = float(f"{at_rest(joint):.3g}")
     plan = replace(
         plan, tool=arm.tool, arm=arm.joints, others=others, home=pose, time_step_s=time_step(model),
-        friction=max(joint.friction for joint in model.joints if joint.name in arm.joints),
     )  # fmt: skip
     if len(arm.joints) >= ENOUGH:
         for displacement, seconds in lines(model, arm, pose):
@@ -133,13 +132,13 @@ def _plans(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Plan]:
 def _base_turn_of(plan: Plan) -> float | None:
     """By how much the base turns in a run of it, rad.
 
-    None where the run does not certify, leaves its joints' limits or, where none sticks, its line.
+    None where the run does not certify, leaves its joints' limits or its line.
     """
     built = build(load(yaml.safe_load(draft_text(plan, "trial"))))
     trace = built.simulation.run(plan.duration_s)
     if not all(passed for *_, passed in trace.certificate()) or trace.joint_limits_exceeded():
         return None
-    is_tracked = plan.displacement is not None and not plan.friction
+    is_tracked = plan.displacement is not None
     if is_tracked and np.linalg.norm(np.asarray(trace.position_error), axis=1).max() >= NEAR_ENOUGH_M:
         return None
     attitude = np.asarray(trace.q)[:, 3:7]

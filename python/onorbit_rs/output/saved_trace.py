@@ -59,7 +59,8 @@ def _widths(n: int) -> dict[str, tuple[int, ...]]:
     """Shapes of a row of the columns, for ``n`` joints."""
     three, six, pose = (3,), (6,), (4, 4)
     return {
-        "q": (7 + n,), "v": (6 + n,), "acceleration": (6 + n,), "tau": (n,), "momentum": six, "impulse": six,
+        "q": (7 + n,), "v": (6 + n,), "acceleration": (6 + n,), "tau": (n,), "momentum": six,
+        "friction_compensation": (n,), "impulse": six,
         "kinetic_energy": (), "work": (), "dissipated": (), "center_of_mass": three,
         "tool_pose": pose, "reference_pose": pose, "position_error": three, "attitude_error": three,
         "position_eci": three, "velocity_eci": three, "reference_residual": three,

@@ -86,7 +86,7 @@ impl Rollout<'_> {
             return Err(InputError::Adaptive);
         }
         // joints that stick and slip do so each at its own time: one state after the other
-        let sticks = model.joints().iter().any(|joint| joint.friction > 0.0);
+        let sticks = model.has_friction();
         if let RolloutControl::ComputedTorque(law, reference) = self.control {
             check_frame(model, law.frame)?;
             if reference.needs_orbit() {
@@ -236,6 +236,7 @@ impl<'a, S: Real> Lanes<'a, S> {
                 let is_relative = reference.is_relative_to_base();
                 let (q, v) = (&state.q, &state.v);
                 computed_torque(law, plant.model, data, q, v, &desired, is_relative, work, command);
+                work.ask(law, plant.contacts.asked_mut());
             }
         }
     }

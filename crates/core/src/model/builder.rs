@@ -190,6 +190,7 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
     let amounts = [
         ("damping", joint.damping),
         ("friction", joint.friction),
+        ("static friction", joint.static_friction.unwrap_or(0.0)),
         ("rotor inertia", joint.rotor_inertia),
         ("velocity limit", joint.limits.velocity.unwrap_or(0.0)),
         ("effort limit", joint.limits.effort.unwrap_or(0.0)),
@@ -205,6 +206,10 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
             let expected = "numbers up to 1e20";
             return Err(ModelError::OutOfRange { what, name: name(), value, expected });
         }
+    }
+    if let Some(at_rest) = joint.static_friction.filter(|at_rest| *at_rest < joint.friction) {
+        let moving = joint.friction;
+        return Err(ModelError::StaticBelowKinetic { joint: name(), at_rest, moving });
     }
     match joint.limits.position {
         Some((lower, upper)) if lower.is_nan() || upper.is_nan() => {

@@ -155,6 +155,7 @@ fn attach(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
         name: joint.name.clone(),
         damping: joint.damping,
         friction: joint.friction,
+        static_friction: joint.static_friction.unwrap_or(joint.friction),
         limits: joint.limits,
         axis: axis.normalize().into(),
     });

@@ -48,6 +48,11 @@ pub enum ModelError {
     ZeroAxis { joint: String },
     #[error("joint '{joint}': {what} is {value}, it must not be negative")]
     Negative { joint: String, what: &'static str, value: f64 },
+    #[error(
+        "joint '{joint}': its static friction {at_rest} is below its kinetic friction {moving}; give at least \
+         {moving}, or leave it out"
+    )]
+    StaticBelowKinetic { joint: String, at_rest: f64, moving: f64 },
     #[error("joint '{joint}': lower limit {lower} is above upper limit {upper}")]
     LimitsReversed { joint: String, lower: f64, upper: f64 },
 }

@@ -26,6 +26,8 @@ pub struct Checkpoint {
     state: StateNumbers,
     /// Torques held, `(n,)`, N m.
     pub(super) command: Vec<f64>,
+    /// Accelerations asked for where friction is compensated, `(n,)`, rad/s².
+    pub(super) asked: Vec<Option<f64>>,
     /// What the control of an adaptive step remembers.
     pub(super) memory: Memory,
     /// Cuts in a row that got nowhere.
@@ -90,7 +92,7 @@ fn own_instruction_set() -> &'static str {
 impl Checkpoint {
     pub(super) fn new<S: Scalar>(
         state: &State<S>,
-        command: &[S],
+        (command, asked): (&[S], &[Option<f64>]),
         schedule: &Schedule,
         (rows, steps): (usize, usize),
         (memory, cuts): (Memory, usize),
@@ -120,6 +122,7 @@ impl Checkpoint {
                 dissipated: state.dissipated.value(),
             },
             command: numbers(command),
+            asked: asked.to_vec(),
             memory,
             cuts,
             probe,
@@ -176,6 +179,7 @@ impl Checkpoint {
             ("coordinates", self.state.q.len(), model.nq()),
             ("velocities", self.state.v.len(), model.nv()),
             ("torques", self.command.len(), model.joint_count()),
+            ("accelerations", self.asked.len(), model.joint_count()),
             ("rows", self.rows, rows),
         ] {
             if got != expected {

@@ -71,7 +71,7 @@ impl<S: Real, W: World<S>> Plant<'_, S, W> {
     fn hold(&self, j: usize, q: &[S]) -> (f64, f64) {
         let body = &self.data.bodies[j + 1];
         let (lowest, highest) = self.contacts.room(j, q[j + 7].lane(0));
-        let (need, friction) = (body.drive.lane(0), self.contacts.friction(j));
+        let (need, friction) = (body.drive.lane(0), self.contacts.holding_friction(j));
         let size = |m: Motion<S>, f: Force<S>| {
             m.linear.norm() * f.linear.norm() + m.angular.norm() * f.angular.norm()
         };

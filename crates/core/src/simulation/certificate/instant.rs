@@ -110,13 +110,13 @@ impl<'a> Reader<'a> {
         if k == 0 || n == 0 {
             return Vec3::zero();
         }
-        let (before, after) = (Trace::row(&self.trace.tau, k - 1, n), Trace::row(&self.trace.tau, k, n));
-        if before == after {
-            return Vec3::zero();
-        }
         self.forces[..6].fill(0.0);
-        for (force, (before, after)) in self.forces[6..].iter_mut().zip(before.iter().zip(after)) {
-            *force = before - after;
+        for (j, force) in self.forces[6..].iter_mut().enumerate() {
+            *force = self.trace.torque_without_compensation(k - 1, j, n)
+                - self.trace.torque_without_compensation(k, j, n);
+        }
+        if self.forces[6..].iter().all(|jump| *jump == 0.0) {
+            return Vec3::zero();
         }
         // at zero velocity there is no bias: the answer is M⁻¹ Δτ alone
         forward_dynamics(self.model, &mut self.data, q, &self.at_rest, &self.forces, &[], &mut self.jump);
