@@ -8,6 +8,7 @@ mod driver;
 mod engine;
 mod error;
 mod exchange;
+mod follow;
 mod guide;
 mod integrator;
 mod launch;
@@ -29,7 +30,7 @@ mod tableau;
 mod tolerance;
 mod trace;
 
-pub use certificate::{Certificate, Check, certify};
+pub use certificate::{Certificate, Check, PairChecks, certify};
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use engine::{Crossed, Crossing, Engine, Outside};
 pub use error::{RunFailure, SimulationError};

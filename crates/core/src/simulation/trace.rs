@@ -1,5 +1,6 @@
 //! What a run leaves behind.
 
+use super::certificate::PairChecks;
 use crate::control::Outcome;
 use crate::model::Model;
 use std::borrow::Cow;
@@ -62,6 +63,12 @@ pub struct Trace {
     /// Sum of what steps and halved steps differ by in attitude, rad (of an embedded pair: its two
     /// solutions): an estimate of its error at the end, but for what the motion amplifies.
     pub attitude_step_doubling: Option<f64>,
+    /// What each joint may be off by at the end, rad (m), from the differences of steps and halved steps, `(n,)`.
+    pub joint_step_doubling: Option<Vec<f64>>,
+    /// The same of the base's origin, m.
+    pub origin_step_doubling: Option<f64>,
+    /// Checks that need every step, where rows are sparse: evaluated during the run.
+    pub pair_checks: Option<PairChecks>,
     /// Whether every step of the run is a row.
     pub has_every_step: bool,
 }
