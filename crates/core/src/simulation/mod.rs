@@ -40,4 +40,4 @@ pub use run::{Moment, Monitor};
 pub use settings::Simulation;
 pub(crate) use state::State;
 pub(crate) use stepping::{Stepper, Stepping};
-pub use trace::{GoalResult, NamedColumn, Trace};
+pub use trace::{CoordinateDrift, GoalResult, NamedColumn, Trace};

@@ -4,6 +4,7 @@ use super::error::SimulationError;
 use super::integrator::Stages;
 use super::plant::{Plant, World};
 use super::state::State;
+use super::trace::CoordinateDrift;
 use crate::spatial::{Quat, Scalar, Vec3, log_so3};
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +12,8 @@ use serde::{Deserialize, Serialize};
 const EVERY: usize = 256;
 /// Least number of probes of a run that has as many steps.
 const LEAST: usize = 5;
+/// Further steps that a run of many steps probes early, where transients are.
+const EARLY: [usize; 3] = [4, 16, 64];
 /// Differences below this many ε of what they are taken from are rounding.
 const ROUNDING: f64 = 16.0;
 
@@ -18,8 +21,7 @@ const ROUNDING: f64 = 16.0;
 ///
 /// A local error of order `p + 1` is smaller by `2^p` in two half steps, so the difference is the
 /// local error itself but for a sixteenth (Runge-Kutta). The sum bounds the error of a run that does
-/// not amplify it; a chaotic one does. A difference in a joint's rate counts with the time that is left, during
-/// which it moves the joint.
+/// not amplify it; a chaotic one does.
 pub(super) struct Probe<S> {
     whole: State<S>,
     halved: State<S>,
@@ -31,30 +33,28 @@ pub(super) struct Probe<S> {
 /// What the probes found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Found {
-    /// Step of the last probe, and its time, s.
+    /// Step of the last probe.
     step: usize,
-    time: f64,
     /// Difference of the attitude at the last probe, rad, and the sum over the steps before it.
     turn: [f64; 2],
     /// Of the base's origin, then of every joint.
     pub(super) drifts: Vec<Drift>,
 }
 
-/// What the steps and halved steps of a coordinate differ by.
+/// What the steps and halved steps of a coordinate differ by: its position and its rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Drift {
-    /// Differences of position and rate at the last probe.
+    /// Differences at the last probe.
     last: [f64; 2],
-    /// Sums over the steps before it: of positions, of rates, and of rates times when they arose.
-    sum: [f64; 3],
+    /// Sums over the steps before it.
+    sum: [f64; 2],
+    /// Largest rate that a probe saw.
+    fastest: f64,
 }
 
 impl Drift {
-    /// Sums over `steps` more steps like the last one, from time `from` to `to`.
-    fn until(&self, steps: f64, (from, to): (f64, f64)) -> [f64; 3] {
-        let [position, rate] = self.last.map(|x| x * steps);
-        let [a, b, c] = self.sum;
-        [a + position, b + rate, c + rate * 0.5 * (from + to)]
+    fn until(&self, steps: f64) -> [f64; 2] {
+        [0, 1].map(|i| self.sum[i] + self.last[i] * steps)
     }
 }
 
@@ -64,21 +64,21 @@ impl Found {
         self.turn[1] + self.turn[0] * (steps - self.step) as f64
     }
 
-    /// What a coordinate may be off by at `time`, after `steps` steps: its index is 0 for the base's origin, then
-    /// those of the joints from 1.
-    pub(super) fn drift(&self, coordinate: usize, steps: usize, time: f64) -> f64 {
-        let [position, rate, rate_when] =
-            self.drifts[coordinate].until((steps - self.step) as f64, (self.time, time));
-        position + (rate * time - rate_when).max(0.0)
+    /// The same of a coordinate's position and rate, and its largest rate; index 0 is the base's origin, then come
+    /// the joints.
+    pub(super) fn drift(&self, coordinate: usize, steps: usize) -> CoordinateDrift {
+        let drift = &self.drifts[coordinate];
+        let [position, rate] = drift.until((steps - self.step) as f64);
+        CoordinateDrift { position, rate, fastest: drift.fastest }
     }
 
-    fn advance(&mut self, step: usize, time: f64) {
-        let (steps, span) = ((step - self.step) as f64, (self.time, time));
+    fn advance(&mut self, step: usize) {
+        let steps = (step - self.step) as f64;
         self.turn[1] = self.turn(step);
         for drift in &mut self.drifts {
-            drift.sum = drift.until(steps, span);
+            drift.sum = drift.until(steps);
         }
-        (self.step, self.time) = (step, time);
+        self.step = step;
     }
 }
 
@@ -97,7 +97,7 @@ impl<S: Scalar> Probe<S> {
 
     /// Whether the step of this number is one to look at closely.
     pub(super) fn is_due(&self, step: usize) -> bool {
-        step.is_multiple_of(self.every)
+        step.is_multiple_of(self.every) || self.every == EVERY && EARLY.contains(&step)
     }
 
     /// Probes the step number `step` over `interval`, if it is due; state and plant are left as they
@@ -113,7 +113,7 @@ impl<S: Scalar> Probe<S> {
         if !self.is_due(step) {
             return Ok(());
         }
-        self.found.advance(step, interval.0);
+        self.found.advance(step);
         let repeated = self.repeat(interval, state, plant, stages);
         if let Ok(changes) = repeated {
             self.compare(state, interval.1 - interval.0, changes, plant.model.mass());
@@ -158,6 +158,7 @@ impl<S: Scalar> Probe<S> {
         let (p, p_halved) = (Vec3::from_slice(&whole.q), Vec3::from_slice(&halved.q));
         let speed = Vec3::from_slice(&state.v).norm().value();
         let (j, j_halved) = (whole.impulse.linear, halved.impulse.linear);
+        origin.fastest = origin.fastest.max(speed);
         origin.last = [
             beyond(off(p, p_halved), p.norm().value() + h * (speed + forced)),
             beyond(off(j, j_halved), j.norm().value()) / mass,
@@ -165,6 +166,7 @@ impl<S: Scalar> Probe<S> {
         for (i, joint) in joints.iter_mut().enumerate() {
             let off = |a: S, b: S| (a - b).value().abs();
             let (q, v) = (whole.q[i + 7], whole.v[i + 6]);
+            joint.fastest = joint.fastest.max(v.value().abs()).max(state.v[i + 6].value().abs());
             joint.last = [
                 beyond(off(q, halved.q[i + 7]), q.value().abs() + h * (rates + forced)),
                 beyond(off(v, halved.v[i + 6]), v.value().abs() + forced),

@@ -156,15 +156,13 @@ impl<S: Scalar> Run<'_, S> {
         if self.foreign.is_some() {
             return;
         }
-        let (steps, time, found) = (self.steps, self.schedule.now(), &probe.found);
         if let Some(memory) = stepper.memory() {
             trace.attitude_step_doubling = Some(memory.turn);
             return;
         }
-        trace.attitude_step_doubling = Some(found.turn(steps));
-        trace.origin_step_doubling = Some(found.drift(0, steps, time));
-        trace.joint_step_doubling =
-            Some((1..found.drifts.len()).map(|i| found.drift(i, steps, time)).collect());
+        let found = &probe.found;
+        trace.attitude_step_doubling = Some(found.turn(self.steps));
+        trace.step_doubling = (0..found.drifts.len()).map(|i| found.drift(i, self.steps)).collect();
     }
 
     /// Shows the run to its monitor.

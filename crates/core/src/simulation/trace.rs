@@ -63,10 +63,9 @@ pub struct Trace {
     /// Sum of what steps and halved steps differ by in attitude, rad (of an embedded pair: its two
     /// solutions): an estimate of its error at the end, but for what the motion amplifies.
     pub attitude_step_doubling: Option<f64>,
-    /// What each joint may be off by at the end, rad (m), from the differences of steps and halved steps, `(n,)`.
-    pub joint_step_doubling: Option<Vec<f64>>,
-    /// The same of the base's origin, m.
-    pub origin_step_doubling: Option<f64>,
+    /// Sums of what steps and halved steps differ by, of the base's origin, then of each joint; empty where an
+    /// integrator adapts its steps, and of another engine.
+    pub step_doubling: Vec<CoordinateDrift>,
     /// Checks that need every step, where rows are sparse: evaluated during the run.
     pub pair_checks: Option<PairChecks>,
     /// Whether every step of the run is a row.
@@ -139,6 +138,17 @@ impl NamedColumn {
     fn named(&self, kind: &str) -> Cow<'static, str> {
         Cow::Owned(format!("{kind}_{}", self.name))
     }
+}
+
+/// What the steps of a coordinate and halved steps differ by, summed over a run; m, or rad of a joint that turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CoordinateDrift {
+    /// Of its position.
+    pub position: f64,
+    /// Of its rate (of the base's origin: of the centre of mass).
+    pub rate: f64,
+    /// Largest rate of it that was seen.
+    pub fastest: f64,
 }
 
 /// What came of a goal.

@@ -35,6 +35,11 @@ impl CenterOfMass {
         self.path += step.norm();
     }
 
+    /// Length of the path, m.
+    pub(super) fn path(&self) -> f64 {
+        self.path
+    }
+
     /// Largest gap over the path and the `size` of the robot.
     pub(super) fn error(&self, size: f64) -> f64 {
         relative(self.largest.sqrt(), self.path + size)

@@ -26,7 +26,13 @@ pub(in crate::simulation) struct BaseMotion {
 impl BaseMotion {
     /// From a row's configuration, velocity, acceleration just after it and angular acceleration just before.
     #[inline]
-    pub(in crate::simulation) fn new(time: f64, q: &[f64], v: &[f64], a: &[f64], change_before: Vec3<f64>) -> Self {
+    pub(in crate::simulation) fn new(
+        time: f64,
+        q: &[f64],
+        v: &[f64],
+        a: &[f64],
+        change_before: Vec3<f64>,
+    ) -> Self {
         let (rate, change_after) = (Vec3::from_slice(&v[3..]), Vec3::from_slice(&a[3..]));
         let sum = |x: &[f64]| x[3..].iter().map(|x| x.abs()).sum::<f64>();
         let rates = sum(v);

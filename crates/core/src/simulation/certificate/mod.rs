@@ -6,15 +6,17 @@ mod base_rows;
 mod center_of_mass;
 mod instant;
 mod numbers;
+mod step_doubling;
 mod stream;
 
 use super::trace::Trace;
-use crate::model::{Axis, Model};
+use crate::model::Model;
 use attitude::Attitude;
 use balance::Balance;
 use base_rows::BaseRows;
 use center_of_mass::CenterOfMass;
 use instant::{Instant, Reader};
+use step_doubling::Doubling;
 
 pub(super) use instant::{BaseMotion, MassMotion};
 pub(super) use numbers::Restore;
@@ -28,7 +30,7 @@ const ENERGY: f64 = 1e-6;
 const CENTER: f64 = 1e-7;
 /// Largest error of the attitude, rad, that steps compared with halved ones may add up to.
 const STEP_DOUBLING: f64 = 1e-6;
-/// Largest error of a joint, rad, that steps compared with halved ones may add up to.
+/// Largest error of a joint, relative to its own motion, that steps compared with halved ones may add up to.
 const JOINT_STEP_DOUBLING: f64 = 1e-4;
 /// Largest share of the commutator that the attitude may miss; without group integration it is 1.
 const ATTITUDE: f64 = 0.1;
@@ -61,9 +63,11 @@ pub struct Certificate {
     pub attitude_consistency: Option<f64>,
     /// What the attitudes of steps and of halved steps differ by, summed over the run, rad.
     pub attitude_step_doubling_rad: Option<f64>,
-    /// The largest that a joint may be off by at the end, from what its positions and rates in steps and in halved
-    /// steps differ by, rad; of sliding joints over the robot's size.
-    pub joint_step_doubling_rad: Option<f64>,
+    /// What positions and rates of a joint in steps and in halved steps differ by, summed over the run, of the joint
+    /// that is worst: positions in rad (of sliding joints over the robot's size), rates over the joint's largest rate.
+    pub joint_step_doubling_rel: Option<f64>,
+    /// The same of the base's origin, over its path and the robot's size.
+    pub position_step_doubling_rel: Option<f64>,
 }
 
 /// The checks that compare neighbouring steps, of a run that evaluated them itself: see [`Certificate`].
@@ -108,7 +112,8 @@ impl Certificate {
             ("base_rows_residual_rel", self.base_rows_residual_rel, self.base_rows_gate),
             ("attitude_consistency", self.attitude_consistency, ATTITUDE),
             ("attitude_step_doubling_rad", self.attitude_step_doubling_rad, STEP_DOUBLING),
-            ("joint_step_doubling_rad", self.joint_step_doubling_rad, JOINT_STEP_DOUBLING),
+            ("joint_step_doubling_rel", self.joint_step_doubling_rel, JOINT_STEP_DOUBLING),
+            ("position_step_doubling_rel", self.position_step_doubling_rel, STEP_DOUBLING),
         ];
         lines
             .into_iter()
@@ -144,10 +149,11 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
         last = Some(now);
     }
     let is_free = trace.impulse.iter().all(|x| *x == 0.0); // then any spacing of rows will do
-    let center = center.error(balance.size());
+    let doubling = Doubling { model, trace, size: balance.size(), gate: JOINT_STEP_DOUBLING };
+    let center_error = center.error(balance.size());
     let pairs = if trace.has_every_step {
         Some(PairChecks {
-            center_of_mass_error_rel: center,
+            center_of_mass_error_rel: center_error,
             base_rows_residual_rel: base_rows.residual(balance.size()),
             base_rows_gate: base_rows.gate(),
             attitude_consistency: attitude.consistency(ATTITUDE),
@@ -161,23 +167,14 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
         energy_balance_error_rel: balance.energy(trace.work_done),
         center_of_mass_error_rel: pairs
             .map(|pairs| pairs.center_of_mass_error_rel)
-            .or_else(|| is_free.then_some(center)),
+            .or_else(|| is_free.then_some(center_error)),
         base_rows_residual_rel: pairs.map(|pairs| pairs.base_rows_residual_rel),
         base_rows_gate: pairs.map_or(0.0, |pairs| pairs.base_rows_gate),
         attitude_consistency: pairs.map(|pairs| pairs.attitude_consistency),
         attitude_step_doubling_rad: trace.attitude_step_doubling,
-        joint_step_doubling_rad: joints_off(model, trace, balance.size()),
+        joint_step_doubling_rel: doubling.joints(),
+        position_step_doubling_rel: doubling.origin(center.path()),
     }
-}
-
-/// The largest that a joint may be off by, rad; sliding joints as a share of the robot's `size`.
-fn joints_off(model: &Model, trace: &Trace, size: f64) -> Option<f64> {
-    let found = trace.joint_step_doubling.as_ref().filter(|found| !found.is_empty())?;
-    let scaled = found.iter().zip(&model.nodes()[1..]).map(|(off, node)| match node.axis {
-        Axis::Prismatic => relative(*off, size),
-        Axis::Revolute => *off,
-    });
-    Some(scaled.fold(0.0, worst))
 }
 
 /// The larger of two, and not a number if either is: what is broken must not look small.
