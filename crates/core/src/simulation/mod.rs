@@ -29,6 +29,7 @@ mod surroundings;
 mod tableau;
 mod tolerance;
 mod trace;
+mod watch;
 
 pub use certificate::{Certificate, Check, PairChecks, certify};
 pub use checkpoint::{Checkpoint, CheckpointError};

@@ -5,6 +5,7 @@ use super::integrator::Stages;
 use super::plant::{Plant, World};
 use super::state::State;
 use super::trace::CoordinateDrift;
+use super::watch::Watch;
 use crate::spatial::{Quat, Scalar, Vec3, log_so3};
 use serde::{Deserialize, Serialize};
 
@@ -39,6 +40,8 @@ pub(super) struct Found {
     turn: [f64; 2],
     /// Of the base's origin, then of every joint.
     pub(super) drifts: Vec<Drift>,
+    /// What every step shows of the joints.
+    pub(super) watch: Watch,
 }
 
 /// What the steps and halved steps of a coordinate differ by: its position and its rate.
@@ -69,7 +72,10 @@ impl Found {
     pub(super) fn drift(&self, coordinate: usize, steps: usize) -> CoordinateDrift {
         let drift = &self.drifts[coordinate];
         let [position, rate] = drift.until((steps - self.step) as f64);
-        CoordinateDrift { position, rate, fastest: drift.fastest }
+        let joint = coordinate.checked_sub(1);
+        let of_joint = |x: &[f64]| joint.and_then(|j| x.get(j)).copied().unwrap_or(0.0);
+        let fastest = drift.fastest.max(of_joint(&self.watch.fastest));
+        CoordinateDrift { position, rate, fastest, jumps: of_joint(&self.watch.jumps) }
     }
 
     fn advance(&mut self, step: usize) {
@@ -91,7 +97,7 @@ impl<S: Scalar> Probe<S> {
             whole: state.clone(),
             halved: state.clone(),
             every,
-            found: Found { drifts, ..Found::default() },
+            found: Found { drifts, watch: Watch::new(state.v.len() - 6), ..Found::default() },
         }
     }
 

@@ -82,7 +82,8 @@ impl<S: Scalar> Run<'_, S> {
             if is_row {
                 self.record(stretch.start)?;
             }
-            let stepped = self.step(interval, is_row, record_every);
+            let is_smooth = !stretch.is_event && !self.plant.contacts.is_active();
+            let stepped = self.step(interval, (is_row, is_smooth), record_every);
             stepped.map_err(|error| self.name_divergence(error, stretch.start))?;
             if !self.state.is_finite() {
                 return Err(self.diverged(stretch.start));
@@ -107,7 +108,7 @@ impl<S: Scalar> Run<'_, S> {
     fn step(
         &mut self,
         interval: (f64, f64),
-        is_row: bool,
+        (is_row, is_smooth): (bool, bool),
         record_every: usize,
     ) -> Result<(), SimulationError> {
         if self.foreign.is_some() {
@@ -129,6 +130,9 @@ impl<S: Scalar> Run<'_, S> {
             recorder.accelerated(plant.model, stages.first_acceleration());
         }
         let reached = result?;
+        if stepper.stages.pair.is_none() {
+            probe.found.watch.step(stages, &plant.command, reached - interval.0, is_smooth);
+        }
         if let (Some(follower), Some(started)) = (follower, started) {
             follower.open(started, stages);
         }

@@ -149,6 +149,8 @@ pub struct CoordinateDrift {
     pub rate: f64,
     /// Largest rate of it that was seen.
     pub fastest: f64,
+    /// `Σ (h |Δq̈|/6)^(5/4)` with the jump of a joint's acceleration from the end of a step of `h` to the next step.
+    pub jumps: f64,
 }
 
 /// What came of a goal.

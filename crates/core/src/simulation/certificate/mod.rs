@@ -30,8 +30,9 @@ const ENERGY: f64 = 1e-6;
 const CENTER: f64 = 1e-7;
 /// Largest error of the attitude, rad, that steps compared with halved ones may add up to.
 const STEP_DOUBLING: f64 = 1e-6;
-/// Largest error of a joint, relative to its own motion, that steps compared with halved ones may add up to.
-const JOINT_STEP_DOUBLING: f64 = 1e-4;
+/// Largest error of a joint or of the position, each relative to its own motion, that steps compared with halved ones
+/// may add up to.
+const MOTION_STEP_DOUBLING: f64 = 1e-4;
 /// Largest share of the commutator that the attitude may miss; without group integration it is 1.
 const ATTITUDE: f64 = 0.1;
 
@@ -112,8 +113,8 @@ impl Certificate {
             ("base_rows_residual_rel", self.base_rows_residual_rel, self.base_rows_gate),
             ("attitude_consistency", self.attitude_consistency, ATTITUDE),
             ("attitude_step_doubling_rad", self.attitude_step_doubling_rad, STEP_DOUBLING),
-            ("joint_step_doubling_rel", self.joint_step_doubling_rel, JOINT_STEP_DOUBLING),
-            ("position_step_doubling_rel", self.position_step_doubling_rel, STEP_DOUBLING),
+            ("joint_step_doubling_rel", self.joint_step_doubling_rel, MOTION_STEP_DOUBLING),
+            ("position_step_doubling_rel", self.position_step_doubling_rel, MOTION_STEP_DOUBLING),
         ];
         lines
             .into_iter()
@@ -149,7 +150,7 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
         last = Some(now);
     }
     let is_free = trace.impulse.iter().all(|x| *x == 0.0); // then any spacing of rows will do
-    let doubling = Doubling { model, trace, size: balance.size(), gate: JOINT_STEP_DOUBLING };
+    let doubling = Doubling { model, trace, size: balance.size(), gate: MOTION_STEP_DOUBLING };
     let center_error = center.error(balance.size());
     let pairs = if trace.has_every_step {
         Some(PairChecks {

@@ -18,7 +18,8 @@ pub(super) struct Doubling<'a> {
 }
 
 impl Doubling<'_> {
-    /// The worst joint: the error of its position, and that of its rate over its largest rate. What light links do
+    /// The worst joint: the error of its position, and that of its rate over its largest rate, from the steps that were
+    /// halved and from what every step shows. What light links do
     /// is invisible in balances of the whole robot; here each joint is measured by its own motion.
     pub(super) fn joints(&self) -> Option<f64> {
         let joints = self.trace.step_doubling.get(1..).filter(|joints| !joints.is_empty())?;
@@ -27,8 +28,10 @@ impl Doubling<'_> {
             let unit = if node.axis == Axis::Prismatic { self.size } else { 1.0 };
             // an error of the rate that passes the gate at rest moves the joint by less than REST
             let creep = REST * unit / (self.gate * duration.max(f64::MIN_POSITIVE));
-            let rate = relative(drift.rate, drift.fastest + creep);
-            worst(relative(drift.position, unit), rate)
+            let fastest = drift.fastest + creep;
+            // the error of a step from the jump after it, see `watch.rs`
+            let jumps = 1.75 * relative(drift.jumps, fastest.powf(1.25));
+            worst(worst(relative(drift.position, unit), relative(drift.rate, fastest)), jumps)
         });
         Some(off.fold(0.0, worst))
     }
