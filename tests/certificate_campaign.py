@@ -1,8 +1,9 @@
 """Random runs that are exact, which the certificate must pass, and runs made wrong, which it must fail.
 
-``python tests/certificate_campaign.py --exact 10000 --wrong 1000`` (``make certificate-campaign``). A run that is made
-wrong counts where it differs from the same run at an eighth of its step by more than ``OFF``, and where a start that
-differs by 1e-9 does not end a thousand times further away: no check of a single run can see chaos.
+``python tests/certificate_campaign.py --exact 10000 --wrong 1000`` (``make certificate-campaign``). A run
+that is made wrong counts where it differs from the same run at an eighth of its step by more than ``OFF``, and
+where a start that differs by 1e-9 does not end a thousand times further away: no check of one run can see
+chaos.
 """
 
 from __future__ import annotations
@@ -31,7 +32,9 @@ class Tally:
 
     def __str__(self) -> str:
         kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.runs.items()))
-        return f"{self.runs.total()} runs ({kinds}): {len(self.mistaken)} mistaken; nearest {self.nearest:.2g}"
+        return (
+            f"{self.runs.total()} runs ({kinds}): {len(self.mistaken)} mistaken; nearest {self.nearest:.2g}"
+        )
 
 
 def failures(trace: oo.Trace) -> list[str]:
@@ -45,7 +48,7 @@ def nearest(trace: oo.Trace) -> float:
 
 
 def exact(count: int, seed: int, most_rows: int, until: float = np.inf) -> Tally:
-    """Run exact motions; those that the certificate fails are mistaken."""
+    """Run exact motions; those that fail are mistaken."""
     tally = Tally()
     for kind, case, rng in _cases(EXACT, count, seed, until):
         run: Run = case(rng, most_rows)
@@ -58,7 +61,7 @@ def exact(count: int, seed: int, most_rows: int, until: float = np.inf) -> Tally
 
 
 def wrong(count: int, seed: int, until: float = np.inf) -> Tally:
-    """Run motions that are made wrong until ``count`` of them are; those that the certificate passes are mistaken."""
+    """Run ``count`` motions that came out wrong; those that the certificate passes are mistaken."""
     tally = Tally(nearest=np.inf)
     for kind, case, rng in _cases(WRONG, 1000 * count, seed, until):
         if tally.runs.total() >= count:
@@ -86,12 +89,18 @@ def _cases(
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the campaign; the exit code is 1 where the certificate was mistaken."""
-    parser = argparse.ArgumentParser(description="random exact runs and runs made wrong against their certificates")
+    parser = argparse.ArgumentParser(
+        description="random exact runs and runs made wrong against their certificates"
+    )
     parser.add_argument("--exact", type=int, default=10_000, help="exact runs (default: %(default)s)")
     parser.add_argument("--wrong", type=int, default=1000, help="runs made wrong (default: %(default)s)")
-    parser.add_argument("--rows", type=int, default=20_000, help="most steps of an exact run (default: %(default)s)")
+    parser.add_argument(
+        "--rows", type=int, default=20_000, help="most steps of an exact run (default: %(default)s)"
+    )
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--minutes", type=float, default=np.inf, help="longest time of each half (default: no limit)")
+    parser.add_argument(
+        "--minutes", type=float, default=np.inf, help="longest time of each half (default: no limit)"
+    )
     given: Any = parser.parse_args(arguments)
     print(f"seed {given.seed}; made wrong: off by more than {OFF:g} rad")
     mistaken = 0

@@ -21,7 +21,7 @@ Rng = np.random.Generator
 
 @dataclass(frozen=True)
 class Run:
-    """How to run a case; ``is_wrong`` says whether it came out wrong, None where it is wrong by construction."""
+    """How to run a case; ``is_wrong`` says whether it came out wrong, None where it is so by construction."""
 
     model: oo.Model
     q: Any
@@ -38,7 +38,12 @@ class Run:
     def end(self, finer: int = 1, moved: float = 0.0) -> Any:
         """Configuration at the end with steps that are ``finer``, the start's rates moved by a share."""
         run = replace(self, time_step=self.time_step / finer, v=self.v * (1.0 + moved))
-        return replace(run, settings=self.settings | {"record_every": 1_000_000}).start().run(self.duration).q[-1]
+        return (
+            replace(run, settings=self.settings | {"record_every": 1_000_000})
+            .start()
+            .run(self.duration)
+            .q[-1]
+        )
 
     def __str__(self) -> str:
         rates = ", ".join(f"{rate:.3g}" for rate in self.v)
@@ -94,7 +99,7 @@ def station() -> oo.Model:
 
 
 def held(rng: Rng, most_rows: int) -> Run:
-    """A robot whose joints are held, in empty space or in orbit under the gravity gradient, at rest or turning."""
+    """A robot whose joints are held, in empty space or under the gravity gradient, at rest or turning."""
     model = station()
     q = model.neutral()
     q[3:7], q[7:] = attitude(rng), rng.uniform(-1.0, 1.0, model.nq - 7)
@@ -132,7 +137,9 @@ EXACT: dict[str, Callable[[Rng, int], Run]] = {
 
 def chain(rng: Rng, base: float, link: float) -> oo.Model:
     """A base and one to three links of about the given masses, kg."""
-    builder = oo.ModelBuilder("chain", base="base", mass=base, inertia=np.diag(base * rng.uniform(0.1, 0.15, 3)))
+    builder = oo.ModelBuilder(
+        "chain", base="base", mass=base, inertia=np.diag(base * rng.uniform(0.1, 0.15, 3))
+    )
     parent = "base"
     for k in range(rng.integers(1, 4)):
         mass, length = link * rng.uniform(0.5, 2.0), rng.uniform(0.1, 0.5)
@@ -156,16 +163,23 @@ def differs(run: Run) -> bool:
     if not off(run.end(), fine) > OFF:
         return False
     moved = 1e-9
-    return off(run.end(finer=8, moved=moved), fine) < CHAOS * moved * float(np.abs(run.v).max()) * run.duration
+    return (
+        off(run.end(finer=8, moved=moved), fine) < CHAOS * moved * float(np.abs(run.v).max()) * run.duration
+    )
 
 
 def tumbling(rng: Rng, model: oo.Model) -> Run:
     """A free robot at a step too long for some of its motions."""
     q, v = model.neutral(), np.zeros(model.nv)
     q[3:7], q[7:] = attitude(rng), rng.uniform(-np.pi, np.pi, model.nq - 7)
-    v[3:6], v[6:] = rng.normal(size=3) * power(rng, -2, 0.3), rng.normal(size=model.nv - 6) * power(rng, -0.5, 1)
+    v[3:6], v[6:] = (
+        rng.normal(size=3) * power(rng, -2, 0.3),
+        rng.normal(size=model.nv - 6) * power(rng, -0.5, 1),
+    )
     step = rng.uniform(0.02, 0.5) / max(float(np.abs(v).sum()), 0.5)
-    run = Run(model, q, v, step, step * int(rng.integers(50, 2000)), {"record_every": int(rng.choice([1, 10]))})
+    run = Run(
+        model, q, v, step, step * int(rng.integers(50, 2000)), {"record_every": int(rng.choice([1, 10]))}
+    )
     return replace(run, is_wrong=lambda: differs(run))
 
 

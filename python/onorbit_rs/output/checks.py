@@ -71,8 +71,8 @@ def advice(summary: dict[str, Any]) -> str:
     if not shares or max(shares) >= SUSPECT:
         return f"try a time_step shorter than {step:g} s"
     return (
-        "halved steps give the same motion, so a shorter time_step will not help; check a plant or effects of "
-        "your own, else please report it"
+        "halved steps give the same motion, so a shorter time_step will not help; check a plant or effects "
+        "of your own, else please report it"
     )
 
 

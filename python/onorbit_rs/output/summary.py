@@ -72,7 +72,7 @@ def summarize(
 
 
 def _certificate(trace: Trace) -> Summary:
-    """Every check that was evaluated, whether all are within their gates, and those that were not evaluated."""
+    """Every check that was evaluated, whether all are within their gates, and those that were not."""
     rows = trace.certificate()
     balances: Summary = {name: value for name, value, _, _ in rows if value is not None}
     gates = {GATE + name: gate for name, value, gate, _ in rows if value is not None}
