@@ -1,9 +1,9 @@
 """Random runs that are exact, which the certificate must pass, and runs made wrong, which it must fail.
 
 ``python tests/certificate_campaign.py --exact 10000 --wrong 1000`` (``make certificate-campaign``). A run
-that is made wrong counts where it differs from the same run at an eighth of its step by more than ``OFF``, and
-where a start that differs by 1e-9 does not end a thousand times further away: no check of one run can see
-chaos.
+that is made wrong counts where it differs from the same run at an eighth of its step by more than ``OFF``,
+and where a start that differs by 1e-9 does not end a thousand times further away: no check of one run can
+see chaos.
 """
 
 from __future__ import annotations

@@ -12,9 +12,11 @@ import numpy as np
 import onorbit_rs as oo
 
 OFF = 1e-2
-"""A run is wrong where a joint or the attitude is off by more, rad."""
-CHAOS = 1e3
-"""Growth of a small difference from which on a motion is left out as chaotic."""
+"""A run is wrong where a joint or the attitude is off by more, rad,"""
+SHARE = 1e-3
+"""and by more than this share of how far its fastest rate takes it."""
+CHAOS = 10.0
+"""A motion is left out as chaotic where a small difference of rates ends this many times as far as they take it."""
 
 Rng = np.random.Generator
 
