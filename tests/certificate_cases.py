@@ -16,7 +16,7 @@ OFF = 1e-2
 SHARE = 1e-3
 """and by more than this share of how far its fastest rate takes it."""
 CHAOS = 10.0
-"""A motion is left out as chaotic where a small difference of rates ends this many times as far as they take it."""
+"""A motion is chaotic where a small difference of rates ends this many times as far as they take it."""
 
 Rng = np.random.Generator
 
@@ -37,15 +37,10 @@ class Run:
         """The simulation."""
         return oo.Simulation(self.model, self.q, self.v, time_step=self.time_step, **self.settings)
 
-    def end(self, finer: int = 1, moved: float = 0.0) -> Any:
-        """Configuration at the end with steps that are ``finer``, the start's rates moved by a share."""
+    def rows(self, finer: int = 1, moved: float = 0.0) -> oo.Trace:
+        """The run with steps that are ``finer``, the start's rates moved by a share."""
         run = replace(self, time_step=self.time_step / finer, v=self.v * (1.0 + moved))
-        return (
-            replace(run, settings=self.settings | {"record_every": 1_000_000})
-            .start()
-            .run(self.duration)
-            .q[-1]
-        )
+        return run.start().run(self.duration)
 
     def __str__(self) -> str:
         rates = ", ".join(f"{rate:.3g}" for rate in self.v)
@@ -157,17 +152,16 @@ def chain(rng: Rng, base: float, link: float) -> oo.Model:
 
 def differs(run: Run) -> bool:
     """Whether a run is wrong, and not because its motion is chaotic."""
+    fine = run.rows(finer=8)
+    travel = np.abs(fine.v[:, 3:]).max(axis=0) * run.duration
 
-    def off(a: Any, b: Any) -> float:
-        return float(np.abs(run.model.difference(a, b)[3:]).max())
+    def off(other: oo.Trace) -> Any:
+        return np.abs(run.model.difference(other.q[-1], fine.q[-1])[3:])
 
-    fine = run.end(finer=8)
-    if not off(run.end(), fine) > OFF:
+    if not (off(run.rows()) > np.maximum(OFF, SHARE * travel)).any():
         return False
     moved = 1e-9
-    return (
-        off(run.end(finer=8, moved=moved), fine) < CHAOS * moved * float(np.abs(run.v).max()) * run.duration
-    )
+    return bool(off(run.rows(finer=8, moved=moved)).max() < CHAOS * moved * travel.max())
 
 
 def tumbling(rng: Rng, model: oo.Model) -> Run:
