@@ -59,10 +59,11 @@ def attitude(rng: Rng) -> Any:
 
 
 def body(rng: Rng) -> tuple[oo.Model, Any]:
-    """A rigid body of any size, and its principal moments."""
-    moments = np.sort(rng.uniform(1.0, 1.9, 3)) * power(rng, -6, 8)
+    """A rigid body of 1 g to 1000 t and a radius of gyration of 1 cm to 100 m, and its principal moments."""
+    mass, size = power(rng, -3, 6), power(rng, -2, 2)
+    moments = np.sort(rng.uniform(1.0, 1.9, 3)) * mass * size**2
     moments = np.full(3, moments[0]) if rng.random() < 0.3 else moments
-    return oo.Model.rigid_body(power(rng, -3, 6), np.diag(moments)), moments
+    return oo.Model.rigid_body(mass, np.diag(moments)), moments
 
 
 def sparse(rng: Rng) -> dict[str, Any]:

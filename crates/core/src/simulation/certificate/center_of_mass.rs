@@ -5,6 +5,9 @@ use super::numbers::{Numbers, Restore};
 use super::{relative, worst};
 use crate::spatial::Vec3;
 
+/// Rounding of one step of the position, in units of ε.
+const ROUNDING: f64 = 4.0;
+
 /// Running difference between where the centre of mass is and where its momentum takes it.
 #[derive(Default)]
 pub(super) struct CenterOfMass {
@@ -12,6 +15,8 @@ pub(super) struct CenterOfMass {
     /// Square of the largest gap, m².
     largest: f64,
     path: f64,
+    /// Bound of what rounding leaves of the gap, m: each step rounds the position at its own size.
+    rounding: f64,
 }
 
 impl CenterOfMass {
@@ -33,6 +38,8 @@ impl CenterOfMass {
         self.gap += if jumping.dot(jumping) < smooth.dot(smooth) { jumping } else { smooth };
         self.largest = worst(self.largest, self.gap.dot(self.gap));
         self.path += step.norm();
+        let size = before.center.dot(before.center).max(now.center.dot(now.center)).sqrt();
+        self.rounding += ROUNDING * f64::EPSILON * size;
     }
 
     /// Length of the path, m.
@@ -40,18 +47,19 @@ impl CenterOfMass {
         self.path
     }
 
-    /// Largest gap over the path and the `size` of the robot.
-    pub(super) fn error(&self, size: f64) -> f64 {
-        relative(self.largest.sqrt(), self.path + size)
+    /// Largest gap over the path and the `size` of the robot; rounding within its bound passes `gate`.
+    pub(super) fn error(&self, size: f64, gate: f64) -> f64 {
+        relative(self.largest.sqrt(), self.path + size + self.rounding / gate)
     }
 }
 
 impl Numbers for CenterOfMass {
     fn save(&self, to: &mut Vec<f64>) {
-        to.extend([self.gap.x, self.gap.y, self.gap.z, self.largest, self.path]);
+        to.extend([self.gap.x, self.gap.y, self.gap.z, self.largest, self.path, self.rounding]);
     }
 
     fn restore(&mut self, from: &mut Restore<'_>) {
         (self.gap, self.largest, self.path) = (from.vector(), from.next(), from.next());
+        self.rounding = from.next();
     }
 }

@@ -151,7 +151,7 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
     }
     let is_free = trace.impulse.iter().all(|x| *x == 0.0); // then any spacing of rows will do
     let doubling = Doubling { model, trace, size: balance.size(), gate: MOTION_STEP_DOUBLING };
-    let center_error = center.error(balance.size());
+    let center_error = center.error(balance.size(), CENTER);
     let pairs = if trace.has_every_step {
         Some(PairChecks {
             center_of_mass_error_rel: center_error,

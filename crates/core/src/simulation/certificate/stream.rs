@@ -5,7 +5,7 @@ use super::base_rows::BaseRows;
 use super::center_of_mass::CenterOfMass;
 use super::instant::{BaseMotion, MassMotion, Reader};
 use super::numbers::{Numbers, Restore};
-use super::{ATTITUDE, PairChecks};
+use super::{ATTITUDE, CENTER, PairChecks};
 use crate::model::Model;
 use crate::simulation::trace::Trace;
 
@@ -52,7 +52,7 @@ impl Stream {
     /// What was found so far.
     pub(in crate::simulation) fn checks(&self) -> PairChecks {
         PairChecks {
-            center_of_mass_error_rel: self.center.error(self.size),
+            center_of_mass_error_rel: self.center.error(self.size, CENTER),
             base_rows_residual_rel: self.base_rows.residual(self.size),
             base_rows_gate: self.base_rows.gate(),
             attitude_consistency: self.attitude.consistency(ATTITUDE),
