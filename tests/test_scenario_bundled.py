@@ -24,6 +24,8 @@ CHECKS = {
     "base_rows_residual_rel",
     "attitude_consistency",
     "attitude_step_doubling_rad",
+    "joint_step_doubling_rel",
+    "position_step_doubling_rel",
 }
 
 
@@ -33,7 +35,8 @@ def bundled(request: pytest.FixtureRequest) -> oo.Run:
 
 
 def test_every_check_of_the_certificate_applies_and_passes(bundled: oo.Run) -> None:
-    assert {name for name, *_ in bundled.trace.certificate()} == CHECKS
+    without = set() if bundled.trace.q.shape[1] > 7 else {"joint_step_doubling_rel"}
+    assert {name for name, *_ in bundled.trace.certificate()} == CHECKS - without
     assert bundled.summary["certificate_passed"], bundled.summary["certificate_failures"]
 
 

@@ -90,7 +90,7 @@ def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
 
 
 def _uncertified(summary: dict[str, Any]) -> str:
-    """What a run whose balances do not hold says last, and the way out."""
-    from onorbit_rs.output.checks import way_out
+    """What a run whose certificate failed says last, and what to do."""
+    from onorbit_rs.output.checks import advice
 
-    return f"the certificate failed ({summary['certificate_failures']}): try {way_out(summary)}"
+    return f"the certificate failed ({summary['certificate_failures']}): {advice(summary)}"

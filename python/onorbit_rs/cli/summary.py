@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.cli.printing import new_console, new_table, print_table, text
-from onorbit_rs.output.checks import Check, checks
+from onorbit_rs.output.checks import Check, checks, is_incomplete
 from onorbit_rs.output.words import goal_of, tracking
 from onorbit_rs.printable import shell_word
 from onorbit_rs.units import digits
@@ -97,10 +97,13 @@ def _said(value: Any, unit: str) -> str:
 
 
 def _verdict(summary: dict[str, Any]) -> str:
-    """Green or red, or neither where nothing was checked."""
+    """Green or red, or neither where something was not checked."""
     has_passed = summary.get("certificate_passed")
     if has_passed is None:
         return "[yellow]certificate absent[/yellow]: nothing was checked"
+    if has_passed and is_incomplete(summary):
+        absent = text(summary.get("certificate_not_evaluated"))
+        return f"[yellow]certificate incomplete[/yellow]: nothing is beyond its gate, not evaluated: {absent}"
     if has_passed:
         return "[green]certificate passed[/green]: every value is within its gate"
     return f"[red]certificate FAILED[/red] ({text(summary.get('certificate_failures'))})"

@@ -10,7 +10,7 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-from onorbit_rs.output.checks import Check, checks, way_out
+from onorbit_rs.output.checks import Check, advice, checks, is_incomplete
 from onorbit_rs.printable import printable
 from onorbit_rs.report.numbers import Row, groups
 from onorbit_rs.units import digits
@@ -60,7 +60,7 @@ def page(
 
 
 def _verdict(summary: dict[str, Any]) -> str:
-    """Green, red, or neither where the run carries no certificate, and whether it came to its end."""
+    """Green, red, or neither where checks are missing, and whether the run came to its end."""
     status = str(summary.get("status") or "unknown")
     is_whole = status == "complete"
     has_passed = summary.get("certificate_passed")
@@ -70,14 +70,17 @@ def _verdict(summary: dict[str, Any]) -> str:
     )
     if has_passed is None:
         certificate, kind = "Certificate absent: nothing was checked", "neutral"
+    elif has_passed and is_incomplete(summary):
+        absent = ", ".join(check.name for check in checks(summary) if check.holds is None)
+        certificate, kind = f"Certificate incomplete, not evaluated: {absent}", "warned"
     elif has_passed:
         certificate, kind = "Certificate passed", "passed" if is_whole else "warned"
     else:
         broken = ", ".join(check.name for check in checks(summary) if check.holds is False)
         broken = broken or str(summary.get("certificate_failures") or "it is not said what")
         certificate, kind = f"Certificate FAILED: {broken}", "failed"
-        if is_whole and way_out(summary):
-            said += f". Try {way_out(summary)}"
+        if is_whole and (words := advice(summary)):
+            said += f". {words[0].upper()}{words[1:]}"
     lines = f"<strong>{escape(certificate)}</strong><p>{escape(said)}.</p>"
     return f'<div class="verdict {kind}" id="verdict">{lines}</div>'
 

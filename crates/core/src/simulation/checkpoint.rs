@@ -1,6 +1,7 @@
 //! Where a run stands between two steps, kept so that it goes on with the same bits.
 
 use super::pair::Memory;
+use super::probe::Found;
 use super::rereference::OwnReference;
 use super::schedule::Schedule;
 use super::state::State;
@@ -32,8 +33,10 @@ pub struct Checkpoint {
     pub(super) memory: Memory,
     /// Cuts in a row that got nowhere.
     pub(super) cuts: usize,
-    /// What the step-doubling probe has: difference found last, the step it was found at, the sum.
-    pub(super) probe: (f64, usize, f64),
+    /// What the step-doubling probe found.
+    pub(super) probe: Found,
+    /// Running checks of every step, where rows are sparse: the bits of their numbers.
+    pub(super) follower: Option<Vec<u64>>,
     /// Work of every step so far, whatever its sign, J.
     pub(super) work_done: f64,
     /// What the robot is integrated about, where it drifted far.
@@ -96,7 +99,7 @@ impl Checkpoint {
         schedule: &Schedule,
         (rows, steps): (usize, usize),
         (memory, cuts): (Memory, usize),
-        probe: (f64, usize, f64),
+        (probe, follower): (Found, Option<Vec<u64>>),
         work_done: f64,
         own_reference: Option<&OwnReference>,
         controls: ControlMemory,
@@ -126,6 +129,7 @@ impl Checkpoint {
             memory,
             cuts,
             probe,
+            follower,
             work_done,
             own_reference: own_reference.cloned(),
             controls,
@@ -180,6 +184,7 @@ impl Checkpoint {
             ("velocities", self.state.v.len(), model.nv()),
             ("torques", self.command.len(), model.joint_count()),
             ("accelerations", self.asked.len(), model.joint_count()),
+            ("drifts", self.probe.drifts.len(), model.joint_count() + 1),
             ("rows", self.rows, rows),
         ] {
             if got != expected {

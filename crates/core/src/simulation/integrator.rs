@@ -38,6 +38,8 @@ pub(crate) struct Stages<S> {
     pub(super) rate: Rate<S>,
     pub(super) sum: Rate<S>,
     first: Vec<S>,
+    /// Sum of the external forces at the start of the last step, W axes, N.
+    first_force: Vec3<S>,
     /// Velocity of the base's origin at the start of the step, base axes: `start` is relative to it.
     pub(super) passing: Vec3<S>,
     integrator: Integrator,
@@ -52,7 +54,8 @@ impl<S: Real> Stages<S> {
         let (start, trial, sum) = (state.clone(), state.clone(), rate.clone());
         let is_adaptive = integrator == Integrator::DormandPrince;
         let pair = is_adaptive.then(|| Box::new(Pair::new(&rate, how)));
-        Self { start, trial, sum, rate, first, passing: Vec3::zero(), integrator, pair }
+        let (first_force, passing) = (Vec3::zero(), Vec3::zero());
+        Self { start, trial, sum, rate, first, first_force, passing, integrator, pair }
     }
 
     /// Moves `state` from the start of `interval` to its end, or as far as the tolerance allows; returns
@@ -72,6 +75,11 @@ impl<S: Real> Stages<S> {
     /// Acceleration at the start of the last step, `(nv,)`.
     pub(crate) fn first_acceleration(&self) -> &[S] {
         &self.first
+    }
+
+    /// Sum of the external forces at the start of the last step, W axes, N.
+    pub(super) fn first_force(&self) -> Vec3<S> {
+        self.first_force
     }
 
     /// `q` and `v` at the start of the last step (of the first lane).
@@ -98,6 +106,7 @@ impl<S: Real> Stages<S> {
         self.passing = Vec3::from_slice(&state.v);
         plant.ride(&state.q, &mut self.start.v);
         plant.accelerate(&state.q, &self.start.v, &mut self.rate);
+        self.first_force = self.rate.wrench.linear;
         // seen from W the velocity of that frame turns in base axes: a = a' − (ω × u, 0)
         self.first.copy_from_slice(&self.rate.a);
         S::enter(

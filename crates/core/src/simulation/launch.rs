@@ -4,6 +4,7 @@ use super::checkpoint::Checkpoint;
 use super::driver::Driver;
 use super::engine::Foreign;
 use super::error::{RunFailure, SimulationError};
+use super::follow::Follower;
 use super::integrator::{Integrator, Stages};
 use super::plant::Plant;
 use super::probe::Probe;
@@ -98,6 +99,7 @@ impl Simulation {
             is_carried: gravity.is_some() && !falls,
         };
         let is_dense = self.record_every == 1 && !self.is_adaptive();
+        let is_followed = !is_dense && !self.is_adaptive() && self.engine.is_none();
         let controls = self.control.controls();
         let recorder = Recorder::new(rows(&schedule, self.record_every), &model, extras, controls, is_dense);
         let Self { integrator, tolerance, time_step, .. } = *self;
@@ -108,7 +110,8 @@ impl Simulation {
                 state.clone(),
                 Stages::new(&model, &state, &Stepping { integrator: Integrator::Rk4, ..how }),
             ),
-            probe: Probe::new(&state),
+            probe: Probe::new(&state, schedule.grid_steps()),
+            follower: is_followed.then(|| Follower::new(&model).map(Box::new)).transpose().map_err(fail)?,
             foreign: self.engine.as_deref_mut().map(|engine| Foreign::new(engine, &model)),
             state,
             plant,
@@ -125,6 +128,7 @@ impl Simulation {
             Some((checkpoint, trace)) => run.go_on_from(checkpoint, trace).map_err(fail)?,
         }
         let outcome = run.all(self.record_every, monitor);
+        run.conclude();
         let mut trace = run.recorder.trace;
         trace.rereferenced = run.plant.surroundings.own().map_or_else(Vec::new, |own| own.times.clone());
         trace.results = run.driver.stack().map_or_else(Vec::new, |stack| goal_results(stack, &model));

@@ -34,6 +34,18 @@ pub(super) struct Extras {
 }
 
 impl Extras {
+    /// Nothing beside the state.
+    pub(super) fn none() -> Self {
+        Self {
+            tool: None,
+            has_reference: false,
+            effects: Vec::new(),
+            has_orbit: false,
+            is_carried: false,
+            compensates_friction: false,
+        }
+    }
+
     /// Numbers per row of a column; none where the run does not have it.
     fn width(&self, column: &str, model: &Model) -> usize {
         let given = |is_given: bool, width: usize| if is_given { width } else { 0 };
@@ -220,6 +232,11 @@ impl Recorder {
         for ((_, column), width) in self.trace.columns_mut().zip(&self.widths) {
             column.truncate(rows * width);
         }
+    }
+
+    /// Takes all rows back.
+    pub(super) fn clear(&mut self) {
+        self.trace.columns_mut().for_each(|(_, column)| column.clear());
     }
 
     /// Completes the last row.

@@ -4,6 +4,7 @@ use super::checkpoint::Checkpoint;
 use super::driver::Driver;
 use super::engine::Foreign;
 use super::error::SimulationError;
+use super::follow::{Follower, Started};
 use super::integrator::Stages;
 use super::plant::Plant;
 use super::probe::Probe;
@@ -55,6 +56,8 @@ pub(super) struct Run<'a, S> {
     /// For rows within a step.
     pub(super) between: (State<S>, Stages<S>),
     pub(super) probe: Probe<S>,
+    /// The certificate's checks of every step, where rows are sparse.
+    pub(super) follower: Option<Box<Follower>>,
     /// What moves the robot in the place of `stepper`.
     pub(super) foreign: Option<Foreign<'a>>,
     pub(super) schedule: Schedule,
@@ -69,6 +72,7 @@ impl<S: Scalar> Run<'_, S> {
             let interval = (stretch.start, stretch.end);
             if self.is_far() {
                 self.plant.rereference(stretch.start, &mut self.state)?;
+                self.follower.iter_mut().for_each(|follower| follower.forget());
             }
             let begun = self.begin(stretch.start, interval, stretch.is_control_tick);
             begun.map_err(|error| self.name_divergence(error, stretch.start))?;
@@ -78,7 +82,8 @@ impl<S: Scalar> Run<'_, S> {
             if is_row {
                 self.record(stretch.start)?;
             }
-            let stepped = self.step(interval, is_row, record_every);
+            let is_smooth = !stretch.is_event && !self.plant.contacts.is_active();
+            let stepped = self.step(interval, (is_row, is_smooth), record_every);
             stepped.map_err(|error| self.name_divergence(error, stretch.start))?;
             if !self.state.is_finite() {
                 return Err(self.diverged(stretch.start));
@@ -103,13 +108,18 @@ impl<S: Scalar> Run<'_, S> {
     fn step(
         &mut self,
         interval: (f64, f64),
-        is_row: bool,
+        (is_row, is_smooth): (bool, bool),
         record_every: usize,
     ) -> Result<(), SimulationError> {
         if self.foreign.is_some() {
             return self.step_foreign(interval, is_row);
         }
-        let Self { state, plant, stepper, probe, recorder, .. } = self;
+        let is_window = self.follower.is_some() && self.probe.is_due(self.steps);
+        if is_window {
+            self.open_window(interval.0)?;
+        }
+        let Self { state, plant, stepper, probe, recorder, follower, .. } = self;
+        let started = follower.as_ref().map(|_| Started::at(interval.0, state, plant));
         if stepper.memory().is_none() {
             // a probe that fails is a step that will: the step tells
             let _ = probe.look(self.steps, interval, state, plant, &mut stepper.stages);
@@ -120,9 +130,17 @@ impl<S: Scalar> Run<'_, S> {
             recorder.accelerated(plant.model, stages.first_acceleration());
         }
         let reached = result?;
+        if stepper.stages.pair.is_none() {
+            probe.found.watch.step(stages, &plant.command, reached - interval.0, is_smooth);
+        }
+        if let (Some(follower), Some(started)) = (follower, started) {
+            follower.open(started, stages);
+        }
         recorder.trace.work_done += (state.work - stages.start_work()).value().abs();
         self.steps += 1;
-        self.estimate();
+        if is_window {
+            self.close_window(interval.0, reached)?;
+        }
         if reached < interval.1 {
             self.schedule.cut(reached);
         }
@@ -134,27 +152,46 @@ impl<S: Scalar> Run<'_, S> {
         Ok(())
     }
 
-    /// Says by how much the attitude may be wrong after the steps so far; nothing is known of another engine's.
-    fn estimate(&mut self) {
+    /// Puts into the trace what only the run knows for its certificate: by how much attitude, joints and base may be
+    /// wrong after the steps so far, and the checks of every step. Nothing is known of another engine's.
+    pub(super) fn conclude(&mut self) {
+        let Self { probe, stepper, follower, recorder: Recorder { trace, .. }, .. } = self;
+        trace.pair_checks = follower.as_ref().map(|follower| follower.checks());
         if self.foreign.is_some() {
             return;
         }
-        let doubling = || self.probe.estimate(self.steps);
-        let estimate = self.stepper.memory().map_or_else(doubling, |memory| memory.turn);
-        self.recorder.trace.attitude_step_doubling = Some(estimate);
+        if let Some(memory) = stepper.memory() {
+            trace.attitude_step_doubling = Some(memory.turn);
+            return;
+        }
+        let found = &probe.found;
+        trace.attitude_step_doubling = Some(found.turn(self.steps));
+        trace.step_doubling = (0..found.drifts.len()).map(|i| found.drift(i, self.steps)).collect();
     }
 
     /// Shows the run to its monitor.
     fn look(&self, monitor: Monitor<'_>) -> ControlFlow<()> {
         let (time, trace) = (self.schedule.now(), &self.recorder.trace);
         let checkpoint = || {
-            let (counts, probe) = ((trace.rows(), self.steps), self.probe.numbers());
-            let command = (&self.plant.command[..], self.plant.contacts.asked());
+            let (counts, probe) = ((trace.rows(), self.steps), self.probe.found.clone());
+            let (command, asked) = (&self.plant.command[..], self.plant.contacts.asked());
             let memory = self.stepper.memory().unwrap_or_default();
             let stepper = (memory, self.stepper.cuts);
             let (schedule, controls) = (&self.schedule, self.driver.save()?);
             let (done, own) = (trace.work_done, self.plant.surroundings.own());
-            Ok(Checkpoint::new(&self.state, command, schedule, counts, stepper, probe, done, own, controls))
+            let follower = self.follower.as_ref().map(|follower| follower.save());
+            let certificate = (probe, follower);
+            Ok(Checkpoint::new(
+                &self.state,
+                (command, asked),
+                schedule,
+                counts,
+                stepper,
+                certificate,
+                done,
+                own,
+                controls,
+            ))
         };
         monitor(&Moment { time, trace, checkpoint: &checkpoint })
     }
@@ -165,14 +202,16 @@ impl<S: Scalar> Run<'_, S> {
         self.state = from.state();
         self.schedule = from.schedule.clone();
         self.steps = from.steps;
-        self.probe.go_on_from(from.probe);
+        self.probe.found = from.probe.clone();
         self.stepper.go_on_from(from.memory, from.cuts);
         self.recorder.go_on_from(trace)?;
         self.recorder.trace.work_done = from.work_done;
+        if let (Some(follower), Some(bits)) = (&mut self.follower, &from.follower) {
+            follower.load(bits)?;
+        }
         if let Some(own) = &from.own_reference {
             self.plant.surroundings.follow(own.clone())?;
         }
-        self.estimate(); // no step may follow
         self.plant.command.iter_mut().zip(&from.command).for_each(|(to, from)| *to = S::of(*from));
         self.plant.contacts.asked_mut().copy_from_slice(&from.asked);
         self.driver.load(&from.controls)
@@ -188,6 +227,9 @@ impl<S: Scalar> Run<'_, S> {
         self.settle();
         if !self.state.is_finite() {
             return Err(self.diverged(t));
+        }
+        if let Some(follower) = &mut self.follower {
+            follower.close(t, &self.state, &self.plant);
         }
         self.bounce(t, interval)?;
         let Self { state, plant, driver, .. } = self;

@@ -16,6 +16,8 @@ pub(super) struct Stretch {
     pub(super) is_control_tick: bool,
     /// Number of the grid step that begins at its start, if one does.
     pub(super) grid_step: Option<usize>,
+    /// Whether an event is at its start: wrenches or torques may jump there.
+    pub(super) is_event: bool,
 }
 
 /// Cuts `0..duration` at every multiple of the step and of the control period, and at every event.
@@ -145,6 +147,7 @@ impl Iterator for Schedule {
         self.next_grid += usize::from(grid_step.is_some());
         let is_control_tick = self.is_control_tick();
         self.next_tick += usize::from(self.is_regular_tick());
+        let events_before = self.next_event;
         while self.events.get(self.next_event).is_some_and(|&t| t <= self.now + self.tolerance()) {
             self.next_event += 1;
         }
@@ -160,7 +163,8 @@ impl Iterator for Schedule {
         if (self.duration - end).abs() <= self.tolerance() {
             end = self.duration;
         }
-        let stretch = Stretch { start: self.now, end, is_control_tick, grid_step };
+        let is_event = self.next_event > events_before;
+        let stretch = Stretch { start: self.now, end, is_control_tick, grid_step, is_event };
         self.now = end;
         Some(stretch)
     }

@@ -1,5 +1,6 @@
 //! What a run leaves behind.
 
+use super::certificate::PairChecks;
 use crate::control::Outcome;
 use crate::model::Model;
 use std::borrow::Cow;
@@ -65,6 +66,11 @@ pub struct Trace {
     /// Sum of what steps and halved steps differ by in attitude, rad (of an embedded pair: its two
     /// solutions): an estimate of its error at the end, but for what the motion amplifies.
     pub attitude_step_doubling: Option<f64>,
+    /// Sums of what steps and halved steps differ by, of the base's origin, then of each joint; empty where an
+    /// integrator adapts its steps, and of another engine.
+    pub step_doubling: Vec<CoordinateDrift>,
+    /// Checks that need every step, where rows are sparse: evaluated during the run.
+    pub pair_checks: Option<PairChecks>,
     /// Whether every step of the run is a row.
     pub has_every_step: bool,
 }
@@ -136,6 +142,19 @@ impl NamedColumn {
     fn named(&self, kind: &str) -> Cow<'static, str> {
         Cow::Owned(format!("{kind}_{}", self.name))
     }
+}
+
+/// What the steps of a coordinate and halved steps differ by, summed over a run; m, or rad of a joint that turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CoordinateDrift {
+    /// Of its position.
+    pub position: f64,
+    /// Of its rate (of the base's origin: of the centre of mass).
+    pub rate: f64,
+    /// Largest rate of it that was seen.
+    pub fastest: f64,
+    /// `Σ (h |Δq̈|/6)^(5/4)` with the jump of a joint's acceleration from the end of a step of `h` to the next step.
+    pub jumps: f64,
 }
 
 /// What came of a goal.

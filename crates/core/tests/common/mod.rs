@@ -3,6 +3,7 @@
 
 pub mod dual;
 pub mod humanoid;
+pub mod light;
 pub mod slider;
 pub mod spacecraft;
 pub mod stepper;

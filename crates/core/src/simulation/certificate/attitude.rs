@@ -1,13 +1,17 @@
-//! Recorded turns against those that the recorded rates imply.
+//! Turns of the base against those that its rates imply.
 
-use super::instant::Instant;
-use super::{relative, worst};
-use crate::spatial::{Vec3, log_so3};
+use super::instant::BaseMotion;
+use super::numbers::{Numbers, Restore};
+use super::worst;
+use crate::spatial::{Quat, Vec3, log_so3};
 
-/// What rounding may leave of one turn between two quaternions, rad.
-const ROUNDING: f64 = 1e-14;
+/// Rounding of one step of the integrator, of the attitude's quaternion itself: what a product of two unit
+/// quaternions and its normalisation lose at most, in units of ε.
+const QUATERNION: f64 = 8.0;
+/// Rounding of a turn, in units of ε: in the step's own exponential, in the rates at its ends, and here.
+const TURN: f64 = 16.0;
 
-/// A sum of small turns in W, and the farthest it came.
+/// A sum of small turns in W, and the square of the farthest it came.
 #[derive(Default)]
 struct Drift {
     sum: Vec3<f64>,
@@ -17,7 +21,11 @@ struct Drift {
 impl Drift {
     fn add(&mut self, turn: Vec3<f64>) {
         self.sum += turn;
-        self.largest = worst(self.largest, self.sum.norm());
+        self.largest = worst(self.largest, self.sum.dot(self.sum));
+    }
+
+    fn largest(&self) -> f64 {
+        self.largest.sqrt()
     }
 }
 
@@ -27,7 +35,8 @@ pub(super) struct Attitude {
     residual: Drift,
     commutator: Drift,
     resolution: Drift,
-    intervals: u32,
+    /// Bound of what rounding leaves of the residual, rad.
+    rounding: f64,
 }
 
 impl Attitude {
@@ -37,20 +46,21 @@ impl Attitude {
     ///
     /// The first two terms are the integral of the cubic through the data. The last one is the
     /// commutator; composing `exp(∫ω dt)` misses it, whatever the order of the rates.
-    /// Where a wrench jumps at the second row, `ω̇₁⁻` is not known and follows from the parabola
+    /// Where a wrench jumps at the second row, `ω̇₁⁻` may not be known and follows from the parabola
     /// through the rest: `ω̇₁⁻ = 2 (ω₁ − ω₀)/h − ω̇₀⁺`. The closer of the two holds.
-    pub(super) fn add(&mut self, before: &Instant<'_>, now: &Instant<'_>) {
+    #[inline]
+    pub(super) fn add(&mut self, before: &BaseMotion, now: &BaseMotion) {
         let h = now.time - before.time;
-        let (w0, w1) = (before.rate(), now.rate());
-        let turn = log_so3(before.attitude.conjugate().product(now.attitude));
+        let (w0, w1) = (before.rate, now.rate);
+        let turn = turn_between(before.attitude, now.attitude);
         let commutator = w0.cross(w1) * (h * h / 12.0);
-        let implied = (w1 - w0) * (2.0 / h) - before.turn_after();
+        let implied = (w1 - w0) * (2.0 / h) - before.change_after;
         let open = |last: Vec3<f64>| {
-            let integral = (before.turn_after() - last).scale_add(h * h / 12.0, (w0 + w1) * (0.5 * h));
+            let integral = (before.change_after - last).scale_add(h * h / 12.0, (w0 + w1) * (0.5 * h));
             turn - integral - commutator
         };
-        let (smooth, jumping) = (open(now.turn_before), open(implied));
-        let is_smooth = smooth.norm() <= jumping.norm();
+        let (smooth, jumping) = (open(now.change_before), open(implied));
+        let is_smooth = smooth.dot(smooth) <= jumping.dot(jumping);
         let rot_wb = before.attitude.matrix();
         self.residual.add(rot_wb * if is_smooth { smooth } else { jumping });
         self.commutator.add(rot_wb * commutator);
@@ -58,13 +68,78 @@ impl Attitude {
             // how much the cubic changes the parabola: a bound on what the data do not resolve
             self.resolution.add(rot_wb * (smooth - jumping));
         }
-        self.intervals += 1;
+        let moved = h * (before.rates + now.rates) + h * h * (before.changes + now.changes);
+        self.rounding += f64::EPSILON * (TURN * moved + QUATERNION);
     }
 
-    /// What is open over the commutator, what the rates do not resolve, and rounding, which adds up
-    /// like a random walk.
-    pub(super) fn consistency(&self) -> f64 {
-        let rounding = ROUNDING * f64::from(self.intervals).sqrt();
-        relative(self.residual.largest, self.commutator.largest + self.resolution.largest + rounding)
+    /// Residual over the commutator and what the rates do not resolve. Rounding within its bound passes `gate`
+    /// whatever these two are, and nothing beyond it does where they vanish.
+    pub(super) fn consistency(&self, gate: f64) -> f64 {
+        let scale = self.commutator.largest() + self.resolution.largest() + self.rounding / gate;
+        super::relative(self.residual.largest(), scale)
+    }
+}
+
+impl Numbers for Attitude {
+    fn save(&self, to: &mut Vec<f64>) {
+        for drift in [&self.residual, &self.commutator, &self.resolution] {
+            to.extend([drift.sum.x, drift.sum.y, drift.sum.z, drift.largest]);
+        }
+        to.push(self.rounding);
+    }
+
+    fn restore(&mut self, from: &mut Restore<'_>) {
+        for drift in [&mut self.residual, &mut self.commutator, &mut self.resolution] {
+            (drift.sum, drift.largest) = (from.vector(), from.next());
+        }
+        self.rounding = from.next();
+    }
+}
+
+/// The rotation vector from one attitude to the other, to a few ε of its own length.
+///
+/// `q₀* q₁ = q₀* (q₁ − q₀) + |q₀|²`: the vector part comes from the difference, which is exact between
+/// neighbours, instead of from products that cancel. The lengths of the quaternions cancel in the angle.
+fn turn_between(q0: Quat<f64>, q1: Quat<f64>) -> Vec3<f64> {
+    let w = q0.v.dot(q1.v) + q0.w * q1.w;
+    let q1 = if w < 0.0 { Quat { v: -q1.v, w: -q1.w } } else { q1 };
+    let step = Quat { v: q1.v - q0.v, w: q1.w - q0.w };
+    let v = step.v * q0.w - q0.v * step.w - q0.v.cross(step.v);
+    log_so3(Quat { v, w: w.abs() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Quat, turn_between};
+    use crate::spatial::{Vec3, exp_so3};
+
+    #[test]
+    fn small_turns_keep_their_digits_whatever_the_attitude() {
+        // q₁ = q₀ + q₀ (θ/2, 0) − |θ|²/8 q₀, exact to rounding of q₁ itself: 1e-16 of the turn times 1/|θ|
+        for angle in [1e-2, 1e-5, 1e-8] {
+            let q0 = exp_so3(Vec3::new(0.7, -1.9, 0.4)).normalized();
+            let theta = Vec3::new(0.6, 0.0, -0.8) * angle;
+            for flip in [1.0, -1.0] {
+                let q1 = q0.product(exp_so3(theta));
+                let q1 = Quat { v: q1.v * flip, w: q1.w * flip };
+                let off = (turn_between(q0, q1) - theta).norm();
+                assert!(off < 1e-15, "{angle}: {off}");
+            }
+        }
+    }
+
+    /// Negative control: the same turn from the product of the two loses all that rounding of products leaves.
+    #[test]
+    fn neighbours_on_a_grid_of_exact_numbers_give_the_exact_turn() {
+        // attitudes with 26 bits each, so that every product is exact: the turn is known to its last digit
+        let exact = |x: f64| (x * 67_108_864.0).round() / 67_108_864.0;
+        let q0 = Quat { v: Vec3::new(exact(0.1), exact(-0.7), exact(0.3)), w: exact(0.64) };
+        let ulp = 1.0 / 67_108_864.0;
+        let q1 = Quat { v: q0.v + Vec3::new(ulp, 0.0, 0.0), w: q0.w };
+        let v = Vec3::new(q0.w, -q0.v.z, q0.v.y) * ulp; // (q₀* dq) for dq = (ulp, 0, 0), 0
+        let w = q0.v.dot(q1.v) + q0.w * q1.w;
+        let expected = v * (2.0 / w);
+        let off = (turn_between(q0, q1) - expected).norm() / expected.norm();
+        assert!(off < 1e-15, "{off:e}");
     }
 }

@@ -1,10 +1,15 @@
 //! The base rows of inverse dynamics, on velocities differenced from the trace, against the wrenches.
 
 use super::instant::Instant;
+use super::numbers::{Numbers, Restore};
 use super::{relative, worst};
-use crate::dynamics::{Data, base_rotation, center_of_mass_b, inverse_dynamics};
+use crate::dynamics::{BodyData, Data, base_rotation, center_of_mass_b, inverse_dynamics};
 use crate::model::{Model, difference, integrate};
-use crate::spatial::{Force, Vec3};
+use crate::spatial::{Force, Motion, Vec3};
+
+/// What rounding leaves of a momentum at most, in units of ε: of each row, in the sums over the bodies, the rotation
+/// to W and the twist that goes with it.
+const ROUNDING: f64 = 40.0;
 
 /// Running residuals; each pair is linear, angular.
 pub(super) struct BaseRows {
@@ -14,8 +19,8 @@ pub(super) struct BaseRows {
     forces: Vec<f64>,
     residual: [f64; 2],
     scale: [f64; 2],
-    /// `Σ |m v|` by the step, N.
-    momentum: f64,
+    /// Bound of what rounding leaves of the residuals, N and N m.
+    rounding: [f64; 2],
     truncation: f64,
 }
 
@@ -29,7 +34,7 @@ impl BaseRows {
             forces: zeros,
             residual: [0.0; 2],
             scale: [0.0; 2],
-            momentum: 0.0,
+            rounding: [0.0; 2],
             truncation: 0.0,
         }
     }
@@ -56,30 +61,23 @@ impl BaseRows {
             (rot_wb * found.linear - mean(j.linear, j0.linear)).norm(),
             (rot_wb * about_com - mean(j.angular, j0.angular)).norm(),
         ];
-        let scale = self.inertial(h);
+        let scale = self.inertial();
+        let rounding = self.rounding(model, h, [before, now]);
         for i in 0..2 {
             self.residual[i] = worst(self.residual[i], open[i]);
             self.scale[i] = self.scale[i].max(scale[i]);
+            self.rounding[i] = self.rounding[i].max(rounding[i]);
         }
-        let momenta = self.data.bodies.iter().map(|body| body.inertia.momentum(body.velocity).linear.norm());
-        self.momentum = self.momentum.max(momenta.sum::<f64>() / h);
         self.truncation = self.truncation.max(truncation(h, before.v, before.a));
     }
 
-    /// `Σ |I a| + |v ×* I v|` over the bodies, and the force that would change their momenta by
-    /// 1e-9 in a step: below that a difference of velocities is rounding.
-    fn inertial(&self, h: f64) -> [f64; 2] {
+    /// `Σ |I a| + |v ×* I v|` over the bodies.
+    fn inertial(&self) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for body in &self.data.bodies {
-            let (r, velocity) = (body.pos_b, body.velocity.referred_to(-body.pos_b));
-            let momentum = body.inertia.momentum(body.velocity).from_point(r);
-            let terms = [
-                body.inertia.momentum(body.acceleration).from_point(r),
-                velocity.cross_force(momentum),
-                momentum * (1e-9 / h),
-            ];
-            // v × m v is nothing but rounding: moments below a billionth of |v| |m v| are
-            sum[1] += 1e-9 * velocity.linear.norm() * momentum.linear.norm();
+            let (velocity, momentum) = about_base(body);
+            let change = body.inertia.momentum(body.acceleration).from_point(body.pos_b);
+            let terms = [change, velocity.cross_force(momentum)];
             for term in terms {
                 sum[0] += term.linear.norm();
                 sum[1] += term.angular.norm();
@@ -88,12 +86,32 @@ impl BaseRows {
         sum
     }
 
-    /// `size`, m, is the robot's: moments below a billionth of its forces at that arm, or of those that would stop its
-    /// bodies in a step, are rounding.
+    /// Bound of what rounding leaves of the two residuals: momenta and impulses, each rounded at its own size and
+    /// differenced over `h`, and moments `v × m v`, which are nothing but rounding.
+    fn rounding(&self, model: &Model, h: f64, rows: [&Instant<'_>; 2]) -> [f64; 2] {
+        let (mut linear, mut angular, mut passing) = (0.0, 0.0, 0.0);
+        for body in &self.data.bodies {
+            let (velocity, momentum) = about_base(body);
+            linear += momentum.linear.norm();
+            angular += momentum.angular.norm();
+            passing += velocity.linear.norm() * momentum.linear.norm();
+        }
+        for row in rows {
+            linear += row.impulse.linear.norm();
+            angular += row.impulse.angular.norm() + row.size * row.impulse.linear.norm();
+        }
+        angular += rows[1].size * linear;
+        let unit = (ROUNDING + 10.0 * model.nodes().len() as f64) * f64::EPSILON;
+        [unit * linear / h, unit * (angular / h + passing)]
+    }
+
+    /// Residual over the inertial forces; rounding within its bound passes [`BaseRows::gate`] whatever these are.
+    /// `size`, m, is the robot's: moments below a billionth of its forces at that arm are rounding.
     pub(super) fn residual(&self, size: f64) -> f64 {
         let [linear, angular] = self.scale;
-        let angular = angular.max(1e-9 * size * linear.max(self.momentum));
-        worst(relative(self.residual[0], linear), relative(self.residual[1], angular))
+        let angular = angular.max(1e-9 * size * linear);
+        let [a, b] = self.rounding.map(|rounding| rounding / self.gate());
+        worst(relative(self.residual[0], linear + a), relative(self.residual[1], angular + b))
     }
 
     /// Truncation of the differences at the fastest rates of the run; never so wide that a wrench
@@ -101,6 +119,25 @@ impl BaseRows {
     pub(super) fn gate(&self) -> f64 {
         (1e-6 + self.truncation).min(0.1)
     }
+}
+
+impl Numbers for BaseRows {
+    fn save(&self, to: &mut Vec<f64>) {
+        to.extend(self.residual.iter().chain(&self.scale).chain(&self.rounding).chain([&self.truncation]));
+    }
+
+    fn restore(&mut self, from: &mut Restore<'_>) {
+        for pair in [&mut self.residual, &mut self.scale, &mut self.rounding] {
+            *pair = [from.next(), from.next()];
+        }
+        self.truncation = from.next();
+    }
+}
+
+/// Twist and momentum of a body, both about the base's origin.
+fn about_base(body: &BodyData<f64>) -> (Motion<f64>, Force<f64>) {
+    let momentum = body.inertia.momentum(body.velocity).from_point(body.pos_b);
+    (body.velocity.referred_to(-body.pos_b), momentum)
 }
 
 /// `h² (w² + ẇ)` with `w` the fastest that the last body can turn: the sum of all rates.

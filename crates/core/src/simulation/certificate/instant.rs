@@ -7,9 +7,61 @@ use crate::model::Model;
 use crate::simulation::trace::Trace;
 use crate::spatial::{Quat, Vec3};
 
+/// How the base turns at one end of an interval. Rates in base axes, rad/s and rad/s².
+#[derive(Clone, Copy)]
+pub(in crate::simulation) struct BaseMotion {
+    pub(in crate::simulation) time: f64,
+    pub(in crate::simulation) attitude: Quat<f64>,
+    pub(in crate::simulation) rate: Vec3<f64>,
+    /// Angular acceleration just before this instant.
+    pub(in crate::simulation) change_before: Vec3<f64>,
+    /// Angular acceleration just after it.
+    pub(in crate::simulation) change_after: Vec3<f64>,
+    /// Sum of all rates, of base and joints: the scale of their rounding.
+    pub(in crate::simulation) rates: f64,
+    /// Sum of all their changes.
+    pub(in crate::simulation) changes: f64,
+}
+
+impl BaseMotion {
+    /// From a row's configuration, velocity, acceleration just after it and angular acceleration just before.
+    #[inline]
+    pub(in crate::simulation) fn new(
+        time: f64,
+        q: &[f64],
+        v: &[f64],
+        a: &[f64],
+        change_before: Vec3<f64>,
+    ) -> Self {
+        let (rate, change_after) = (Vec3::from_slice(&v[3..]), Vec3::from_slice(&a[3..]));
+        let sum = |x: &[f64]| x[3..].iter().map(|x| x.abs()).sum::<f64>();
+        let rates = sum(v);
+        let changes = sum(a) + rates * rates;
+        Self { time, attitude: Quat::from_xyzw(&q[3..]), rate, change_before, change_after, rates, changes }
+    }
+}
+
+/// How the centre of mass moves at one end of an interval, W axes.
+#[derive(Clone, Copy)]
+pub(in crate::simulation) struct MassMotion {
+    pub(in crate::simulation) time: f64,
+    pub(in crate::simulation) mass: f64,
+    /// Centre of mass, m.
+    pub(in crate::simulation) center: Vec3<f64>,
+    /// Linear momentum, kg m/s.
+    pub(in crate::simulation) momentum: Vec3<f64>,
+    /// Integral of the external forces so far, N s.
+    pub(in crate::simulation) impulse: Vec3<f64>,
+    /// External force just before this instant where it is known, else the one after it, N.
+    pub(in crate::simulation) force_before: Vec3<f64>,
+    /// External force just after it, N.
+    pub(in crate::simulation) force_after: Vec3<f64>,
+}
+
 /// A row read back. W axes unless said.
 pub(super) struct Instant<'a> {
     pub(super) time: f64,
+    pub(super) base: BaseMotion,
     pub(super) q: &'a [f64],
     pub(super) v: &'a [f64],
     pub(super) a: &'a [f64],
@@ -18,9 +70,6 @@ pub(super) struct Instant<'a> {
     pub(super) kinetic_energy: f64,
     pub(super) work: f64,
     pub(super) center_of_mass: Vec3<f64>,
-    pub(super) attitude: Quat<f64>,
-    /// Angular acceleration of the base just before this row, base axes.
-    pub(super) turn_before: Vec3<f64>,
     /// External force just after this row, from the base rows of inverse dynamics.
     pub(super) force: Vec3<f64>,
     pub(super) mass: f64,
@@ -35,14 +84,17 @@ pub(super) struct Instant<'a> {
 }
 
 impl Instant<'_> {
-    /// Angular velocity of the base, base axes.
-    pub(super) fn rate(&self) -> Vec3<f64> {
-        Vec3::from_slice(&self.v[3..])
-    }
-
-    /// Its change just after this row.
-    pub(super) fn turn_after(&self) -> Vec3<f64> {
-        Vec3::from_slice(&self.a[3..])
+    /// How the centre of mass moves.
+    pub(super) fn whole(&self) -> MassMotion {
+        MassMotion {
+            time: self.time,
+            mass: self.mass,
+            center: self.center_of_mass,
+            momentum: self.momentum.linear,
+            impulse: self.impulse.linear,
+            force_before: self.force,
+            force_after: self.force,
+        }
     }
 }
 
@@ -83,6 +135,7 @@ impl<'a> Reader<'a> {
         inverse_dynamics(self.model, &mut self.data, q, v, a, &[], &mut self.forces);
         let mut now = Instant {
             time: trace.time[k],
+            base: BaseMotion::new(trace.time[k], q, v, a, turn_before),
             q,
             v,
             a,
@@ -91,8 +144,6 @@ impl<'a> Reader<'a> {
             kinetic_energy: trace.kinetic_energy[k],
             work: trace.work[k],
             center_of_mass: Vec3::from_slice(Trace::row(&trace.center_of_mass, k, 3)),
-            attitude: Quat::from_xyzw(&q[3..]),
-            turn_before,
             force: base_rotation(q) * Vec3::from_slice(&self.forces),
             mass: 0.0,
             relative_momentum: 0.0,

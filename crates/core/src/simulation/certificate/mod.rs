@@ -5,6 +5,9 @@ mod balance;
 mod base_rows;
 mod center_of_mass;
 mod instant;
+mod numbers;
+mod step_doubling;
+mod stream;
 
 use super::trace::Trace;
 use crate::model::Model;
@@ -13,6 +16,11 @@ use balance::Balance;
 use base_rows::BaseRows;
 use center_of_mass::CenterOfMass;
 use instant::{Instant, Reader};
+use step_doubling::Doubling;
+
+pub(super) use instant::{BaseMotion, MassMotion};
+pub(super) use numbers::Restore;
+pub(super) use stream::Stream;
 
 /// Largest momentum that may go missing: rounding, summed over millions of steps.
 const MOMENTUM: f64 = 1e-11;
@@ -22,6 +30,9 @@ const ENERGY: f64 = 1e-6;
 const CENTER: f64 = 1e-7;
 /// Largest error of the attitude, rad, that steps compared with halved ones may add up to.
 const STEP_DOUBLING: f64 = 1e-6;
+/// Largest error of a joint or of the position, each relative to its own motion, that steps compared with halved ones
+/// may add up to.
+const MOTION_STEP_DOUBLING: f64 = 1e-4;
 /// Largest share of the commutator that the attitude may miss; without group integration it is 1.
 const ATTITUDE: f64 = 0.1;
 
@@ -29,8 +40,8 @@ const ATTITUDE: f64 = 0.1;
 /// vanish.
 ///
 /// The two momenta are kept by construction by an integrator that carries them; the other numbers
-/// are not. Those that compare neighbouring rows are `None` unless every step is a row: with sparse rows,
-/// and with an adaptive integrator, whose rows are interpolated.
+/// are not. Those that compare neighbouring steps are evaluated during the run where not every step is a row, and
+/// `None` with an adaptive integrator, whose rows are interpolated, and with sparse rows of another engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
     /// `max |P − P₀ − ∫F dt|` over the peak of `Σ mₖ |vₖ − v_com|` (or of `|P|`, or of the spin
@@ -53,6 +64,24 @@ pub struct Certificate {
     pub attitude_consistency: Option<f64>,
     /// What the attitudes of steps and of halved steps differ by, summed over the run, rad.
     pub attitude_step_doubling_rad: Option<f64>,
+    /// What positions and rates of a joint in steps and in halved steps differ by, summed over the run, of the joint
+    /// that is worst: positions in rad (of sliding joints over the robot's size), rates over the joint's largest rate.
+    pub joint_step_doubling_rel: Option<f64>,
+    /// The same of the base's origin, over its path and the robot's size.
+    pub position_step_doubling_rel: Option<f64>,
+}
+
+/// The checks that compare neighbouring steps, of a run that evaluated them itself: see [`Certificate`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairChecks {
+    /// As [`Certificate::center_of_mass_error_rel`].
+    pub center_of_mass_error_rel: f64,
+    /// As [`Certificate::base_rows_residual_rel`].
+    pub base_rows_residual_rel: f64,
+    /// As [`Certificate::base_rows_gate`].
+    pub base_rows_gate: f64,
+    /// As [`Certificate::attitude_consistency`].
+    pub attitude_consistency: f64,
 }
 
 /// One line of a certificate.
@@ -84,6 +113,8 @@ impl Certificate {
             ("base_rows_residual_rel", self.base_rows_residual_rel, self.base_rows_gate),
             ("attitude_consistency", self.attitude_consistency, ATTITUDE),
             ("attitude_step_doubling_rad", self.attitude_step_doubling_rad, STEP_DOUBLING),
+            ("joint_step_doubling_rel", self.joint_step_doubling_rel, MOTION_STEP_DOUBLING),
+            ("position_step_doubling_rel", self.position_step_doubling_rel, MOTION_STEP_DOUBLING),
         ];
         lines
             .into_iter()
@@ -110,25 +141,40 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
         balance.add(&now);
         // an impact is two rows at one instant: nothing lies between them
         if let Some(before) = last.as_ref().filter(|before: &&Instant<'_>| before.time < now.time) {
-            center.add(before, &now);
+            center.add(&before.whole(), &now.whole());
             if trace.has_every_step {
                 base_rows.add(model, before, &now);
-                attitude.add(before, &now);
+                attitude.add(&before.base, &now.base);
             }
         }
         last = Some(now);
     }
-    let is_dense = trace.has_every_step;
     let is_free = trace.impulse.iter().all(|x| *x == 0.0); // then any spacing of rows will do
+    let doubling = Doubling { model, trace, size: balance.size(), gate: MOTION_STEP_DOUBLING };
+    let center_error = center.error(balance.size(), CENTER);
+    let pairs = if trace.has_every_step {
+        Some(PairChecks {
+            center_of_mass_error_rel: center_error,
+            base_rows_residual_rel: base_rows.residual(balance.size()),
+            base_rows_gate: base_rows.gate(),
+            attitude_consistency: attitude.consistency(ATTITUDE),
+        })
+    } else {
+        trace.pair_checks
+    };
     Certificate {
         linear_momentum_drift_rel: balance.linear(),
         angular_momentum_drift_rel: balance.angular(),
         energy_balance_error_rel: balance.energy(trace.work_done),
-        center_of_mass_error_rel: (is_dense || is_free).then(|| center.error(balance.size())),
-        base_rows_residual_rel: is_dense.then(|| base_rows.residual(balance.size())),
-        base_rows_gate: base_rows.gate(),
-        attitude_consistency: is_dense.then(|| attitude.consistency()),
+        center_of_mass_error_rel: pairs
+            .map(|pairs| pairs.center_of_mass_error_rel)
+            .or_else(|| is_free.then_some(center_error)),
+        base_rows_residual_rel: pairs.map(|pairs| pairs.base_rows_residual_rel),
+        base_rows_gate: pairs.map_or(0.0, |pairs| pairs.base_rows_gate),
+        attitude_consistency: pairs.map(|pairs| pairs.attitude_consistency),
         attitude_step_doubling_rad: trace.attitude_step_doubling,
+        joint_step_doubling_rel: doubling.joints(),
+        position_step_doubling_rel: doubling.origin(center.path()),
     }
 }
 

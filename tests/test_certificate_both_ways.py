@@ -1,0 +1,107 @@
+"""The certificate right both ways: exact runs pass, runs made wrong fail; what was not evaluated is said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import certificate_campaign
+import numpy as np
+import pytest
+from commands import onorbit
+from test_certificate import written
+
+import onorbit_rs as oo
+from onorbit_rs.output.checks import CHECKS, GATE, advice
+from onorbit_rs.rotations import quaternion_from_matrix
+from onorbit_rs.validation import nasa
+
+
+def fails(trace: oo.Trace) -> list[str]:
+    return [name for name, _, _, passed in trace.certificate() if not passed]
+
+
+@pytest.mark.parametrize("time_step", [1.0, 0.25])
+def test_nasas_8b_was_red_though_right(time_step: float) -> None:
+    """A sphere that spins evenly in orbit for 8 h: 0.14 and 0.43 of the commutator, all rounding."""
+    q = np.concatenate([np.zeros(3), quaternion_from_matrix(nasa.pitched(nasa.TYPICAL, -11.6).T)])
+    sphere = oo.Model.rigid_body(1.0, 0.4 * np.eye(3))
+    trace = oo.Simulation(
+        sphere, q, np.array([0, 0, 0, 0, -1.134454274550824e-3, 0]),
+        orbit=oo.Kepler.from_state(*nasa.TYPICAL, mu=nasa.MU), time_step=time_step,
+    ).run(nasa.HOURS_8)  # fmt: skip
+    assert fails(trace) == []
+
+
+@pytest.mark.parametrize("record_every", [1, 10])
+def test_an_earth_pointing_body_was_red_though_right(record_every: int) -> None:
+    """A quarter of an orbit, on its way to 0.35 of the commutator at 1 ms: all of it rounding."""
+    radius, mu = 6778e3, oo.MU_EARTH
+    rate = np.sqrt(mu / radius**3)
+    orbit = oo.Kepler.from_state([radius, 0, 0], [0, radius * rate, 0])
+    trace = oo.Simulation(
+        oo.Model.rigid_body(100.0, np.diag([8.0, 10.0, 12.0])), np.array([0, 0, 0, 0, 0, 0, 1.0]),
+        np.array([0, 0, 0, 0, 0, rate]), orbit=orbit, environment=[oo.GravityGradient()],
+        time_step=0.01, record_every=record_every,
+    ).run(0.5 * np.pi / rate)  # fmt: skip
+    assert fails(trace) == []
+
+
+@pytest.mark.parametrize(("off", "time_step", "duration"), [(0.0, 0.05, 14_400.0), (0.1, 0.01, 1000.0)])
+def test_held_joints_stay_green_for_hours(off: float, time_step: float, duration: float) -> None:
+    arm = oo.robots.load("station_arm")
+    hold = oo.Control(
+        oo.JointComputedTorque(kp=25.0, kd=10.0), reference=oo.JointHold(arm.neutral()[7:] + off)
+    )
+    start = (arm, arm.neutral(), np.zeros(arm.nv))
+    trace = oo.Simulation(*start, controller=[hold], time_step=time_step, record_every=10).run(duration)
+    assert fails(trace) == [] and len(trace.certificate()) == len(CHECKS)
+
+
+def test_joints_of_light_links_were_wrong_and_green() -> None:
+    """Two links of 1e-4 kg on a base of 100 kg at 0.1 s: joints 0.02 to 0.1 rad off, balances in order."""
+    builder = oo.ModelBuilder("light", base="base", mass=100.0, inertia=np.diag([10.0, 10.0, 10.0]))
+    for name, parent, axis, x in (("a", "base", [0, 1, 0], 0.5), ("b", "a", [0, 0, 1], 0.2)):
+        builder.add_link(
+            name, parent=parent, joint=f"to_{name}", kind="continuous", axis=axis, xyz=[x, 0, 0],
+            mass=1e-4, com=[0.1, 0, 0], inertia=np.diag([3e-7, 3e-7, 3e-7]),
+        )  # fmt: skip
+    model = builder.build()
+    v = np.array([0, 0, 0, 0.02, 0.03, 0.5, 5.0, 4.0])
+    for record_every in (1, 10):
+        settings = {"time_step": 0.1, "record_every": record_every}
+        trace = oo.Simulation(model, model.neutral(), v, **settings).run(10.0)
+        fine = oo.Simulation(model, model.neutral(), v, time_step=0.001).run(10.0)
+        assert np.abs(trace.q[-1, 7:] - fine.q[-1, 7:]).max() > 0.01
+        assert "joint_step_doubling_rel" in fails(trace) and fails(fine) == []
+
+
+def test_sparse_rows_have_every_check(tmp_path: Path) -> None:
+    done = onorbit("run", written(tmp_path, "free_tumble", {"duration": 2.0, "record_every": 10}))
+    assert done.returncode == 0
+    assert "certificate passed" in done.stdout and "not evaluated" not in done.stdout
+
+
+def test_what_is_not_evaluated_does_not_look_passed(tmp_path: Path) -> None:
+    change = {"duration": 2.0, "integrator": "dormand_prince"}
+    done = onorbit("run", written(tmp_path, "free_tumble", change))
+    assert done.returncode == 0
+    assert "certificate incomplete" in done.stdout and "certificate passed" not in done.stdout
+    assert "attitude_consistency" in done.stdout.split("not evaluated: ")[1]
+
+
+def test_a_shorter_step_is_advised_only_where_steps_and_halved_steps_differ() -> None:
+    same = {"integrator": "rk4", "time_step_s": 0.1, "certificate_failures": "energy_balance_error_rel"}
+    same |= {"attitude_step_doubling_rad": 1e-12, f"{GATE}attitude_step_doubling_rad": 1e-6}
+    assert "will not help" in advice(same)
+    assert advice(same | {"attitude_step_doubling_rad": 1e-3}) == "try a time_step shorter than 0.1 s"
+    del same["attitude_step_doubling_rad"]  # another engine: nothing was compared
+    assert advice(same) == "try a time_step shorter than 0.1 s"
+
+
+def test_a_sample_of_the_campaign_is_judged_right() -> None:
+    """10 000 exact runs and 1000 made wrong: ``make certificate-campaign``."""
+    exact = certificate_campaign.exact(60, seed=14, most_rows=3000)
+    wrong = certificate_campaign.wrong(12, seed=14)
+    print(exact, wrong, sep="\n")
+    assert exact.mistaken == wrong.mistaken == []
+    assert exact.runs.total() == 60 and wrong.runs.total() == 12
