@@ -1,6 +1,7 @@
-"""Newton-Euler equations of a tree in 40 digits, in inertial axes and about each centre of mass: no code or formula shared.
+"""Newton-Euler equations of a tree in 40 digits, in inertial axes and about each centre of mass.
 
-Forces and torques follow from the definition, body by body: `f = m c̈` and `n = I α + ω × I ω`. Slow, and exact for a test.
+No code or formula of the package is shared: forces and torques follow from the definition, body by body,
+`f = m c̈` and `n = I α + ω × I ω`.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ def from_rpy(rpy: tuple[float, float, float]) -> mp.matrix:
 
 
 class ExactTree:
-    """Inverse and forward dynamics of a tree of moving joints, base first; numbers are those of the model to the last bit."""
+    """Inverse and forward dynamics of a tree of moving joints, base first; its numbers are taken as exact."""
 
     def __init__(self, tree: Tree) -> None:
         self.parts = tree.parts
@@ -48,7 +49,7 @@ class ExactTree:
         self.nv = 5 + len(tree.parts)
 
     def inverse_dynamics(self, q: Array, v: Any, a: Any) -> mp.matrix:
-        """Generalized forces, base rows in base axes about its origin. `v` and `a` as in `Model.inverse_dynamics`."""
+        """Generalized forces; inputs and base rows are those of `Model.inverse_dynamics`."""
         with mp.workdps(DIGITS):
             return self._inverse_dynamics(q, mp.matrix(list(v)), mp.matrix(list(a)))
 
@@ -112,10 +113,10 @@ class ExactTree:
     def _add_sizes(
         self, k: int, com: mp.matrix, pos: Any, moments: list[mp.matrix], force: mp.matrix
     ) -> None:
-        """Adds what body `k` contributes to `size`, without regard to direction: `|f|`, or `|n| + |lever| |f|`.
+        """Adds the part of body `k` in `size`, without regard to direction: `|f|` or `|n| + |lever| |f|`.
 
-        Rounding the data of the body (an inertia, the direction of an axis) changes a row by about one unit in the last
-        place of this.
+        Rounding the data of the body (an inertia, the direction of an axis) changes a row by about one
+        unit in the last place of this.
         """
         f, n = float(mp.norm(force)), sum(float(mp.norm(moment)) for moment in moments)
         j = k
