@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart certificate-campaign clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -26,6 +26,10 @@ $(VENV)/.built: $(RUST) pyproject.toml README.md | $(BIN)/maturin
 $(VENV)/.tested: pyproject.toml | $(VENV)/.built
 	$(MATURIN) --extras test,lint
 	@touch $@
+
+.PHONY: notices
+notices: ## THIRD_PARTY_NOTICES.txt, from the licences of the crates that the module links
+	$(PYTHON) crates/py/notices.py
 
 demo: $(VENV)/.built ## the paper's experiment: builds, runs, leaves out/humanoid_reach
 	$(BIN)/onorbit run humanoid_reach --out out/humanoid_reach --force
@@ -62,6 +66,11 @@ bench: $(VENV)/.built $(VENV)/.benched ## against Pinocchio and MuJoCo, built fr
 
 bench-quick: $(VENV)/.built $(VENV)/.benched ## the same in a minute or two, not kept
 	$(BIN)/python benches/versus --rounds 3 --seconds 0.05 --no-save
+
+# REV= another revision; ROUNDS= how many; ROWS= only rows whose name contains it; or BUILT='other-tree this-tree'
+bench-against: $(VENV)/.built $(VENV)/.tested ## this tree's speed against REV=revision, alternated; fails if a row is slower
+	$(BIN)/python benches/versus/against.py $(if $(BUILT),--built $(BUILT),$(if $(REV),$(REV),HEAD)) \
+		$(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(ROWS),--rows '$(ROWS)')
 
 bench-rust: $(VENV)/.built $(VENV)/.tested ## criterion for the kernels, pytest-benchmark for the border
 	cargo bench -p onorbit-core

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import SPIN, onorbit, refusal
+from results import listed
 
 import onorbit_rs as oo
 from onorbit_rs.cli.summary import print_summary
@@ -131,6 +132,7 @@ def test_checkpoints_without_a_folder_are_refused_with_the_way_out() -> None:
 
 def test_a_moment_is_looked_at_before_anything_is_printed(tmp_path: Path) -> None:
     (tmp_path / "summary.json").write_text('{"simulated_s": 1.0}')
+    listed(tmp_path)
     for moment in ("7", "nan", "-1"):
         assert "outside the run" in refusal("show", ".", "--picture", "p.png", "--at", moment, cwd=tmp_path)
     assert "add --picture FILE" in refusal("show", ".", "--at", "0.5", cwd=tmp_path)
@@ -162,7 +164,9 @@ def test_options_of_a_robot_that_would_do_nothing_are_refused(command: str, tmp_
     said = refusal(command, "plain.urdf", "--package-path", "nowhere", cwd=tmp_path)
     assert said == "onorbit: --package-path nowhere: there is no such folder"
     said = refusal(command, "plain.urdf", "--arg", "a=1", cwd=tmp_path)
-    assert said == "onorbit: --arg is for a xacro, and plain.urdf holds none: leave it out"
+    assert (
+        said == "onorbit: --arg is for a xacro, and plain.urdf is not named so: leave it out, or add --xacro"
+    )
     for option in (("--arg", "a=1"), ("--package-path", ".")):
         assert "for a robot's file" in refusal(command, "ets_vii", *option, cwd=tmp_path)
     assert "name=value" in refusal(command, "plain.urdf", "--arg", "a", cwd=tmp_path)

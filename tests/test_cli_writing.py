@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 from commands import refusal
 
-from onorbit_rs.cli.writing import claim, writing
+from onorbit_rs.cli.writing import claim
 from onorbit_rs.exceptions import NotFoundError, OutputFolderError, OutputNotEmptyError
+from onorbit_rs.files import replacing
 
 
 def test_what_cannot_be_written_is_refused_before_the_work(tmp_path: Path) -> None:
@@ -48,9 +49,27 @@ def test_a_place_where_nobody_may_look_is_named(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_errors_of_the_system_are_ours_and_ours_stay(tmp_path: Path) -> None:
-    with pytest.raises(OutputFolderError, match=r"cannot write .*: Is a directory"), writing(tmp_path):
-        tmp_path.write_text("")
-    with pytest.raises(OutputFolderError, match="cannot write picture: why"), writing(Path("picture")):
+    with pytest.raises(OutputFolderError, match=r"cannot write .*: it is a link or"), replacing(tmp_path):
+        pass
+    picture = tmp_path / "picture"
+    with pytest.raises(OutputFolderError, match=r"cannot write .*picture: why"), replacing(picture):
         raise OSError("why")
-    with pytest.raises(NotFoundError, match="no recording"), writing(tmp_path):
+    with pytest.raises(NotFoundError, match="no recording"), replacing(picture):
         raise NotFoundError("no recording")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_link_in_the_way_is_neither_followed_nor_replaced(tmp_path: Path) -> None:
+    """``--force`` wrote through a link that somebody had put where the file would be."""
+    precious = tmp_path / "precious.yaml"
+    precious.write_text("precious")
+    link = tmp_path / "mine.yaml"
+    link.symlink_to(precious)
+    with pytest.raises(OutputFolderError, match=r"mine\.yaml: it is a link"):
+        claim(link, force=True)
+    with pytest.raises(OutputFolderError, match=r"mine\.yaml: it is a link"), replacing(link) as file:
+        file.write_text("new")
+    assert precious.read_text() == "precious" and link.is_symlink()
+    robot = ("new", "humanoid_torso", "-q", "--out", link, "--force")
+    assert "mine.yaml: it is a link" in refusal(*robot)
+    assert precious.read_text() == "precious"

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import onorbit
+from results import listed
 
 import onorbit_rs as oo
 from onorbit_rs.comparison.measures import _length
@@ -260,6 +261,7 @@ def test_a_diverged_run_parts_and_is_plain_data(tmp_path: Path) -> None:
     broken = dict(np.load(tmp_path / "out" / "trace.npz"))
     broken["q"] = np.where(np.arange(101)[:, None] < 50, broken["q"], np.nan)
     np.savez(tmp_path / "out" / "trace.npz", **broken)
+    listed(tmp_path / "out")
     compared = oo.compare(run, tmp_path / "out")
     assert compared["base position"].parts_at == pytest.approx(5.0)
     text = json.dumps(compared.as_dict(), allow_nan=False)
@@ -288,6 +290,7 @@ def test_runs_that_overflowed_do_not_agree(
             broken[column][50:, :3] = value
         broken["kinetic_energy"][50:] = value
         np.savez(tmp_path / name / "trace.npz", **broken)
+        listed(tmp_path / name)
     compared = oo.compare(tmp_path / "a", tmp_path / "b")
     assert np.isfinite([one.allowed for one in compared.differences]).all()
     for measure in ("base position", "linear momentum", "kinetic energy"):
@@ -327,6 +330,7 @@ def test_folders_without_a_run_are_refused(tmp_path: Path) -> None:
     oo.run(spin(0.1), tmp_path / "out")
     for spoilt in (b"", b"no zip"):
         (tmp_path / "out" / "trace.npz").write_bytes(spoilt)
+        listed(tmp_path / "out")
         with pytest.raises(ReadError, match="cannot read"):
             oo.compare(tmp_path / "out", tmp_path / "out")
 

@@ -15,6 +15,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import CheckpointError, NotFoundError, RunInterrupted
+from onorbit_rs.output.sealed import sealed, unsealed
 from onorbit_rs.scenario import load
 
 
@@ -130,7 +131,7 @@ def killed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def state_of(out: Path) -> dict[str, Any]:
-    return dict(json.loads((out / "checkpoint" / "state.json").read_text()))
+    return unsealed((out / "checkpoint" / "state.json").read_bytes())
 
 
 @pytest.mark.parametrize(
@@ -142,7 +143,10 @@ def state_of(out: Path) -> dict[str, Any]:
         (lambda out, record: record["engine"].update(instruction_set="sse9"), "ONORBIT_INSTRUCTION_SET=sse9"),
         (lambda out, record: record.pop("rows"), "broken"),
         (lambda out, record: record["engine"]["state"].pop("q"), "broken"),
-        (lambda out, record: record["widths"].update(q=13), "another scenario"),
+        (lambda out, record: record["widths"].update(q=13), "checksum"),
+        (lambda out, record: record["digests"].clear(), "broken"),
+        (lambda out, record: record.update(rows=10**17), "broken.*are needed"),
+        (lambda out, record: record.update(widths={"../../out/checkpoint/v": 3}), "No such file"),
         (lambda out, record: (out / "checkpoint" / "v.f64").write_bytes(b"short"), "v.f64"),
         (lambda out, record: (out / "checkpoint" / "v.f64").unlink(), "broken"),
     ],
@@ -152,7 +156,7 @@ def test_what_cannot_be_continued_is_refused(killed: Path, tmp_path: Path, chang
     subprocess.run(["cp", "-r", str(killed), str(out)], check=True)
     record = state_of(out)
     change(out, record)
-    (out / "checkpoint" / "state.json").write_text(json.dumps(record))
+    (out / "checkpoint" / "state.json").write_bytes(sealed(record))
     with pytest.raises(CheckpointError, match=words) as caught:
         oo.resume(out, quiet=True)
     assert isinstance(caught.value, ValueError)

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from results import listed
 
 from onorbit_rs.exceptions import (
     OnOrbitError,
@@ -19,8 +20,9 @@ from onorbit_rs.output.folder import OutputFolder
 
 
 def test_a_missing_folder_is_made(tmp_path: Path) -> None:
-    folder = OutputFolder.claim(tmp_path / "a" / "b")
-    assert folder.path.is_dir() and not list(folder.path.iterdir())
+    with OutputFolder.claim(tmp_path / "a" / "b") as folder:
+        assert folder.path.is_dir()
+    assert not list(folder.path.iterdir())
 
 
 def test_a_folder_with_files_asks_for_force(tmp_path: Path) -> None:
@@ -33,11 +35,14 @@ def test_a_folder_with_files_asks_for_force(tmp_path: Path) -> None:
 
 def test_force_replaces_a_run_and_nothing_else(tmp_path: Path) -> None:
     (tmp_path / "figures").mkdir()
-    for name in ("summary.json", "run.rrd", "figures/old.png", "mine.txt", "figures/mine.txt"):
+    for name in ("summary.json", "run.rrd", "figures/old.png"):
         (tmp_path / name).write_text("old")
-    OutputFolder.claim(tmp_path, force=True)
+    listed(tmp_path)
+    for name in ("mine.txt", "figures/mine.txt", "figures/mine.png"):
+        (tmp_path / name).write_text("precious")
+    OutputFolder.claim(tmp_path, force=True).close()
     left = {str(file.relative_to(tmp_path)) for file in tmp_path.rglob("*") if file.is_file()}
-    assert left == {"mine.txt", "figures/mine.txt"}
+    assert left == {"mine.txt", "figures/mine.txt", "figures/mine.png"}
 
 
 def test_a_file_in_place_of_the_folder(tmp_path: Path) -> None:
@@ -66,12 +71,13 @@ def test_a_read_only_file_system_is_refused() -> None:
 
 
 def test_a_failed_write_leaves_the_old_file_and_no_partial_one(tmp_path: Path) -> None:
-    folder = OutputFolder.claim(tmp_path)
-    (tmp_path / "summary.json").write_text("old")
-    with pytest.raises(OutputFolderError, match="No space left"), folder.writing("summary.json") as path:
-        path.write_text("half")
-        raise OSError(28, "No space left on device")
-    assert [file.name for file in tmp_path.iterdir()] == ["summary.json"]
+    with OutputFolder.claim(tmp_path) as folder:
+        with folder.writing("summary.json") as path:
+            path.write_text("old")
+        with pytest.raises(OutputFolderError, match="No space left"), folder.writing("summary.json") as path:
+            path.write_text("half")
+            raise OSError(28, "No space left on device")
+    assert {file.name for file in tmp_path.iterdir()} == {"summary.json", "manifest.json"}
     assert (tmp_path / "summary.json").read_text() == "old"
 
 
@@ -87,8 +93,9 @@ def test_a_full_disk_ends_the_run_with_one_line(tmp_path: Path) -> None:
 def test_a_name_too_long_and_figures_that_are_a_file_are_refused(tmp_path: Path) -> None:
     with pytest.raises(OutputNotWritableError, match="too long"):
         OutputFolder.claim(tmp_path / ("x" * 300))
-    (tmp_path / "figures").write_text("precious")
     (tmp_path / "summary.json").write_text("{}")
-    with pytest.raises(OutputNotWritableError, match="figures"):
+    listed(tmp_path)
+    (tmp_path / "figures").write_text("precious")
+    with pytest.raises(OutputNotEmptyError, match="figures: it is there"):
         OutputFolder.claim(tmp_path, force=True)
     assert (tmp_path / "summary.json").exists()

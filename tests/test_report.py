@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from results import listed
 
 import onorbit_rs as oo
 from onorbit_rs.cli.summary import print_summary
@@ -183,7 +184,6 @@ def test_a_check_that_is_not_evaluated_is_called_so(folder: Path, capsys: pytest
     print_summary(summary, None)
     out, page = capsys.readouterr().out, page_of(summary)
     assert page.text.count("not evaluated") == out.count("not evaluated") == 2  # the verdict and the check
-    assert "certificate incomplete" in out
     assert verdict_of(page)[1] == "Certificate incomplete, not evaluated: center of mass error"
 
 
@@ -230,7 +230,7 @@ def test_a_robot_that_is_gone_costs_only_its_figures(folder: Path, tmp_path: Pat
     text = scenario.read_text()
     assert "{bundled: humanoid_torso}" in text
     scenario.write_text(text.replace("{bundled: humanoid_torso}", f"{{urdf: {tmp_path}/gone.urdf}}"))
-    page = Page(write_report(tmp_path / "out").read_text())
+    page = Page(write_report(listed(tmp_path / "out")).read_text())
     assert "the robot could not be read" in page.text
     shown = {name.removeprefix("figure-") for name in page.having("id") if name.startswith("figure-")}
     assert "obtained_trajectory" in shown and "desired_trajectory" not in shown
@@ -274,16 +274,20 @@ def test_what_is_no_run_is_refused(tmp_path: Path, folder: Path) -> None:
     with pytest.raises(NotFoundError, match="no run in this folder"):
         write_report(tmp_path)
     (tmp_path / "summary.json").write_text("{}")
+    listed(tmp_path)
     with pytest.raises(NotFoundError, match=r"no scenario in this folder.*scenario\.yaml"):
         write_report(tmp_path)
     (tmp_path / "scenario.yaml").write_bytes((folder / "scenario.yaml").read_bytes())
+    listed(tmp_path)
     with pytest.raises(NotFoundError, match="no trace in this folder"):
         write_report(tmp_path)
     for content in (b"", b"PK\x03\x04 broken", b"no zip"):
         (tmp_path / "trace.npz").write_bytes(content)
+        listed(tmp_path)
         with pytest.raises(ReadError, match=r"cannot read .*trace\.npz"):
             write_report(tmp_path)
     np.savez(tmp_path / "trace.npz", time=np.zeros(3))
+    listed(tmp_path)
     with pytest.raises(ReadError, match="columns are missing"):
         write_report(tmp_path)
 
@@ -293,6 +297,7 @@ def test_a_page_that_cannot_be_written_is_said(folder: Path, tmp_path: Path) -> 
         shutil.copy(folder / name, tmp_path)
     with np.load(folder / "trace.npz") as stored:  # one row: nothing to draw
         np.savez(tmp_path / "trace.npz", **{name: stored[name][:1] for name in stored.files})
+    listed(tmp_path)
     (tmp_path / "report.html").mkdir()
     with pytest.raises(OutputFolderError, match=r"cannot write .*report\.html"):
         write_report(tmp_path)
@@ -319,16 +324,6 @@ def test_a_run_that_was_killed_is_to_be_resumed(folder: Path, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    "spoilt",
-    ["[]", "null", "3", '{"certificate_passed": "yes"}', '{"simulated_s": "long"}', '{"status": 1}', "{"],
-)
-def test_a_summary_that_is_none_is_refused_with_the_way_out(tmp_path: Path, spoilt: str) -> None:
-    (tmp_path / "summary.json").write_text(spoilt)
-    with pytest.raises(ReadError, match=r"cannot read .*: .*; run it again: onorbit run .* --force"):
-        read_summary(tmp_path)
-
-
-@pytest.mark.parametrize(
     ("name", "cut"),
     [
         ("q", lambda q: q[:10]),
@@ -347,6 +342,7 @@ def test_a_column_that_was_cut_is_named_with_its_shape(
     shutil.copytree(folder, tmp_path / "cut")
     columns = dict(np.load(folder / "trace.npz"))
     np.savez(tmp_path / "cut" / "trace.npz", **(columns | {name: cut(columns[name])}))
+    listed(tmp_path / "cut")
     said = r"column '\w+' has shape \(.*\), expected \("
     with pytest.raises(ReadError, match=said):
         write_report(tmp_path / "cut")

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from results import listed
 from typer.testing import CliRunner
 
 import onorbit_rs as oo
@@ -133,6 +134,7 @@ def test_runs_of_earlier_versions_are_read_as_they_were(urdf: Path, tmp_path: Pa
     summary = json.loads((out / "summary.json").read_text())
     del summary["robot_fingerprint"]
     (out / "summary.json").write_text(json.dumps(summary))
+    listed(out)
     urdf.write_text(heavier(ARM))
     assert "note:" not in CliRunner().invoke(app, ["show", str(out), "--no-viewer"]).output
     assert CHANGED not in write_report(out).read_text()

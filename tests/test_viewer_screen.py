@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from results import listed
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import ViewerError
@@ -33,7 +34,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("show")
     (out / "summary.json").write_text(json.dumps(oo.run(short(), quiet=True).summary))
     (out / "run.rrd").touch()
-    return out
+    return listed(out)
 
 
 def short() -> dict[str, Any]:

@@ -128,6 +128,7 @@ class Model:
         *,
         package_paths: Sequence[_Path] | None = None,
         xacro_arguments: Mapping[str, object] | None = None,
+        xacro: bool = False,
     ) -> Model: ...
     @staticmethod
     def from_urdf_string(
@@ -292,6 +293,8 @@ class Joint:
     @property
     def friction(self) -> float: ...
     @property
+    def static_friction(self) -> float: ...
+    @property
     def rotor_inertia(self) -> float: ...
 
 @final
@@ -388,6 +391,7 @@ class ModelBuilder:
         upper: float | None = None,
         velocity: float | None = None,
         effort: float | None = None,
+        static_friction: float | None = None,
     ) -> None: ...
     def add_frame(
         self, name: str, link: str, *, xyz: ArrayLike | None = None, rpy: ArrayLike | None = None
@@ -1014,6 +1018,8 @@ class Trace:
     def v(self) -> _Array: ...
     @property
     def tau(self) -> _Array: ...
+    @property
+    def friction_compensation(self) -> _Column: ...
     @property
     def acceleration(self) -> _Array: ...
     @property

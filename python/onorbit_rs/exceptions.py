@@ -26,7 +26,9 @@ class                       built-in               fields
 ``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or factorisation
 ``NotFoundError``           ``FileNotFoundError``  ``path, kind, suggestion``: no such file, robot or scenario
 ``ReadError``               ``OSError``            ``path, kind``: a file is there but cannot be read
-``OutputFolderError``       ``OSError``            ``path``: base of the two below
+``IntegrityError``          ``ReadError``          ``path, kind, expected, got``: changed since a run wrote it
+``OutputFolderError``       ``OSError``            ``path``: base of the three below
+``OutputInUseError``        ``BlockingIOError``    ``path, pid, command, since``: another process writes it
 ``OutputNotEmptyError``     ``FileExistsError``    ``path``: the folder holds files; ask with ``force``
 ``OutputNotWritableError``  ``PermissionError``    ``path``: the folder cannot be written
 ``ScenarioError``           ``ValueError``         ``file, path, line``: a YAML broken, misspelt or senseless
@@ -54,11 +56,13 @@ __all__ = [
     "FrameError",
     "GravityError",
     "InputError",
+    "IntegrityError",
     "ModelError",
     "NotFoundError",
     "OnOrbitError",
     "OrbitError",
     "OutputFolderError",
+    "OutputInUseError",
     "OutputNotEmptyError",
     "OutputNotWritableError",
     "PathError",
@@ -265,10 +269,25 @@ class ReadError(OnOrbitError, OSError):
     kind: Any = None
 
 
+class IntegrityError(ReadError):
+    """A file of a run differs from what the run wrote, by size or SHA-256 (``expected`` and ``got``)."""
+
+    expected: Any = None
+    got: Any = None
+
+
 class OutputFolderError(OnOrbitError, OSError):
     """The output folder cannot be used."""
 
     path: Any = None
+
+
+class OutputInUseError(OutputFolderError, BlockingIOError):
+    """Another process writes the output folder: its ``pid``, its ``command``, and ``since`` when."""
+
+    pid: Any = None
+    command: Any = None
+    since: Any = None
 
 
 class OutputNotEmptyError(OutputFolderError, FileExistsError):

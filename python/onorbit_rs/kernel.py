@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import EarthError, NotFoundError, ReadError
+from onorbit_rs.exceptions import EarthError, ReadError
+from onorbit_rs.reading import check_regular
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BODIES = {"sun": 10, "moon": 301, "earth": 399}
+_NUMBERS = (2, 6)
+"""Reals and integers that say what a segment of positions holds."""
+
 SOLAR_SYSTEM = 0
 """Number of the solar system's barycentre, where the chains of segments end."""
 
@@ -37,11 +42,11 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
             "a SPICE kernel is read by jplephem, which is not installed: pip install 'onorbit-rs[spice]'"
         )
         raise EarthError(message, name="ephemeris", got=str(path)) from None
+    check_regular(path, "SPICE kernel")
     try:
+        _check_records(path)
         kernel = SPK.open(path)
-    except FileNotFoundError:
-        raise NotFoundError(f"no SPICE kernel is at {path}", path=str(path), kind="SPICE kernel") from None
-    except (OSError, ValueError) as error:
+    except Exception as error:  # whatever jplephem comes upon in a file that was damaged
         raise ReadError(f"{path} is no SPICE kernel: {error}", path=str(path), kind="SPICE kernel") from None
     try:
         sun, moon, earth = (_chain(kernel, name, path) for name in ("sun", "moon", "earth"))
@@ -50,11 +55,27 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
         kernel.close()
 
 
+def _check_records(path: str | Path) -> None:
+    """Refuse summaries of another size, and records in a circle, which jplephem follows for ever."""
+    from jplephem.daf import DAF
+
+    with Path(path).open("rb") as stream:
+        numbers = stream.read(16)[8:]
+        if _NUMBERS not in (struct.unpack(order, numbers) for order in ("<2I", ">2I")):
+            raise ValueError("its segments are not those of positions")
+        seen: set[int] = set()
+        for number, _, _ in DAF(stream).summary_records():
+            if number in seen:
+                raise ValueError(f"its record {number} follows itself")
+            seen.add(number)
+
+
 def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
     """Pairs of centre and target that lead to a body."""
     centres = {target: center for center, target in kernel.pairs}
-    body, chain = BODIES[name], []
-    while body in centres and body != SOLAR_SYSTEM:
+    body = BODIES[name]
+    chain: list[tuple[int, int]] = []
+    while body in centres and body != SOLAR_SYSTEM and len(chain) < len(centres):
         chain.append((centres[body], body))
         body = centres[body]
     if not chain:
@@ -80,8 +101,11 @@ def _between(
 def _series(segment: Any, path: str | Path) -> tuple[float, float, NDArray[np.float64]]:
     try:
         start, length, coefficients = segment.load_array()  # days, lowest degree first
-    except (AttributeError, ValueError):
+    except Exception as error:  # as above; an AttributeError where the type is another
         kind = getattr(segment, "data_type", "?")
+        if kind in (2, 3):
+            message = f"{path}: the segment of body {segment.target} is damaged: {error}"
+            raise ReadError(message, path=str(path), kind="SPICE kernel") from None
         message = f"{path}: the segment of body {segment.target} is of type {kind}, 2 and 3 can be read"
         raise EarthError(message, name="ephemeris", got=kind, expected=(2, 3)) from None
     return (

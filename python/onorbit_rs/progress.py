@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -32,7 +32,7 @@ def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progr
     if quiet or not _is_watched():
         yield Progress()
         return
-    with _bar() as bar:
+    with _drawn(_bar()) as bar:
         task = bar.add_task(printable(name), total=duration_s, doing="starting", start=False)
         yield Progress(_Mover(bar, task), lambda doing: bar.update(task, completed=duration_s, doing=doing))
 
@@ -43,9 +43,20 @@ def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None
     if quiet or not _is_watched():
         yield lambda part, done: None
         return
-    with _bar() as bar:
+    with _drawn(_bar()) as bar:
         task = bar.add_task(printable(name), total=1.0, doing="starting")
         yield lambda part, done: bar.update(task, completed=done, doing=printable(part))
+
+
+@contextmanager
+def _drawn(bar: Bar) -> Iterator[Bar]:
+    """The bar while it is drawn; a terminal that was closed meanwhile costs the bar and nothing else."""
+    bar.start()
+    try:
+        yield bar
+    finally:
+        with suppress(OSError):
+            bar.stop()
 
 
 def _is_watched() -> bool:

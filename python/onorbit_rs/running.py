@@ -100,7 +100,7 @@ def run(
     ------
     OnOrbitError
         Before anything runs: a wrong scenario (``ScenarioError``), a missing file (``NotFoundError``), a
-        folder that is not empty or not writable (``OutputFolderError``).
+        folder that is not empty, not writable or in use by another process (``OutputFolderError``).
     SimulationError
         The run diverged; its trace so far is in the error and in ``out``.
     RunInterrupted
@@ -109,12 +109,12 @@ def run(
     every = _checked_period(checkpoint_every)
     checked = load(scenario)
     built = build(checked)
-    folder = None if out is None else OutputFolder.claim(out, force=force)
-    if folder is None:
+    if out is None:
         return _go(built, None, quiet=quiet, view=view)
-    write_scenario(folder, checked)
-    writer = CheckpointWriter(folder, _digest(checked))
-    return _go(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=every)
+    with OutputFolder.claim(out, force=force) as folder:
+        write_scenario(folder, checked)
+        writer = CheckpointWriter(folder, _digest(checked))
+        return _go(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=every)
 
 
 def resume(
@@ -145,18 +145,19 @@ def resume(
         As :func:`run`.
     """
     every = _checked_period(checkpoint_every)
-    folder = OutputFolder(Path(out))
-    if not (folder.path / "scenario.yaml").is_file():
-        what = "no run in this folder (no scenario.yaml)" if folder.path.is_dir() else "no such folder"
-        raise NotFoundError(f"{what}: {folder.path}", path=str(folder.path), kind="run")
-    scenario = load(folder.path / "scenario.yaml")
-    digest = _digest(scenario)
-    checkpoint, rows = read_checkpoint(folder.path, digest)
-    writer = CheckpointWriter(folder, digest, rows=rows)
-    return _go(
-        build(scenario), folder, quiet=quiet, view=view,
-        checkpoint=writer, checkpoint_every=every, resume=checkpoint,
-    )  # fmt: skip
+    path = Path(out)
+    if not (path / "scenario.yaml").is_file():
+        what = "no run in this folder (no scenario.yaml)" if path.is_dir() else "no such folder"
+        raise NotFoundError(f"{what}: {path}", path=str(path), kind="run")
+    with OutputFolder(path) as folder:
+        scenario = load(path / "scenario.yaml")
+        digest = _digest(scenario)
+        saved = read_checkpoint(path, digest)
+        writer = CheckpointWriter(folder, digest, after=saved)
+        return _go(
+            build(scenario), folder, quiet=quiet, view=view,
+            checkpoint=writer, checkpoint_every=every, resume=saved.checkpoint,
+        )  # fmt: skip
 
 
 def _checked_period(checkpoint_every: float) -> float:

@@ -14,6 +14,7 @@ pub mod orbit;
 pub mod reference;
 pub mod simulation;
 pub mod spatial;
+pub mod text_file;
 
 #[cfg(doctest)] // its examples run with those of the crate
 #[doc = include_str!("../../../docs/api/rust.md")]

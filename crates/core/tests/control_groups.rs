@@ -114,11 +114,14 @@ fn every_law_of_a_stack_gets_the_acceleration_it_asks_for() {
     assert_eq!(tau[tail[0]], 8.0 * (0.5 - q[7 + tail[0]]) - 2.0 * v[6 + tail[0]]);
     assert_eq!(tau[tail[1]], 0.0);
 
-    // what these torques do, by articulated bodies: damping and friction take their part at every joint
+    // what these torques do, by articulated bodies: damping takes its part at every joint, friction where no
+    // drive compensates it
     let mut forces = vec![0.0; model.nv()];
     for (j, joint) in model.joints().iter().enumerate() {
-        let rate = v[j + 6];
-        forces[j + 6] = tau[j] - joint.damping * rate - joint.friction * (rate / 1e-2).clamp(-1.0, 1.0);
+        let (rate, is_compensated) = (v[j + 6], stack.asked()[j].is_some());
+        assert_eq!(is_compensated, !tail.contains(&j));
+        let friction = if is_compensated { 0.0 } else { joint.friction * rate.signum() };
+        forces[j + 6] = tau[j] - joint.damping * rate - friction;
     }
     let mut a = vec![0.0; model.nv()];
     forward_dynamics_recursion(&model, &mut data, &v, &forces, &mut a);

@@ -2,13 +2,15 @@
 
 use crate::arrays::{Input, fresh, wrong_shape, zeros};
 use crate::earth::PyEarth;
-use crate::errors::{IntoPython, fields, in_file, plain, raise, unreadable};
+use crate::errors::{IntoPython, LARGEST_TABLE, fields, in_file, plain, raise, unreadable};
+use crate::interrupt::in_pieces;
 use crate::made::{Made, absolute};
 use onorbit_core::earth::Earth;
 use onorbit_core::environment::atmosphere::{
     Atmosphere, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer, MagneticActivity,
     Nrlmsise00, SpaceIndices, SpaceWeather, SpaceWeatherTable, densities_at, densities_over,
 };
+use onorbit_core::text_file::read_text;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
@@ -61,8 +63,10 @@ impl PyAtmosphere {
         let (out, earth) = (zeros(py, &shape)?, earth_or_still(earth));
         let places = [altitude.data(), latitude.data(), longitude.data(), t.data()];
         let to = fresh(&out);
-        py.detach(|| densities_over(&*self.air, &earth, places, to))
-            .map_err(|error| error.into_python(py))?;
+        in_pieces(py, to.len(), 1024, |range| {
+            let places = places.map(|values| &values[range.clone()]);
+            densities_over(&*self.air, &earth, places, &mut to[range])
+        })?;
         scalar_or_array(out.into_any(), &shape)
     }
 
@@ -90,8 +94,10 @@ impl PyAtmosphere {
         }
         let (to, earth) = (fresh(&out), Arc::clone(&earth.get().earth));
         let (positions, times) = (r.data(), t.data());
-        py.detach(|| densities_at(&*self.air, &earth, positions, times, to))
-            .map_err(|error| error.into_python(py))?;
+        in_pieces(py, to.len(), 1024, |range| {
+            let places = &positions[3 * range.start..3 * range.end];
+            densities_at(&*self.air, &earth, places, &times[range.clone()], &mut to[range])
+        })?;
         scalar_or_array(out.into_any(), &shape)
     }
 
@@ -264,8 +270,8 @@ fn activity(ap: Any<'_, '_>) -> PyResult<MagneticActivity> {
 }
 
 fn read_table(py: Python<'_>, path: &std::path::Path, three_hourly: bool) -> PyResult<SpaceWeatherTable> {
-    let text =
-        std::fs::read_to_string(path).map_err(|error| unreadable(py, path, "space weather table", &error))?;
+    let text = read_text(path, LARGEST_TABLE)
+        .map_err(|error| unreadable(py, path, "space weather table", &error))?;
     let table = SpaceWeatherTable::from_csv(&text)
         .map_err(|error| in_file(py, path, error))?
         .named(format!("the table {}", path.display()));

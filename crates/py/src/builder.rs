@@ -39,10 +39,12 @@ impl PyModelBuilder {
     ///
     /// ``kind``: ``revolute``, ``continuous``, ``prismatic`` or ``fixed``; ``axis`` (3,) in the link's frame;
     /// ``damping`` N m s/rad, ``friction`` N m, ``rotor_inertia`` kg m² seen at the joint; limits in rad, rad/s, N m
-    /// (m, m/s, N for a slider) are stored, not enforced.
+    /// (m, m/s, N for a slider) are stored, not enforced. ``friction`` acts on a joint that moves; at rest it is held
+    /// by up to ``static_friction``, at least as much and the same where it is None.
     #[pyo3(signature = (
         name, *, parent, joint, kind="revolute", axis=None, xyz=None, rpy=None, mass=None, com=None, inertia=None,
         damping=0.0, friction=0.0, rotor_inertia=0.0, lower=None, upper=None, velocity=None, effort=None,
+        static_friction=None,
     ))]
     fn add_link(
         &mut self,
@@ -64,6 +66,7 @@ impl PyModelBuilder {
         upper: Option<f64>,
         velocity: Option<f64>,
         effort: Option<f64>,
+        static_friction: Option<f64>,
     ) -> PyResult<()> {
         let axis = vector(axis, "axis", [0.0, 0.0, 1.0])?;
         let kind = match kind {
@@ -83,7 +86,7 @@ impl PyModelBuilder {
         };
         let limits = Limits { position, velocity, effort };
         let plain = Joint::new(joint, kind, pose(xyz, rpy)?);
-        let joint = Joint { limits, damping, friction, rotor_inertia, ..plain };
+        let joint = Joint { limits, damping, friction, static_friction, rotor_inertia, ..plain };
         let link = Link::new(name, inertial(py, mass, com, inertia)?);
         self.builder.add(parent, joint, link).map_err(|error| error.into_python(py))?;
         Ok(())

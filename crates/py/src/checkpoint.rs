@@ -5,7 +5,7 @@ use crate::errors::{IntoPython, SimulationErrorExt};
 use onorbit_core::simulation::{self, Moment, NamedColumn, SimulationError, Trace};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBool, PyDict};
 use std::ffi::CString;
 use std::time::{Duration, Instant};
 
@@ -116,8 +116,11 @@ impl Keeper {
         }
         let state = checkpoint.to_json();
         let checkpoint = PyCheckpoint { state, columns: columns.unbind(), wall_s: self.wall() };
-        to.call1(py, (checkpoint,))?;
-        (self.rows, self.last) = (rows, Instant::now());
+        let answer = to.call1(py, (checkpoint,))?;
+        self.last = Instant::now();
+        if !answer.bind(py).is(PyBool::new(py, false)) {
+            self.rows = rows; // where it was not kept, its rows come again with the next
+        }
         Ok(())
     }
 }

@@ -1,12 +1,14 @@
 //! The turning Earth, and the sky above it.
 
 use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
-use crate::errors::{IntoPython, fields, in_file, raise, unreadable};
+use crate::errors::{IntoPython, LARGEST_TABLE, fields, in_file, raise, unreadable};
+use crate::interrupt::in_pieces;
 use crate::orbit::times;
 use onorbit_core::earth::{
     Axes, Earth, EarthError, EarthParameters, Epoch, Kernel, KernelSegment, ROTATION_RATE,
 };
 use onorbit_core::orbit::Orbit;
+use onorbit_core::text_file::read_text;
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 use std::path::PathBuf;
@@ -212,7 +214,10 @@ impl PyEarth {
         let (times, shape) = times(t)?;
         let result = zeros(py, &[&shape, tail].concat())?;
         let into = fresh(&result);
-        py.detach(|| fill(&self.earth, &times, into)).map_err(|error| error.into_python(py))?;
+        let width = tail.iter().product::<usize>();
+        in_pieces(py, times.len(), 4096, |range| {
+            fill(&self.earth, &times[range.clone()], &mut into[width * range.start..width * range.end])
+        })?;
         Ok(result.into_any())
     }
 
@@ -230,7 +235,10 @@ impl PyEarth {
         }
         let result = zeros(py, &expected)?;
         let (positions, into) = (r.data(), fresh(&result));
-        py.detach(|| fill(&self.earth, &times, positions, into)).map_err(|error| error.into_python(py))?;
+        in_pieces(py, times.len(), 4096, |range| {
+            let places = 3 * range.start..3 * range.end;
+            fill(&self.earth, &times[range], &positions[places.clone()], &mut into[places])
+        })?;
         Ok(result.into_any())
     }
 }
@@ -262,7 +270,7 @@ fn instant(epoch: Any<'_, '_>) -> PyResult<Epoch> {
 fn table_of(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
     let py = eop.py();
     if let Ok(path) = eop.extract::<PathBuf>() {
-        let text = std::fs::read_to_string(&path)
+        let text = read_text(&path, LARGEST_TABLE)
             .map_err(|error| unreadable(py, &path, "Earth-orientation table", &error))?;
         return EarthParameters::read(&text).map_err(|error| in_file(py, &path, error));
     }

@@ -3,6 +3,7 @@
 use crate::arrays::{Input, fresh, shape_text, whole, wrong_shape, zeros};
 use crate::environment::PyEffect;
 use crate::errors::{IntoPython, fields, plain, raise};
+use crate::interrupt::{in_pieces, unheard};
 use onorbit_core::earth::{Earth, EarthError};
 use onorbit_core::gravity::{Coefficients, Gravity, GravityError, GravityField};
 use pyo3::prelude::*;
@@ -137,10 +138,8 @@ impl PyGravityField {
         #[pyo3(from_py_with = order_of)] order: Option<usize>,
     ) -> PyResult<Bound<'py, Self>> {
         let keywords = fields!(py, "path": &path, "degree": degree, "order": order);
-        Bound::new(
-            py,
-            Self::wrap(py, GravityField::from_gfc(&path, degree, order), "GravityField.from_gfc", &keywords)?,
-        )
+        let field = unheard(py, move || GravityField::from_gfc(&path, degree, order))?;
+        Bound::new(py, Self::wrap(py, field, "GravityField.from_gfc", &keywords)?)
     }
 
     /// From fully normalised coefficients ``c`` and ``s``, both (n, n), ``c[degree, order]``; ``c[0, 0]`` is taken for 1.
@@ -243,7 +242,11 @@ impl PyGravityField {
         };
         let out = zeros(py, &shape)?;
         let (positions, to) = (input.data(), fresh(&out));
-        py.detach(|| fill(&self.field, positions, to)).map_err(|error| error.into_python(py))?;
+        let (rows, width) = (positions.len() / 3, tail.iter().product::<usize>());
+        in_pieces(py, rows, 256, |range| {
+            let (from, into) = (3 * range.start..3 * range.end, width * range.start..width * range.end);
+            fill(&self.field, &positions[from], &mut to[into])
+        })?;
         Ok(out.into_any())
     }
 }

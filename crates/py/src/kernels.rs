@@ -2,6 +2,7 @@
 
 use crate::arrays::{Input, Threads, type_name, wrong_shape};
 use crate::errors::{IntoPython, fields, raise};
+use crate::interrupt::{self, LONG_BATCH};
 use crate::model::PyModel;
 use crate::output::{Output, outputs};
 use numpy::PyArrayDyn;
@@ -55,7 +56,10 @@ pub(crate) fn evaluate<'py, const N: usize>(
     let core = &*model.model;
     let result = if batch.is_some() {
         let threads = threads.map(|count| count.0);
-        py.detach(|| Evaluator::many(kernel, core, &rows, &external, &mut slices, threads))
+        let is_long = batch >= Some(LONG_BATCH);
+        interrupt::batch(py, threads, is_long, |on| {
+            Evaluator::many(kernel, core, &rows, &external, &mut slices, on)
+        })?
     } else {
         let mut evaluator = model.evaluator.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         evaluator.single(kernel, core, &rows, &external, &mut slices)

@@ -10,6 +10,7 @@ mod earth;
 mod environment;
 mod errors;
 mod gravity;
+mod interrupt;
 mod kernels;
 mod made;
 mod model;

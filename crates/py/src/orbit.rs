@@ -12,6 +12,7 @@ pub(crate) use sgp4::PySgp4;
 
 use crate::arrays::{Input, Threads, array_of, fixed, fresh, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
+use crate::interrupt::{in_pieces, prepare};
 use nalgebra::Vector3;
 use onorbit_core::orbit::{
     Elements, Kepler, Orbit, OrbitError, Phase, Size, lvlh_frames, path_frames, states,
@@ -74,7 +75,12 @@ impl PyOrbit {
         let dims: Vec<usize> = shape.iter().copied().chain([3]).collect();
         let (r, v) = (zeros(py, &dims)?, zeros(py, &dims)?);
         let (to_r, to_v) = (fresh(&r), fresh(&v));
-        py.detach(|| states(&*self.orbit, &times, to_r, to_v)).map_err(|error| error.into_python(py))?;
+        let orbit = &*self.orbit;
+        prepare(py, orbit, &times)?;
+        in_pieces(py, times.len(), 16_384, |range| {
+            let rows = 3 * range.start..3 * range.end;
+            states(orbit, &times[range], &mut to_r[rows.clone()], &mut to_v[rows])
+        })?;
         Ok((r.into_any(), v.into_any()))
     }
 
@@ -115,7 +121,12 @@ impl PyOrbit {
         let with = |tail: &[usize]| shape.iter().chain(tail).copied().collect::<Vec<usize>>();
         let (rotations, rates) = (zeros(py, &with(&[3, 3]))?, zeros(py, &with(&[3]))?);
         let (to_r, to_w) = (fresh(&rotations), fresh(&rates));
-        py.detach(|| fill(&*self.orbit, &times, to_r, to_w)).map_err(|error| error.into_python(py))?;
+        let orbit = &*self.orbit;
+        prepare(py, orbit, &times)?;
+        in_pieces(py, times.len(), 4096, |range| {
+            let (nine, three) = (9 * range.start..9 * range.end, 3 * range.start..3 * range.end);
+            fill(orbit, &times[range], &mut to_r[nine], &mut to_w[three])
+        })?;
         Ok((rotations.into_any(), rates.into_any()))
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::arrays::{Input, Threads, list_of, shape_text, wrong_shape};
 use crate::errors::IntoPython;
+use crate::interrupt::{self, LONG_BATCH};
 use crate::orbit::PyOrbit;
 use crate::output::{outputs, pair};
 use onorbit_core::batch::{self, Times};
@@ -38,8 +39,13 @@ pub(crate) fn propagate<'py>(
     };
     let orbits: Vec<Arc<dyn Orbit>> = orbits.iter().map(|orbit| Arc::clone(&orbit.get().orbit)).collect();
     let (shape, threads) = ([count, each, 3], threads.map(|count| count.0));
+    let is_ready = |(index, orbit): (usize, &Arc<dyn Orbit>)| match instants {
+        Times::Common(times) => orbit.prepare(times, 0),
+        Times::Each(times) => orbit.prepare(&times[index * each..][..each], 0),
+    };
     let run = |r: &mut [f64], v: &mut [f64]| {
-        py.detach(|| batch::propagate(&orbits, instants, r, v, threads))
+        let is_long = count * each >= LONG_BATCH || !orbits.iter().enumerate().all(is_ready);
+        interrupt::batch(py, threads, is_long, |on| batch::propagate(&orbits, instants, r, v, on))?
             .map_err(|error| error.into_python(py))
     };
     written(py, &shape, out, std::slice::from_ref(&input), run)
@@ -77,6 +83,8 @@ pub(crate) fn kepler_states<'py>(
     let elements: [&[f64]; 7] = std::array::from_fn(|k| inputs[k].data());
     let threads = threads.map(|count| count.0);
     written(py, &[count, 3], out, &inputs, |r, v| {
-        py.detach(|| batch::kepler_states(elements, mu, r, v, threads)).map_err(|error| error.into_python(py))
+        let is_long = count >= LONG_BATCH;
+        interrupt::batch(py, threads, is_long, |on| batch::kepler_states(elements, mu, r, v, on))?
+            .map_err(|error| error.into_python(py))
     })
 }

@@ -32,8 +32,10 @@ pub(crate) struct PyJoint {
     effort: Option<f64>,
     /// Viscous friction, N m s/rad or N s/m.
     damping: f64,
-    /// Coulomb friction, N m or N.
+    /// Coulomb friction while it moves, N m or N.
     friction: f64,
+    /// Largest friction at rest, N m or N.
+    static_friction: f64,
     /// Rotor inertia seen at the joint, kg m² or kg.
     rotor_inertia: f64,
 }
@@ -134,6 +136,7 @@ pub(crate) fn joints(model: &Model) -> Vec<PyJoint> {
             effort: limits.effort,
             damping: joint.damping,
             friction: joint.friction,
+            static_friction: joint.static_friction,
             rotor_inertia: node.rotor_inertia,
         }
     };

@@ -2,6 +2,7 @@
 
 use crate::arrays::{Input, array_of, fixed, fresh, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
+use crate::interrupt::{in_pieces, prepare};
 use crate::orbit::{PyOrbit, times};
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
@@ -26,8 +27,10 @@ pub(crate) fn hill_transition<'py>(
     let (instants, shape) = times(t)?;
     let out = zeros(py, &shape.iter().copied().chain([6, 6]).collect::<Vec<_>>())?;
     let to = fresh(&out);
-    py.detach(|| relative::hill_transitions(mean_motion, &instants, to))
-        .map_err(|error| error.into_python(py))?;
+    in_pieces(py, instants.len(), 16_384, |range| {
+        let into = 36 * range.start..36 * range.end;
+        relative::hill_transitions(mean_motion, &instants[range], &mut to[into])
+    })?;
     Ok(out.into_any())
 }
 
@@ -98,7 +101,13 @@ fn converted<'py>(
     let (to_r, to_v) = (zeros(py, &shape)?, zeros(py, &shape)?);
     let (given, out) = ([given[0].data(), given[1].data()], [fresh(&to_r), fresh(&to_v)]);
     let orbit = &*orbit.get().orbit;
-    py.detach(|| convert(orbit, *frame, &instants, given, out)).map_err(|error| error.into_python(py))?;
+    prepare(py, orbit, &instants)?;
+    let [out_r, out_v] = out;
+    in_pieces(py, instants.len(), 4096, |range| {
+        let rows = 3 * range.start..3 * range.end;
+        let out = [&mut out_r[rows.clone()], &mut out_v[rows.clone()]];
+        convert(orbit, *frame, &instants[range], given.map(|rows_of| &rows_of[rows.clone()]), out)
+    })?;
     Ok((to_r.into_any(), to_v.into_any()))
 }
 
@@ -145,8 +154,11 @@ pub(crate) fn relative_elements<'py>(
     let (deputy_r, deputy_v) = (shaped(deputy_r, "deputy_r", &shape)?, shaped(deputy_v, "deputy_v", &shape)?);
     let out = zeros(py, &batch.into_iter().chain([6]).collect::<Vec<_>>())?;
     let (chief, deputy, to) = ([r.data(), v.data()], [deputy_r.data(), deputy_v.data()], fresh(&out));
-    py.detach(|| relative::relative_elements_rows(chief, deputy, mu, to))
-        .map_err(|error| error.into_python(py))?;
+    in_pieces(py, r.data().len() / 3, 4096, |range| {
+        let (rows, into) = (3 * range.start..3 * range.end, 6 * range.start..6 * range.end);
+        let [chief, deputy] = [chief, deputy].map(|pair| pair.map(|values| &values[rows.clone()]));
+        relative::relative_elements_rows(chief, deputy, mu, &mut to[into])
+    })?;
     Ok(out.into_any())
 }
 
@@ -165,7 +177,12 @@ pub(crate) fn deputy_state<'py>(
     let with = |last: usize| batch.iter().copied().chain([last]).collect::<Vec<usize>>();
     let (v, elements) = (shaped(v, "v", &with(3))?, shaped(elements, "elements", &with(6))?);
     let (to_r, to_v) = (zeros(py, &with(3))?, zeros(py, &with(3))?);
-    let (chief, elements, out) = ([r.data(), v.data()], elements.data(), [fresh(&to_r), fresh(&to_v)]);
-    py.detach(|| relative::deputy_states(chief, elements, mu, out)).map_err(|error| error.into_python(py))?;
+    let (chief, elements, out_r, out_v) = ([r.data(), v.data()], elements.data(), fresh(&to_r), fresh(&to_v));
+    in_pieces(py, r.data().len() / 3, 4096, |range| {
+        let (rows, six) = (3 * range.start..3 * range.end, 6 * range.start..6 * range.end);
+        let chief = chief.map(|values| &values[rows.clone()]);
+        let out = [&mut out_r[rows.clone()], &mut out_v[rows]];
+        relative::deputy_states(chief, &elements[six], mu, out)
+    })?;
     Ok((to_r.into_any(), to_v.into_any()))
 }

@@ -3,14 +3,14 @@
 use crate::arrays::{self, Input, Threads, shape_text, steps, type_name, wrong_shape};
 use crate::control::PyComputedTorque;
 use crate::errors::{IntoPython, fields, plain, raise};
+use crate::interrupt::interruptible;
 use crate::model::PyModel;
 use crate::output::{outputs, pair};
 use crate::reference;
-use crate::simulation::{PACE, integrator_named};
+use crate::simulation::integrator_named;
 use onorbit_core::batch::{Rollout, RolloutControl};
 use pyo3::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError, mpsc};
+use std::sync::atomic::AtomicBool;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
@@ -112,36 +112,6 @@ fn law_of<'a, 'py>(controller: Any<'a, 'py>) -> PyResult<&'a Bound<'py, PyComput
         let fields = fields!(py, "name": "controller", "got": got, "expected": "ComputedTorque");
         raise(py, "ControlError", &message, &fields)
     })
-}
-
-/// Runs `work` on a thread of its own and looks for Ctrl-C meanwhile, which sets `stop`.
-fn interruptible<R: Send>(py: Python<'_>, stop: &AtomicBool, work: impl FnOnce() -> R + Send) -> PyResult<R> {
-    std::thread::scope(|scope| {
-        let (done, finished) = mpsc::channel();
-        let finished = Mutex::new(finished);
-        let worker = scope.spawn(move || {
-            let result = work();
-            let _ = done.send(()); // the receiver outlives the worker
-            result
-        });
-        let mut raised = None;
-        while py.detach(|| wait(&finished)) == Err(mpsc::RecvTimeoutError::Timeout) {
-            if let Err(error) = py.check_signals() {
-                stop.store(true, Ordering::Relaxed);
-                raised = Some(error);
-            }
-        }
-        match (raised, py.detach(|| worker.join())) {
-            (Some(error), _) => Err(error),
-            (None, Ok(result)) => Ok(result),
-            (None, Err(panic)) => std::panic::resume_unwind(panic),
-        }
-    })
-}
-
-/// Waits for the worker, but not longer than the pace of looking for signals.
-fn wait(finished: &Mutex<mpsc::Receiver<()>>) -> Result<(), mpsc::RecvTimeoutError> {
-    finished.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(PACE)
 }
 
 /// The batch size of `(B, width)`.

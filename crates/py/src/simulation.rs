@@ -7,6 +7,7 @@ use crate::earth::PyEarth;
 use crate::environment::effects;
 use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
 use crate::gravity::gravity_of;
+use crate::interrupt::{PACE, prepare};
 use crate::model::PyModel;
 use crate::orbit::PyOrbit;
 use crate::plant::PythonPlant;
@@ -16,15 +17,13 @@ use onorbit_core::control::{ControlError, ControlLaw};
 use onorbit_core::environment::ReferenceMotion;
 use onorbit_core::model::Model;
 use onorbit_core::simulation::{Integrator, Moment, RunFailure, Simulation, SimulationError};
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, TryLockError};
 use std::time::{Duration, Instant};
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
-
-/// Wall-clock time between two looks at signals and progress.
-pub(crate) const PACE: Duration = Duration::from_millis(50);
 
 /// A robot, where it starts, what acts on it and how time is cut; :meth:`run` starts afresh at every call.
 ///
@@ -156,7 +155,8 @@ impl PySimulation {
     /// Run from the given state for ``duration`` s and return the :class:`Trace`.
     ///
     /// ``progress(t, duration)`` is called at a steady wall-clock pace. ``checkpoint(c)`` is handed a :class:`Checkpoint` every
-    /// ``checkpoint_every`` s of wall clock (at most twenty a second) and at Ctrl-C; with ``resume`` the run goes on from one, to the same bits.
+    /// ``checkpoint_every`` s of wall clock (at most twenty a second) and at Ctrl-C; where it returns False, the next one has its
+    /// rows again. With ``resume`` the run goes on from a checkpoint, to the same bits.
     /// Ctrl-C raises ``RunInterrupted``, a diverging run ``SimulationError``; both carry the trace so far.
     #[pyo3(signature = (duration, *, progress=None, checkpoint=None, checkpoint_every=30.0, resume=None))]
     fn run(
@@ -180,6 +180,8 @@ impl PySimulation {
         let from = resume.map(|checkpoint| checkpoint.get().read(py)).transpose()?;
         let (rows, wall) =
             (from.as_ref().map_or(0, |from| from.0.rows()), resume.map_or(0.0, |c| c.get().wall_s));
+        let begin = from.as_ref().map_or(0.0, |from| from.0.time());
+        self.prepare(py, begin)?;
         let mut keeper = Keeper::new(checkpoint, every, rows, wall);
         let mut raised: Option<PyErr> = None;
         let ran = py.detach(|| {
@@ -228,6 +230,12 @@ impl PySimulation {
 }
 
 impl PySimulation {
+    /// Integrates the reference orbit as far as the begin of a run, interruptible; a run that runs already has it.
+    fn prepare(&self, py: Python<'_>, begin: f64) -> PyResult<()> {
+        let orbit = self.simulation.try_lock().ok().and_then(|simulation| simulation.orbit.clone());
+        orbit.map_or(Ok(()), |orbit| prepare(py, &*orbit, &[begin]))
+    }
+
     /// The exception for a run that stopped early.
     fn failure(
         &self,
@@ -236,23 +244,34 @@ impl PySimulation {
         trace: PyTrace,
         raised: Option<PyErr>,
     ) -> PyErr {
-        if let Some(other) = raised
-            && !other.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py)
-        {
-            return other; // the progress callback raised
+        let is_ctrl_c = |error: &PyErr| error.is_instance_of::<PyKeyboardInterrupt>(py);
+        // Ctrl-C arrives where Python runs: at the monitor, in a controller of the user's, in another plant, or here,
+        // where it has been pending while the engine came upon an error of its own
+        let ctrl_c = match (raised, &error) {
+            (Some(other), _) if !is_ctrl_c(&other) => return other, // the progress callback raised
+            (Some(ctrl_c), _) => Some(ctrl_c),
+            (
+                None,
+                SimulationError::Control(ControlError::User(source)) | SimulationError::Engine(source),
+            ) => source.downcast_ref::<PyErr>().filter(|error| is_ctrl_c(error)).map(|e| e.clone_ref(py)),
+            (None, _) => match py.check_signals() {
+                Err(other) if !is_ctrl_c(&other) => return other,
+                checked => checked.err(),
+            },
+        };
+        let (time, is_interrupted) = match (&error, trace.trace.time.last()) {
+            (SimulationError::Interrupted { time }, _) => (Some(*time), true),
+            (_, last) => (last.copied(), false),
+        };
+        let trace = Py::new(py, trace).ok();
+        let Some(ctrl_c) = ctrl_c else { return error.into_python_with(py, trace) };
+        let Some(time) = time else { return ctrl_c };
+        let interrupted = SimulationError::Interrupted { time }.into_python_with(py, trace);
+        if !is_interrupted {
+            interrupted.set_context(py, Some(error.into_python_with(py, None)));
         }
-        // Ctrl-C arrives where Python runs: in a controller of the user's, in another plant, or at the monitor
-        let is_ctrl_c = match &error {
-            SimulationError::Control(ControlError::User(source)) | SimulationError::Engine(source) => source
-                .downcast_ref::<PyErr>()
-                .is_some_and(|error| error.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py)),
-            _ => false,
-        };
-        let error = match trace.trace.time.last() {
-            Some(&time) if is_ctrl_c => SimulationError::Interrupted { time },
-            _ => error,
-        };
-        error.into_python_with(py, Py::new(py, trace).ok())
+        interrupted.set_cause(py, Some(ctrl_c)); // which signal it was
+        interrupted
     }
 }
 

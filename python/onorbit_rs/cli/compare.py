@@ -11,8 +11,9 @@ from onorbit_rs.cli.completing import scenario_names
 from onorbit_rs.cli.failing import as_far_as_read
 from onorbit_rs.cli.options import JsonOption
 from onorbit_rs.cli.saying import say
-from onorbit_rs.cli.writing import claim, writing
+from onorbit_rs.cli.writing import claim
 from onorbit_rs.exceptions import InputError
+from onorbit_rs.files import replacing
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -119,5 +120,5 @@ def save_figure(compared: Comparison, file: Path) -> None:
     """
     from onorbit_rs.figures import as_bytes, differences
 
-    with writing(file):
-        file.write_bytes(as_bytes(differences(compared), file.suffix[1:].lower()))
+    with replacing(file) as temporary:
+        temporary.write_bytes(as_bytes(differences(compared), file.suffix[1:].lower()))

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from onorbit_rs.cli.saying import complain, say
-from onorbit_rs.cli.writing import claim, writing
+from onorbit_rs.cli.writing import claim
+from onorbit_rs.files import replacing
 from onorbit_rs.printable import printable, shell_word
 
 
@@ -45,7 +46,7 @@ def convert(
     if out is None:
         typer.echo(text, nl=False)
         return
-    with writing(out):
-        out.write_text(text, encoding="utf-8")
+    with replacing(out) as file:
+        file.write_text(text, encoding="utf-8")
     say(f"scenario: {out}")
     say(f"next: onorbit check {shell_word(out)}")

@@ -7,11 +7,12 @@ import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, NoReturn
 
 from onorbit_rs.cli.saying import refuse
 from onorbit_rs.exceptions import RunInterrupted
+from onorbit_rs.stopping import stopped_by
 
 
 def ending_well(command: Callable[..., None]) -> Callable[..., None]:
@@ -21,10 +22,8 @@ def ending_well(command: Callable[..., None]) -> Callable[..., None]:
     def guarded(*arguments: Any, **options: Any) -> None:
         try:
             command(*arguments, **options)
-        except RunInterrupted as stop:
-            fail(str(stop), 130)
-        except KeyboardInterrupt:
-            fail("stopped by Ctrl-C", 130)
+        except KeyboardInterrupt as stop:
+            stopped(stop)
         except BrokenPipeError:
             leave_stdout()
 
@@ -50,8 +49,16 @@ def leave_stdout() -> None:
 def fail(message: str, code: int) -> NoReturn:
     """Say it on one line of stderr, and leave with this exit code."""
     if message:
-        refuse(message)
+        with suppress(OSError):  # stderr was a terminal that is gone
+            refuse(message)
     sys.exit(code)
+
+
+def stopped(stop: KeyboardInterrupt) -> NoReturn:
+    """Say what a signal ended and what is there of it, and leave with the exit code of that signal."""
+    name, code = stopped_by(stop)
+    said = str(stop) if isinstance(stop, RunInterrupted) else f"stopped by {name}"
+    fail("; ".join([said, *getattr(stop, "__notes__", ())]), code)
 
 
 def of_controller(error: Exception) -> str:

@@ -12,11 +12,13 @@ from onorbit_rs.cli.options import (
     PackagesOption,
     QuietOption,
     RobotArgument,
+    XacroOption,
     in_words,
     of_file,
 )
 from onorbit_rs.cli.saying import count, say
-from onorbit_rs.cli.writing import claim, writing
+from onorbit_rs.cli.writing import claim
+from onorbit_rs.files import replacing
 from onorbit_rs.printable import shell_word
 
 
@@ -28,6 +30,7 @@ def new(
     ] = None,
     packages: PackagesOption = None,
     arguments: ArgumentsOption = None,
+    xacro: XacroOption = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
     quiet: QuietOption = False,
 ) -> None:
@@ -35,13 +38,13 @@ def new(
 
     In orbit, tried before it is written; without --out it goes to standard output.
     """
-    given = of_file(robot, packages, arguments)
+    given = of_file(robot, packages, arguments, xacro)
     claim(out, force=force)
     from onorbit_rs.drafting import draft
     from onorbit_rs.progress import doing
 
     named = f" --tool {shell_word(tool)}" if tool else ""
-    written_by = f"onorbit new {in_words(robot, packages, arguments)}{named}"
+    written_by = f"onorbit new {in_words(robot, packages, arguments, xacro)}{named}"
     with doing("trying motions", quiet=quiet):
         made = draft(
             robot, tool=tool, beside=out.absolute().parent if out else None, command=written_by, **given,
@@ -49,8 +52,8 @@ def new(
     if out is None:
         typer.echo(made.text, nl=False)
         return
-    with writing(out):
-        out.write_text(made.text, encoding="utf-8")
+    with replacing(out) as file:
+        file.write_text(made.text, encoding="utf-8")
     if not quiet:
         joints = count(len(made.joints), "joint", "joints")
         moved = f"{made.tool}, moved by {joints}" if made.tool else "a body without joints"

@@ -37,7 +37,7 @@ def print_info(model: Model, console: Console) -> None:
             "\n[bold]joints[/bold]: axis in the child's link; rad and N m, or m and N where it slides"
         )
         console.print(_joints(model))
-        if any(joint.damping or joint.friction or joint.rotor_inertia for joint in model.joints):
+        if any(joint.damping or joint.static_friction or joint.rotor_inertia for joint in model.joints):
             console.print("\n[bold]losses and rotors[/bold]: N m s/rad, N m, kg m² (N s/m, N, kg)")
             console.print(_losses(model))
     if model.warnings:
@@ -85,9 +85,9 @@ def _joints(model: Model) -> Table:
 
 
 def _losses(model: Model) -> Table:
-    table = _table("name", "damping", "friction", "rotor inertia")
+    table = _table("name", "damping", "friction", "at rest", "rotor inertia")
     for joint in model.joints:
-        amounts = (joint.damping, joint.friction, joint.rotor_inertia)
+        amounts = (joint.damping, joint.friction, joint.static_friction, joint.rotor_inertia)
         table.add_row(text(joint.name), *(f"{amount:.5g}" for amount in amounts))
     return table
 

@@ -15,7 +15,7 @@ from onorbit_rs.cli.options import (
     ScenarioArgument,
     ViewOption,
 )
-from onorbit_rs.exceptions import InputError, RunInterrupted
+from onorbit_rs.exceptions import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,7 +34,7 @@ def run(
 ) -> None:
     """Run a scenario and certify its momentum and energy.
 
-    Exit code 1 where the certificate fails, 2 for errors, 130 after Ctrl-C.
+    Exit code 1 where the certificate fails, 2 for errors, 130 after Ctrl-C, 143 after SIGTERM.
     """
     from onorbit_rs.running import run as run_scenario
     from onorbit_rs.watching import CHECKPOINT_EVERY
@@ -79,12 +79,7 @@ def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
     from onorbit_rs.cli.printing import print_json
     from onorbit_rs.cli.summary import print_summary
 
-    try:
-        result = job()
-    except RunInterrupted:
-        raise
-    except KeyboardInterrupt:  # the simulation was over
-        fail("stopped by Ctrl-C while the results were written; run it again with --force", 130)
+    result = job()
     with as_far_as_read():
         if as_json:
             print_json(result.summary)

@@ -32,7 +32,8 @@ def show(
     """
     from onorbit_rs.cli.printing import print_json
     from onorbit_rs.cli.summary import print_summary
-    from onorbit_rs.output.read import read_summary
+    from onorbit_rs.output.manifest import RECORDING
+    from onorbit_rs.output.read import SavedRun
     from onorbit_rs.output.robot import remark_on_robot
 
     if picture is not None and picture.suffix.lower() != ".png":
@@ -42,15 +43,19 @@ def show(
         )  # fmt: skip
     if at is not None and picture is None:
         raise InputError("--at is the moment of a picture: add --picture FILE", name="at", got=at)
-    summary = read_summary(folder)
+    saved = SavedRun(folder)
+    summary = saved.summary()
     _check_moment(at or 0.0, float(summary.get("simulated_s") or 0.0))
     claim(picture, force=force)
+    if (picture is not None or (viewer and not as_json)) and (folder / RECORDING).is_file():
+        saved.check(RECORDING)
+    remark = None if as_json else remark_on_robot(saved, summary)
     with as_far_as_read():
         if as_json:
             print_json(summary)
         else:
             print_summary(summary, folder, is_new=False)
-            if (remark := remark_on_robot(folder, summary)) is not None:
+            if remark is not None:
                 say(f"note: {remark}")
     if picture is not None:
         save_picture(folder, picture, at or 0.0)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
-from onorbit_rs.exceptions import OnOrbitError, OutputFolderError, OutputNotEmptyError
+from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError
+from onorbit_rs.files import exists, is_link, refusals
 
 
 def claim(file: Path | None, *, force: bool) -> None:
@@ -18,35 +17,21 @@ def claim(file: Path | None, *, force: bool) -> None:
     OutputNotEmptyError
         It is there, and may not be replaced.
     OutputFolderError
-        Its folder is not there, it is one, or it may not be written.
+        Its folder is not there, it is one, a link or a device, or it may not be written.
     """
     if file is None:
         return
     folder = file.absolute().parent
-    with writing(file):
+    with refusals(file):
         if file.is_dir():
             raise OutputFolderError(f"cannot write {file}: it is a folder, name a file in it", path=str(file))
-        if file.exists() and not force:
+        if is_link(file) or (file.exists() and not file.is_file()):
+            raise OutputFolderError(
+                f"cannot write {file}: it is a link or a device, name a regular file", path=str(file)
+            )
+        if exists(file) and not force:
             raise OutputNotEmptyError(f"{file} is there already; replace it with --force", path=str(file))
         if not folder.is_dir():
             raise OutputFolderError(f"cannot write {file}: no such folder", path=str(file))
-        if not os.access(file if file.exists() else folder, os.W_OK):
-            raise OutputFolderError(f"cannot write {file}: it is not yours to write", path=str(file))
-
-
-@contextmanager
-def writing(file: Path) -> Iterator[None]:
-    """Around what writes the file.
-
-    Raises
-    ------
-    OutputFolderError
-        It cannot be written.
-    """
-    try:
-        yield
-    except OSError as error:
-        if isinstance(error, OnOrbitError):
-            raise
-        reason = error.strerror or error
-        raise OutputFolderError(f"cannot write {file}: {reason}", path=str(file)) from error
+        if not os.access(folder, os.W_OK):
+            raise OutputFolderError(f"cannot write {file}: its folder is not yours to write", path=str(file))

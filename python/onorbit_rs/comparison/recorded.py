@@ -13,10 +13,11 @@ import numpy as np
 
 from onorbit_rs.exceptions import DtypeError, ModelError, NotFoundError
 from onorbit_rs.output import with_absolute_paths
-from onorbit_rs.output.read import read_summary, read_trace
+from onorbit_rs.output.manifest import SCENARIO, SUMMARY
+from onorbit_rs.output.read import SavedRun
 from onorbit_rs.robots.fingerprint import is_another
 from onorbit_rs.running import Run, run
-from onorbit_rs.scenario import Scenario, load
+from onorbit_rs.scenario import Scenario
 from onorbit_rs.scenario.build import make_robot
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def recorded(source: Source) -> Recorded:
     DtypeError
         It is none of these, such as a trace without its run.
     NotFoundError, ReadError
-        No run in the folder, or one that cannot be read.
+        No run in the folder, or one that cannot be read or was changed since.
     """
     if isinstance(source, Run):
         return _of_run(source)
@@ -100,11 +101,10 @@ def _of_run(made: Run) -> Recorded:
 
 
 def _of_folder(folder: Path) -> Recorded:
-    trace = read_trace(folder)
-    file = folder / "scenario.yaml"
-    if not file.is_file():
-        raise NotFoundError(f"no run in this folder (no {file.name}): {folder}", path=str(folder), kind="run")
+    saved = SavedRun(folder)
+    trace = saved.trace()
+    if not (folder / SCENARIO).is_file():
+        raise NotFoundError(f"no run in this folder (no {SCENARIO}): {folder}", path=str(folder), kind="run")
     columns = {name: np.asarray(getattr(trace, name), dtype=np.float64) for name in trace.columns()}
-    has_summary = (folder / "summary.json").is_file()
-    known = read_summary(folder).get("robot_fingerprint") if has_summary else None
-    return Recorded(str(folder), columns, load(file), fingerprint=known)
+    known = saved.summary().get("robot_fingerprint") if (folder / SUMMARY).is_file() else None
+    return Recorded(str(folder), columns, saved.scenario(), fingerprint=known)

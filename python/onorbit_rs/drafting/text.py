@@ -25,7 +25,6 @@ class Plan:
     move_s: float = 4.0
     duration_s: float = 6.0
     time_step_s: float = 1e-3
-    friction: float = 0.0
 
 
 def draft_text(plan: Plan, command: str) -> str:
@@ -73,7 +72,7 @@ def _control(plan: Plan) -> str:
     if not plan.arm:
         return ""
     law = _task_law(plan) if plan.displacement is not None else _joint_law(plan)
-    hold = _HOLD.replace("JOINTS", _wrapped(plan.others)).replace("GAINS", _hold_gains(plan))
+    hold = _HOLD.replace("JOINTS", _wrapped(plan.others))
     return f"""
 controllers:                    # each drives joints of its own; joints without one are limp
   - name: arm
@@ -93,15 +92,6 @@ def _task_law(plan: Plan) -> str:
       kind: line                # or hold, circle, screw, waypoints, line_parabola, sampled
       goal:
 {displacement}      duration: {plan.move_s:g} s
-{_goal(plan)}"""
-
-
-def _goal(plan: Plan) -> str:
-    """What the tool is to reach, or why it may not."""
-    if plan.friction:
-        held = f"friction in the joints (up to {plan.friction:g} N m) holds the tool back"
-        return f"    # {held}: higher gains follow closer\n"
-    return """\
     goal:
       tolerance: [1 mm, 0.1 deg]  # how near the tool is to be at the end
 """
@@ -124,16 +114,9 @@ _HOLD = """\
   - name: hold                  # all other joints stay where they start
     kind: joint_computed_torque
     joints: JOINTS
-GAINS    reference: {kind: joint_hold}
-"""
-
-
-def _hold_gains(plan: Plan) -> str:
-    """Stiff where friction keeps the arm from moving as its law expects: light fingers feel that."""
-    why, kp, kd = (", high: friction in the arm jerks at them", 400, 40) if plan.friction else ("", 25, 10)
-    return f"""\
-    {f"kp: {kp}":<27} # 1/s^2{why}
-    {f"kd: {kd}":<27} # 1/s
+    kp: 25                      # 1/s^2
+    kd: 10                      # 1/s
+    reference: {kind: joint_hold}
 """
 
 

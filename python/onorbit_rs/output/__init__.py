@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from onorbit_rs.output.checkpoint import (
     CheckpointWriter,
-    discard_checkpoint,
+    has_checkpoint,
     read_checkpoint,
     scenario_digest,
 )
@@ -21,7 +21,7 @@ from onorbit_rs.output.write import (
 __all__ = [
     "CheckpointWriter",
     "OutputFolder",
-    "discard_checkpoint",
+    "has_checkpoint",
     "read_checkpoint",
     "scenario_digest",
     "summarize",

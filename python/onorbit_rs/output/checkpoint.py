@@ -1,7 +1,7 @@
 """``checkpoint/`` in the output folder: the rows so far and where the run stands, to go on from after a kill.
 
 ``<column>.f64`` holds the rows of a column, appended; ``state.json`` is replaced as a whole and says how many
-rows count, so that a kill at any instant leaves a checkpoint that is whole.
+rows count and what their SHA-256 is, so that a kill at any instant leaves a checkpoint that is whole.
 """
 
 from __future__ import annotations
@@ -9,67 +9,115 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import shutil
+import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+from urllib.parse import quote
 
 import numpy as np
 
 from onorbit_rs import _core
-from onorbit_rs.exceptions import CheckpointError
-from onorbit_rs.output.folder import CHECKPOINT, OutputFolder
+from onorbit_rs.exceptions import CheckpointError, OnOrbitError
+from onorbit_rs.files import open_to_change, open_to_read, read_bounded, refusals, sync, sync_folder
+from onorbit_rs.output.folder import OutputFolder
+from onorbit_rs.output.manifest import CHECKPOINT, STATE
+from onorbit_rs.output.sealed import sealed, unsealed
 
 if TYPE_CHECKING:
+    from hashlib import _Hash
+
     from onorbit_rs._core import Checkpoint
 
-_STATE = "state.json"
+_MOST = 1 << 28
+"""Bytes of ``state.json``; the state of controllers is part of it."""
+
+
+class SavedCheckpoint(NamedTuple):
+    """A checkpoint that was read: its number of rows, and the running digests of its columns."""
+
+    checkpoint: Checkpoint
+    rows: int
+    digests: dict[str, _Hash]
 
 
 class CheckpointWriter:
-    """Takes what :meth:`onorbit_rs.Simulation.run` hands to its ``checkpoint``; ``rows`` are there."""
+    """Takes what :meth:`onorbit_rs.Simulation.run` hands to its ``checkpoint``."""
 
-    def __init__(self, folder: OutputFolder, digest: str, *, rows: int = 0) -> None:
-        """For a run whose scenario has this digest."""
+    def __init__(self, folder: OutputFolder, digest: str, *, after: SavedCheckpoint | None = None) -> None:
+        """For a run whose scenario has this digest, which goes on ``after`` a checkpoint where given."""
         self._folder, self._path = folder, folder.path / CHECKPOINT
-        self._digest, self._rows = digest, rows
+        self._digest, self._rows = digest, after.rows if after else 0
+        self._digests = dict(after.digests) if after else {}
+        self._has_warned = False
 
-    def __call__(self, checkpoint: Checkpoint) -> None:
+    def __call__(self, checkpoint: Checkpoint) -> bool:
+        """Write the checkpoint; where that fails, warn once and return False: the run goes on."""
+        try:
+            with refusals(self._path):
+                self._write(checkpoint)
+        except OnOrbitError as error:
+            if not self._has_warned:
+                self._has_warned = True
+                warnings.warn(
+                    f"a checkpoint could not be written: {error}; the run goes on and tries again next time",
+                    UserWarning, stacklevel=2,
+                )  # fmt: skip
+            return False
+        return True
+
+    def _write(self, checkpoint: Checkpoint) -> None:
         """Append the new rows, then say that they count."""
+        files = {name: _file_name(name) for name in checkpoint.columns}
+        self._folder.expect_checkpoint((STATE, *files.values()))
         widths: dict[str, int] = {}
+        digests: dict[str, _Hash] = {}
         new_rows = 0
-        with self._folder.refusals(CHECKPOINT):
-            self._path.mkdir(exist_ok=True)
-            for name, rows in checkpoint.columns.items():
-                new_rows, widths[name] = rows.shape
-                _append(self._path / f"{name}.f64", rows, after=8 * self._rows * widths[name])
-        self._rows += new_rows
+        for name, rows in checkpoint.columns.items():
+            new_rows, widths[name] = rows.shape
+            content = np.ascontiguousarray(rows, dtype="<f8").tobytes()
+            _append(self._path / files[name], content, after=8 * self._rows * widths[name])
+            digests[name] = self._digests.get(name, hashlib.sha256()).copy()
+            digests[name].update(content)
         record = {
             "fingerprint": self._digest,
-            "rows": self._rows,
+            "rows": self._rows + new_rows,
             "widths": widths,
+            "digests": {name: digest.hexdigest() for name, digest in digests.items()},
             "wall_s": checkpoint.wall_s,
             "engine": json.loads(checkpoint.state),
         }
-        with (
-            self._folder.writing(f"{CHECKPOINT}/{_STATE}") as path,
-            path.open("w", encoding="utf-8") as stream,
-        ):
-            json.dump(record, stream, allow_nan=False)
-            _to_disk(stream)
+        content = sealed(record)
+        if len(content) > _MOST:
+            raise _refused(
+                f"the state of the run takes {len(content)} bytes, at most {_MOST} are kept", self._path
+            )
+        sync_folder(self._path)
+        self._replace_state(content)
+        self._rows, self._digests = self._rows + new_rows, digests
+
+    def _replace_state(self, content: bytes) -> None:
+        temporary = self._folder.temporary(f"{CHECKPOINT}/{STATE}")
+        try:
+            temporary.write_bytes(content)
+            sync(temporary)
+            temporary.replace(self._path / STATE)
+        finally:
+            temporary.unlink(missing_ok=True)
+        sync_folder(self._path)
 
 
 def has_checkpoint(folder: Path) -> bool:
     """Whether a run that was stopped left something to go on from."""
-    return (folder / CHECKPOINT / _STATE).is_file()
+    return (folder / CHECKPOINT / STATE).is_file()
 
 
-def read_checkpoint(folder: Path, digest: str) -> tuple[Checkpoint, int]:
-    """The checkpoint in an output folder, and how many rows it has.
+def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
+    """The checkpoint in an output folder.
 
     Raises
     ------
     CheckpointError
-        There is none, it is broken, or it was left by another scenario, robot or controller.
+        There is none, it was changed or damaged, or it was left by another scenario, robot or controller.
     """
     path = folder / CHECKPOINT
     if not has_checkpoint(folder):
@@ -78,8 +126,10 @@ def read_checkpoint(folder: Path, digest: str) -> tuple[Checkpoint, int]:
             "run the scenario again",
             path,
         )
+    file = path / STATE
     try:
-        record = json.loads((path / _STATE).read_text(encoding="utf-8"))
+        with open_to_read(file) as stream:
+            record = unsealed(read_bounded(stream, _MOST))
         found, rows, wall = str(record["fingerprint"]), int(record["rows"]), float(record["wall_s"])
         if found != digest:
             raise _refused(
@@ -87,21 +137,19 @@ def read_checkpoint(folder: Path, digest: str) -> tuple[Checkpoint, int]:
                 "changed since; undo that or run the scenario again",
                 path,
             )
-        columns = {
-            name: _column(path / f"{name}.f64", rows, int(width)) for name, width in record["widths"].items()
-        }
-        return _core.Checkpoint(json.dumps(record["engine"]), columns, wall_s=wall), rows
+        columns, digests = {}, {}
+        for name, width in record["widths"].items():
+            file = path / _file_name(name)
+            columns[name], digests[name] = _column(file, rows, int(width))
+            if digests[name].hexdigest() != record["digests"][name]:
+                raise ValueError("its rows do not match their checksum: it was changed or damaged")
+        state = json.dumps(record["engine"])
+        return SavedCheckpoint(_core.Checkpoint(state, columns, wall_s=wall), rows, digests)
     except CheckpointError:
         raise
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise _refused(
-            f"the checkpoint in {folder} is broken: {error}; run the scenario again", path
-        ) from error
-
-
-def discard_checkpoint(folder: OutputFolder) -> None:
-    """The run came to its end: there is nothing to go on from."""
-    shutil.rmtree(folder.path / CHECKPOINT, ignore_errors=True)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, MemoryError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise _refused(f"the checkpoint is broken: {file}: {reason}; run the scenario again", file) from error
 
 
 def scenario_digest(scenario: dict[str, Any]) -> str:
@@ -111,7 +159,9 @@ def scenario_digest(scenario: dict[str, Any]) -> str:
         file = Path(text)
         try:
             if file.is_absolute() and file.is_file():
-                digest.update(file.read_bytes())
+                with file.open("rb") as stream:  # a SPICE kernel is larger than the memory
+                    for part in iter(lambda: stream.read(1 << 20), b""):
+                        digest.update(part)
         except OSError:  # a text too long for a path; a file that closed itself is told by who reads it
             continue
     return digest.hexdigest()
@@ -124,27 +174,36 @@ def _texts(value: Any) -> list[str]:
     return [text for child in children for text in _texts(child)]
 
 
-def _append(file: Path, rows: Any, *, after: int) -> None:
+def _file_name(column: str) -> str:
+    """Name of the file of a column; names of controllers may hold what a path may not."""
+    return f"{quote(column, safe=' ')}.f64"
+
+
+def _append(file: Path, content: bytes, *, after: int) -> None:
     """Write rows at ``after`` bytes: what an earlier kill left behind that does not count is overwritten."""
-    with file.open("r+b" if file.exists() else "w+b") as stream:
+    with open_to_change(file) as stream:
         if stream.seek(0, os.SEEK_END) < after:
             raise _refused(f"rows of the checkpoint are gone from {file}; run the scenario again", file)
         stream.truncate(after)
         stream.seek(after)
-        stream.write(np.ascontiguousarray(rows, dtype="<f8").tobytes())
-        _to_disk(stream)
+        left = memoryview(content)
+        while left:
+            left = left[stream.write(left) :]
+        os.fsync(stream.fileno())
 
 
-def _to_disk(stream: Any) -> None:
-    stream.flush()
-    os.fsync(stream.fileno())
-
-
-def _column(file: Path, rows: int, width: int) -> Any:
-    values = np.fromfile(file, dtype="<f8", count=rows * width)
-    if values.size != rows * width:
-        raise ValueError(f"{file.name} holds {values.size} numbers, {rows * width} are needed")
-    return values.reshape(rows, width)
+def _column(file: Path, rows: int, width: int) -> tuple[Any, _Hash]:
+    """The rows that count, and their running digest."""
+    count = rows * width
+    with open_to_read(file) as stream:
+        size = stream.seek(0, os.SEEK_END)
+        if min(rows, width) < 0 or size < 8 * count:
+            raise ValueError(f"it holds {size // 8} numbers, {count} are needed")
+        stream.seek(0)
+        content = stream.read(8 * count)
+    if len(content) != 8 * count:
+        raise ValueError("it could not be read to its end")
+    return np.frombuffer(content, dtype="<f8").reshape(rows, width), hashlib.sha256(content)
 
 
 def _refused(message: str, path: Path) -> CheckpointError:

@@ -1,141 +1,260 @@
-"""The output folder: checked before the run, so that no hours of simulation are lost to a foreign folder."""
+"""The output folder: claimed before the run, written by one process at a time, replaced file by file."""
 
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import TracebackType
 
 from onorbit_rs.exceptions import (
-    OnOrbitError,
     OutputFolderError,
+    OutputInUseError,
     OutputNotEmptyError,
     OutputNotWritableError,
 )
+from onorbit_rs.files import (
+    create,
+    exists,
+    is_real_folder,
+    is_regular,
+    remove,
+    sync,
+    sync_folder,
+)
+from onorbit_rs.output.lock import LOCK, FolderLock, owner_of
+from onorbit_rs.output.manifest import (
+    CHECKPOINT,
+    FIGURES,
+    MANIFEST,
+    RESULTS,
+    SCENARIO,
+    Manifest,
+    read_manifest,
+)
+from onorbit_rs.output.replacement import Replacement
 
-REPORT = "report.html"
-OURS = ("scenario.yaml", "trace.npz", "summary.json", "run.rrd", REPORT)
-FIGURES = "figures"
-CHECKPOINT = "checkpoint"
 
-
-@dataclass(frozen=True)
 class OutputFolder:
-    """Where the files of one run go."""
+    """Where the files of one run go; a context that keeps other processes from writing there."""
 
-    path: Path
+    def __init__(self, path: Path) -> None:
+        """Lock a folder that is there."""
+        self.path = path
+        try:
+            self._lock = FolderLock(path)
+        except OutputInUseError:
+            raise
+        except OSError as error:
+            raise _not_writable(path, error) from error
+        try:
+            self._remove_temporaries()
+            self.manifest = read_manifest(path)
+        except BaseException:
+            self._lock.release()
+            raise
 
     @classmethod
     def claim(cls, path: str | os.PathLike[str], *, force: bool = False) -> OutputFolder:
-        """Make the folder where missing and see that it is empty and writable.
+        """Make the folder where missing, lock it, and see that it is empty and writable.
 
         Parameters
         ----------
         path : str or path
         force : bool
-            Replace the files of an earlier run; what a run does not write stays.
+            Replace the files that ``manifest.json`` lists; all others stay.
 
         Raises
         ------
         OutputNotEmptyError
-            It holds files and ``force`` is not set.
+            It holds files and ``force`` is not set, or files of others where a run writes its own.
         OutputNotWritableError
             It is a file, or cannot be made or written.
+        OutputInUseError
+            Another process writes it.
         """
-        folder = cls(Path(path))
-        folder._make()
-        if not force and any(folder.path.iterdir()):
-            raise OutputNotEmptyError(
-                f"output folder is not empty: {folder.path}; choose another or replace its run with --force "
-                "(force=True)",
-                path=str(folder.path),
-            )
-        folder._probe()
-        folder._remove_earlier_run()
-        return folder
+        folder = Path(path)
+        _make(folder)
+        if not force and not _is_empty(folder):
+            if owner_of(folder) is not None:
+                cls(folder).close()  # raises, with the name of its owner
+            raise _not_empty(folder)
+        claimed = cls(folder)
+        try:
+            if not force and not _is_empty(folder):
+                raise _not_empty(folder)
+            claimed._remove_earlier_run()
+        except BaseException:
+            claimed.close()
+            raise
+        return claimed
+
+    def __enter__(self) -> OutputFolder:
+        """Itself."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Let other processes write the folder."""
+        self.close()
+
+    def close(self) -> None:
+        """Let other processes write the folder; what is written is on the disk."""
+        self._lock.release()
+
+    @contextmanager
+    def replacing(self) -> Iterator[Replacement]:
+        """Files that are replaced together at the end, or not at all where an error comes before it.
+
+        The manifest is written first: a reader finds either the files that it lists or none that fit.
+        """
+        files = Replacement(self)
+        try:
+            yield files
+            files.commit()
+        finally:
+            files.discard()
 
     @contextmanager
     def writing(self, name: str) -> Iterator[Path]:
-        """A temporary path that becomes ``name`` when all went well: no half-written files.
+        """A temporary path that becomes ``name`` when all went well.
 
         Raises
         ------
         OutputFolderError
-            The disk is full or gone.
+            The disk is full or gone, or ``name`` is there and no run wrote it.
         """
-        final = self.path / name
-        partial = final.with_name(f".partial-{final.name}")
-        with self.refusals(name):
-            try:
-                yield partial
-                partial.replace(final)
-            finally:  # whatever ended it, Ctrl-C included
-                partial.unlink(missing_ok=True)
+        with self.replacing() as files, files.writing(name) as path:
+            yield path
 
-    @contextmanager
-    def refusals(self, name: str) -> Iterator[None]:
-        """What the disk refuses becomes an :class:`OutputFolderError` about ``name``."""
+    def check_replaceable(self, name: str) -> None:
+        """Raise :class:`OutputNotEmptyError` where ``name`` is a link, or a file that no run wrote."""
+        file = self.path / name
+        parent = file.parent
+        if exists(parent) and not is_real_folder(parent) and parent != self.path:
+            raise OutputFolderError(f"cannot write {file}: {parent} is not a folder itself", path=str(file))
+        listed = {} if self.manifest is None else self.manifest.files
+        if exists(file) and not (name in listed and is_regular(file)):
+            raise _foreign(file)
+
+    def expect_checkpoint(self, names: tuple[str, ...]) -> None:
+        """Say in the manifest which files the checkpoint will have, before they are there."""
+        manifest = self.manifest or Manifest()
+        folder = self.path / CHECKPOINT
+        if not exists(folder):
+            folder.mkdir()
+        elif not is_real_folder(folder):
+            raise OSError(f"{folder} is not a folder itself")
+        if not set(names) <= set(manifest.checkpoint):
+            self.write_manifest(Manifest(manifest.files, names))
+            sync_folder(self.path)
+
+    def write_manifest(self, manifest: Manifest) -> None:
+        """Replace ``manifest.json``."""
+        temporary = self.temporary(MANIFEST)
         try:
-            yield
-        except OSError as error:
-            if isinstance(error, OnOrbitError):
-                raise
-            file = self.path / name
-            raise OutputFolderError(
-                f"cannot write {file}: {error.strerror or error}", path=str(file)
-            ) from error
+            temporary.write_bytes(manifest.as_bytes())
+            sync(temporary)
+            temporary.replace(self.path / MANIFEST)
+        finally:
+            temporary.unlink(missing_ok=True)
+        self.manifest = manifest
+
+    def temporary(self, name: str) -> Path:
+        """A new file beside the others, for what becomes ``name``; after a kill the next owner removes it."""
+        path = self.path / f".partial-{self._lock.token}-{name.replace('/', '-')}"
+        create(path)
+        return path
 
     def discard(self) -> None:
         """Remove what a run that never began has written."""
-        (self.path / "scenario.yaml").unlink(missing_ok=True)
+        for name in (SCENARIO, MANIFEST):
+            remove(self.path / name)
 
-    def _make(self) -> None:
-        try:
-            if self.path.exists() and not self.path.is_dir():
-                raise _is_a_file(self.path)
-            self.path.mkdir(parents=True, exist_ok=True)
-            next(self.path.iterdir(), None)
-            figures = self.path / FIGURES
-            if figures.exists() and not figures.is_dir():
-                raise _is_a_file(figures)
-        except OSError as error:
-            if isinstance(error, OutputFolderError):
-                raise
-            raise self._not_writable(error) from error
+    def discard_checkpoint(self) -> None:
+        """Remove the checkpoint of a run that ended; one that cannot be removed does no harm."""
+        with suppress(OSError):
+            self._remove_checkpoint()
 
-    def _probe(self) -> None:
-        try:
-            with tempfile.TemporaryFile(dir=self.path) as probe:
-                probe.write(b"can be written")
-        except OSError as error:
-            raise self._not_writable(error) from error
+    def _remove_checkpoint(self) -> None:
+        """The files that the manifest names, and the folder if it is empty then."""
+        folder = self.path / CHECKPOINT
+        if self.manifest is None or not is_real_folder(folder):
+            return
+        for name in self.manifest.checkpoint:  # the state first: rows alone count nothing
+            remove(folder / name)
+        if not any(folder.iterdir()):
+            folder.rmdir()
+
+    def _remove_temporaries(self) -> None:
+        """Those of the process that was killed while it held the lock."""
+        previous = self._lock.previous
+        if previous is None or not previous.token.isalnum():
+            return
+        for file in self.path.glob(f".partial-{previous.token}-*"):
+            remove(file)
 
     def _remove_earlier_run(self) -> None:
-        """Only what a run writes."""
-        figures, checkpoint = self.path / FIGURES, self.path / CHECKPOINT
-        rows = [
-            checkpoint / "state.json",
-            *checkpoint.glob("*.f64"),
-        ]  # the state first: rows alone count nothing
-        for file in [
-            *(self.path / name for name in OURS),
-            *figures.glob("*.png"),
-            *figures.glob("*.pdf"),
-            *rows,
-        ]:
-            try:
-                file.unlink(missing_ok=True)
-            except OSError as error:
-                raise self._not_writable(error) from error
-
-    def _not_writable(self, error: OSError) -> OutputNotWritableError:
-        return OutputNotWritableError(
-            f"output folder cannot be written: {self.path}: {error.strerror or error}", path=str(self.path)
-        )
+        """Only what the manifest lists, after a look at all that a run will write."""
+        for name in RESULTS:
+            self.check_replaceable(name)
+        for name in (FIGURES, CHECKPOINT):
+            folder = self.path / name
+            if exists(folder) and not is_real_folder(folder):
+                raise _foreign(folder)
+        manifest = self.manifest or Manifest()
+        checkpoint = self.path / CHECKPOINT
+        if exists(checkpoint) and any(file.name not in manifest.checkpoint for file in checkpoint.iterdir()):
+            raise _foreign(checkpoint)
+        try:
+            self._remove_checkpoint()
+            for name in sorted(manifest.files, key=_removal_order):
+                remove(self.path / name)
+            remove(self.path / MANIFEST)
+        except OSError as error:
+            raise _not_writable(self.path, error) from error
+        self.manifest = Manifest()
 
 
-def _is_a_file(path: Path) -> OutputNotWritableError:
-    return OutputNotWritableError(f"output path is a file, not a folder: {path}", path=str(path))
+def _make(folder: Path) -> None:
+    try:
+        if folder.exists() and not folder.is_dir():
+            raise OutputNotWritableError(f"output path is a file, not a folder: {folder}", path=str(folder))
+        folder.mkdir(parents=True, exist_ok=True)
+        next(folder.iterdir(), None)
+    except OSError as error:
+        if isinstance(error, OutputFolderError):
+            raise
+        raise _not_writable(folder, error) from error
+
+
+def _is_empty(folder: Path) -> bool:
+    """But for the lock of a process that was killed, and what it had begun to write."""
+    return not any(file.name != LOCK and not file.name.startswith(".partial-") for file in folder.iterdir())
+
+
+def _removal_order(name: str) -> int:
+    return RESULTS.index(name) if name in RESULTS else len(RESULTS)
+
+
+def _not_empty(folder: Path) -> OutputNotEmptyError:
+    return OutputNotEmptyError(
+        f"output folder is not empty: {folder}; choose another or replace its run with --force (force=True)",
+        path=str(folder),
+    )
+
+
+def _foreign(file: Path) -> OutputNotEmptyError:
+    return OutputNotEmptyError(
+        f"cannot write {file}: it is there, and {MANIFEST} does not list it as a file that a run wrote; "
+        "move it away or choose another folder",
+        path=str(file),
+    )
+
+
+def _not_writable(folder: Path, error: OSError) -> OutputNotWritableError:
+    return OutputNotWritableError(
+        f"output folder cannot be written: {folder}: {error.strerror or error}", path=str(folder)
+    )

@@ -1,54 +1,165 @@
-"""A run read back from its folder."""
+"""A run read back from its folder, each file checked against the manifest."""
 
 from __future__ import annotations
 
 import json
-import zipfile
-from collections.abc import Mapping
-from dataclasses import dataclass
+import os
+import textwrap
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
-import numpy as np
-
-from onorbit_rs.exceptions import NotFoundError, ReadError
+from onorbit_rs.exceptions import IntegrityError, NotFoundError, OnOrbitError, ReadError
+from onorbit_rs.files import open_to_read, read_bounded
 from onorbit_rs.output.checkpoint import has_checkpoint
+from onorbit_rs.output.checks import CHECKS, GATE
+from onorbit_rs.output.lock import owner_of
+from onorbit_rs.output.manifest import MANIFEST, SCENARIO, SUMMARY, TRACE, read_manifest
+from onorbit_rs.output.npz import read_arrays
+from onorbit_rs.output.saved_trace import SavedTrace, check_shapes
 from onorbit_rs.printable import shell_word
+from onorbit_rs.scenario import load
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Trace
+    from onorbit_rs.scenario import Scenario
+
+_MOST = 16_000_000
+"""Bytes of a summary."""
 
 
-@dataclass(frozen=True)
-class SavedTrace:
-    """Columns under their names, as a :class:`onorbit_rs.Trace` has them."""
+class SavedRun:
+    """The files of one run in a folder, each checked against the manifest that was there at first."""
 
-    arrays: Mapping[str, Any]
+    def __init__(self, folder: Path) -> None:
+        """Read the manifest; a folder of an earlier version has none and is read with a warning.
 
-    def __getattr__(self, name: str) -> Any:
-        """A column; None where the run had nothing for it."""
-        if name in _COLUMNS:
-            return self.arrays.get(name)
-        if name.startswith("__") or name == "arrays" or name not in self.arrays:
-            raise AttributeError(f"the trace has no column {name!r}")
-        return self.arrays[name]
+        Raises
+        ------
+        NotFoundError
+            No such folder.
+        ReadError
+            The manifest is damaged.
+        """
+        self.folder = folder
+        if not folder.is_dir():
+            what = "this is a file, not the folder of a run" if folder.is_file() else "no such folder"
+            raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
+        self._manifest = read_manifest(folder)
+        self._has_warned = False
 
-    def columns(self) -> list[str]:
-        """Names of the columns."""
-        return [name for name in self.arrays if not name.startswith(("tracking_", "wrench_", "rereferenced"))]
+    @contextmanager
+    def opened(self, name: str) -> Iterator[BinaryIO]:
+        """A file as the run wrote it, open for reading.
 
-    @property
-    def tracking(self) -> dict[str, Any]:
-        """Errors of each controller."""
-        return self._named("tracking_")
+        Raises
+        ------
+        IntegrityError
+            It was changed since.
+        FileNotFoundError, OSError
+            It is not there, or cannot be read.
+        """
+        if self._manifest is None:
+            with open_to_read(self.folder / name) as stream:
+                yield stream
+            self._warn()
+            return
+        try:
+            with self._manifest.opened(self.folder, name) as stream:
+                yield stream
+        except IntegrityError as error:
+            owner = owner_of(self.folder)
+            if owner is None or owner.pid == os.getpid():
+                raise
+            file = self.folder / name
+            message = f"{file} is being replaced: {owner} writes this folder; try again when it has ended"
+            raise ReadError(message, path=str(file), kind=name) from error
 
-    @property
-    def wrenches(self) -> dict[str, Any]:
-        """(T, bodies, 6) of each effect."""
-        return self._named("wrench_")
+    def check(self, name: str) -> None:
+        """Raise :class:`IntegrityError` where a file was changed since, ReadError where it is gone."""
+        try:
+            with self.opened(name):
+                pass
+        except OSError as error:
+            if isinstance(error, OnOrbitError):
+                raise
+            raise _unreadable(self.folder / name, name, error) from error
 
-    def _named(self, kind: str) -> dict[str, Any]:
-        return {name.removeprefix(kind): rows for name, rows in self.arrays.items() if name.startswith(kind)}
+    def summary(self) -> dict[str, Any]:
+        """``summary.json``; raises as :func:`read_summary`."""
+        file = self.folder / SUMMARY
+        try:
+            with self.opened(SUMMARY) as stream:
+                return _checked(_from_json(read_bounded(stream, _MOST)))
+        except OnOrbitError:
+            raise
+        except FileNotFoundError as error:
+            what = f"no run in this folder (no {SUMMARY}): {self.folder}{_way_out(self.folder)}"
+            raise NotFoundError(what, path=str(self.folder), kind="run") from error
+        except OSError as error:
+            raise _unreadable(file, "summary", error) from error
+        except (ValueError, TypeError) as error:
+            here = shell_word(self.folder)
+            again = f"run it again: onorbit run {shell_word(self.folder / SCENARIO)} --out {here} --force"
+            raise ReadError(
+                f"cannot read {file}: {error}; {again}", path=str(file), kind="summary"
+            ) from error
+
+    def trace(self) -> Trace:
+        """``trace.npz``; raises as :func:`read_trace`."""
+        file = self.folder / TRACE
+        try:
+            with self.opened(TRACE) as stream:
+                arrays = read_arrays(stream)
+            if not {"time", "q", "v", "momentum"} <= set(arrays):
+                raise ValueError("columns are missing")
+            check_shapes(arrays)
+        except OnOrbitError:
+            raise
+        except FileNotFoundError as error:
+            message = f"no trace in this folder: {file}{_way_out(self.folder)}"
+            raise NotFoundError(message, path=str(file), kind="trace") from error
+        except (OSError, ValueError, TypeError, AttributeError) as error:
+            raise _unreadable(file, "trace", error) from error
+        return cast("Trace", SavedTrace(arrays))
+
+    def scenario_text(self) -> str:
+        """``scenario.yaml``.
+
+        Raises
+        ------
+        NotFoundError, ReadError
+            It is not there, cannot be read, or was changed since.
+        """
+        file = self.folder / SCENARIO
+        try:
+            with self.opened(SCENARIO) as stream:
+                return stream.read().decode("utf-8")
+        except OnOrbitError:
+            raise
+        except FileNotFoundError as error:
+            message = f"no scenario in this folder: {file}"
+            raise NotFoundError(message, path=str(file), kind="scenario") from error
+        except (OSError, ValueError) as error:
+            raise _unreadable(file, "scenario", error) from error
+
+    def scenario(self) -> Scenario:
+        """The scenario of the run; raises as :meth:`scenario_text`, and :class:`ScenarioError`."""
+        self.scenario_text()
+        scenario = load(self.folder / SCENARIO)
+        self.check(SCENARIO)  # nobody replaced it meanwhile
+        return scenario
+
+    def _warn(self) -> None:
+        if not self._has_warned:
+            self._has_warned = True
+            warnings.warn(
+                f"{self.folder} has no {MANIFEST}, as folders of earlier versions: whether its files were "
+                "changed since the run wrote them is not known",
+                UserWarning, stacklevel=2,
+            )  # fmt: skip
 
 
 def read_trace(folder: Path) -> Trace:
@@ -56,57 +167,29 @@ def read_trace(folder: Path) -> Trace:
 
     Raises
     ------
-    NotFoundError, ReadError
-        No such file, or not one of ours.
+    NotFoundError
+        No such file.
+    IntegrityError
+        It was changed since the run wrote it.
+    ReadError
+        It is not the trace of a run.
     """
-    file = folder / "trace.npz"
-    try:
-        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in stored.files}
-        if not {"time", "q", "v", "momentum"} <= set(arrays):
-            raise ValueError("columns are missing")
-        _check_shapes(arrays)
-    except FileNotFoundError as error:
-        message = f"no trace in this folder: {file}{_way_out(folder)}"
-        raise NotFoundError(message, path=str(file), kind="trace") from error
-    except (ValueError, EOFError, OSError, TypeError, AttributeError, zipfile.BadZipFile) as error:
-        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="trace") from error
-    return cast("Trace", SavedTrace(arrays))
+    return SavedRun(folder).trace()
+
+
+def _unreadable(file: Path, kind: str, error: Exception) -> ReadError:
+    reason = getattr(error, "strerror", None) or error
+    return ReadError(f"cannot read {file}: {reason}", path=str(file), kind=kind)
 
 
 def _way_out(folder: Path) -> str:
-    """How to go on with a run that was killed."""
+    """Who is writing the run, or how to go on with one that was killed."""
+    owner = owner_of(folder)
+    if owner is not None and owner.pid != os.getpid():
+        return f"; {owner} is writing it"
     if not has_checkpoint(folder):
         return ""
     return f"; its run was stopped before its end, go on with: onorbit resume {shell_word(folder)}"
-
-
-def _check_shapes(arrays: Mapping[str, Any]) -> None:
-    """Every column has a row per instant, and is as wide as the robot: (7 + n) and (6 + n) for n joints."""
-    rows, n = np.shape(arrays["time"]), max((np.shape(arrays["q"]) or (7,))[-1] - 7, 0)
-    if len(rows) != 1 or rows[0] == 0:
-        raise ValueError(f"column 'time' has shape {rows}, expected (T,) with a row at least")
-    widths = {name: width for name, width in _widths(n).items() if name in arrays}
-    for name, values in arrays.items():
-        if name.startswith("rereferenced"):
-            continue
-        shape, expected = np.shape(values), (*rows, *widths.get(name, np.shape(values)[1:]))
-        if shape != expected:
-            raise ValueError(f"column {name!r} has shape {shape}, expected {expected}")
-
-
-def _widths(n: int) -> dict[str, tuple[int, ...]]:
-    """Shapes of a row of the columns, for ``n`` joints."""
-    three, six, pose = (3,), (6,), (4, 4)
-    return {
-        "q": (7 + n,), "v": (6 + n,), "acceleration": (6 + n,), "tau": (n,), "momentum": six, "impulse": six,
-        "kinetic_energy": (), "work": (), "dissipated": (), "center_of_mass": three,
-        "tool_pose": pose, "reference_pose": pose, "position_error": three, "attitude_error": three,
-        "position_eci": three, "velocity_eci": three, "reference_residual": three,
-    }  # fmt: skip
-
-
-_COLUMNS = ("time", *_widths(0))
 
 
 def read_summary(folder: Path) -> dict[str, Any]:
@@ -116,26 +199,17 @@ def read_summary(folder: Path) -> dict[str, Any]:
     ------
     NotFoundError
         No such folder, or no run in it.
+    IntegrityError
+        It was changed since the run wrote it.
     ReadError
         It cannot be read.
     """
-    file = folder / "summary.json"
     try:
-        is_there = file.is_file()
+        return SavedRun(folder).summary()
     except OSError as error:  # a name too long
-        raise ReadError(f"cannot read {file}: {error.strerror}", path=str(file), kind="summary") from error
-    if not is_there:
-        what = "no run in this folder (no summary.json)" if folder.is_dir() else "no such folder"
-        what = "this is a file, not the folder of a run" if folder.is_file() else what
-        raise NotFoundError(f"{what}: {folder}{_way_out(folder)}", path=str(folder), kind="run")
-    try:
-        return _checked(json.loads(file.read_text(encoding="utf-8")))
-    except OSError as error:
-        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="summary") from error
-    except (ValueError, TypeError) as error:
-        here = shell_word(folder)
-        again = f"run it again: onorbit run {shell_word(folder / 'scenario.yaml')} --out {here} --force"
-        raise ReadError(f"cannot read {file}: {error}; {again}", path=str(file), kind="summary") from error
+        if isinstance(error, OnOrbitError):
+            raise
+        raise _unreadable(folder / SUMMARY, "summary", error) from error
 
 
 _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
@@ -149,7 +223,24 @@ _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
 def _checked(summary: Any) -> dict[str, Any]:
     if not isinstance(summary, dict):
         raise TypeError(f"it holds a {type(summary).__name__}, not a mapping")
+    for name, value in summary.items():
+        if name in CHECKS or name.startswith(GATE):
+            if not isinstance(value, (int, float, type(None))):
+                raise TypeError(f"{name} is {_brief(value)}, expected a number")
+        elif not isinstance(value, (str, int, float, type(None))):
+            raise TypeError(f"{name} is {_brief(value)}, expected a number, a word or null")
     for name, (kind, words) in _KINDS.items():
         if name in summary and not isinstance(summary[name], kind):
-            raise TypeError(f"{name} is {summary[name]!r}, expected {words}")
+            raise TypeError(f"{name} is {_brief(summary[name])}, expected {words}")
     return summary
+
+
+def _brief(value: Any) -> str:
+    return textwrap.shorten(repr(value), 60)
+
+
+def _from_json(text: bytes) -> Any:
+    try:
+        return json.loads(text)
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class Relay:
     """Hands every checkpoint to a viewer, and to ``writer`` each ``every_s`` what came since then."""
 
-    def __init__(self, live: LiveView, writer: Callable[[Checkpoint], None] | None, every_s: float) -> None:
+    def __init__(self, live: LiveView, writer: Callable[[Checkpoint], object] | None, every_s: float) -> None:
         """Nothing has come yet."""
         self._live, self._writer, self._every_s = live, writer, every_s
         self._waiting: list[Checkpoint] = []
@@ -40,6 +40,9 @@ class Relay:
         columns = {
             name: np.concatenate([part.columns[name] for part in self._waiting]) for name in last.columns
         }
-        self._waiting.clear()
         self._last = time.monotonic()
-        self._writer(_core.Checkpoint(last.state, columns, wall_s=last.wall_s))
+        whole = _core.Checkpoint(last.state, columns, wall_s=last.wall_s)
+        if self._writer(whole) is False:  # it could not be written: its rows come again with the next
+            self._waiting = [whole]
+        else:
+            self._waiting.clear()

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import warnings
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.exceptions import IntegrityError, OnOrbitError
+from onorbit_rs.output.read import SavedRun
 from onorbit_rs.robots.fingerprint import is_another
-from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import make_robot
 
 if TYPE_CHECKING:
@@ -22,12 +21,20 @@ def was_changed(model: Model, summary: dict[str, Any]) -> bool:
     return is_another(model, summary.get("robot_fingerprint"))
 
 
-def remark_on_robot(folder: Path, summary: dict[str, Any]) -> str | None:
-    """What is to be said where the robot of a folder's run was changed since, or is gone; None where not."""
+def remark_on_robot(saved: SavedRun, summary: dict[str, Any]) -> str | None:
+    """What is to be said where the robot of a folder's run was changed since, or is gone; None where not.
+
+    Raises
+    ------
+    IntegrityError
+        The folder's scenario was changed since the run.
+    """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what the file is like was told when it ran
-            model = make_robot(load(folder / "scenario.yaml"))
+            model = make_robot(saved.scenario())
+    except IntegrityError:
+        raise
     except OnOrbitError as error:
         return f"the robot of the run cannot be read again: {error}"
     return CHANGED if was_changed(model, summary) else None

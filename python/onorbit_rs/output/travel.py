@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.output.read import SavedTrace
+from onorbit_rs.output.saved_trace import SavedTrace
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Trace

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import yaml
 
-from onorbit_rs.output.folder import FIGURES, OutputFolder
+from onorbit_rs.output.folder import OutputFolder
+from onorbit_rs.output.manifest import FIGURES, RECORDING, SCENARIO, SUMMARY, TRACE
+from onorbit_rs.output.replacement import Replacement
 from onorbit_rs.output.travel import arrays_of
 
 if TYPE_CHECKING:
@@ -24,7 +26,7 @@ def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
     """``scenario.yaml``: every default written out, SI; it runs again from where it lies."""
     source = scenario.file or "Python"
     header = f"# resolved by onorbit_rs from {source}; run it again with: onorbit run scenario.yaml\n"
-    with folder.writing("scenario.yaml") as path:
+    with folder.writing(SCENARIO) as path:
         text = yaml.safe_dump(
             with_absolute_paths(scenario),
             sort_keys=False,
@@ -35,18 +37,18 @@ def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
         path.write_text(header + text, encoding="utf-8")
 
 
-def write_trace(folder: OutputFolder, trace: Trace) -> None:
+def write_trace(files: Replacement, trace: Trace) -> None:
     """``trace.npz``: the columns of the trace under their own names, and the errors of each controller."""
-    with folder.writing("trace.npz") as path, path.open("wb") as stream:
+    with files.writing(TRACE) as path, path.open("wb") as stream:
         columns = arrays_of(trace)
         if len(trace.rereferenced):
             columns["rereferenced"] = np.asarray(trace.rereferenced)
         np.savez(stream, allow_pickle=False, **columns)
 
 
-def write_summary(folder: OutputFolder, summary: dict[str, Any]) -> None:
+def write_summary(files: Replacement, summary: dict[str, Any]) -> None:
     """``summary.json``."""
-    with folder.writing("summary.json") as path:
+    with files.writing(SUMMARY) as path:
         path.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
 
@@ -64,10 +66,13 @@ def write_pictures(
 
     if len(trace.time) > 1:
         subject = figures.subject_of(trace, built.scenario, built.model, built.orbit, built.earth)
-        with folder.refusals(FIGURES):
-            figures.save_all(subject, folder.path / FIGURES, tell=lambda name: tell(f"drawing {name}"))
+        with folder.replacing() as files:
+            for drawing in figures.drawings(subject):
+                tell(f"drawing {drawing.name}")
+                with files.writing(f"{FIGURES}/{drawing.name}.png") as path:
+                    path.write_bytes(figures.as_bytes(drawing.draw(), "png"))
     tell("writing the recording")
-    with folder.writing("run.rrd") as path:
+    with folder.writing(RECORDING) as path:
         setting = viewer.Setting.of(built)
         viewer.write_recording(path, trace, setting, notes=viewer.notes(summary, built.scenario))
 

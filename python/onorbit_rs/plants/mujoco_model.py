@@ -119,6 +119,13 @@ def _hang(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, enfo
     moving = body.add_joint()
     moving.name, moving.axis = joint.name, np.array(joint.axis)
     moving.type = kinds.mjJNT_HINGE if joint.kind == "revolute" else kinds.mjJNT_SLIDE
+    if joint.static_friction > joint.friction:
+        raise ModelError(
+            f"joint '{joint.name}' has a static friction of {joint.static_friction:g} above its kinetic "
+            f"friction of {joint.friction:g}: MuJoCo has one friction for both; make them equal, or use "
+            "plant: native",
+            joint=joint.name,
+        )
     moving.armature, moving.frictionloss = joint.rotor_inertia, joint.friction
     moving.damping = np.array([joint.damping, 0.0, 0.0])
     moving.solref_friction = np.array([2.0 * time_step, 1.0])

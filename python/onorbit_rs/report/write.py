@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs import _core
-from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError
-from onorbit_rs.output.folder import FIGURES, REPORT, OutputFolder
-from onorbit_rs.output.read import read_summary, read_trace
+from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.output.folder import OutputFolder
+from onorbit_rs.output.manifest import FIGURES, REPORT
+from onorbit_rs.output.read import SavedRun, read_summary
+from onorbit_rs.output.replacement import Replacement
 from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.report.page import Picture, page
-from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import make_robot
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.make_orbit import make_orbit
@@ -53,20 +54,31 @@ def write_report(
     ------
     NotFoundError, ReadError
         No run in this folder, or its files cannot be read.
+    IntegrityError
+        They were changed since the run wrote them.
     OutputFolderError
-        The page cannot be written.
+        The page cannot be written, or another process writes the folder.
     """
-    out = OutputFolder(Path(folder))
-    summary = read_summary(out.path)
-    text, scenario = _scenario(out.path / "scenario.yaml")
+    path = Path(folder)
+    read_summary(path)  # a folder without a run is left as it is
+    with OutputFolder(path) as out, out.replacing() as files:
+        out.check_replaceable(REPORT)
+        return _write_report(out.path, files, pdf=pdf, tell=tell)
+
+
+def _write_report(folder: Path, files: Replacement, *, pdf: bool, tell: Callable[[str, float], None]) -> Path:
+    """The page and its figures; returns where the page will be."""
+    saved = SavedRun(folder)
+    summary = saved.summary()
+    text, scenario = saved.scenario_text(), saved.scenario()
     remarks: list[str] = []
     tell("reading the trace", 0.0)
-    subject = _subject(out.path, scenario, summary, remarks)
+    subject = _subject(saved, scenario, summary, remarks)
     pictures: list[Picture] = []
     if summary.get("status") == "diverged":
         remarks.append("the run diverged: its numbers make no picture")
     elif len(subject.trace.time) > 1:
-        pictures = list(_pictures(subject, out, pdf, tell))
+        pictures = list(_pictures(subject, files, pdf, tell))
     tell("writing the page", 1.0)
     version = str(_core.build_info()["version"])
     content = page(
@@ -78,26 +90,16 @@ def write_report(
         again="onorbit run scenario.yaml",
         version=version,
     )
-    with out.writing(REPORT) as file:
+    with files.writing(REPORT) as file:
         file.write_text(content, encoding="utf-8")
-    return out.path / REPORT
+    return folder / REPORT
 
 
-def _scenario(file: Path) -> tuple[str, Scenario]:
-    try:
-        text = file.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        raise NotFoundError(f"no scenario in this folder: {file}", path=str(file), kind="scenario") from error
-    except (OSError, ValueError) as error:
-        raise ReadError(f"cannot read {file}: {error}", path=str(file), kind="scenario") from error
-    return text, load(file)
-
-
-def _subject(folder: Path, scenario: Scenario, summary: dict[str, Any], remarks: list[str]) -> Subject:
+def _subject(saved: SavedRun, scenario: Scenario, summary: dict[str, Any], remarks: list[str]) -> Subject:
     """What there is to draw; a robot, an orbit or an Earth whose files are gone or changed is a remark."""
     from onorbit_rs import figures
 
-    trace = read_trace(folder)
+    trace, folder = saved.trace(), saved.folder
     model = orbit = earth = None
     with _remarked(remarks, "the robot could not be read, figures that show it are left out"):
         model = make_robot(scenario)
@@ -119,13 +121,10 @@ def _remarked(remarks: list[str], what: str) -> Iterator[None]:
 
 
 def _pictures(
-    subject: Subject, out: OutputFolder, pdf: bool, tell: Callable[[str, float], None]
+    subject: Subject, files: Replacement, pdf: bool, tell: Callable[[str, float], None]
 ) -> Iterator[Picture]:
     from onorbit_rs import figures
 
-    if pdf:
-        with out.refusals(FIGURES):
-            (out.path / FIGURES).mkdir(exist_ok=True)
     drawings = list(figures.drawings(subject))
     for number, drawing in enumerate(drawings):
         tell(f"drawing {drawing.name}, {number + 1} of {len(drawings)}", number / len(drawings))
@@ -134,7 +133,7 @@ def _pictures(
         if len(content) > LARGEST_SVG:
             kind, content = "png", figures.as_bytes(figure, "png")
         if pdf:
-            with out.writing(f"{FIGURES}/{drawing.name}.pdf") as file:
+            with files.writing(f"{FIGURES}/{drawing.name}.pdf") as file:
                 file.write_bytes(figures.as_bytes(figure, "pdf"))
         is_wide = figure.get_figwidth() > figures.COLUMN
         yield Picture(drawing.name, drawing.caption, kind, content, is_wide)

@@ -30,7 +30,8 @@ def fingerprint(model: Model) -> str:
         "joints": [
             (joint.name, joint.kind, joint.parent, joint.child, _rounded(joint.pose), _rounded(joint.axis),
              *map(_exact, (joint.lower, joint.upper, joint.velocity, joint.effort, joint.damping,
-                           joint.friction, joint.rotor_inertia)))
+                           joint.friction, joint.rotor_inertia)),
+             *([_exact(joint.static_friction)] if joint.static_friction != joint.friction else []))
             for joint in model.joints
         ],
         "frames": sorted((frame.name, frame.body, _rounded(frame.pose)) for frame in model.frames),

@@ -36,7 +36,7 @@ class ComputedTorqueController(Part):
     compensate_environment: bool = True
     """Whether the controller knows the wrenches of the environment."""
     compensate_friction: bool = True
-    """Whether the controller knows the damping and friction of the joints."""
+    """Whether damping and Coulomb friction of the joints are compensated, at rest too."""
 
 
 class JointComputedTorqueController(Part):
@@ -52,7 +52,7 @@ class JointComputedTorqueController(Part):
 
 
 class JointPidController(Part):
-    """A PID for each joint, after the interfaces of ROS Control. Gains are bare numbers, SI."""
+    """A PID for each joint, after the interfaces of ROS Control; ignores friction. Gains: bare SI numbers."""
 
     other_words: ClassVar = {"kp": "p", "ki": "i", "kd": "d", "i_clamp": "i_limit"}
 
@@ -80,7 +80,7 @@ class JointPidController(Part):
 
 
 class ComplianceController(Part):
-    """The tool on a spring and a damper; nothing weighs anything, so nothing is compensated."""
+    """The tool on a spring and a damper; nothing is compensated, not friction either."""
 
     kind: Literal["compliance"] = "compliance"
     stiffness: SpringGain

@@ -56,7 +56,7 @@ def locate(source: str | os.PathLike[str]) -> Path:
     if not os.fspath(source):
         raise NotFoundError("no scenario is named: the name is empty", path="", kind="scenario")
     path = Path(source)
-    if path.is_file() or (path.is_dir() and path.name not in scenarios.names()):
+    if path.is_file() or (path.exists() and path.name not in scenarios.names()):
         return path
     name = os.fspath(source)
     if name in scenarios.names():

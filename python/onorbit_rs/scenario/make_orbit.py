@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.reading import read_text
 from onorbit_rs.scenario.orbit import ConicOrbit, NumericalOrbit
 from onorbit_rs.scenario.path import CustomPathOrbit, FixedFrameOrbit, Sgp4Orbit
 from onorbit_rs.scenario.path_file import GROUPS, read_points, two_lines
 from onorbit_rs.scenario.start import quaternion_of
-from onorbit_rs.scenario.table import read_text
 
 
 def make_orbit(

@@ -1,4 +1,4 @@
-"""Small text files, and columns of numbers from a CSV with a header."""
+"""Columns of numbers from a CSV with a header."""
 
 from __future__ import annotations
 
@@ -9,22 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.exceptions import NotFoundError, ReadError
+from onorbit_rs.exceptions import ReadError
 from onorbit_rs.names import did_you_mean
+from onorbit_rs.reading import LARGEST_TABLE, read_text
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-
-def read_text(path: Path) -> str:
-    """A small text file; raises ``NotFoundError`` or ``ReadError``."""
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise NotFoundError(f"no such file: {path}", path=str(path), kind="file") from None
-    except (OSError, UnicodeDecodeError) as error:
-        why = "is no UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
-        raise ReadError(f"{path} cannot be read: {why}", path=str(path), kind="file") from None
 
 
 def read_table(
@@ -40,7 +30,7 @@ def read_table(
         A needed group or a part of another is missing, a column is unknown or named twice, a cell is no
         number; says the line.
     """
-    reader = csv.reader(read_text(path).splitlines())
+    reader = csv.reader(read_text(path, LARGEST_TABLE).splitlines())
     rows = [(reader.line_num, row) for row in reader if _is_filled(row)]
     top, header = rows[0] if rows else (1, [])
     header = [name.strip() for name in header]

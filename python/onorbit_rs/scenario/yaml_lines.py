@@ -11,7 +11,8 @@ from typing import Any
 
 import yaml
 
-from onorbit_rs.exceptions import NotFoundError, ReadError, ScenarioError
+from onorbit_rs.exceptions import ScenarioError
+from onorbit_rs.reading import read_head
 from onorbit_rs.scenario.place import scenario_error
 
 Location = tuple[str | int, ...]
@@ -51,7 +52,7 @@ def read_yaml(path: Path) -> tuple[Any, Lines]:
     Raises
     ------
     NotFoundError, ReadError
-        No such file; a folder or no permission.
+        No such file; a folder, a pipe, a device or no permission.
     ScenarioError
         Binary, too large, not UTF-8 or not YAML; carries ``file`` and ``line``.
     """
@@ -119,15 +120,7 @@ class _Walk:
 
 
 def _read_text(path: Path) -> str:
-    if not path.exists():
-        raise NotFoundError(f"no such file: {path}", path=str(path), kind="scenario")
-    if path.is_dir():
-        raise ReadError(f"{path} is a folder, not a scenario file", path=str(path), kind="scenario")
-    try:
-        with path.open("rb") as stream:
-            raw = stream.read(MAX_BYTES + 1)
-    except OSError as error:
-        raise ReadError(f"cannot read {path}: {error.strerror}", path=str(path), kind="scenario") from error
+    raw = read_head(path, MAX_BYTES + 1, "scenario")
     if len(raw) > MAX_BYTES:
         raise _at(path, None, f"larger than {MAX_BYTES} bytes: not a scenario")
     try:

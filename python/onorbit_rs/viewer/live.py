@@ -19,6 +19,7 @@ from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.scene import send_trails
 from onorbit_rs.viewer.screen import has_screen, open_viewer
 from onorbit_rs.viewer.series import ANGLES, Series, send_series, series_of
+from onorbit_rs.viewer.streams import release_streams
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -68,6 +69,10 @@ class LiveView:
                 self._say_goodbye()
         with self._trouble():
             self._recording.disconnect()
+        self._is_lost, self._arrows = True, None  # nothing is sent from here on
+        del self._recording
+        with self._trouble():
+            release_streams()
 
     def _say_goodbye(self) -> None:
         """Wait for the last rows to arrive; only here does rerun say that the viewer was closed."""

@@ -34,6 +34,7 @@ from onorbit_rs.viewer.scene import (
 )
 from onorbit_rs.viewer.series import Series, log_style, send_series, series_of
 from onorbit_rs.viewer.stage import Stage
+from onorbit_rs.viewer.streams import APPLICATION, release_streams, send_blueprint
 from onorbit_rs.viewer.targets import log_targets, send_targets
 
 if TYPE_CHECKING:
@@ -66,6 +67,15 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
     OSError
         The file cannot be written.
     """
+    try:
+        _encode(path, trace, setting, notes)
+    finally:
+        release_streams()
+    return path
+
+
+def _encode(path: Path, trace: Trace, setting: Setting, notes: str) -> None:
+    """Log all of the run into a stream of its own and write its bytes."""
     chosen = recorded_rows(len(trace.time))
     rows = Rows.of_trace(trace, slice(None) if len(chosen) == len(trace.time) else chosen)
     if len(chosen) < len(trace.time):
@@ -89,12 +99,11 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
         send_flight(recording, rows, setting, MOST_TRAIL_PIECES)
     Arrows(recording, setting, stage).send(rows)
     encoded.write_to(path)
-    return path
 
 
 def new_recording(setting: Setting) -> rr.RecordingStream:
     """Empty, on the time of the simulation alone: nothing here reads the wall clock."""
-    recording = rr.RecordingStream("onorbit", recording_id=uuid.uuid4(), send_properties=False)
+    recording = rr.RecordingStream(APPLICATION, recording_id=uuid.uuid4(), send_properties=False)
     recording.set_log_time_enabled(False)
     recording.set_log_tick_enabled(False)
     if setting.name:
@@ -115,7 +124,7 @@ def open_stage(
     """The layout and all that does not move, from the first rows."""
     stage = Stage.of(rows, setting)
     views = layout(rows, setting, stage, plots, duration_s, has_notes=bool(notes), is_live=is_live)
-    recording.send_blueprint(views)
+    send_blueprint(recording, views)
     put_in(recording, "world", WORLD)
     send_fixed_frames(recording, setting)
     log_robot(recording, setting)

@@ -16,7 +16,7 @@ from typing import IO
 from rerun.experimental import ViewerClient
 
 from onorbit_rs.exceptions import NotFoundError, ViewerError
-from onorbit_rs.output.folder import OutputFolder
+from onorbit_rs.files import replacing
 from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.screen import command_of, environment, free_port, reason, url_of
 
@@ -68,8 +68,8 @@ def take_screenshot(
         finally:
             viewer.kill()
             viewer.wait()
-    with OutputFolder(picture.parent).refusals(picture.name):
-        picture.write_bytes(image)
+    with replacing(picture) as file:
+        file.write_bytes(image)
     return picture
 
 

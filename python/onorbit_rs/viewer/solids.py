@@ -8,7 +8,9 @@ import warnings
 import numpy as np
 import rerun as rr
 
+from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.geometry import GREY, Shape
+from onorbit_rs.reading import LARGEST_MESH, read_bytes, read_head
 from onorbit_rs.rotations import quaternion_from_matrix
 
 MESHES = {
@@ -47,8 +49,8 @@ def _unit(shape: Shape) -> float:
     file = shape.filename
     if file is None or file.suffix.lower() != ".dae":
         return 1.0
-    with file.open("rb") as text:
-        found = re.search(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']([0-9.eE+-]+)", text.read(_HEAD_BYTES))
+    head = read_head(file, _HEAD_BYTES, "mesh")
+    found = re.search(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']([0-9.eE+-]+)", head)
     try:
         return float(found[1]) if found else 1.0
     except ValueError:
@@ -82,5 +84,10 @@ def _mesh(shape: Shape) -> rr.Asset3D | None:
             f"the mesh {file} of link {shape.link!r} is not drawn: the viewer reads {known}", stacklevel=2
         )
         return None
+    try:
+        content = read_bytes(file, LARGEST_MESH, "mesh")
+    except OnOrbitError as error:
+        warnings.warn(f"the mesh of link {shape.link!r} is not drawn: {error}", stacklevel=2)
+        return None
     color = None if shape.rgba == GREY else list(shape.rgba)
-    return rr.Asset3D(contents=file.read_bytes(), media_type=media_type, albedo_factor=color)
+    return rr.Asset3D(contents=content, media_type=media_type, albedo_factor=color)

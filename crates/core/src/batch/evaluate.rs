@@ -3,7 +3,7 @@
 use super::input::{InputError, Wrenches, check_finite, check_quaternions, check_shapes};
 use super::kernel::{Kernel, OUTPUTS};
 use super::space::{Call, Rows, RowsMut, Space};
-use super::threads::for_each;
+use super::threads::{Threads, for_each};
 use crate::model::Model;
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -52,19 +52,19 @@ impl Evaluator {
         if is_fine { Ok(()) } else { fault(&call, outputs) }
     }
 
-    /// Checks inputs and outputs and computes many states, on `threads` threads (all cores if `None`).
-    /// The bits do not depend on the number of threads.
+    /// Checks inputs and outputs and computes many states. The bits do not depend on the number of threads.
     ///
     /// # Errors
     /// [`InputError`] for the first fault in the order of the arguments; what the outputs hold then is of no use.
-    pub fn many(
+    pub fn many<'a>(
         kernel: Kernel,
         model: &Model,
         inputs: &[Rows<'_>],
         external: &[Wrenches<'_>],
         outputs: &mut [RowsMut<'_>],
-        threads: Option<usize>,
+        threads: impl Into<Threads<'a>>,
     ) -> Result<(), InputError> {
+        let threads = threads.into();
         let call = Call { kernel, model, inputs, external };
         check_shapes(&call, outputs)?;
         let is_fine = match InstructionSet::current() {
@@ -72,7 +72,7 @@ impl Evaluator {
             InstructionSet::Fused => all::<Lanes4>(&call, outputs, threads),
             InstructionSet::Wide => all::<Lanes8>(&call, outputs, threads),
         }?;
-        if is_fine { Ok(()) } else { fault(&call, outputs) }
+        if is_fine || threads.is_stopped() { Ok(()) } else { fault(&call, outputs) }
     }
 }
 
@@ -80,7 +80,7 @@ impl Evaluator {
 fn all<S: Real>(
     call: &Call<'_>,
     outputs: &mut [RowsMut<'_>],
-    threads: Option<usize>,
+    threads: Threads<'_>,
 ) -> Result<bool, InputError> {
     let (count, (widths, used)) = (call.count(), call.kernel.widths(call.model));
     let widths = &widths[..used];

@@ -1,7 +1,7 @@
 //! Ellipses by their elements, each at a time of its own.
 
 use super::input::{InputError, check_finite, check_whole};
-use super::threads::for_each;
+use super::threads::{Threads, for_each};
 use crate::orbit::kepler::ellipse_state;
 use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real};
 
@@ -15,13 +15,14 @@ const CHUNK: usize = 4096;
 ///
 /// # Errors
 /// [`InputError`]: lengths, numbers that are not finite, an ellipse that is none, no threads.
-pub fn kepler_states(
+pub fn kepler_states<'a>(
     elements: [&[f64]; 7],
     mu: f64,
     positions: &mut [f64],
     velocities: &mut [f64],
-    threads: Option<usize>,
+    threads: impl Into<Threads<'a>>,
 ) -> Result<(), InputError> {
+    let threads = threads.into();
     let count = positions.len() / 3;
     check_whole("positions", positions, 3)?;
     check(&elements, mu, count)?;
@@ -63,7 +64,7 @@ fn all<S: Real>(
     mu: f64,
     positions: &mut [f64],
     velocities: &mut [f64],
-    threads: Option<usize>,
+    threads: Threads<'_>,
 ) -> Result<(), InputError> {
     let rows = positions.chunks_mut(3 * CHUNK).zip(velocities.chunks_mut(3 * CHUNK));
     for_each(

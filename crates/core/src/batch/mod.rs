@@ -18,3 +18,4 @@ pub use kernel::Kernel;
 pub use propagate::{Times, propagate};
 pub use rollout::{Rollout, RolloutControl};
 pub use space::{Rows, RowsMut};
+pub use threads::Threads;

@@ -1,7 +1,7 @@
 //! Many orbits at many times.
 
 use super::input::{InputError, check_whole};
-use super::threads::for_each;
+use super::threads::{Threads, for_each};
 use crate::orbit::{Orbit, OrbitError, StateRows};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -14,20 +14,26 @@ pub enum Times<'a> {
     Each(&'a [f64]),
 }
 
+/// Instants of one orbit that are computed between two looks at whether to stop: a multiple of the SIMD lanes.
+const INSTANTS: usize = 4096;
+/// Steps of an integrated orbit between two such looks.
+const STEPS: usize = 16;
+
 /// Positions and velocities of `orbits`, (N, T, 3) row after row, m and m/s, each in the axes of its orbit.
 ///
-/// On `threads` threads (all cores if `None`); the bits do not depend on their number.
+/// The bits do not depend on the number of threads.
 ///
 /// # Errors
 /// [`InputError::NoThreads`], [`InputError::WrongLength`], [`InputError::Ragged`], and [`InputError::Orbit`] for the first orbit that is
 /// refused.
-pub fn propagate(
+pub fn propagate<'a>(
     orbits: &[Arc<dyn Orbit>],
     times: Times<'_>,
     positions: &mut [f64],
     velocities: &mut [f64],
-    threads: Option<usize>,
+    threads: impl Into<Threads<'a>>,
 ) -> Result<(), InputError> {
+    let threads = threads.into();
     let count = match times {
         Times::Common(times) => times.len(),
         Times::Each(times) => {
@@ -56,9 +62,7 @@ pub fn propagate(
                 Times::Common(times) => times,
                 Times::Each(times) => &times[index * count..][..count],
             };
-            let filled =
-                StateRows::new(count, positions, velocities).and_then(|rows| orbit.fill(instants, rows));
-            if let Err(error) = filled {
+            if let Err(error) = fill(&**orbit, instants, positions, velocities, threads) {
                 let mut first = first.lock().unwrap_or_else(PoisonError::into_inner);
                 if first.as_ref().is_none_or(|(known, _)| index < *known) {
                     *first = Some((index, error));
@@ -70,4 +74,23 @@ pub fn propagate(
         Some((orbit, source)) => Err(InputError::Orbit { orbit, source }),
         None => Ok(()),
     }
+}
+
+/// Fills the rows of one orbit until it is stopped.
+fn fill(
+    orbit: &dyn Orbit,
+    times: &[f64],
+    positions: &mut [f64],
+    velocities: &mut [f64],
+    threads: Threads<'_>,
+) -> Result<(), OrbitError> {
+    let rows = positions.chunks_mut(3 * INSTANTS).zip(velocities.chunks_mut(3 * INSTANTS));
+    for (times, (positions, velocities)) in times.chunks(INSTANTS).zip(rows) {
+        while !threads.is_stopped() && !orbit.prepare(times, STEPS) {}
+        if threads.is_stopped() {
+            return Ok(());
+        }
+        orbit.fill(times, StateRows::new(times.len(), positions, velocities)?)?;
+    }
+    Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::input::{InputError, check_finite, check_frame, check_quaternions, check_whole};
 use super::side_by_side::{Places, gather, scatter};
-use super::threads::for_each;
+use super::threads::{Threads, for_each};
 use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
 use crate::model::{Model, neutral};
 use crate::reference::TaskReference;
@@ -86,7 +86,7 @@ impl Rollout<'_> {
             return Err(InputError::Adaptive);
         }
         // joints that stick and slip do so each at its own time: one state after the other
-        let sticks = model.joints().iter().any(|joint| joint.friction > 0.0);
+        let sticks = model.has_friction();
         if let RolloutControl::ComputedTorque(law, reference) = self.control {
             check_frame(model, law.frame)?;
             if reference.needs_orbit() {
@@ -119,7 +119,7 @@ impl Rollout<'_> {
         let (q_rows, v_rows) = (S::LANES * self.rows() * model.nq(), S::LANES * self.rows() * model.nv());
         let diverged = AtomicUsize::new(count);
         for_each(
-            self.threads,
+            Threads { count: self.threads, stop: Some(self.stop) },
             q.chunks_mut(q_rows).zip(v.chunks_mut(v_rows)).enumerate(),
             || Lanes::<S>::new(self, model),
             |lanes, (group, (q, v))| {
@@ -236,6 +236,7 @@ impl<'a, S: Real> Lanes<'a, S> {
                 let is_relative = reference.is_relative_to_base();
                 let (q, v) = (&state.q, &state.v);
                 computed_torque(law, plant.model, data, q, v, &desired, is_relative, work, command);
+                work.ask(law, plant.contacts.asked_mut());
             }
         }
     }

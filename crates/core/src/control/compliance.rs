@@ -8,7 +8,8 @@ use crate::spatial::Motion;
 
 /// Cartesian impedance without shaping of the inertia: `τ = Jgᵀ (K e + D ė) − k N q̇`.
 ///
-/// Nothing weighs anything in orbit, so nothing is compensated. It is passive: joint torques work at the
+/// Nothing weighs anything in orbit, so nothing is compensated; nor is friction, which holds the tool off its
+/// goal where the spring pulls less than the joints' static friction. It is passive: joint torques work at the
 /// rate `τᵀ q̇`, so with the spring's energy `U = ½ eᵀ K e` and zero momentum (`ẋ = Jg q̇`), for a
 /// reference at rest
 /// `d/dt (T + U) = −ẋᵀ D ẋ − k |N q̇|² ≤ 0`. Relative to the base `ẋ = J q̇` whatever the momentum, and so

@@ -4,7 +4,7 @@ use super::error::ControlError;
 use super::gains::{check_matrix, check_numbers};
 use super::pseudo_inverse::PseudoInverse;
 use crate::dynamics::{Data, FreeFloating, base_relative_frame, free_floating_recursion};
-use crate::model::{Frame, JointProperties, Model};
+use crate::model::{Frame, Model};
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 
@@ -14,8 +14,9 @@ use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`,
 ///
 /// with the exact drift `d` of [`FreeFloating`], the attitude error by the logarithm on SO(3),
-/// `N` the null-space projector of `Jg`, `Q*` what the known external wrenches do and `f` what the
-/// joints' damping and friction take. Near a singularity `Jg⁺` gives up directions for its damping;
+/// `N` the null-space projector of `Jg`, `Q*` what the known external wrenches do and `f` the damping
+/// `b q̇` of the joints. Their Coulomb friction is compensated by the drives, which are told the
+/// acceleration `q̈` ([`ComputedTorqueWork::ask`]). Near a singularity `Jg⁺` gives up directions for its damping;
 /// `D` holds those, and `κ`, the mean of `Kd`'s diagonal, brakes them.
 #[derive(Clone, Debug)]
 pub struct ComputedTorque {
@@ -31,7 +32,8 @@ pub struct ComputedTorque {
     pub null_space_damping: f64,
     /// Whether the wrenches of the environment are known to the law and compensated.
     pub compensate_environment: bool,
-    /// Whether the joints' damping and Coulomb friction are known to the law and compensated.
+    /// Whether the joints' damping and Coulomb friction are known and compensated: the damping at control
+    /// ticks, Coulomb friction by the drives at every instant.
     pub compensate_friction: bool,
 }
 
@@ -61,6 +63,11 @@ impl ComputedTorque {
         (0..6).map(|i| self.kd[7 * i]).sum::<f64>() / 6.0
     }
 
+    /// The smallest entry of `Kp`'s diagonal, 1/s².
+    pub(super) fn softest(&self) -> f64 {
+        (0..6).map(|i| self.kp[7 * i]).fold(f64::INFINITY, f64::min)
+    }
+
     /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`.
     #[inline(always)]
     pub(super) fn command<S: Real>(&self, error: Motion<S>, lag: Motion<S>, desired: Motion<S>) -> Motion<S> {
@@ -84,6 +91,16 @@ impl ComputedTorque {
         }
         Ok(())
     }
+}
+
+/// Position error that a law leaves to a joint at rest, rad (m): a drive that broke it away for less would
+/// chatter at the goal.
+const AT_GOAL: f64 = 2e-8;
+
+/// The acceleration that a law with the gain `kp` (1/s²) asks a joint for, or zero where it is no more than an
+/// error of [`AT_GOAL`] calls for.
+pub(super) fn unless_at_goal(acceleration: f64, kp: f64) -> f64 {
+    if acceleration.abs() <= kp * AT_GOAL { 0.0 } else { acceleration }
 }
 
 /// A frame that the robot has.
@@ -122,6 +139,14 @@ impl<S: Real> ComputedTorqueWork<S> {
             lost: vec![S::of(0.0); n],
         }
     }
+
+    /// Writes which accelerations the last call asked the joints for, rad/s² (m/s²), where `law` compensates
+    /// their Coulomb friction; zero for those that may stay at rest.
+    pub fn ask(&self, law: &ComputedTorque, asked: &mut [Option<f64>]) {
+        for (to, from) in asked.iter_mut().zip(&self.acceleration) {
+            *to = law.compensate_friction.then(|| unless_at_goal(from.lane(0), law.softest()));
+        }
+    }
 }
 
 /// Error of a frame against its reference in W axes: `pd − p`, m, and `log(Rd Rᵀ)`, rad.
@@ -130,7 +155,8 @@ pub fn task_error<S: Real>(rot_wf: &Mat3<S>, pos_w: Vec3<S>, desired: &TaskSampl
     Motion::new(desired.pos_w - pos_w, log_rotation(&(desired.rot_wd * rot_wf.transpose())))
 }
 
-/// Joint torques, `(n,)`, N m, towards the `desired` pose and motion.
+/// Joint torques, `(n,)`, N m, towards the `desired` pose and motion, without what compensates Coulomb
+/// friction.
 ///
 /// Needs [`kinematics`](crate::dynamics::kinematics) at `q`, `v`, and in `data` the external
 /// wrenches to compensate. With `is_relative`, `desired` is relative to the base and the tool is
@@ -196,20 +222,9 @@ fn kernel<S: Real>(
         let inertial = dot(&reduced.inertia[i * n..(i + 1) * n], &work.acceleration);
         *tau = inertial + reduced.bias[i] - reduced.external[i];
         if law.compensate_friction {
-            *tau += friction(&model.joints()[i], v[i + 6]);
+            *tau += v[i + 6] * S::of(model.joints()[i].damping);
         }
     }
-}
-
-/// Rate at which the law counts on all of the Coulomb friction, rad/s (m/s): slower, the sign of a
-/// measured rate is chance.
-const SLIP: f64 = 1e-2;
-
-/// `b q̇ + f sat(q̇/s)`: what the joint takes of its torque.
-#[inline(always)]
-pub(super) fn friction<S: Real>(joint: &JointProperties, rate: S) -> S {
-    let share = (rate * S::of(1.0 / SLIP)).saturate();
-    rate * S::of(joint.damping) + share * S::of(joint.friction)
 }
 
 /// `K x` for a row-major `(6, 6)` gain.

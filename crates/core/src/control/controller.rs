@@ -100,6 +100,15 @@ impl ControlLaw {
         starts.chain(ends).filter(|t| t.is_finite() && *t > 0.0).collect()
     }
 
+    /// Whether a law compensates Coulomb friction of joints.
+    pub fn compensates_friction(&self) -> bool {
+        match self {
+            Self::ComputedTorque(law) => law.compensate_friction,
+            Self::Stack(controls) => controls.iter().any(Control::compensates_friction),
+            Self::None | Self::User(_) => false,
+        }
+    }
+
     /// Whether one of several controls leads this frame.
     pub fn tracks(&self, tool: Option<usize>) -> bool {
         let leads = |control: &Control| control.task().is_some_and(|(frame, _)| Some(frame) == tool);

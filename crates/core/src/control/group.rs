@@ -1,7 +1,7 @@
 //! A law on a group of joints for a time.
 
 use super::compliance::Compliance;
-use super::computed_torque::ComputedTorque;
+use super::computed_torque::{ComputedTorque, unless_at_goal};
 use super::controller::Controller;
 use super::goal::Goal;
 use super::joint_space::{Interface, JointComputedTorque, JointPid};
@@ -117,6 +117,16 @@ impl Control {
             Law::TaskComputedTorque(law, _) => Some(law.compensate_environment),
             Law::JointComputedTorque(law, _) => Some(law.compensate_environment),
             _ => None,
+        }
+    }
+
+    /// The acceleration that a drive which compensates friction is to be told for the joint at `place`; zero
+    /// where a joint at rest may stay there.
+    pub(super) fn asks(&self, place: usize, acceleration: f64) -> f64 {
+        match &self.law {
+            Law::TaskComputedTorque(law, _) => unless_at_goal(acceleration, law.softest()),
+            Law::JointComputedTorque(law, _) => unless_at_goal(acceleration, law.kp.at(place)),
+            _ => acceleration,
         }
     }
 

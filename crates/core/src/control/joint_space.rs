@@ -7,7 +7,8 @@ use crate::reference::JointSample;
 /// Joint-space computed torque on the reduced model: `q̈ = q̈d + kd (q̇d − q̇) + kp (qd − q)`, exactly,
 /// whatever the base does.
 ///
-/// `τ = M* q̈ + c* − Q* + f`, so that the error obeys `ë + kd ė + kp e = 0`. Positions are compared as
+/// `τ = M* q̈ + c* − Q* + f`, so that the error obeys `ë + kd ė + kp e = 0`. Coulomb friction is compensated by
+/// the drives, from rest and through reversals as well. Positions are compared as
 /// numbers: a joint that turns on and on is one turn away from where it was.
 #[derive(Clone, Debug)]
 pub struct JointComputedTorque {
@@ -17,7 +18,8 @@ pub struct JointComputedTorque {
     pub kd: PerJoint,
     /// Whether the wrenches of the environment are known to the law and compensated.
     pub compensate_environment: bool,
-    /// Whether the joints' damping and Coulomb friction are known to the law and compensated.
+    /// Whether the joints' damping and Coulomb friction are known and compensated: the damping at control
+    /// ticks, Coulomb friction by the drives at every instant.
     pub compensate_friction: bool,
 }
 
@@ -59,7 +61,8 @@ pub enum Interface {
 /// A PID for each joint: `τ = p e + i ∫e dt + d ė`.
 ///
 /// The integral is summed at control ticks, `e Δt`, its share of the effort kept within `i_limit`; while
-/// the effort is at its limit it does not grow further into it (anti-windup).
+/// the effort is at its limit it does not grow further into it (anti-windup). Friction is not compensated: a
+/// joint that sticks waits for the integral.
 #[derive(Clone, Debug)]
 pub struct JointPid {
     /// What the reference says.

@@ -11,7 +11,7 @@ use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 /// `ẍ = J q̈ + d` is one of `A` alone, `ẍ = (J_A − J_E G) q̈_A + d + J_E y`. Of `A`, joint laws fix
 /// their `q̈_J`; the tasks share the rest: all their rows stacked in one damped pseudo-inverse,
 /// `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so that one arm counts on the recoil of the
-/// other. With a single task on all joints this is [`computed_torque`](super::computed_torque).
+/// other. Joints that friction holds are no part of either group: `q̈ = 0`. With a single task on all joints this is [`computed_torque`](super::computed_torque).
 pub(super) struct SideBySide {
     n: usize,
     /// `M*`, `(n, n)`.
@@ -41,6 +41,8 @@ pub(super) struct SideBySide {
 pub(super) enum Drive {
     /// Its effort is known.
     Effort,
+    /// Its friction holds it at rest.
+    Held,
     /// Its acceleration is given.
     Acceleration,
     /// It works for the tasks.
@@ -71,13 +73,14 @@ impl SideBySide {
         }
     }
 
-    /// Eliminates the joints whose efforts are known, `tau`.
+    /// Eliminates the joints whose efforts are known, `tau`; starts a new list of tasks.
     pub(super) fn eliminate(&mut self, drives: &[Drive], tau: &[f64]) {
-        let Self { n, inertia, load, tasks, fixed, given, factor, gain, y, .. } = self;
+        let Self { n, inertia, load, tasks, fixed, given, factor, gain, y, acceleration, .. } = self;
         for (list, drive) in [(tasks, Drive::Task), (fixed, Drive::Acceleration), (given, Drive::Effort)] {
             list.clear();
             list.extend((0..*n).filter(|&j| drives[j] == drive));
         }
+        (0..*n).filter(|&j| drives[j] == Drive::Held).for_each(|j| acceleration[j] = 0.0);
         [&mut self.jacobian, &mut self.command, &mut self.damping].into_iter().for_each(Vec::clear);
         let e = self.given.len();
         for (row, &i) in self.given.iter().enumerate() {
@@ -110,6 +113,11 @@ impl SideBySide {
             self.jacobian.extend(self.tasks.iter().map(|&a| entry(a)));
         }
         self.damping.push(damping);
+    }
+
+    /// Torque that friction gives to hold a joint whose own is `tau`, N m (N). Needs all accelerations.
+    pub(super) fn holding(&self, j: usize, tau: f64) -> f64 {
+        dot(&self.inertia[j * self.n..(j + 1) * self.n], &self.acceleration) + self.load[j] - tau
     }
 
     /// All accelerations, and the torques of `A` into `tau`.

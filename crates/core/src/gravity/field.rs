@@ -6,13 +6,16 @@ use super::gfc;
 use super::harmonics::Harmonics;
 use super::point_mass::SURFACE;
 use super::zonal::{self, Zonal};
+use crate::text_file::{TextFileError, read_text};
 use nalgebra::{Matrix3, Vector3};
-use std::io::ErrorKind;
 use std::path::Path;
 
 /// Models that come with the engine, to degree and order 70.
 const BUNDLED: [(&str, &str); 2] =
     [("egm2008", include_str!("models/egm2008.gfc")), ("jgm3", include_str!("models/jgm3.gfc"))];
+
+/// Bytes of a model's file: 0.3 GB to degree 2190.
+const LARGEST_FILE: usize = 1 << 30;
 
 /// A planet's field without that of its point mass, in axes `F` fixed in the planet, z along its axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,14 +86,11 @@ impl GravityField {
     /// line where there is one; and what [`GravityField::new`] says.
     pub fn from_gfc(path: &Path, degree: Option<usize>, order: Option<usize>) -> Result<Self, GravityError> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| {
+        let text = read_text(path, LARGEST_FILE).map_err(|error| {
             let file = file.clone();
-            match error.kind() {
-                ErrorKind::NotFound => GravityError::NotFound { file },
-                ErrorKind::InvalidData => {
-                    GravityError::Unreadable { file, reason: "not UTF-8 text".to_owned() }
-                }
-                kind => GravityError::Unreadable { file, reason: kind.to_string() },
+            match error {
+                TextFileError::NotFound => GravityError::NotFound { file },
+                error => GravityError::Unreadable { file, reason: error.to_string() },
             }
         })?;
         let coefficients = gfc::read(&file, &text, degree)?;

@@ -90,8 +90,10 @@ pub struct Joint {
     pub limits: Limits,
     /// Viscous friction, N m s/rad (N s/m).
     pub damping: f64,
-    /// Coulomb friction, N m (N).
+    /// Coulomb friction while the joint moves (kinetic), N m (N).
     pub friction: f64,
+    /// Largest torque (force) that friction holds at rest, N m (N); `None` where it equals `friction`.
+    pub static_friction: Option<f64>,
     /// Rotor inertia seen at the joint (times gear ratio squared), kg m² (kg).
     pub rotor_inertia: f64,
 }
@@ -106,6 +108,7 @@ impl Joint {
             limits: Limits::default(),
             damping: 0.0,
             friction: 0.0,
+            static_friction: None,
             rotor_inertia: 0.0,
         }
     }

@@ -19,6 +19,13 @@ pub enum ModelError {
     AsymmetricInertia { link: String, difference: f64 },
     #[error("{what} of '{name}' is not finite")]
     NotFinite { what: &'static str, name: String },
+    #[error("{what} of '{name}' is {value:?}, {expected} are accepted; check the units")]
+    OutOfRange { what: &'static str, name: String, value: f64, expected: &'static str },
+    #[error(
+        "the robot has more than {most} moving joints: matrices over all of them would take too much memory; make \
+         joints that do not move fixed"
+    )]
+    TooManyJoints { most: usize },
     #[error("the robot has no mass: a floating base needs some")]
     NoMass,
     #[error(
@@ -41,6 +48,11 @@ pub enum ModelError {
     ZeroAxis { joint: String },
     #[error("joint '{joint}': {what} is {value}, it must not be negative")]
     Negative { joint: String, what: &'static str, value: f64 },
+    #[error(
+        "joint '{joint}': its static friction {at_rest} is below its kinetic friction {moving}; give at least \
+         {moving}, or leave it out"
+    )]
+    StaticBelowKinetic { joint: String, at_rest: f64, moving: f64 },
     #[error("joint '{joint}': lower limit {lower} is above upper limit {upper}")]
     LimitsReversed { joint: String, lower: f64, upper: f64 },
 }

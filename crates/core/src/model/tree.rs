@@ -23,6 +23,8 @@ pub struct Node {
     pub parent: usize,
     /// Whether bodies beside the next one hang on it.
     pub is_fork: bool,
+    /// One past the last body of its subtree: bodies are numbered depth first.
+    pub end: usize,
     /// What its joint does (of no meaning for the base).
     pub axis: Axis,
     /// Axes of this body at joint position zero, in the parent's axes.
@@ -59,8 +61,10 @@ pub struct JointProperties {
     pub name: String,
     /// Viscous friction, N m s/rad (N s/m).
     pub damping: f64,
-    /// Coulomb friction, N m (N).
+    /// Coulomb friction while the joint moves (kinetic), N m (N).
     pub friction: f64,
+    /// Largest torque (force) that friction holds at rest, N m (N); at least `friction`.
+    pub static_friction: f64,
     /// Position, velocity and effort limits; stored, enforced only on request.
     pub limits: Limits,
     /// Unit axis in the link's axes, for display.
@@ -111,6 +115,11 @@ impl Model {
     #[inline(always)]
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
+    }
+
+    /// Whether any joint has Coulomb friction.
+    pub fn has_friction(&self) -> bool {
+        self.joints.iter().any(|joint| joint.static_friction > 0.0)
     }
 
     /// Joints in the order of `v`.

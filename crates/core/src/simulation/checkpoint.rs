@@ -27,6 +27,8 @@ pub struct Checkpoint {
     state: StateNumbers,
     /// Torques held, `(n,)`, N m.
     pub(super) command: Vec<f64>,
+    /// Accelerations asked for where friction is compensated, `(n,)`, rad/s².
+    pub(super) asked: Vec<Option<f64>>,
     /// What the control of an adaptive step remembers.
     pub(super) memory: Memory,
     /// Cuts in a row that got nowhere.
@@ -93,7 +95,7 @@ fn own_instruction_set() -> &'static str {
 impl Checkpoint {
     pub(super) fn new<S: Scalar>(
         state: &State<S>,
-        command: &[S],
+        (command, asked): (&[S], &[Option<f64>]),
         schedule: &Schedule,
         (rows, steps): (usize, usize),
         (memory, cuts): (Memory, usize),
@@ -123,6 +125,7 @@ impl Checkpoint {
                 dissipated: state.dissipated.value(),
             },
             command: numbers(command),
+            asked: asked.to_vec(),
             memory,
             cuts,
             probe,
@@ -181,6 +184,7 @@ impl Checkpoint {
             ("velocities", self.state.v.len(), model.nv()),
             ("torques", self.command.len(), model.joint_count()),
             ("drifts", self.probe.drifts.len(), model.joint_count() + 1),
+            ("accelerations", self.asked.len(), model.joint_count()),
             ("rows", self.rows, rows),
         ] {
             if got != expected {

@@ -154,7 +154,7 @@ impl<'a, S: Scalar> Driver<'a, S> {
         state: &State<S>,
         plant: &mut Plant<'_, S, Surroundings>,
     ) -> Result<(), SimulationError> {
-        let Plant { model, data, command, .. } = plant;
+        let Plant { model, data, command, contacts, .. } = plant;
         match self {
             Self::None => return Ok(()),
             Self::ComputedTorque { law, reference, work, last } => {
@@ -164,6 +164,7 @@ impl<'a, S: Scalar> Driver<'a, S> {
                 let data: &mut Data<S> = data;
                 let is_relative = reference.is_relative_to_base();
                 computed_torque(law, model, data, &state.q, &state.v, &desired, is_relative, work, command);
+                work.ask(law, contacts.asked_mut());
             }
             Self::User { controller, reference, joints, buffers: [q, v, tau] } => {
                 q.iter_mut().zip(&state.q).for_each(|(to, from)| *to = from.value());
@@ -172,7 +173,10 @@ impl<'a, S: Scalar> Driver<'a, S> {
                 controller.update(&Observation { time: t, q, v, model, joints, desired }, tau)?;
                 command.iter_mut().zip(tau.iter()).for_each(|(to, from)| *to = S::of(*from));
             }
-            Self::Stack(stack) => stack.update(t, model, data, &state.q, &state.v, command)?,
+            Self::Stack(stack) => {
+                stack.update(t, model, data, &state.q, &state.v, command)?;
+                contacts.asked_mut().copy_from_slice(stack.asked());
+            }
         }
         match command.iter().position(|tau| !tau.value().is_finite()) {
             Some(joint) if !matches!(self, Self::None) => {

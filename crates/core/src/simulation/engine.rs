@@ -117,9 +117,10 @@ impl<S: Scalar> Run<'_, S> {
     fn ask(&mut self, interval: (f64, f64)) -> Result<(), SimulationError> {
         let Self { state, plant, foreign, .. } = self;
         let Some(Foreign { engine, q, v, tau, crossed }) = foreign else { return Ok(()) };
-        for (to, from) in [(&mut *q, &state.q), (&mut *v, &state.v), (&mut *tau, &plant.command)] {
+        for (to, from) in [(&mut *q, &state.q), (&mut *v, &state.v)] {
             to.iter_mut().zip(from).for_each(|(to, from)| *to = from.value());
         }
+        tau.iter_mut().enumerate().for_each(|(j, to)| *to = plant.torque(j).value());
         engine.step(&Crossing { interval, q, v, tau }, crossed)
     }
 
@@ -182,7 +183,7 @@ impl Outside {
         let rot_wb = base_rotation(q);
         for (body, out) in data.bodies.iter().zip(out.chunks_exact_mut(6)) {
             let force = body.external.linear;
-            let torque = body.external.angular - body.com_b.cross(force);
+            let torque = body.external.angular - body.inertia.com.cross(force);
             (rot_wb * force).write(out);
             (rot_wb * torque).write(&mut out[3..]);
         }

@@ -89,11 +89,13 @@ impl Simulation {
         let stops = self.stops.filter(|_| self.engine.is_none()); // an engine has its own
         let mut plant = Plant::<S, _>::new(&model, surroundings, stops);
         let state = State::at(&model, &mut plant.data, numbers(&self.q), numbers(&self.v));
+        let is_compensated = self.control.compensates_friction() && model.has_friction();
         let extras = Extras {
             tool: self.tool,
             has_reference: self.reference.is_some() || self.control.tracks(self.tool),
             effects: names,
             has_orbit: self.orbit.is_some(),
+            compensates_friction: is_compensated && self.engine.is_none(),
             is_carried: gravity.is_some() && !falls,
         };
         let is_dense = self.record_every == 1 && !self.is_adaptive();

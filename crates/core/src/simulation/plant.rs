@@ -45,7 +45,7 @@ pub(crate) struct Plant<'a, S, W> {
     pub(crate) model: &'a Model,
     pub(crate) data: Data<S>,
     pub(crate) surroundings: W,
-    /// Commanded joint torques, `(n,)`, N m.
+    /// Commanded joint torques, `(n,)`, N m; drives add what compensates Coulomb friction.
     pub(crate) command: Vec<S>,
     /// All generalized forces of a stage, `(nv,)`: command, damping and friction.
     pub(super) forces: Vec<S>,
@@ -98,7 +98,7 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
                 let twist = base_twist(data, &state.q, &state.v, target);
                 let correction = twist - Motion::from_slice(&state.v) + passing;
                 (twist + passing).write(&mut state.v);
-                data.bodies.iter_mut().for_each(|body| body.velocity += correction);
+                data.bodies.iter_mut().for_each(|body| body.velocity += correction.referred_to(body.pos_b));
             },
         );
     }
@@ -160,7 +160,21 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
         }
     }
 
-    /// Torques at the joints: `τ − b q̇ − f s` with `s` the direction of slip.
+    /// What the drive of a joint adds to its command to compensate Coulomb friction, N m (N).
+    pub(crate) fn compensation(&self, j: usize) -> f64 {
+        self.contacts.compensation(j).unwrap_or(0.0)
+    }
+
+    /// Torque of the drive of a joint: the command, and what compensates Coulomb friction, N m (N).
+    pub(crate) fn torque(&self, j: usize) -> S {
+        match self.contacts.compensation(j) {
+            Some(compensation) => self.command[j] + S::of(compensation),
+            None => self.command[j],
+        }
+    }
+
+    /// Torques at the joints: `τ − b q̇ − f s` with `s` the direction of slip; `f s` is left out where it is
+    /// compensated.
     pub(super) fn drive(&mut self, v: &[S]) {
         let Self { model, contacts, command, forces, is_lossy, .. } = self;
         forces[6..].copy_from_slice(command);
@@ -171,7 +185,7 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
             #[inline(always)]
             || {
                 for (j, joint) in model.joints().iter().enumerate() {
-                    forces[j + 6] -= v[j + 6] * S::of(joint.damping) + S::of(contacts.drag(j));
+                    forces[j + 6] -= v[j + 6] * S::of(joint.damping) + S::of(contacts.remaining_drag(j));
                 }
             },
         );
@@ -202,7 +216,7 @@ fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], carried: Vec3<S>, forces: 
     rate.bend = rot_wb * (Vec3::from_slice(&rate.a) + rate.turn.cross(Vec3::from_slice(v)));
     let (mut total, mut power) = (Force::zero(), S::of(0.0));
     for body in &data.bodies {
-        total += body.external;
+        total += body.external.from_point(body.pos_b);
         power += body.velocity.dot(body.external);
     }
     for (tau, rate) in forces[6..].iter().zip(&v[6..]) {

@@ -27,6 +27,8 @@ pub(super) struct Extras {
     pub(super) effects: Vec<String>,
     /// Whether there is an orbit.
     pub(super) has_orbit: bool,
+    /// Whether drives compensate Coulomb friction.
+    pub(super) compensates_friction: bool,
     /// Whether the reference carries the robot along, through a field that it may not obey.
     pub(super) is_carried: bool,
 }
@@ -44,6 +46,7 @@ impl Extras {
             "q" => model.nq(),
             "v" | "acceleration" => model.nv(),
             "tau" => model.joint_count(),
+            "friction_compensation" => given(self.compensates_friction, model.joint_count()),
             "momentum" | "impulse" => 6,
             "center_of_mass" => 3,
             "tool_pose" => given(self.tool.is_some(), 16),
@@ -181,7 +184,11 @@ impl Recorder {
         trace.time.push(t);
         push(&mut trace.q, q);
         push(&mut trace.v, v);
-        push(&mut trace.tau, &plant.command);
+        let joints = 0..plant.model.joint_count();
+        trace.tau.extend(joints.clone().map(|j| plant.torque(j).value()));
+        if self.extras.compensates_friction {
+            trace.friction_compensation.extend(joints.map(|j| plant.compensation(j)));
+        }
         let (h, energy, com) = motion_of_whole(plant.model, data, q, v);
         push_vector(&mut trace.momentum, h.linear);
         push_vector(&mut trace.momentum, h.angular);

@@ -174,7 +174,8 @@ impl<S: Scalar> Run<'_, S> {
         let (time, trace) = (self.schedule.now(), &self.recorder.trace);
         let checkpoint = || {
             let (counts, probe) = ((trace.rows(), self.steps), self.probe.found.clone());
-            let (command, memory) = (&self.plant.command, self.stepper.memory().unwrap_or_default());
+            let command = (&self.plant.command[..], self.plant.contacts.asked());
+            let memory = self.stepper.memory().unwrap_or_default();
             let stepper = (memory, self.stepper.cuts);
             let (schedule, controls) = (&self.schedule, self.driver.save()?);
             let (done, own) = (trace.work_done, self.plant.surroundings.own());
@@ -212,6 +213,7 @@ impl<S: Scalar> Run<'_, S> {
             self.plant.surroundings.follow(own.clone())?;
         }
         self.plant.command.iter_mut().zip(&from.command).for_each(|(to, from)| *to = S::of(*from));
+        self.plant.contacts.asked_mut().copy_from_slice(&from.asked);
         self.driver.load(&from.controls)
     }
 
@@ -239,8 +241,9 @@ impl<S: Scalar> Run<'_, S> {
         if is_control_tick && driver.compensates() {
             driver.ask(t, state, plant)?;
         }
-        if self.foreign.is_none() {
-            plant.decide(&state.q, &state.v);
+        match self.foreign {
+            Some(_) => plant.contacts.compensate_by_rate(&state.v),
+            None => plant.decide(&state.q, &state.v),
         }
         Ok(())
     }

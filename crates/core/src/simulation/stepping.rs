@@ -211,7 +211,7 @@ impl<S: Real> Stepper<S> {
     /// Rate of a slipping joint along its slip.
     fn slip(&self, plant: &Plant<'_, S, impl World<S>>, state: &State<S>, j: usize) -> f64 {
         let direction = plant.contacts.direction(j);
-        if self.is_forgiven[j] || direction * plant.contacts.friction(j) == 0.0 {
+        if self.is_forgiven[j] || direction == 0.0 || !plant.contacts.has_friction(j) {
             return f64::INFINITY;
         }
         let (first, last) = (self.start.v[j + 6].lane(0), state.v[j + 6].lane(0));
@@ -242,7 +242,7 @@ impl<S: Real> Stepper<S> {
     /// Joints that came to rest are at rest, and those past a limit at it: what is left is rounding.
     fn snap(&self, plant: &Plant<'_, S, impl World<S>>, state: &mut State<S>) {
         for j in 0..self.is_forgiven.len() {
-            let direction = plant.contacts.direction(j) * f64::from(plant.contacts.friction(j) > 0.0);
+            let direction = plant.contacts.direction(j) * f64::from(plant.contacts.has_friction(j));
             let (first, rate) = (self.start.v[j + 6].lane(0), state.v[j + 6].lane(0));
             if direction != 0.0 && direction * rate <= 1e-13 * first.abs() {
                 state.v[j + 6] = S::of(0.0);

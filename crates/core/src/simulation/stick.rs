@@ -3,6 +3,7 @@
 use super::plant::{Plant, World};
 use super::state::State;
 use crate::dynamics::locked_dynamics_recursion;
+use crate::model::Axis;
 use crate::spatial::{Force, Motion, Real};
 
 /// Share of the torques at a joint within which it still sticks: rounding must not break it away.
@@ -70,12 +71,16 @@ impl<S: Real, W: World<S>> Plant<'_, S, W> {
     fn hold(&self, j: usize, q: &[S]) -> (f64, f64) {
         let body = &self.data.bodies[j + 1];
         let (lowest, highest) = self.contacts.room(j, q[j + 7].lane(0));
-        let (need, friction) = (body.drive.lane(0), self.contacts.friction(j));
+        let (need, friction) = (body.drive.lane(0), self.contacts.holding_friction(j));
         let size = |m: Motion<S>, f: Force<S>| {
             m.linear.norm() * f.linear.norm() + m.angular.norm() * f.angular.norm()
         };
+        let along_axis = match self.model.nodes()[j + 1].axis {
+            Axis::Revolute => body.force.angular,
+            Axis::Prismatic => body.force.linear,
+        };
         // λ = Uᵀ a' − τ + Sᵀ pA, all its terms by their size
-        let terms = size(body.acceleration, body.reach) + size(body.subspace, body.force);
+        let terms = size(body.acceleration, body.reach) + along_axis.norm();
         let scale = terms.lane(0) + self.forces[j + 6].lane(0).abs() + friction + f64::MIN_POSITIVE;
         let (down, up) = ((highest - need) / scale, (need - lowest) / scale);
         if down < up { (down, -1.0) } else { (up, 1.0) }

@@ -17,6 +17,9 @@ pub struct Trace {
     pub v: Vec<f64>,
     /// Joint torque held from this row's time to the next step, N m, `(T, n)`.
     pub tau: Vec<f64>,
+    /// Share of `tau` that compensates Coulomb friction, N m, `(T, n)`; only where a law compensates it
+    /// and our own equations of motion move the robot.
+    pub friction_compensation: Vec<f64>,
     /// Acceleration just after this row's time, `(T, nv)`.
     pub acceleration: Vec<f64>,
     /// Linear momentum and angular momentum about the system's centre of mass, `(T, 6)`.
@@ -106,6 +109,7 @@ columns!(
     q,
     v,
     tau,
+    friction_compensation,
     acceleration,
     momentum,
     impulse,
@@ -182,6 +186,13 @@ impl Trace {
             .filter(|(j, joint)| joint.limits.position.is_some_and(|limits| is_past(*j, limits)))
             .map(|(_, joint)| joint.name.as_str())
             .collect()
+    }
+
+    /// Torque of one of `n` joints in row `k` without what compensates friction: the two take each other away, so
+    /// that a jump of both moves nothing.
+    pub(super) fn torque_without_compensation(&self, k: usize, j: usize, n: usize) -> f64 {
+        let compensation = self.friction_compensation.get(k * n + j);
+        self.tau[k * n + j] - compensation.unwrap_or(&0.0)
     }
 
     /// Row `k` of a column with `width` numbers per row.

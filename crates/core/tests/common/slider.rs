@@ -2,7 +2,9 @@
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use onorbit_core::control::{ControlError, ControlLaw, Controller, Observation};
-use onorbit_core::model::{Inertial, Joint, JointKind, Limits, Link, Model, ModelBuilder, neutral};
+use onorbit_core::model::{
+    Inertial, Joint, JointKind, Limits, Link, Model, ModelBuilder, ModelError, neutral,
+};
 use onorbit_core::simulation::{Integrator, Simulation, Trace};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -19,13 +21,28 @@ fn inertial(mass: f64) -> Option<Inertial> {
 
 /// Joint `slide` with friction, N, damping, N s/m, and limits, m; at `offset` along x, m.
 pub fn slider(friction: f64, damping: f64, limits: Option<(f64, f64)>, offset: f64) -> Model {
-    let mut builder = ModelBuilder::new("slider", Link::new("base", inertial(BASE))).unwrap();
+    slider_with(
+        |joint| {
+            (joint.friction, joint.damping) = (friction, damping);
+            joint.limits = Limits { position: limits, ..Limits::default() };
+        },
+        offset,
+    )
+}
+
+/// Joint `slide`, which `change` may alter, at `offset` along x, m.
+pub fn slider_with(change: impl Fn(&mut Joint), offset: f64) -> Model {
+    try_slider_with(change, offset).unwrap()
+}
+
+/// As [`slider_with`], with what is wrong.
+pub fn try_slider_with(change: impl Fn(&mut Joint), offset: f64) -> Result<Model, ModelError> {
+    let mut builder = ModelBuilder::new("slider", Link::new("base", inertial(BASE)))?;
     let origin = Isometry3::translation(offset, 0.0, 0.0);
-    let plain = Joint::new("slide", JointKind::Prismatic(Vector3::x()), origin);
-    let limits = Limits { position: limits, ..Limits::default() };
-    let joint = Joint { friction, damping, limits, ..plain };
-    builder.add("base", joint, Link::new("block", inertial(SLIDER))).unwrap();
-    builder.build().unwrap()
+    let mut joint = Joint::new("slide", JointKind::Prismatic(Vector3::x()), origin);
+    change(&mut joint);
+    builder.add("base", joint, Link::new("block", inertial(SLIDER)))?;
+    builder.build()
 }
 
 /// At rest but for the slider's rate, m/s.

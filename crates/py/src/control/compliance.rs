@@ -11,7 +11,7 @@ use std::sync::Arc;
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// The tool hangs on a spring and a damper: ``tau = Jg^T (K e + D e') - k N qdot``. Nothing weighs anything in orbit, so
-/// nothing is compensated and the law is passive.
+/// nothing is compensated and the law is passive. Nor is friction compensated, which may hold the tool off its goal.
 ///
 /// ``stiffness`` (N/m, N m/rad) and ``damping`` (N s/m, N m s/rad) are numbers, (6,) or (6, 6), position rows first;
 /// ``null_space_damping`` (N m s/rad) brakes what the tool does not feel. Held torques bear a damping of about twice the

@@ -14,8 +14,10 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///
 /// ``tool`` is a frame of ``model``; ``kp`` (1/s²) and ``kd`` (1/s) are numbers, (6,) or (6, 6), position rows first;
 /// ``damping`` the singular value of the generalized Jacobian below which its inverse is damped, ``null_space_damping``
-/// (1/s) brakes self-motion, ``compensate_environment`` and ``compensate_friction`` make external wrenches and the joints'
-/// damping and friction known to the law. Raises ``ControlError``, ``FrameError`` or ``ShapeError``.
+/// (1/s) brakes self-motion. With ``compensate_environment`` the law knows the external wrenches. With
+/// ``compensate_friction`` it knows the joints' damping, and their drives compensate Coulomb friction at every instant:
+/// joints move as if they had none, from rest and through reversals, and those at their goal (2e-8 rad or m) stay at rest.
+/// Raises ``ControlError``, ``FrameError`` or ``ShapeError``.
 #[pyclass(name = "ComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyComputedTorque {
     pub(crate) law: ComputedTorque,

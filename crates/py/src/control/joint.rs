@@ -10,7 +10,10 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Joint-space computed torque on the reduced model: the error of every joint obeys ``e'' + kd e' + kp e = 0``, whatever
 /// the base does.
 ///
-/// ``kp`` (1/s²) and ``kd`` (1/s) are numbers or one per joint of the group, (k,). Raises ``ControlError``.
+/// ``kp`` (1/s²) and ``kd`` (1/s) are numbers or one per joint of the group, (k,). With ``compensate_environment`` the law
+/// knows the external wrenches. With ``compensate_friction`` it knows the joints' damping, and their drives compensate
+/// Coulomb friction at every instant: the error obeys its equation from rest and through reversals, and a joint at its goal
+/// (2e-8 rad or m) stays at rest. Raises ``ControlError``.
 #[pyclass(name = "JointComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointComputedTorque {
     pub(super) law: JointComputedTorque,
@@ -40,7 +43,8 @@ impl PyJointComputedTorque {
 /// ``interface`` says what the reference commands: ``position``, ``velocity``, or ``effort`` (its positions are the
 /// efforts, N m, and there are no gains). Gains are numbers or (k,), per rad (m) of error, at least one of them given;
 /// ``i_limit`` bounds the share of the integral, ``effort_limit`` the whole (the limits of the URDF where None, ``inf`` for
-/// none), N m (N). The integral does not grow further into a limit. Raises ``ControlError``.
+/// none), N m (N). The integral does not grow further into a limit. Friction is not compensated: a joint that sticks waits
+/// for the integral. Raises ``ControlError``.
 #[pyclass(name = "JointPid", frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointPid {
     pub(super) law: JointPid,

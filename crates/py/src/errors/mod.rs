@@ -11,10 +11,10 @@ mod simulation;
 
 pub(crate) use simulation::SimulationErrorExt;
 
-use pyo3::exceptions::PyRuntimeError;
+use onorbit_core::text_file::TextFileError;
+use pyo3::exceptions::{PyException, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::io::ErrorKind;
 use std::path::Path;
 
 /// An error of the core that knows its Python class.
@@ -30,8 +30,19 @@ pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'
     };
     match make() {
         Ok(error) => PyErr::from_value(error),
+        Err(interrupt) if is_interrupt(py, &interrupt) => {
+            // a Ctrl-C was pending: it is raised, and the error is what it came during
+            let context = make().map(PyErr::from_value).ok();
+            interrupt.set_context(py, context);
+            interrupt
+        }
         Err(_) => PyRuntimeError::new_err(message.to_owned()),
     }
+}
+
+/// Whether this is a Ctrl-C, or what else ends a program: no error of a call.
+pub(crate) fn is_interrupt(py: Python<'_>, error: &PyErr) -> bool {
+    !error.is_instance_of::<PyException>(py)
 }
 
 /// The error, with the file that it is about before its message.
@@ -44,13 +55,15 @@ pub(crate) fn in_file(py: Python<'_>, path: &Path, error: impl IntoPython) -> Py
     error
 }
 
-/// A text file of ours that cannot be read; `what` it was to be. Not in the words of the system, which differ.
-pub(crate) fn unreadable(py: Python<'_>, path: &Path, what: &str, error: &std::io::Error) -> PyErr {
+/// Bytes of a table of the Earth's orientation or of space weather, which take ten million.
+pub(crate) const LARGEST_TABLE: usize = 100_000_000;
+
+/// A text file that cannot be read; `what` it was to be.
+pub(crate) fn unreadable(py: Python<'_>, path: &Path, what: &str, error: &TextFileError) -> PyErr {
     let file = path.display();
-    let (class, message) = match error.kind() {
-        ErrorKind::NotFound => ("NotFoundError", format!("{file}: there is no such {what}")),
-        ErrorKind::InvalidData => ("ReadError", format!("{file}: the {what} cannot be read: not UTF-8 text")),
-        kind => ("ReadError", format!("{file}: the {what} cannot be read: {kind}")),
+    let (class, message) = match error {
+        TextFileError::NotFound => ("NotFoundError", format!("{file}: there is no such {what}")),
+        error => ("ReadError", format!("{file}: the {what} cannot be read: {error}")),
     };
     raise(py, class, &message, &fields!(py, "path": file.to_string(), "kind": what))
 }

@@ -15,7 +15,9 @@ impl IntoPython for ModelError {
                 );
                 raise(py, "FrameError", &message, &fields)
             }
-            Self::NotFinite { name, .. } => raise(py, "ModelError", &message, &fields!(py, "link": name)),
+            Self::NotFinite { name, .. } | Self::OutOfRange { name, .. } => {
+                raise(py, "ModelError", &message, &fields!(py, "link": name))
+            }
             Self::MasslessSubtree { joint, link } => {
                 raise(py, "ModelError", &message, &fields!(py, "joint": joint, "link": link))
             }
@@ -24,7 +26,10 @@ impl IntoPython for ModelError {
             | Self::IndefiniteInertia { link, .. }
             | Self::AsymmetricInertia { link, .. }
             | Self::SingularBase { link } => raise(py, "ModelError", &message, &fields!(py, "link": link)),
-            Self::ZeroAxis { joint } | Self::Negative { joint, .. } | Self::LimitsReversed { joint, .. } => {
+            Self::ZeroAxis { joint }
+            | Self::Negative { joint, .. }
+            | Self::StaticBelowKinetic { joint, .. }
+            | Self::LimitsReversed { joint, .. } => {
                 raise(py, "ModelError", &message, &fields!(py, "joint": joint))
             }
             _ => plain(py, "ModelError", &message),

@@ -6,6 +6,7 @@ use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
 use crate::errors::{IntoPython, fields, raise};
 use crate::gravity::gravity_of;
+use crate::interrupt::prepare;
 use nalgebra::Vector3;
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{Axes, MU_EARTH, Numerical, Orbit, OrbitError};
@@ -59,6 +60,7 @@ impl PyNumerical {
         mu: Option<f64>,
     ) -> PyResult<Bound<'py, Self>> {
         let orbit = &orbit.get().orbit;
+        prepare(py, &**orbit, &[t0])?;
         let (r, v) = orbit.position_velocity(t0).map_err(|error| error.into_python(py))?;
         let environment = effects(environment)?;
         let brings_mu = environment.iter().any(|effect| effect.get().field().is_some());

@@ -2,13 +2,11 @@
 
 use super::Stack;
 use super::look::value;
-use crate::control::computed_torque::friction;
 use crate::control::controller::Observation;
 use crate::control::error::ControlError;
 use crate::control::group::Law;
 use crate::control::progress::{Phase, Progress};
 use crate::control::pseudo_inverse::ROWS;
-use crate::control::side_by_side::Drive;
 use crate::dynamics::{Data, FreeFloating, base_relative_frame, free_floating_frame};
 use crate::model::Model;
 use crate::spatial::{Motion, Scalar};
@@ -72,23 +70,40 @@ impl<S: Scalar> Stack<'_, S> {
 
     /// Torques of the laws that want accelerations.
     pub(super) fn accelerations(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
-        let Self { side_by_side: room, reduced, tau, .. } = self;
+        self.set_up(model);
+        self.solve(model, data, q, v);
+        while self.lets_go(model) {
+            self.solve(model, data, q, v);
+        }
         let running = self.controls.iter().zip(&self.progress).filter(|(_, p)| p.phase == Phase::Running);
-        let knows_friction = running.clone().any(|(control, _)| control.compensates_friction());
+        for (control, _) in running.filter(|(control, _)| control.compensates_friction()) {
+            for (place, &j) in control.joints.iter().enumerate() {
+                self.asked[j] = Some(control.asks(place, self.side_by_side.acceleration[j]));
+            }
+        }
+    }
+
+    /// The reduced model, and how each joint is driven.
+    fn set_up(&mut self, model: &Model) {
+        let Self { side_by_side: room, reduced, .. } = self;
         for (to, from) in room.inertia.iter_mut().zip(&reduced.inertia) {
             *to = from.value();
         }
         for (j, load) in room.load.iter_mut().enumerate() {
             *load = (reduced.bias[j] - reduced.external[j]).value();
         }
-        let rub = |j: usize| friction(&model.joints()[j], self.v[j + 6]);
-        for (control, progress) in running.clone() {
+        let running = self.controls.iter().zip(&self.progress).filter(|(_, p)| p.phase == Phase::Running);
+        let mut knows_friction = false;
+        for (control, progress) in running {
+            knows_friction |= control.compensates_friction();
             for (place, &j) in control.joints.iter().enumerate() {
+                let rate = self.v[j + 6];
                 self.drives[j] = control.drive();
-                room.load[j] += if control.compensates_friction() { rub(j) } else { 0.0 };
+                let is_known = control.compensates_friction();
+                room.load[j] += if is_known { rate * model.joints()[j].damping } else { 0.0 };
                 match &control.law {
                     Law::JointComputedTorque(law, _) => {
-                        let (error, rate) = (progress.error[place], self.v[j + 6]);
+                        let error = progress.error[place];
                         room.acceleration[j] = law.command(place, error, rate, &progress.desired);
                     }
                     Law::TaskComputedTorque(law, _) => {
@@ -98,9 +113,15 @@ impl<S: Scalar> Stack<'_, S> {
                 }
             }
         }
-        for j in (0..self.drives.len()).filter(|&j| knows_friction && self.drives[j] == Drive::Effort) {
-            room.load[j] += rub(j);
+        if knows_friction {
+            self.expect_friction(model);
         }
+    }
+
+    /// Accelerations of all joints, and the torques of those that want them.
+    fn solve(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
+        let Self { side_by_side: room, reduced, tau, .. } = self;
+        let running = self.controls.iter().zip(&self.progress).filter(|(_, p)| p.phase == Phase::Running);
         room.eliminate(&self.drives, tau);
         for (control, progress) in running {
             let Law::TaskComputedTorque(law, reference) = &control.law else { continue };

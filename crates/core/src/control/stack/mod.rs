@@ -2,6 +2,7 @@
 
 mod laws;
 mod look;
+mod sticking;
 mod turns;
 
 use crate::control::check::check_controls;
@@ -30,6 +31,8 @@ pub struct Stack<'a, S> {
     side_by_side: SideBySide,
     compliance: ComplianceRoom,
     drives: Vec<Drive>,
+    /// Acceleration asked for, rad/s² (m/s²), of the joints whose friction a law compensates.
+    asked: Vec<Option<f64>>,
     q: Vec<f64>,
     v: Vec<f64>,
     tau: Vec<f64>,
@@ -60,6 +63,7 @@ impl<'a, S: Scalar> Stack<'a, S> {
             side_by_side: SideBySide::new(n, tasks),
             compliance: ComplianceRoom::new(n),
             drives: vec![Drive::Effort; n],
+            asked: vec![None; n],
             q: zeros(model.nq()),
             v: zeros(model.nv()),
             tau: zeros(n),
@@ -71,6 +75,12 @@ impl<'a, S: Scalar> Stack<'a, S> {
     /// Whether a law wants the external wrenches in the data when it is asked.
     pub fn compensates_environment(&self) -> bool {
         self.controls.iter().any(|control| control.compensates_environment() == Some(true))
+    }
+
+    /// Accelerations that the last update asked for, rad/s² (m/s²), of the joints whose Coulomb friction a law
+    /// compensates: their drives are to add it to the torques.
+    pub fn asked(&self) -> &[Option<f64>] {
+        &self.asked
     }
 
     /// The controls.
@@ -145,6 +155,7 @@ impl<'a, S: Scalar> Stack<'a, S> {
         }
         self.tau.fill(0.0);
         self.drives.fill(Drive::Effort);
+        self.asked.fill(None);
         let is_running = |control: &Control, law: fn(&Law) -> bool, p: &Progress| {
             p.phase == Phase::Running && law(&control.law)
         };

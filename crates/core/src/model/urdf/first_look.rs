@@ -4,8 +4,7 @@
 //! that could exhaust the stack or the memory.
 
 use super::error::{UrdfError, UrdfProblem};
-use std::fs::File;
-use std::io::{ErrorKind, Read};
+use crate::text_file::{TextFileError, read_text};
 use std::path::Path;
 
 /// A humanoid with hands takes 0.1 MB; a file with embedded sensors and plugins one or two.
@@ -17,20 +16,18 @@ const MAX_TAG_BYTES: usize = 16 << 10;
 
 /// The text of a file, read no further than it may be long.
 pub(super) fn read(path: &Path) -> Result<String, UrdfError> {
-    let fail = |problem| Err(UrdfError::new(None, problem));
-    if path.is_dir() {
-        return fail(UrdfProblem::IsFolder);
-    }
-    let mut bytes = Vec::new();
-    let limit = MAX_BYTES as u64 + 1;
-    match File::open(path).and_then(|file| file.take(limit).read_to_end(&mut bytes)) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return fail(UrdfProblem::NotFound),
-        Err(error) => return fail(UrdfProblem::Unreadable { reason: error.to_string() }),
-        Ok(read) if read > MAX_BYTES => return fail(UrdfProblem::TooLarge { limit: MAX_BYTES }),
-        Ok(_) => {}
-    }
-    String::from_utf8(bytes)
-        .or_else(|error| fail(UrdfProblem::NotUtf8 { at: error.utf8_error().valid_up_to() }))
+    read_text(path, MAX_BYTES).map_err(|error| {
+        let problem = match error {
+            TextFileError::NotFound => UrdfProblem::NotFound,
+            TextFileError::Folder => UrdfProblem::IsFolder,
+            TextFileError::TooLarge { limit } => UrdfProblem::TooLarge { limit },
+            TextFileError::NotUtf8 { at } => UrdfProblem::NotUtf8 { at },
+            TextFileError::NotRegular | TextFileError::Unreadable { .. } => {
+                UrdfProblem::Unreadable { reason: error.to_string() }
+            }
+        };
+        UrdfError::new(None, problem)
+    })
 }
 
 /// Refuses what no parser should be given.

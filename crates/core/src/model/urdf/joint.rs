@@ -63,6 +63,8 @@ pub(super) fn read_joints(
         let amount = |name| Ok::<_, UrdfError>(dynamics.number(name)?.unwrap_or(0.0));
         joint.damping = amount("damping")?;
         joint.friction = amount("friction")?;
+        // no standard either: URDF has one friction
+        joint.static_friction = dynamics.number("static_friction")?;
         // no standard: MuJoCo's name for the rotor inertia seen at the joint, and the plain one
         joint.rotor_inertia = match dynamics.number("armature")? {
             Some(armature) => armature,

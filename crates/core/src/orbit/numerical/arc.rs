@@ -73,6 +73,35 @@ impl Arcs {
         }
     }
 
+    /// Takes at most `most_steps` steps in each direction towards `times`; whether none is missing.
+    pub(super) fn prepare(
+        &self,
+        times: &[f64],
+        most_steps: usize,
+        mut field: impl FnMut(f64, &Vector3<f64>) -> Result<Vector3<f64>, OrbitError>,
+    ) -> bool {
+        let (first, last) = times
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(first, last), &t| (first.min(t), last.max(t)));
+        let begin = self.initial.time;
+        let mut towards = |half: &RwLock<Half>, t: f64| {
+            if half.read().unwrap_or_else(PoisonError::into_inner).needs_no_step(t) {
+                return true;
+            }
+            let mut half = half.write().unwrap_or_else(PoisonError::into_inner);
+            for _ in 0..most_steps {
+                if half.needs_no_step(t) {
+                    return true;
+                }
+                if let Err(error) = self.extend(&mut half, &mut field) {
+                    half.ended = Some(error);
+                }
+            }
+            half.needs_no_step(t)
+        };
+        (last < begin || towards(&self.after, last)) && (first >= begin || towards(&self.before, first))
+    }
+
     /// Adds the next step.
     fn extend(
         &self,
@@ -123,6 +152,11 @@ impl Arcs {
 }
 
 impl Half {
+    /// Whether a step holds `t`, or none will.
+    fn needs_no_step(&self, t: f64) -> bool {
+        !t.is_finite() || self.ended.is_some() || self.state(t).is_some()
+    }
+
     /// The state at `t` if a step holds it.
     fn state(&self, t: f64) -> Option<OrbitState> {
         let ahead = |time: f64| if self.next.1 > 0.0 { time <= t } else { time >= t };

@@ -49,6 +49,16 @@ impl Numerical {
     pub fn with_axes(self, axes: Axes) -> Self {
         Self { axes, ..self }
     }
+
+    /// Acceleration at `time` and position `r`, m/s².
+    fn field(&self, time: f64, r: &Vector3<f64>) -> Result<Vector3<f64>, OrbitError> {
+        self.gravity.acceleration(time, r).map_err(|error| match error {
+            GravityError::BelowSurface { distance, minimum } => {
+                OrbitError::BelowSurface { time, distance, minimum }
+            }
+            error => error.into(),
+        })
+    }
 }
 
 impl Orbit for Numerical {
@@ -69,17 +79,14 @@ impl Orbit for Numerical {
         self.gravity.epoch()
     }
 
+    fn prepare(&self, times: &[f64], most_steps: usize) -> bool {
+        self.arcs.prepare(times, most_steps, |time, r| self.field(time, r))
+    }
+
     /// # Errors
     /// [`OrbitError::BelowSurface`] from the time on at which the orbit enters the planet,
     /// [`OrbitError::TooManySteps`] too far from `t₀`, and those of the field.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
-        self.arcs.state(finite("time", t)?, |time, r| {
-            self.gravity.acceleration(time, r).map_err(|error| match error {
-                GravityError::BelowSurface { distance, minimum } => {
-                    OrbitError::BelowSurface { time, distance, minimum }
-                }
-                error => error.into(),
-            })
-        })
+        self.arcs.state(finite("time", t)?, |time, r| self.field(time, r))
     }
 }

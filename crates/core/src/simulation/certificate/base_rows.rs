@@ -75,8 +75,10 @@ impl BaseRows {
     fn inertial(&self) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for body in &self.data.bodies {
-            let momentum = body.inertia.momentum(body.velocity);
-            let terms = [body.inertia.momentum(body.acceleration), body.velocity.cross_force(momentum)];
+            let (r, velocity) = (body.pos_b, body.velocity.referred_to(-body.pos_b));
+            let momentum = body.inertia.momentum(body.velocity).from_point(r);
+            let terms =
+                [body.inertia.momentum(body.acceleration).from_point(r), velocity.cross_force(momentum)];
             for term in terms {
                 sum[0] += term.linear.norm();
                 sum[1] += term.angular.norm();
@@ -90,10 +92,11 @@ impl BaseRows {
     fn rounding(&self, model: &Model, h: f64, rows: [&Instant<'_>; 2]) -> [f64; 2] {
         let (mut linear, mut angular, mut passing) = (0.0, 0.0, 0.0);
         for body in &self.data.bodies {
-            let momentum = body.inertia.momentum(body.velocity);
+            let velocity = body.velocity.referred_to(-body.pos_b);
+            let momentum = body.inertia.momentum(body.velocity).from_point(body.pos_b);
             linear += momentum.linear.norm();
             angular += momentum.angular.norm();
-            passing += body.velocity.linear.norm() * momentum.linear.norm();
+            passing += velocity.linear.norm() * momentum.linear.norm();
         }
         for row in rows {
             linear += row.impulse.linear.norm();

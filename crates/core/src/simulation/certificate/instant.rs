@@ -161,13 +161,13 @@ impl<'a> Reader<'a> {
         if k == 0 || n == 0 {
             return Vec3::zero();
         }
-        let (before, after) = (Trace::row(&self.trace.tau, k - 1, n), Trace::row(&self.trace.tau, k, n));
-        if before == after {
-            return Vec3::zero();
-        }
         self.forces[..6].fill(0.0);
-        for (force, (before, after)) in self.forces[6..].iter_mut().zip(before.iter().zip(after)) {
-            *force = before - after;
+        for (j, force) in self.forces[6..].iter_mut().enumerate() {
+            *force = self.trace.torque_without_compensation(k - 1, j, n)
+                - self.trace.torque_without_compensation(k, j, n);
+        }
+        if self.forces[6..].iter().all(|jump| *jump == 0.0) {
+            return Vec3::zero();
         }
         // at zero velocity there is no bias: the answer is M⁻¹ Δτ alone
         forward_dynamics(self.model, &mut self.data, q, &self.at_rest, &self.forces, &[], &mut self.jump);
@@ -181,14 +181,13 @@ impl<'a> Reader<'a> {
         now.mass = inertia.mass;
         now.size = (trace_of(&inertia.about_com()) / (2.0 * inertia.mass)).sqrt();
         for (node, body) in self.model.nodes().iter().zip(&self.data.bodies) {
-            let relative = body.velocity.at(body.com_b) - v_com;
+            let relative = body.velocity.at(body.inertia.com) - v_com;
             now.relative_momentum += node.mass * relative.norm();
             let moment = trace_of(&node.about_com) / 2.0; // m ρ²
             now.spin += (node.mass * moment).sqrt() * body.velocity.angular.norm();
-            // Lₖ = Iₖ ωₖ + (cₖ − c) × m (vₖ − v_com), the first from the momentum about the origin
-            let own = body.inertia.momentum(body.velocity);
-            let spin = own.angular - body.com_b.cross(own.linear);
-            now.angular += (spin + (body.com_b - c).cross(relative) * node.mass).norm();
+            // Lₖ = Iₖ ωₖ + (cₖ − c) × m (vₖ − v_com)
+            let spin = body.inertia.about_com * body.velocity.angular;
+            now.angular += (spin + (body.com_b() - c).cross(relative) * node.mass).norm();
         }
     }
 }

@@ -1,0 +1,83 @@
+"""``make bench-against REV=…``: the speed of this tree as a multiple of another revision's, row by row.
+
+Both are built at one path with one set of flags, so that equal sources give equal machine code. In every
+round both start anew and are timed in short blocks in turns on one core. A ratio above 1 means that this tree
+is faster.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import statistics
+import sys
+from pathlib import Path
+
+import inputs
+import programs
+import revisions
+from duel import Duel, Row, interval, verdict
+from report import columns
+from rows import ROWS
+
+HEAD = columns("what", "nv", "here", "ratio", "95 % interval", "", "", "differ by", "", "")
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python benches/versus/against.py", description=__doc__)
+    parser.add_argument("revision", nargs="?", help="a commit, branch or tag of this repository")
+    parser.add_argument(
+        "--built",
+        nargs=2,
+        type=Path,
+        metavar=("OTHER", "HERE"),
+        help="two trees that are already built, with the contestant in target/release/examples",
+    )
+    parser.add_argument("--rounds", type=int, default=41)
+    parser.add_argument("--seconds", type=float, default=0.01, help="of a block at least")
+    parser.add_argument("--rows", default="", help="only rows whose name contains this")
+    parser.add_argument("--nv", type=int, choices=(13, 20), help="only the robot with one arm or with two")
+    given = parser.parse_args()
+    if (given.revision is None) == (given.built is None):
+        parser.error("give a revision, or --built with two trees")
+    return given
+
+
+def asked(given: argparse.Namespace) -> list[Row]:
+    """The rows of ``make bench`` that run on one thread, for each robot."""
+    robots = (13, 20) if given.nv is None else (given.nv,)
+    rows = [row for row in ROWS if given.rows in row.what and row.ours[0] != "ours_all"]
+    if not rows:
+        sys.exit(f"no row contains {given.rows!r}; there are: {', '.join(row.what for row in ROWS)}")
+    return [Row(row, nv) for nv, row in itertools.product(robots, rows)]
+
+
+def main() -> int:
+    given = arguments()
+    other, here = revisions.built(*given.built) if given.built else revisions.compared(given.revision)
+    same = other.machine_code() == here.machine_code()
+    print(f"{here.name} against {other.name} on {programs.processor()}, {given.rounds} rounds")
+    print(f"machine code: {'the same bytes' if same else 'different'}\n{HEAD}", flush=True)
+    rows, slower = asked(given), 0
+    for nv in dict.fromkeys(row.nv for row in rows):
+        folder = programs.BUILD / f"against{nv}"
+        inputs.write(folder, 1 if nv == 13 else 2)
+        duel = Duel(other, here, folder, [row for row in rows if row.nv == nv])
+        for _ in range(given.rounds):
+            duel.round(given.seconds)
+        for row, ratios in duel.ratios.items():
+            low, high = interval(ratios)
+            told = verdict(low, high)
+            slower += told == "SLOWER"
+            middle, bounds = statistics.median(ratios), f"{low:.3f} to {high:.3f}"
+            time = f"{statistics.median(duel.times[row]) / 1e3:.2f} µs"
+            print(
+                columns(row.what, str(nv), time, f"{middle:.3f}", bounds, "", "", duel.change(row), "", told),
+                flush=True,
+            )
+    print(f"{slower} rows slower: their intervals lie below 0.98" if slower else "no row is slower")
+    return 1 if slower else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,74 @@
+//! Text files that a user names: regular ones alone, read no further than they may be long.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+use thiserror::Error;
+
+/// Why a text file cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[allow(missing_docs)] // the fields are what the messages say
+pub enum TextFileError {
+    #[error("there is no such file")]
+    NotFound,
+    #[error("is a directory")]
+    Folder,
+    #[error("a pipe or a device: save its content as a file")]
+    NotRegular,
+    #[error("larger than {limit} bytes")]
+    TooLarge { limit: usize },
+    #[error("not UTF-8 text")]
+    NotUtf8 { at: usize },
+    #[error("{reason}")]
+    Unreadable { reason: String },
+}
+
+/// The text of a UTF-8 file of at most `limit` bytes.
+///
+/// # Errors
+/// [`TextFileError`]; a device never ends and a pipe waits for ever, so neither is opened.
+pub fn read_text(path: &Path, limit: usize) -> Result<String, TextFileError> {
+    let refuse = |error: std::io::Error| match error.kind() {
+        ErrorKind::NotFound => TextFileError::NotFound,
+        kind => TextFileError::Unreadable { reason: kind.to_string() }, // the system's words differ
+    };
+    let kind = std::fs::metadata(path).map_err(refuse)?.file_type();
+    if kind.is_dir() {
+        return Err(TextFileError::Folder);
+    }
+    if !kind.is_file() {
+        return Err(TextFileError::NotRegular);
+    }
+    let mut bytes = Vec::new();
+    let most = limit as u64 + 1;
+    File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)).map_err(refuse)?;
+    if bytes.len() > limit {
+        return Err(TextFileError::TooLarge { limit });
+    }
+    String::from_utf8(bytes).map_err(|error| TextFileError::NotUtf8 { at: error.utf8_error().valid_up_to() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{TextFileError, read_text};
+    use std::path::Path;
+
+    #[test]
+    fn a_file_is_read_up_to_its_limit() {
+        let path = std::env::temp_dir().join(format!("onorbit_text_file_{}", std::process::id()));
+        std::fs::write(&path, "four").expect("a file");
+        assert_eq!(read_text(&path, 4), Ok("four".to_owned()));
+        assert_eq!(read_text(&path, 3), Err(TextFileError::TooLarge { limit: 3 }));
+        std::fs::write(&path, b"ab\xff").expect("a file");
+        assert_eq!(read_text(&path, 4), Err(TextFileError::NotUtf8 { at: 2 }));
+        std::fs::remove_file(&path).expect("the file");
+        assert_eq!(read_text(&path, 4), Err(TextFileError::NotFound));
+        assert_eq!(read_text(&std::env::temp_dir(), 4), Err(TextFileError::Folder));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_is_not_read() {
+        assert_eq!(read_text(Path::new("/dev/zero"), 4), Err(TextFileError::NotRegular));
+    }
+}

@@ -1,0 +1,146 @@
+"""Reads and replaces single files: bounded in size, atomically, and never through a link."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import os
+import secrets
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import BinaryIO
+
+from onorbit_rs.exceptions import OnOrbitError, OutputFolderError
+
+_NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+_READ = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+_CHUNK = 1 << 20
+
+
+def open_to_read(file: Path) -> BinaryIO:
+    """Open a regular file; anything else (folder, device, pipe) is an OSError and never blocks."""
+    descriptor = os.open(file, _READ)
+    try:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise OSError(errno.EINVAL, "it is not a regular file", str(file))
+        return os.fdopen(descriptor, "rb")
+    except BaseException:
+        os.close(descriptor)
+        raise
+
+
+def read_bounded(stream: BinaryIO, most: int) -> bytes:
+    """Content of a file that was opened to read, at most ``most`` bytes; ValueError where it is larger."""
+    if os.fstat(stream.fileno()).st_size > most:
+        raise ValueError(f"it is larger than {most} bytes")
+    return stream.read()
+
+
+def open_to_change(file: Path) -> BinaryIO:
+    """Open a regular file for reading and writing, created where missing, never through a link."""
+    descriptor = os.open(file, os.O_RDWR | os.O_CREAT | _NO_LINK | getattr(os, "O_NONBLOCK", 0), 0o666)
+    try:
+        found = os.fstat(descriptor)
+        if not stat.S_ISREG(found.st_mode) or found.st_nlink > 1 or is_link(file):
+            raise OSError(errno.EINVAL, "it is a link or not a regular file", str(file))
+        return os.fdopen(descriptor, "r+b", buffering=0)
+    except BaseException:
+        os.close(descriptor)
+        raise
+
+
+def create(file: Path) -> None:
+    """Create an empty file; an OSError where the name is taken, by a link too."""
+    os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL | _NO_LINK, 0o666))
+
+
+def exists(path: Path) -> bool:
+    """Whether the name is taken, by a link to nowhere too."""
+    return os.path.lexists(path)
+
+
+def is_link(path: Path) -> bool:
+    """Whether the name is a symbolic link, or a junction of Windows."""
+    return path.is_symlink() or bool(getattr(os.path, "isjunction", lambda _: False)(path))
+
+
+def is_regular(path: Path) -> bool:
+    """Whether the name is a regular file itself, not a link to one."""
+    try:
+        return stat.S_ISREG(path.lstat().st_mode)
+    except OSError:
+        return False
+
+
+def is_real_folder(path: Path) -> bool:
+    """Whether the name is a folder itself, not a link to one."""
+    return path.is_dir() and not is_link(path)
+
+
+def remove(file: Path) -> None:
+    """Remove a regular file; what is missing, a link or anything else stays as it is."""
+    if is_regular(file):
+        file.unlink(missing_ok=True)
+
+
+def sync(file: Path) -> None:
+    """Wait until the content of a file is on the disk."""
+    descriptor = os.open(file, os.O_RDWR | _NO_LINK)  # Windows syncs only what may be written
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def sync_folder(folder: Path) -> None:
+    """Wait until new names in a folder are on the disk, where the system can do that."""
+    with suppress(OSError):  # Windows, some network folders
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+def sha256_of(stream: BinaryIO) -> str:
+    """SHA-256 of the rest of a stream, in hexadecimal."""
+    digest = hashlib.sha256()
+    while chunk := stream.read(_CHUNK):
+        digest.update(chunk)
+    return digest.hexdigest()
+
+
+@contextmanager
+def replacing(file: Path) -> Iterator[Path]:
+    """A private temporary path that becomes ``file`` when all went well; its folder is there already.
+
+    Raises
+    ------
+    OutputFolderError
+        It cannot be written, or ``file`` is a link or no regular file.
+    """
+    with refusals(file):
+        if exists(file) and not is_regular(file):
+            raise OSError(errno.EINVAL, "it is a link or not a regular file, name a regular one")
+        temporary = file.with_name(f".partial-{secrets.token_hex(8)}")
+        create(temporary)
+        try:
+            yield temporary
+            sync(temporary)
+            temporary.replace(file)
+        finally:  # whatever ended it, Ctrl-C included
+            temporary.unlink(missing_ok=True)
+        sync_folder(file.parent)
+
+
+@contextmanager
+def refusals(file: Path) -> Iterator[None]:
+    """Turn errors of the system into an :class:`OutputFolderError` that names ``file``."""
+    try:
+        yield
+    except OSError as error:
+        if isinstance(error, OnOrbitError):
+            raise
+        raise OutputFolderError(f"cannot write {file}: {error.strerror or error}", path=str(file)) from error

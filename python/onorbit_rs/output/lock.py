@@ -1,0 +1,177 @@
+"""One writer per folder: a lock of the operating system that ends with the process that holds it."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import json
+import os
+import secrets
+import socket
+import sys
+import time
+import warnings
+from datetime import datetime
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from onorbit_rs.exceptions import OutputInUseError
+from onorbit_rs.files import open_to_change, open_to_read, remove
+from onorbit_rs.printable import printable, shell_word
+
+LOCK = ".onorbit.lock"
+_MOST = 10_000
+_FAR = 1 << 30
+"""Where Windows locks a byte: beyond the text, which others read."""
+_UNSUPPORTED = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EINVAL}
+_held: set[int] = set()
+"""Descriptors of locks of this process; a forked child closes them, or it would keep the lock alive."""
+
+
+class Owner(NamedTuple):
+    """The process that holds a lock, or held it when it was killed."""
+
+    pid: int
+    host: str
+    command: str
+    since: str
+    token: str
+    """In the names of its temporary files."""
+
+    def __str__(self) -> str:
+        """``process 12 on host (onorbit run …) since 2026-01-01 12:00:00``."""
+        return printable(f"process {self.pid} on {self.host} ({self.command}) since {self.since}")
+
+
+_UNKNOWN = Owner(0, "an unknown host", "unknown command", "an unknown time", "")
+
+
+class FolderLock:
+    """The right to write a folder, held from construction to :meth:`release`."""
+
+    def __init__(self, folder: Path) -> None:
+        """Take the lock, or raise :class:`OutputInUseError` where another process has it."""
+        self.path = folder / LOCK
+        self._descriptor = self._taken(folder)
+        _held.add(self._descriptor)
+        self.previous = _owner(self.path)
+        """The process that was killed while it held the lock; None where there was none."""
+        self.token = secrets.token_hex(8)
+        try:
+            os.ftruncate(self._descriptor, 0)
+            os.write(self._descriptor, json.dumps(_this_process(self.token)._asdict()).encode())
+        except OSError:
+            self.release()
+            raise
+
+    def release(self) -> None:
+        """Let others write the folder; twice does no harm."""
+        if self._descriptor in _held:
+            with contextlib.suppress(OSError):  # Windows removes no open file, and others may open it next
+                if _is_at(self.path, self._descriptor):
+                    remove(self.path)
+            _held.discard(self._descriptor)
+            os.close(self._descriptor)
+
+    def _taken(self, folder: Path) -> int:
+        """A locked descriptor of the file that has the name now: its owner may have removed it meanwhile."""
+        for attempt in range(20):
+            with open_to_change(self.path) as stream:
+                descriptor = os.dup(stream.fileno())
+            os.set_inheritable(descriptor, False)
+            try:
+                if _try_lock(descriptor, folder) and _is_at(self.path, descriptor):
+                    return descriptor
+            except BaseException:
+                os.close(descriptor)
+                raise
+            os.close(descriptor)
+            time.sleep(0.01 if attempt else 0.0)  # who only asks holds it for an instant
+        raise _in_use(folder)
+
+
+def owner_of(folder: Path) -> Owner | None:
+    """The live process that holds the lock of a folder; None where there is none, or nobody can say."""
+    try:
+        with open_to_read(folder / LOCK) as stream:
+            if _try_lock(stream.fileno(), None):
+                return None
+        return _owner(folder / LOCK) or _UNKNOWN
+    except OSError:
+        return None
+
+
+def _in_use(folder: Path) -> OutputInUseError:
+    owner = owner_of(folder) or _UNKNOWN
+    message = f"{folder} is in use: {owner} writes it; wait for its end, or choose another folder"
+    return OutputInUseError(
+        message, path=str(folder), pid=owner.pid, command=owner.command, since=owner.since
+    )
+
+
+def _owner(file: Path) -> Owner | None:
+    """What the file says; None where it says nothing that can be understood."""
+    try:
+        with open_to_read(file) as stream:
+            said: Any = json.loads(stream.read(_MOST))
+        owner = Owner(int(said["pid"]), *(str(said[name]) for name in Owner._fields[1:]))
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+    return owner
+
+
+def _this_process(token: str) -> Owner:
+    program, *words = sys.argv or ["python"]
+    words.insert(0, "onorbit" if Path(program).stem in ("onorbit", "__main__") else program)
+    command = " ".join(map(shell_word, words))[:500]
+    since = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M:%S %z")
+    return Owner(os.getpid(), socket.gethostname(), command, since, token)
+
+
+def _is_at(file: Path, descriptor: int) -> bool:
+    try:
+        return os.path.samestat(file.lstat(), os.fstat(descriptor))
+    except OSError:
+        return False
+
+
+def _try_lock(descriptor: int, folder: Path | None) -> bool:
+    """Whether the lock was free; it is taken shared where no ``folder`` to write is given."""
+    try:
+        _lock(descriptor, is_shared=folder is None)
+    except OSError as error:
+        if error.errno not in _UNSUPPORTED:
+            return False
+        if folder is not None:
+            warnings.warn(
+                f"{folder} cannot be locked ({error.strerror}): see that no other command writes it",
+                UserWarning, stacklevel=2,
+            )  # fmt: skip
+    return True
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _lock(descriptor: int, *, is_shared: bool) -> None:
+        os.lseek(descriptor, _FAR, os.SEEK_SET)
+        try:
+            msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+            if is_shared:  # Windows has no shared ones here
+                os.lseek(descriptor, _FAR, os.SEEK_SET)
+                msvcrt.locking(descriptor, msvcrt.LK_UNLCK, 1)
+        finally:
+            os.lseek(descriptor, 0, os.SEEK_SET)
+
+else:
+    import fcntl
+
+    def _lock(descriptor: int, *, is_shared: bool) -> None:
+        fcntl.flock(descriptor, (fcntl.LOCK_SH if is_shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+
+    def _forget() -> None:
+        for descriptor in _held:
+            os.close(descriptor)
+        _held.clear()
+
+    os.register_at_fork(after_in_child=_forget)

@@ -1,0 +1,130 @@
+"""``manifest.json``: which files of a folder a run wrote, with their sizes and SHA-256."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO, NamedTuple
+
+from onorbit_rs.exceptions import IntegrityError, ReadError
+from onorbit_rs.files import exists, open_to_read, read_bounded, sha256_of
+from onorbit_rs.output.sealed import sealed, unsealed
+from onorbit_rs.printable import printable, shell_word
+
+MANIFEST = "manifest.json"
+SUMMARY, TRACE, SCENARIO, RECORDING, REPORT = (
+    "summary.json", "trace.npz", "scenario.yaml", "run.rrd", "report.html",
+)  # fmt: skip
+RESULTS = (SUMMARY, TRACE, SCENARIO, RECORDING, REPORT)
+"""What a run and its report write beside figures, in the order in which ``--force`` removes it."""
+FIGURES, CHECKPOINT = "figures", "checkpoint"
+STATE = "state.json"
+_FORMAT = 1
+_MOST = 16_000_000
+_FIGURE = re.compile(rf"{FIGURES}/[^/\\\x00]+\.(png|pdf)")
+_CHECKPOINT = re.compile(rf"{re.escape(STATE)}|[^/\\\x00]+\.f64")
+
+
+class Entry(NamedTuple):
+    """What a run wrote under a name."""
+
+    size: int
+    sha256: str
+
+    @classmethod
+    def of(cls, file: Path) -> Entry:
+        """Of a file as it is now."""
+        with open_to_read(file) as stream:
+            digest = sha256_of(stream)
+            return cls(stream.tell(), digest)
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """Files by their names in the folder (``figures/x.png``), and the names of those of the checkpoint."""
+
+    files: Mapping[str, Entry] = field(default_factory=dict)
+    checkpoint: tuple[str, ...] = ()
+
+    def as_bytes(self) -> bytes:
+        """Content of ``manifest.json``."""
+        files = {name: entry._asdict() for name, entry in sorted(self.files.items())}
+        return sealed({"format": _FORMAT, "files": files, "checkpoint": list(self.checkpoint)})
+
+    @contextmanager
+    def opened(self, folder: Path, name: str) -> Iterator[BinaryIO]:
+        """A file, open for reading, that is what the run wrote.
+
+        Raises
+        ------
+        IntegrityError
+            It was changed since, or the run did not write it.
+        FileNotFoundError, OSError
+            It is not there or cannot be read.
+        """
+        with open_to_read(folder / name) as stream:
+            expected = self.files.get(name)
+            size = stream.seek(0, 2)
+            stream.seek(0)
+            if expected is None or size != expected.size:
+                raise _changed(folder, name, expected, Entry(size, "not computed"))
+            if (digest := sha256_of(stream)) != expected.sha256:
+                raise _changed(folder, name, expected, Entry(size, digest))
+            stream.seek(0)
+            yield stream
+
+
+def read_manifest(folder: Path) -> Manifest | None:
+    """The manifest in a folder; None where there is none.
+
+    Raises
+    ------
+    ReadError
+        It is damaged, or names what no run writes.
+    """
+    file = folder / MANIFEST
+    if not exists(file):
+        return None
+    try:
+        with open_to_read(file) as stream:
+            record = unsealed(read_bounded(stream, _MOST))
+        if record["format"] != _FORMAT:
+            raise ValueError(f"its format is {record['format']!r}, this version reads {_FORMAT}")
+        files = {name: _entry(name, entry) for name, entry in record["files"].items()}
+        names = tuple(record["checkpoint"])
+        if not all(isinstance(name, str) and _CHECKPOINT.fullmatch(name) for name in names):
+            raise ValueError("it names files that no checkpoint has")
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise ReadError(
+            f"cannot read {file}: {error}; what the run wrote is no longer known: run it again into another "
+            f"folder: onorbit run {shell_word(folder / SCENARIO)}, or remove {MANIFEST} to read the folder "
+            "unchecked",
+            path=str(file), kind="manifest",
+        ) from error  # fmt: skip
+    return Manifest(files, names)
+
+
+def _entry(name: str, entry: Any) -> Entry:
+    if name not in RESULTS and not _FIGURE.fullmatch(name):
+        raise ValueError(f"it names {name!r}, which no run writes")
+    size, digest = entry["size"], entry["sha256"]
+    if type(size) is not int or not isinstance(digest, str):
+        raise ValueError(f"the entry of {name!r} is not a size and a digest")
+    return Entry(size, digest)
+
+
+def _changed(folder: Path, name: str, expected: Entry | None, got: Entry) -> IntegrityError:
+    if expected is None:
+        what = f"{name} in {folder} was not written by the run of this folder"
+    elif got.size != expected.size:
+        what = f"{name} in {folder} was changed since the run wrote it: {got.size} bytes, not {expected.size}"
+    else:
+        what = f"{name} in {folder} was changed since the run wrote it: its SHA-256 differs from {MANIFEST}'s"
+    again = f"onorbit run {shell_word(folder / SCENARIO)} --out DIR"
+    way_out = f"undo the change, or run it again: {again}"
+    return IntegrityError(
+        printable(f"{what}; {way_out}"), path=str(folder / name), kind=name, expected=expected, got=got
+    )

@@ -1,0 +1,34 @@
+"""Releases rerun's streams: rerun keeps every stream, with two threads and its buffers, until it is told to.
+
+rerun disconnects a stream that Python dropped but releases it only at the next ``rr.init``, and the stream of
+a blueprint never, since its memory sink and the stream own each other (rerun-io/rerun issue 2116).
+"""
+
+from __future__ import annotations
+
+import rerun as rr
+import rerun.blueprint as rrb
+import rerun_bindings
+
+APPLICATION = "onorbit"
+"""The name under which the viewer keeps layouts."""
+
+
+def send_blueprint(recording: rr.RecordingStream, views: rrb.Blueprint) -> None:
+    """Send the layout as ``recording.send_blueprint`` does, and disconnect the stream that carried it."""
+    carrier = rr.RecordingStream._from_native(
+        rerun_bindings.new_blueprint(
+            application_id=APPLICATION,
+            make_default=False, make_thread_default=False, default_enabled=True,
+        )
+    )  # fmt: skip
+    carrier.set_time("blueprint", sequence=0)
+    views._log_to_stream(carrier)
+    storage = rr.memory_recording(carrier).storage
+    rerun_bindings.send_blueprint(storage, True, True, recording=recording.to_native())
+    carrier.disconnect()  # replaces the memory sink
+
+
+def release_streams() -> None:
+    """End the threads and free the memory of streams that nobody holds; those in use are left alone."""
+    rerun_bindings.flush_and_cleanup_orphaned_recordings()

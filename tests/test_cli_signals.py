@@ -1,0 +1,168 @@
+"""SIGTERM and SIGHUP end a command as Ctrl-C does; what is whole then is said, and how to go on."""
+
+from __future__ import annotations
+
+import _thread
+import json
+import os
+import pty
+import select
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from commands import SPIN, onorbit
+
+import onorbit_rs as oo
+from onorbit_rs.cli.signals import ending_signals
+from onorbit_rs.scenario import load
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="sends SIGTERM and SIGHUP")
+
+
+WITHOUT_PICTURES = """
+import onorbit_rs.cli, onorbit_rs.keeping
+onorbit_rs.keeping.write_pictures = lambda *_, **__: None
+onorbit_rs.cli.main()
+"""
+
+
+def run_in_the_background(tmp_path: Path, duration: str, **streams: Any) -> subprocess.Popen[str]:
+    """A run whose checkpoints come too seldom: what it leaves is the last one."""
+    file = tmp_path / "mine.yaml"
+    file.write_text(SPIN.replace("duration: 0.1 s", f"duration: {duration}, record_every: 1000"))
+    command = [sys.executable, "-c", WITHOUT_PICTURES, "run", str(file), "--out", str(tmp_path / "out")]
+    return subprocess.Popen(
+        [*command, "--checkpoint-every", "1000"], stdout=subprocess.PIPE, text=True, **streams
+    )
+
+
+def wait_until_it_runs(tmp_path: Path, run: subprocess.Popen[str]) -> None:
+    deadline = time.monotonic() + 60.0
+    while not (tmp_path / "out" / "scenario.yaml").exists():
+        assert run.poll() is None and time.monotonic() < deadline
+        time.sleep(0.02)
+    time.sleep(0.5)  # inside the simulation loop
+
+
+def test_sigterm_leaves_a_last_checkpoint_and_says_how_to_go_on(tmp_path: Path) -> None:
+    with run_in_the_background(tmp_path, "100 h", stderr=subprocess.PIPE) as run:
+        wait_until_it_runs(tmp_path, run)
+        run.send_signal(signal.SIGTERM)
+        run.send_signal(signal.SIGTERM)  # what is written because of the first goes on
+        _, stderr = run.communicate(timeout=60)
+    out = tmp_path / "out"
+    assert run.returncode == 143, stderr
+    assert stderr.startswith("onorbit: stopped by SIGTERM at t = ") and len(stderr.splitlines()) == 1
+    assert f"go on with: onorbit resume {out}" in stderr
+    record = json.loads((out / "checkpoint" / "state.json").read_text())
+    with np.load(out / "trace.npz") as stored:
+        assert 0 < record["rows"] in (len(stored["time"]) - 1, len(stored["time"]))  # the instant of the stop
+    assert json.loads((out / "summary.json").read_text())["status"] == "interrupted"
+
+
+def test_a_terminal_that_closes_leaves_a_last_checkpoint(tmp_path: Path) -> None:
+    """Its progress bar has nowhere to go, and nothing can be said."""
+    ours, theirs = pty.openpty()
+    run = run_in_the_background(tmp_path, "100 h", stderr=theirs, stdin=theirs, start_new_session=True)
+    os.close(theirs)
+    stopped = threading.Event()
+    reader = threading.Thread(target=read_all, args=(ours, stopped))
+    reader.start()
+    with run:
+        wait_until_it_runs(tmp_path, run)
+        stopped.set()
+        reader.join()
+        os.close(ours)  # from here on whatever is written there fails
+        run.send_signal(signal.SIGHUP)
+        run.communicate(timeout=60)
+    assert run.returncode == 129
+    assert (tmp_path / "out" / "checkpoint" / "state.json").is_file()
+    assert (tmp_path / "out" / "trace.npz").is_file()
+
+
+def test_handlers_are_those_of_before_and_what_is_ignored_stays_ignored() -> None:
+    before = signal.getsignal(signal.SIGTERM), signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with ending_signals():
+            assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN  # nohup
+            with pytest.raises(KeyboardInterrupt, match="SIGTERM"):
+                signal.raise_signal(signal.SIGTERM)
+            signal.raise_signal(signal.SIGTERM)  # again at once: what is written is not interrupted
+        assert signal.getsignal(signal.SIGTERM) == before[0]
+    finally:
+        signal.signal(signal.SIGHUP, before[1])
+
+
+def test_other_threads_leave_signals_alone() -> None:
+    seen: list[Any] = []
+
+    def elsewhere() -> None:
+        with ending_signals():
+            seen.append(signal.getsignal(signal.SIGTERM))
+
+    thread = threading.Thread(target=elsewhere)
+    thread.start()
+    thread.join()
+    assert seen == [signal.getsignal(signal.SIGTERM)] == [signal.SIG_DFL]
+
+
+def interrupted_while(monkeypatch: pytest.MonkeyPatch, step: str) -> None:
+    def pressed(*_: Any, **__: Any) -> None:
+        _thread.interrupt_main()
+        time.sleep(1.0)
+
+    monkeypatch.setattr(f"onorbit_rs.keeping.{step}", pressed)
+
+
+def test_ctrl_c_while_figures_are_drawn_says_what_is_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    interrupted_while(monkeypatch, "write_pictures")
+    (tmp_path / "mine.yaml").write_text(SPIN)
+    done = onorbit("run", "mine.yaml", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 130 and len(done.stderr.splitlines()) == 1
+    assert "trace and summary are whole in out" in done.stderr and "--force" not in done.stderr
+    command = done.stderr.split("draw the figures with: onorbit ")[1].split()
+    with np.load(tmp_path / "out" / "trace.npz") as stored:
+        assert len(stored["time"]) == 11
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["status"] == "complete"
+    monkeypatch.undo()
+    assert onorbit(*command, cwd=tmp_path).returncode == 0
+    assert list((tmp_path / "out" / "figures").glob("*.pdf"))
+
+
+def test_ctrl_c_while_the_trace_is_written_says_that_it_is_not_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    interrupted_while(monkeypatch, "write_trace")
+    (tmp_path / "mine.yaml").write_text(SPIN)
+    done = onorbit("run", "mine.yaml", "--out", "out", cwd=tmp_path)
+    assert done.returncode == 130
+    assert "not all of its results are in out: run it again with --force" in done.stderr
+
+
+def test_a_second_ctrl_c_ends_the_figures_of_an_interrupted_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    interrupted_while(monkeypatch, "write_pictures")
+    data = load("humanoid_reach").resolved()
+    data["simulation"] |= {"duration": 1000.0, "time_step": 1e-4, "record_every": 100}
+    timer = threading.Timer(0.5, _thread.interrupt_main)
+    timer.start()
+    with pytest.raises(oo.exceptions.RunInterrupted, match=r"onorbit resume .*onorbit report .* draws them"):
+        oo.run(data, tmp_path / "out", quiet=True)
+    assert (tmp_path / "out" / "checkpoint" / "state.json").is_file()
+
+
+def read_all(terminal: int, stopped: threading.Event) -> None:
+    """A terminal that nobody reads stops who writes."""
+    while not stopped.is_set():
+        if select.select([terminal], [], [], 0.05)[0]:
+            os.read(terminal, 65536)

@@ -1,0 +1,112 @@
+"""Friction of joints at rest: what breaks them away, what holds them, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.robots.fingerprint import fingerprint
+
+GOAL = 0.05  # rad
+
+
+def hinge(**friction: Any) -> oo.Model:
+    """A link of 0.03 kg m² about its joint on a base of 50 kg."""
+    builder = oo.ModelBuilder("hinge", base="base", mass=50.0, com=[0, 0, 0], inertia=5.0 * np.eye(3))
+    builder.add_link(
+        "link", parent="base", joint="joint", mass=1.0, com=[0.1, 0, 0], inertia=0.02 * np.eye(3), **friction
+    )
+    return builder.build()
+
+
+def moved(model: oo.Model, *, kd: float = 20.0, duration: float = 3.0, **settings: Any) -> oo.Trace:
+    law = oo.JointComputedTorque(
+        kp=100.0, kd=kd, compensate_friction=settings.pop("compensate_friction", True)
+    )
+    simulation = oo.Simulation(
+        model, model.neutral(), np.zeros(model.nv), controller=law, reference=oo.JointHold([GOAL]), **settings
+    )
+    return simulation.run(duration)
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Joint positions at the instants that two runs share."""
+
+    free: Any
+    rough: Any
+
+
+def shared_rows(free: oo.Trace, rough: oo.Trace) -> Rows:
+    rows = np.isin(rough.time, free.time)  # reversals are rows as well
+    assert rows.sum() == len(free.time)
+    return Rows(free.q[:, 7], rough.q[rows, 7])
+
+
+@pytest.mark.parametrize("kd", [20.0, 2.0])
+@pytest.mark.parametrize("friction", [{"friction": 0.2}, {"friction": 0.2, "static_friction": 0.35}])
+def test_a_joint_that_friction_would_hold_moves_as_without(kd: float, friction: dict[str, float]) -> None:
+    """0.2 N m and a goal 0.05 rad away: it never moved."""
+    trace = moved(hinge(**friction), kd=kd)
+    rows = shared_rows(moved(hinge(), kd=kd), trace)
+    assert np.abs(rows.free - rows.rough).max() < 1e-6
+    assert all(passed for *_, passed in trace.certificate())
+    compensation = trace.friction_compensation
+    assert compensation is not None
+    signs = np.sign(compensation[compensation != 0.0])
+    assert np.count_nonzero(np.diff(signs)) == (0 if kd == 20.0 else 9)  # a swing every 0.63 s, no chatter
+    # negative control
+    assert not np.any(moved(hinge(**friction), kd=kd, compensate_friction=False).q[:, 7])
+
+
+def test_a_run_without_friction_has_no_compensation_to_record() -> None:
+    trace = moved(hinge(), duration=0.01)
+    assert trace.friction_compensation is None and "friction_compensation" not in trace.columns()
+
+
+def test_static_friction_is_the_kinetic_one_unless_it_is_given() -> None:
+    frictions = [
+        {"friction": 0.2},
+        {"friction": 0.2, "static_friction": 0.2},
+        {"friction": 0.2, "static_friction": 0.3},
+    ]
+    models = [hinge(**friction) for friction in frictions]
+    assert [model.joints[0].static_friction for model in models] == [0.2, 0.2, 0.3]
+    prints = [fingerprint(model) for model in models]
+    assert prints[0] == prints[1] != prints[2]
+
+
+def test_static_friction_is_read_from_a_urdf() -> None:
+    inertial = (
+        '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    )
+    text = (
+        f'<robot name="r"><link name="a">{inertial}</link><link name="b">{inertial}</link>'
+        '<joint name="j" type="continuous"><parent link="a"/><child link="b"/>'
+        '<dynamics friction="0.2" static_friction="0.25"/></joint></robot>'
+    )
+    joint = oo.Model.from_urdf_string(text).joints[0]
+    assert (joint.friction, joint.static_friction) == (0.2, 0.25)
+
+
+def test_a_static_friction_below_the_kinetic_one_is_refused() -> None:
+    with pytest.raises(
+        oo.exceptions.ModelError, match=r"static friction 0\.1 is below its kinetic friction 0\.2"
+    ) as error:
+        hinge(friction=0.2, static_friction=0.1)
+    assert error.value.joint == "joint"
+
+
+def test_mujoco_moves_a_joint_that_friction_would_hold_and_refuses_two_frictions() -> None:
+    pytest.importorskip("mujoco")
+    from onorbit_rs.plants import Mujoco
+
+    model = hinge(friction=0.2)
+    trace = moved(model, plant=Mujoco(model))
+    assert abs(trace.q[-1, 7] - GOAL) < 2e-4  # its friction creeps; it stayed where it was
+    with pytest.raises(oo.exceptions.ModelError, match="one friction for both"):
+        Mujoco(hinge(friction=0.2, static_friction=0.3))

@@ -1,0 +1,141 @@
+"""Ctrl-C is heard during every long call, and what ends at the same instant keeps its own error."""
+
+from __future__ import annotations
+
+import ctypes
+import operator
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+
+POSIX = pytest.mark.skipif(os.name != "posix", reason="os.kill sends SIGINT on POSIX alone")
+HEARD_WITHIN_S = 5.0
+"""Wall clock on a busy machine; Ctrl-C had been heard at the end of the call, after 45 s."""
+
+
+def numerical(degree: int = 70, t0: float = 0.0) -> oo.Numerical:
+    field = oo.GravityField("egm2008", degree=degree, order=0)
+    return oo.Numerical([7e6, 0, 0], [0, 5400.0, 5400.0], t0=t0, environment=[field])
+
+
+def long_propagation() -> Any:
+    return oo.propagate([numerical() for _ in range(3)], [2e8])
+
+
+def long_orbit() -> Any:
+    return numerical().state(2e8)
+
+
+def long_backwards() -> Any:
+    return numerical().state(np.array([-2e8, 0.0]))
+
+
+def long_frames() -> Any:
+    return numerical().lvlh([0.0, 2e8])
+
+
+def long_relative() -> Any:
+    return oo.relative.to_lvlh(numerical(), 2e8, np.ones(3), np.ones(3))
+
+
+def long_field() -> Any:
+    field = oo.GravityField("egm2008", degree=70)
+    return field.acceleration(np.tile([7e6, 1e5, 2e5], (4_000_000, 1)))
+
+
+def long_many_times() -> Any:
+    orbits = [oo.Kepler(semi_major_axis=7e6 + k, true_anomaly=0.0) for k in range(2)]
+    return oo.propagate(orbits, np.linspace(0.0, 1e5, 30_000_000))
+
+
+def long_start() -> Any:
+    """The reference orbit is integrated for years before the run begins."""
+    body = oo.Model.rigid_body(1.0, np.eye(3))
+    orbit = numerical(t0=-2e8)
+    q, v = body.neutral(), np.zeros(body.nv)
+    return oo.Simulation(body, q, v, orbit=orbit, time_step=0.1).run(1.0)
+
+
+@POSIX
+@pytest.mark.parametrize(
+    "call",
+    [
+        long_propagation,
+        long_orbit,
+        long_backwards,
+        long_frames,
+        long_relative,
+        long_field,
+        long_many_times,
+        long_start,
+    ],
+)
+def test_ctrl_c_is_heard_during_long_calls(call: Callable[[], Any]) -> None:
+    sent: list[float] = []
+
+    def press() -> None:
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(0.4, press)
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            call()
+        assert time.monotonic() - sent[0] < HEARD_WITHIN_S
+    finally:
+        timer.cancel()
+        timer.join()
+
+
+def test_an_orbit_that_was_interrupted_goes_on_with_the_same_bits() -> None:
+    whole, parts = numerical(8), numerical(8)
+    for t in np.linspace(0.0, 20_000.0, 40):
+        parts.state(t)
+    assert np.array_equal(whole.state(20_000.0), parts.state(20_000.0))
+
+
+def with_ctrl_c_pending(call: Callable[[], Any], returned: list[Any] | None = None) -> None:
+    """Call with a Ctrl-C that Python has not handled: nothing of Python runs between the two."""
+    returned = [] if returned is None else returned
+    returned.extend(map(operator.call, [ctypes.pythonapi.PyErr_SetInterrupt, call]))
+
+
+def test_ctrl_c_is_heard_within_a_certificate_and_a_batch() -> None:
+    """Each takes at least twice the pace at which signals are checked."""
+    model = oo.robots.load("humanoid_torso")
+    v = np.full(model.nv, 0.01)
+    trace = oo.Simulation(model, model.neutral(), v, time_step=1e-3, record_every=1).run(50.0)
+    q = np.tile(model.neutral(), (400_000, 1))
+    for call in (trace.certificate, partial(model.mass_matrix, q, threads=1)):
+        returned: list[Any] = []
+        with pytest.raises(KeyboardInterrupt):
+            with_ctrl_c_pending(call, returned)
+        assert len(returned) == 1, f"{call} came to its end"
+    assert all(passed for *_, passed in trace.certificate())
+
+
+def test_a_refusal_with_ctrl_c_pending_is_no_bare_runtime_error() -> None:
+    with pytest.raises(KeyboardInterrupt) as stop:
+        with_ctrl_c_pending(partial(oo.Kepler, semi_major_axis=-7e6, true_anomaly=0.0))
+    assert isinstance(stop.value.__context__, oo.exceptions.OrbitError)
+
+
+def test_a_run_that_diverges_with_ctrl_c_pending_keeps_its_trace() -> None:
+    model = oo.robots.load("humanoid_torso")
+    simulation = oo.Simulation(model, model.neutral(), np.full(model.nv, 1e9), time_step=1.0)
+    with pytest.raises(oo.exceptions.SimulationError):
+        simulation.run(100.0)
+    with pytest.raises(oo.exceptions.RunInterrupted) as stop:
+        with_ctrl_c_pending(partial(simulation.run, 100.0))
+    assert len(stop.value.trace.time) >= 1
+    assert isinstance(stop.value.__context__, oo.exceptions.SimulationError)

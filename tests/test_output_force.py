@@ -1,0 +1,174 @@
+"""``--force`` removes nothing that no run wrote, and nothing is written through a link."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from commands import SPIN, onorbit, refusal
+from matplotlib.figure import Figure
+
+import onorbit_rs as oo
+from onorbit_rs import figures
+from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError, ReadError
+from onorbit_rs.output.folder import OutputFolder
+from onorbit_rs.output.manifest import MANIFEST, RESULTS
+from onorbit_rs.output.read import read_summary
+from onorbit_rs.output.sealed import sealed, unsealed
+from onorbit_rs.report import write_report
+
+PRECIOUS = "precious"
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return _spin(tmp_path_factory.mktemp("force"))
+
+
+def _spin(where: Path, *more: str) -> Path:
+    (where / "mine.yaml").write_text(SPIN)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("onorbit_rs.keeping.write_pictures", _write_a_figure)
+        done = onorbit("run", "mine.yaml", "--out", "out", *more, cwd=where)
+    assert done.returncode == 0, done.stderr
+    return where / "out"
+
+
+def _write_a_figure(folder: OutputFolder, *_: Any, **__: Any) -> None:
+    with folder.replacing() as files, files.writing("figures/ledger.png") as path:
+        path.write_bytes(b"a figure")
+
+
+@pytest.fixture
+def copy(run_folder: Path, tmp_path: Path) -> Path:
+    shutil.copy(run_folder.parent / "mine.yaml", tmp_path)
+    return Path(shutil.copytree(run_folder, tmp_path / "out"))
+
+
+def test_force_removes_no_picture_of_a_folder_that_never_held_a_run(tmp_path: Path) -> None:
+    pictures = tmp_path / "out" / "figures"
+    pictures.mkdir(parents=True)
+    (pictures / "holiday.png").write_text(PRECIOUS)
+    for _ in range(2):
+        _spin(tmp_path, "--force")
+    assert (pictures / "holiday.png").read_text() == PRECIOUS
+    assert (pictures / "ledger.png").is_file()
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_force_replaces_no_file_that_no_run_wrote(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text(PRECIOUS)
+    with pytest.raises(OutputNotEmptyError, match=f"{name}: it is there, and manifest.json does not list it"):
+        OutputFolder.claim(tmp_path, force=True)
+    assert [file.name for file in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == PRECIOUS
+
+
+@pytest.mark.parametrize("name", ["figures", "checkpoint"])
+def test_force_follows_no_link_of_a_folder(copy: Path, tmp_path: Path, name: str) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    for file in ("ledger.png", "state.json", "q.f64"):
+        (elsewhere / file).write_text(PRECIOUS)
+    shutil.rmtree(copy / name, ignore_errors=True)
+    (copy / name).symlink_to(elsewhere)
+    assert f"{name}: it is there" in refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    assert {file.read_text() for file in elsewhere.iterdir()} == {PRECIOUS}
+    assert (copy / "summary.json").is_file(), "nothing is removed where something is refused"
+
+
+@pytest.mark.parametrize("name", ["trace.npz", "summary.json", "report.html"])
+def test_force_neither_follows_nor_removes_a_link_in_place_of_a_file(
+    copy: Path, tmp_path: Path, name: str
+) -> None:
+    precious = tmp_path / "precious"
+    precious.write_text(PRECIOUS)
+    (copy / name).unlink(missing_ok=True)
+    (copy / name).symlink_to(precious)
+    assert f"{name}: it is there" in refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    assert precious.read_text() == PRECIOUS and (copy / name).is_symlink()
+
+
+def test_a_planted_partial_file_is_not_written_through(tmp_path: Path) -> None:
+    precious, out = tmp_path / "precious", tmp_path / "out"
+    precious.write_text(PRECIOUS)
+    out.mkdir()
+    for name in RESULTS:
+        (out / f".partial-{name}").symlink_to(precious)
+    _spin(tmp_path, "--force")
+    assert precious.read_text() == PRECIOUS
+    assert all((out / f".partial-{name}").is_symlink() for name in RESULTS)
+
+
+@pytest.mark.usefixtures("no_pictures")
+def test_links_planted_during_a_run_are_refused_at_its_end(tmp_path: Path) -> None:
+    precious, out = tmp_path / "precious", tmp_path / "out"
+    precious.write_text(PRECIOUS)
+    with OutputFolder.claim(out) as folder:
+        (out / "figures").symlink_to(tmp_path)
+        (out / "trace.npz").symlink_to(precious)
+        for name in ("trace.npz", "figures/precious.png"):
+            with pytest.raises(OutputFolderError), folder.writing(name) as path:
+                path.write_text("new")
+        with pytest.raises(OSError, match="not a folder itself"):
+            (out / "checkpoint").symlink_to(tmp_path)
+            folder.expect_checkpoint(("state.json",))
+    assert precious.read_text() == PRECIOUS
+    assert {file.name for file in tmp_path.iterdir()} == {"precious", "out"}
+
+
+def test_a_report_replaces_no_file_that_no_run_wrote(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawing = SimpleNamespace(name="ledger", caption="nothing", draw=Figure)
+    monkeypatch.setattr(figures, "drawings", lambda subject: [drawing])
+    for name in ("report.html", "figures/ledger.pdf"):
+        (copy / name).write_text(PRECIOUS)
+        with pytest.raises(OutputNotEmptyError, match=f"{name}: it is there"):
+            write_report(copy, pdf=True)
+        assert (copy / name).read_text() == PRECIOUS and not list(copy.glob(".*"))
+        (copy / name).unlink()
+    for pdf in (True, False):
+        write_report(copy, pdf=pdf)  # its own it replaces
+    assert (copy / "figures" / "ledger.pdf").is_file()
+    assert oo.compare(copy, copy).agrees
+
+
+def test_a_manifest_of_a_stranger_names_nothing_outside_the_folder(copy: Path, tmp_path: Path) -> None:
+    precious = tmp_path / "precious.png"
+    precious.write_text(PRECIOUS)
+    record: dict[str, Any] = unsealed((copy / MANIFEST).read_bytes())
+    entry = record["files"]["trace.npz"]
+    for name in (
+        "../precious.png",
+        str(precious),
+        "figures/../../precious.png",
+        "mine.txt",
+        "figures/a\0.png",
+    ):
+        (copy / MANIFEST).write_bytes(sealed(record | {"files": {name: entry}}))
+        with pytest.raises(ReadError, match="no run writes"):
+            OutputFolder.claim(copy, force=True)
+    for name in ("../state.json", "x/../../y.f64", 3):
+        (copy / MANIFEST).write_bytes(sealed(record | {"checkpoint": [name]}))
+        with pytest.raises(ReadError, match="no checkpoint has"):
+            OutputFolder.claim(copy, force=True)
+    assert precious.read_text() == PRECIOUS and (copy / "trace.npz").is_file()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_a_pipe_in_place_of_a_file_does_not_hang(tmp_path: Path) -> None:
+    for name in ("summary.json", MANIFEST):
+        out = tmp_path / name
+        out.mkdir()
+        os.mkfifo(out / name)
+        with pytest.raises(ReadError, match="not a regular file"):
+            read_summary(out)
+
+
+@pytest.mark.usefixtures("no_pictures")
+def test_files_of_a_run_that_were_edited_are_still_a_runs_to_force(copy: Path, tmp_path: Path) -> None:
+    (copy / "trace.npz").write_bytes(b"edited")
+    oo.run(tmp_path / "mine.yaml", copy, force=True, quiet=True)
+    assert oo.compare(copy, copy).agrees

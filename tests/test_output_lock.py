@@ -1,0 +1,193 @@
+"""One writer per folder: two at once left the scenario of one with the numbers of the other."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from commands import SPIN, refusal
+
+import onorbit_rs as oo
+from onorbit_rs.exceptions import NotFoundError, OutputFolderError, OutputInUseError
+from onorbit_rs.files import exists
+from onorbit_rs.output import lock
+from onorbit_rs.output.folder import OutputFolder
+from onorbit_rs.output.lock import LOCK, FolderLock, owner_of
+
+HOLDS = """
+import sys, time
+from onorbit_rs.output.folder import OutputFolder
+folder = OutputFolder.claim(sys.argv[1])
+path = folder.temporary("trace.npz")
+path.write_bytes(b"half")
+print("locked", flush=True)
+time.sleep(60)
+"""
+
+
+WITHOUT_PICTURES = """
+import sys
+from onorbit_rs import keeping
+from onorbit_rs.cli import main
+keeping.write_pictures = lambda *_, **__: None
+main(sys.argv[1:])
+"""
+
+
+@pytest.fixture
+def holder(tmp_path: Path) -> Any:
+    """Another process that writes the folder."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", HOLDS, str(tmp_path / "out")], stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None and process.stdout.readline() == "locked\n"
+    yield process
+    process.kill()
+    process.communicate()
+
+
+def test_a_second_command_is_told_who_writes_until_that_process_is_killed(
+    tmp_path: Path, holder: Any
+) -> None:
+    (tmp_path / "mine.yaml").write_text(SPIN)
+    for force in ((), ("--force",)):
+        said = refusal("run", tmp_path / "mine.yaml", "--out", tmp_path / "out", *force)
+        assert f"out is in use: process {holder.pid} on " in said and "(-c " in said and "since 20" in said
+    with pytest.raises(OutputInUseError) as caught:
+        OutputFolder.claim(tmp_path / "out")
+    assert isinstance(caught.value, BlockingIOError) and caught.value.pid == holder.pid
+    assert caught.value.command.startswith("-c ") and caught.value.since.startswith("20")
+    with pytest.raises(NotFoundError, match=rf"process {holder.pid} on .* is writing it"):
+        oo.compare(tmp_path / "out")
+    out = tmp_path / "out"  # the lock ends with its process, and its half-written files go
+    assert owner_of(out) is not None and list(out.glob(".partial-*"))
+    holder.kill()
+    holder.wait()
+    assert owner_of(out) is None and (out / LOCK).is_file()
+    with OutputFolder.claim(out):
+        assert [file.name for file in out.iterdir()] == [LOCK]
+    assert not list(out.iterdir())
+
+
+def test_two_runs_at_once_leave_one_of_them_whole(tmp_path: Path) -> None:
+    """With the numbers of one in the folder of the other, both had ended with exit code 0."""
+    for name, rate in (("a", 0.1), ("b", 0.7)):
+        text = SPIN.replace("0.1, 0.2, 0.3", f"0, 0, {rate}").replace("duration: 0.1 s", "duration: 20 s")
+        (tmp_path / f"{name}.yaml").write_text(text.replace("time_step: 10 ms", "time_step: 1 ms"))
+    command = [sys.executable, "-c", WITHOUT_PICTURES, "run"]
+    running = [
+        subprocess.Popen(
+            [*command, f"{name}.yaml", "-q", "--out", "out"], cwd=tmp_path, stderr=subprocess.PIPE
+        )
+        for name in "ab"
+    ]
+    said = [process.communicate(timeout=100)[1].decode() for process in running]
+    codes = [process.returncode for process in running]
+    assert sorted(codes) == [0, 2], said
+    assert "is in use: process " in said[codes.index(2)] or "is not empty: out" in said[codes.index(2)]
+    again = oo.run(tmp_path / f"{'ab'[codes.index(0)]}.yaml", quiet=True)
+    assert oo.compare(tmp_path / "out", again, tolerance=1e-300).agrees
+
+
+def test_two_threads_exclude_each_other_as_two_processes_do(tmp_path: Path) -> None:
+    results: list[str] = []
+    with OutputFolder.claim(tmp_path):
+
+        def second() -> None:
+            try:
+                OutputFolder.claim(tmp_path).close()
+            except OutputInUseError as error:
+                results.append(f"{error.pid}")
+
+        thread = threading.Thread(target=second)
+        thread.start()
+        thread.join()
+    assert results == [str(os.getpid())]
+    OutputFolder.claim(tmp_path).close()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
+def test_a_forked_child_does_not_keep_the_lock(tmp_path: Path) -> None:
+    """A pool of workers that outlives its parent held the folder."""
+    held = FolderLock(tmp_path)
+    child = os.fork()
+    if child == 0:
+        held.release()  # what it inherited is not its own
+        time.sleep(30)
+        os._exit(0)
+    try:
+        assert owner_of(tmp_path) is not None and exists(tmp_path / LOCK)
+        os.close(held._descriptor)  # as at the end of the parent
+        lock._held.discard(held._descriptor)
+        FolderLock(tmp_path).release()
+    finally:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+
+
+def _race(folder: str, counter: Any, wins: Any) -> None:
+    for _ in range(30):
+        try:
+            taken = FolderLock(Path(folder))
+        except OutputInUseError:
+            continue
+        with counter.get_lock():
+            counter.value += 1
+            wins.value += counter.value == 1
+        with counter.get_lock():
+            counter.value -= 1
+        taken.release()
+
+
+def test_a_lock_whose_file_is_removed_and_made_anew_has_one_owner(tmp_path: Path) -> None:
+    context = multiprocessing.get_context("spawn")
+    counter, wins = context.Value("i", 0), context.Value("i", 0)
+    workers = [context.Process(target=_race, args=(str(tmp_path), counter, wins)) for _ in range(2)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join(60)
+        assert worker.exitcode == 0
+    assert counter.value == 0 and wins.value >= 15, "each time a lock was taken, nobody else had one"
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_planted_lock_is_not_written_through(tmp_path: Path) -> None:
+    precious = tmp_path / "precious.txt"
+    precious.write_text("precious")
+    for plant in ("symlink_to", "hardlink_to"):
+        out = tmp_path / plant
+        out.mkdir()
+        getattr(out / LOCK, plant)(precious)
+        with pytest.raises(OutputFolderError, match="cannot be written"):
+            OutputFolder.claim(out)
+        assert precious.read_text() == "precious"
+
+
+def test_what_a_lock_says_is_escaped_and_need_not_be_ours(tmp_path: Path) -> None:
+    for said in ("", "nonsense", "[" * 10_000, json.dumps({"pid": "x"})):
+        (tmp_path / LOCK).write_text(said)
+        OutputFolder.claim(tmp_path).close()
+    assert "\x1b" not in str(lock.Owner(1, "host", "rm \x1b[31m", "today", ""))
+
+
+def test_a_folder_that_cannot_be_locked_is_written_with_a_warning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some network file systems have no locks."""
+
+    def refused(descriptor: int, *, is_shared: bool) -> None:
+        raise OSError(38, "Function not implemented")
+
+    monkeypatch.setattr(lock, "_lock", refused)
+    with pytest.warns(UserWarning, match="cannot be locked"):
+        OutputFolder.claim(tmp_path).close()
