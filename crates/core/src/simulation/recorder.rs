@@ -36,7 +36,14 @@ pub(super) struct Extras {
 impl Extras {
     /// Nothing beside the state.
     pub(super) fn none() -> Self {
-        Self { tool: None, has_reference: false, effects: Vec::new(), has_orbit: false, is_carried: false }
+        Self {
+            tool: None,
+            has_reference: false,
+            effects: Vec::new(),
+            has_orbit: false,
+            is_carried: false,
+            compensates_friction: false,
+        }
     }
 
     /// Numbers per row of a column; none where the run does not have it.
