@@ -38,8 +38,12 @@ class Run:
         return oo.Simulation(self.model, self.q, self.v, time_step=self.time_step, **self.settings)
 
     def rows(self, finer: int = 1, moved: float = 0.0) -> oo.Trace:
-        """The run with steps that are ``finer``, the start's rates moved by a share."""
-        run = replace(self, time_step=self.time_step / finer, v=self.v * (1.0 + moved))
+        """The run with steps that are ``finer``, the start's rates moved by a share, each another way.
+
+        All of them moved alike would only be another clock.
+        """
+        v = self.v + moved * np.abs(self.v).max() * np.cos(2.0 * np.arange(len(self.v)))
+        run = replace(self, time_step=self.time_step / finer, v=v)
         return run.start().run(self.duration)
 
     def __str__(self) -> str:

@@ -213,7 +213,8 @@ fn a_first_order_integrator_is_not_certified_at_a_millisecond() {
 #[test]
 fn sparse_rows_leave_nothing_out_and_nan_is_red() {
     let mut simulation = pushed(true);
-    let dense = certify(&simulation.model, &run(&mut simulation, 1.0));
+    let trace = run(&mut simulation, 1.0);
+    let dense = certify(&simulation.model, &trace);
     simulation.record_every = 10;
     let trace = run(&mut simulation, 1.0);
     let certificate = certify(&simulation.model, &trace);
