@@ -37,7 +37,10 @@ unsafe impl GlobalAlloc for Counting {
 
 /// Ends the process with the name of the limit; the driver finds the input where [`Guard::hold`] wrote it.
 fn stopped(limit: &str) {
-    let _ = writeln!(std::io::stderr(), "\nlimit of {limit} exceeded: {SECONDS} s and {BYTES} bytes for an input");
+    let _ = writeln!(
+        std::io::stderr(),
+        "\nlimit of {limit} exceeded: {SECONDS} s and {BYTES} bytes for an input"
+    );
     std::process::exit(3);
 }
 

@@ -102,6 +102,9 @@ impl Campaign {
         }
         let mut corpus = files.iter().map(std::fs::read).collect::<Result<Vec<_>, _>>()?;
         corpus.extend(parsers::seeds(parser.name));
+        if corpus.is_empty() {
+            return Err(format!("there is nothing to mutate for {}", parser.name).into());
+        }
         Ok(Self {
             parser,
             seed,
@@ -122,7 +125,8 @@ impl Campaign {
         let (seeds, mut done) = (self.corpus.len(), self.corpus.len());
         while done < count && started.elapsed() < seconds {
             let [parent, other] = [(); 2].map(|()| self.random.below(self.corpus.len()));
-            let input = mutated(&mut self.random, &self.corpus[parent], &self.corpus[other], self.parser.words);
+            let input =
+                mutated(&mut self.random, &self.corpus[parent], &self.corpus[other], self.parser.words);
             if self.one(&input)? {
                 let file = format!("corpus/{}/{:016x}", self.parser.name, hash(&input));
                 std::fs::write(self.work.join(file), &input)?;
@@ -151,7 +155,8 @@ impl Campaign {
         self.guard.release();
         if let Some(what) = found {
             // one file for each place, whatever the numbers in the message
-            let place: String = what.chars().filter(|c| !c.is_ascii_digit() || what.len() < 40).take(160).collect();
+            let place: String =
+                what.chars().filter(|c| !c.is_ascii_digit() || what.len() < 40).take(160).collect();
             if !self.findings.contains_key(&place) {
                 let file = self.work.join(format!("findings/{}-{:016x}", self.parser.name, hash(input)));
                 std::fs::write(&file, input)?;

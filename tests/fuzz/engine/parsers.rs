@@ -35,26 +35,76 @@ pub(crate) const PARSERS: &[Parser] = &[
     Parser { name: "gfc", words: GFC, read: read_gfc },
     Parser { name: "earth_parameters", words: EARTH, read: read_earth_parameters },
     Parser { name: "space_weather", words: WEATHER, read: read_space_weather },
-    Parser { name: "epoch", words: &["UTC", "TAI", "TT", "TDB", "GPST", "T", "Z", "+02:00", "60"], read: read_epoch },
+    Parser {
+        name: "epoch",
+        words: &["UTC", "TAI", "TT", "TDB", "GPST", "T", "Z", "+02:00", "60"],
+        read: read_epoch,
+    },
     Parser { name: "engine_checkpoint", words: CHECKPOINT, read: read_checkpoint },
-    Parser { name: "orbit_elements", words: &["0", "1", "6778000", "3.141592653589793"], read: read_elements },
+    Parser {
+        name: "orbit_elements",
+        words: &["0", "1", "6778000", "3.141592653589793"],
+        read: read_elements,
+    },
     Parser { name: "path_points", words: &["0", "1", "2", "6778000", "7500"], read: read_path },
     Parser { name: "pose_samples", words: &["0", "1", "-1", "0.5"], read: read_poses },
     Parser { name: "kernel_segments", words: &["0", "1", "86400", "150000000"], read: read_segments },
 ];
 
 const URDF: &[&str] = &[
-    "<link name=\"c\"/>", "<joint name=\"k\" type=\"prismatic\">", "</joint>", "<parent link=\"a\"/>",
-    "<child link=\"b\"/>", "<axis xyz=\"0 1 0\"/>", "<origin xyz=\"1 2 3\" rpy=\"0 0 1\"/>", "<mimic joint=\"j\"/>",
-    "<inertial>", "<mass value=\"1e-300\"/>", "type=\"planar\"", "type=\"ball\"", "type=\"floating\"",
-    "<box size=\"1 1 1\"/>", "<mesh filename=\"package://p/x.stl\"/>", "<!--", "-->", "<![CDATA[", "]]>", "&lt;",
-    "<!DOCTYPE r [", "<!ENTITY a \"b\">", "xacro:", "${x}", "world", "/>", "</",
+    "<link name=\"c\"/>",
+    "<joint name=\"k\" type=\"prismatic\">",
+    "</joint>",
+    "<parent link=\"a\"/>",
+    "<child link=\"b\"/>",
+    "<axis xyz=\"0 1 0\"/>",
+    "<origin xyz=\"1 2 3\" rpy=\"0 0 1\"/>",
+    "<mimic joint=\"j\"/>",
+    "<inertial>",
+    "<mass value=\"1e-300\"/>",
+    "type=\"planar\"",
+    "type=\"ball\"",
+    "type=\"floating\"",
+    "<box size=\"1 1 1\"/>",
+    "<mesh filename=\"package://p/x.stl\"/>",
+    "<!--",
+    "-->",
+    "<![CDATA[",
+    "]]>",
+    "&lt;",
+    "<!DOCTYPE r [",
+    "<!ENTITY a \"b\">",
+    "xacro:",
+    "${x}",
+    "world",
+    "/>",
+    "</",
 ];
-const OMM: &[&str] = &["EPOCH = ", "NORAD_CAT_ID = ", "MEAN_MOTION = ", "ECCENTRICITY = ", "BSTAR = ", "TEME", "2020-064T10:34:41"];
-const GFC: &[&str] = &["gfc ", "gfct ", "dot ", "end_of_head", "max_degree ", "norm fully_normalized", "D-06", "radius ", "errors no"];
+const OMM: &[&str] = &[
+    "EPOCH = ",
+    "NORAD_CAT_ID = ",
+    "MEAN_MOTION = ",
+    "ECCENTRICITY = ",
+    "BSTAR = ",
+    "TEME",
+    "2020-064T10:34:41",
+];
+const GFC: &[&str] = &[
+    "gfc ",
+    "gfct ",
+    "dot ",
+    "end_of_head",
+    "max_degree ",
+    "norm fully_normalized",
+    "D-06",
+    "radius ",
+    "errors no",
+];
 const EARTH: &[&str] = &["mjd,x_arcsec,y_arcsec,ut1_minus_utc_s", "I", "P", "60000", "0.1"];
-const WEATHER: &[&str] = &["DATE", "F10.7_OBS", "F10.7_OBS_CENTER81", "AP_AVG", "AP1", "AP8", "2024-02-29", ",,", "9999-12-31"];
-const CHECKPOINT: &[&str] = &["null", "true", "[]", "{}", "\"rows\":", "\"steps\":", "1e999", "18446744073709551615"];
+const WEATHER: &[&str] =
+    &["DATE", "F10.7_OBS", "F10.7_OBS_CENTER81", "AP_AVG", "AP1", "AP8", "2024-02-29", ",,", "9999-12-31"];
+const CHECKPOINT: &[&str] =
+    &["null", "true", "[]", "{}", "\"rows\":", "\"steps\":", "1e999", "18446744073709551615"];
 
 fn text(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
     String::from_utf8_lossy(bytes)
@@ -147,7 +197,10 @@ fn read_epoch(bytes: &[u8]) -> Outcome {
     Ok(())
 }
 
-/// A body that turns for ten steps.
+/// How long it turns, s: monitors are asked every 64 steps of a millisecond.
+const DURATION: f64 = 0.1;
+
+/// A body that turns.
 fn turning() -> Result<Simulation, String> {
     let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0));
     let model = Model::rigid_body(1.0, inertia).map_err(told)?;
@@ -159,9 +212,9 @@ fn turning() -> Result<Simulation, String> {
 /// A run of its own, stopped half-way: what there is to go on from.
 fn stopped() -> Result<(Checkpoint, Trace), String> {
     let mut kept = None;
-    let _ = turning()?.run(0.01, &mut |now| {
+    let _ = turning()?.run(DURATION, &mut |now| {
         kept = now.checkpoint().ok().map(|checkpoint| (checkpoint, now.trace.clone()));
-        if now.time < 0.0045 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        ControlFlow::Break(())
     });
     kept.ok_or_else(|| "the run left no checkpoint".to_owned())
 }
@@ -175,7 +228,7 @@ pub(crate) fn seeds(name: &str) -> Vec<Vec<u8>> {
 fn read_checkpoint(bytes: &[u8]) -> Outcome {
     let checkpoint = Checkpoint::from_json(&text(bytes)).map_err(told)?;
     let (_, rows) = stopped()?;
-    let run = turning()?.resume(0.01, (&checkpoint, rows), &mut |_| ControlFlow::Continue(()));
+    let run = turning()?.resume(DURATION, (&checkpoint, rows), &mut |_| ControlFlow::Continue(()));
     run.map_err(|failure| told(failure.error)).map(drop)
 }
 
@@ -217,7 +270,8 @@ fn read_path(bytes: &[u8]) -> Outcome {
 
 fn read_poses(bytes: &[u8]) -> Outcome {
     let given = numbers(bytes);
-    let rows: Vec<[f64; 16]> = given.as_chunks::<17>().0.iter().map(|row| *row.last_chunk().unwrap_or(&[0.0; 16])).collect();
+    let rows: Vec<[f64; 16]> =
+        given.as_chunks::<17>().0.iter().map(|row| *row.last_chunk().unwrap_or(&[0.0; 16])).collect();
     let times: Vec<f64> = given.as_chunks::<17>().0.iter().map(|row| row[0]).collect();
     let poses = Hold::from_rows(&rows).map_err(told)?;
     PoseSpline::sampled(&times, &poses, None).map_err(told).map(drop)
@@ -228,7 +282,13 @@ fn read_segments(bytes: &[u8]) -> Outcome {
     let [start, length, count, ref coefficients @ ..] = given[..] else {
         return Err("too few numbers".to_owned());
     };
-    let segment = || KernelSegment { sign: 1.0, start, length, count: count as usize, coefficients: coefficients.to_vec() };
+    let segment = || KernelSegment {
+        sign: 1.0,
+        start,
+        length,
+        count: count as usize,
+        coefficients: coefficients.to_vec(),
+    };
     let kernel = Kernel::new(vec![segment()], vec![segment()]).map_err(told)?;
     let epoch = Epoch::parse("2000-01-01T12:00:00 TDB").map_err(told)?;
     let earth = Earth::new(epoch, &EarthParameters::default()).map_err(told)?;
