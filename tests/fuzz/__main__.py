@@ -1,8 +1,9 @@
 """``make fuzz``: every parser of the engine and of the package, guided by the coverage of its own code.
 
-A parser reads its input or raises an ``OnOrbitError``. A panic, a crash, any other exception, more than the limits
-of time or memory, or numbers that are not finite are findings: the input is kept in ``target/fuzz/work/findings``
-beside a note with its seed, and the exit code is 1. ``--replay PARSER FILE`` tries one input again.
+A parser reads its input or raises an ``OnOrbitError``. A panic, a crash, any other exception, more than the
+limits of time or memory, or numbers that are not finite are findings: the input is kept in
+``target/fuzz/work/findings`` beside a note with its seed, and the exit code is 1. ``--replay PARSER FILE``
+tries one input again.
 """
 
 from __future__ import annotations
@@ -65,7 +66,9 @@ def install_atheris() -> str:
 
 def fuzzed(command: list[str | Path], name: str, seed: int) -> dict[str, Any]:
     """What a parser's process reports; with the input that ended it, where one did."""
-    done = subprocess.run([*map(str, command)], env=os.environ | RUN, capture_output=True, text=True, errors="replace")
+    done = subprocess.run(
+        [*map(str, command)], env=os.environ | RUN, capture_output=True, text=True, errors="replace"
+    )
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     if done.returncode in (0, 1) and lines:
         return dict(json.loads(lines[-1]))
@@ -86,7 +89,8 @@ def main() -> int:
     listed = subprocess.run([program, "--list"], capture_output=True, text=True, check=True).stdout.split()
     engines = [name for name in listed if given.only in name]
     targets = [name for name in TARGETS if given.only in name]
-    print(f"seed {given.seed}; {len(engines)} parsers of the engine, {len(targets)} of Python ({install_atheris()})")
+    guide = install_atheris()
+    print(f"seed {given.seed}; {len(engines)} parsers of the engine, {len(targets)} of Python ({guide})")
     print(f"{'parser':20} {'inputs':>9} {'seconds':>8} {'kept':>5}  findings", flush=True)
     share = PYTHON_SHARE if engines else 1.0
     reports = []

@@ -1,4 +1,4 @@
-"""``guided.py TARGET COUNT SECONDS SEED CORPUS WORK``: one target under Atheris, guided by coverage of its Python.
+"""``guided.py TARGET COUNT SECONDS SEED CORPUS WORK``: one target, guided by its coverage with Atheris.
 
 Without Atheris inputs are mutated blindly. The last line of output says what was done, as JSON.
 """

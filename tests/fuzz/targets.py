@@ -76,7 +76,8 @@ class Room:
             oo.run(load(SHORT_RUN | {"simulation": {"duration": 0.02}}), out=folder, quiet=True)
         while stopped and not state.exists():  # a run may end before it is killed
             shutil.rmtree(folder, ignore_errors=True)
-            program = f"import onorbit_rs as oo; oo.run({SHORT_RUN!r}, {str(folder)!r}, quiet=True, checkpoint_every=0)"
+            call = f"oo.run({SHORT_RUN!r}, {str(folder)!r}, quiet=True, checkpoint_every=0)"
+            program = f"import onorbit_rs as oo; {call}"
             with subprocess.Popen([sys.executable, "-c", program]) as process:
                 while process.poll() is None and not state.exists():
                     time.sleep(0.001)
@@ -149,7 +150,7 @@ def summary(data: bytes, room: Room) -> None:
 
 
 def checkpoint(data: bytes, room: Room) -> None:
-    """The state of a stopped run; where it is a mapping, its checksum is put right, so that its entries are read."""
+    """The state of a stopped run; the checksum of a mapping is put right, so that its entries are read."""
     folder = room.run(stopped=True)
     with contextlib.suppress(ValueError, RecursionError):
         record = json.loads(data)
@@ -191,5 +192,7 @@ def seeds(name: str, room: Room) -> list[bytes]:
         file = {"trace": "trace.npz", "summary": "summary.json"}[name]
         return [(room.run(stopped=False) / file).read_bytes()]
     if name == "scenario":
-        return [oo.scenarios.path(name).read_bytes() for name in ("free_tumble", "kepler_orbit", "sgp4_orbit")]
+        return [
+            oo.scenarios.path(name).read_bytes() for name in ("free_tumble", "kepler_orbit", "sgp4_orbit")
+        ]
     return []

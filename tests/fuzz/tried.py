@@ -67,7 +67,9 @@ def mutated(draw: random.Random, parent: bytes, other: bytes) -> bytes:
             case 2:
                 data[at:at] = data[at:end]
             case 3:
-                data[at:end] = draw.choice((b"nan", b"1e308", b"-1", b"0", b"[", b"{", b"\0", b"", b"<a>", b"9" * 30))
+                data[at:end] = draw.choice(
+                    (b"nan", b"1e308", b"-1", b"0", b"[", b"{", b"\0", b"", b"<a>", b"9" * 30)
+                )
             case 4 if other:
                 start = draw.randrange(len(other))
                 data[at:end] = other[start : start + draw.randrange(40)]
