@@ -259,8 +259,8 @@ fn read_path(bytes: &[u8]) -> Outcome {
     let points = PathPoints {
         times: given.chunks_exact(10).map(|row| row[0]).collect(),
         positions: vectors(1),
-        velocities: (given.len() % 2 == 0).then(|| vectors(4)),
-        accelerations: (given.len() % 4 == 0).then(|| vectors(7)),
+        velocities: (given.len().is_multiple_of(2)).then(|| vectors(4)),
+        accelerations: (given.len().is_multiple_of(4)).then(|| vectors(7)),
         attitudes: None,
     };
     let path = CustomPath::new(points, None, Ends::Coast).map_err(told)?;
