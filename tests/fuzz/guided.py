@@ -17,7 +17,7 @@ try:
 except ImportError:
     atheris = None
 
-LIMIT_S, LIMIT_MB, LONGEST = 20, 2048, 65_536
+LIMIT_S, LIMIT_MB, LONGEST = 60, 2048, 65_536
 
 
 def main() -> None:

@@ -65,9 +65,9 @@ def fault_campaign(
         found["runs"] += 1
         faulty = run_under(limit, out, scenario)
         found["refused"] += faulty.returncode != 0
-        if faulty.returncode not in (0, 1) or (
-            faulty.returncode and not faulty.stderr.startswith("refused: ")
-        ):
+        told = faulty.stderr.splitlines()[-1:]
+        is_refused = faulty.returncode == 1 and told and told[0].startswith("refused: ")
+        if faulty.returncode and not is_refused:
             found["wrong"].append(f"limit {limit}: exit code {faulty.returncode}: {faulty.stderr[-500:]}")
         try:
             is_whole = read_summary(out)["status"] == "complete" and columns(read_trace(out)) == whole
