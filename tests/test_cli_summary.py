@@ -161,7 +161,9 @@ def test_options_of_a_robot_that_would_do_nothing_are_refused(command: str, tmp_
     said = refusal(command, "plain.urdf", "--package-path", "nowhere", cwd=tmp_path)
     assert said == "onorbit: --package-path nowhere: there is no such folder"
     said = refusal(command, "plain.urdf", "--arg", "a=1", cwd=tmp_path)
-    assert said == "onorbit: --arg is for a xacro, and plain.urdf holds none: leave it out"
+    assert (
+        said == "onorbit: --arg is for a xacro, and plain.urdf is not named so: leave it out, or add --xacro"
+    )
     for option in (("--arg", "a=1"), ("--package-path", ".")):
         assert "for a robot's file" in refusal(command, "ets_vii", *option, cwd=tmp_path)
     assert "name=value" in refusal(command, "plain.urdf", "--arg", "a", cwd=tmp_path)

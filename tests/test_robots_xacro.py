@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
+import json
+import pickle
 import subprocess
 import sys
 import warnings
@@ -71,10 +73,34 @@ def test_a_package_above_the_file_is_found(robot: Path) -> None:
 
 
 @needs_xacro
-def test_a_urdf_that_holds_xacro_is_expanded(tmp_path: Path) -> None:
+def test_a_urdf_that_holds_xacro_is_expanded_on_request_only(tmp_path: Path) -> None:
     file = tmp_path / "robot.urdf"
     file.write_text(HEAD + '<xacro:property name="m" value="2"/>' + LINK.format("base", "${m}") + "</robot>")
-    assert oo.Model.from_urdf(file).mass == 2.0
+    with pytest.raises(oo.exceptions.ModelError, match="xacro=True, on the command line with --xacro"):
+        oo.Model.from_urdf(file)
+    assert oo.Model.from_urdf(file, xacro=True).mass == 2.0
+    assert oo.Model.from_urdf(file, xacro_arguments={}).mass == 2.0
+    assert pickle.loads(pickle.dumps(oo.Model.from_urdf(file, xacro=True))).mass == 2.0
+    file.write_text(HEAD + LINK.format("base", "3") + "</robot>")  # only declares the name space
+    assert oo.Model.from_urdf(file).mass == 3.0
+
+
+@needs_xacro
+def test_a_scenario_and_the_command_line_ask_for_xacro(tmp_path: Path) -> None:
+    file = tmp_path / "robot.urdf"
+    file.write_text(HEAD + '<xacro:property name="m" value="2"/>' + LINK.format("base", "${m}") + "</robot>")
+    command = [sys.executable, "-m", "onorbit_rs", "info", str(file)]
+    done = subprocess.run([*command, "--json"], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "--xacro" in done.stderr
+    done = subprocess.run([*command, "--json", "--xacro"], capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout)["mass_kg"] == 2.0
+    from onorbit_rs.scenario import load
+    from onorbit_rs.scenario.build import make_robot
+
+    scenario = load({"robot": {"urdf": str(file), "xacro": True}, "simulation": {"duration": 0.01}})
+    assert make_robot(scenario).mass == 2.0
+    assert scenario.resolved()["robot"]["xacro"] is True
 
 
 @needs_xacro

@@ -128,6 +128,7 @@ class Model:
         *,
         package_paths: Sequence[_Path] | None = None,
         xacro_arguments: Mapping[str, object] | None = None,
+        xacro: bool = False,
     ) -> Model: ...
     @staticmethod
     def from_urdf_string(

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import pickle
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
+
+from onorbit_rs import _core
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -26,24 +27,28 @@ class Controller(ABC):
     def reset(self) -> None:  # noqa: B027  # most have nothing to forget
         """Called at the start of every run; forget what an earlier run left behind."""
 
-    def get_state(self) -> bytes:
-        """What a checkpoint keeps: all attributes, pickled; override where they do not pickle.
+    def get_state(self) -> Any:
+        """Return what a checkpoint keeps: plain data, by default a mapping of all attributes.
+
+        Numbers, text, lists, tuples, mappings and numeric NumPy arrays, nested as you like; the run warns and
+        leaves no checkpoints if there is anything else. Objects of onorbit_rs that never change (a model, an
+        orbit, a reference, ...) are left out by default: the constructor makes them again.
 
         Returns
         -------
-        bytes
+        plain data
         """
-        return pickle.dumps(self.__dict__)
+        return {name: value for name, value in vars(self).items() if not _is_fixed(value)}
 
-    def set_state(self, state: bytes) -> None:
-        """Go on from a checkpoint.
+    def set_state(self, state: Any) -> None:
+        """Continue from a checkpoint; by default sets the attributes that it holds.
 
         Parameters
         ----------
-        state : bytes
-            What :meth:`get_state` gave; the checkpoint must be your own, as unpickling runs what it says.
+        state : plain data
+            What :meth:`get_state` returned.
         """
-        self.__dict__.update(pickle.loads(state))
+        vars(self).update(state)
 
     @abstractmethod
     def update(self, t: float, state: Any) -> ArrayLike:
@@ -63,3 +68,14 @@ class Controller(ABC):
         (n,) array
             One per name in ``state.joints``, N m (N on a prismatic joint).
         """
+
+
+_FIXED = (
+    _core.Model, _core.Orbit, _core.Earth, _core.Effect, _core.Surface, _core.Atmosphere, _core.Reference,
+    _core.JointReference, _core.Goal,
+)  # fmt: skip
+
+
+def _is_fixed(value: object) -> bool:
+    """Return whether a value is an object of the engine that never changes."""
+    return isinstance(value, _FIXED) and type(value).__module__ in ("onorbit_rs", "onorbit_rs._core")

@@ -27,8 +27,9 @@ def entries(text: str) -> dict[str, Any]:
 def _from_json(text: str) -> dict[str, Any]:
     try:
         data = json.loads(text.lstrip("\ufeff"))
-    except ValueError as error:
-        raise ElementSetError(f"the OMM is no JSON: {error}") from None
+    except (ValueError, RecursionError) as error:
+        reason = "nested too deep" if isinstance(error, RecursionError) else error
+        raise ElementSetError(f"the OMM is no JSON: {reason}") from None
     messages = data if isinstance(data, list) else [data]
     message = _the_one(messages)
     if not isinstance(message, Mapping):

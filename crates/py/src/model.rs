@@ -10,7 +10,7 @@ use crate::xacro::from_xacro;
 use nalgebra::Matrix3;
 use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel};
-use onorbit_core::model::urdf::{self, UrdfProblem};
+use onorbit_core::model::urdf;
 use onorbit_core::model::{Model, neutral};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -63,31 +63,32 @@ impl PyModel {
 impl PyModel {
     /// Load a robot from a URDF file; its root link floats.
     ///
-    /// A xacro file is expanded first, with PyPI's ``xacro`` (``pip install 'onorbit-rs[xacro]'``), which runs
-    /// the expressions in it. ``package_paths``: folders that hold ROS packages or are one, searched for
+    /// A file named ``.xacro``, or any with ``xacro=True`` or ``xacro_arguments``, is expanded first with PyPI's
+    /// ``xacro`` (``pip install 'onorbit-rs[xacro]'``); its expressions are evaluated by onorbit_rs, which runs
+    /// none of them as Python. ``package_paths``: folders that hold ROS packages or are one, searched for
     /// ``package://`` and ``$(find ...)``; ``xacro_arguments``: ``{name: value}``, what ``$(arg name)`` gives.
     #[staticmethod]
-    #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None))]
+    #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None, xacro=false))]
     fn from_urdf(
         py: Python<'_>,
         path: PathBuf,
         package_paths: Option<Vec<PathBuf>>,
         xacro_arguments: Option<&Bound<'_, PyDict>>,
+        xacro: bool,
     ) -> PyResult<Self> {
         let packages: Vec<PathBuf> =
             package_paths.unwrap_or_default().iter().map(|path| absolute(path)).collect();
         let keywords = fields!(py, "path": absolute(&path), "package_paths": packages.clone());
         keywords.set_item("xacro_arguments", xacro_arguments.map(|given| given.copy()).transpose()?)?;
+        keywords.set_item("xacro", xacro)?;
         let made = Some(Made::by("Model.from_urdf", &keywords)?);
-        let is_xacro = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xacro"));
-        if !is_xacro && xacro_arguments.is_none() {
-            match urdf::from_file(&path, &packages) {
-                Ok(model) => return Self::wrap(py, model, made),
-                Err(error) if matches!(*error.problem, UrdfProblem::Xacro { .. }) => {}
-                Err(error) => return Err(error.into_python(py)),
-            }
-        }
-        Self::wrap(py, from_xacro(py, &path, &packages, xacro_arguments)?, made)
+        let is_named_so = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xacro"));
+        let model = if xacro || is_named_so || xacro_arguments.is_some() {
+            from_xacro(py, &path, &packages, xacro_arguments)?
+        } else {
+            urdf::from_file(&path, &packages).map_err(|error| error.into_python(py))?
+        };
+        Self::wrap(py, model, made)
     }
 
     /// Load a robot from the text of a URDF; ``folder`` is where its relative paths start.

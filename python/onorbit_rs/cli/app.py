@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import sys
 import warnings
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from onorbit_rs import foreign_code
 from onorbit_rs.cli.check import check
 from onorbit_rs.cli.compare import compare
 from onorbit_rs.cli.convert import convert
@@ -17,13 +19,14 @@ from onorbit_rs.cli.list import list_
 from onorbit_rs.cli.new import new
 from onorbit_rs.cli.report import report
 from onorbit_rs.cli.run import resume, run
-from onorbit_rs.cli.saying import encode_all, say_all, show_warning
+from onorbit_rs.cli.saying import complain, encode_all, say_all, show_warning
 from onorbit_rs.cli.show import show
 from onorbit_rs.cli.validate import validate
 from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.printable import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
 app = typer.Typer(
     name="onorbit",
@@ -75,7 +78,7 @@ def main(arguments: list[str] | None = None) -> None:
     """Entry point: an error is one line on stderr and exit code 2, Ctrl-C is 130."""
     encode_all()
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), _executed_code_named():
             warnings.showwarning = show_warning
             code = app(arguments, standalone_mode=False, prog_name="onorbit")
             if sys.stdout is not None:
@@ -99,6 +102,23 @@ def main(arguments: list[str] | None = None) -> None:
             raise
         fail(of_controller(error), 2)
     sys.exit(code if isinstance(code, int) else 0)
+
+
+@contextmanager
+def _executed_code_named() -> Iterator[None]:
+    """Print each file of Python that a scenario brings before it is executed."""
+    named: set[str] = set()
+
+    def name(source: str) -> None:
+        if source not in named:
+            named.add(source)
+            complain(f"onorbit: executes Python of this scenario: {printable(source)}")
+
+    foreign_code.listeners.append(name)
+    try:
+        yield
+    finally:
+        foreign_code.listeners.remove(name)
 
 
 def _with_way_out(error: typer.TyperException) -> str:

@@ -9,6 +9,7 @@ from onorbit_rs.cli.options import (
     JsonOption,
     PackagesOption,
     RobotArgument,
+    XacroOption,
     in_words,
     of_file,
 )
@@ -19,6 +20,7 @@ def info(
     robot: RobotArgument,
     packages: PackagesOption = None,
     arguments: ArgumentsOption = None,
+    xacro: XacroOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Print a robot's tree, masses, joints, frames, oddities."""
@@ -27,7 +29,7 @@ def info(
     from onorbit_rs.cli.robot import print_info
     from onorbit_rs.robots.describe import describe
 
-    given = of_file(robot, packages, arguments)
+    given = of_file(robot, packages, arguments, xacro)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # they are printed with the rest
         model = robots.load(robot, **given)
@@ -35,4 +37,4 @@ def info(
         print_json(describe(model))
     else:
         print_info(model, new_console(at_least=72))
-        say(f"next: onorbit new {in_words(robot, packages, arguments)} --out FILE")
+        say(f"next: onorbit new {in_words(robot, packages, arguments, xacro)} --out FILE")

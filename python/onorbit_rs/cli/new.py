@@ -12,6 +12,7 @@ from onorbit_rs.cli.options import (
     PackagesOption,
     QuietOption,
     RobotArgument,
+    XacroOption,
     in_words,
     of_file,
 )
@@ -28,6 +29,7 @@ def new(
     ] = None,
     packages: PackagesOption = None,
     arguments: ArgumentsOption = None,
+    xacro: XacroOption = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
     quiet: QuietOption = False,
 ) -> None:
@@ -35,13 +37,13 @@ def new(
 
     In orbit, tried before it is written; without --out it goes to standard output.
     """
-    given = of_file(robot, packages, arguments)
+    given = of_file(robot, packages, arguments, xacro)
     claim(out, force=force)
     from onorbit_rs.drafting import draft
     from onorbit_rs.progress import doing
 
     named = f" --tool {shell_word(tool)}" if tool else ""
-    written_by = f"onorbit new {in_words(robot, packages, arguments)}{named}"
+    written_by = f"onorbit new {in_words(robot, packages, arguments, xacro)}{named}"
     with doing("trying motions", quiet=quiet):
         made = draft(
             robot, tool=tool, beside=out.absolute().parent if out else None, command=written_by, **given,

@@ -42,8 +42,12 @@ ArgumentsOption = Annotated[
     list[str] | None, typer.Option("--arg", metavar="NAME=VALUE", help="For a xacro; may be repeated.")
 ]
 
+XacroOption = Annotated[bool, typer.Option("--xacro", help="Expand a file that is not named .xacro as one.")]
 
-def of_file(robot: str, packages: list[Path] | None, arguments: list[str] | None) -> dict[str, Any]:
+
+def of_file(
+    robot: str, packages: list[Path] | None, arguments: list[str] | None, xacro: bool
+) -> dict[str, Any]:
     """What says how a robot's file is read, as :func:`onorbit_rs.robots.load` takes it.
 
     Raises
@@ -54,9 +58,10 @@ def of_file(robot: str, packages: list[Path] | None, arguments: list[str] | None
     from onorbit_rs import robots
 
     values = as_mapping(arguments)
-    if (packages or arguments) and not robots.is_file(robot):
+    if (packages or arguments or xacro) and not robots.is_file(robot):
         raise InputError(
-            f"--package-path and --arg are for a robot's file, and {robot!r} is a name, not a path of one",
+            f"--package-path, --arg and --xacro are for a robot's file, and {robot!r} is a name, not a path "
+            "of one",
             name="robot", got=robot,
         )  # fmt: skip
     for folder in packages or ():
@@ -64,27 +69,21 @@ def of_file(robot: str, packages: list[Path] | None, arguments: list[str] | None
             raise InputError(
                 f"--package-path {folder}: there is no such folder", name="package_path", got=str(folder)
             )
-    if arguments and not _may_be_xacro(Path(robot)):
+    if arguments and not xacro and Path(robot).suffix.lower() != ".xacro":
         raise InputError(
-            f"--arg is for a xacro, and {robot} holds none: leave it out", name="arg", got=arguments
-        )
-    return {"package_paths": packages, "xacro_arguments": values}
+            f"--arg is for a xacro, and {robot} is not named so: leave it out, or add --xacro",
+            name="arg", got=arguments,
+        )  # fmt: skip
+    return {"package_paths": packages, "xacro_arguments": values, "xacro": xacro}
 
 
-def in_words(robot: str, packages: list[Path] | None, arguments: list[str] | None) -> str:
+def in_words(robot: str, packages: list[Path] | None, arguments: list[str] | None, xacro: bool) -> str:
     """The robot and how it is read, as the next command takes them."""
     words = [robot]
     for option, values in (("--package-path", packages), ("--arg", arguments)):
         words += [word for value in values or () for word in (option, str(value))]
+    words += ["--xacro"] if xacro else []
     return " ".join(map(shell_word, words))
-
-
-def _may_be_xacro(file: Path) -> bool:
-    """By its ending or by what is in it; who reads it says what is wrong with one that cannot be read."""
-    try:
-        return file.suffix.lower() == ".xacro" or b"xacro" in file.read_bytes()
-    except OSError:
-        return True
 
 
 def as_mapping(arguments: list[str] | None) -> dict[str, str] | None:

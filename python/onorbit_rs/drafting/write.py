@@ -45,6 +45,7 @@ def draft(
     beside: Path | None = None,
     package_paths: Sequence[Path] | None = None,
     xacro_arguments: Mapping[str, str] | None = None,
+    xacro: bool = False,
     command: str = "onorbit new",
 ) -> Draft:
     """A commented scenario in which the robot's arm moves; it has run with its certificate green.
@@ -57,7 +58,7 @@ def draft(
         The frame to move; the one that looks most like a tool where not given.
     beside : Path, optional
         The folder that the scenario will lie in: paths are written from there. Absolute where not given.
-    package_paths, xacro_arguments
+    package_paths, xacro_arguments, xacro
         As for :func:`onorbit_rs.robots.load`; they go into the scenario.
     command : str
         Written into the first comment.
@@ -67,9 +68,10 @@ def draft(
     OnOrbitError
         The robot cannot be read, has no such frame, or nothing that was tried runs.
     """
+    given = (package_paths, xacro_arguments, xacro)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # said when the scenario is checked
-        model = robots.load(robot, package_paths=package_paths, xacro_arguments=xacro_arguments)
+        model = robots.load(robot, package_paths=package_paths, xacro_arguments=xacro_arguments, xacro=xacro)
         if tool is not None:
             model.frame_pose(model.neutral(), tool)  # says which frames there are
         arm = find_arm(model, tool)
@@ -78,8 +80,8 @@ def draft(
                 f"no joint moves the frame {tool!r}; name another with --tool",
                 name=tool, kind="frame", known=list(model.frame_names), suggestion=None,
             )  # fmt: skip
-        plan = _settled(model, arm, _robot(robot, None, package_paths, xacro_arguments), _name(robot, model))
-    written = replace(plan, robot=_robot(robot, beside, package_paths, xacro_arguments))
+        plan = _settled(model, arm, _robot(robot, None, *given), _name(robot, model))
+    written = replace(plan, robot=_robot(robot, beside, *given))
     return Draft(draft_text(written, command), plan.tool, plan.arm)
 
 
@@ -149,18 +151,24 @@ def _name(robot: str, model: Model) -> str:
 
 
 def _robot(
-    robot: str, beside: Path | None, packages: Sequence[Path] | None, arguments: Mapping[str, str] | None
+    robot: str,
+    beside: Path | None,
+    packages: Sequence[Path] | None,
+    arguments: Mapping[str, str] | None,
+    xacro: bool,
 ) -> dict[str, Any] | str:
     """As a scenario writes it."""
     if not robots.is_file(robot):
         return robot
-    if not packages and not arguments:
+    if not packages and not arguments and not xacro:
         return _path(Path(robot), beside)
     written: dict[str, Any] = {"urdf": _path(Path(robot), beside)}
     if packages:
         written["package_paths"] = [_path(Path(package), beside) for package in packages]
     if arguments:
         written["xacro_arguments"] = dict(arguments)
+    if xacro:
+        written["xacro"] = True
     return written
 
 

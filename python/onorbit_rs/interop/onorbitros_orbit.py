@@ -84,10 +84,14 @@ def _element(source: Source, name: str, key: str | None) -> float:
         return default
     value = source.number(key)
     unit = {"semi_major_axis": "km", "eccentricity": ""}.get(name, "rad")
-    if name == "semi_major_axis" and not (1e3 < abs(value) < 1e6):
+    if name == "semi_major_axis" and not (1e3 < value < 1e6):
         raise source.fail(
-            key, f"{value:g} km is no semi-major axis around the Earth; OnOrbitROS counts it in km"
+            key,
+            f"{value:g} km is not the semi-major axis of an ellipse around the Earth (1e3 to 1e6 km); "
+            "OnOrbitROS counts it in km and knows ellipses only",
         )
+    if name == "eccentricity" and not (0.0 <= value < 1.0):
+        raise source.fail(key, f"{value:g} is not the eccentricity of an ellipse, between 0 and 1")
     if unit == "rad" and abs(value) > 2.0 * math.pi + 1e-9:
         raise source.fail(key, f"{value:g} rad is more than a turn; for degrees write ({value:g}*pi)/180.0")
     what = f"{_OURS[name]} {value:.9g} {unit}".rstrip()

@@ -36,6 +36,7 @@ def load(
     *,
     package_paths: Sequence[str | os.PathLike[str]] | None = None,
     xacro_arguments: Mapping[str, object] | None = None,
+    xacro: bool = False,
 ) -> Model:
     """A bundled robot, or one from a file; its root link floats.
 
@@ -43,7 +44,7 @@ def load(
     ----------
     name : str or path
         One of :func:`names`, or a URDF or xacro file: what has a folder or one of their endings.
-    package_paths, xacro_arguments
+    package_paths, xacro_arguments, xacro
         As for :meth:`onorbit_rs.Model.from_urdf`, for files.
 
     Raises
@@ -55,7 +56,7 @@ def load(
 
     if not is_file(name):
         return Model.from_urdf(path(os.fspath(name)))
-    return Model.from_urdf(name, package_paths=package_paths, xacro_arguments=xacro_arguments)
+    return Model.from_urdf(name, package_paths=package_paths, xacro_arguments=xacro_arguments, xacro=xacro)
 
 
 def is_file(name: str | os.PathLike[str]) -> bool:

@@ -8,17 +8,16 @@ import io
 import os
 import re
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from onorbit_rs.exceptions import ModelError, NotFoundError, ReadError
 from onorbit_rs.names import did_you_mean
+from onorbit_rs.robots.functions import Work
+from onorbit_rs.robots.xacro_files import Environment, Files
+from onorbit_rs.robots.xacro_parts import replace_parts
 
 _LOCK = threading.Lock()  # xacro keeps its state in globals
-
-_EXTRAS = re.compile(r"gazebo|ignition|(^|[_./])gz|ros2?_?control|transmission|plugin|sensor|isaac", re.I)
-"""What names files and macros of simulators, which a robot does without."""
 
 
 def expand(
@@ -26,16 +25,17 @@ def expand(
     package_paths: Sequence[str | os.PathLike[str]] = (),
     arguments: Mapping[str, object] | None = None,
 ) -> tuple[str, list[str]]:
-    """The URDF that a xacro file stands for, and remarks on what was left out.
+    """Return the URDF that a xacro file stands for, and remarks on what was left out.
 
     Parameters
     ----------
     path : path
-        The file. The expressions in it run, as they do with ROS' own tool.
+        The file. Its expressions are evaluated by :mod:`onorbit_rs.robots.expressions`; none of it runs.
+        It may include and load files of its own package and of packages that ``$(find name)`` gives.
     package_paths : sequence of paths
         Folders that hold ROS packages or are one: what ``$(find name)`` gives; the file's parents come after.
     arguments : mapping, optional
-        What ``$(arg name)`` gives.
+        What ``$(arg name)``, ``$(env name)`` and ``$(optenv name)`` give; the environment is not read.
 
     Raises
     ------
@@ -56,15 +56,16 @@ def expand(
             f"{file}: this is xacro, which PyPI's xacro expands: pip install 'onorbit-rs[xacro]'",
             path=str(file),
         ) from error
-    folders = [Path(folder) for folder in package_paths] + list(file.absolute().parents)
     values = {name: _text(value) for name, value in (arguments or {}).items()}
-    remarks: list[str] = []
     used: set[str] = set()
+    remarks: list[str] = []
     said = io.StringIO()
+    work = Work()
+    files = Files(file, [Path(folder) for folder in package_paths], work)
     try:
-        _check_text(file)
-        with _LOCK, _patched(xacro, folders, remarks, used), contextlib.redirect_stderr(said):
-            document = xacro.process_file(str(file), mappings=dict(values))
+        with _LOCK, contextlib.ExitStack() as undo, contextlib.redirect_stderr(said):
+            replace_parts(xacro, undo, files, work, Environment(values, used), remarks)
+            document = xacro.process_file(str(file), mappings=_Asked(values, used))
             text = document.documentElement.toxml()
     except RecursionError:
         raise ModelError(f"{file}: macros, includes or elements nested too deep", path=str(file)) from None
@@ -82,102 +83,21 @@ def expand(
     return text, remarks
 
 
-def _check_text(file: Path) -> None:
-    raw = file.read_bytes()
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise ValueError(f"not UTF-8 text (at byte {error.start}); save it as UTF-8") from None
-    if not text.strip():
-        raise ValueError("the file is empty")
+class _Asked(dict[str, str]):
+    """Arguments; notes which of them the file asks for."""
+
+    def __init__(self, values: Mapping[str, str], used: set[str]) -> None:
+        super().__init__(values)
+        self._used = used
+
+    def __getitem__(self, name: str) -> str:
+        self._used.add(name)
+        return super().__getitem__(name)
 
 
 def _text(value: object) -> str:
     """As a command line would give it: ``true`` for True."""
     return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-@contextlib.contextmanager
-def _patched(xacro: Any, folders: Sequence[Path], remarks: list[str], used: set[str]) -> Iterator[None]:
-    """``$(find ...)`` looks in ``folders``; a simulator's extras that are not there are left out and told.
-
-    ``used`` receives the names of arguments that the file asks for.
-    """
-    substitution = importlib.import_module("xacro.substitution_args")
-    argument = substitution._eval_arg
-
-    def find(package: str) -> str:
-        for folder in folders:
-            if folder.name == package and folder.is_dir():
-                return str(folder)
-            if (folder / package).is_dir():
-                return str(folder / package)
-        return f"package://{package}"  # a mesh stays so and is not drawn; an include is told as missing
-
-    def argument_told(name: str, args: Any) -> Any:
-        used.add(name)
-        return argument(name=name, args=args)
-
-    def folder_of(_: object) -> str:
-        return str(Path(xacro.filestack[-1] or ".").absolute().parent)
-
-    include_if_there, call_if_known = _without_extras(xacro, remarks)
-    with contextlib.ExitStack() as undo:
-        for owner, name, ours in (
-            (substitution, "_eval_find", find),
-            (substitution, "_eval_arg", argument_told),
-            (substitution, "_eval_dirname", folder_of),
-            (xacro, "process_include", include_if_there),
-            (xacro, "handle_macro_call", call_if_known),
-        ):
-            undo.callback(setattr, owner, name, getattr(owner, name))
-            setattr(owner, name, ours)
-        undo.callback(substitution._eval_dict.update, find=substitution._eval_dict["find"])
-        substitution._eval_dict["find"] = find
-        yield
-
-
-def _without_extras(xacro: Any, remarks: list[str]) -> tuple[Callable[..., None], Callable[..., Any]]:
-    """Xacro's include and macro call, which leave out what is a simulator's and not there."""
-    include, call = xacro.process_include, xacro.handle_macro_call
-    left_out: list[str] = []
-
-    def include_if_there(node: Any, *others: Any) -> None:
-        stack = list(xacro.filestack)
-        try:
-            include(node, *others)
-        except xacro.XacroException as error:
-            name = node.getAttribute("filename")
-            if not isinstance(error.exc, OSError):
-                raise
-            if not _EXTRAS.search(name):
-                raise ValueError(_missing(name)) from error
-            xacro.filestack[:] = stack
-            _leave_out(node, f"the file {name!r} is not there", remarks)
-            left_out.append(name)
-
-    def call_if_known(node: Any, *others: Any) -> Any:
-        try:
-            return call(node, *others)
-        except xacro.XacroException as error:
-            is_extra = left_out and _EXTRAS.search(node.tagName)
-            if not (is_extra and str(error).startswith("unknown macro")):
-                raise
-            _leave_out(node, f"the macro <{node.tagName}> was to come from it", remarks)
-            return True
-
-    return include_if_there, call_if_known
-
-
-def _leave_out(node: Any, why: str, remarks: list[str]) -> None:
-    remarks.append(f"left out, as an extra of a simulator: {why}")
-    node.parentNode.removeChild(node)
-
-
-def _missing(name: str) -> str:
-    found = re.search(r"\$\(find\s+([^)\s]+)\s*\)", name)
-    hint = f"; name the folder that holds the package {found[1]!r} in package_paths" if found else ""
-    return f"includes {name!r}, which is not there{hint}"
 
 
 def _reason(error: Exception) -> str:

@@ -44,10 +44,11 @@ class Built:
     """What runs, but hardly as it was meant."""
 
 
-def build(scenario: Scenario) -> Built:
+def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     """Robot, orbit, start and simulation of a scenario, and one step as a trial; a run starts afresh.
 
-    Warns of what runs, but hardly as it was meant.
+    Warns of what runs, but hardly as it was meant. Without ``runs_code`` the source of controllers in Python
+    is read and not run; stand-ins take their places, and what is built must not be run.
 
     Raises
     ------
@@ -87,7 +88,7 @@ def build(scenario: Scenario) -> Built:
         settings["rereference_beyond"] = np.inf
 
     def simulation() -> tuple[_core.Simulation, Any]:
-        controller, reference = _controlled(scenario, start)
+        controller, reference = _controlled(scenario, start, runs_code=runs_code)
         with located(scenario, "simulation"), about_controllers(scenario):
             made = _core.Simulation(
                 model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode,
@@ -112,12 +113,12 @@ def _check_rows(scenario: Scenario) -> None:
         raise scenario_error(message, scenario.file, scenario.line_of(*at), dotted(at))
 
 
-def _controlled(scenario: Scenario, start: Start) -> tuple[Any, Any]:
+def _controlled(scenario: Scenario, start: Start, *, runs_code: bool) -> tuple[Any, Any]:
     """The controllers, fresh, and what a single one tracks."""
     model, folder, tool = start.model, start.folder, scenario.tool
     if scenario.controller is not None:
         with located(scenario, "controller"):
-            law = law_of(scenario.controller, tool, model, folder)
+            law = law_of(scenario.controller, tool, model, folder, runs_code=runs_code)
         with located(scenario, "reference"):
             return law, tracked_by(scenario.controller, scenario.reference, tool, start)
     controls = []
@@ -125,7 +126,7 @@ def _controlled(scenario: Scenario, start: Start) -> tuple[Any, Any]:
         at = ("controllers", index)
         with located(scenario, *at):
             joints = None if part.joints is None else group(part.joints, list(model.joint_names))
-            law = law_of(part, tool_of(part, tool), model, folder)
+            law = law_of(part, tool_of(part, tool), model, folder, runs_code=runs_code)
         with located(scenario, *at, "reference"):
             within = replace(start, joints=None if joints is None else tuple(joints))
             tracked = tracked_by(part, part.reference, tool_of(part, tool), within)
@@ -145,5 +146,8 @@ def make_robot(scenario: Scenario) -> _core.Model:
     beside = scenario.file.parent if scenario.file else Path()
     packages = [beside / folder for folder in robot.package_paths]
     return _core.Model.from_urdf(
-        beside / robot.urdf, package_paths=packages or None, xacro_arguments=robot.xacro_arguments or None
+        beside / robot.urdf,
+        package_paths=packages or None,
+        xacro_arguments=robot.xacro_arguments or None,
+        xacro=robot.xacro,
     )

@@ -14,6 +14,7 @@ from onorbit_rs.exceptions import ControlError, FrameError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario import control as laws
 from onorbit_rs.scenario.python_controller import python_controller
+from onorbit_rs.scenario.python_source import inspect_source
 from onorbit_rs.scenario.reference import Start, reference_of
 
 if TYPE_CHECKING:
@@ -66,10 +67,10 @@ def columns_of(law: Any, joints: list[str]) -> list[int]:
     return [joints.index(name) for name in (joints if wanted is None else group(wanted, joints))]
 
 
-def law_of(part: Any, tool: str | None, model: _core.Model, folder: Path) -> Any:
-    """The law of a controller, or the user's own object."""
+def law_of(part: Any, tool: str | None, model: _core.Model, folder: Path, *, runs_code: bool = True) -> Any:
+    """The law of a controller, or the user's own object; without ``runs_code`` a stand-in for that."""
     if isinstance(part, laws.PythonController):
-        return python_controller(part, folder)
+        return python_controller(part, folder) if runs_code else inspect_source(part, folder)
     kind, law = next((kind, law) for kind, law in _LAWS.items() if isinstance(part, kind))
     gains = _as_arrays(part.model_dump(include=set(kind.model_fields) - {"kind"}, exclude_none=True))
     if not isinstance(part, laws.TASK_LAWS):

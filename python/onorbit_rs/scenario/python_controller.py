@@ -11,12 +11,14 @@ from types import ModuleType
 from typing import Any
 
 from onorbit_rs.exceptions import ControlError, NotFoundError
+from onorbit_rs.foreign_code import announce
 from onorbit_rs.names import did_you_mean
 from onorbit_rs.scenario.control import PythonController
+from onorbit_rs.scenario.python_source import source_of
 
 
 def python_controller(part: PythonController, beside: Path) -> Any:
-    """The user's object, fresh.
+    """Execute the file or import the module of a controller and return the user's object, fresh.
 
     Raises
     ------
@@ -25,6 +27,7 @@ def python_controller(part: PythonController, beside: Path) -> Any:
     ControlError
         Its file, its module or its constructor raises, or it has no such class, or that no ``update``.
     """
+    announce(source_of(part, beside))
     source = str(beside / part.file) if part.file is not None else str(part.module)
     module = _from_file(beside / part.file) if part.file is not None else _imported(source)
     made = getattr(module, part.class_, None)
@@ -55,12 +58,6 @@ def python_controller(part: PythonController, beside: Path) -> Any:
 
 
 def _from_file(file: Path) -> ModuleType:
-    if not file.is_file():
-        raise NotFoundError(
-            f"no such file: {file}; a relative path starts at the scenario's folder",
-            path=str(file),
-            kind="controller",
-        )
     name = f"onorbit_controller_{file.stem}"
     spec = importlib.util.spec_from_file_location(name, file)
     if spec is None or spec.loader is None:

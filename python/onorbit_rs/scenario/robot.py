@@ -53,6 +53,8 @@ class Robot(Part):
     """Folders in which ``package://`` and xacro's ``$(find ...)`` are looked up."""
     xacro_arguments: dict[str, XacroArgument] = Field(default_factory=dict)
     """What ``$(arg name)`` gives in a xacro file."""
+    xacro: bool = False
+    """Whether to expand a file that is not named ``.xacro``."""
 
     @model_validator(mode="before")
     @classmethod
@@ -73,6 +75,6 @@ class Robot(Part):
         if len(given) != 1:
             listed = ", ".join(given) or "none"
             raise wrong(f"give exactly one of 'bundled', 'urdf' and 'rigid_body'; given: {listed}")
-        if self.urdf is None and (self.package_paths or self.xacro_arguments):
-            raise wrong("'package_paths' and 'xacro_arguments' belong to a 'urdf'")
+        if self.urdf is None and (self.package_paths or self.xacro_arguments or self.xacro):
+            raise wrong("'package_paths', 'xacro_arguments' and 'xacro' belong to a 'urdf'")
         return self

@@ -36,6 +36,8 @@ def sampled_too_slowly(scenario: Scenario, model: Model, q: Floats) -> Iterator[
         where = "controller" if scenario.controllers is None else f"controllers[{index}]"
         for name, order, matrix in _gains(law, scenario, model, q):
             # kd h, or sqrt(kp) h
+            if not np.isfinite(matrix).all():  # the products overflow: the engine says so when it runs
+                continue
             rate = float(np.abs(np.linalg.eigvals(matrix)).max(initial=0.0)) ** (1.0 / order)
             if rate * period > 2.0 * (1.0 + _ROUNDING):
                 yield (

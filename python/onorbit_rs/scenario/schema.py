@@ -118,7 +118,11 @@ class Scenario(Part):
 
     def _empty_parts(self) -> dict[str, Any]:
         return {
-            "robot": {name for name in ("package_paths", "xacro_arguments") if not getattr(self.robot, name)}
+            "robot": {
+                name
+                for name in ("package_paths", "xacro_arguments", "xacro")
+                if not getattr(self.robot, name)
+            }
         }
 
     @model_validator(mode="after")

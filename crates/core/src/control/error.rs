@@ -11,6 +11,8 @@ pub enum ControlError {
     WrongLength { name: &'static str, expected: String, got: usize },
     #[error("{name} holds {value}, it must be finite")]
     NotFinite { name: &'static str, value: f64 },
+    #[error("{name} holds {value:e}, numbers between -{most:e} and {most:e} are accepted")]
+    TooLarge { name: &'static str, value: f64, most: f64 },
     #[error("{name} is {value}, it must not be negative")]
     Negative { name: &'static str, value: f64 },
     #[error(

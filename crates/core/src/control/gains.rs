@@ -63,8 +63,19 @@ pub(super) fn check_numbers(name: &'static str, numbers: &[f64]) -> Result<(), C
     if let Some(&value) = numbers.iter().find(|x| !x.is_finite()) {
         return Err(ControlError::NotFinite { name, value });
     }
+    check_size(name, numbers)?;
     match numbers.iter().find(|x| **x < 0.0) {
         Some(&value) => Err(ControlError::Negative { name, value }),
+        None => Ok(()),
+    }
+}
+
+/// Largest gain in SI units; motors of robots take 1e-3 to 1e6.
+const LARGEST: f64 = 1e20;
+
+fn check_size(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
+    match numbers.iter().find(|x| x.abs() > LARGEST) {
+        Some(&value) => Err(ControlError::TooLarge { name, value, most: LARGEST }),
         None => Ok(()),
     }
 }
@@ -74,5 +85,6 @@ pub(super) fn check_matrix(name: &'static str, gains: &[f64; 36]) -> Result<(), 
     if let Some(&value) = gains.iter().find(|x| !x.is_finite()) {
         return Err(ControlError::NotFinite { name, value });
     }
+    check_size(name, gains)?;
     check_numbers(name, &[0, 1, 2, 3, 4, 5].map(|i| gains[7 * i]))
 }

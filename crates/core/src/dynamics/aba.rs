@@ -4,9 +4,10 @@ use super::data::{BodyData, Data};
 use super::external::{FrameWrench, apply_external};
 use super::kinematics::kinematics;
 use super::rnea::{accelerations, net_force};
+use super::subspace::{along, articulated_force, joint_effort};
 use super::walk::{inward, outward};
 use crate::model::Model;
-use crate::spatial::{ArticulatedInertia, Force, Real};
+use crate::spatial::{ArticulatedInertia, Force, Motion, Real};
 
 /// Acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)`.
 ///
@@ -82,19 +83,23 @@ fn kernel<S: Real>(
         |k, node, body, load| {
             let (articulated, force) = with_own(body, load);
             // U = IA S,  D = Sᵀ U + rotor,  u = τ − Sᵀ p
-            body.reach = articulated.apply(body.subspace);
+            let reach = articulated_force(node, body.axis(), &articulated);
             if is_locked(k) {
                 body.force = force; // read for these alone, and a store of lanes is dear
             }
             // a locked joint hands on all of IA: as if nothing could move it, 1/D = 0
             body.inverse_pivot = match is_locked(k) {
                 true => S::of(0.0),
-                false => S::of(1.0) / (body.subspace.dot(body.reach) + S::of(node.rotor_inertia)),
+                false => S::of(1.0) / (joint_effort(node, body.axis(), reach) + S::of(node.rotor_inertia)),
             };
-            body.drive = tau[k + 5] - body.subspace.dot(force);
-            // Ia = IA − U Uᵀ/D,  pa = p + U u/D
+            body.drive = tau[k + 5] - joint_effort(node, body.axis(), force);
+            // Ia = IA − U Uᵀ/D,  pa = p + U u/D about the parent's origin: IA moves there while D is divided by
+            body.reach = reach.from_point(body.offset);
             let yielding = body.reach * -body.inverse_pivot;
-            (articulated.add_parallel(body.reach, yielding), yielding.scale_add(-body.drive, force))
+            (
+                articulated.from_point(body.offset).add_parallel(body.reach, yielding),
+                yielding.scale_add(-body.drive, force.from_point(body.offset)),
+            )
         },
     );
 
@@ -111,7 +116,7 @@ fn kernel<S: Real>(
         #[inline(always)]
         |body| body.response,
         #[inline(always)]
-        |k, node, body, carried| {
+        |k, node, body, carried: Motion<S>| {
             // q̈ = (u − Uᵀ a_p)/D,  a = a_p + S q̈, beside that of no q̈
             let pull = body.reach * -body.inverse_pivot;
             let acceleration = carried.dot_add(pull, body.drive * body.inverse_pivot);
@@ -119,7 +124,7 @@ fn kernel<S: Real>(
                 body.drive = carried.dot(body.reach) - body.drive; // λ = Uᵀ a_p − u
             }
             a[k + 5] = acceleration;
-            let response = body.subspace.scale_add(acceleration, carried);
+            let response = along(node, body.axis(), acceleration, carried.referred_to(body.offset));
             body.acceleration += response;
             if node.is_fork {
                 body.response = response;
@@ -135,6 +140,6 @@ fn with_own<S: Real>(
     body: &BodyData<S>,
     (mut articulated, force): (ArticulatedInertia<S>, Force<S>),
 ) -> (ArticulatedInertia<S>, Force<S>) {
-    articulated.add_rigid(&body.inertia);
+    articulated.add_rigid(&body.inertia.about_origin());
     (articulated, force + net_force(body))
 }

@@ -2,14 +2,15 @@
 
 use super::data::Data;
 use super::kinematics::positions_kernel;
+use super::subspace::{composite_force, joint_effort};
 use super::walk::inward;
 use crate::model::Model;
 use crate::spatial::{Real, SpatialInertia};
 
 /// Mass matrix `M(q)`, row major `(nv, nv)`, kg, kg m, kg m².
 ///
-/// In base coordinates the composite inertias add, `Mbb = I_0^c`, the coupling column of joint `k`
-/// is `I_k^c S_k` itself, and `M_jk = S_jᵀ I_k^c S_k` for `j` an ancestor of `k`.
+/// `Mbb = I_0^c` with the composite inertia `I_k^c` of the subtree of `k`. The force `I_k^c S_k`, moved from origin to
+/// origin towards the base, gives `M_jk = S_jᵀ I_k^c S_k` at each ancestor `j` of `k`, and in the end the coupling column.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 6.2.
 pub fn mass_matrix<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], out: &mut [S]) {
@@ -30,30 +31,33 @@ fn kernel<S: Real>(model: &Model, data: &mut Data<S>, out: &mut [S]) {
         nodes,
         bodies,
         #[inline(always)]
-        |_, _, body, carried| {
+        |_, node, body, carried| {
             // I^c = I + Σ I^c of what it carries,  F = I^c S
-            let composite: SpatialInertia<S> = carried + body.inertia;
-            body.force = composite.momentum(body.subspace);
-            composite
+            let composite: SpatialInertia<S> = carried + body.inertia.about_origin();
+            body.force = composite_force(node, body.axis(), &composite);
+            composite.from_point(body.offset)
         },
     );
-    base_block(&(carried + bodies[0].inertia), nv, out);
+    base_block(&(carried + bodies[0].inertia.about_origin()), nv, out);
     for k in 1..nodes.len() {
-        let (force, row) = (bodies[k].force, k + 5);
-        force.write(&mut out[row * nv..]);
+        let row = k + 5;
+        out[row * nv + row] =
+            joint_effort(&nodes[k], bodies[k].axis(), bodies[k].force) + S::of(nodes[k].rotor_inertia);
+        let mut force = bodies[k].force.from_point(bodies[k].offset);
         let mut ancestor = nodes[k].parent;
         for j in (1..k).rev() {
             let mut entry = S::of(0.0);
             if j == ancestor {
-                entry = bodies[j].subspace.dot(force);
+                entry = joint_effort(&nodes[j], bodies[j].axis(), force);
+                force = force.from_point(bodies[j].offset);
                 ancestor = nodes[j].parent;
             }
             out[row * nv + j + 5] = entry;
         }
+        force.write(&mut out[row * nv..]);
         for i in 0..row {
             out[i * nv + row] = out[row * nv + i];
         }
-        out[row * nv + row] = bodies[k].subspace.dot(force) + S::of(nodes[k].rotor_inertia);
     }
 }
 

@@ -2,21 +2,21 @@
 
 use super::kinematics::place_inertia;
 use crate::model::Model;
-use crate::spatial::{ArticulatedInertia, Force, Mat3, Motion, Real, SpatialInertia, Vec3};
+use crate::spatial::{ArticulatedInertia, Force, Mat3, Motion, Real, RigidInertia, SpatialInertia, Vec3};
 
-/// Quantities of one body, all in base axes B about the base's origin.
+/// Quantities of one body in base axes B, about the body's own origin, which lies on its joint's axis.
+///
+/// Moments about the base's origin would lose `(L/l)²` digits of a body of size `l` at a distance `L`.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyData<S> {
     /// Takes the body's components to B. Set by [`positions`](super::positions).
     pub rot_bk: Mat3<S>,
-    /// Its origin. Set by [`positions`](super::positions), m.
+    /// Its origin, from the base's. Set by [`positions`](super::positions), m.
     pub pos_b: Vec3<S>,
-    /// Its centre of mass. Set by [`positions`](super::positions), m.
-    pub com_b: Vec3<S>,
-    /// Motion of the body per unit joint rate. Set by [`positions`](super::positions).
-    pub subspace: Motion<S>,
-    /// Its inertia. Set by [`positions`](super::positions).
-    pub inertia: SpatialInertia<S>,
+    /// Its origin, from the parent's. Set by [`positions`](super::positions), m.
+    pub offset: Vec3<S>,
+    /// Its mass, its centre of mass and its inertia about it. Set by [`positions`](super::positions).
+    pub inertia: RigidInertia<S>,
     /// Its twist. Set by [`kinematics`](super::kinematics).
     pub velocity: Motion<S>,
     /// Wrench from outside. Set by [`apply_external`](super::apply_external) or the simulation;
@@ -34,12 +34,32 @@ pub struct BodyData<S> {
     pub composite: SpatialInertia<S>,
     /// Inertia of the subtree, articulated. Set by ABA, of the base alone.
     pub articulated: ArticulatedInertia<S>,
-    /// `U = IA S`. Set by ABA.
+    /// `U = IA S`, about the parent's origin. Set by ABA.
     pub reach: Force<S>,
     /// `1 / (Sᵀ U + rotor)`. Set by ABA.
     pub inverse_pivot: S,
     /// `τ − Sᵀ p`, of a locked joint the torque that holds it. Set by ABA.
     pub drive: S,
+}
+
+impl<S: Real> BodyData<S> {
+    /// The joint's axis: z of the body's own axes.
+    #[inline(always)]
+    pub fn axis(&self) -> Vec3<S> {
+        self.rot_bk.z
+    }
+
+    /// Centre of mass from the base's origin, m.
+    #[inline(always)]
+    pub fn com_b(&self) -> Vec3<S> {
+        self.pos_b + self.inertia.com
+    }
+
+    /// Inertia about the base's origin.
+    #[inline(always)]
+    pub fn inertia_b(&self) -> SpatialInertia<S> {
+        SpatialInertia::at_com(self.inertia.mass, self.com_b(), self.inertia.about_com)
+    }
 }
 
 /// Workspace of all algorithms for one state (or one set of lanes).
@@ -57,9 +77,8 @@ impl<S: Real> Data<S> {
         let body = BodyData {
             rot_bk: Mat3::identity(),
             pos_b: Vec3::zero(),
-            com_b: Vec3::zero(),
-            subspace: Motion::zero(),
-            inertia: SpatialInertia::zero(),
+            offset: Vec3::zero(),
+            inertia: RigidInertia::default(),
             velocity: Motion::zero(),
             external: Force::zero(),
             outside: Force::zero(),
@@ -74,6 +93,9 @@ impl<S: Real> Data<S> {
         };
         let (n, o) = (model.nodes().len(), S::of(0.0));
         let mut bodies = vec![body; n];
+        for (node, body) in model.nodes().iter().zip(&mut bodies) {
+            body.inertia.mass = S::of(node.mass);
+        }
         place_inertia(&model.nodes()[0], &mut bodies[0]);
         Self { bodies, turns: vec![(o, o); n - 1] }
     }

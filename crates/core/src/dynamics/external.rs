@@ -1,7 +1,7 @@
 //! Wrenches from outside.
 
 use super::data::Data;
-use super::kinematics::{frame_origin_b, frame_rotation_b};
+use super::kinematics::{frame_offset, frame_rotation_b};
 use crate::model::Model;
 use crate::spatial::{Force, Real};
 
@@ -22,7 +22,7 @@ pub fn apply_external<S: Real>(model: &Model, data: &mut Data<S>, wrenches: &[Fr
             data.clear_external();
             for FrameWrench { frame, wrench } in wrenches {
                 let frame = &model.frames()[*frame];
-                let (rot, pos) = (frame_rotation_b(data, frame), frame_origin_b(data, frame));
+                let (rot, pos) = (frame_rotation_b(data, frame), frame_offset(data, frame));
                 data.bodies[frame.body].external += Force::at(rot * wrench.linear, rot * wrench.angular, pos);
             }
         },

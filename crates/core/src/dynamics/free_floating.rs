@@ -4,11 +4,13 @@ use super::data::{BodyData, Data};
 use super::external::{FrameWrench, apply_external};
 use super::jacobian::{classical, frame_drift, point_acceleration, write_column};
 use super::kinematics::{
-    FramePose, base_rotation, frame_origin_b, frame_pose, frame_rotation_b, frame_velocity, kinematics,
+    FramePose, base_rotation, frame_offset, frame_origin_b, frame_pose, frame_rotation_b, frame_velocity,
+    kinematics,
 };
 use super::rnea::{accelerations, net_force};
+use super::subspace::{composite_force, joint_effort, subspace};
 use super::walk::{inward, load};
-use crate::model::Model;
+use crate::model::{Model, Node};
 use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, Vec3};
 
 /// `M* q̈ + c* = τ + Q*` and `ẍ = Jg q̈ + d` for one frame; exact for any momentum and any wrench.
@@ -35,10 +37,10 @@ pub struct FreeFloating<S> {
     pub velocity: Motion<S>,
     /// `cb − Qb`.
     base_bias: Force<S>,
-    /// `−Mbb⁻¹ Mbm`, a twist per joint: how the base, and all that the joint does not move, recoils from its unit rate.
+    /// Columns of `Mbm`, about the base's origin.
+    coupling: Vec<Force<S>>,
+    /// `−Mbb⁻¹ Mbm`, a twist of the base per unit joint rate.
     recoil: Vec<Motion<S>>,
-    /// `S − Mbb⁻¹ Mbm`: how what the joint moves does.
-    stroke: Vec<Motion<S>>,
 }
 
 impl<S: Real> FreeFloating<S> {
@@ -54,8 +56,8 @@ impl<S: Real> FreeFloating<S> {
             pose: FramePose { rot_wf: Mat3::identity(), pos_w: Vec3::zero() },
             velocity: Motion::zero(),
             base_bias: Force::zero(),
+            coupling: vec![Force::zero(); n],
             recoil: vec![Motion::zero(); n],
-            stroke: vec![Motion::zero(); n],
         }
     }
 }
@@ -125,18 +127,22 @@ pub fn base_relative_frame<S: Real>(
         || {
             let n = model.joint_count();
             let frame = &model.frames()[frame];
-            let (p, base) = (frame_origin_b(data, frame), data.bodies[0].velocity);
-            out.pose = FramePose { rot_wf: frame_rotation_b(data, frame), pos_w: p };
-            let twist = data.bodies[frame.body].velocity - base;
-            out.velocity = Motion::new(twist.at(p), twist.angular);
+            let (p, base) = (frame_offset(data, frame), data.bodies[0].velocity);
+            let relative = |body: &BodyData<S>| body.velocity - base.referred_to(body.pos_b);
+            out.pose =
+                FramePose { rot_wf: frame_rotation_b(data, frame), pos_w: frame_origin_b(data, frame) };
+            let twist = relative(&data.bodies[frame.body]);
+            out.velocity = twist.referred_to(p);
             out.jacobian.fill(S::of(0.0));
-            let mut spatial = Motion::zero();
+            // Σ v_k × S q̇ along the path to the base, at the origin of the frame's body
+            let (mut spatial, mut lever) = (Motion::zero(), Vec3::zero());
             let mut k = frame.body;
             while k > 0 {
-                let body = &data.bodies[k];
-                write_column(&mut out.jacobian, n, k - 1, Mat3::identity(), p, body.subspace);
-                spatial += (body.velocity - base).cross(body.subspace * v[k + 5]);
-                k = model.nodes()[k].parent;
+                let (node, body) = (&model.nodes()[k], &data.bodies[k]);
+                let unit = subspace(node, body.axis());
+                write_column(&mut out.jacobian, n, k - 1, Mat3::identity(), unit.referred_to(lever + p));
+                spatial += relative(body).cross(unit * v[k + 5]).referred_to(lever);
+                (lever, k) = (lever + body.offset, node.parent);
             }
             out.drift = point_acceleration(spatial, twist, p);
         },
@@ -159,52 +165,66 @@ fn kernel<S: Real>(
         nodes,
         bodies,
         #[inline(always)]
-        |k, _, body, load| {
-            let load = with_own(body, load);
-            let (composite, (bias, Outside(outside))) = load;
-            // column of Mbm, cm − Qm, Qm
-            body.force = composite.momentum(body.subspace);
-            out.bias[k - 1] = body.subspace.dot(bias);
-            out.external[k - 1] = body.subspace.dot(outside);
-            load
+        |k, node, body, load| {
+            let (composite, (bias, Outside(outside))) = with_own(body, load);
+            // I^c S, cm − Qm, Qm
+            body.force = composite_force(node, body.axis(), &composite);
+            out.bias[k - 1] = joint_effort(node, body.axis(), bias);
+            out.external[k - 1] = joint_effort(node, body.axis(), outside);
+            let r = body.offset;
+            (composite.from_point(r), (bias.from_point(r), Outside(outside.from_point(r))))
         },
     );
     let (composite, (bias, Outside(outside))) = with_own(&bodies[0], load);
     (bodies[0].composite, out.base_bias) = (composite, bias);
     let inverse = composite.inverse();
 
-    for (k, body) in bodies[1..].iter().enumerate() {
-        out.recoil[k] = -inverse.apply(body.force);
-        out.stroke[k] = out.recoil[k] + body.subspace;
+    mobility(nodes, bodies, &inverse, out);
+
+    let (net, outside) = (inverse.apply(bias), inverse.apply(outside)); // Mbb⁻¹ (cb − Qb), Mbb⁻¹ Qb
+    for (k, coupling) in out.coupling.iter().enumerate() {
+        // Q* = Qm − Mbmᵀ Mbb⁻¹ Qb,  c* = (cm − Qm) − Mbmᵀ Mbb⁻¹ (cb − Qb) + Q*
+        out.external[k] -= outside.dot(*coupling);
+        out.bias[k] = out.bias[k] - net.dot(*coupling) + out.external[k];
     }
+    out.drift = classical(model, data, q, frame, data.bodies[model.frames()[frame].body].acceleration);
+    reduce_task(model, data, q, frame, &inverse, out);
+}
+
+/// `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `Mbm` and the base's recoil from the forces `I^c S` of all joints.
+#[inline(always)]
+fn mobility<S: Real>(
+    nodes: &[Node],
+    bodies: &[BodyData<S>],
+    inverse: &InverseInertia<S>,
+    out: &mut FreeFloating<S>,
+) {
+    let n = nodes.len() - 1;
     for (k, row) in (1..).zip(out.inertia.chunks_exact_mut(n.max(1))) {
-        let (force, mut ancestor) = (bodies[k].force, k);
-        let (row, recoil, stroke) = (&mut row[..k], &out.recoil[..k], &out.stroke[..k]);
-        for j in (0..k).rev() {
-            // M* = Mmm − Mbmᵀ (Mbb⁻¹ Mbm)
-            let mut twist = recoil[j];
-            if j + 1 == ancestor {
-                twist = stroke[j];
-                ancestor = nodes[j + 1].parent;
+        // S_jᵀ I^c S_k at the origin of each ancestor j; where the force has arrived at the base it is the column of Mbm
+        let (Force { linear, angular }, mut lever) = (bodies[k].force, Vec3::zero());
+        let (mut ancestor, row) = (k, &mut row[..k]);
+        for j in (1..=k).rev() {
+            let mut entry = S::of(0.0);
+            if j == ancestor {
+                let (node, body) = (&nodes[j], &bodies[j]);
+                entry = joint_effort(node, body.axis(), Force::at(linear, angular, lever));
+                (lever, ancestor) = (lever + body.offset, node.parent);
             }
-            row[j] = twist.dot(force);
+            row[j - 1] = entry;
         }
         row[k - 1] += S::of(nodes[k].rotor_inertia);
+        let force = Force::at(linear, angular, lever);
+        (out.coupling[k - 1], out.recoil[k - 1]) = (force, -inverse.apply(force));
+        for (entry, recoil) in row.iter_mut().zip(&out.recoil[..k]) {
+            *entry += recoil.dot(force);
+        }
     }
     for k in 0..n {
         for j in 0..k {
             out.inertia[j * n + k] = out.inertia[k * n + j];
         }
     }
-
-    let (net, outside) = (inverse.apply(bias), inverse.apply(outside)); // Mbb⁻¹ (cb − Qb), Mbb⁻¹ Qb
-    for (k, body) in bodies[1..].iter().enumerate() {
-        // Q* = Qm − Mbmᵀ Mbb⁻¹ Qb,  c* = (cm − Qm) − Mbmᵀ Mbb⁻¹ (cb − Qb) + Q*
-        out.external[k] -= outside.dot(body.force);
-        out.bias[k] = out.bias[k] - net.dot(body.force) + out.external[k];
-    }
-    out.drift = classical(model, data, q, frame, data.bodies[model.frames()[frame].body].acceleration);
-    reduce_task(model, data, q, frame, &inverse, out);
 }
 
 /// Wrenches from outside on a subtree.
@@ -224,7 +244,7 @@ fn with_own<S: Real>(
     body: &BodyData<S>,
     (composite, (bias, outside)): (SpatialInertia<S>, (Force<S>, Outside<S>)),
 ) -> (SpatialInertia<S>, (Force<S>, Outside<S>)) {
-    (composite + body.inertia, (bias + net_force(body), Outside(outside.0 + body.external)))
+    (composite + body.inertia.about_origin(), (bias + net_force(body), Outside(outside.0 + body.external)))
 }
 
 /// Pose, twist, `Jg` and `d`, the last from `J̇ v`: what the frame does when the base gives way.
@@ -242,15 +262,16 @@ fn reduce_task<S: Real>(
     let n = model.joint_count();
     let frame = &model.frames()[frame];
     let (rot_wb, p) = (base_rotation(q), frame_origin_b(data, frame));
-    let mut ancestor = frame.body;
+    let (mut ancestor, mut lever) = (frame.body, frame_offset(data, frame));
     for k in (1..=n).rev() {
         // Jg = Jm − Jb Mbb⁻¹ Mbm
-        let mut twist = out.recoil[k - 1];
+        let mut twist = out.recoil[k - 1].referred_to(p);
         if k == ancestor {
-            twist = out.stroke[k - 1];
-            ancestor = model.nodes()[k].parent;
+            let (node, body) = (&model.nodes()[k], &data.bodies[k]);
+            twist += subspace(node, body.axis()).referred_to(lever);
+            (lever, ancestor) = (lever + body.offset, node.parent);
         }
-        write_column(&mut out.jacobian, n, k - 1, rot_wb, p, twist);
+        write_column(&mut out.jacobian, n, k - 1, rot_wb, twist);
     }
     // d = J̇ v − Jb Mbb⁻¹ (cb − Qb)
     let net = inverse.apply(out.base_bias);

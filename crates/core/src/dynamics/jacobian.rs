@@ -1,7 +1,8 @@
 //! Frame Jacobians and their drift.
 
 use super::data::Data;
-use super::kinematics::{base_rotation, frame_origin_b};
+use super::kinematics::{base_rotation, frame_offset};
+use super::subspace::{subspace, velocity_product};
 use crate::model::Model;
 use crate::spatial::{Mat3, Motion, Real, Vec3};
 
@@ -13,32 +14,32 @@ pub fn frame_jacobian<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: us
         #[inline(always)]
         || {
             let (nv, frame) = (model.nv(), &model.frames()[frame]);
-            let (rot_wb, p) = (base_rotation(q), frame_origin_b(data, frame));
+            let (rot_wb, mut lever) = (base_rotation(q), frame_offset(data, frame));
             out.fill(S::of(0.0));
-            for (j, axis) in unit_axes().into_iter().enumerate() {
-                write_column(out, nv, j, rot_wb, p, Motion::new(axis, Vec3::zero()));
-                write_column(out, nv, j + 3, rot_wb, p, Motion::new(Vec3::zero(), axis));
-            }
             let mut k = frame.body;
             while k > 0 {
-                write_column(out, nv, k + 5, rot_wb, p, data.bodies[k].subspace);
-                k = model.nodes()[k].parent;
+                let (node, body) = (&model.nodes()[k], &data.bodies[k]);
+                write_column(out, nv, k + 5, rot_wb, subspace(node, body.axis()).referred_to(lever));
+                (lever, k) = (lever + body.offset, node.parent);
+            }
+            for (j, axis) in unit_axes().into_iter().enumerate() {
+                write_column(out, nv, j, rot_wb, Motion::new(axis, Vec3::zero()));
+                write_column(out, nv, j + 3, rot_wb, Motion::new(axis.cross(lever), axis));
             }
         },
     );
 }
 
-/// Column `j` of a Jacobian `width` wide: the twist `unit` at the point `p`, turned to W.
+/// Column `j` of a Jacobian `width` wide: the twist of the frame's origin, turned to W.
 #[inline(always)]
 pub(super) fn write_column<S: Real>(
     out: &mut [S],
     width: usize,
     j: usize,
     rot_wb: Mat3<S>,
-    p: Vec3<S>,
-    unit: Motion<S>,
+    twist: Motion<S>,
 ) {
-    let (linear, angular) = (rot_wb * unit.at(p), rot_wb * unit.angular);
+    let (linear, angular) = (rot_wb * twist.linear, rot_wb * twist.angular);
     let entries = [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z];
     for (i, entry) in entries.into_iter().enumerate() {
         out[i * width + j] = entry;
@@ -59,13 +60,13 @@ pub fn frame_drift<S: Real>(model: &Model, data: &Data<S>, q: &[S], v: &[S], fra
         #[inline(always)]
         || {
             let index = &model.frames()[frame];
-            // Σ v_k × S q̇ along the path to the base
-            let mut spatial = Motion::zero();
+            // Σ v_k × S q̇ along the path to the base, at the origin of the frame's body
+            let (mut spatial, mut lever) = (Motion::zero(), Vec3::zero());
             let mut k = index.body;
             while k > 0 {
-                let body = &data.bodies[k];
-                spatial += body.velocity.cross(body.subspace * v[k + 5]);
-                k = model.nodes()[k].parent;
+                let (node, body) = (&model.nodes()[k], &data.bodies[k]);
+                spatial += velocity_product(node, body, v[k + 5]).referred_to(lever);
+                (lever, k) = (lever + body.offset, node.parent);
             }
             classical(model, data, q, frame, spatial)
         },
@@ -79,7 +80,7 @@ pub fn frame_acceleration<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame
     classical(model, data, q, frame, spatial)
 }
 
-/// A body's spatial acceleration as that of a frame's origin, [`point_acceleration`], in W axes.
+/// A body's spatial acceleration at its origin as that of a frame's origin, [`point_acceleration`], in W axes.
 ///
 /// A spatial acceleration is the rate of the velocity field at a fixed point; the last term
 /// follows the material point instead.
@@ -92,7 +93,7 @@ pub(super) fn classical<S: Real>(
     spatial: Motion<S>,
 ) -> Motion<S> {
     let frame = &model.frames()[frame];
-    let (rot_wb, p) = (base_rotation(q), frame_origin_b(data, frame));
+    let (rot_wb, p) = (base_rotation(q), frame_offset(data, frame));
     let velocity = data.bodies[frame.body].velocity;
     let acceleration = point_acceleration(spatial, velocity, p);
     Motion::new(rot_wb * acceleration.linear, rot_wb * acceleration.angular)

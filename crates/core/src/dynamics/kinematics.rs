@@ -1,9 +1,10 @@
 //! Where the bodies are and how they move.
 
 use super::data::{BodyData, Data};
+use super::subspace::along;
 use super::walk::outward;
 use crate::model::{Axis, Frame, Model, Node};
-use crate::spatial::{Mat3, Motion, Quat, Real, SpatialInertia, Sym3, Vec3};
+use crate::spatial::{Mat3, Motion, Quat, Real, Sym3, Vec3};
 
 /// Pose of a frame in W.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +62,7 @@ pub(crate) fn kinematics_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &
         |k, node, body, (rot_bp, pos_b, velocity)| {
             place(node, (rot_bp, pos_b), body, q[k - 1], turns[k - 1]);
             // v_k = v_p + S q̇
-            body.velocity = body.subspace.scale_add(rates[k - 1], velocity);
+            body.velocity = along(node, body.axis(), rates[k - 1], velocity.referred_to(body.offset));
             (body.rot_bk, body.pos_b, body.velocity)
         },
     );
@@ -75,7 +76,7 @@ fn turned<'q, S: Real>(model: &Model, q: &'q [S], turns: &mut [(S, S)]) -> &'q [
     q
 }
 
-/// Pose of a body from its parent's: `R_bk = R_bp R_pk Rz(q)`, its motion subspace and its inertia.
+/// Pose of a body from its parent's, `R_bk = R_bp R_pk Rz(q)`, and its inertia.
 #[inline(always)]
 fn place<S: Real>(
     node: &Node,
@@ -85,37 +86,39 @@ fn place<S: Real>(
     (s, c): (S, S),
 ) {
     let tree = rot_bp * Mat3::of(&node.rot_pk);
-    let pos = rot_bp * Vec3::of(&node.pos_pk) + pos_bp;
+    body.offset = rot_bp * Vec3::of(&node.pos_pk);
     match node.axis {
         Axis::Revolute => {
             let x = tree.x.scale_add(c, tree.y * s);
             let y = tree.y.scale_add(c, -(tree.x * s));
             body.rot_bk = Mat3::from_columns(x, y, tree.z);
-            body.pos_b = pos;
-            body.subspace = Motion::new(pos.cross(tree.z), tree.z); // v = −ω × p = p × ω
         }
         Axis::Prismatic => {
             body.rot_bk = tree;
-            body.pos_b = tree.z.scale_add(q, pos);
-            body.subspace = Motion::new(tree.z, Vec3::zero());
+            body.offset = tree.z.scale_add(q, body.offset);
         }
     }
+    body.pos_b = pos_bp + body.offset;
     place_inertia(node, body);
 }
 
-/// Centre of mass and inertia of a body where it is. The base's are constants.
+/// Centre of mass and inertia of a body in base axes. The base's are constants.
 #[inline(always)]
 pub(super) fn place_inertia<S: Real>(node: &Node, body: &mut BodyData<S>) {
-    let mass = S::of(node.mass);
-    body.com_b = body.rot_bk * Vec3::of(&node.com) + body.pos_b;
-    body.inertia = SpatialInertia::at_com(mass, body.com_b, Sym3::of(&node.about_com).rotate(&body.rot_bk));
+    body.inertia.com = body.rot_bk * Vec3::of(&node.com);
+    body.inertia.about_com = Sym3::of(&node.about_com).rotate(&body.rot_bk);
+}
+
+/// Origin of a frame from that of its body, base axes, m. Needs [`positions`].
+#[inline(always)]
+pub(super) fn frame_offset<S: Real>(data: &Data<S>, frame: &Frame) -> Vec3<S> {
+    data.bodies[frame.body].rot_bk * Vec3::of(&frame.pos_kf)
 }
 
 /// Origin of a frame in B, m. Needs [`positions`].
 #[inline(always)]
 pub(crate) fn frame_origin_b<S: Real>(data: &Data<S>, frame: &Frame) -> Vec3<S> {
-    let body = &data.bodies[frame.body];
-    body.rot_bk * Vec3::of(&frame.pos_kf) + body.pos_b
+    frame_offset(data, frame) + data.bodies[frame.body].pos_b
 }
 
 /// Rotation from a frame's axes to B. Needs [`positions`].
@@ -148,5 +151,5 @@ pub fn frame_velocity<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: us
     let frame = &model.frames()[frame];
     let rot_wb = base_rotation(q);
     let velocity = data.bodies[frame.body].velocity;
-    Motion::new(rot_wb * velocity.at(frame_origin_b(data, frame)), rot_wb * velocity.angular)
+    Motion::new(rot_wb * velocity.at(frame_offset(data, frame)), rot_wb * velocity.angular)
 }

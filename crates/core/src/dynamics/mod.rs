@@ -16,6 +16,7 @@ mod jacobian;
 mod kinematics;
 mod momentum;
 mod rnea;
+mod subspace;
 mod walk;
 
 pub(crate) use aba::locked_dynamics_recursion;

@@ -21,8 +21,8 @@ pub fn composite_momentum<S: Real>(data: &Data<S>) -> (SpatialInertia<S>, Force<
     let mut inertia = SpatialInertia::zero();
     let mut momentum = Force::zero();
     for body in &data.bodies {
-        inertia += body.inertia;
-        momentum += body.inertia.momentum(body.velocity);
+        inertia += body.inertia_b();
+        momentum += body.inertia.momentum(body.velocity).from_point(body.pos_b);
     }
     (inertia, momentum)
 }
@@ -60,7 +60,7 @@ pub(crate) fn center_of_mass_b<S: Real>(data: &Data<S>) -> Vec3<S> {
     let (mut mass, mut moment) = (S::of(0.0), Vec3::zero());
     for body in &data.bodies {
         mass += body.inertia.mass;
-        moment += body.inertia.moment;
+        moment = body.com_b().scale_add(body.inertia.mass, moment);
     }
     moment * (S::of(1.0) / mass)
 }
@@ -92,8 +92,8 @@ fn sums<S: Real>(model: &Model, data: &Data<S>, v: &[S]) -> (SpatialInertia<S>, 
     let (mut inertia, mut momentum, mut twice) = (SpatialInertia::zero(), Force::zero(), S::of(0.0));
     for body in &data.bodies {
         let own = body.inertia.momentum(body.velocity);
-        inertia += body.inertia;
-        momentum += own;
+        inertia += body.inertia_b();
+        momentum += own.from_point(body.pos_b);
         twice += body.velocity.dot(own);
     }
     for (node, rate) in model.nodes()[1..].iter().zip(&v[6..]) {

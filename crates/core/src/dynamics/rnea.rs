@@ -3,6 +3,7 @@
 use super::data::{BodyData, Data};
 use super::external::{FrameWrench, apply_external};
 use super::kinematics::kinematics;
+use super::subspace::{along, joint_effort, velocity_product};
 use super::walk::{inward, outward};
 use crate::model::{Model, Node};
 use crate::spatial::{Force, Motion, Real};
@@ -71,11 +72,11 @@ fn kernel<S: Real>(model: &Model, data: &mut Data<S>, v: &[S], a: Option<&[S]>, 
         |k, node, body, carried: Force<S>| {
             // f_k = I a + v ×* I v − F + Σ f of what it carries,  τ_k = Sᵀ f_k + rotor q̈
             body.force = carried + net_force(body);
-            tau[k + 5] = body.subspace.dot(body.force);
+            tau[k + 5] = joint_effort(node, body.axis(), body.force);
             if let Some(a) = a {
                 tau[k + 5] = a[k + 5].mul_add(S::of(node.rotor_inertia), tau[k + 5]);
             }
-            body.force
+            body.force.from_point(body.offset)
         },
     );
     bodies[0].force = carried + net_force(&bodies[0]);
@@ -93,10 +94,14 @@ pub(super) fn accelerations<S: Real>(nodes: &[Node], bodies: &mut [BodyData<S>],
         #[inline(always)]
         |body| body.acceleration,
         #[inline(always)]
-        |k, _, body, carrier| {
-            body.acceleration = carrier + body.velocity.cross(body.subspace * v[k + 5]);
+        |k, node, body, carrier: Motion<S>| {
+            let own = velocity_product(node, body, v[k + 5]);
+            body.acceleration = Motion::new(
+                carrier.linear + carrier.angular.cross_add(body.offset, own.linear),
+                carrier.angular + own.angular,
+            );
             if let Some(a) = a {
-                body.acceleration = body.subspace.scale_add(a[k + 5], body.acceleration);
+                body.acceleration = along(node, body.axis(), a[k + 5], body.acceleration);
             }
             body.acceleration
         },
@@ -106,6 +111,5 @@ pub(super) fn accelerations<S: Real>(nodes: &[Node], bodies: &mut [BodyData<S>],
 /// What moves a body as it does, less what acts on it from outside: `I a + v ×* I v − F`.
 #[inline(always)]
 pub(super) fn net_force<S: Real>(body: &BodyData<S>) -> Force<S> {
-    body.inertia.momentum(body.acceleration) + body.velocity.cross_force(body.inertia.momentum(body.velocity))
-        - body.external
+    body.inertia.inertial_force(body.velocity, body.acceleration) - body.external
 }

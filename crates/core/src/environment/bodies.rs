@@ -37,9 +37,8 @@ impl Bodies {
     pub(crate) fn put<S: Real>(&mut self, moves: bool, motion: impl Fn(usize) -> BodyMotion<S>) {
         for first in (0..self.count).step_by(S::LANES) {
             let (to, offset) = (&mut self.blocks[first / WIDTH].motion, first % WIDTH);
-            let BodyMotion { com, arm, rot_wk, velocity: [linear, angular] } = motion(first);
+            let BodyMotion { com, rot_wk, velocity: [linear, angular] } = motion(first);
             store(&mut to.com, offset, com);
-            store(&mut to.arm, offset, arm);
             store(&mut to.rot_wk.x, offset, rot_wk.x);
             store(&mut to.rot_wk.y, offset, rot_wk.y);
             store(&mut to.rot_wk.z, offset, rot_wk.z);
@@ -82,12 +81,6 @@ impl Bodies {
         (0..self.count).filter_map(|body| self.get(body))
     }
 
-    /// From the base's origin to the centres of mass of as many as `S` has lanes, from body number `first` on.
-    #[inline(always)]
-    pub(crate) fn arms<S: Real>(&self, first: usize) -> Vec3<S> {
-        self.blocks[first / WIDTH].motion.arm.map(|row| row.load(first % WIDTH))
-    }
-
     /// Centre of mass of the base; the origin where there is none.
     pub(super) fn com_of_base(&self) -> Vector3<f64> {
         let first = |block: &EightBodies| block.motion.com.map(|row| row.get(0)).to_nalgebra();
@@ -119,8 +112,6 @@ impl Bodies {
 impl FromIterator<BodyState> for Bodies {
     fn from_iter<I: IntoIterator<Item = BodyState>>(bodies: I) -> Self {
         let bodies: Vec<_> = bodies.into_iter().collect();
-        let base = bodies.first().map_or_else(Vector3::zeros, |base| base.origin);
-        let eight = |bodies: &[BodyState]| EightBodies::new(bodies, &base);
-        Self { count: bodies.len(), blocks: bodies.chunks(WIDTH).map(eight).collect() }
+        Self { count: bodies.len(), blocks: bodies.chunks(WIDTH).map(EightBodies::new).collect() }
     }
 }

@@ -19,16 +19,14 @@ pub(super) struct EightBodies {
 #[derive(Clone, Debug)]
 pub(crate) struct BodyMotion<T> {
     pub(crate) com: Vec3<T>,
-    /// Centres of mass from the base's origin, with the digits that are lost far from the reference.
-    pub(crate) arm: Vec3<T>,
     pub(crate) rot_wk: Mat3<T>,
     /// Linear, of the centre of mass, and angular.
     pub(crate) velocity: [Vec3<T>; 2],
 }
 
 impl EightBodies {
-    /// At most eight bodies of a robot whose base has its origin at `base`, m.
-    pub(super) fn new(bodies: &[BodyState], base: &Vector3<f64>) -> Self {
+    /// At most eight bodies of a robot.
+    pub(super) fn new(bodies: &[BodyState]) -> Self {
         let body = |i: usize| &bodies[i.min(bodies.len() - 1)];
         let vectors = |of: fn(&BodyState) -> &Vector3<f64>| Eight::vectors(|i| (*of(body(i))).into());
         let rot = |j: usize| Eight::vectors(|i| body(i).rot_wk.column(j).into_owned().into());
@@ -46,7 +44,6 @@ impl EightBodies {
             com_k: Eight::vectors(|i| body(i).rot_wk.tr_mul(&(body(i).com - body(i).origin)).into()),
             motion: BodyMotion {
                 com: vectors(|body| &body.com),
-                arm: Eight::vectors(|i| (body(i).com - base).into()),
                 rot_wk: Mat3 { x: rot(0), y: rot(1), z: rot(2) },
                 velocity: [vectors(|body| &body.velocity), vectors(|body| &body.angular_velocity)],
             },

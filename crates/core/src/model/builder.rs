@@ -3,10 +3,13 @@
 use super::compile::compile;
 use super::description::{Inertial, Joint, JointKind, Link};
 use super::error::{ModelError, ModelWarning};
-use super::inertia_check::{Sense, check_inertial};
+use super::inertia_check::{LONGEST, Sense, check_inertial};
 use super::tree::Model;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
+
+/// Most moving joints of a robot: its mass matrix takes 32 MB then, its derivatives three times that.
+const MOST_JOINTS: usize = 2000;
 
 /// Collects links and joints, then [`build`](ModelBuilder::build)s the tree.
 ///
@@ -24,6 +27,7 @@ pub struct ModelBuilder {
     /// Links by name.
     link_index: HashMap<String, usize>,
     joint_names: HashSet<String>,
+    moving_joints: usize,
     frame_names: HashSet<String>,
 }
 
@@ -41,6 +45,7 @@ impl ModelBuilder {
             warnings: Vec::new(),
             link_index: HashMap::new(),
             joint_names: HashSet::new(),
+            moving_joints: 0,
             frame_names: HashSet::new(),
         };
         builder.add_link(base, false)?;
@@ -58,7 +63,12 @@ impl ModelBuilder {
             return Err(ModelError::DuplicateName { what: "joint", name: joint.name });
         }
         check_joint(&joint)?;
+        let count = self.moving_joints + usize::from(joint.kind != JointKind::Fixed);
+        if count > MOST_JOINTS {
+            return Err(ModelError::TooManyJoints { most: MOST_JOINTS });
+        }
         self.add_link(child, joint.kind == JointKind::Fixed)?;
+        self.moving_joints = count;
         self.joint_names.insert(joint.name.clone());
         self.joints.push((parent, joint));
         Ok(self)
@@ -161,12 +171,20 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
     if !joint.origin.to_homogeneous().iter().all(|x| x.is_finite()) {
         return Err(ModelError::NotFinite { what: "the origin", name: name() });
     }
+    let (shift, expected) = (joint.origin.translation.vector.amax(), "at most 1e12 m");
+    if shift > LONGEST {
+        return Err(ModelError::OutOfRange { what: "the origin", name: name(), value: shift, expected });
+    }
     if let JointKind::Revolute(axis) | JointKind::Prismatic(axis) = &joint.kind {
         if !axis.iter().all(|x| x.is_finite()) {
             return Err(ModelError::NotFinite { what: "the axis", name: name() });
         }
         if axis.norm() == 0.0 {
             return Err(ModelError::ZeroAxis { joint: name() });
+        }
+        if !axis.norm().is_finite() {
+            let (value, expected) = (axis.amax(), "numbers up to 1e150");
+            return Err(ModelError::OutOfRange { what: "the axis", name: name(), value, expected });
         }
     }
     let amounts = [
@@ -182,6 +200,10 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
         }
         if value < 0.0 {
             return Err(ModelError::Negative { joint: name(), what, value });
+        }
+        if value > 1e20 && !what.ends_with("limit") {
+            let expected = "numbers up to 1e20";
+            return Err(ModelError::OutOfRange { what, name: name(), value, expected });
         }
     }
     match joint.limits.position {

@@ -138,12 +138,19 @@ fn attach(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
     model.nodes[parent.body].is_fork |= parent.body + 1 != next;
     model.nodes.push(Node {
         parent: parent.body,
+        end: next + 1,
         axis: kind,
         rot_pk: (rot * rot_link_body).into(),
         pos_pk: pos.into(),
         rotor_inertia: joint.rotor_inertia,
         ..empty_node()
     });
+    let mut carrier = parent.body;
+    model.nodes[carrier].end = next + 1;
+    while carrier > 0 {
+        carrier = model.nodes[carrier].parent;
+        model.nodes[carrier].end = next + 1;
+    }
     model.joints.push(JointProperties {
         name: joint.name.clone(),
         damping: joint.damping,
@@ -158,6 +165,7 @@ fn empty_node() -> Node {
     Node {
         parent: 0,
         is_fork: false,
+        end: 1,
         axis: Axis::Revolute,
         rot_pk: Mat3::identity(),
         pos_pk: Vec3::zero(),

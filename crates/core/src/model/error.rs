@@ -19,6 +19,13 @@ pub enum ModelError {
     AsymmetricInertia { link: String, difference: f64 },
     #[error("{what} of '{name}' is not finite")]
     NotFinite { what: &'static str, name: String },
+    #[error("{what} of '{name}' is {value:?}, {expected} are accepted; check the units")]
+    OutOfRange { what: &'static str, name: String, value: f64, expected: &'static str },
+    #[error(
+        "the robot has more than {most} moving joints: matrices over all of them would take too much memory; make \
+         joints that do not move fixed"
+    )]
+    TooManyJoints { most: usize },
     #[error("the robot has no mass: a floating base needs some")]
     NoMass,
     #[error(

@@ -9,6 +9,9 @@ use nalgebra::Matrix3;
 /// of the largest entry: what six printed digits leave.
 const PRINTED_DIGITS: f64 = 1e-6;
 
+/// Largest coordinate of anything in a robot, m: seven astronomical units.
+pub(super) const LONGEST: f64 = 1e12;
+
 /// What kind of body has such an inertia; principal moments in kg m², ascending.
 pub(super) enum Sense {
     /// A real one.
@@ -26,6 +29,7 @@ pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, M
     if !mass.is_finite() || !com.iter().chain(inertia.iter()).all(|x| x.is_finite()) {
         return Err(ModelError::NotFinite { what: "the inertial", name: link() });
     }
+    check_ranges(link(), inertial)?;
     let scale = inertia.amax();
     if *mass < 0.0 {
         return Err(ModelError::MassNotPositive { link: link(), mass: *mass });
@@ -43,6 +47,22 @@ pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, M
         return Err(ModelError::AsymmetricInertia { link: link(), difference });
     }
     Ok(sense(inertia))
+}
+
+/// Refuses numbers whose products over a robot could overflow, or vanish beside each other.
+fn check_ranges(name: String, inertial: &Inertial) -> Result<(), ModelError> {
+    let Inertial { mass, com, inertia } = inertial;
+    let is_mass = *mass <= 0.0 || (1e-20..=1e20).contains(mass);
+    for (is_fine, what, value, expected) in [
+        (is_mass, "the mass", *mass, "1e-20 kg to 1e20 kg"),
+        (com.amax() <= LONGEST, "the centre of mass", com.amax(), "at most 1e12 m"),
+        (inertia.amax() <= 1e40, "the inertia", inertia.amax(), "at most 1e40 kg m2"),
+    ] {
+        if !is_fine {
+            return Err(ModelError::OutOfRange { what, name, value, expected });
+        }
+    }
+    Ok(())
 }
 
 /// Whether a body made of several links turns with positive energy, whatever its parts do.

@@ -23,6 +23,8 @@ pub struct Node {
     pub parent: usize,
     /// Whether bodies beside the next one hang on it.
     pub is_fork: bool,
+    /// One past the last body of its subtree: bodies are numbered depth first.
+    pub end: usize,
     /// What its joint does (of no meaning for the base).
     pub axis: Axis,
     /// Axes of this body at joint position zero, in the parent's axes.

@@ -2,6 +2,7 @@
 
 use nalgebra::{Vector3, Vector4};
 
+use super::error::LARGEST;
 use super::{Orbit, OrbitError, OrbitState, PathFrame};
 use crate::spatial::{self, Quat, RotationSpline, Spline, SplineError, exp_so3};
 
@@ -14,7 +15,7 @@ pub enum PathError {
     TooFewPoints { got: usize },
     #[error("{name} has {got} rows, times has {expected}: one row per time is needed")]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("{name}[{index}] holds {value}, finite numbers are needed")]
+    #[error("{name}[{index}] holds {value:?}, finite numbers up to 1e60 (SI units) are needed")]
     NotFinite { name: &'static str, index: usize, value: f64 },
     #[error(
         "times[{index}] is {time} s after {before} s: times must increase, by 1e-9 s at least; sort the rows and \
@@ -188,11 +189,11 @@ impl PathPoints {
         if n < 2 {
             return Err(PathError::TooFewPoints { got: n });
         }
-        rows("times", n, Some(&self.times), |t| *t)?;
-        rows("positions", n, Some(&self.positions), |x| x.sum())?;
-        rows("velocities", n, self.velocities.as_deref(), |x| x.sum())?;
-        rows("accelerations", n, self.accelerations.as_deref(), |x| x.sum())?;
-        rows("attitudes", n, self.attitudes.as_deref(), |x| x.sum())?;
+        rows("times", n, Some(&self.times), |t| worst(&[*t]))?;
+        rows("positions", n, Some(&self.positions), |x| worst(x.as_slice()))?;
+        rows("velocities", n, self.velocities.as_deref(), |x| worst(x.as_slice()))?;
+        rows("accelerations", n, self.accelerations.as_deref(), |x| worst(x.as_slice()))?;
+        rows("attitudes", n, self.attitudes.as_deref(), |x| worst(x.as_slice()))?;
         if self.accelerations.is_some() && self.velocities.is_none() {
             return Err(PathError::AccelerationsAlone);
         }
@@ -218,18 +219,23 @@ impl PathPoints {
     }
 }
 
-/// Checks that `column` has `n` rows of finite numbers; `total` is finite where all of a row is.
+/// The first number of a row that is not finite or too large, else zero.
+fn worst(row: &[f64]) -> f64 {
+    row.iter().copied().find(|x| !x.is_finite() || x.abs() > LARGEST).unwrap_or(0.0)
+}
+
+/// Checks that `column` has `n` rows of numbers that make sense; `worst` returns one that does not, else zero.
 fn rows<T>(
     name: &'static str,
     n: usize,
     column: Option<&[T]>,
-    total: fn(&T) -> f64,
+    worst: fn(&T) -> f64,
 ) -> Result<(), PathError> {
     let Some(column) = column else { return Ok(()) };
     if column.len() != n {
         return Err(PathError::WrongLength { name, expected: n, got: column.len() });
     }
-    match column.iter().map(total).enumerate().find(|(_, value)| !value.is_finite()) {
+    match column.iter().map(worst).enumerate().find(|(_, value)| *value != 0.0) {
         Some((index, value)) => Err(PathError::NotFinite { name, index, value }),
         None => Ok(()),
     }

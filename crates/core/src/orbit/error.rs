@@ -29,6 +29,14 @@ pub enum OrbitError {
         /// What is accepted.
         expected: &'static str,
     },
+    /// A number so large that products of a few like it would overflow.
+    #[error("{name} is {value:e}, numbers between -1e60 and 1e60 are accepted (in SI units)")]
+    TooLarge {
+        /// Which input.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
     /// A quantity that must be positive is not.
     #[error("{name} is {value}, it must be greater than zero")]
     NotPositive {
@@ -224,9 +232,18 @@ pub enum OrbitError {
     Path(#[from] PathError),
 }
 
-/// `value` if it is finite.
+/// Largest size of an input: products of five of them are still numbers.
+pub(crate) const LARGEST: f64 = 1e60;
+
+/// Returns `value` if it is finite and not too large.
 pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, OrbitError> {
-    if value.is_finite() { Ok(value) } else { Err(OrbitError::NotFinite { name, value }) }
+    if !value.is_finite() {
+        return Err(OrbitError::NotFinite { name, value });
+    }
+    if value.abs() > LARGEST {
+        return Err(OrbitError::TooLarge { name, value });
+    }
+    Ok(value)
 }
 
 /// `value` if it is finite and greater than zero.

@@ -7,11 +7,11 @@ use crate::spatial::SplineError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ReferenceError {
-    #[error("{name} of the reference is not finite")]
+    #[error("{name} of the reference is not finite, or beyond 1e60 in SI units")]
     NotFinite { name: &'static str },
     #[error("{name} of the reference has {got} numbers, expected {expected}")]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("duration of the reference is {value} s, it must be positive")]
+    #[error("duration of the reference is {value} s, it must be positive, at least 1e-12 s")]
     DurationNotPositive { value: f64 },
     #[error(
         "ramp of the reference is {value}, it must be above 0 and at most 0.5: its share of the duration"
@@ -42,3 +42,11 @@ pub enum ReferenceError {
     #[error("the reference is given in the frame of an orbit: {0}")]
     Orbit(#[from] OrbitError),
 }
+
+/// Returns whether a number is finite and products of a few like it are.
+pub(super) fn is_number(x: &f64) -> bool {
+    x.abs() <= 1e60
+}
+
+/// Shortest duration of a motion, s; rates over less overflow.
+pub(super) const SHORTEST: f64 = 1e-12;

@@ -1,5 +1,6 @@
 //! Frames a reference may be given in.
 
+use super::error::is_number;
 use super::{Hold, ReferenceError, TaskSample};
 use crate::orbit::Orbit;
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
@@ -48,7 +49,7 @@ impl Target {
     /// [`ReferenceError::NotFinite`].
     pub fn at(start: Hold, velocity: Vector3<f64>, spin: Vector3<f64>) -> Result<Self, ReferenceError> {
         for (name, v) in [("velocity", &velocity), ("spin", &spin)] {
-            if !v.iter().all(|x| x.is_finite()) {
+            if !v.iter().all(is_number) {
                 return Err(ReferenceError::NotFinite { name });
             }
         }

@@ -1,5 +1,6 @@
 //! Staying where one is.
 
+use super::error::is_number;
 use super::{ReferenceError, TaskPath, TaskSample};
 use crate::spatial::{Mat3, Vec3};
 use nalgebra::{Matrix3, Vector3};
@@ -17,7 +18,7 @@ impl Hold {
     /// # Errors
     /// [`ReferenceError::NotFinite`], [`ReferenceError::NotARotation`].
     pub fn new(rot_fd: Matrix3<f64>, pos_f: Vector3<f64>) -> Result<Self, ReferenceError> {
-        if !rot_fd.iter().chain(pos_f.iter()).all(|x| x.is_finite()) {
+        if !rot_fd.iter().chain(pos_f.iter()).all(is_number) {
             return Err(ReferenceError::NotFinite { name: "pose" });
         }
         let error = (rot_fd.transpose() * rot_fd - Matrix3::identity()).amax();

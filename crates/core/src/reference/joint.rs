@@ -1,6 +1,7 @@
 //! What joints should follow.
 
 use super::ReferenceError;
+use super::error::is_number;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -56,7 +57,7 @@ impl JointHold {
     /// # Errors
     /// [`ReferenceError::NotFinite`].
     pub fn new(q: Vec<f64>) -> Result<Self, ReferenceError> {
-        match q.iter().all(|x| x.is_finite()) {
+        match q.iter().all(is_number) {
             true => Ok(Self { q }),
             false => Err(ReferenceError::NotFinite { name: "q" }),
         }

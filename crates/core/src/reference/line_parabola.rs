@@ -1,5 +1,6 @@
 //! The paper's trajectory: straight ahead, with a parabola to the side so that the arm can follow.
 
+use super::error::is_number;
 use super::{Hold, ReferenceError, TaskPath, TaskSample, TimeLaw};
 use crate::spatial::{Motion, Vec3};
 use nalgebra::{Matrix3, Vector3};
@@ -43,7 +44,7 @@ impl LineParabola {
         duration: f64,
     ) -> Result<Self, ReferenceError> {
         for (name, v) in [("displacement", &displacement), ("height", &height)] {
-            if !v.iter().all(|x| x.is_finite()) {
+            if !v.iter().all(is_number) {
                 return Err(ReferenceError::NotFinite { name });
             }
         }

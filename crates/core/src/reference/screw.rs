@@ -1,5 +1,6 @@
 //! Round an axis, and along it: circles and screws.
 
+use super::error::is_number;
 use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw, Timing};
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
 use nalgebra::Vector3;
@@ -37,7 +38,7 @@ impl Screw {
         for (name, v) in
             [("center", &center), ("axis", &axis), ("angle, advance", &Vector3::new(angle, advance, 0.0))]
         {
-            if !v.iter().all(|x| x.is_finite()) {
+            if !v.iter().all(is_number) {
                 return Err(ReferenceError::NotFinite { name });
             }
         }

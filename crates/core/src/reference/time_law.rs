@@ -1,5 +1,6 @@
 //! How fast a path is gone along.
 
+use super::error::{SHORTEST, is_number};
 use super::{ReferenceError, TaskLimits, TaskPath};
 
 /// `s(t)` from 0 to 1, at rest and without acceleration at both ends; 0 before, 1 after.
@@ -16,10 +17,10 @@ impl TimeLaw {
     /// # Errors
     /// [`ReferenceError::NotFinite`], [`ReferenceError::DurationNotPositive`].
     pub fn quintic(duration: f64) -> Result<Self, ReferenceError> {
-        if !duration.is_finite() {
+        if !is_number(&duration) {
             return Err(ReferenceError::NotFinite { name: "duration" });
         }
-        if duration <= 0.0 {
+        if duration < SHORTEST {
             return Err(ReferenceError::DurationNotPositive { value: duration });
         }
         Ok(Self { duration, ramp: None })

@@ -182,7 +182,7 @@ impl Outside {
         let rot_wb = base_rotation(q);
         for (body, out) in data.bodies.iter().zip(out.chunks_exact_mut(6)) {
             let force = body.external.linear;
-            let torque = body.external.angular - body.com_b.cross(force);
+            let torque = body.external.angular - body.inertia.com.cross(force);
             (rot_wb * force).write(out);
             (rot_wb * torque).write(&mut out[3..]);
         }

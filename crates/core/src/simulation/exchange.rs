@@ -49,7 +49,7 @@ impl<S: Scalar> Base<S> {
                     |first| {
                         let body = side_by_side(data, first);
                         let vectors = |of: fn(&BodyData<S>) -> &Vec3<S>| gather::<S, L>(|i| of(body(i)));
-                        let com_b = vectors(|body| &body.com_b);
+                        let com = vectors(|body| &body.inertia.com);
                         let rot_bk = Mat3::from_columns(
                             vectors(|body| &body.rot_bk.x),
                             vectors(|body| &body.rot_bk.y),
@@ -58,12 +58,10 @@ impl<S: Scalar> Base<S> {
                         let velocity = || {
                             let linear = vectors(|body| &body.velocity.linear);
                             let twist = Motion::new(linear, vectors(|body| &body.velocity.angular));
-                            [rot_wb * twist.at(com_b) + carried, rot_wb * twist.angular]
+                            [rot_wb * twist.at(com) + carried, rot_wb * twist.angular]
                         };
-                        let arm = rot_wb * com_b;
                         BodyMotion {
-                            com: arm + origin,
-                            arm,
+                            com: rot_wb * (vectors(|body| &body.pos_b) + com) + origin,
                             rot_wk: rot_wb * rot_bk,
                             velocity: if moves { velocity() } else { [Vec3::zero(); 2] },
                         }
@@ -73,23 +71,26 @@ impl<S: Scalar> Base<S> {
         );
     }
 
-    /// Turns the wrenches to base axes, about the base's origin, and puts them on the bodies.
-    pub(super) fn hand_over(&self, bodies: &Bodies, wrenches: &Wrenches, data: &mut Data<S>) {
-        on_lanes!(bodies.len(), L => self.hand_over_on::<L>(bodies, wrenches, data));
+    /// Turns the wrenches to base axes, about the bodies' origins, and puts them on the bodies.
+    pub(super) fn hand_over(&self, wrenches: &Wrenches, data: &mut Data<S>) {
+        on_lanes!(data.bodies.len(), L => self.hand_over_on::<L>(wrenches, data));
     }
 
     #[inline(always)]
-    fn hand_over_on<L: Real>(&self, bodies: &Bodies, wrenches: &Wrenches, data: &mut Data<S>) {
+    fn hand_over_on<L: Real>(&self, wrenches: &Wrenches, data: &mut Data<S>) {
         L::enter(
             #[inline(always)]
             || {
                 let Base { rot_wb, .. } = self.on_lanes::<L>();
-                for (k, bodies_of_group) in data.bodies.chunks_mut(L::LANES).enumerate() {
-                    let push = wrenches.lanes::<L>(k * L::LANES);
-                    let arm = bodies.arms(k * L::LANES);
+                for first in (0..data.bodies.len()).step_by(L::LANES) {
+                    let push = wrenches.lanes::<L>(first);
+                    let com = {
+                        let body = side_by_side(data, first);
+                        gather::<S, L>(|i| &body(i).inertia.com)
+                    };
                     let force = rot_wb.transpose_mul(push.force);
-                    let torque = rot_wb.transpose_mul(push.torque + arm.cross(push.force));
-                    for (i, body) in bodies_of_group.iter_mut().enumerate() {
+                    let torque = com.cross_add(force, rot_wb.transpose_mul(push.torque));
+                    for (i, body) in data.bodies[first..].iter_mut().take(L::LANES).enumerate() {
                         let one = |v: Vec3<L>| Vec3::of(&v.lane(i));
                         body.external = Force::new(one(force), one(torque));
                     }

@@ -98,7 +98,7 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
                 let twist = base_twist(data, &state.q, &state.v, target);
                 let correction = twist - Motion::from_slice(&state.v) + passing;
                 (twist + passing).write(&mut state.v);
-                data.bodies.iter_mut().for_each(|body| body.velocity += correction);
+                data.bodies.iter_mut().for_each(|body| body.velocity += correction.referred_to(body.pos_b));
             },
         );
     }
@@ -202,7 +202,7 @@ fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], carried: Vec3<S>, forces: 
     rate.bend = rot_wb * (Vec3::from_slice(&rate.a) + rate.turn.cross(Vec3::from_slice(v)));
     let (mut total, mut power) = (Force::zero(), S::of(0.0));
     for body in &data.bodies {
-        total += body.external;
+        total += body.external.from_point(body.pos_b);
         power += body.velocity.dot(body.external);
     }
     for (tau, rate) in forces[6..].iter().zip(&v[6..]) {

@@ -3,6 +3,7 @@
 use super::plant::{Plant, World};
 use super::state::State;
 use crate::dynamics::locked_dynamics_recursion;
+use crate::model::Axis;
 use crate::spatial::{Force, Motion, Real};
 
 /// Share of the torques at a joint within which it still sticks: rounding must not break it away.
@@ -74,8 +75,12 @@ impl<S: Real, W: World<S>> Plant<'_, S, W> {
         let size = |m: Motion<S>, f: Force<S>| {
             m.linear.norm() * f.linear.norm() + m.angular.norm() * f.angular.norm()
         };
+        let along_axis = match self.model.nodes()[j + 1].axis {
+            Axis::Revolute => body.force.angular,
+            Axis::Prismatic => body.force.linear,
+        };
         // λ = Uᵀ a' − τ + Sᵀ pA, all its terms by their size
-        let terms = size(body.acceleration, body.reach) + size(body.subspace, body.force);
+        let terms = size(body.acceleration, body.reach) + along_axis.norm();
         let scale = terms.lane(0) + self.forces[j + 6].lane(0).abs() + friction + f64::MIN_POSITIVE;
         let (down, up) = ((highest - need) / scale, (need - lowest) / scale);
         if down < up { (down, -1.0) } else { (up, 1.0) }

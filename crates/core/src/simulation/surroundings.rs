@@ -185,7 +185,7 @@ impl<S: Scalar> World<S> for Surroundings {
         base.look(data, self.reads_velocities, &mut self.bodies);
         self.interval = interval;
         self.feel(t, 0..self.effects.len())?;
-        base.hand_over(&self.bodies, &self.wrenches, data);
+        base.hand_over(&self.wrenches, data);
         Ok(())
     }
 }

@@ -5,6 +5,7 @@ use super::mat3::Mat3;
 use super::motion::{Force, Motion};
 use super::scalar::Real;
 use super::sym3::Sym3;
+use super::vec3::Vec3;
 use std::ops::Add;
 
 /// A symmetric 6 × 6 operator `[[A, H], [Hᵀ, I]]`, linear first: twenty-one numbers.
@@ -44,6 +45,34 @@ impl<S: Real> ArticulatedInertia<S> {
             self.linear * a.linear + self.coupling * a.angular,
             self.coupling.transpose_mul(a.linear) + self.angular * a.angular,
         )
+    }
+
+    /// An operator about the point `r`, about the origin instead.
+    ///
+    /// `H' = H − A r×` and, with `Z = H + H'`, `I' = I + ½ (r× Z + (r× Z)ᵀ)`.
+    #[inline(always)]
+    #[must_use]
+    pub fn from_point(&self, r: Vec3<S>) -> Self {
+        let (a, h, i, half) = (&self.linear, &self.coupling, &self.angular, r * S::of(0.5));
+        let [ax, ay, az] = a.columns();
+        // column j of A r× is A (r × e_j)
+        let coupling = Mat3::from_columns(
+            ay.scale_add(-r.z, az.scale_add(r.y, h.x)),
+            az.scale_add(-r.x, ax.scale_add(r.z, h.y)),
+            ax.scale_add(-r.y, ay.scale_add(r.x, h.z)),
+        );
+        let z: Mat3<S> = *h + coupling;
+        let (x, y, w) = (half.x, half.y, half.z);
+        let pair = |a: S, p: S, b: S, q: S, s: S| a.mul_add(p, (-b).mul_add(q, s));
+        let angular = Sym3::new(
+            pair(r.y, z.x.z, r.z, z.x.y, i.xx),
+            pair(r.z, z.y.x, r.x, z.y.z, i.yy),
+            pair(r.x, z.z.y, r.y, z.z.x, i.zz),
+            pair(y, z.y.z, w, z.y.y, pair(w, z.x.x, x, z.x.z, i.xy)),
+            pair(y, z.z.z, w, z.z.y, pair(x, z.x.y, y, z.x.x, i.xz)),
+            pair(w, z.z.x, x, z.z.z, pair(x, z.y.y, y, z.y.x, i.yz)),
+        );
+        Self { linear: *a, coupling, angular }
     }
 
     /// `IA + U Wᵀ`, of which `W` must be a multiple of `U`.

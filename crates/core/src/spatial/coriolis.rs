@@ -45,6 +45,20 @@ impl<S: Real> Coriolis<S> {
         }
     }
 
+    /// An operator about the point `r`, about the origin instead: `N' = N + p rᵀ`.
+    #[inline(always)]
+    #[must_use]
+    pub fn from_point(&self, r: Vec3<S>) -> Self {
+        let p = self.momentum;
+        let (x, y, z) = (p.x * r.x, p.y * r.y, p.z * r.z);
+        let mut moment = self.moment.add_outer(-p, r);
+        let trace = x + y + z;
+        moment.x.x += trace;
+        moment.y.y += trace;
+        moment.z.z += trace;
+        Self { momentum: p, moment }
+    }
+
     /// `2B m` for the angular half `ω` of `m`.
     #[inline(always)]
     pub fn apply(&self, omega: Vec3<S>) -> Force<S> {

@@ -1,10 +1,48 @@
-//! Inertia of a rigid body: ten numbers.
+//! Inertia of a rigid body, about its centre of mass and about any other point.
 
 use super::motion::{Force, Motion};
 use super::scalar::Real;
 use super::sym3::Sym3;
 use super::vec3::Vec3;
 use std::ops::{Add, AddAssign};
+
+/// One rigid body: mass, centre of mass `c` and inertia `I_c` about it.
+///
+/// Twist, momentum and force are referred to the origin, but the products are formed at the centre of mass: a small
+/// body keeps its digits however far the origin is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidInertia<S> {
+    /// Mass, kg.
+    pub mass: S,
+    /// Centre of mass, m.
+    pub com: Vec3<S>,
+    /// Rotational inertia about the centre of mass, kg m².
+    pub about_com: Sym3<S>,
+}
+
+impl<S: Real> RigidInertia<S> {
+    /// The same inertia about the origin.
+    #[inline(always)]
+    pub fn about_origin(&self) -> SpatialInertia<S> {
+        SpatialInertia::at_com(self.mass, self.com, self.about_com)
+    }
+
+    /// Momentum `I v`: `p = m (v + ω × c)`, `L = I_c ω + c × p`.
+    #[inline(always)]
+    pub fn momentum(&self, v: Motion<S>) -> Force<S> {
+        Force::at(v.at(self.com) * self.mass, self.about_com * v.angular, self.com)
+    }
+
+    /// Rate of the momentum, `I a + v ×* I v`, with the spatial acceleration `a = (a, α)`:
+    ///
+    /// `f = m (a + α × c + ω × (v + ω × c))`, `n = I_c α + ω × I_c ω + c × f`.
+    #[inline(always)]
+    pub fn inertial_force(&self, v: Motion<S>, a: Motion<S>) -> Force<S> {
+        let force = v.angular.cross_add(v.at(self.com), a.at(self.com)) * self.mass;
+        let moment = v.angular.cross_add(self.about_com * v.angular, self.about_com * a.angular);
+        Force::at(force, moment, self.com)
+    }
+}
 
 /// Inertia about the origin: mass `m`, first moment `h = m c`, second moment `I_o`.
 ///
@@ -37,9 +75,33 @@ impl<S: Real> SpatialInertia<S> {
     #[inline(always)]
     pub fn momentum(&self, v: Motion<S>) -> Force<S> {
         Force::new(
-            v.linear.scale_add(self.mass, v.angular.cross(self.moment)),
-            self.about_origin * v.angular + self.moment.cross(v.linear),
+            v.angular.cross_add(self.moment, v.linear * self.mass),
+            self.moment.cross_add(v.linear, self.about_origin * v.angular),
         )
+    }
+
+    /// An inertia about the point `r`, about the origin instead: with `h' = h + m r`,
+    ///
+    /// `I_o' = I_o + 2 (h · r) 1 − (h rᵀ + r hᵀ) + m (r² 1 − r rᵀ)`.
+    #[inline(always)]
+    #[must_use]
+    pub fn from_point(&self, r: Vec3<S>) -> Self {
+        let (h, i, twice, mr) = (self.moment, &self.about_origin, r + r, r * self.mass);
+        let (x, y, z) = (
+            h.x.mul_add(twice.x, mr.x * r.x),
+            h.y.mul_add(twice.y, mr.y * r.y),
+            h.z.mul_add(twice.z, mr.z * r.z),
+        );
+        let product = |a: S, p: S, b: S, q: S, own: S| a.mul_add(p, b.mul_add(q, own));
+        let about_origin = Sym3::new(
+            i.xx + (y + z),
+            i.yy + (x + z),
+            i.zz + (x + y),
+            i.xy - product(h.x, r.y, h.y, r.x, mr.x * r.y),
+            i.xz - product(h.x, r.z, h.z, r.x, mr.x * r.z),
+            i.yz - product(h.y, r.z, h.z, r.y, mr.y * r.z),
+        );
+        Self { mass: self.mass, moment: h + mr, about_origin }
     }
 
     /// Centre of mass, m. The mass must not be zero.

@@ -24,7 +24,7 @@ mod vec3;
 pub use articulated::{ArticulatedInertia, InverseArticulated};
 pub use coriolis::Coriolis;
 pub use fused::Fused;
-pub use inertia::{InverseInertia, SpatialInertia};
+pub use inertia::{InverseInertia, RigidInertia, SpatialInertia};
 pub use instruction_set::InstructionSet;
 pub(crate) use lanes::{Lanes4, Lanes8};
 pub use mat3::{Mat3, pose_rows};

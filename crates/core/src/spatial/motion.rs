@@ -132,6 +132,13 @@ impl<S: Real> Motion<S> {
     pub fn at(self, p: Vec3<S>) -> Vec3<S> {
         self.linear + self.angular.cross(p)
     }
+
+    /// The same motion with its linear part taken at the point `p`.
+    #[inline(always)]
+    #[must_use]
+    pub fn referred_to(self, p: Vec3<S>) -> Self {
+        Self::new(self.at(p), self.angular)
+    }
 }
 
 impl<S: Real> Force<S> {
@@ -139,5 +146,12 @@ impl<S: Real> Force<S> {
     #[inline(always)]
     pub fn at(force: Vec3<S>, moment: Vec3<S>, p: Vec3<S>) -> Self {
         Self::new(force, moment + p.cross(force))
+    }
+
+    /// A wrench whose moment is about the point `p`, with its moment about the origin instead.
+    #[inline(always)]
+    #[must_use]
+    pub fn from_point(self, p: Vec3<S>) -> Self {
+        Self::at(self.linear, self.angular, p)
     }
 }

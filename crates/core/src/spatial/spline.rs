@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum SplineError {
-    #[error("{name} holds {value} at point {point}, it must be finite")]
+    #[error("{name} holds {value:?} at point {point}, it must be finite and within ±1e60 (SI units)")]
     NotFinite { name: &'static str, point: usize, value: f64 },
     #[error("{name} holds {got} numbers, expected {expected}: one row per time")]
     WrongLength { name: &'static str, expected: usize, got: usize },
@@ -205,7 +205,7 @@ pub(super) fn check_rows(
     if rows.len() != points * width {
         return Err(SplineError::WrongLength { name, expected: points * width, got: rows.len() });
     }
-    match rows.iter().position(|x| !x.is_finite()) {
+    match rows.iter().position(|x| !x.is_finite() || x.abs() > 1e60) {
         Some(i) => Err(SplineError::NotFinite { name, point: i / width, value: rows[i] }),
         None => Ok(()),
     }

@@ -52,6 +52,13 @@ impl<S: Real> Sym3<S> {
         Self::new(S::of(m.xx), S::of(m.yy), S::of(m.zz), S::of(m.xy), S::of(m.xz), S::of(m.yz))
     }
 
+    /// The three columns.
+    #[inline(always)]
+    pub fn columns(&self) -> [Vec3<S>; 3] {
+        let Self { xx, yy, zz, xy, xz, yz } = *self;
+        [Vec3::new(xx, xy, xz), Vec3::new(xy, yy, yz), Vec3::new(xz, yz, zz)]
+    }
+
     /// `A + u uᵀ s`.
     #[inline(always)]
     #[must_use]

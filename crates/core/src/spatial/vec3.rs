@@ -90,6 +90,16 @@ impl<S: Real> Vec3<S> {
         )
     }
 
+    /// `self × o + s`.
+    #[inline(always)]
+    pub fn cross_add(self, o: Self, s: Self) -> Self {
+        Self::new(
+            self.y.mul_add(o.z, (-self.z).mul_add(o.y, s.x)),
+            self.z.mul_add(o.x, (-self.x).mul_add(o.z, s.y)),
+            self.x.mul_add(o.y, (-self.y).mul_add(o.x, s.z)),
+        )
+    }
+
     /// `self · s + o`.
     #[inline(always)]
     pub fn scale_add(self, s: S, o: Self) -> Self {

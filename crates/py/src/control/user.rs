@@ -75,12 +75,19 @@ impl Controller for PythonController {
     }
 
     fn save(&self) -> Result<Vec<u8>, ControlError> {
-        Python::attach(|py| self.call(py, "get_state", ())?.extract(py)).map_err(raised)
+        Python::attach(|py| {
+            let state = self.call(py, "get_state", ())?;
+            plain_data(py)?.call_method1("encode", (state,))?.extract()
+        })
+        .map_err(raised)
     }
 
     fn load(&mut self, saved: &[u8]) -> Result<(), ControlError> {
-        Python::attach(|py| self.call(py, "set_state", (PyBytes::new(py, saved),)).map(|_| ()))
-            .map_err(raised)
+        Python::attach(|py| {
+            let state = plain_data(py)?.call_method1("decode", (PyBytes::new(py, saved),))?;
+            self.call(py, "set_state", (state,)).map(|_| ())
+        })
+        .map_err(raised)
     }
 }
 
@@ -97,6 +104,11 @@ impl PythonController {
         };
         method.call1(arguments).map(Bound::unbind)
     }
+}
+
+/// The module that turns plain data, and nothing else, into text and back.
+fn plain_data(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
+    py.import("onorbit_rs.plain_data")
 }
 
 /// What Python raised, to be raised again as that very object.

@@ -43,7 +43,9 @@ impl IntoPython for ControlError {
                 Err(other) => plain(py, "ControlError", &other.to_string()),
             },
             Self::WrongLength { name, expected, got } => shape_error(py, &message, name, expected, got),
-            Self::NotFinite { name, value } | Self::Negative { name, value } => {
+            Self::NotFinite { name, value }
+            | Self::Negative { name, value }
+            | Self::TooLarge { name, value, .. } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": name, "got": value))
             }
             _ => plain(py, "ControlError", &message),

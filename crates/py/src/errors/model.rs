@@ -15,7 +15,9 @@ impl IntoPython for ModelError {
                 );
                 raise(py, "FrameError", &message, &fields)
             }
-            Self::NotFinite { name, .. } => raise(py, "ModelError", &message, &fields!(py, "link": name)),
+            Self::NotFinite { name, .. } | Self::OutOfRange { name, .. } => {
+                raise(py, "ModelError", &message, &fields!(py, "link": name))
+            }
             Self::MasslessSubtree { joint, link } => {
                 raise(py, "ModelError", &message, &fields!(py, "joint": joint, "link": link))
             }

@@ -9,7 +9,9 @@ impl IntoPython for OrbitError {
     fn into_python(self, py: Python<'_>) -> PyErr {
         let message = self.to_string();
         match &self {
-            Self::NotFinite { name, value } | Self::NotPositive { name, value } => {
+            Self::NotFinite { name, value }
+            | Self::TooLarge { name, value }
+            | Self::NotPositive { name, value } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": name, "got": value))
             }
             Self::OutOfRange { name, value, expected } => {

@@ -48,7 +48,7 @@ fn kernel<S: Real>(
         dq[i * nv..i * nv + 6].fill(S::of(0.0));
         dv[i * nv..i * nv + 3].fill(S::of(0.0));
     }
-    for j in 1..nodes.len() {
+    for j in (1..nodes.len()).rev() {
         product(dtau, nv, work.joint_columns(nodes, &data.bodies, j), |i, x| {
             dq[i * nv + j + 5] = -x[0];
             dv[i * nv + j + 5] = -x[1];

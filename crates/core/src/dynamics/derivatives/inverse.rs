@@ -39,7 +39,7 @@ fn kernel<S: Real>(model: &Model, data: &Data<S>, work: &mut Derivatives<S>, dq:
     work.gather(nodes, data);
     dq.fill(S::of(0.0));
     dv.fill(S::of(0.0));
-    for j in 1..nodes.len() {
+    for j in (1..nodes.len()).rev() {
         for row in work.joint_columns(nodes, &data.bodies, j) {
             dq[row.index * nv + j + 5] = row.values[0];
             dv[row.index * nv + j + 5] = row.values[1];

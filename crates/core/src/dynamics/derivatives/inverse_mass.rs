@@ -2,6 +2,7 @@
 
 use super::terms::{Terms, components};
 use crate::dynamics::data::BodyData;
+use crate::dynamics::subspace::{along, joint_effort};
 use crate::model::Node;
 use crate::spatial::{Force, Motion, Real};
 
@@ -33,9 +34,10 @@ pub(super) fn inverse_mass<S: Real>(
         let mut force = bodies[j].reach * bodies[j].inverse_pivot;
         let mut i = nodes[j].parent;
         while i > 0 {
-            let left = -bodies[i].subspace.dot(force);
+            let left = -joint_effort(&nodes[i], bodies[i].axis(), force);
             terms[i].left = left;
-            force = bodies[i].reach.scale_add(left * bodies[i].inverse_pivot, force);
+            let moved = force.from_point(bodies[i].offset);
+            force = bodies[i].reach.scale_add(left * bodies[i].inverse_pivot, moved);
             i = nodes[i].parent;
         }
         // a_0 = −IA⁻¹ P
@@ -48,7 +50,7 @@ pub(super) fn inverse_mass<S: Real>(
             // q̈ = (u − Uᵀ a_p)/D,  a = a_p + S q̈
             let carried = terms[nodes[k].parent].response;
             let x = (terms[k].left - carried.dot(bodies[k].reach)) * bodies[k].inverse_pivot;
-            terms[k].response = bodies[k].subspace.scale_add(x, carried);
+            terms[k].response = along(&nodes[k], bodies[k].axis(), x, carried.referred_to(bodies[k].offset));
             out[(k + 5) * nv + j + 5] = x;
             out[(j + 5) * nv + k + 5] = x;
         }

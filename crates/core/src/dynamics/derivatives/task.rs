@@ -4,9 +4,10 @@ use super::terms::{Derivatives, Row, components};
 use crate::dynamics::data::Data;
 use crate::dynamics::external::{FrameWrench, apply_external};
 use crate::dynamics::jacobian::{point_acceleration, unit_axes};
-use crate::dynamics::kinematics::{base_rotation, frame_origin_b, kinematics};
+use crate::dynamics::kinematics::{base_rotation, frame_offset, kinematics};
 use crate::dynamics::rnea::inverse_dynamics_recursion;
-use crate::model::Model;
+use crate::dynamics::subspace::subspace;
+use crate::model::{Frame, Model};
 use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, Vec3};
 
 /// Derivatives of the joint torques `M* q̈ + c* − Q*` and of a frame's acceleration `ẍ = Jg q̈ + d` at given joint
@@ -51,12 +52,16 @@ fn kernel<S: Real>(
     let (nodes, nv, frame) = (model.nodes(), model.nv(), &model.frames()[frame]);
     let inverse = give_way(data, &work.force);
     work.gather(nodes, data);
-    let point = Point::new(base_rotation(q), frame_origin_b(data, frame), data, frame.body);
+    for (k, coupling) in work.coupling.iter_mut().enumerate() {
+        *coupling = work.bodies[k + 1].reach.from_point(data.bodies[k + 1].pos_b);
+    }
+    let point = Point::new(base_rotation(q), data, frame);
+    let mut lever = frame_offset(data, frame); // from the joint's origin to the frame's
     for out in [&mut *torque_q, torque_v, acceleration_q, acceleration_v, velocity_q] {
         out.fill(S::of(0.0));
     }
 
-    for j in 1..nodes.len() {
+    for j in (1..nodes.len()).rev() {
         let rows = work.joint_columns(nodes, &data.bodies, j);
         // ∂a_b = −Mbb⁻¹ ∂τ_b,  ∂τ_m + Mbmᵀ ∂a_b
         let (back_q, back_v) = (recoil(&inverse, rows, 0), recoil(&inverse, rows, 1));
@@ -64,18 +69,20 @@ fn kernel<S: Real>(
             torque_q[(row.index - 6) * nv + j + 5] = row.values[0];
             torque_v[(row.index - 6) * nv + j + 5] = row.values[1];
         }
-        for k in 1..nodes.len() {
-            torque_q[(k - 1) * nv + j + 5] += back_q.dot(work.bodies[k].reach);
-            torque_v[(k - 1) * nv + j + 5] += back_v.dot(work.bodies[k].reach);
+        for (k, coupling) in work.coupling.iter().enumerate() {
+            torque_q[k * nv + j + 5] += back_q.dot(*coupling);
+            torque_v[k * nv + j + 5] += back_v.dot(*coupling);
         }
-        let (term, subspace) = (&work.bodies[j], data.bodies[j].subspace);
-        let (mut to_q, mut to_v) = (point.at(back_q), point.at(back_v));
-        if (j..term.end).contains(&frame.body) {
+        let term = &work.bodies[j];
+        let (mut to_q, mut to_v) = (back_q.referred_to(point.position), back_v.referred_to(point.position));
+        if (j..nodes[j].end).contains(&frame.body) {
             // carried along: s × ẍ;  what comes through the joint: Ψ̈ + 2 Ψ̇ × ẋ, or 2 Ψ̇ + 2 s × ẋ
-            let s = subspace.angular;
-            to_q += turn(s, point.acceleration) + point.at(term.rate2) + point.coriolis(term.rate.angular);
-            to_v += point.at(term.rate) * S::of(2.0) + point.coriolis(s);
-            point.write(velocity_q, nv, j + 5, turn(s, point.velocity) + point.at(term.rate));
+            let s = subspace(&nodes[j], data.bodies[j].axis()).angular;
+            let (rate, rate2) = (term.rate.referred_to(lever), term.rate2.referred_to(lever));
+            to_q += turn(s, point.acceleration) + rate2 + point.coriolis(term.rate.angular);
+            to_v += rate * S::of(2.0) + point.coriolis(s);
+            point.write(velocity_q, nv, j + 5, turn(s, point.velocity) + rate);
+            lever += data.bodies[j].offset;
         }
         point.write(acceleration_q, nv, j + 5, to_q);
         point.write(acceleration_v, nv, j + 5, to_v);
@@ -88,10 +95,10 @@ fn kernel<S: Real>(
         for row in &rows[6..] {
             torque_v[(row.index - 6) * nv + m + 3] = row.values[m];
         }
-        for k in 1..nodes.len() {
-            torque_v[(k - 1) * nv + m + 3] += back.dot(work.bodies[k].reach);
+        for (k, coupling) in work.coupling.iter().enumerate() {
+            torque_v[k * nv + m + 3] += back.dot(*coupling);
         }
-        point.write(acceleration_v, nv, m + 3, point.at(back) + point.coriolis(axis));
+        point.write(acceleration_v, nv, m + 3, back.referred_to(point.position) + point.coriolis(axis));
         point.write(acceleration_q, nv, m + 3, turn(axis, point.acceleration));
         point.write(velocity_q, nv, m + 3, turn(axis, point.velocity));
     }
@@ -101,10 +108,10 @@ fn kernel<S: Real>(
 #[inline(always)]
 fn give_way<S: Real>(data: &mut Data<S>, force: &[S]) -> InverseInertia<S> {
     let mut inertia = SpatialInertia::zero();
-    data.bodies.iter().for_each(|body| inertia += body.inertia);
+    data.bodies.iter().for_each(|body| inertia += body.inertia_b());
     let inverse = inertia.inverse();
     let acceleration = -inverse.apply(Force::from_slice(force));
-    data.bodies.iter_mut().for_each(|body| body.acceleration += acceleration);
+    data.bodies.iter_mut().for_each(|body| body.acceleration += acceleration.referred_to(body.pos_b));
     inverse
 }
 
@@ -124,6 +131,7 @@ fn turn<S: Real>(s: Vec3<S>, m: Motion<S>) -> Motion<S> {
 /// A frame's origin: twist and acceleration of the point, in B axes.
 struct Point<S> {
     rot_wb: Mat3<S>,
+    /// From the base's origin.
     position: Vec3<S>,
     velocity: Motion<S>,
     acceleration: Motion<S>,
@@ -131,16 +139,14 @@ struct Point<S> {
 
 impl<S: Real> Point<S> {
     #[inline(always)]
-    fn new(rot_wb: Mat3<S>, position: Vec3<S>, data: &Data<S>, body: usize) -> Self {
-        let (v, a) = (data.bodies[body].velocity, data.bodies[body].acceleration);
-        let velocity = Motion::new(v.at(position), v.angular);
-        Self { rot_wb, position, velocity, acceleration: point_acceleration(a, v, position) }
-    }
-
-    /// A spatial motion, seen there.
-    #[inline(always)]
-    fn at(&self, m: Motion<S>) -> Motion<S> {
-        Motion::new(m.at(self.position), m.angular)
+    fn new(rot_wb: Mat3<S>, data: &Data<S>, frame: &Frame) -> Self {
+        let (body, offset) = (&data.bodies[frame.body], frame_offset(data, frame));
+        Self {
+            rot_wb,
+            position: body.pos_b + offset,
+            velocity: body.velocity.referred_to(offset),
+            acceleration: point_acceleration(body.acceleration, body.velocity, offset),
+        }
     }
 
     /// `(2 ω × ẋ, ω × ω_x)`: what the point's motion adds to a rate of turn under it.

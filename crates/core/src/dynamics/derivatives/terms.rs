@@ -3,6 +3,7 @@
 use crate::dynamics::data::{BodyData, Data};
 use crate::dynamics::jacobian::unit_axes;
 use crate::dynamics::rnea::net_force;
+use crate::dynamics::subspace::{composite_force, joint_effort, subspace};
 use crate::model::{Model, Node};
 use crate::spatial::{Coriolis, Force, Motion, Real, SpatialInertia, Vec3};
 
@@ -14,6 +15,8 @@ pub struct Derivatives<S> {
     joint: Vec<Row<S, 2>>,
     /// Rows for the base's three rates of turn.
     base: Vec<Row<S, 3>>,
+    /// Columns of `Mbm`: `I_C S` about the base's origin.
+    pub(super) coupling: Vec<Force<S>>,
     /// Generalized accelerations, `(nv,)`.
     pub(super) acceleration: Vec<S>,
     /// Generalized forces, `(nv,)`.
@@ -27,11 +30,9 @@ pub(super) struct Row<S, const N: usize> {
     pub(super) values: [S; N],
 }
 
-/// Quantities of one body and its subtree `C`, in base axes about the base's origin.
+/// Quantities of one body and its subtree `C`, in base axes about the body's origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Terms<S> {
-    /// One past the last body of the subtree: bodies are numbered depth first.
-    pub(super) end: usize,
     /// `I_C`.
     pub(super) inertia: SpatialInertia<S>,
     /// `2B_C`.
@@ -42,7 +43,7 @@ pub(super) struct Terms<S> {
     pub(super) rate: Motion<S>,
     /// `Ψ̈ = a × S + v × Ψ̇`.
     pub(super) rate2: Motion<S>,
-    /// `I_C S`.
+    /// `I_C S`, about the origin of the joint whose column is formed next; after all of them about the base's.
     pub(super) reach: Force<S>,
     /// `2B_Cᵀ S`, of which only the angular half is not zero.
     pub(super) reach_coriolis: Vec3<S>,
@@ -56,8 +57,7 @@ impl<S: Real> Derivatives<S> {
     /// Space for `model`.
     pub fn new(model: &Model) -> Self {
         let nodes = model.nodes();
-        let one = |k| Terms {
-            end: k + 1,
+        let one = Terms {
             inertia: SpatialInertia::zero(),
             coriolis: Coriolis::default(),
             force: Force::zero(),
@@ -68,17 +68,12 @@ impl<S: Real> Derivatives<S> {
             response: Motion::zero(),
             left: S::of(0.0),
         };
-        let mut bodies: Vec<_> = (0..nodes.len()).map(one).collect();
-        for k in (1..nodes.len()).rev() {
-            let end = bodies[k].end;
-            let parent = &mut bodies[nodes[k].parent];
-            parent.end = parent.end.max(end);
-        }
         let nv = model.nv();
         Self {
-            bodies,
+            bodies: vec![one; nodes.len()],
             joint: vec![Row { index: 0, values: [S::of(0.0); 2] }; nv],
             base: vec![Row { index: 0, values: [S::of(0.0); 3] }; nv],
+            coupling: vec![Force::zero(); nodes.len() - 1],
             acceleration: vec![S::of(0.0); nv],
             force: vec![S::of(0.0); nv],
         }
@@ -90,49 +85,57 @@ impl<S: Real> Derivatives<S> {
         let (terms, bodies) = (&mut self.bodies[..nodes.len()], &data.bodies[..nodes.len()]);
         for (term, body) in terms.iter_mut().zip(bodies) {
             let momentum = body.inertia.momentum(body.velocity);
-            term.inertia = body.inertia;
-            term.coriolis = Coriolis::of(&body.inertia, body.velocity, momentum);
+            term.inertia = body.inertia.about_origin();
+            term.coriolis = Coriolis::of(&term.inertia, body.velocity, momentum);
             term.force = net_force(body);
         }
         for k in (1..nodes.len()).rev() {
             let (before, rest) = terms.split_at_mut(k);
             let (body, term, parent) = (&bodies[k], &mut rest[0], &mut before[nodes[k].parent]);
-            term.rate = body.velocity.cross(body.subspace);
-            term.rate2 = body.acceleration.cross(body.subspace) + body.velocity.cross(term.rate);
-            term.reach = term.inertia.momentum(body.subspace);
-            term.reach_coriolis = term.coriolis.transpose_apply(body.subspace);
-            parent.inertia += term.inertia;
-            parent.coriolis += term.coriolis;
-            parent.force += term.force;
+            let unit = subspace(&nodes[k], body.axis());
+            term.rate = body.velocity.cross(unit);
+            term.rate2 = body.acceleration.cross(unit) + body.velocity.cross(term.rate);
+            term.reach = composite_force(&nodes[k], body.axis(), &term.inertia);
+            term.reach_coriolis = term.coriolis.transpose_apply(unit);
+            parent.inertia += term.inertia.from_point(body.offset);
+            parent.coriolis += term.coriolis.from_point(body.offset);
+            parent.force += term.force.from_point(body.offset);
         }
     }
 
     /// Rows of `∂τ/∂q_j` and `∂τ/∂q̇_j` that are not zero: of the base, the joints that carry `j`, its subtree.
+    ///
+    /// Must be called for every joint once, the last one first.
     #[inline(always)]
     pub(super) fn joint_columns(&mut self, nodes: &[Node], bodies: &[BodyData<S>], j: usize) -> &[Row<S, 2>] {
-        let (term, subspace) = (&self.bodies[j], bodies[j].subspace);
+        let (term, unit) = (self.bodies[j], subspace(&nodes[j], bodies[j].axis()));
         let two = S::of(2.0);
-        let force_q = term.coriolis.apply(term.rate.angular)
+        let mut force_q = term.coriolis.apply(term.rate.angular)
             + term.inertia.momentum(term.rate2)
-            + subspace.cross_force(term.force);
-        let force_v = term.coriolis.apply(subspace.angular) + term.inertia.momentum(term.rate) * two;
+            + unit.cross_force(term.force);
+        let mut force_v = term.coriolis.apply(unit.angular) + term.inertia.momentum(term.rate) * two;
+        let (mut i, mut count) = (j, 6);
+        loop {
+            let r = bodies[i].offset;
+            (force_q, force_v, i) = (force_q.from_point(r), force_v.from_point(r), nodes[i].parent);
+            if i == 0 {
+                break;
+            }
+            let effort = |f| joint_effort(&nodes[i], bodies[i].axis(), f);
+            self.joint[count] = Row { index: i + 5, values: [effort(force_q), effort(force_v)] };
+            count += 1;
+        }
         // loops by index: arrays taken apart by iterators go through memory
         let (base_q, base_v) = (components(force_q), components(force_v));
         for i in 0..6 {
             self.joint[i] = Row { index: i, values: [base_q[i], base_v[i]] };
         }
-        let mut count = 6;
-        let mut i = nodes[j].parent;
-        while i > 0 {
-            let s = bodies[i].subspace;
-            self.joint[count] = Row { index: i + 5, values: [s.dot(force_q), s.dot(force_v)] };
-            (i, count) = (nodes[i].parent, count + 1);
-        }
-        for k in j..term.end {
+        for k in j..nodes[j].end {
             // Sᵀ (2B_C Ψ̇_j + I_C Ψ̈_j),  Sᵀ (2B_C S_j + 2 I_C Ψ̇_j)
-            let below = &self.bodies[k];
-            let row_q = below.reach_coriolis.dot(term.rate.angular) + term.rate2.dot(below.reach);
-            let row_v = below.reach_coriolis.dot(subspace.angular) + term.rate.dot(below.reach) * two;
+            let Terms { reach, reach_coriolis, .. } = &mut self.bodies[k];
+            let row_q = reach_coriolis.dot_add(term.rate.angular, term.rate2.dot(*reach));
+            let row_v = reach_coriolis.dot_add(unit.angular, term.rate.dot(*reach) * two);
+            *reach = reach.from_point(bodies[j].offset);
             self.joint[count] = Row { index: k + 5, values: [row_q, row_v] };
             count += 1;
         }

@@ -80,8 +80,8 @@ pub enum UrdfProblem {
     #[error("the outermost element is <{found}>, a URDF has <robot>{}", other_format(.found))]
     NotRobot { found: String },
     #[error(
-        "{found} is xacro, not URDF; expand it first: xacro FILE.xacro > FILE.urdf \
-         (onorbit_rs.Model.from_urdf does it by itself)"
+        "{found} is xacro, not URDF; expand it first: xacro FILE.xacro > FILE.urdf (Model.from_urdf of Python does \
+         so for files named .xacro, and for others with xacro=True, on the command line with --xacro)"
     )]
     Xacro { found: String },
     #[error("<{element}> is not URDF and would be lost; write it without the prefix")]

@@ -72,6 +72,9 @@ impl Elements {
 /// `a` and `M` would lose `1/|1 - e|` of their digits.
 const NEAR_PARABOLIC: f64 = 1e-2;
 
+/// A hyperbola of more is a straight line to rounding, and its anomalies overflow.
+const LARGEST_ECCENTRICITY: f64 = 1e20;
+
 impl Kepler {
     /// The orbit with these elements.
     ///
@@ -141,6 +144,10 @@ fn shape(elements: &Elements) -> Result<Shape, OrbitError> {
     let e = finite("eccentricity", elements.eccentricity)?;
     if e < 0.0 {
         return Err(OrbitError::NegativeEccentricity { value: e });
+    }
+    if e > LARGEST_ECCENTRICITY {
+        let expected = "at most 1e20 (then the path is straight to rounding)";
+        return Err(OrbitError::OutOfRange { name: "eccentricity", value: e, expected });
     }
     let (one, one_minus_e) = (Double::from(1.0), Double::from(1.0) - Double::from(e));
     match elements.size {

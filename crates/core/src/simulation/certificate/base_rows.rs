@@ -71,14 +71,15 @@ impl BaseRows {
     fn inertial(&self, h: f64) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for body in &self.data.bodies {
-            let momentum = body.inertia.momentum(body.velocity);
+            let (r, velocity) = (body.pos_b, body.velocity.referred_to(-body.pos_b));
+            let momentum = body.inertia.momentum(body.velocity).from_point(r);
             let terms = [
-                body.inertia.momentum(body.acceleration),
-                body.velocity.cross_force(momentum),
+                body.inertia.momentum(body.acceleration).from_point(r),
+                velocity.cross_force(momentum),
                 momentum * (1e-9 / h),
             ];
             // v × m v is nothing but rounding: moments below a billionth of |v| |m v| are
-            sum[1] += 1e-9 * body.velocity.linear.norm() * momentum.linear.norm();
+            sum[1] += 1e-9 * velocity.linear.norm() * momentum.linear.norm();
             for term in terms {
                 sum[0] += term.linear.norm();
                 sum[1] += term.angular.norm();

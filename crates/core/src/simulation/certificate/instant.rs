@@ -130,14 +130,13 @@ impl<'a> Reader<'a> {
         now.mass = inertia.mass;
         now.size = (trace_of(&inertia.about_com()) / (2.0 * inertia.mass)).sqrt();
         for (node, body) in self.model.nodes().iter().zip(&self.data.bodies) {
-            let relative = body.velocity.at(body.com_b) - v_com;
+            let relative = body.velocity.at(body.inertia.com) - v_com;
             now.relative_momentum += node.mass * relative.norm();
             let moment = trace_of(&node.about_com) / 2.0; // m ρ²
             now.spin += (node.mass * moment).sqrt() * body.velocity.angular.norm();
-            // Lₖ = Iₖ ωₖ + (cₖ − c) × m (vₖ − v_com), the first from the momentum about the origin
-            let own = body.inertia.momentum(body.velocity);
-            let spin = own.angular - body.com_b.cross(own.linear);
-            now.angular += (spin + (body.com_b - c).cross(relative) * node.mass).norm();
+            // Lₖ = Iₖ ωₖ + (cₖ − c) × m (vₖ − v_com)
+            let spin = body.inertia.about_com * body.velocity.angular;
+            now.angular += (spin + (body.com_b() - c).cross(relative) * node.mass).norm();
         }
     }
 }

@@ -1,0 +1,63 @@
+//! The motion subspace `S` of a joint, at the body's origin in base axes.
+//!
+//! The origin lies on the joint's axis `z`, so `S = (0, z)` of a revolute joint and `(z, 0)` of a prismatic one: a
+//! product with it takes half of the other factor.
+
+use super::data::BodyData;
+use crate::model::{Axis, Node};
+use crate::spatial::{ArticulatedInertia, Force, Motion, Real, SpatialInertia, Vec3};
+
+/// `S = (0, z)` or `(z, 0)`.
+#[inline(always)]
+pub(super) fn subspace<S: Real>(node: &Node, z: Vec3<S>) -> Motion<S> {
+    match node.axis {
+        Axis::Revolute => Motion::new(Vec3::zero(), z),
+        Axis::Prismatic => Motion::new(z, Vec3::zero()),
+    }
+}
+
+/// `S s + m`.
+#[inline(always)]
+pub(super) fn along<S: Real>(node: &Node, z: Vec3<S>, s: S, m: Motion<S>) -> Motion<S> {
+    match node.axis {
+        Axis::Revolute => Motion::new(m.linear, z.scale_add(s, m.angular)),
+        Axis::Prismatic => Motion::new(z.scale_add(s, m.linear), m.angular),
+    }
+}
+
+/// `Sᵀ f`.
+#[inline(always)]
+pub(super) fn joint_effort<S: Real>(node: &Node, z: Vec3<S>, f: Force<S>) -> S {
+    match node.axis {
+        Axis::Revolute => z.dot(f.angular),
+        Axis::Prismatic => z.dot(f.linear),
+    }
+}
+
+/// `v × S q̇`: what the joint's rate adds to an acceleration, `v` being the body's own twist.
+#[inline(always)]
+pub(super) fn velocity_product<S: Real>(node: &Node, body: &BodyData<S>, rate: S) -> Motion<S> {
+    let (v, moved) = (&body.velocity, body.axis() * rate);
+    match node.axis {
+        Axis::Revolute => Motion::new(v.linear.cross(moved), v.angular.cross(moved)),
+        Axis::Prismatic => Motion::new(v.angular.cross(moved), Vec3::zero()),
+    }
+}
+
+/// `IA S`.
+#[inline(always)]
+pub(super) fn articulated_force<S: Real>(node: &Node, z: Vec3<S>, i: &ArticulatedInertia<S>) -> Force<S> {
+    match node.axis {
+        Axis::Revolute => Force::new(i.coupling * z, i.angular * z),
+        Axis::Prismatic => Force::new(i.linear * z, i.coupling.transpose_mul(z)),
+    }
+}
+
+/// `I S`.
+#[inline(always)]
+pub(super) fn composite_force<S: Real>(node: &Node, z: Vec3<S>, i: &SpatialInertia<S>) -> Force<S> {
+    match node.axis {
+        Axis::Revolute => Force::new(z.cross(i.moment), i.about_origin * z),
+        Axis::Prismatic => Force::new(z * i.mass, i.moment.cross(z)),
+    }
+}

@@ -1,0 +1,197 @@
+"""Functions that expressions of a xacro file may call, and how large their values may grow."""
+
+from __future__ import annotations
+
+import math
+import operator
+import re
+from collections.abc import Callable
+from typing import Any
+
+MAX_TEXT = 100_000
+"""Characters."""
+MAX_ITEMS = 10_000
+"""Items of a list or mapping, those within it included."""
+MAX_BITS = 2048
+"""Of an integer; the largest float has 1024."""
+
+
+class Work:
+    """What the expansion of a file may cost, in steps of about a microsecond; large robots take a tenth."""
+
+    def __init__(self, steps: int = 4_000_000) -> None:
+        """For so many steps."""
+        self._steps, self._left = steps, steps
+
+    def spend(self, steps: int) -> None:
+        """Count steps; raises ValueError once they are used up."""
+        self._left -= steps
+        if self._left < 0:
+            raise ValueError(f"takes more than {self._steps} steps to expand: no robot description does")
+
+
+def check_size(value: Any, work: Work) -> None:
+    """Raise ValueError unless a value is plain data of bounded size."""
+    waiting, items, length = [value], 0, 0
+    while waiting:
+        item = waiting.pop()
+        items += 1
+        if isinstance(item, str):
+            length += len(item)
+            if length > MAX_TEXT:
+                raise ValueError(f"text of more than {MAX_TEXT} characters")
+        elif isinstance(item, int):
+            if item.bit_length() > MAX_BITS:
+                raise ValueError(f"an integer of {item.bit_length()} bits, {MAX_BITS} are allowed")
+        elif isinstance(item, (list, tuple)):
+            waiting.extend(list.__iter__(item) if isinstance(item, list) else item)
+        elif isinstance(item, dict):
+            waiting.extend(dict.values(item))
+            waiting.extend(dict.keys(item))
+        elif not (item is None or isinstance(item, float)):
+            raise ValueError(f"a value of type {type(item).__name__} has no place in a xacro expression")
+        if items + len(waiting) > MAX_ITEMS:
+            raise ValueError(f"more than {MAX_ITEMS} items in a list or mapping")
+    work.spend(items + length // 8)
+
+
+def repeated(a: Any, b: Any) -> Any:
+    """Return ``a * b``, where text and lists repeat to a bounded length."""
+    for items, times in ((a, b), (b, a)):
+        if isinstance(items, (str, list, tuple)) and isinstance(times, int):
+            limit = MAX_TEXT if isinstance(items, str) else MAX_ITEMS
+            _check(len(items) * times <= limit, f"{len(items)} items {times} times")
+    return operator.mul(a, b)
+
+
+def safe_power(a: Any, b: Any) -> Any:
+    """Return ``a ** b`` unless it is an integer of very many digits."""
+    if isinstance(a, int) and isinstance(b, int) and b > 0:
+        _check(a.bit_length() * b <= MAX_BITS or abs(a) <= 1, f"{a} ** {b}")
+    return operator.pow(a, b)
+
+
+def safe_shift(a: Any, b: Any) -> Any:
+    """Return ``a << b`` unless it is an integer of very many digits."""
+    _check(not isinstance(b, int) or b <= MAX_BITS, f"a shift by {b} bits")
+    return operator.lshift(a, b)
+
+
+def text_of(a: Any, b: Any) -> Any:
+    """Return ``a % b``: the remainder, or text with values put in, to a bounded width."""
+    if isinstance(a, str):
+        _check(not re.search(r"%[^a-zA-Z%]*(\(|\*|\d{3})", a), f"a key or a width in {a!r}")
+    return operator.mod(a, b)
+
+
+def _range(*ends: int) -> list[int]:
+    made = range(*ends)
+    _check(len(made) <= MAX_ITEMS, f"a range of {len(made)} numbers")
+    return list(made)
+
+
+def _round(value: Any, digits: int | None = None) -> Any:
+    _check(digits is None or abs(digits) <= 400, f"rounding to {digits} digits")
+    return round(value, digits)
+
+
+def _sum(values: Any, start: float = 0) -> Any:
+    return sum((value + 0 for value in values), start + 0)  # + 0: numbers alone
+
+
+def _replace(text: str, old: str, new: str) -> str:
+    length = len(text) + text.count(old) * len(new)
+    _check(length <= MAX_TEXT, f"text of {length} characters")
+    return text.replace(old, new)
+
+
+def _join(text: str, parts: Any) -> str:
+    length = len(text) * len(parts) + sum(map(len, parts))
+    _check(length <= MAX_TEXT, f"text of {length} characters")
+    return text.join(parts)
+
+
+def _tokenize(text: str, separators: str = ",; ", skip_empty: bool = True) -> list[str]:
+    parts = re.split(f"[{re.escape(separators)}]", text) if separators else [text]
+    return [part for part in parts if part or not skip_empty]
+
+
+def _factorial(n: int) -> int:
+    _check(n <= 170, f"the factorial of {n}")
+    return math.factorial(n)
+
+
+def _check(is_bounded: bool, what: str) -> None:
+    if not is_bounded:
+        raise ValueError(f"{what} is more than a robot description needs")
+
+
+_PYTHON: dict[str, Any] = {
+    "list": list, "dict": dict, "tuple": tuple, "len": len, "str": str, "float": float, "int": int,
+    "bool": bool,
+    "min": min, "max": max, "round": _round, "abs": abs, "all": all, "any": any, "sum": _sum, "range": _range,
+    "sorted": sorted, "divmod": divmod, "ord": ord,
+    "map": lambda function, *values: list(map(function, *values)),
+    "zip": lambda *values: list(zip(*values, strict=False)),
+    "enumerate": lambda values, start=0: list(enumerate(values, start)),
+    "reversed": lambda values: list(reversed(values)),
+}  # fmt: skip
+
+_MATH: dict[str, Any] = {
+    name: getattr(math, name)
+    for name in (
+        "acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "ceil", "copysign", "cos", "cosh",
+        "degrees", "erf", "exp", "expm1", "fabs", "floor", "fmod", "frexp", "fsum", "gamma", "gcd",
+        "hypot", "isclose", "isfinite", "isinf", "isnan", "ldexp", "lgamma", "log", "log10", "log1p",
+        "log2", "modf", "pow", "radians", "remainder", "sin", "sinh", "sqrt", "tan", "tanh", "trunc",
+        "pi", "e", "tau", "inf", "nan",
+    )
+} | {"factorial": _factorial}  # fmt: skip
+
+FUNCTIONS: dict[str, Any] = (
+    {"xacro.tokenize": _tokenize, "true": True, "false": False}
+    | {
+        f"{space}.{name}": made
+        for space, group in (("math", _MATH), ("python", _PYTHON))
+        for name, made in group.items()
+    }
+    | _MATH
+    | _PYTHON
+)
+"""Functions and constants by the names that PyPI's xacro gives them."""
+
+MAPPED = ("float", "int", "str", "bool", "abs", "len")
+"""Functions that ``map`` takes by their names."""
+
+METHODS: dict[tuple[type, str], Callable[..., Any]] = {
+    **{
+        (str, name): getattr(str, name)
+        for name in (
+            "lower",
+            "upper",
+            "strip",
+            "lstrip",
+            "rstrip",
+            "startswith",
+            "endswith",
+            "split",
+            "rsplit",
+            "title",
+            "capitalize",
+            "find",
+            "count",
+            "index",
+            "isdigit",
+            "isalpha",
+        )
+    },
+    (str, "replace"): _replace,
+    (str, "join"): _join,
+    (list, "index"): lambda items, *given: items.index(*given),
+    (list, "count"): lambda items, *given: items.count(*given),
+    (dict, "keys"): lambda mapping: list(dict.keys(mapping)),
+    (dict, "values"): lambda mapping: list(dict.values(mapping)),
+    (dict, "items"): lambda mapping: list(dict.items(mapping)),
+    (dict, "get"): lambda mapping, key, default=None: dict.get(mapping, key, default),
+}
+"""Methods of text, lists and mappings; ``format`` is not among them, as it reads attributes."""

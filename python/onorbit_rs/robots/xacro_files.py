@@ -1,0 +1,129 @@
+"""Files that a xacro file may read: those of its own package and of the packages that were named or found."""
+
+from __future__ import annotations
+
+import io
+import os
+import stat
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from onorbit_rs.names import did_you_mean
+from onorbit_rs.robots.functions import Work
+
+_LARGEST = 16 << 20
+"""Bytes, as for a URDF."""
+
+
+class Files:
+    """Opens what one xacro file includes or loads, and finds packages for it."""
+
+    def __init__(self, file: Path, package_paths: Sequence[Path], work: Work) -> None:
+        """For a file, which may read from its own package and those in ``package_paths``."""
+        self._above = list(file.absolute().parents)
+        self._given = [folder.absolute() for folder in package_paths]
+        self._work = work
+        self._roots = {root for folder in self._given for root in _real(folder)}
+        for start in (file.absolute(), file.resolve()):
+            own = next((folder for folder in start.parents if _is_package(folder)), start.parent)
+            self._roots |= _real(own)
+
+    def find(self, package: str) -> str:
+        """Return the folder of a package: one of ``package_paths``, or beside or above the file.
+
+        A folder beside the file's parents counts if it holds a ``package.xml``. What is not found stays
+        ``package://name``: a mesh there is not drawn, an include is reported as missing.
+        """
+        if package in ("", ".", "..") or "/" in package or "\\" in package:
+            raise ValueError(f"$(find {package}): {package!r} is not the name of a package")
+        for folder in [*self._given, *self._above]:
+            beside = folder / package
+            if folder.name == package and folder.is_dir():
+                return self._found(folder)
+            if beside.is_dir() and (folder in self._given or _is_package(beside)):
+                return self._found(beside)
+        return f"package://{package}"
+
+    def _found(self, folder: Path) -> str:
+        self._roots |= _real(folder)
+        return str(folder)
+
+    def open(self, name: str | os.PathLike[str], mode: str = "r") -> io.StringIO:
+        """Return the text of a file; stands in for ``open`` within xacro.
+
+        Raises
+        ------
+        OSError
+            There is no such file or it cannot be read.
+        ValueError
+            It lies elsewhere, is no regular file of at most 16 MiB, is not UTF-8 text or has a document type.
+        """
+        path = Path(name)
+        held = path.stat()
+        real = path.resolve()
+        if mode != "r" or not any(real.is_relative_to(root) for root in self._roots):
+            raise ValueError(
+                f"may not read {str(name)!r}, which lies outside of its package; if you trust it, name the "
+                f"folder {str(real.parent)!r} in package_paths"
+            )
+        if not stat.S_ISREG(held.st_mode) or held.st_size > _LARGEST:
+            raise ValueError(f"{str(name)!r} is not a regular file of at most {_LARGEST} bytes")
+        with path.open("rb") as stream:
+            raw = stream.read(_LARGEST + 1)
+        self._work.spend(len(raw) // 4)
+        text = _checked(raw, str(name))
+        return io.StringIO(text)
+
+    def glob(self, pattern: str) -> list[str]:
+        """Return the files that an include with ``*`` names, in a folder that it names in full."""
+        folder, last = os.path.split(pattern)
+        if any(sign in folder for sign in "*?["):
+            raise ValueError(f"{pattern!r}: '*' stands in names of files only, not of folders")
+        return [str(found) for found in sorted(Path(folder or ".").glob(last))] if last else []
+
+
+class Environment:
+    """``$(env NAME)`` and ``$(optenv NAME default)``, answered from the arguments that were given."""
+
+    def __init__(self, values: dict[str, str], used: set[str]) -> None:
+        """Of these arguments; ``used`` receives the names that were asked for."""
+        self._values, self._used = values, used
+
+    def required(self, name: str) -> str:
+        """Return the argument of this name; the environment of the process is not read."""
+        self._used.add(name)
+        if name not in self._values:
+            hint = did_you_mean(name, self._values)
+            raise ValueError(
+                f"$(env {name}): the environment is not read, give the value with xacro_arguments="
+                f"{{{name!r}: ...}}{hint}"
+            )
+        return self._values[name]
+
+    def optional(self, name: str, default: Any = "") -> Any:
+        """Return the argument of this name, or the file's default."""
+        self._used.add(name)
+        return self._values.get(name, default)
+
+
+def _is_package(folder: Path) -> bool:
+    return (folder / "package.xml").is_file()
+
+
+def _real(folder: Path) -> set[Path]:
+    """Return where a folder lies, also one whose files are links (``colcon build --symlink-install``)."""
+    manifest = folder / "package.xml"
+    return {folder.resolve()} | ({manifest.resolve().parent} if manifest.is_file() else set())
+
+
+def _checked(raw: bytes, name: str) -> str:
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{name!r}: not UTF-8 text (at byte {error.start}); save it as UTF-8") from None
+    if not text.strip():
+        raise ValueError(f"{name!r}: the file is empty")
+    if "<!DOCTYPE" in text or "<!ENTITY" in text:
+        raise ValueError(f"{name!r}: a document type (<!DOCTYPE>) is refused; remove it")
+    return text

@@ -1,0 +1,214 @@
+"""Replaces the parts of PyPI's xacro that evaluate, open files or read the environment."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import re
+import sys
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from onorbit_rs.robots.expressions import evaluate
+from onorbit_rs.robots.functions import FUNCTIONS, Work
+from onorbit_rs.robots.xacro_files import Environment, Files
+
+_EXTRAS = re.compile(r"gazebo|ignition|(^|[_./])gz|ros2?_?control|transmission|plugin|sensor|isaac", re.I)
+"""What names files and macros of simulators, which a robot does without."""
+
+_UNITS = {
+    "!radians": 1.0,
+    "!degrees": 0.017453292519943295,
+    "!meters": 1.0,
+    "!millimeters": 0.001,
+    "!foot": 0.3048,
+    "!inches": 0.0254,
+}
+"""Units of numbers in YAML files, as xacro has them."""
+
+
+def replace_parts(
+    xacro: Any,
+    undo: contextlib.ExitStack,
+    files: Files,
+    work: Work,
+    environment: Environment,
+    remarks: list[str],
+) -> None:
+    """Replace all of xacro that evaluates, opens files or reads the environment, until ``undo`` closes.
+
+    A version of xacro that lacks one of the replaced functions is refused (AttributeError): what evaluates in
+    their place is unknown. ``eval`` and ``exec`` themselves are hidden from it.
+    """
+    substitution = importlib.import_module("xacro.substitution_args")
+    functions = FUNCTIONS | _file_functions(xacro, files, work)
+    include, call = _without_extras(xacro, remarks)
+    evaluate_all, sizes = xacro.eval_all, _Sizes()
+
+    def safe_eval(text: str, symbols: Any, _: Any = None) -> Any:
+        return evaluate(text, partial(_property, xacro.Table, symbols), functions, work)
+
+    def eval_argument(text: str, context: Any) -> str:
+        def named(name: str) -> Any:
+            return substitution.convert_value(context["arg"][name], "auto")
+
+        own = {"arg": named, "env": environment.required, "optenv": environment.optional, "find": files.find}
+        return str(evaluate(text, named, functions | own, work))
+
+    def counted_eval_all(node: Any, *others: Any) -> None:
+        work.spend(25)
+        evaluate_all(node, *others)
+
+    def counted_call(node: Any, macros: Any, symbols: Any) -> Any:
+        with contextlib.suppress(KeyError):  # not a macro
+            _, _, macro = xacro.resolve_macro(node.tagName.removeprefix("xacro:"), macros, symbols)
+            work.spend(5 * sizes.of(macro.body))  # it is copied
+        return call(node, macros, symbols)
+
+    def folder_of(_: object) -> str:
+        return str(Path(xacro.filestack[-1] or ".").absolute().parent)
+
+    def refused(*_: Any) -> None:
+        raise ValueError("this version of xacro evaluates Python: install xacro 2.1")
+
+    for owner, name, ours in (
+        (xacro, "safe_eval", safe_eval),
+        (xacro, "eval_all", counted_eval_all),
+        (xacro, "process_include", include),
+        (xacro, "handle_macro_call", counted_call),
+        (substitution, "_eval", eval_argument),
+        (substitution, "_eval_find", files.find),
+        (substitution, "_eval_env", environment.required),
+        (substitution, "_eval_optenv", environment.optional),
+        (substitution, "_eval_dirname", folder_of),
+    ):
+        undo.callback(setattr, owner, name, getattr(owner, name))
+        setattr(owner, name, ours)
+    for owner in (xacro, substitution):
+        for name, stand_in in (("open", files.open), ("eval", refused), ("exec", refused)):
+            setattr(owner, name, stand_in)
+            undo.callback(delattr, owner, name)
+    undo.callback(setattr, xacro, "glob", xacro.glob)
+    xacro.glob = files
+
+
+class _Sizes:
+    """Numbers of nodes in the bodies of macros."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[Any, int]] = {}
+
+    def of(self, body: Any) -> int:
+        if id(body) not in self._known:
+            waiting, size = [body], 0
+            while waiting:
+                size += 1
+                waiting.extend(waiting.pop().childNodes)
+            self._known[id(body)] = (body, size)  # the body too, so that its id stays its own
+        return self._known[id(body)][1]
+
+
+def _property(table_type: Any, symbols: Any, name: str) -> Any:
+    """Return a property of the file, or for a namespace what looks its properties up; KeyError without it.
+
+    The symbols that xacro itself defines, which hold Python's functions, are not looked at.
+    """
+    table = symbols
+    while isinstance(table, table_type):
+        if dict.__contains__(table, name):
+            found = table[name]
+            return partial(_property, table_type, found) if isinstance(found, table_type) else found
+        table = table.parent
+    raise KeyError(name)
+
+
+def _file_functions(xacro: Any, files: Files, work: Work) -> dict[str, Any]:
+    """Return the functions of xacro that depend on the file in which they are called."""
+
+    def fatal(*words: Any) -> None:
+        raise ValueError(" ".join(map(str, words)))
+
+    def warning(*words: Any) -> str:
+        sys.stderr.write(f"warning: {' '.join(map(str, words))}\n")  # collected by expand
+        return ""
+
+    def load_yaml(name: str) -> Any:
+        text = files.open(xacro.abs_filename_spec(name)).read()
+        work.spend(10 * len(text))
+        return xacro.YamlListWrapper.wrap(yaml.load(text, Loader=_loader(work)))
+
+    def arg(name: str) -> Any:
+        return xacro.substitution_args_context["arg"][name]
+
+    own: dict[str, Any] = {
+        "load_yaml": load_yaml, "abs_filename": xacro.abs_filename_spec, "dotify": xacro.YamlDictWrapper,
+        "fatal": fatal, "error": warning, "warning": warning, "message": lambda *_: "", "arg": arg,
+        "print_location": lambda: "",
+    }  # fmt: skip
+    bare = ("load_yaml", "abs_filename", "dotify")
+    return {f"xacro.{name}": made for name, made in own.items()} | {name: own[name] for name in bare}
+
+
+def _loader(work: Work) -> type[yaml.SafeLoader]:
+    """Return a loader of plain YAML with xacro's units."""
+
+    class Loader(yaml.SafeLoader):
+        """A class of its own, so that other readers of YAML do not get the units."""
+
+    def of_unit(factor: float, loader: yaml.SafeLoader, node: Any) -> float:
+        return float(evaluate(str(loader.construct_scalar(node)), _nothing, FUNCTIONS, work)) * factor
+
+    for tag, factor in _UNITS.items():
+        Loader.add_constructor(tag, partial(of_unit, factor))
+    return Loader
+
+
+def _nothing(name: str) -> Any:
+    raise KeyError(name)
+
+
+def _without_extras(xacro: Any, remarks: list[str]) -> tuple[Callable[..., None], Callable[..., Any]]:
+    """Xacro's include and macro call, which leave out what is a simulator's and not there."""
+    include, call = xacro.process_include, xacro.handle_macro_call
+    left_out: list[str] = []
+
+    def include_if_there(node: Any, *others: Any) -> None:
+        stack = list(xacro.filestack)
+        try:
+            include(node, *others)
+        except xacro.XacroException as error:
+            name = node.getAttribute("filename")
+            if not isinstance(error.exc, OSError):
+                raise
+            if not _EXTRAS.search(name):
+                raise ValueError(_missing(name)) from error
+            xacro.filestack[:] = stack
+            _leave_out(node, f"the file {name!r} is not there", remarks)
+            left_out.append(name)
+
+    def call_if_known(node: Any, *others: Any) -> Any:
+        try:
+            return call(node, *others)
+        except xacro.XacroException as error:
+            is_extra = left_out and _EXTRAS.search(node.tagName)
+            if not (is_extra and str(error).startswith("unknown macro")):
+                raise
+            _leave_out(node, f"the macro <{node.tagName}> was to come from it", remarks)
+            return True
+
+    return include_if_there, call_if_known
+
+
+def _leave_out(node: Any, why: str, remarks: list[str]) -> None:
+    remarks.append(f"left out, as an extra of a simulator: {why}")
+    node.parentNode.removeChild(node)
+
+
+def _missing(name: str) -> str:
+    found = re.search(r"\$\(find\s+([^)\s]+)\s*\)", name)
+    hint = f"; name the folder that holds the package {found[1]!r} in package_paths" if found else ""
+    return f"includes {name!r}, which is not there{hint}"

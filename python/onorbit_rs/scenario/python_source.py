@@ -1,0 +1,213 @@
+"""Checks of a Python controller that read its source and run nothing of it."""
+
+from __future__ import annotations
+
+import ast
+import importlib.machinery
+import importlib.util
+import inspect
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.exceptions import ControlError, NotFoundError
+from onorbit_rs.names import did_you_mean
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.control import PythonController
+
+_BASES_WITHOUT_UPDATE = ("Controller", "ABC", "object", "Protocol", "Generic")
+_KINDS = inspect.Parameter
+
+
+class Unrun:
+    """Stands in for a controller whose source was read but not run; its efforts are zero."""
+
+    def update(self, t: float, state: Any) -> Any:
+        """Return zero for each joint."""
+        return np.zeros(len(state.joints))
+
+
+def source_of(part: PythonController, beside: Path) -> str:
+    """Return what is executed for a controller: the path of its file, or of its module where that is found.
+
+    Raises
+    ------
+    NotFoundError
+        There is no such file or module.
+    """
+    if part.file is not None:
+        file = beside / part.file
+        if not file.is_file():
+            raise NotFoundError(
+                f"no such file: {file}; a relative path starts at the scenario's folder",
+                path=str(file),
+                kind="controller",
+            )
+        return str(file)
+    found = _found_module(str(part.module))
+    return str(part.module) if found is None else found
+
+
+def inspect_source(part: PythonController, beside: Path) -> Unrun:
+    """Return a stand-in for a controller after reading its source.
+
+    Raises
+    ------
+    NotFoundError
+        There is no such file or module.
+    ControlError
+        Its source is not Python, has no such class, the class has no ``update``, or its constructor does not
+        take the arguments. What only running could tell is not checked.
+    """
+    source = source_of(part, beside)
+    if not source.endswith(".py"):
+        if part.file is None:
+            return Unrun()  # compiled: nothing to read
+        raise ControlError(
+            f"{source} is not a Python file: its name must end in .py", name="file", got=source
+        )
+    try:
+        tree = ast.parse(Path(source).read_bytes(), filename=source)
+    except (SyntaxError, ValueError, RecursionError, MemoryError, OSError) as error:
+        reason = " ".join(str(error).split())
+        raise ControlError(
+            f"{source} cannot be read as Python: {type(error).__name__}: {reason}", name="file", got=source
+        ) from error
+    statements = list(_statements(tree.body))
+    classes = {node.name: node for node in statements if isinstance(node, ast.ClassDef)}
+    made = classes.get(part.class_)
+    if made is None and not _may_be_bound(part.class_, statements):
+        hint = did_you_mean(part.class_, classes)
+        raise ControlError(
+            f"{source} has no class {part.class_!r}{hint}",
+            name="class", got=part.class_, expected=list(classes),
+        )  # fmt: skip
+    if made is not None:
+        _check_class(made, classes, part, source)
+    return Unrun()
+
+
+def _found_module(name: str) -> str | None:
+    """Return the file of a module without importing it or its packages; None where it has none."""
+    top, *rest = name.split(".")
+    try:
+        spec = importlib.util.find_spec(top)
+    except (ValueError, ImportError):
+        return None
+    for depth in range(len(rest)):
+        folders = None if spec is None else spec.submodule_search_locations
+        inner = ".".join([top, *rest[: depth + 1]])
+        spec = None if folders is None else importlib.machinery.PathFinder.find_spec(inner, folders)
+    if spec is None:
+        raise NotFoundError(
+            f"no module {name!r} can be imported: install it, or give a 'file' beside the scenario",
+            path=name,
+            kind="controller",
+        )
+    return spec.origin if spec.has_location else None
+
+
+def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """Yield the statements of a module, those within ``if``, ``try`` and ``with`` too."""
+    for statement in body:
+        yield statement
+        for inner in ("body", "orelse", "finalbody"):
+            if isinstance(statement, (ast.If, ast.Try, ast.With)):
+                yield from _statements(getattr(statement, inner, []))
+
+
+def _may_be_bound(name: str, statements: list[ast.stmt]) -> bool:
+    """Return whether an import or assignment may give the module this name."""
+    for statement in statements:
+        if isinstance(statement, (ast.Import, ast.ImportFrom)):
+            names = [alias.asname or alias.name.split(".")[0] for alias in statement.names]
+        elif isinstance(statement, (ast.Assign, ast.AnnAssign)):
+            names = [node.id for node in ast.walk(statement) if isinstance(node, ast.Name)]
+        else:
+            continue
+        if name in names or "*" in names:
+            return True
+    return False
+
+
+def _check_class(
+    made: ast.ClassDef, classes: dict[str, ast.ClassDef], part: PythonController, source: str
+) -> None:
+    line, are_all_known = _with_bases(made, classes)
+    methods = [
+        (node.name, node)
+        for one in line
+        for node in one.body
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
+    ]
+    names = {name for name, _ in methods} | {
+        node.id for one in line for item in one.body if isinstance(item, ast.Assign)
+        for node in ast.walk(item) if isinstance(node, ast.Name)
+    }  # fmt: skip
+    if "update" not in names and are_all_known:
+        raise ControlError(
+            f"{part.class_} of {source} has no update(t, state): give it one that returns the efforts",
+            name="class",
+            got=part.class_,
+        )
+    is_plain = are_all_known and "__new__" not in names and not any(one.decorator_list for one in line)
+    constructor = next((node for name, node in methods if name == "__init__"), None)
+    if not is_plain or (constructor is not None and constructor.decorator_list):
+        return
+    parameters = [] if constructor is None else _parameters(constructor.args)
+    try:
+        inspect.Signature(parameters).bind(**part.arguments)
+    except TypeError as error:
+        raise ControlError(
+            f"{part.class_}(...) of {source} does not take its arguments: {error}; they are {part.arguments}",
+            name="arguments",
+            got=part.arguments,
+        ) from error
+
+
+def _with_bases(made: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> tuple[list[ast.ClassDef], bool]:
+    """Return a class with its bases of the same file, and whether these are all that it has."""
+    line, are_all_known, waiting = [], not made.keywords, [made]
+    while waiting:
+        one = waiting.pop(0)
+        if one in line:
+            continue
+        line.append(one)
+        for base in one.bases:
+            name = (
+                base.id
+                if isinstance(base, ast.Name)
+                else base.attr
+                if isinstance(base, ast.Attribute)
+                else ""
+            )
+            if isinstance(base, ast.Name) and name in classes:
+                waiting.append(classes[name])
+            elif name not in _BASES_WITHOUT_UPDATE:
+                are_all_known = False
+    return line, are_all_known
+
+
+def _parameters(given: ast.arguments) -> list[inspect.Parameter]:
+    """Return the parameters of a constructor but for ``self``, in the order that a signature wants."""
+    plain = [*given.posonlyargs, *given.args]
+    without_default = len(plain) - len(given.defaults)
+    made = [
+        inspect.Parameter(
+            argument.arg,
+            _KINDS.POSITIONAL_ONLY if i < len(given.posonlyargs) else _KINDS.POSITIONAL_OR_KEYWORD,
+            default=_KINDS.empty if i < without_default else None,
+        )
+        for i, argument in enumerate(plain)
+    ][1:]
+    if given.vararg:
+        made.append(inspect.Parameter(given.vararg.arg, _KINDS.VAR_POSITIONAL))
+    for argument, default in zip(given.kwonlyargs, given.kw_defaults, strict=True):
+        value = _KINDS.empty if default is None else None
+        made.append(inspect.Parameter(argument.arg, _KINDS.KEYWORD_ONLY, default=value))
+    if given.kwarg:
+        made.append(inspect.Parameter(given.kwarg.arg, _KINDS.VAR_KEYWORD))
+    return made

@@ -1,0 +1,125 @@
+"""Python that a scenario brings: check reads it and runs nothing; whoever runs it names it first."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from onorbit_rs.exceptions import ControlError, NotFoundError, OnOrbitError
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import build
+
+IMPORTED, MADE = "it_was_imported", "it_was_constructed"
+SOURCE = f"""
+from pathlib import Path
+Path(__file__).with_name({IMPORTED!r}).touch()
+
+class Base:
+    def update(self, t, state):
+        return 0.0 * state.v[6:]
+
+class Brake(Base):
+    def __init__(self, gain, *, bias=0.0):
+        Path(__file__).with_name({MADE!r}).touch()
+"""
+
+
+def scenario(folder: Path, source: str = SOURCE, **controller: Any) -> Path:
+    (folder / "brake.py").write_text(source)
+    file = folder / "mine.yaml"
+    law = {"kind": "python", "file": "brake.py", "class": "Brake", "arguments": {"gain": 1.0}} | controller
+    data = {
+        "robot": "humanoid_torso",
+        "controller": {name: value for name, value in law.items() if value is not None},
+        "simulation": {"duration": 0.01, "time_step": 0.002},
+    }
+    file.write_text(json.dumps(data))
+    return file
+
+
+def onorbit(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "onorbit_rs", *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_check_runs_no_code_of_a_scenario(tmp_path: Path) -> None:
+    file = scenario(tmp_path)
+    done = onorbit("check", file)
+    assert done.returncode == 0, done.stderr
+    assert f"not run: {tmp_path / 'brake.py'}" in done.stdout
+    assert not (tmp_path / IMPORTED).exists()
+    trusted = onorbit("check", file, "--trust", "--json")
+    assert trusted.returncode == 0, trusted.stderr
+    assert f"executes Python of this scenario: {tmp_path / 'brake.py'}" in trusted.stderr
+    assert json.loads(trusted.stdout)["code_not_run"] == []
+    assert (tmp_path / MADE).exists()  # control: there was something to run
+
+
+def test_run_and_compare_name_the_code_before_they_execute_it(tmp_path: Path) -> None:
+    named = f"onorbit: executes Python of this scenario: {tmp_path / 'brake.py'}"
+    file = scenario(tmp_path, "import sys\nprint('now', file=sys.stderr)\n" + SOURCE)
+    for words in (("run", file, "--quiet"), ("compare", file, file)):
+        done = onorbit(*words)
+        assert done.returncode == 0, done.stderr
+        assert done.stderr.count(named) == 1
+        assert done.stderr.index(named) < done.stderr.index("now")
+    assert "executes" not in onorbit("check", "python_controller", "--trust").stderr  # of this package
+
+
+def test_an_example_of_this_package_is_not_announced(tmp_path: Path) -> None:
+    done = onorbit("check", "python_controller", "--json")
+    assert json.loads(done.stdout)["code_not_run"] == []
+
+
+CLASS = "class Brake:\n    def update(self, t, state):\n        return state.v[6:]\n"
+WRONG: dict[str, tuple[str, dict[str, Any], type[OnOrbitError], str]] = {
+    "no file": (CLASS, {"file": "none.py"}, NotFoundError, "no such file"),
+    "no Python": ("class :", {}, ControlError, "SyntaxError"),
+    "zeros": ("\0", {}, ControlError, "cannot be read as Python"),
+    "deep": ("(" * 5000, {}, ControlError, "cannot be read as Python"),
+    "no class": (CLASS, {"class": "Brakes"}, ControlError, "did you mean 'Brake'"),
+    "no update": ("class Brake:\n    pass", {}, ControlError, "has no update"),
+    "abstract": (
+        "import onorbit_rs as oo\nclass Brake(oo.Controller):\n    pass",
+        {},
+        ControlError,
+        "has no update",
+    ),
+    "missing": (SOURCE, {"arguments": {}}, ControlError, "missing a required argument: 'gain'"),
+    "unknown": (SOURCE, {"arguments": {"gian": 1}}, ControlError, "argument"),
+    "too many": (CLASS, {"arguments": {"gain": 1}}, ControlError, "unexpected keyword argument 'gain'"),
+    "no module": (CLASS, {"file": None, "module": "json.none"}, NotFoundError, "no module 'json.none'"),
+    "nowhere": (CLASS, {"file": None, "module": "no_such_x"}, NotFoundError, "no module 'no_such_x'"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_check_finds_what_reading_can_find(name: str, tmp_path: Path) -> None:
+    source, changes, error, words = WRONG[name]
+    with pytest.raises(error, match=words):
+        build(load(scenario(tmp_path, source, **changes)), runs_code=False)
+
+
+FINE: dict[str, tuple[str, dict[str, Any]]] = {
+    "inherits": (SOURCE, {"arguments": {"gain": 1, "bias": 2}}),
+    "imported": ("from elsewhere import Brake", {}),
+    "assigned": ("Brake = make()", {}),
+    "starred": ("from elsewhere import *", {}),
+    "unknown base": ("from elsewhere import Base\nclass Brake(Base):\n    pass", {}),
+    "decorated": ("from d import dataclass\n@dataclass\n" + CLASS + "    gain: float = 1\n", {}),
+    "keywords": (CLASS + "    def __init__(self, **any):\n        pass", {}),
+    "in try": ("try:\n    import x\nexcept ImportError:\n    pass\nelse:\n    from x import Brake\n", {}),
+    "module": (CLASS, {"file": None, "module": "collections", "class": "Counter", "arguments": {}}),
+    "compiled": (CLASS, {"file": None, "module": "math", "class": "Brake"}),
+}
+
+
+@pytest.mark.parametrize("name", FINE)
+def test_what_only_running_could_tell_is_not_refused(name: str, tmp_path: Path) -> None:
+    source, changes = FINE[name]
+    build(load(scenario(tmp_path, source, **changes)), runs_code=False)
