@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign notices clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign fuzz soak notices clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -27,7 +27,6 @@ $(VENV)/.tested: pyproject.toml | $(VENV)/.built
 	$(MATURIN) --extras test,lint
 	@touch $@
 
-.PHONY: notices
 notices: ## THIRD_PARTY_NOTICES.txt, from the licences of the crates that the module links
 	$(PYTHON) crates/py/notices.py
 
@@ -86,8 +85,6 @@ bench-everything: $(VENV)/.built ## humanoid_reach with the whole environment on
 bench-spart: $(VENV)/.built $(VENV)/.tested ## forward dynamics against SPART, compiled from PyPI's spartpy, alternated
 	$(BIN)/python benches/compare_spart.py
 
-certificate-campaign: $(VENV)/.built $(VENV)/.tested ## 10 000 exact runs and 1000 made wrong against their certificates; ARGS="--minutes 10"
-	$(BIN)/python tests/certificate_campaign.py $(ARGS)
-
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign fuzz soak notices clean
 clean: ## forgets builds and the environment
 	rm -rf target $(VENV) out

@@ -35,7 +35,7 @@ impl Kernel {
     /// [`EarthError::WrongLength`] for segments that hold no whole pieces, [`EarthError::NotFinite`].
     pub fn new(sun: Vec<KernelSegment>, moon: Vec<KernelSegment>) -> Result<Self, EarthError> {
         for segment in sun.iter().chain(&moon) {
-            let (got, piece) = (segment.coefficients.len(), 3 * segment.count);
+            let (got, piece) = (segment.coefficients.len(), segment.count.saturating_mul(3));
             if piece == 0 || got == 0 || got % piece != 0 {
                 return Err(EarthError::WrongLength {
                     name: "a segment of the kernel",

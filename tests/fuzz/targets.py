@@ -1,0 +1,198 @@
+"""What the Python side reads: each target takes bytes and reads them, or raises an ``OnOrbitError``."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+import onorbit_rs as oo
+from onorbit_rs import _core, keeping
+from onorbit_rs import kernel as _kernel  # noqa: F401  # loaded late else, when coverage is set up
+from onorbit_rs import omm as _omm  # noqa: F401
+from onorbit_rs.interop.expressions import evaluate
+from onorbit_rs.interop.onorbitros import convert
+from onorbit_rs.output.read import read_summary, read_trace
+from onorbit_rs.report.numbers import groups
+from onorbit_rs.robots.expand import expand
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import build
+from onorbit_rs.scenario.load import check
+from onorbit_rs.scenario.path_file import read_points, two_lines
+from onorbit_rs.scenario.units import ANGLE, FORCE, GRAVITY, LENGTH, NUMBER, TIME, parse_quantity
+from onorbit_rs.scenario.yaml_lines import parse_yaml
+from onorbit_rs.viewer.solids import _unit
+
+try:
+    from onorbit_rs.output.sealed import sealed
+except ImportError:
+    sealed = None
+
+# pictures of a run that was resumed take most of a second, and read nothing
+keeping.write_pictures = lambda *_, **__: None
+
+SHORT_RUN = {
+    "robot": {"rigid_body": {"mass": 1.0, "inertia": [1.0, 2.0, 3.0]}},
+    "initial": {"angular_velocity": [0.1, 0.0, 0.0]},
+    "simulation": {"duration": 1.0, "time_step": 1e-4},
+}
+
+
+class Room:
+    """A folder of this process's own, and in it a file with the bytes that are tried."""
+
+    def __init__(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="onorbit-fuzz-"))
+        self._runs: dict[bool, Path] = {}
+
+    def file(self, name: str, data: bytes) -> Path:
+        path = self.folder / name
+        path.write_bytes(data)
+        return path
+
+    def run(self, *, stopped: bool) -> Path:
+        """A fresh copy of the folder of a short run; or of one that was stopped half-way."""
+        if stopped not in self._runs:
+            self._runs[stopped] = self._made(stopped)
+        copy = self.folder / "copy"
+        shutil.rmtree(copy, ignore_errors=True)
+        shutil.copytree(self._runs[stopped], copy)
+        return copy
+
+    def _made(self, stopped: bool) -> Path:
+        folder = self.folder / f"run{stopped:d}"
+        state = folder / "checkpoint" / "state.json"
+        if not stopped:
+            oo.run(load(SHORT_RUN | {"simulation": {"duration": 0.02}}), out=folder, quiet=True)
+        while stopped and not state.exists():  # a run may end before it is killed
+            shutil.rmtree(folder, ignore_errors=True)
+            call = f"oo.run({SHORT_RUN!r}, {str(folder)!r}, quiet=True, checkpoint_every=0)"
+            program = f"import onorbit_rs as oo; {call}"
+            with subprocess.Popen([sys.executable, "-c", program]) as process:
+                while process.poll() is None and not state.exists():
+                    time.sleep(0.001)
+                process.kill()
+        return folder
+
+    def close(self) -> None:
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def text(data: bytes) -> str:
+    return data.decode("utf-8", errors="replace")
+
+
+def all_finite(what: str, *arrays: Any) -> None:
+    """Fails where accepted input gives numbers that are not finite."""
+    for array in arrays:
+        if not np.all(np.isfinite(array)):
+            raise AssertionError(f"{what} accepted, and give {array}")
+
+
+def quantity(data: bytes, room: Room) -> None:
+    dimensions = (NUMBER, LENGTH, TIME, ANGLE, FORCE, GRAVITY)
+    allowed = dimensions[data[0] % len(dimensions)] if data else NUMBER
+    all_finite("quantities are", parse_quantity(text(data[1:]), allowed))
+
+
+def expression(data: bytes, room: Room) -> None:
+    all_finite("expressions are", evaluate(text(data)))
+
+
+def yaml(data: bytes, room: Room) -> None:
+    parse_yaml(text(data), None)
+
+
+def scenario(data: bytes, room: Room) -> None:
+    build(load(room.file("scenario.yaml", data)))
+
+
+def mean_elements(data: bytes, room: Room) -> None:
+    all_finite("elements are", *_core.Sgp4.from_omm(text(data)).state(60.0)[:2])
+
+
+def tle_file(data: bytes, room: Room) -> None:
+    all_finite("elements are", *_core.Sgp4(*two_lines(text(data), "file")).state(60.0)[:2])
+
+
+def point_file(data: bytes, room: Room) -> None:
+    path = _core.CustomPath(**read_points(room.file("points.csv", data)), ends="coast")
+    all_finite("points are", *path.state(0.0)[:2])
+
+
+def spice_kernel(data: bytes, room: Room) -> None:
+    oo.Earth("2024-01-10T12:00:00 UTC", ephemeris=room.file("kernel.bsp", data))
+
+
+def onorbitros(data: bytes, room: Room) -> None:
+    robot = room.file("robot.urdf", b"<robot name='r'/>")
+    check(convert([room.file("orbit.yaml", data), robot]).scenario, None, {})
+
+
+def trace(data: bytes, room: Room) -> None:
+    room.file("trace.npz", data)
+    read_trace(room.folder)
+
+
+def summary(data: bytes, room: Room) -> None:
+    room.file("summary.json", data)
+    groups(read_summary(room.folder))
+
+
+def checkpoint(data: bytes, room: Room) -> None:
+    """The state of a stopped run; the checksum of a mapping is put right, so that its entries are read."""
+    folder = room.run(stopped=True)
+    with contextlib.suppress(ValueError, RecursionError):
+        record = json.loads(data)
+        if isinstance(record, dict) and sealed is not None:
+            data = sealed({key: value for key, value in record.items() if key != "sha256"})
+    (folder / "checkpoint" / "state.json").write_bytes(data)
+    oo.resume(folder, quiet=True)
+
+
+def xacro(data: bytes, room: Room) -> None:
+    expand(room.file("robot.xacro", data))
+
+
+def collada_unit(data: bytes, room: Room) -> None:
+    shape: Any = SimpleNamespace(filename=room.file("mesh.dae", data))
+    all_finite("units are", _unit(shape))
+
+
+def urdf_file(data: bytes, room: Room) -> None:
+    oo.Model.from_urdf(room.file("robot.urdf", data))
+
+
+Target = Callable[[bytes, Room], None]
+
+TARGETS: dict[str, Target] = {
+    target.__name__: target
+    for target in (
+        quantity, expression, yaml, scenario, mean_elements, tle_file, point_file, spice_kernel, onorbitros,
+        trace, summary, checkpoint, xacro, collada_unit, urdf_file,
+    )
+}  # fmt: skip
+
+
+def seeds(name: str, room: Room) -> list[bytes]:
+    """Inputs that depend on the version of the package, beside those in the corpus."""
+    if name == "checkpoint":
+        return [(room.run(stopped=True) / "checkpoint" / "state.json").read_bytes()]
+    if name in ("trace", "summary"):
+        file = {"trace": "trace.npz", "summary": "summary.json"}[name]
+        return [(room.run(stopped=False) / file).read_bytes()]
+    if name == "scenario":
+        return [
+            oo.scenarios.path(name).read_bytes() for name in ("free_tumble", "kepler_orbit", "sgp4_orbit")
+        ]
+    return []

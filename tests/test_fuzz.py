@@ -1,0 +1,88 @@
+"""What ``make fuzz`` does at length: corpus and mutations are read or refused, findings are kept."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from onorbit_rs.exceptions import InputError
+
+HERE = Path(__file__).parent / "fuzz"
+MUTATIONS, SEED = 20, 14
+NAMES = (
+    "quantity", "expression", "yaml", "scenario", "mean_elements", "tle_file", "point_file", "spice_kernel",
+    "onorbitros", "trace", "summary", "checkpoint", "xacro", "collada_unit", "urdf_file",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def fuzz() -> Iterator[Any]:
+    """The modules of the campaign, which stand alone beside the tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        from onorbit_rs import keeping
+
+        patch.setattr(keeping, "write_pictures", keeping.write_pictures)  # put back at the end
+        patch.syspath_prepend(str(HERE))
+        import targets
+        import tried
+
+        yield SimpleNamespace(targets=targets, tried=tried)
+    for name in ("targets", "tried"):
+        del sys.modules[name]
+
+
+def corpus(fuzz: Any, name: str, room: Any) -> list[bytes]:
+    files = sorted((HERE / "corpus" / name).glob("*"))
+    return [file.read_bytes() for file in files] + list(fuzz.targets.seeds(name, room))
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.filterwarnings("ignore")
+def test_a_parser_reads_its_corpus_and_reads_or_refuses_mutations(
+    fuzz: Any, name: str, tmp_path: Path
+) -> None:
+    trial = fuzz.tried.Trial(name, tmp_path, SEED)
+    try:
+        inputs = corpus(fuzz, name, trial.room)
+        for data in inputs:
+            trial.target(data, trial.room)  # a corpus that is refused reaches nothing
+        assert fuzz.tried.blind(trial, inputs, MUTATIONS) == len(inputs) + MUTATIONS
+    finally:
+        trial.room.close()
+    assert not trial.places, [file.read_text() for file in tmp_path.glob("*.txt")]
+
+
+def test_no_target_is_left_out(fuzz: Any) -> None:
+    assert set(fuzz.targets.TARGETS) == set(NAMES)
+
+
+def test_an_error_of_another_class_is_a_finding_and_keeps_its_input(
+    fuzz: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def fails(data: bytes, room: Any) -> None:
+        if data == b"typed":
+            raise InputError("nothing is wrong with this")
+        if data == b"silent":
+            raise InputError("")
+        if data != b"read":
+            raise ZeroDivisionError(data)
+
+    monkeypatch.setitem(fuzz.targets.TARGETS, "quantity", fails)
+    trial = fuzz.tried.Trial("quantity", tmp_path, 77)
+    for data in (b"read", b"typed"):
+        trial(data)
+    assert not trial.places
+    for data in (b"first", b"second", b"silent"):
+        trial(data)
+    trial.room.close()
+    assert [place.split()[0] for place in sorted(trial.places)] == ["InputError", "ZeroDivisionError"]
+    assert sorted(file.read_bytes() for file in tmp_path.glob("*") if not file.suffix) == [
+        b"first",
+        b"silent",
+    ]
+    assert all("seed 77" in file.read_text() for file in tmp_path.glob("*.txt"))

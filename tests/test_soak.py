@@ -1,0 +1,85 @@
+"""What ``make soak`` does for an hour, for a moment: it holds, and each part notices what it is there for."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+HERE = Path(__file__).parent / "soak"
+
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux", reason="threads, files and memory are read from /proc"
+)
+
+
+@pytest.fixture(scope="module")
+def soak() -> Iterator[Any]:
+    """The modules of the campaign, which stand alone beside the tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(HERE))
+        import faults
+        import leaks
+        import long_runs
+
+        yield SimpleNamespace(faults=faults, leaks=leaks, long_runs=long_runs)
+    for name in ("faults", "leaks", "long_runs"):
+        del sys.modules[name]
+
+
+def test_a_long_spin_is_exact_and_its_certificate_green(soak: Any) -> None:
+    found = soak.long_runs.spin(20_000, record_every=100)
+    assert found["wrong"] == []
+    assert found["attitude_error"] < 1e-12  # 20 rad; it rounds to 1e-14
+
+
+def test_loops_leave_nothing_behind(soak: Any, tmp_path: Path) -> None:
+    jobs = soak.leaks.loops(tmp_path)
+    for name in ("run", "controller in Python", "model", "refused models", "rollout"):
+        assert soak.leaks.leaks(*soak.leaks.grown(jobs[name], seconds=5.0, most=30)) == [], name
+
+
+def test_what_loops_leave_behind_is_found(soak: Any) -> None:
+    kept: list[Any] = []
+    wait = threading.Event()
+
+    def leaks_thread() -> None:
+        kept.append(threading.Thread(target=wait.wait))
+        kept[-1].start()
+
+    def leaks_memory() -> None:
+        kept.append(np.ones(200_000))
+
+    def leaks_file() -> None:
+        kept.append(os.fdopen(os.open(os.devnull, os.O_RDONLY)))
+
+    try:
+        told = [
+            soak.leaks.leaks(*soak.leaks.grown(job, seconds=5.0, most=20))
+            for job in (leaks_thread, leaks_memory, leaks_file)
+        ]
+    finally:
+        wait.set()
+        for one in kept:
+            if isinstance(one, threading.Thread):
+                one.join()
+            elif not isinstance(one, np.ndarray):
+                one.close()
+    assert told[0][0] == "14 threads"
+    assert len(told[1]) == 1 and told[1][0].endswith(" MB")
+    assert told[2] == ["14 open files"]
+
+
+def test_a_run_on_a_full_disk_is_refused_and_has_the_same_bits_once_there_is_room(
+    soak: Any, tmp_path: Path
+) -> None:
+    found = soak.faults.fault_campaign(tmp_path, seed=3, seconds=60.0, most=1, duration=0.5)
+    assert found["wrong"] == []
+    assert found["runs"] == 1
