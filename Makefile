@@ -85,6 +85,17 @@ bench-everything: $(VENV)/.built ## humanoid_reach with the whole environment on
 bench-spart: $(VENV)/.built $(VENV)/.tested ## forward dynamics against SPART, compiled from PyPI's spartpy, alternated
 	$(BIN)/python benches/compare_spart.py
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign fuzz soak notices clean
+certificate-campaign: $(VENV)/.built $(VENV)/.tested ## 10 000 exact runs and 1000 made wrong against their certificates; ARGS="--minutes 10"
+	$(BIN)/python tests/certificate_campaign.py $(ARGS)
+
+# SECONDS= of each parser; COUNT= inputs in all; SEED=; ONLY= parsers whose name contains it
+fuzz: $(VENV)/.built $(VENV)/.tested ## every parser, guided by coverage; findings are kept and fail (docs/reliability.md)
+	$(BIN)/python tests/fuzz $(if $(SECONDS),--seconds $(SECONDS)) $(if $(COUNT),--count $(COUNT)) \
+		$(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only $(ONLY))
+
+# SECONDS= in all, an hour where not given; SEED=
+soak: $(VENV)/.built $(VENV)/.tested ## kills, disk faults, leaks and long runs (docs/reliability.md)
+	$(BIN)/python tests/soak $(if $(SECONDS),--seconds $(SECONDS)) $(if $(SEED),--seed $(SEED))
+
 clean: ## forgets builds and the environment
 	rm -rf target $(VENV) out
