@@ -124,7 +124,7 @@ fn at_rest_the_spring_gives_way_by_the_load_over_its_stiffness() {
     // K e = −(F, r × F), in base axes, r from the tool's origin to where the force acts
     let force = turn * force;
     let origin = turn * (pose.pos_w.to_nalgebra() - Vector3::new(q[0], q[1], q[2]));
-    let moment = (data.bodies[body].com_b.to_nalgebra() - origin).cross(&force);
+    let moment = (data.bodies[body].com_b().to_nalgebra() - origin).cross(&force);
     let e = &trace.tracking[0].values[trace.tracking[0].values.len() - 6..];
     for (i, load) in force.iter().chain(moment.iter()).enumerate() {
         let stiffness = if i < 3 { LINEAR } else { ANGULAR };

@@ -1,9 +1,9 @@
 //! Equations of motion: free functions over a [`Model`](crate::model::Model), its [`Data`] and a
 //! state.
 //!
-//! All recursions run in one set of coordinates, the axes and origin of the base link B. There
-//! inertias of bodies simply add, the columns that couple base and joints *are* the spatial
-//! forces `I S`, and the base pose drops out of everything but what is asked for in W.
+//! All recursions run in the axes of the base link B, so the base's pose drops out of everything but what is asked for
+//! in W. The motions, forces and inertias of a body are about its own origin, which lies on its joint's axis; between
+//! neighbours they are shifted by the vector from one origin to the other.
 //! A `*_recursion` expects [`kinematics`] to have run; the functions without that ending run it.
 
 mod aba;
