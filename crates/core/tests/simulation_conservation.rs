@@ -113,8 +113,8 @@ fn jacobi(model: &Model, orbit: &Kepler, trace: &Trace, k: usize, gradient: bool
     let rate2 = n.norm_squared();
     let mut sum = 0.0;
     for (node, body) in model.nodes().iter().zip(&data.bodies) {
-        let rho = rot_wb * body.com_b.to_nalgebra() + origin;
-        let rate = rot_wb * body.velocity.at(body.com_b).to_nalgebra() - n.cross(&rho);
+        let rho = rot_wb * body.com_b().to_nalgebra() + origin;
+        let rate = rot_wb * body.velocity.at(body.inertia.com).to_nalgebra() - n.cross(&rho);
         let up = reference.position / radius;
         let shift = (2.0 * radius * up.dot(&rho) + rho.norm_squared()) / (radius * radius);
         let s = (1.0 + shift).sqrt();
