@@ -105,3 +105,31 @@ def test_a_sample_of_the_campaign_is_judged_right() -> None:
     print(exact, wrong, sep="\n")
     assert exact.mistaken == wrong.mistaken == []
     assert exact.runs.total() == 60 and wrong.runs.total() == 12
+
+
+@pytest.mark.parametrize("law", ["compensated", "uncompensated", "pid"])
+def test_joints_that_friction_holds_beside_one_that_reverses_are_green(law: str) -> None:
+    """Torques that jump moved joints that were stuck, to the certificate alone: red in two runs of three."""
+    builder = oo.ModelBuilder("arm", base="base", mass=80.0, com=[0, 0, 0], inertia=8.0 * np.eye(3))
+    parent = "base"
+    for k, (axis, friction) in enumerate(zip(np.eye(3), (0.16, 0.22, 0.24), strict=True)):
+        builder.add_link(
+            f"link{k}", parent=parent, joint=f"joint{k}", axis=axis, xyz=(0.3, 0.05, 0.0), mass=2.0,
+            com=[0.15, 0, 0], inertia=0.03 * np.eye(3), friction=friction,
+        )  # fmt: skip
+        parent = f"link{k}"
+    model = builder.build()
+    times = np.linspace(0.0, 2.0, 201)
+    path = np.zeros((201, 3))
+    path[:, 0] = 0.2 * (1.0 - np.cos(4.9 * times))
+    controller = {
+        "compensated": oo.JointComputedTorque(kp=100.0, kd=20.0),
+        "uncompensated": oo.JointComputedTorque(kp=100.0, kd=20.0, compensate_friction=False),
+        "pid": oo.JointPid(p=20.0, d=3.0),
+    }[law]
+    trace = oo.Simulation(
+        model, model.neutral(), np.zeros(model.nv), controller=controller,
+        reference=oo.JointSampled(times, path), time_step=2e-3,
+    ).run(2.0)  # fmt: skip
+    assert np.any(np.diff(np.sign(trace.v[:, 6])) != 0.0) and not np.any(trace.q[:20, 9])
+    assert [name for name, _, _, passed in trace.certificate() if not passed] == []

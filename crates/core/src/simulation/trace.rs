@@ -188,13 +188,6 @@ impl Trace {
             .collect()
     }
 
-    /// Torque of one of `n` joints in row `k` without what compensates friction: the two take each other away, so
-    /// that a jump of both moves nothing.
-    pub(super) fn torque_without_compensation(&self, k: usize, j: usize, n: usize) -> f64 {
-        let compensation = self.friction_compensation.get(k * n + j);
-        self.tau[k * n + j] - compensation.unwrap_or(&0.0)
-    }
-
     /// Row `k` of a column with `width` numbers per row.
     pub(super) fn row(column: &[f64], k: usize, width: usize) -> &[f64] {
         &column[k * width..(k + 1) * width]

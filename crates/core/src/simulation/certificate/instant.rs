@@ -1,7 +1,8 @@
 //! One row of a trace, and what the equations of motion say about it.
 
 use crate::dynamics::{
-    Data, Momentum, base_rotation, composite_momentum, forward_dynamics, inverse_dynamics,
+    Data, Momentum, base_rotation, composite_momentum, inverse_dynamics, kinematics,
+    locked_dynamics_recursion,
 };
 use crate::model::Model;
 use crate::simulation::trace::Trace;
@@ -21,6 +22,8 @@ pub(in crate::simulation) struct BaseMotion {
     pub(in crate::simulation) rates: f64,
     /// Sum of all their changes.
     pub(in crate::simulation) changes: f64,
+    /// Whether a joint starts or stops here, so that `change_before` is not known.
+    pub(in crate::simulation) is_cut: bool,
 }
 
 impl BaseMotion {
@@ -37,7 +40,8 @@ impl BaseMotion {
         let sum = |x: &[f64]| x[3..].iter().map(|x| x.abs()).sum::<f64>();
         let rates = sum(v);
         let changes = sum(a) + rates * rates;
-        Self { time, attitude: Quat::from_xyzw(&q[3..]), rate, change_before, change_after, rates, changes }
+        let attitude = Quat::from_xyzw(&q[3..]);
+        Self { time, attitude, rate, change_before, change_after, rates, changes, is_cut: false }
     }
 }
 
@@ -106,6 +110,7 @@ pub(super) struct Reader<'a> {
     forces: Vec<f64>,
     jump: Vec<f64>,
     at_rest: Vec<f64>,
+    locked: Vec<bool>,
 }
 
 impl<'a> Reader<'a> {
@@ -118,6 +123,7 @@ impl<'a> Reader<'a> {
             forces: zeros.clone(),
             jump: zeros.clone(),
             at_rest: zeros,
+            locked: vec![false; model.joint_count()],
         }
     }
 
@@ -151,27 +157,62 @@ impl<'a> Reader<'a> {
             angular: 0.0,
             size: 0.0,
         };
+        now.base.is_cut = (0..self.model.joint_count()).any(|j| self.starts_or_stops(k, j));
         self.measure(&mut now);
         now
     }
 
-    /// `ω̇⁻ − ω̇⁺`: a torque that jumps at the row moves the base by `M⁻¹ (τ⁻ − τ⁺)` less.
+    /// `ω̇⁻ − ω̇⁺`: efforts that jump at the row move the base by `M⁻¹ (τ⁻ − τ⁺)` less; joints that friction or a stop
+    /// holds through the row stay locked.
     fn turn_jump(&mut self, k: usize, q: &[f64]) -> Vec3<f64> {
         let n = self.model.joint_count();
         if k == 0 || n == 0 {
             return Vec3::zero();
         }
         self.forces[..6].fill(0.0);
-        for (j, force) in self.forces[6..].iter_mut().enumerate() {
-            *force = self.trace.torque_without_compensation(k - 1, j, n)
-                - self.trace.torque_without_compensation(k, j, n);
+        for j in 0..n {
+            self.locked[j] = self.is_held(k, j);
+            let jump = self.effort(k - 1, j) - self.effort(k, j);
+            self.forces[j + 6] = if self.locked[j] { 0.0 } else { jump };
         }
         if self.forces[6..].iter().all(|jump| *jump == 0.0) {
             return Vec3::zero();
         }
         // at zero velocity there is no bias: the answer is M⁻¹ Δτ alone
-        forward_dynamics(self.model, &mut self.data, q, &self.at_rest, &self.forces, &[], &mut self.jump);
-        Vec3::from_slice(&self.jump[3..])
+        let Self { model, data, at_rest, forces, locked, jump, .. } = self;
+        kinematics(model, data, q, at_rest);
+        data.clear_external();
+        locked_dynamics_recursion(model, data, at_rest, forces, locked, jump);
+        Vec3::from_slice(&jump[3..])
+    }
+
+    /// Effort of motor and Coulomb friction on a joint just after a row, N m (N).
+    fn effort(&self, row: usize, j: usize) -> f64 {
+        let tau = Trace::row(&self.trace.tau, row, self.model.joint_count())[j];
+        tau - self.model.joints()[j].friction * self.direction(row, j)
+    }
+
+    /// The way in which a joint moves just after a row: 1, −1, or 0 at rest.
+    fn direction(&self, row: usize, j: usize) -> f64 {
+        let of = |column: &[f64]| Trace::row(column, row, self.model.nv())[j + 6];
+        match (of(&self.trace.v), of(&self.trace.acceleration)) {
+            (0.0, 0.0) => 0.0,
+            (0.0, acceleration) => acceleration.signum(),
+            (rate, _) => rate.signum(),
+        }
+    }
+
+    /// Whether a joint rests on one side of a row only.
+    fn starts_or_stops(&self, row: usize, j: usize) -> bool {
+        row > 0 && (self.direction(row - 1, j) == 0.0) != (self.direction(row, j) == 0.0)
+    }
+
+    /// Whether a joint that friction or a stop can hold rests in the interval before a row and in the one after it.
+    fn is_held(&self, row: usize, j: usize) -> bool {
+        let joint = &self.model.joints()[j];
+        let can_be_held = joint.static_friction > 0.0 || joint.limits.position.is_some();
+        let rate = Trace::row(&self.trace.v, row, self.model.nv())[j + 6];
+        can_be_held && rate == 0.0 && self.direction(row - 1, j) == 0.0 && self.direction(row, j) == 0.0
     }
 
     /// The scales of momentum and of length. Needs the kinematics in `data`.
