@@ -105,7 +105,16 @@ impl Follower {
                 vectors;
             let [time, w, rates, changes, mass] = std::array::from_fn(|_| from.next());
             let attitude = Quat { v, w };
-            let base = BaseMotion { time, attitude, rate, change_before, change_after, rates, changes };
+            let base = BaseMotion {
+                time,
+                attitude,
+                rate,
+                change_before,
+                change_after,
+                rates,
+                changes,
+                is_cut: false,
+            };
             let whole = MassMotion { time, mass, center, momentum, impulse, force_before, force_after };
             self.open = Some(End { base, whole });
         }
@@ -145,6 +154,7 @@ impl End {
             change_after: zero,
             rates,
             changes: rates * rates,
+            is_cut: false,
         };
         let whole = MassMotion {
             time,
