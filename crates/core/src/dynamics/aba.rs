@@ -98,7 +98,7 @@ fn kernel<S: Real>(
             let yielding = body.reach * -body.inverse_pivot;
             (
                 articulated.from_point(body.offset).add_parallel(body.reach, yielding),
-                yielding.scale_add(-body.drive, force.from_point(body.offset)),
+                yielding.scale_add(-body.drive, force.from_point_late(body.offset)),
             )
         },
     );

@@ -172,7 +172,7 @@ fn kernel<S: Real>(
             out.bias[k - 1] = joint_effort(node, body.axis(), bias);
             out.external[k - 1] = joint_effort(node, body.axis(), outside);
             let r = body.offset;
-            (composite.from_point(r), (bias.from_point(r), Outside(outside.from_point(r))))
+            (composite.from_point(r), (bias.from_point_late(r), Outside(outside.from_point_late(r))))
         },
     );
     let (composite, (bias, Outside(outside))) = with_own(&bodies[0], load);
@@ -202,19 +202,14 @@ fn mobility<S: Real>(
     let n = nodes.len() - 1;
     for (k, row) in (1..).zip(out.inertia.chunks_exact_mut(n.max(1))) {
         // S_jᵀ I^c S_k at the origin of each ancestor j; where the force has arrived at the base it is the column of Mbm
-        let (Force { linear, angular }, mut lever) = (bodies[k].force, Vec3::zero());
-        let (mut ancestor, row) = (k, &mut row[..k]);
-        for j in (1..=k).rev() {
-            let mut entry = S::of(0.0);
-            if j == ancestor {
-                let (node, body) = (&nodes[j], &bodies[j]);
-                entry = joint_effort(node, body.axis(), Force::at(linear, angular, lever));
-                (lever, ancestor) = (lever + body.offset, node.parent);
-            }
-            row[j - 1] = entry;
+        let (mut force, mut j, row) = (bodies[k].force, k, &mut row[..k]);
+        row.fill(S::of(0.0));
+        while j > 0 {
+            let (node, body) = (&nodes[j], &bodies[j]);
+            row[j - 1] = joint_effort(node, body.axis(), force);
+            (force, j) = (force.from_point(body.offset), node.parent);
         }
         row[k - 1] += S::of(nodes[k].rotor_inertia);
-        let force = Force::at(linear, angular, lever);
         (out.coupling[k - 1], out.recoil[k - 1]) = (force, -inverse.apply(force));
         for (entry, recoil) in row.iter_mut().zip(&out.recoil[..k]) {
             *entry += recoil.dot(force);

@@ -76,7 +76,7 @@ fn kernel<S: Real>(model: &Model, data: &mut Data<S>, v: &[S], a: Option<&[S]>, 
             if let Some(a) = a {
                 tau[k + 5] = a[k + 5].mul_add(S::of(node.rotor_inertia), tau[k + 5]);
             }
-            body.force.from_point(body.offset)
+            body.force.from_point_late(body.offset)
         },
     );
     bodies[0].force = carried + net_force(&bodies[0]);
