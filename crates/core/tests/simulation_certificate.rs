@@ -175,6 +175,25 @@ fn a_wrench_left_out_is_red() {
     }
 }
 
+/// A last step of a nanosecond has differences that are all rounding; they excuse that step and no other.
+#[test]
+fn an_end_off_the_grid_does_not_shrink_the_residual_of_a_missing_force() {
+    let residual = |duration: f64| {
+        let mut simulation = random_simulation(2);
+        let push = BodyWrench::new(1, Vector3::new(0.1, 0.0, 0.0), Vector3::zeros()).unwrap();
+        simulation.effects.push(Arc::new(push));
+        let trace = run(&mut simulation, duration);
+        let missing = Trace { impulse: vec![0.0; trace.impulse.len()], ..trace.clone() };
+        assert_eq!(failed(&certify(&simulation.model, &trace)), [""; 0]);
+        let certificate = certify(&simulation.model, &missing);
+        assert!(failed(&certificate).contains(&"base_rows_residual_rel"), "{duration}: {certificate:#?}");
+        certificate.base_rows_residual_rel.unwrap()
+    };
+    let [on, off] = [0.5, 0.5 + 1e-9].map(residual);
+    println!("missing 0.1 N: {on:e} on the grid, {off:e} with a last step of a nanosecond");
+    assert!((off / on - 1.0).abs() < 1e-3, "{off:e} for {on:e}");
+}
+
 /// An integrator that puts momentum right hides a torque it does not apply; the base rows do not.
 #[test]
 fn velocities_that_do_not_follow_from_the_wrenches_are_red() {

@@ -277,3 +277,28 @@ fn what_cannot_be_continued_is_refused() {
     assert!(matches!(error(&text, DURATION, &ragged), CheckpointError::OtherSize { name: "q", .. }));
     assert!(refused(&text, DURATION, &rows).is_ok());
 }
+
+/// The error once said "has 30 numbers, the simulation has 30".
+#[test]
+fn a_certificate_of_another_size_is_refused_with_both_sizes() {
+    let (checkpoint, rows) = stopped(&mut simulation(Integrator::Rk4, 7), 0.4);
+    let resumed = |change: fn(&mut Vec<serde_json::Value>)| {
+        let mut value: serde_json::Value = serde_json::from_str(&checkpoint.to_json()).unwrap();
+        change(value["follower"].as_array_mut().unwrap());
+        let changed = Checkpoint::from_json(&value.to_string()).unwrap();
+        let mut second = simulation(Integrator::Rk4, 7);
+        let rest = second.resume(DURATION, (&changed, rows.clone()), &mut |_| ControlFlow::Continue(()));
+        rest.map_err(|failure| failure.error)
+    };
+    let changes: [fn(&mut Vec<serde_json::Value>); 3] =
+        [|bits| drop(bits.pop()), |bits| bits.truncate(3), |bits| bits.push(0.into())];
+    for change in changes {
+        match resumed(change) {
+            Err(SimulationError::Checkpoint(CheckpointError::OtherSize { got, expected, .. })) => {
+                assert_ne!(got, expected);
+            }
+            other => panic!("not refused: {:?}", other.map(|trace| trace.rows())),
+        }
+    }
+    assert!(resumed(|_| ()).is_ok());
+}

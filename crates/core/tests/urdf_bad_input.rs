@@ -72,13 +72,13 @@ fn deep_and_huge_xml_is_refused_before_any_recursion() {
 #[test]
 fn many_links_take_no_quadratic_time() {
     let mut xml = format!("<robot name='rope'><link name='l0'>{INERTIAL}</link>");
-    for i in 1..5000 {
+    for i in 1..=2000 {
         let j = joint(&format!("j{i}"), "revolute", &format!("l{}", i - 1), &format!("l{i}"), "");
         xml += &format!("<link name='l{i}'>{INERTIAL}</link>{j}");
     }
     let start = std::time::Instant::now();
-    assert_eq!(from_str(&(xml + "</robot>"), None, &[]).unwrap().joint_count(), 4999);
-    assert!(start.elapsed().as_secs() < 20, "a dense elimination would take minutes");
+    assert_eq!(from_str(&(xml + "</robot>"), None, &[]).unwrap().joint_count(), 2000); // as many as a robot may have
+    assert!(start.elapsed().as_secs() < 8, "a dense elimination would take minutes");
 }
 
 #[test]

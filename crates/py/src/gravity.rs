@@ -3,7 +3,7 @@
 use crate::arrays::{Input, fresh, shape_text, whole, wrong_shape, zeros};
 use crate::environment::PyEffect;
 use crate::errors::{IntoPython, fields, plain, raise};
-use crate::interrupt::{in_pieces, unheard};
+use crate::interrupt::{abandonable, in_pieces};
 use onorbit_core::earth::{Earth, EarthError};
 use onorbit_core::gravity::{Coefficients, Gravity, GravityError, GravityField};
 use pyo3::prelude::*;
@@ -138,7 +138,7 @@ impl PyGravityField {
         #[pyo3(from_py_with = order_of)] order: Option<usize>,
     ) -> PyResult<Bound<'py, Self>> {
         let keywords = fields!(py, "path": &path, "degree": degree, "order": order);
-        let field = unheard(py, move || GravityField::from_gfc(&path, degree, order))?;
+        let field = abandonable(py, move || GravityField::from_gfc(&path, degree, order))?;
         Bound::new(py, Self::wrap(py, field, "GravityField.from_gfc", &keywords)?)
     }
 

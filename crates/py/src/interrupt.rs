@@ -32,10 +32,11 @@ pub(crate) fn batch<R: Send>(
     interruptible(py, &stop, || work(Threads { count, stop: Some(&stop) }))
 }
 
-/// Runs `work` on a thread of its own; Ctrl-C meanwhile raises at once and leaves `work` to end unheard.
+/// Runs `work` on a thread of its own; Ctrl-C meanwhile raises at once and abandons `work`, which finishes in the
+/// background.
 ///
 /// For what cannot be stopped from outside: a file that is parsed, a certificate.
-pub(crate) fn unheard<R: Send + 'static>(
+pub(crate) fn abandonable<R: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> R + Send + 'static,
 ) -> PyResult<R> {

@@ -1,6 +1,6 @@
 //! The columns of a run, as read-only views.
 
-use crate::interrupt::unheard;
+use crate::interrupt::abandonable;
 use numpy::ndarray::ArrayView;
 use numpy::{IxDyn, PyArray, PyArray1, PyArrayDyn, PyArrayMethods};
 use onorbit_core::model::Model;
@@ -77,7 +77,7 @@ macro_rules! columns {
                 let checks = if own.trace.rows() < LONG_TRACE {
                     this.py().detach(|| of(own))
                 } else {
-                    unheard(this.py(), move || of(shared.get()))?
+                    abandonable(this.py(), move || of(shared.get()))?
                 };
                 Ok(checks.iter().map(|check| (check.name, check.value, check.gate, check.passed())).collect())
             }

@@ -31,8 +31,9 @@ def expand(
     Parameters
     ----------
     path : path
-        The file. Its expressions are evaluated by :mod:`onorbit_rs.robots.expressions`; none of it runs.
-        It may include and load files of its own package and of packages that ``$(find name)`` gives.
+        The file. Its expressions are evaluated by :mod:`onorbit_rs.robots.expressions`; no code in
+        it is executed. It may include and load files of its own package and of packages that
+        ``$(find name)`` gives.
     package_paths : sequence of paths
         Folders that hold ROS packages or are one: what ``$(find name)`` gives; the file's parents come after.
     arguments : mapping, optional

@@ -84,7 +84,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         rows::one_by_one(self, times, rows)
     }
 
-    /// Takes at most `most_steps` steps of an integration towards `times`; whether their states need no further ones.
+    /// Takes at most `most_steps` integration steps towards `times`. Returns true if no further step is needed.
     ///
     /// What is then asked for is the same, prepared or not: a caller that is to be interruptible prepares in parts.
     fn prepare(&self, _times: &[f64], _most_steps: usize) -> bool {

@@ -101,7 +101,7 @@ impl<S: Scalar> Probe<S> {
         }
     }
 
-    /// Whether the step of this number is one to look at closely.
+    /// Returns true if step `step` is probed.
     pub(super) fn is_due(&self, step: usize) -> bool {
         step.is_multiple_of(self.every) || self.every == EVERY && EARLY.contains(&step)
     }

@@ -28,8 +28,8 @@ impl<S: Scalar> Stack<'_, S> {
         }
     }
 
-    /// Releases the first held joint that its friction cannot hold, to slip the way it is pushed; whether there
-    /// was one. Needs the accelerations of all joints.
+    /// Releases the first held joint whose holding torque exceeds its static friction, slipping in the direction of the
+    /// push. Returns false if there is none. Needs the accelerations of all joints.
     pub(super) fn lets_go(&mut self, model: &Model) -> bool {
         let excess = |j: &usize| {
             let holding = self.side_by_side.holding(*j, self.tau[*j]);

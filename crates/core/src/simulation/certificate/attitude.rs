@@ -146,7 +146,6 @@ mod tests {
         }
     }
 
-    /// Negative control: the same turn from the product of the two loses all that rounding of products leaves.
     #[test]
     fn neighbours_on_a_grid_of_exact_numbers_give_the_exact_turn() {
         // attitudes with 26 bits each, so that every product is exact: the turn is known to its last digit

@@ -11,7 +11,7 @@ use crate::spatial::{Force, Motion, Vec3};
 /// to W and the twist that goes with it.
 const ROUNDING: f64 = 40.0;
 
-/// Running residuals; each pair is linear, angular.
+/// Running residuals beyond rounding; each pair is linear, angular.
 pub(super) struct BaseRows {
     data: Data<f64>,
     step: Vec<f64>,
@@ -19,8 +19,6 @@ pub(super) struct BaseRows {
     forces: Vec<f64>,
     residual: [f64; 2],
     scale: [f64; 2],
-    /// Bound of what rounding leaves of the residuals, N and N m.
-    rounding: [f64; 2],
     truncation: f64,
 }
 
@@ -34,7 +32,6 @@ impl BaseRows {
             forces: zeros,
             residual: [0.0; 2],
             scale: [0.0; 2],
-            rounding: [0.0; 2],
             truncation: 0.0,
         }
     }
@@ -64,9 +61,9 @@ impl BaseRows {
         let scale = self.inertial();
         let rounding = self.rounding(model, h, [before, now]);
         for i in 0..2 {
-            self.residual[i] = worst(self.residual[i], open[i]);
+            let beyond = if open[i] <= rounding[i] { 0.0 } else { open[i] - rounding[i] };
+            self.residual[i] = worst(self.residual[i], beyond);
             self.scale[i] = self.scale[i].max(scale[i]);
-            self.rounding[i] = self.rounding[i].max(rounding[i]);
         }
         self.truncation = self.truncation.max(truncation(h, before.v, before.a));
     }
@@ -86,7 +83,7 @@ impl BaseRows {
         sum
     }
 
-    /// Bound of what rounding leaves of the two residuals: momenta and impulses, each rounded at its own size and
+    /// Bound of what rounding leaves of the two residuals of one step: momenta and impulses, each rounded at its own size and
     /// differenced over `h`, and moments `v × m v`, which are nothing but rounding.
     fn rounding(&self, model: &Model, h: f64, rows: [&Instant<'_>; 2]) -> [f64; 2] {
         let (mut linear, mut angular, mut passing) = (0.0, 0.0, 0.0);
@@ -105,13 +102,12 @@ impl BaseRows {
         [unit * linear / h, unit * (angular / h + passing)]
     }
 
-    /// Residual over the inertial forces; rounding within its bound passes [`BaseRows::gate`] whatever these are.
+    /// Residual beyond the rounding of its step, over the inertial forces.
     /// `size`, m, is the robot's: moments below a billionth of its forces at that arm are rounding.
     pub(super) fn residual(&self, size: f64) -> f64 {
         let [linear, angular] = self.scale;
         let angular = angular.max(1e-9 * size * linear);
-        let [a, b] = self.rounding.map(|rounding| rounding / self.gate());
-        worst(relative(self.residual[0], linear + a), relative(self.residual[1], angular + b))
+        worst(relative(self.residual[0], linear), relative(self.residual[1], angular))
     }
 
     /// Truncation of the differences at the fastest rates of the run; never so wide that a wrench
@@ -123,11 +119,11 @@ impl BaseRows {
 
 impl Numbers for BaseRows {
     fn save(&self, to: &mut Vec<f64>) {
-        to.extend(self.residual.iter().chain(&self.scale).chain(&self.rounding).chain([&self.truncation]));
+        to.extend(self.residual.iter().chain(&self.scale).chain([&self.truncation]));
     }
 
     fn restore(&mut self, from: &mut Restore<'_>) {
-        for pair in [&mut self.residual, &mut self.scale, &mut self.rounding] {
+        for pair in [&mut self.residual, &mut self.scale] {
             *pair = [from.next(), from.next()];
         }
         self.truncation = from.next();

@@ -30,8 +30,9 @@ const ENERGY: f64 = 1e-6;
 const CENTER: f64 = 1e-7;
 /// Largest error of the attitude, rad, that steps compared with halved ones may add up to.
 const STEP_DOUBLING: f64 = 1e-6;
-/// Largest error of a joint or of the position, each relative to its own motion, that steps compared with halved ones
-/// may add up to.
+/// Largest error that steps compared with halved ones may add up to: of a joint's angle in rad, of a slide over the
+/// robot's size, of a joint's rate over its largest rate, of the base's origin over the path of the centre of mass and the
+/// robot's size.
 const MOTION_STEP_DOUBLING: f64 = 1e-4;
 /// Largest share of the commutator that the attitude may miss; without group integration it is 1.
 const ATTITUDE: f64 = 0.1;
@@ -67,7 +68,7 @@ pub struct Certificate {
     /// What positions and rates of a joint in steps and in halved steps differ by, summed over the run, of the joint
     /// that is worst: positions in rad (of sliding joints over the robot's size), rates over the joint's largest rate.
     pub joint_step_doubling_rel: Option<f64>,
-    /// The same of the base's origin, over its path and the robot's size.
+    /// Step-doubling error of the base origin's position, over the path of the centre of mass plus the robot's size.
     pub position_step_doubling_rel: Option<f64>,
 }
 

@@ -1,10 +1,10 @@
-//! Steps against halved steps: each joint, and the base's origin, on a scale of its own.
+//! Step-doubling errors of each joint and of the base's origin, each over its own scale.
 
 use super::{relative, worst};
 use crate::model::{Axis, Model};
 use crate::simulation::trace::Trace;
 
-/// What would move a joint by less than this in the whole run, rad or shares of the robot's size, is rest.
+/// Displacement over the whole run below which a joint counts as at rest, rad or fractions of the robot's size.
 const REST: f64 = 1e-6;
 
 /// What the run's own probes found.
@@ -36,7 +36,7 @@ impl Doubling<'_> {
         Some(off.fold(0.0, worst))
     }
 
-    /// The base's origin, over its path, m, and the robot's size; an error of its velocity counts with the time of
+    /// The base's origin, over `path`, m, of the centre of mass plus the robot's size; an error of its velocity counts with the time of
     /// the run.
     pub(super) fn origin(&self, path: f64) -> Option<f64> {
         let origin = self.trace.step_doubling.first()?;

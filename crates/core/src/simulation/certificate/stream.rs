@@ -1,4 +1,4 @@
-//! The checks that compare neighbouring steps, gathered while the run goes on: for runs whose rows are sparse.
+//! Accumulates the checks on neighbouring steps during the run.
 
 use super::attitude::Attitude;
 use super::base_rows::BaseRows;
