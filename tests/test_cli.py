@@ -189,14 +189,15 @@ def test_ctrl_c_keeps_the_trace_so_far_and_says_so(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text(SHORT_REACH.replace("duration: 0.1 s", "duration: 10 h\n  record_every: 1000"))
     command = [sys.executable, "-m", "onorbit_rs", "run", str(file), "--out", str(tmp_path / "out")]
+    command += ["--checkpoint-every", "0"]
     listens = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # a shell's background job does not
     with subprocess.Popen(
         command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, preexec_fn=listens
     ) as run:
         deadline = time.monotonic() + 60.0
-        while not (tmp_path / "out" / "scenario.yaml").exists() and time.monotonic() < deadline:
+        while not (tmp_path / "out" / "checkpoint" / "state.json").exists():  # inside the simulation loop
+            assert run.poll() is None and time.monotonic() < deadline
             time.sleep(0.05)
-        time.sleep(0.5)  # inside the simulation loop
         run.send_signal(signal.SIGINT)
         _, stderr = run.communicate(timeout=60)
     assert run.returncode == 130
