@@ -63,9 +63,10 @@ impl ComputedTorque {
         (0..6).map(|i| self.kd[7 * i]).sum::<f64>() / 6.0
     }
 
-    /// The smallest entry of `Kp`'s diagonal, 1/s².
+    /// The smallest positive entry of `Kp`'s diagonal, 1/s²; 0 if no direction has one.
     pub(super) fn softest(&self) -> f64 {
-        (0..6).map(|i| self.kp[7 * i]).fold(f64::INFINITY, f64::min)
+        let least = (0..6).map(|i| self.kp[7 * i]).filter(|kp| *kp > 0.0).fold(f64::INFINITY, f64::min);
+        if least.is_finite() { least } else { 0.0 }
     }
 
     /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`.

@@ -60,6 +60,13 @@ impl<'a, S: Scalar> Driver<'a, S> {
         })
     }
 
+    /// Expects the friction of an external engine, which creeps through rest.
+    pub(super) fn expect_creeping_friction(&mut self) {
+        if let Self::Stack(stack) = self {
+            stack.expect_creeping_friction();
+        }
+    }
+
     /// Whether the law wants the external wrenches in the plant's data when it is asked.
     pub(super) fn compensates(&self) -> bool {
         match self {

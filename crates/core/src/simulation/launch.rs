@@ -123,6 +123,9 @@ impl Simulation {
             steps: 0,
             rereference_beyond,
         };
+        if run.foreign.is_some() {
+            run.driver.expect_creeping_friction();
+        }
         match from {
             None => run.settle(),
             Some((checkpoint, trace)) => run.go_on_from(checkpoint, trace).map_err(fail)?,

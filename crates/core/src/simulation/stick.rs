@@ -79,8 +79,8 @@ impl<S: Real, W: World<S>> Plant<'_, S, W> {
             Axis::Revolute => body.force.angular,
             Axis::Prismatic => body.force.linear,
         };
-        // λ = Uᵀ a' − τ + Sᵀ pA, all its terms by their size
-        let terms = size(body.acceleration, body.reach) + along_axis.norm();
+        // λ = Uᵀ a' − τ + Sᵀ pA, all its terms by their size; U and a' about the parent's origin
+        let terms = size(body.acceleration.referred_to(-body.offset), body.reach) + along_axis.norm();
         let scale = terms.lane(0) + self.forces[j + 6].lane(0).abs() + friction + f64::MIN_POSITIVE;
         let (down, up) = ((highest - need) / scale, (need - lowest) / scale);
         if down < up { (down, -1.0) } else { (up, 1.0) }

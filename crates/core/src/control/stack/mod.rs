@@ -33,6 +33,8 @@ pub struct Stack<'a, S> {
     drives: Vec<Drive>,
     /// Acceleration asked for, rad/s² (m/s²), of the joints whose friction a law compensates.
     asked: Vec<Option<f64>>,
+    /// Whether the plant's friction creeps through rest instead of sticking.
+    friction_creeps: bool,
     q: Vec<f64>,
     v: Vec<f64>,
     tau: Vec<f64>,
@@ -64,12 +66,18 @@ impl<'a, S: Scalar> Stack<'a, S> {
             compliance: ComplianceRoom::new(n),
             drives: vec![Drive::Effort; n],
             asked: vec![None; n],
+            friction_creeps: false,
             q: zeros(model.nq()),
             v: zeros(model.nv()),
             tau: zeros(n),
             jacobian: zeros(ROWS * n),
             group: [zeros(n), zeros(n)],
         })
+    }
+
+    /// Expects friction as engines have it that do not let joints stick: it changes sign over a small range of rates.
+    pub fn expect_creeping_friction(&mut self) {
+        self.friction_creeps = true;
     }
 
     /// Whether a law wants the external wrenches in the data when it is asked.

@@ -5,6 +5,9 @@ use crate::control::side_by_side::Drive;
 use crate::model::Model;
 use crate::spatial::Scalar;
 
+/// Rates, rad/s (m/s), over which friction that creeps changes sign: the sign of a smaller one is chance.
+const CREEP: f64 = 1e-2;
+
 impl<S: Scalar> Stack<'_, S> {
     /// Adds damping and friction of the joints whose efforts are given to their loads; those at rest that have
     /// friction are taken to be held by it.
@@ -15,7 +18,9 @@ impl<S: Scalar> Stack<'_, S> {
             }
             let rate = self.v[j + 6];
             self.side_by_side.load[j] += rate * joint.damping;
-            if rate != 0.0 {
+            if self.friction_creeps {
+                self.side_by_side.load[j] += joint.friction * (rate / CREEP).clamp(-1.0, 1.0);
+            } else if rate != 0.0 {
                 self.side_by_side.load[j] += joint.friction * rate.signum();
             } else if joint.static_friction > 0.0 {
                 self.drives[j] = Drive::Held;
