@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -128,14 +129,31 @@ def test_kilometres_forgotten_are_refused_by_check_and_leave_no_folder(tmp_path:
     assert not (tmp_path / "out").exists()
 
 
-def test_rows_left_out_leave_checks_out_and_the_summary_says_which(tmp_path: Path) -> None:
-    (tmp_path / "mine.yaml").write_text(
-        SHORT_REACH.replace("time_step: 5 ms", "time_step: 5 ms\n  record_every: 2")
-    )
-    done = onorbit("run", "mine.yaml", cwd=tmp_path)
-    for check in ("base rows residual", "attitude consistency"):
-        (line,) = [line for line in done.stdout.splitlines() if check in line]
-        assert line.split()[-2:] == ["not", "evaluated"], done
+def certificate_lines(folder: Path, simulation: str) -> dict[str, list[str]]:
+    """Value, gate, unit and verdict of each check, as ``onorbit run`` prints them."""
+    (folder / "mine.yaml").write_text(SHORT_REACH.replace("time_step: 5 ms", simulation))
+    done = onorbit("run", "mine.yaml", cwd=folder)
+    assert done.returncode == 0, done
+    lines = [line for line in done.stdout.splitlines() if line.startswith("  ") and line.strip()]
+    checks = (re.split(r" {2,}", line.strip(), maxsplit=1) for line in lines[1:])
+    return {name: values.split() for name, values in checks}
+
+
+def test_rows_left_out_leave_no_check_out(tmp_path: Path) -> None:
+    whole = certificate_lines(tmp_path, "time_step: 5 ms")
+    sparse = certificate_lines(tmp_path, "time_step: 5 ms\n  record_every: 2")
+    assert list(whole) == list(sparse) and len(whole) == 9
+    assert {values[-1] for values in (*whole.values(), *sparse.values())} == {"holds"}
+    compared = [name for name in whole if name.endswith("step doubling")]
+    assert len(compared) == 3  # the same steps are halved, whatever is recorded
+    assert [sparse[name] for name in compared] == [whole[name] for name in compared]
+
+
+def test_the_summary_says_which_checks_adaptive_steps_leave_out(tmp_path: Path) -> None:
+    adaptive = certificate_lines(tmp_path, "integrator: dormand_prince\n  time_step: 5 ms")
+    absent = [name for name, values in adaptive.items() if values[-2:] == ["not", "evaluated"]]
+    assert {"base rows residual", "attitude consistency"} <= set(absent) < set(adaptive)
+    assert all(values[-1] == "holds" for name, values in adaptive.items() if name not in absent)
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
@@ -171,14 +189,15 @@ def test_ctrl_c_keeps_the_trace_so_far_and_says_so(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text(SHORT_REACH.replace("duration: 0.1 s", "duration: 10 h\n  record_every: 1000"))
     command = [sys.executable, "-m", "onorbit_rs", "run", str(file), "--out", str(tmp_path / "out")]
+    command += ["--checkpoint-every", "0"]
     listens = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # a shell's background job does not
     with subprocess.Popen(
         command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, preexec_fn=listens
     ) as run:
         deadline = time.monotonic() + 60.0
-        while not (tmp_path / "out" / "scenario.yaml").exists() and time.monotonic() < deadline:
+        while not (tmp_path / "out" / "checkpoint" / "state.json").exists():  # inside the simulation loop
+            assert run.poll() is None and time.monotonic() < deadline
             time.sleep(0.05)
-        time.sleep(0.5)  # inside the simulation loop
         run.send_signal(signal.SIGINT)
         _, stderr = run.communicate(timeout=60)
     assert run.returncode == 130

@@ -12,6 +12,8 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -21,34 +23,49 @@ from commands import SPIN, onorbit
 
 import onorbit_rs as oo
 from onorbit_rs.cli.signals import ending_signals
+from onorbit_rs.progress import Progress
 from onorbit_rs.scenario import load
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="sends SIGTERM and SIGHUP")
 
 
-WITHOUT_PICTURES = """
-import onorbit_rs.cli, onorbit_rs.keeping
-onorbit_rs.keeping.write_pictures = lambda *_, **__: None
-onorbit_rs.cli.main()
+TELLS = """
+import contextlib, pathlib
+from onorbit_rs import cli, keeping, progress, running
+
+real = running.progress_bar
+
+@contextlib.contextmanager
+def bar(*given, **options):
+    with real(*given, **options) as drawn:
+        def move(t, duration):
+            pathlib.Path("in_the_loop").touch()
+            if drawn.move is not None:
+                drawn.move(t, duration)
+        yield progress.Progress(move, drawn.tell)
+
+running.progress_bar = bar
+keeping.write_pictures = lambda *_, **__: None
+cli.main()
 """
+"""A command without pictures that leaves a file once its simulation loop goes round."""
 
 
 def run_in_the_background(tmp_path: Path, duration: str, **streams: Any) -> subprocess.Popen[str]:
     """A run whose checkpoints come too seldom: what it leaves is the last one."""
     file = tmp_path / "mine.yaml"
     file.write_text(SPIN.replace("duration: 0.1 s", f"duration: {duration}, record_every: 1000"))
-    command = [sys.executable, "-c", WITHOUT_PICTURES, "run", str(file), "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-c", TELLS, "run", str(file), "--out", str(tmp_path / "out")]
     return subprocess.Popen(
-        [*command, "--checkpoint-every", "1000"], stdout=subprocess.PIPE, text=True, **streams
+        [*command, "--checkpoint-every", "1000"], stdout=subprocess.PIPE, text=True, cwd=tmp_path, **streams
     )
 
 
 def wait_until_it_runs(tmp_path: Path, run: subprocess.Popen[str]) -> None:
     deadline = time.monotonic() + 60.0
-    while not (tmp_path / "out" / "scenario.yaml").exists():
+    while not (tmp_path / "in_the_loop").exists():
         assert run.poll() is None and time.monotonic() < deadline
         time.sleep(0.02)
-    time.sleep(0.5)  # inside the simulation loop
 
 
 def test_sigterm_leaves_a_last_checkpoint_and_says_how_to_go_on(tmp_path: Path) -> None:
@@ -154,8 +171,12 @@ def test_a_second_ctrl_c_ends_the_figures_of_an_interrupted_run(
     interrupted_while(monkeypatch, "write_pictures")
     data = load("humanoid_reach").resolved()
     data["simulation"] |= {"duration": 1000.0, "time_step": 1e-4, "record_every": 100}
-    timer = threading.Timer(0.5, _thread.interrupt_main)
-    timer.start()
+
+    @contextmanager
+    def pressed(*_: Any, **__: Any) -> Iterator[Progress]:
+        yield Progress(lambda t, duration: _thread.interrupt_main())
+
+    monkeypatch.setattr("onorbit_rs.running.progress_bar", pressed)
     with pytest.raises(oo.exceptions.RunInterrupted, match=r"onorbit resume .*onorbit report .* draws them"):
         oo.run(data, tmp_path / "out", quiet=True)
     assert (tmp_path / "out" / "checkpoint" / "state.json").is_file()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import random
 from collections.abc import Callable
@@ -14,7 +15,7 @@ from commands import refusal
 from test_earth import kernel, series
 
 import onorbit_rs as oo
-from onorbit_rs import reading
+from onorbit_rs import files, reading
 from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError
 from onorbit_rs.interop import onorbitros
 from onorbit_rs.robots.expand import expand
@@ -100,6 +101,29 @@ def test_no_file_is_read_beyond_its_limit(tmp_path: Path) -> None:
     for name in ("scenario", "TLE", "OMM", "URDF", "Earth orientation", "space weather", "OnOrbitROS"):
         with pytest.raises(OnOrbitError, match=r"larger than|more than \d+"):
             READERS[name](file)
+
+
+def test_a_file_that_grows_while_it_is_read_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "small").write_bytes(b"x")
+
+    class Grown(io.BytesIO):
+        def fileno(self) -> int:
+            return small.fileno()
+
+    with (tmp_path / "small").open("rb") as small:
+        assert files.read_bounded(Grown(b"x" * 10), 10) == b"x" * 10
+        with pytest.raises(ValueError, match="larger than 10 bytes"):
+            files.read_bounded(Grown(b"x" * 11), 10)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="fifos are of POSIX")
+def test_a_pipe_that_takes_the_place_of_a_file_is_not_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    monkeypatch.setattr(reading, "check_regular", lambda *_: None)  # it was a file at that instant
+    with pytest.raises(ReadError, match="not a regular file"):
+        reading.read_bytes(tmp_path / "pipe", 10)
 
 
 @pytest.mark.timeout(60)

@@ -32,7 +32,7 @@ def fuzz() -> Iterator[Any]:
         import tried
 
         yield SimpleNamespace(targets=targets, tried=tried)
-    for name in ("targets", "tried"):
+    for name in ("pausing", "targets", "tried"):
         del sys.modules[name]
 
 

@@ -247,3 +247,7 @@ def test_files_are_short_as_a_rule() -> None:
         len(file.read_text().splitlines()) for file in source_files() if "tests" not in file.parts
     )
     assert lengths[len(lengths) // 2] <= 135, "the median of pleasant houses is 95 to 135"
+
+
+def test_no_coverage_profile_lies_at_the_root() -> None:
+    assert not list(REPOSITORY.glob("*.profraw"))

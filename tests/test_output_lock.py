@@ -34,13 +34,20 @@ time.sleep(60)
 """
 
 
-WITHOUT_PICTURES = """
-import sys
+WAITS = """
+import pathlib, sys, time
 from onorbit_rs import keeping
 from onorbit_rs.cli import main
-keeping.write_pictures = lambda *_, **__: None
+
+def wait(*_, **__):
+    deadline = time.monotonic() + 60.0
+    while not pathlib.Path("go").exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+
+keeping.write_pictures = wait
 main(sys.argv[1:])
 """
+"""A command that holds its folder, with the numbers in it, until a file is there."""
 
 
 @pytest.fixture
@@ -78,23 +85,28 @@ def test_a_second_command_is_told_who_writes_until_that_process_is_killed(
     assert not list(out.iterdir())
 
 
-def test_two_runs_at_once_leave_one_of_them_whole(tmp_path: Path) -> None:
+def test_two_runs_at_once_leave_the_first_one_whole(tmp_path: Path) -> None:
     """With the numbers of one in the folder of the other, both had ended with exit code 0."""
     for name, rate in (("a", 0.1), ("b", 0.7)):
-        text = SPIN.replace("0.1, 0.2, 0.3", f"0, 0, {rate}").replace("duration: 0.1 s", "duration: 20 s")
-        (tmp_path / f"{name}.yaml").write_text(text.replace("time_step: 10 ms", "time_step: 1 ms"))
-    command = [sys.executable, "-c", WITHOUT_PICTURES, "run"]
-    running = [
-        subprocess.Popen(
-            [*command, f"{name}.yaml", "-q", "--out", "out"], cwd=tmp_path, stderr=subprocess.PIPE
-        )
-        for name in "ab"
-    ]
-    said = [process.communicate(timeout=100)[1].decode() for process in running]
-    codes = [process.returncode for process in running]
-    assert sorted(codes) == [0, 2], said
-    assert "is in use: process " in said[codes.index(2)] or "is not empty: out" in said[codes.index(2)]
-    again = oo.run(tmp_path / f"{'ab'[codes.index(0)]}.yaml", quiet=True)
+        text = SPIN.replace("0.1, 0.2, 0.3", f"0, 0, {rate}")
+        (tmp_path / f"{name}.yaml").write_text(text)
+
+    def started(name: str, *options: str) -> subprocess.Popen[str]:
+        command = [sys.executable, "-c", WAITS, "run", f"{name}.yaml", "-q", "--out", "out", *options]
+        return subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+
+    with started("a") as first:
+        deadline = time.monotonic() + 60.0
+        while owner_of(tmp_path / "out") is None:
+            assert first.poll() is None and time.monotonic() < deadline
+            time.sleep(0.05)
+        with started("b", "--force") as second:
+            said = second.communicate(timeout=60)[1]
+        assert second.returncode == 2 and f"out is in use: process {first.pid} on " in said
+        (tmp_path / "go").touch()
+        said = first.communicate(timeout=60)[1]
+    assert (first.returncode, said) == (0, "")
+    again = oo.run(tmp_path / "a.yaml", quiet=True)
     assert oo.compare(tmp_path / "out", again, tolerance=1e-300).agrees
 
 

@@ -32,10 +32,12 @@ def open_to_read(file: Path) -> BinaryIO:
 
 
 def read_bounded(stream: BinaryIO, most: int) -> bytes:
-    """Content of a file that was opened to read, at most ``most`` bytes; ValueError where it is larger."""
-    if os.fstat(stream.fileno()).st_size > most:
+    """Return the content of a stream of at most ``most`` bytes; a ValueError where it is longer."""
+    is_larger = os.fstat(stream.fileno()).st_size > most
+    content = b"" if is_larger else stream.read(most + 1)  # the file may grow meanwhile
+    if is_larger or len(content) > most:
         raise ValueError(f"it is larger than {most} bytes")
-    return stream.read()
+    return content
 
 
 def open_to_change(file: Path) -> BinaryIO:

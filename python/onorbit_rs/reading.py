@@ -7,6 +7,7 @@ import stat
 from pathlib import Path
 
 from onorbit_rs.exceptions import NotFoundError, ReadError
+from onorbit_rs.files import open_to_read
 
 LARGEST_TEXT = 16_000_000
 """Bytes of an element set, a scenario's resolved text or a robot."""
@@ -55,7 +56,7 @@ def read_head(path: str | os.PathLike[str], most: int, kind: str = "file") -> by
     """The first ``most`` bytes of a file, or all of it; raises as :func:`check_regular`."""
     check_regular(path, kind)
     try:
-        with Path(path).open("rb") as stream:
+        with open_to_read(Path(path)) as stream:  # it may have become a pipe meanwhile
             return stream.read(most)
     except OSError as error:
         raise _unreadable(path, error.strerror or str(error), kind) from None

@@ -86,7 +86,9 @@ def main() -> int:
     if given.replay:
         return replay(*given.replay)
     program = engine()
-    listed = subprocess.run([program, "--list"], capture_output=True, text=True, check=True).stdout.split()
+    listed = subprocess.run(
+        [program, "--list"], env=os.environ | RUN, capture_output=True, text=True, check=True
+    ).stdout.split()
     engines = [name for name in listed if given.only in name]
     targets = [name for name in TARGETS if given.only in name]
     guide = install_atheris()

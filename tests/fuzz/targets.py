@@ -5,21 +5,20 @@ from __future__ import annotations
 import contextlib
 import json
 import shutil
-import subprocess
-import sys
 import tempfile
-import time
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from pausing import Pausing
 
 import onorbit_rs as oo
 from onorbit_rs import _core, keeping
 from onorbit_rs import kernel as _kernel  # noqa: F401  # loaded late else, when coverage is set up
 from onorbit_rs import omm as _omm  # noqa: F401
+from onorbit_rs.exceptions import RunInterrupted
 from onorbit_rs.interop.expressions import evaluate
 from onorbit_rs.interop.onorbitros import convert
 from onorbit_rs.output.read import read_summary, read_trace
@@ -44,7 +43,11 @@ keeping.write_pictures = lambda *_, **__: None
 SHORT_RUN = {
     "robot": {"rigid_body": {"mass": 1.0, "inertia": [1.0, 2.0, 3.0]}},
     "initial": {"angular_velocity": [0.1, 0.0, 0.0]},
-    "simulation": {"duration": 1.0, "time_step": 1e-4},
+    "simulation": {"duration": 0.02, "time_step": 1e-4},
+}
+STOPPED_RUN = SHORT_RUN | {
+    "controller": {"kind": "python", "module": "pausing", "class": "Pausing"},
+    "simulation": {"duration": 0.4, "time_step": 1e-3},
 }
 
 
@@ -71,17 +74,17 @@ class Room:
 
     def _made(self, stopped: bool) -> Path:
         folder = self.folder / f"run{stopped:d}"
-        state = folder / "checkpoint" / "state.json"
         if not stopped:
-            oo.run(load(SHORT_RUN | {"simulation": {"duration": 0.02}}), out=folder, quiet=True)
-        while stopped and not state.exists():  # a run may end before it is killed
-            shutil.rmtree(folder, ignore_errors=True)
-            call = f"oo.run({SHORT_RUN!r}, {str(folder)!r}, quiet=True, checkpoint_every=0)"
-            program = f"import onorbit_rs as oo; {call}"
-            with subprocess.Popen([sys.executable, "-c", program]) as process:
-                while process.poll() is None and not state.exists():
-                    time.sleep(0.001)
-                process.kill()
+            oo.run(SHORT_RUN, folder, quiet=True)
+            return folder
+        Pausing.stops = True
+        try:
+            with contextlib.suppress(RunInterrupted):
+                oo.run(STOPPED_RUN, folder, quiet=True, checkpoint_every=0.0)
+        finally:
+            Pausing.stops = False
+        if not (folder / "checkpoint" / "state.json").exists():
+            raise RuntimeError("the run was stopped and left no checkpoint")
         return folder
 
     def close(self) -> None:

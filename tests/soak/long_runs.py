@@ -1,4 +1,4 @@
-"""Long runs whose certificate is green, and that hold no more memory at their end than their rows take."""
+"""Long runs: their certificate is green, and where the motion has a closed form their error is small."""
 
 from __future__ import annotations
 
