@@ -69,8 +69,13 @@ def wrong(count: int, seed: int, until: float = np.inf) -> Tally:
         if tally.runs[kind] * len(WRONG) >= count:
             continue
         run: Run = case(rng)
-        if run.is_wrong is None or run.is_wrong():
+        try:
+            if run.is_wrong is not None and not run.is_wrong():
+                continue
             trace = run.start().run(run.duration)
+        except oo.SimulationError:
+            continue  # a run that diverges is refused by the engine: nothing is left to certify
+        else:
             tally.runs[kind] += 1
             tally.nearest = min(tally.nearest, nearest(trace))
             if not failures(trace):

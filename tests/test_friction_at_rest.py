@@ -141,7 +141,7 @@ def test_a_joint_without_a_law_does_not_disturb_the_others_on_an_engine_whose_fr
 
 @pytest.mark.parametrize("stiff", [6, 3])
 def test_a_tool_held_in_position_alone_comes_to_rest(stiff: int) -> None:
-    """With no stiffness in attitude, each joint's compensation changed sign 4 to 8 times in the last seconds."""
+    """Without stiffness in attitude the compensation changed sign 4 to 8 times per joint at the end."""
     text = (Path(oo.__file__).parent / "robots" / "humanoid_torso.urdf").read_text()
     rough = oo.Model.from_urdf_string(text.replace("<axis", '<dynamics friction="0.05"/><axis'))
     q = rough.neutral()
