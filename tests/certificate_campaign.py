@@ -20,6 +20,7 @@ import numpy as np
 from certificate_cases import EXACT, OFF, SHARE, WRONG, Run
 
 import onorbit_rs as oo
+from onorbit_rs.exceptions import SimulationError
 
 
 @dataclass
@@ -73,7 +74,7 @@ def wrong(count: int, seed: int, until: float = np.inf) -> Tally:
             if run.is_wrong is not None and not run.is_wrong():
                 continue
             trace = run.start().run(run.duration)
-        except oo.SimulationError:
+        except SimulationError:
             continue  # a run that diverges is refused by the engine: nothing is left to certify
         else:
             tally.runs[kind] += 1
