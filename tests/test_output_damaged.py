@@ -48,8 +48,10 @@ def test_an_npz_that_unpacks_to_gigabytes_is_not_read(tmp_path: Path) -> None:
     zeros = npy(np.zeros(4_000_000))
     content = npz(zipfile.ZIP_DEFLATED, time=zeros, q=zeros, v=zeros, momentum=zeros)
     assert len(content) < 1e-2 * 4 * len(zeros)
+    words = "time.npy is compressed; a run writes its trace uncompressed"
+    refused(tmp_path, content, words)  # what is imported on the way counts once
     tracemalloc.start()
-    refused(tmp_path, content, "time.npy is compressed; a run writes its trace uncompressed")
+    refused(tmp_path, content, words)
     assert tracemalloc.get_traced_memory()[1] < 3e6
     tracemalloc.stop()
 
