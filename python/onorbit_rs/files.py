@@ -33,9 +33,11 @@ def open_to_read(file: Path) -> BinaryIO:
 
 def read_bounded(stream: BinaryIO, most: int) -> bytes:
     """Return the content of a stream of at most ``most`` bytes; a ValueError where it is longer."""
-    is_larger = os.fstat(stream.fileno()).st_size > most
-    content = b"" if is_larger else stream.read(most + 1)  # the file may grow meanwhile
-    if is_larger or len(content) > most:
+    size = os.fstat(stream.fileno()).st_size
+    content = b"" if size > most else stream.read(size + 1)
+    if size < len(content) <= most:  # the file has grown meanwhile
+        content += stream.read(most + 1 - len(content))
+    if max(size, len(content)) > most:
         raise ValueError(f"it is larger than {most} bytes")
     return content
 
