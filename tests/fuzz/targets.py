@@ -22,6 +22,7 @@ from onorbit_rs.exceptions import RunInterrupted
 from onorbit_rs.interop.expressions import evaluate
 from onorbit_rs.interop.onorbitros import convert
 from onorbit_rs.output.read import read_summary, read_trace
+from onorbit_rs.output.sealed import sealed
 from onorbit_rs.report.numbers import groups
 from onorbit_rs.robots.expand import expand
 from onorbit_rs.scenario import load
@@ -31,11 +32,6 @@ from onorbit_rs.scenario.path_file import read_points, two_lines
 from onorbit_rs.scenario.units import ANGLE, FORCE, GRAVITY, LENGTH, NUMBER, TIME, parse_quantity
 from onorbit_rs.scenario.yaml_lines import parse_yaml
 from onorbit_rs.viewer.solids import _unit
-
-try:
-    from onorbit_rs.output.sealed import sealed
-except ImportError:
-    sealed = None
 
 # pictures of a run that was resumed take most of a second, and read nothing
 keeping.write_pictures = lambda *_, **__: None
@@ -157,7 +153,7 @@ def checkpoint(data: bytes, room: Room) -> None:
     folder = room.run(stopped=True)
     with contextlib.suppress(ValueError, RecursionError):
         record = json.loads(data)
-        if isinstance(record, dict) and sealed is not None:
+        if isinstance(record, dict):
             data = sealed({key: value for key, value in record.items() if key != "sha256"})
     (folder / "checkpoint" / "state.json").write_bytes(data)
     oo.resume(folder, quiet=True)

@@ -92,15 +92,6 @@ pub trait Real:
     #[must_use]
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
 
-    /// The nearest number in -1..1.
-    #[inline(always)]
-    #[must_use]
-    fn saturate(self) -> Self {
-        let one = Self::of(1.0);
-        let low = Self::select(Self::less(self, -one), -one, self);
-        Self::select(Self::less(one, low), one, low)
-    }
-
     /// Whether the mask holds in any lane: to leave out work that no lane needs, with the same bits.
     fn any(mask: Self::Mask) -> bool;
 
