@@ -1,4 +1,4 @@
-"""Two builds of ours in turns, and what their times say."""
+"""Times two builds of this project in turns and compares them."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class Duel:
 
 
 def start(build: Build, who: str, folder: Path) -> Contestant:
-    """A process of a build: the Rust contestant, or the worker of ours in Python."""
+    """A process of one build: the Rust contestant or the Python worker."""
     if who == "rust":
         command = [build.contestant, folder / "robot.urdf", folder / "states.bin", STATES]
         return Contestant([*map(str, command)], core=CORE)

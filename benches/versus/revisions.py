@@ -1,4 +1,4 @@
-"""Builds of two revisions of ours: the Rust contestant and the Python package of each."""
+"""Builds two revisions of this project: the Rust contestant and the Python package of each."""
 
 from __future__ import annotations
 

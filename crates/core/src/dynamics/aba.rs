@@ -93,7 +93,7 @@ fn kernel<S: Real>(
                 false => S::of(1.0) / (joint_effort(node, body.axis(), reach) + S::of(node.rotor_inertia)),
             };
             body.drive = tau[k + 5] - joint_effort(node, body.axis(), force);
-            // Ia = IA − U Uᵀ/D,  pa = p + U u/D about the parent's origin: IA moves there while D is divided by
+            // Ia = IA − U Uᵀ/D,  pa = p + U u/D, about the parent's origin; shifting IA overlaps with the division by D
             body.reach = reach.from_point(body.offset);
             let yielding = body.reach * -body.inverse_pivot;
             (
