@@ -35,11 +35,13 @@ pub struct FreeFloating<S> {
     pub pose: FramePose<S>,
     /// Twist of the frame in W axes at its origin.
     pub velocity: Motion<S>,
-    /// `cb − Qb`.
-    base_bias: Force<S>,
-    /// Columns of `Mbm`, about the base's origin.
+    /// The robot's centre of mass `c` from the base's origin, m: about it `Mbb` falls into `m` and `I_c`.
+    com_b: Vec3<S>,
+    /// `Mbb⁻¹ (cb − Qb)`, about `c`.
+    net: Motion<S>,
+    /// Columns of `Mbm`, about `c`.
     coupling: Vec<Force<S>>,
-    /// `−Mbb⁻¹ Mbm`, a twist of the base per unit joint rate.
+    /// `−Mbb⁻¹ Mbm`, a twist of the base per unit joint rate, about `c`.
     recoil: Vec<Motion<S>>,
 }
 
@@ -55,7 +57,8 @@ impl<S: Real> FreeFloating<S> {
             drift: Motion::zero(),
             pose: FramePose { rot_wf: Mat3::identity(), pos_w: Vec3::zero() },
             velocity: Motion::zero(),
-            base_bias: Force::zero(),
+            com_b: Vec3::zero(),
+            net: Motion::zero(),
             coupling: vec![Force::zero(); n],
             recoil: vec![Motion::zero(); n],
         }
@@ -106,7 +109,7 @@ pub fn free_floating_frame<S: Real>(
     S::enter(
         #[inline(always)]
         || {
-            reduce_task(model, data, q, frame, &data.bodies[0].composite.inverse(), out);
+            reduce_task(model, data, q, frame, out);
         },
     );
 }
@@ -168,30 +171,36 @@ fn kernel<S: Real>(
         |k, node, body, load| {
             let (composite, (bias, Outside(outside))) = with_own(body, load);
             // I^c S, cm − Qm, Qm
-            body.force = composite_force(node, body.axis(), &composite);
             out.bias[k - 1] = joint_effort(node, body.axis(), bias);
             out.external[k - 1] = joint_effort(node, body.axis(), outside);
+            body.force = composite_force(node, body.axis(), &composite);
             let r = body.offset;
             (composite.from_point(r), (bias.from_point_late(r), Outside(outside.from_point_late(r))))
         },
     );
     let (composite, (bias, Outside(outside))) = with_own(&bodies[0], load);
-    (bodies[0].composite, out.base_bias) = (composite, bias);
+    bodies[0].composite = composite;
     let inverse = composite.inverse();
+    out.com_b = inverse.com;
 
     mobility(nodes, bodies, &inverse, out);
 
-    let (net, outside) = (inverse.apply(bias), inverse.apply(outside)); // Mbb⁻¹ (cb − Qb), Mbb⁻¹ Qb
+    // Mbb⁻¹ (cb − Qb), Mbb⁻¹ Qb
+    let from_com = -inverse.com;
+    out.net = inverse.at_com(bias.from_point(from_com));
+    let outside = inverse.at_com(outside.from_point(from_com));
     for (k, coupling) in out.coupling.iter().enumerate() {
         // Q* = Qm − Mbmᵀ Mbb⁻¹ Qb,  c* = (cm − Qm) − Mbmᵀ Mbb⁻¹ (cb − Qb) + Q*
         out.external[k] -= outside.dot(*coupling);
-        out.bias[k] = out.bias[k] - net.dot(*coupling) + out.external[k];
+        out.bias[k] = out.bias[k] - out.net.dot(*coupling) + out.external[k];
     }
     out.drift = classical(model, data, q, frame, data.bodies[model.frames()[frame].body].acceleration);
-    reduce_task(model, data, q, frame, &inverse, out);
+    reduce_task(model, data, q, frame, out);
 }
 
 /// `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `Mbm` and the base's recoil from the forces `I^c S` of all joints.
+///
+/// `Mmm` has `S_jᵀ I^c S_k`, the force moved to the origin of each ancestor `j` of `k`.
 #[inline(always)]
 fn mobility<S: Real>(
     nodes: &[Node],
@@ -200,25 +209,28 @@ fn mobility<S: Real>(
     out: &mut FreeFloating<S>,
 ) {
     let n = nodes.len() - 1;
-    for (k, row) in (1..).zip(out.inertia.chunks_exact_mut(n.max(1))) {
-        // S_jᵀ I^c S_k at the origin of each ancestor j; where the force has arrived at the base it is the column of Mbm
-        let (mut force, mut j, row) = (bodies[k].force, k, &mut row[..k]);
-        row.fill(S::of(0.0));
-        while j > 0 {
-            let (node, body) = (&nodes[j], &bodies[j]);
-            row[j - 1] = joint_effort(node, body.axis(), force);
-            (force, j) = (force.from_point(body.offset), node.parent);
-        }
-        row[k - 1] += S::of(nodes[k].rotor_inertia);
-        (out.coupling[k - 1], out.recoil[k - 1]) = (force, -inverse.apply(force));
-        for (entry, recoil) in row.iter_mut().zip(&out.recoil[..k]) {
-            *entry += recoil.dot(force);
-        }
+    for (k, body) in bodies[1..].iter().enumerate() {
+        let force = body.force.from_point(body.pos_b - inverse.com);
+        (out.coupling[k], out.recoil[k]) = (force, -inverse.at_com(force));
     }
+    let (nodes, bodies, recoil) = (&nodes[1..], &bodies[1..=n], &out.recoil[..n]);
     for k in 0..n {
-        for j in 0..k {
-            out.inertia[j * n + k] = out.inertia[k * n + j];
+        let (mut force, coupling, mut ancestor) = (bodies[k].force, out.coupling[k], k + 1);
+        for j in (0..=k).rev() {
+            let mut entry = recoil[j].dot(coupling);
+            if j + 1 == ancestor {
+                let (node, body) = (&nodes[j], &bodies[j]);
+                entry += joint_effort(node, body.axis(), force);
+                ancestor = node.parent;
+                // no joint is left to feel it at the base
+                if ancestor > 0 {
+                    force = force.from_point(body.offset);
+                }
+            }
+            out.inertia[k * n + j] = entry;
+            out.inertia[j * n + k] = entry;
         }
+        out.inertia[k * n + k] += S::of(nodes[k].rotor_inertia);
     }
 }
 
@@ -244,23 +256,16 @@ fn with_own<S: Real>(
 
 /// Pose, twist, `Jg` and `d`, the last from `J̇ v`: what the frame does when the base gives way.
 #[inline(always)]
-fn reduce_task<S: Real>(
-    model: &Model,
-    data: &Data<S>,
-    q: &[S],
-    frame: usize,
-    inverse: &InverseInertia<S>,
-    out: &mut FreeFloating<S>,
-) {
+fn reduce_task<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize, out: &mut FreeFloating<S>) {
     out.pose = frame_pose(model, data, q, frame);
     out.velocity = frame_velocity(model, data, q, frame);
     let n = model.joint_count();
     let frame = &model.frames()[frame];
     let (rot_wb, p) = (base_rotation(q), frame_origin_b(data, frame));
-    let (mut ancestor, mut lever) = (frame.body, frame_offset(data, frame));
+    let (from_com, mut ancestor, mut lever) = (p - out.com_b, frame.body, frame_offset(data, frame));
     for k in (1..=n).rev() {
         // Jg = Jm − Jb Mbb⁻¹ Mbm
-        let mut twist = out.recoil[k - 1].referred_to(p);
+        let mut twist = out.recoil[k - 1].referred_to(from_com);
         if k == ancestor {
             let (node, body) = (&model.nodes()[k], &data.bodies[k]);
             twist += subspace(node, body.axis()).referred_to(lever);
@@ -269,6 +274,5 @@ fn reduce_task<S: Real>(
         write_column(&mut out.jacobian, n, k - 1, rot_wb, twist);
     }
     // d = J̇ v − Jb Mbb⁻¹ (cb − Qb)
-    let net = inverse.apply(out.base_bias);
-    out.drift -= Motion::new(rot_wb * net.at(p), rot_wb * net.angular);
+    out.drift -= Motion::new(rot_wb * out.net.at(from_com), rot_wb * out.net.angular);
 }

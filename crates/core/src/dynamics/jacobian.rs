@@ -41,8 +41,8 @@ pub(super) fn write_column<S: Real>(
 ) {
     let (linear, angular) = (rot_wb * twist.linear, rot_wb * twist.angular);
     let entries = [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z];
-    for (i, entry) in entries.into_iter().enumerate() {
-        out[i * width + j] = entry;
+    for (row, entry) in out.chunks_exact_mut(width).zip(entries) {
+        row[j] = entry;
     }
 }
 

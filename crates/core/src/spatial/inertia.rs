@@ -121,7 +121,8 @@ impl<S: Real> SpatialInertia<S> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InverseInertia<S> {
     inverse_mass: S,
-    com: Vec3<S>,
+    /// Centre of mass, m.
+    pub com: Vec3<S>,
     inverse_about_com: Sym3<S>,
 }
 
@@ -137,8 +138,13 @@ impl<S: Real> SpatialInertia<S> {
 }
 
 impl<S: Real> InverseInertia<S> {
-    /// `I⁻¹ f`: about the centre of mass the two halves separate,
-    /// `ω = I_c⁻¹ (n − c × f)`, `v = f/m − ω × c`.
+    /// `I⁻¹ f` with both about the centre of mass, where the two halves separate: `ω = I_c⁻¹ n`, `v = f/m`.
+    #[inline(always)]
+    pub fn at_com(&self, f: Force<S>) -> Motion<S> {
+        Motion::new(f.linear * self.inverse_mass, self.inverse_about_com * f.angular)
+    }
+
+    /// `I⁻¹ f`: `ω = I_c⁻¹ (n − c × f)`, `v = f/m − ω × c`.
     #[inline(always)]
     pub fn apply(&self, f: Force<S>) -> Motion<S> {
         let angular = self.inverse_about_com * (f.angular - self.com.cross(f.linear));

@@ -108,12 +108,12 @@ impl<S: Real> Derivatives<S> {
     /// Must be called for every joint once, the last one first.
     #[inline(always)]
     pub(super) fn joint_columns(&mut self, nodes: &[Node], bodies: &[BodyData<S>], j: usize) -> &[Row<S, 2>] {
-        let (term, unit) = (self.bodies[j], subspace(&nodes[j], bodies[j].axis()));
+        let (term, unit) = (&self.bodies[j], subspace(&nodes[j], bodies[j].axis()));
+        let (rate, rate2) = (term.rate, term.rate2);
         let two = S::of(2.0);
-        let mut force_q = term.coriolis.apply(term.rate.angular)
-            + term.inertia.momentum(term.rate2)
-            + unit.cross_force(term.force);
-        let mut force_v = term.coriolis.apply(unit.angular) + term.inertia.momentum(term.rate) * two;
+        let mut force_q =
+            term.coriolis.apply(rate.angular) + term.inertia.momentum(rate2) + unit.cross_force(term.force);
+        let mut force_v = term.coriolis.apply(unit.angular) + term.inertia.momentum(rate) * two;
         let (mut i, mut count) = (j, 6);
         loop {
             let r = bodies[i].offset;
@@ -121,8 +121,9 @@ impl<S: Real> Derivatives<S> {
             if i == 0 {
                 break;
             }
-            let effort = |f| joint_effort(&nodes[i], bodies[i].axis(), f);
-            self.joint[count] = Row { index: i + 5, values: [effort(force_q), effort(force_v)] };
+            let (node, z) = (&nodes[i], bodies[i].axis());
+            let values = [joint_effort(node, z, force_q), joint_effort(node, z, force_v)];
+            self.joint[count] = Row { index: i + 5, values };
             count += 1;
         }
         // loops by index: arrays taken apart by iterators go through memory
@@ -133,8 +134,8 @@ impl<S: Real> Derivatives<S> {
         for k in j..nodes[j].end {
             // Sᵀ (2B_C Ψ̇_j + I_C Ψ̈_j),  Sᵀ (2B_C S_j + 2 I_C Ψ̇_j)
             let Terms { reach, reach_coriolis, .. } = &mut self.bodies[k];
-            let row_q = reach_coriolis.dot_add(term.rate.angular, term.rate2.dot(*reach));
-            let row_v = reach_coriolis.dot_add(unit.angular, term.rate.dot(*reach) * two);
+            let row_q = reach_coriolis.dot_add(rate.angular, rate2.dot(*reach));
+            let row_v = reach_coriolis.dot_add(unit.angular, rate.dot(*reach) * two);
             *reach = reach.from_point(bodies[j].offset);
             self.joint[count] = Row { index: k + 5, values: [row_q, row_v] };
             count += 1;
