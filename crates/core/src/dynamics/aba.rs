@@ -1,6 +1,7 @@
 //! Forward dynamics: the motion behind forces, in O(n) (articulated bodies, floating base).
 
 use super::data::{BodyData, Data};
+use super::dense::{is_dense, solve};
 use super::external::{FrameWrench, apply_external};
 use super::kinematics::kinematics;
 use super::rnea::{accelerations, net_force};
@@ -14,7 +15,8 @@ use crate::spatial::{ArticulatedInertia, Force, Motion, Real};
 /// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in its axes.
 ///
 /// The velocity products are dealt with first, as in inverse dynamics with `q̈ = 0`: what the joints add is counted from
-/// there, and the recursion of the articulated inertias has but one product with each.
+/// there, and the recursion of the articulated inertias has but one product with each. Where light bodies carry heavy
+/// ones the mass matrix gives the accelerations ([`dense`](super::dense)).
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Tables 7.1 and 9.4.
 pub fn forward_dynamics<S: Real>(
@@ -43,6 +45,9 @@ pub fn forward_dynamics_recursion<S: Real>(
         #[inline(always)]
         || kernel(model, data, v, tau, a, |_| false),
     );
+    if is_dense(model) {
+        solve(model, data, v, tau, a, |_| false);
+    }
 }
 
 /// [`forward_dynamics_recursion`] with some joints (`locked`, `(n,)`) held as they are: they accelerate
@@ -59,6 +64,9 @@ pub(crate) fn locked_dynamics_recursion<S: Real>(
         #[inline(always)]
         || kernel(model, data, v, tau, a, |k| locked[k - 1]),
     );
+    if is_dense(model) {
+        solve(model, data, v, tau, a, |k| locked[k - 1]);
+    }
 }
 
 #[inline(always)]

@@ -23,8 +23,9 @@ pub fn mass_matrix<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], out: &mu
     );
 }
 
+/// [`mass_matrix`] after `positions`.
 #[inline(always)]
-fn kernel<S: Real>(model: &Model, data: &mut Data<S>, out: &mut [S]) {
+pub(super) fn kernel<S: Real>(model: &Model, data: &mut Data<S>, out: &mut [S]) {
     let (nodes, nv) = (model.nodes(), model.nv());
     let bodies = &mut data.bodies[..nodes.len()];
     let carried = inward(

@@ -1,5 +1,6 @@
 //! What the algorithms compute, allocated once per model.
 
+use super::dense::is_dense;
 use super::kinematics::place_inertia;
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Force, Mat3, Motion, Real, RigidInertia, SpatialInertia, Vec3};
@@ -69,6 +70,10 @@ pub struct Data<S> {
     pub bodies: Vec<BodyData<S>>,
     /// Sine and cosine of each joint's position. Set by [`positions`](super::positions).
     pub turns: Vec<(S, S)>,
+    /// `L` below the diagonal and `D⁻¹` on it, `M = L D Lᵀ`, `(nv, nv)`, of robots that need it (see `dense.rs`).
+    pub(super) factors: Vec<S>,
+    /// Generalized forces, `(nv,)`, of the same robots.
+    pub(super) efforts: Vec<S>,
 }
 
 impl<S: Real> Data<S> {
@@ -97,7 +102,8 @@ impl<S: Real> Data<S> {
             body.inertia.mass = S::of(node.mass);
         }
         place_inertia(&model.nodes()[0], &mut bodies[0]);
-        Self { bodies, turns: vec![(o, o); n - 1] }
+        let nv = if is_dense(model) { model.nv() } else { 0 };
+        Self { bodies, turns: vec![(o, o); n - 1], factors: vec![o; nv * nv], efforts: vec![o; nv] }
     }
 
     /// Takes all external wrenches away.

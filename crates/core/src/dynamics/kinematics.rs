@@ -33,7 +33,7 @@ pub fn kinematics<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) 
 
 #[inline(always)]
 pub(super) fn positions_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
-    let Data { bodies, turns } = data;
+    let Data { bodies, turns, .. } = data;
     let q = turned(model, q, turns);
     outward(
         model.nodes(),
@@ -50,7 +50,7 @@ pub(super) fn positions_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[
 
 #[inline(always)]
 pub(crate) fn kinematics_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) {
-    let Data { bodies, turns } = data;
+    let Data { bodies, turns, .. } = data;
     let (q, rates) = (turned(model, q, turns), &v[6..model.nv()]);
     bodies[0].velocity = Motion::from_slice(v);
     outward(

@@ -9,6 +9,7 @@
 mod aba;
 mod crba;
 mod data;
+mod dense;
 pub mod derivatives;
 mod external;
 mod free_floating;

@@ -7,6 +7,7 @@ mod configuration;
 mod description;
 mod error;
 mod inertia_check;
+mod load_ratio;
 mod lookup;
 mod tree;
 pub mod urdf;

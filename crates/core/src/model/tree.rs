@@ -85,6 +85,7 @@ pub struct Model {
     pub(super) visuals: Vec<(usize, Visual)>,
     pub(super) collisions: Vec<(usize, Visual)>,
     pub(super) warnings: Vec<ModelWarning>,
+    pub(super) load_ratio: f64,
 }
 
 impl Model {
@@ -162,6 +163,12 @@ impl Model {
         let link = self.body_frame(frame.body);
         let to_link = link.rot_kf.transpose();
         (to_link * frame.rot_kf, to_link * (frame.pos_kf - link.pos_kf))
+    }
+
+    /// Inertia of a body and all it carries over its own, the largest of all bodies.
+    #[inline(always)]
+    pub fn load_ratio(&self) -> f64 {
+        self.load_ratio
     }
 
     /// Total mass, kg.

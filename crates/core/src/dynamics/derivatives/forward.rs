@@ -4,6 +4,7 @@ use super::inverse_mass::inverse_mass;
 use super::terms::{Derivatives, Row};
 use crate::dynamics::aba::forward_dynamics;
 use crate::dynamics::data::Data;
+use crate::dynamics::dense::{self, is_dense};
 use crate::dynamics::external::FrameWrench;
 use crate::dynamics::jacobian::unit_axes;
 use crate::model::Model;
@@ -42,7 +43,11 @@ fn kernel<S: Real>(
     dtau: &mut [S],
 ) {
     let (nodes, nv) = (model.nodes(), model.nv());
-    inverse_mass(nodes, &data.bodies, &mut work.bodies, dtau);
+    if is_dense(model) {
+        dense::inverse_mass(data, nv, dtau);
+    } else {
+        inverse_mass(nodes, &data.bodies, &mut work.bodies, dtau);
+    }
     work.gather(nodes, data);
     for i in 0..nv {
         dq[i * nv..i * nv + 6].fill(S::of(0.0));
