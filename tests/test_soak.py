@@ -25,13 +25,21 @@ def soak() -> Iterator[Any]:
     """The modules of the campaign, which stand alone beside the tests."""
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(HERE))
+        import exact_motions
         import faults
         import leaks
         import long_runs
 
-        yield SimpleNamespace(faults=faults, leaks=leaks, long_runs=long_runs)
-    for name in ("faults", "leaks", "long_runs"):
+        yield SimpleNamespace(exact_motions=exact_motions, faults=faults, leaks=leaks, long_runs=long_runs)
+    for name in ("exact_motions", "faults", "leaks", "long_runs"):
         del sys.modules[name]
+
+
+def test_exact_motions_are_green_and_right(soak: Any) -> None:
+    motions = soak.exact_motions
+    for found in (motions.spins(3, count=5, rows=3000), motions.earth_pointing(0.02, 1e-3)):
+        assert found["wrong"] == [] and found["error"] < 1e-11
+    assert motions.station(0.01, 5e-3)["wrong"] == []
 
 
 def test_a_long_spin_is_exact_and_its_certificate_green(soak: Any) -> None:

@@ -15,13 +15,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from exact_motions import earth_pointing, spins, station
 from faults import fault_campaign
 from leaks import leak_campaign
 from long_runs import arm, spin
 
 # shares of the time; the long runs come first and take what they take
 KILLS, FAULTS, LEAKS = 0.5, 0.2, 0.3
-SPIN_STEPS, ARM_S = 10_000_000, 3600.0
+SPIN_STEPS, ARM_S, ORBITS_A_DAY = 10_000_000, 3600.0, 15.56
 
 
 def arguments() -> argparse.Namespace:
@@ -48,6 +49,10 @@ def main() -> int:
     parts: dict[str, Callable[[Path], dict[str, Any]]] = {
         "spin of 1e7 steps": lambda folder: spin(SPIN_STEPS),
         "an hour of a limp arm": lambda folder: arm(ARM_S),
+        "spins of 1e6 rows": lambda folder: spins(given.seed, count=6, rows=1_000_000),
+        "an orbit at 1 ms, Earth-pointing": lambda folder: earth_pointing(1.0, 1e-3),
+        "a day at 10 ms, Earth-pointing": lambda folder: earth_pointing(ORBITS_A_DAY, 1e-2),
+        "a station in the gradient, an orbit at 5 ms": lambda folder: station(1.0, 5e-3),
         "kills": lambda folder: kills(folder, given.seed, KILLS * left()),
         "disk faults": lambda folder: fault_campaign(
             folder, seed=given.seed, seconds=FAULTS / (FAULTS + LEAKS) * left()

@@ -10,8 +10,8 @@ use super::rnea::inverse_dynamics_recursion;
 use crate::model::Model;
 use crate::spatial::Real;
 
-/// Robots in which some body carries more than this many times its own inertia are solved so. Arms on a satellite and
-/// humanoids reach 2e4.
+/// Robots in which some body carries one of more than this many times its own inertia are solved so. Arms on a satellite
+/// and humanoids reach 1e4.
 const LOAD_RATIO: f64 = 1e5;
 
 /// Whether the mass matrix gives the accelerations of this robot.

@@ -165,7 +165,8 @@ impl Model {
         (to_link * frame.rot_kf, to_link * (frame.pos_kf - link.pos_kf))
     }
 
-    /// Inertia of a body and all it carries over its own, the largest of all bodies.
+    /// Inertia of a body over that of one which carries it, the largest of all such pairs: about the origin of the body it hangs
+    /// on, and about the other's own.
     #[inline(always)]
     pub fn load_ratio(&self) -> f64 {
         self.load_ratio
