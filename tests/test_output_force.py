@@ -172,3 +172,43 @@ def test_files_of_a_run_that_were_edited_are_still_a_runs_to_force(copy: Path, t
     (copy / "trace.npz").write_bytes(b"edited")
     oo.run(tmp_path / "mine.yaml", copy, force=True, quiet=True)
     assert oo.compare(copy, copy).agrees
+
+
+def test_a_figure_that_its_user_edited_is_not_replaced(copy: Path, tmp_path: Path) -> None:
+    """``--force`` removed it, although the manifest tells that the file is another."""
+    figure = copy / "figures" / "ledger.png"
+    figure.write_bytes(b"a figure with arrows")
+    said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    assert "ledger.png: it was changed since it was drawn; move it out of the folder to keep it" in said
+    assert figure.read_bytes() == b"a figure with arrows"
+    assert oo.compare(copy, copy).agrees, "nothing is removed where something is refused"
+    with (
+        OutputFolder(copy) as folder,
+        pytest.raises(OutputNotEmptyError, match="was changed"),
+        folder.writing("figures/ledger.png"),
+    ):
+        pass
+    figure.rename(tmp_path / "mine.png")
+    _spin(tmp_path, "--force")
+    assert figure.read_bytes() == b"a figure"
+
+
+def test_a_resumed_run_refuses_an_edited_figure_before_it_goes_on(copy: Path) -> None:
+    (copy / "figures" / "ledger.png").write_bytes(b"a figure with arrows")
+    with pytest.raises(OutputNotEmptyError, match=r"ledger\.png: it was changed"):
+        oo.resume(copy, quiet=True)
+
+
+def test_a_figure_that_a_kill_left_beside_its_manifest_was_edited_by_nobody(copy: Path) -> None:
+    """Killed between the manifest and the new names, whose temporary files are still there."""
+    folder = OutputFolder(copy)
+    with folder.replacing() as files:
+        with files.writing("figures/ledger.png") as path:
+            path.write_bytes(b"another figure")
+        files._rename, files.discard = (lambda: None), (lambda: None)  # type: ignore[method-assign]
+    left = {file.name: file.read_bytes() for file in copy.iterdir() if file.name.startswith(".")}
+    folder.close()
+    for name, content in left.items():
+        (copy / name).write_bytes(content)
+    OutputFolder.claim(copy, force=True).close()
+    assert not (copy / "figures" / "ledger.png").exists()

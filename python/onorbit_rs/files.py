@@ -129,14 +129,32 @@ def replacing(file: Path) -> Iterator[Path]:
         if exists(file) and not is_regular(file):
             raise OSError(errno.EINVAL, "it is a link or not a regular file, name a regular one")
         temporary = file.with_name(f".partial-{secrets.token_hex(8)}")
-        create(temporary)
-        try:
+        with renamed(temporary, file):
             yield temporary
-            sync(temporary)
-            temporary.replace(file)
-        finally:  # whatever ended it, Ctrl-C included
-            temporary.unlink(missing_ok=True)
         sync_folder(file.parent)
+
+
+@contextmanager
+def renamed(temporary: Path, file: Path) -> Iterator[None]:
+    """Create a temporary file that replaces ``file`` after the block, or is removed where the block fails."""
+    try:
+        with partial(temporary):
+            yield
+        temporary.replace(file)
+    finally:  # whatever ended it, Ctrl-C included
+        temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def partial(temporary: Path) -> Iterator[None]:
+    """Create a temporary file that is on the disk after the block, or is removed where the block fails."""
+    create(temporary)
+    try:
+        yield
+        sync(temporary)
+    except BaseException:  # Ctrl-C included
+        temporary.unlink(missing_ok=True)
+        raise
 
 
 @contextmanager

@@ -150,6 +150,7 @@ def resume(
         what = "no run in this folder (no scenario.yaml)" if path.is_dir() else "no such folder"
         raise NotFoundError(f"{what}: {path}", path=str(path), kind="run")
     with OutputFolder(path) as folder:
+        folder.check_figures()
         scenario = load(path / "scenario.yaml")
         digest = _digest(scenario)
         saved = read_checkpoint(path, digest)

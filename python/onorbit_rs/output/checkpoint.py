@@ -17,8 +17,8 @@ from urllib.parse import quote
 import numpy as np
 
 from onorbit_rs import _core
-from onorbit_rs.exceptions import CheckpointError, OnOrbitError
-from onorbit_rs.files import open_to_change, open_to_read, read_bounded, refusals, sync, sync_folder
+from onorbit_rs.exceptions import CheckpointError, OnOrbitError, OutputInUseError
+from onorbit_rs.files import open_to_change, open_to_read, read_bounded, refusals, sync_folder
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import CHECKPOINT, STATE
 from onorbit_rs.output.sealed import sealed, unsealed
@@ -51,10 +51,18 @@ class CheckpointWriter:
         self._has_warned = False
 
     def __call__(self, checkpoint: Checkpoint) -> bool:
-        """Write the checkpoint; where that fails, warn once and return False: the run goes on."""
+        """Write the checkpoint; where that fails, warn once and return False: the run goes on.
+
+        Raises
+        ------
+        OutputInUseError
+            Another process has taken the folder: nothing of this run can be kept there.
+        """
         try:
             with refusals(self._path):
                 self._write(checkpoint)
+        except OutputInUseError:
+            raise
         except OnOrbitError as error:
             if not self._has_warned:
                 self._has_warned = True
@@ -92,18 +100,9 @@ class CheckpointWriter:
                 f"the state of the run takes {len(content)} bytes, at most {_MOST} are kept", self._path
             )
         sync_folder(self._path)
-        self._replace_state(content)
-        self._rows, self._digests = self._rows + new_rows, digests
-
-    def _replace_state(self, content: bytes) -> None:
-        temporary = self._folder.temporary(f"{CHECKPOINT}/{STATE}")
-        try:
-            temporary.write_bytes(content)
-            sync(temporary)
-            temporary.replace(self._path / STATE)
-        finally:
-            temporary.unlink(missing_ok=True)
+        self._folder.replace(f"{CHECKPOINT}/{STATE}", content)
         sync_folder(self._path)
+        self._rows, self._digests = self._rows + new_rows, digests
 
 
 def has_checkpoint(folder: Path) -> bool:
