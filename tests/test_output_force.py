@@ -75,7 +75,8 @@ def test_force_follows_no_link_of_a_folder(copy: Path, tmp_path: Path, name: str
         (elsewhere / file).write_text(PRECIOUS)
     shutil.rmtree(copy / name, ignore_errors=True)
     (copy / name).symlink_to(elsewhere)
-    assert f"{name}: it is there" in refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    assert f"{name}: it is a symbolic link, which no run makes" in said
     assert {file.read_text() for file in elsewhere.iterdir()} == {PRECIOUS}
     assert (copy / "summary.json").is_file(), "nothing is removed where something is refused"
 
@@ -88,7 +89,8 @@ def test_force_neither_follows_nor_removes_a_link_in_place_of_a_file(
     precious.write_text(PRECIOUS)
     (copy / name).unlink(missing_ok=True)
     (copy / name).symlink_to(precious)
-    assert f"{name}: it is there" in refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    assert f"{name}: it is a symbolic link, which no run makes" in said
     assert precious.read_text() == PRECIOUS and (copy / name).is_symlink()
 
 
@@ -163,8 +165,29 @@ def test_a_pipe_in_place_of_a_file_does_not_hang(tmp_path: Path) -> None:
         out = tmp_path / name
         out.mkdir()
         os.mkfifo(out / name)
-        with pytest.raises(ReadError, match="not a regular file"):
+        with pytest.raises(ReadError, match="it is a pipe or a device, not a regular file"):
             read_summary(out)
+    with pytest.raises(
+        OutputNotEmptyError, match=r"summary\.json: it is a pipe or a device, which no run makes"
+    ):
+        OutputFolder.claim(tmp_path / "summary.json", force=True)
+
+
+def test_a_summary_that_is_a_link_to_nowhere_is_not_a_missing_one(copy: Path) -> None:
+    """A folder with a broken link was said to hold no run."""
+    (copy / "summary.json").unlink()
+    (copy / "summary.json").symlink_to("nowhere")
+    with pytest.raises(ReadError, match=r"summary\.json: it is a symbolic link to nowhere"):
+        read_summary(copy)
+
+
+def test_a_foreign_file_in_the_checkpoint_is_named(copy: Path) -> None:
+    (copy / "checkpoint").mkdir()
+    (copy / "checkpoint" / "mine.txt").write_text(PRECIOUS)
+    with pytest.raises(
+        OutputNotEmptyError, match=r"checkpoint.mine\.txt: it is there, and manifest.json does not"
+    ):
+        OutputFolder.claim(copy, force=True)
 
 
 @pytest.mark.usefixtures("no_pictures")

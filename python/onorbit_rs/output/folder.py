@@ -258,8 +258,9 @@ class OutputFolder:
         self.check_figures()
         manifest = self.manifest or Manifest()
         checkpoint = self.path / CHECKPOINT
-        if exists(checkpoint) and any(file.name not in manifest.checkpoint for file in checkpoint.iterdir()):
-            raise foreign(checkpoint)
+        for file in checkpoint.iterdir() if exists(checkpoint) else ():
+            if file.name not in manifest.checkpoint:
+                raise foreign(file)
         try:
             self._remove_checkpoint()
             for name in sorted(manifest.files, key=_removal_order):

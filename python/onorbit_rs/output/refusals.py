@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from onorbit_rs.exceptions import OutputNotEmptyError, OutputNotWritableError
+from onorbit_rs.files import described, is_regular
 from onorbit_rs.output.manifest import MANIFEST
 
 
@@ -17,11 +18,12 @@ def not_empty(folder: Path) -> OutputNotEmptyError:
 
 
 def foreign(file: Path) -> OutputNotEmptyError:
-    """Of a file or link that no run wrote."""
+    """Of a file that no run wrote, or what is no file: a link, a pipe."""
+    is_file = is_regular(file)
+    what = "there" if is_file else described(file)
+    why = f"and {MANIFEST} does not list it as a file that a run wrote" if is_file else "which no run makes"
     return OutputNotEmptyError(
-        f"cannot write {file}: it is there, and {MANIFEST} does not list it as a file that a run wrote; "
-        "move it away or choose another folder",
-        path=str(file),
+        f"cannot write {file}: it is {what}, {why}; move it away or choose another folder", path=str(file)
     )
 
 
