@@ -17,6 +17,7 @@ from urllib.parse import quote
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.counting import count
 from onorbit_rs.exceptions import CheckpointError, OnOrbitError, OutputInUseError
 from onorbit_rs.files import open_to_change, open_to_read, read_bounded, refusals, sync_folder
 from onorbit_rs.output.folder import OutputFolder
@@ -193,14 +194,14 @@ def _append(file: Path, content: bytes, *, after: int) -> None:
 
 def _column(file: Path, rows: int, width: int) -> tuple[Any, _Hash]:
     """The rows that count, and their running digest."""
-    count = rows * width
+    needed = rows * width
     with open_to_read(file) as stream:
         size = stream.seek(0, os.SEEK_END)
-        if min(rows, width) < 0 or size < 8 * count:
-            raise ValueError(f"it holds {size // 8} numbers, {count} are needed")
+        if min(rows, width) < 0 or size < 8 * needed:
+            raise ValueError(f"it holds {count(size // 8, 'number', 'numbers')}, {needed} are needed")
         stream.seek(0)
-        content = stream.read(8 * count)
-    if len(content) != 8 * count:
+        content = stream.read(8 * needed)
+    if len(content) != 8 * needed:
         raise ValueError("it could not be read to its end")
     return np.frombuffer(content, dtype="<f8").reshape(rows, width), hashlib.sha256(content)
 
