@@ -11,6 +11,7 @@ from types import TracebackType
 
 from onorbit_rs.exceptions import OutputFolderError, OutputInUseError, OutputNotWritableError
 from onorbit_rs.files import (
+    described,
     exists,
     is_real_folder,
     is_regular,
@@ -274,7 +275,9 @@ class OutputFolder:
 def _make(folder: Path) -> None:
     try:
         if folder.exists() and not folder.is_dir():
-            raise OutputNotWritableError(f"output path is a file, not a folder: {folder}", path=str(folder))
+            raise OutputNotWritableError(
+                f"output path is {described(folder)}, not a folder: {folder}", path=str(folder)
+            )
         folder.mkdir(parents=True, exist_ok=True)
         next(folder.iterdir(), None)
     except OSError as error:

@@ -29,19 +29,26 @@ def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
     rates = np.asarray(stop.v, dtype=float)
     worst = int(np.argmax(np.abs(rates)))
     name, unit = list(_rates(model))[worst]
-    turned = abs(rates[worst]) * settings.time_step if unit == "rad/s" else 0.0
+    turned = 0.0 if scenario.laws else _fastest_turn(stop) * settings.time_step
     shorter = min(1.0, _TURN / max(turned, _TURN)) * settings.time_step
     ways = ["a smaller tolerance" if is_adaptive else f"a time_step shorter than {shorter:.2g} s"]
     if settings.control_period is not None and scenario.laws:
         ways += [f"a control_period shorter than {settings.control_period:g} s"]
     ways += ["softer gains, those of rates too"] if scenario.laws else []
-    ways += ["lower rates at the start"] if turned > 1.0 and not scenario.laws else []
+    ways += ["lower rates at the start"] if turned > 1.0 else []
     is_damped = any(joint.damping > 0.0 for joint in model.joints)
     ways += ["less damping of the joints"] if is_damped and not is_adaptive else []
     return (
         f"the run diverged at t = {stop.time:.6g} s{step}: the state is no longer finite; the fastest when "
         f"it last was: {name}, {rates[worst]:.3g} {unit}; try {', or '.join(ways)}"
     )
+
+
+def _fastest_turn(stop: SimulationError) -> float:
+    """The largest rate at the start, rad/s: later ones are the divergence itself."""
+    has_rows = stop.trace is not None and len(stop.trace) > 0
+    start = np.asarray(stop.trace.v)[0] if has_rows else np.asarray(stop.v)
+    return float(np.abs(start[3:]).max())
 
 
 def _rates(model: Model) -> Iterator[tuple[str, str]]:
