@@ -14,6 +14,7 @@ import onorbit_rs as oo
 from onorbit_rs.exceptions import (
     ControlError,
     ElementSetError,
+    InputError,
     ModelError,
     OnOrbitError,
     OrbitError,
@@ -40,6 +41,13 @@ def robot(m: float = 1, i: float = 1, x: float = 0, **joint: float) -> oo.Model:
 def path(velocity: float = 1.0, position: float = 1e7, **more: Any) -> oo.Orbit:
     velocities = np.array([[0.0, velocity, 0.0]] * 2)
     return oo.CustomPath([0.0, 1.0], [[7e6, 0, 0], [position, 0, 0]], velocities=velocities, **more)
+
+
+def starting(x: float = 0.0, v: Any = None, **settings: float) -> oo.Simulation:
+    model = robot()
+    q = np.array(model.neutral())
+    q[0] = x
+    return oo.Simulation(model, q, np.zeros(7) if v is None else np.array(v, dtype=float), **settings)
 
 
 def pose(x: float = 0.0) -> np.ndarray:
@@ -76,6 +84,19 @@ ABSURD: dict[str, tuple[Callable[[], object], type[OnOrbitError], tuple[str, ...
     "line": (lambda: oo.Line(pose(), pose(1e308), duration=1.0), ControlError, ("1e60",)),
     "short line": (lambda: oo.Line(pose(), pose(1.0), duration=1e-300), ControlError, ("1e-12",)),
     "joint hold": (lambda: oo.JointHold([1e308]), ControlError, ("q", "1e60")),
+    "time step": (lambda: starting(time_step=1e-300), InputError, ("1e-300 s", "1e-12 s to 1e9 s")),
+    "angular velocity": (
+        lambda: starting(v=[0, 0, 0, 1e200, 0, 0, 0]),
+        InputError,
+        ("v[3], angular velocity of the base along x, is 1e200 rad/s", "between -1e9 and 1e9 rad/s"),
+    ),
+    "beyond the speed of light": (
+        lambda: starting(v=[0, 4e8, 0, 0, 0, 0, 0]),
+        InputError,
+        ("v[1], velocity of the base along y", "299792458 m/s, the speed of light"),
+    ),
+    "joint rate": (lambda: starting(v=[0] * 6 + [1e200]), InputError, ("v[6], joint 'jhand'", "1e9 rad/s")),
+    "base position": (lambda: starting(x=1e300), InputError, ("q[0], position of the base", "1e15 m")),
     "gain": (lambda: oo.JointComputedTorque(kp=1e308, kd=1.0), ControlError, ("kp", "1e20")),
     "gain of a PID": (lambda: oo.JointPid(p=[1.0, 1e308]), ControlError, ("p ", "1e20")),
     "stiffness": (

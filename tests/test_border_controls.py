@@ -216,7 +216,7 @@ def test_what_is_refused(dual: oo.Model, q: Any) -> None:
         ([oo.Control(everything, joints=[], reference=hold)], ControlError, "drives no joint"),
         ([oo.Control(everything)], ControlError, "no reference"),
         ([oo.Control(everything, reference=oo.Hold(np.eye(4)))], DtypeError, "JointReference"),
-        ([oo.Control(everything, reference=oo.JointHold([0.0]))], ControlError, "has 1 joints"),
+        ([oo.Control(everything, reference=oo.JointHold([0.0]))], ControlError, "has 1 joint, its group"),
         ([oo.Control(everything, reference=oo.JointHold(q[7:] + 1))], ControlError, "starts 1 rad"),
         ([right, right], ControlError, "two controls are named"),
         ([reach(dual, q, "right", after="x")], ControlError, "starts after 'x'"),

@@ -49,7 +49,10 @@ def test_a_place_where_nobody_may_look_is_named(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_errors_of_the_system_are_ours_and_ours_stay(tmp_path: Path) -> None:
-    with pytest.raises(OutputFolderError, match=r"cannot write .*: it is a link or"), replacing(tmp_path):
+    with (
+        pytest.raises(OutputFolderError, match=r"cannot write .*: it is a folder, name"),
+        replacing(tmp_path),
+    ):
         pass
     picture = tmp_path / "picture"
     with pytest.raises(OutputFolderError, match=r"cannot write .*picture: why"), replacing(picture):
@@ -65,11 +68,14 @@ def test_a_link_in_the_way_is_neither_followed_nor_replaced(tmp_path: Path) -> N
     precious.write_text("precious")
     link = tmp_path / "mine.yaml"
     link.symlink_to(precious)
-    with pytest.raises(OutputFolderError, match=r"mine\.yaml: it is a link"):
+    with pytest.raises(OutputFolderError, match=r"mine\.yaml: it is a symbolic link"):
         claim(link, force=True)
-    with pytest.raises(OutputFolderError, match=r"mine\.yaml: it is a link"), replacing(link) as file:
+    with (
+        pytest.raises(OutputFolderError, match=r"mine\.yaml: it is a symbolic link"),
+        replacing(link) as file,
+    ):
         file.write_text("new")
     assert precious.read_text() == "precious" and link.is_symlink()
     robot = ("new", "humanoid_torso", "-q", "--out", link, "--force")
-    assert "mine.yaml: it is a link" in refusal(*robot)
+    assert "mine.yaml: it is a symbolic link" in refusal(*robot)
     assert precious.read_text() == "precious"

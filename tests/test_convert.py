@@ -12,8 +12,11 @@ from border import Bad, check
 from commands import onorbit
 
 import onorbit_rs as oo
+from onorbit_rs.expressions import Evaluator
+from onorbit_rs.interop import expressions as arithmetic
 from onorbit_rs.interop.expressions import evaluate
 from onorbit_rs.interop.onorbitros import Conversion, convert
+from onorbit_rs.robots import expressions as of_robots
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
@@ -216,6 +219,11 @@ def test_expressions(text: Any, value: float) -> None:
         "f()",
         "sqrt(1, 2)",
         "sqrt(*[1])",
+        "sqrt(x=1)",
+        "1 % 2",
+        "not 1",
+        "1 < 2",
+        "(lambda: 1)()",
         "1 +",
         "pi = 3",
         "a" * 500,
@@ -228,6 +236,20 @@ def test_what_is_no_arithmetic_is_refused(text: Any) -> None:
         return
     with pytest.raises(oo.exceptions.QuantityError):
         evaluate(text)
+
+
+def test_both_kinds_of_files_have_one_evaluator() -> None:
+    """Each had a walk of its own over the syntax tree, and what one refused the other might not have."""
+    for kind in (arithmetic._Arithmetic, of_robots._Evaluation):
+        assert issubclass(kind, Evaluator) and kind.generic_visit is Evaluator.generic_visit
+        known = {name for name in dir(kind) if name.startswith("visit_")}
+        assert not known & {
+            "visit_Lambda",
+            "visit_ListComp",
+            "visit_NamedExpr",
+            "visit_Starred",
+            "visit_JoinedStr",
+        }
 
 
 BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {

@@ -21,9 +21,13 @@ from onorbit_rs.interop import onorbitros
 from onorbit_rs.robots.expand import expand
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
+from onorbit_rs.scenario.control import PythonController
+from onorbit_rs.scenario.python_controller import python_controller
+from onorbit_rs.scenario.python_source import inspect_source
 from onorbit_rs.scenario.table import read_table
 from onorbit_rs.scenario.yaml_lines import read_yaml
 
+MINE: Any = {"class": "Mine"}
 EPOCH = "2024-01-10T00:00:00 TT"
 
 
@@ -43,6 +47,12 @@ READERS: dict[str, Callable[[Path], Any]] = {
         load({"robot": {"urdf": str(path)}, "simulation": {"duration": 1.0}})
     ),
     "xacro": lambda path: expand(path),
+    "controller": lambda path: inspect_source(
+        PythonController(kind="python", file=str(path), **MINE), Path()
+    ),
+    "controller to run": lambda path: python_controller(
+        PythonController(kind="python", file=str(path), **MINE), Path()
+    ),
     "gravity field": lambda path: oo.GravityField.from_gfc(path),
     "Earth orientation": lambda path: oo.Earth(EPOCH, eop=path),
     "space weather": lambda path: oo.Nrlmsise00(table=path),

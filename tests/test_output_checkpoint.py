@@ -164,6 +164,8 @@ def test_what_cannot_be_continued_is_refused(killed: Path, tmp_path: Path, chang
 
 
 def test_folders_without_a_checkpoint(tmp_path: Path) -> None:
+    with pytest.raises(NotFoundError, match="this is a file, not the folder of a run"):
+        oo.resume(__file__)
     with pytest.raises(NotFoundError, match="no such folder"):
         oo.resume(tmp_path / "none")
     with pytest.raises(NotFoundError, match="no run in this folder"):

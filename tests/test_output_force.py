@@ -75,7 +75,8 @@ def test_force_follows_no_link_of_a_folder(copy: Path, tmp_path: Path, name: str
         (elsewhere / file).write_text(PRECIOUS)
     shutil.rmtree(copy / name, ignore_errors=True)
     (copy / name).symlink_to(elsewhere)
-    assert f"{name}: it is there" in refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    assert f"{name}: it is a symbolic link, which no run makes" in said
     assert {file.read_text() for file in elsewhere.iterdir()} == {PRECIOUS}
     assert (copy / "summary.json").is_file(), "nothing is removed where something is refused"
 
@@ -88,7 +89,8 @@ def test_force_neither_follows_nor_removes_a_link_in_place_of_a_file(
     precious.write_text(PRECIOUS)
     (copy / name).unlink(missing_ok=True)
     (copy / name).symlink_to(precious)
-    assert f"{name}: it is there" in refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    assert f"{name}: it is a symbolic link, which no run makes" in said
     assert precious.read_text() == PRECIOUS and (copy / name).is_symlink()
 
 
@@ -163,8 +165,30 @@ def test_a_pipe_in_place_of_a_file_does_not_hang(tmp_path: Path) -> None:
         out = tmp_path / name
         out.mkdir()
         os.mkfifo(out / name)
-        with pytest.raises(ReadError, match="not a regular file"):
+        with pytest.raises(ReadError, match="it is a pipe or a device, not a regular file"):
             read_summary(out)
+    with pytest.raises(
+        OutputNotEmptyError, match=r"summary\.json: it is a pipe or a device, which no run makes"
+    ):
+        OutputFolder.claim(tmp_path / "summary.json", force=True)
+
+
+def test_a_summary_that_is_a_link_to_nowhere_is_not_a_missing_one(copy: Path) -> None:
+    """A folder with a broken link was said to hold no run."""
+    (copy / "summary.json").unlink()
+    (copy / "summary.json").symlink_to("nowhere")
+    for read in (read_summary, oo.compare):
+        with pytest.raises(ReadError, match=r"summary\.json: it is a symbolic link to nowhere"):
+            read(copy)
+
+
+def test_a_foreign_file_in_the_checkpoint_is_named(copy: Path) -> None:
+    (copy / "checkpoint").mkdir()
+    (copy / "checkpoint" / "mine.txt").write_text(PRECIOUS)
+    with pytest.raises(
+        OutputNotEmptyError, match=r"checkpoint.mine\.txt: it is there, and manifest.json does not"
+    ):
+        OutputFolder.claim(copy, force=True)
 
 
 @pytest.mark.usefixtures("no_pictures")
@@ -172,3 +196,43 @@ def test_files_of_a_run_that_were_edited_are_still_a_runs_to_force(copy: Path, t
     (copy / "trace.npz").write_bytes(b"edited")
     oo.run(tmp_path / "mine.yaml", copy, force=True, quiet=True)
     assert oo.compare(copy, copy).agrees
+
+
+def test_a_figure_that_its_user_edited_is_not_replaced(copy: Path, tmp_path: Path) -> None:
+    """``--force`` removed it, although the manifest tells that the file is another."""
+    figure = copy / "figures" / "ledger.png"
+    figure.write_bytes(b"a figure with arrows")
+    said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
+    assert "ledger.png: it was changed since it was drawn; move it out of the folder to keep it" in said
+    assert figure.read_bytes() == b"a figure with arrows"
+    assert oo.compare(copy, copy).agrees, "nothing is removed where something is refused"
+    with (
+        OutputFolder(copy) as folder,
+        pytest.raises(OutputNotEmptyError, match="was changed"),
+        folder.writing("figures/ledger.png"),
+    ):
+        pass
+    figure.rename(tmp_path / "mine.png")
+    _spin(tmp_path, "--force")
+    assert figure.read_bytes() == b"a figure"
+
+
+def test_a_resumed_run_refuses_an_edited_figure_before_it_goes_on(copy: Path) -> None:
+    (copy / "figures" / "ledger.png").write_bytes(b"a figure with arrows")
+    with pytest.raises(OutputNotEmptyError, match=r"ledger\.png: it was changed"):
+        oo.resume(copy, quiet=True)
+
+
+def test_a_figure_that_a_kill_left_beside_its_manifest_was_edited_by_nobody(copy: Path) -> None:
+    """Killed between the manifest and the new names, whose temporary files are still there."""
+    folder = OutputFolder(copy)
+    with folder.replacing() as files:
+        with files.writing("figures/ledger.png") as path:
+            path.write_bytes(b"another figure")
+        files._rename, files.discard = (lambda: None), (lambda: None)  # type: ignore[method-assign]
+    left = {file.name: file.read_bytes() for file in copy.iterdir() if file.name.startswith(".")}
+    folder.close()
+    for name, content in left.items():
+        (copy / name).write_bytes(content)
+    OutputFolder.claim(copy, force=True).close()
+    assert not (copy / "figures" / "ledger.png").exists()

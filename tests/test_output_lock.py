@@ -13,13 +13,14 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from commands import SPIN, refusal
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import NotFoundError, OutputFolderError, OutputInUseError
 from onorbit_rs.files import exists
-from onorbit_rs.output import lock
+from onorbit_rs.output import CheckpointWriter, lock
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.lock import LOCK, FolderLock, owner_of
 
@@ -203,3 +204,72 @@ def test_a_folder_that_cannot_be_locked_is_written_with_a_warning(
     monkeypatch.setattr(lock, "_lock", refused)
     with pytest.warns(UserWarning, match="cannot be locked"):
         OutputFolder.claim(tmp_path).close()
+
+
+def test_a_lock_whose_file_was_removed_by_hand_is_made_anew(tmp_path: Path) -> None:
+    """A second command could start, and both wrote the folder."""
+    with OutputFolder.claim(tmp_path) as folder:
+        (tmp_path / LOCK).unlink()
+        with (
+            pytest.warns(UserWarning, match=f"{LOCK} was removed while this process writes"),
+            folder.writing("scenario.yaml") as path,
+        ):
+            path.write_text("mine")
+        assert owner_of(tmp_path) is not None
+        with pytest.raises(OutputInUseError):
+            OutputFolder.claim(tmp_path, force=True)
+        with folder.writing("summary.json") as path:
+            path.write_text("mine")
+    assert not (tmp_path / LOCK).exists()
+
+
+def test_who_lost_the_folder_to_another_process_writes_nothing_there(tmp_path: Path) -> None:
+    with OutputFolder.claim(tmp_path) as first:
+        with first.writing("scenario.yaml") as path:
+            path.write_text("first")
+        (tmp_path / LOCK).unlink()
+        with OutputFolder.claim(tmp_path, force=True) as second:
+            with second.writing("scenario.yaml") as path:
+                path.write_text("the second")
+            _writes_nothing(first, "is in use: process")
+        assert not (tmp_path / LOCK).exists()
+        _writes_nothing(first, "holds files of another run now")
+    assert (tmp_path / "scenario.yaml").read_text() == "the second"
+    assert {file.name for file in tmp_path.iterdir()} == {"scenario.yaml", "manifest.json"}
+
+
+def _writes_nothing(folder: OutputFolder, why: str) -> None:
+    checkpoint = CheckpointWriter(folder, "digest")
+    for write in (
+        lambda: folder.writing("summary.json").__enter__(),
+        lambda: checkpoint(oo.Checkpoint("{}", {"q": np.zeros((1, 3))})),
+        folder.discard,
+    ):
+        with pytest.raises(OutputInUseError, match=why):
+            write()
+    folder.discard_checkpoint()
+
+
+def test_a_run_that_lost_its_folder_stops_at_the_next_checkpoint(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It would have computed to its end what it cannot keep."""
+    others: list[OutputFolder] = []
+    write = CheckpointWriter._write
+
+    def taken(writer: CheckpointWriter, checkpoint: oo.Checkpoint) -> None:
+        if not others:
+            (tmp_path / LOCK).unlink()
+            others.append(OutputFolder.claim(tmp_path, force=True))
+        write(writer, checkpoint)
+
+    monkeypatch.setattr(CheckpointWriter, "_write", taken)
+    body = {"mass": 1.0, "inertia": [1.0, 2.0, 3.0]}
+    spin = {
+        "robot": {"rigid_body": body},
+        "simulation": {"duration": 1e5, "time_step": 1e-3, "record_every": 10**6},
+    }
+    with pytest.raises(OutputInUseError, match="is in use: process"):
+        oo.run(spin, tmp_path, quiet=True, checkpoint_every=0.0)
+    others[0].close()
+    assert not list(tmp_path.iterdir())

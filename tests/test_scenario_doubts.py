@@ -11,9 +11,9 @@ from commands import onorbit
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import SimulationError
-from onorbit_rs.output.divergence import divergence
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
+from onorbit_rs.scenario.divergence import divergence
 
 TLE = """\
 1 25544U 98067A   20194.88612269 -.00002218  00000-0 -31515-4 0  9992
@@ -159,6 +159,22 @@ def test_check_and_run_say_it_on_one_line(tmp_path: Any) -> None:
     )
 
 
+def test_a_divergence_of_a_fast_spin_asks_for_its_step_and_not_for_gains() -> None:
+    """A rigid body without a controller was to get softer gains, and a step a little shorter."""
+    spin = {
+        "robot": {"rigid_body": {"mass": 10.0, "inertia": [1.0, 2.0, 3.0]}},
+        "initial": {"angular_velocity": [1e5, 1.0, 1.0]},
+        "simulation": {"duration": 0.1, "time_step": 0.01},
+    }
+    with pytest.raises(SimulationError) as caught:
+        oo.run(spin, quiet=True)
+    said = str(caught.value)
+    assert "a time_step shorter than 1e-06 s, or lower rates at the start" in said and "gains" not in said
+    spin["initial"] = {"angular_velocity": [1e8, 1.0, 1.0]}  # diverges in the trial
+    with pytest.raises(SimulationError, match=r"simulation: .*diverged at t = 0 s, in step 1: .*lower rates"):
+        oo.run(spin, quiet=True)
+
+
 def test_a_divergence_by_a_damper_does_not_ask_for_more_of_it() -> None:
     data = pushed({"kind": "joint_pid", "d": 10.0, "effort_limit": 1e9}, 0.1)
     with warnings.catch_warnings():
@@ -166,6 +182,6 @@ def test_a_divergence_by_a_damper_does_not_ask_for_more_of_it() -> None:
         built = build(load(data))
         with pytest.raises(SimulationError) as caught:
             built.simulation.run(30.0)
-    said = divergence(caught.value, built)
+    said = divergence(caught.value, built.scenario, built.model)
     assert "a control_period shorter than 0.1 s, or softer gains, those of rates too" in said
     assert "more damping" not in said

@@ -246,14 +246,39 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "times of points": (
         LAW + "reference: {kind: waypoints, times: [1, 2], points: [{displacement: [0, 0, 0]}]}\n",
         "5: reference",
-        ("times has 2 entries for 1 points",),
+        ("times has 2 entries for 1 point:",),
     ),
     "times of moves": (
         JOINTS
         + "controller: joint_computed_torque\nreference:\n  kind: joint_ramps\n  times: [1, 2]\n"
         + "  moves: [{joint: arm_joint_1, to: 1}]\n",
         "4: reference",
-        ("times has 2 entries for 1 moves",),
+        ("times has 2 entries for 1 move:",),
+    ),
+    "one entry": (
+        JOINTS + "initial: {position: [1]}\n",
+        "3: initial.position",
+        ("has 1 entry, needs 3",),
+    ),
+    "a step of no time": (
+        ROBOT + "simulation: {duration: 1e-298, time_step: 1e-300}\n",
+        "2: simulation",
+        ("time_step is 1e-300 s, steps of 1e-12 s to 1e9 s are accepted",),
+    ),
+    "a spin beyond all": (
+        JOINTS + "initial: {angular_velocity: [1e200, 0, 0]}\n",
+        "3: initial",
+        ("angular velocity of the base along x, is 1e200 rad/s", "between -1e9 and 1e9 rad/s"),
+    ),
+    "beyond the speed of light": (
+        JOINTS + "initial: {linear_velocity: [0, 4e5 km/s, 0]}\n",
+        "3: initial",
+        ("velocity of the base along y, is 400000000 m/s", "299792458 m/s, the speed of light"),
+    ),
+    "noise of a conversion": (
+        LAW + "orbit: {kind: kepler, semi_major_axis: 700.1 km}\n",
+        "5: orbit",
+        ("700100 m",),
     ),
     "no gains": (
         JOINTS + "controller: joint_pid\n",

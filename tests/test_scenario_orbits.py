@@ -104,7 +104,7 @@ def test_a_broken_file_of_points_says_its_line(
     [
         ({"kind": "sgp4", "line1": LINE1}, ScenarioError, "both 'line1' and 'line2'"),
         ({"kind": "sgp4"}, ScenarioError, "give one element set"),
-        ({"kind": "sgp4", "tle": LINE1}, ElementSetError, "holds 1 lines"),
+        ({"kind": "sgp4", "tle": LINE1}, ElementSetError, "holds 1 line:"),
         ({"kind": "sgp4", "tle_file": "none.txt"}, NotFoundError, "none.txt"),
         ({"kind": "sgp4", "line1": LINE1, "line2": LINE2 + "7"}, ElementSetError, "70 columns"),
         ({"kind": "sgp4", "line1": LINE1, "line2": LINE2, "gravity": "wgs27"}, ScenarioError, "'wgs72'"),

@@ -21,10 +21,17 @@ _CHUNK = 1 << 20
 
 def open_to_read(file: Path) -> BinaryIO:
     """Open a regular file; anything else (folder, device, pipe) is an OSError and never blocks."""
-    descriptor = os.open(file, _READ)
     try:
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise OSError(errno.EINVAL, "it is not a regular file", str(file))
+        descriptor = os.open(file, _READ)
+    except FileNotFoundError:
+        if is_link(file):
+            raise OSError(errno.EINVAL, "it is a symbolic link to nowhere", str(file)) from None
+        raise
+    try:
+        mode = os.fstat(descriptor).st_mode
+        if not stat.S_ISREG(mode):
+            what = "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"
+            raise OSError(errno.EINVAL, f"it is {what}, not a regular file", str(file))
         return os.fdopen(descriptor, "rb")
     except BaseException:
         os.close(descriptor)
@@ -78,6 +85,13 @@ def is_regular(path: Path) -> bool:
         return False
 
 
+def described(path: Path) -> str:
+    """What a name is, where it is not what it should be: ``a symbolic link``, ``a folder``."""
+    if is_link(path):
+        return "a symbolic link"
+    return "a folder" if path.is_dir() else "a file" if is_regular(path) else "a pipe or a device"
+
+
 def is_real_folder(path: Path) -> bool:
     """Whether the name is a folder itself, not a link to one."""
     return path.is_dir() and not is_link(path)
@@ -127,16 +141,34 @@ def replacing(file: Path) -> Iterator[Path]:
     """
     with refusals(file):
         if exists(file) and not is_regular(file):
-            raise OSError(errno.EINVAL, "it is a link or not a regular file, name a regular one")
+            raise OSError(errno.EINVAL, f"it is {described(file)}, name a regular file")
         temporary = file.with_name(f".partial-{secrets.token_hex(8)}")
-        create(temporary)
-        try:
+        with renamed(temporary, file):
             yield temporary
-            sync(temporary)
-            temporary.replace(file)
-        finally:  # whatever ended it, Ctrl-C included
-            temporary.unlink(missing_ok=True)
         sync_folder(file.parent)
+
+
+@contextmanager
+def renamed(temporary: Path, file: Path) -> Iterator[None]:
+    """Create a temporary file that replaces ``file`` after the block, or is removed where the block fails."""
+    try:
+        with partial(temporary):
+            yield
+        temporary.replace(file)
+    finally:  # whatever ended it, Ctrl-C included
+        temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def partial(temporary: Path) -> Iterator[None]:
+    """Create a temporary file that is on the disk after the block, or is removed where the block fails."""
+    create(temporary)
+    try:
+        yield
+        sync(temporary)
+    except BaseException:  # Ctrl-C included
+        temporary.unlink(missing_ok=True)
+        raise
 
 
 @contextmanager

@@ -16,8 +16,8 @@ from onorbit_rs.output import (
     write_summary,
     write_trace,
 )
-from onorbit_rs.output.divergence import divergence
 from onorbit_rs.printable import shell_word
+from onorbit_rs.scenario.divergence import divergence
 from onorbit_rs.stopping import stopped_by
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def keep_stopped(
 ) -> None:
     """Write what there is of a run that stopped early, and say where."""
     if isinstance(stop, SimulationError):
-        stop.message = divergence(stop, built)
+        stop.message = divergence(stop, built.scenario, built.model)
     else:
         duration = built.scenario.simulation.duration
         stop.message = f"stopped by {stopped_by(stop)[0]} at t = {stop.time:g} s of {duration:g} s"

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO
 
 from onorbit_rs.exceptions import NotFoundError, ReadError
-from onorbit_rs.files import open_to_read
+from onorbit_rs.files import open_to_read, read_bounded
 
 LARGEST_TEXT = 16_000_000
 """Bytes of an element set, a scenario's resolved text or a robot."""
@@ -46,20 +48,21 @@ def read_bytes(path: str | os.PathLike[str], limit: int, kind: str = "file") -> 
     NotFoundError, ReadError
         As :func:`check_regular`; larger than ``limit``.
     """
-    content = read_head(path, limit + 1, kind)
-    if len(content) > limit:
-        raise _unreadable(path, f"larger than {limit} bytes", kind)
-    return content
+    return _read(path, kind, lambda stream: read_bounded(stream, limit))
 
 
 def read_head(path: str | os.PathLike[str], most: int, kind: str = "file") -> bytes:
     """The first ``most`` bytes of a file, or all of it; raises as :func:`check_regular`."""
+    return _read(path, kind, lambda stream: stream.read(most))
+
+
+def _read(path: str | os.PathLike[str], kind: str, how: Callable[[BinaryIO], bytes]) -> bytes:
     check_regular(path, kind)
     try:
         with open_to_read(Path(path)) as stream:  # it may have become a pipe meanwhile
-            return stream.read(most)
-    except OSError as error:
-        raise _unreadable(path, error.strerror or str(error), kind) from None
+            return how(stream)
+    except (OSError, ValueError) as error:  # ValueError: too large
+        raise _unreadable(path, getattr(error, "strerror", None) or str(error), kind) from None
 
 
 def read_text(path: str | os.PathLike[str], limit: int = LARGEST_TEXT, kind: str = "file") -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.exceptions import InputError, ModelError, NotFoundError, RunInterrupted, SimulationError
+from onorbit_rs.files import exists
 from onorbit_rs.keeping import finished, keep_failed, keep_stopped
 from onorbit_rs.output import (
     CheckpointWriter,
@@ -20,6 +21,7 @@ from onorbit_rs.output import (
     with_absolute_paths,
     write_scenario,
 )
+from onorbit_rs.output.read import check_folder
 from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.plants import versions
 from onorbit_rs.progress import doing, progress_bar
@@ -146,10 +148,11 @@ def resume(
     """
     every = _checked_period(checkpoint_every)
     path = Path(out)
-    if not (path / "scenario.yaml").is_file():
-        what = "no run in this folder (no scenario.yaml)" if path.is_dir() else "no such folder"
-        raise NotFoundError(f"{what}: {path}", path=str(path), kind="run")
+    check_folder(path)
+    if not exists(path / "scenario.yaml"):
+        raise NotFoundError(f"no run in this folder (no scenario.yaml): {path}", path=str(path), kind="run")
     with OutputFolder(path) as folder:
+        folder.check_figures()
         scenario = load(path / "scenario.yaml")
         digest = _digest(scenario)
         saved = read_checkpoint(path, digest)

@@ -10,6 +10,7 @@ pub mod earth;
 pub mod environment;
 pub mod gravity;
 pub mod model;
+pub mod number_text;
 pub mod orbit;
 pub mod reference;
 pub mod simulation;

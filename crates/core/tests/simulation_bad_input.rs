@@ -81,6 +81,26 @@ fn steps_periods_and_durations_that_are_not_positive() {
 }
 
 #[test]
+fn absurd_steps_and_states_are_refused_with_their_limit() {
+    let says = |spoil: fn(&mut Simulation), words: &str| {
+        let message = refused(spoil).to_string();
+        assert!(message.contains(words), "{message}");
+    };
+    says(|s| s.time_step = 1e-300, "time_step is 1e-300 s, steps of 1e-12 s to 1e9 s");
+    says(
+        |s| s.v[3] = 1e200,
+        "v[3], angular velocity of the base along x, is 1e200 rad/s, it must lie between -1e9 and",
+    );
+    says(|s| s.v[1] = -3e8, "v[1], velocity of the base along y, is -300000000 m/s");
+    says(|s| s.v[6] = 1e10, "it must lie between -1e9 and 1e9 rad/s");
+    says(|s| s.q[2] = 1e300, "q[2], position of the base along z, is 1e300 m");
+    says(|s| s.q[7] = -1e300, "q[7], joint '");
+    let mut fast = sound();
+    (fast.v[0], fast.time_step) = (1e8, 1e-12);
+    fast.check().unwrap(); // control: what is fast but not absurd
+}
+
+#[test]
 fn more_rows_than_memory_holds() {
     let failure = sound().run(1e15, &mut |_| ControlFlow::Continue(())).unwrap_err();
     assert!(matches!(failure.error, SimulationError::TooManyRows { .. }), "{failure}");

@@ -2,6 +2,7 @@
 
 use crate::arrays::{Input, array_of};
 use crate::errors::{IntoPython, SimulationErrorExt};
+use onorbit_core::number_text::{count, short};
 use onorbit_core::simulation::{self, Moment, NamedColumn, SimulationError, Trace};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
@@ -35,7 +36,11 @@ impl PyCheckpoint {
     fn __repr__(&self) -> String {
         match simulation::Checkpoint::from_json(&self.state) {
             Ok(checkpoint) => {
-                format!("<Checkpoint: t = {} s, {} rows>", checkpoint.time(), checkpoint.rows())
+                format!(
+                    "<Checkpoint: t = {} s, {}>",
+                    short(checkpoint.time()),
+                    count(checkpoint.rows(), "row")
+                )
             }
             Err(_) => "<Checkpoint: unreadable>".to_owned(),
         }

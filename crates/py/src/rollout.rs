@@ -9,6 +9,7 @@ use crate::output::{outputs, pair};
 use crate::reference;
 use crate::simulation::integrator_named;
 use onorbit_core::batch::{Rollout, RolloutControl};
+use onorbit_core::number_text::short;
 use pyo3::prelude::*;
 use std::sync::atomic::AtomicBool;
 
@@ -54,7 +55,7 @@ pub(crate) fn rollout<'py>(
         ));
     }
     if !(time_step.is_finite() && time_step > 0.0) {
-        let message = format!("time_step is {time_step} s, it must be positive and finite");
+        let message = format!("time_step is {} s, it must be positive and finite", short(time_step));
         return Err(raise(py, "InputError", &message, &fields!(py, "name": "time_step", "got": time_step)));
     }
     let tau = tau.map(|tau| Input::new(tau, "tau")).transpose()?;

@@ -16,6 +16,7 @@ use crate::trace::PyTrace;
 use onorbit_core::control::{ControlError, ControlLaw};
 use onorbit_core::environment::ReferenceMotion;
 use onorbit_core::model::Model;
+use onorbit_core::number_text::short;
 use onorbit_core::simulation::{Integrator, Moment, RunFailure, Simulation, SimulationError};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -169,7 +170,8 @@ impl PySimulation {
         resume: Option<&Bound<'_, PyCheckpoint>>,
     ) -> PyResult<PyTrace> {
         let every = Duration::try_from_secs_f64(checkpoint_every).map_err(|_| {
-            let message = format!("checkpoint_every is {checkpoint_every} s, it must be zero or positive");
+            let message =
+                format!("checkpoint_every is {} s, it must be zero or positive", short(checkpoint_every));
             raise(
                 py,
                 "InputError",

@@ -4,6 +4,7 @@ use crate::interrupt::abandonable;
 use numpy::ndarray::ArrayView;
 use numpy::{IxDyn, PyArray, PyArray1, PyArrayDyn, PyArrayMethods};
 use onorbit_core::model::Model;
+use onorbit_core::number_text::{count, short};
 use onorbit_core::simulation::{Trace, certify};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -65,7 +66,7 @@ macro_rules! columns {
             fn __repr__(&self) -> String {
                 let end = self.trace.time.last().copied().unwrap_or(0.0);
                 let state = if self.is_complete { "complete" } else { "stopped early" };
-                format!("<Trace: {} rows to t = {end} s, {state}>", self.trace.rows())
+                format!("<Trace: {} to t = {} s, {state}>", count(self.trace.rows(), "row"), short(end))
             }
 
             /// The run's conservation certificate: lines (name, value, gate, passed), those that apply to the run.

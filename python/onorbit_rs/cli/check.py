@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument
-from onorbit_rs.cli.saying import count, say
+from onorbit_rs.cli.saying import say
+from onorbit_rs.counting import count
 from onorbit_rs.printable import shell_word
 
 if TYPE_CHECKING:

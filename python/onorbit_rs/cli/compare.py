@@ -12,6 +12,7 @@ from onorbit_rs.cli.failing import as_far_as_read
 from onorbit_rs.cli.options import JsonOption
 from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim
+from onorbit_rs.counting import count
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.files import replacing
 
@@ -96,7 +97,7 @@ def print_comparison(compared: Comparison) -> None:
     print_table(console, table)
     for note in compared.notes:
         console.print(f"[yellow]note[/yellow]: {text(note)}", soft_wrap=True)
-    rows = f"{len(compared.time)} rows from {compared.time[0]:g} to {compared.time[-1]:g} s"
+    rows = f"{count(len(compared.time), 'row', 'rows')} from {compared.time[0]:g} to {compared.time[-1]:g} s"
     if compared.agrees:
         console.print(f"[green]they agree[/green] within {compared.tolerance:g} over {rows}", soft_wrap=True)
     else:

@@ -16,8 +16,9 @@ from onorbit_rs.cli.options import (
     in_words,
     of_file,
 )
-from onorbit_rs.cli.saying import count, say
+from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim
+from onorbit_rs.counting import count
 from onorbit_rs.files import replacing
 from onorbit_rs.printable import shell_word
 

@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.tree import Tree
 
 from onorbit_rs.cli.printing import text
-from onorbit_rs.cli.saying import count
+from onorbit_rs.counting import count
 from onorbit_rs.robots.describe import describe
 
 if TYPE_CHECKING:

@@ -14,11 +14,6 @@ from onorbit_rs.printable import LACKING, printable
 RED, YELLOW = typer.colors.RED, typer.colors.YELLOW
 
 
-def count(number: int, one: str, many: str) -> str:
-    """``1 joint``, ``2 joints``."""
-    return f"{number} {one if number == 1 else many}"
-
-
 def say(line: str) -> None:
     """A line on stdout, whatever names of files and robots it holds."""
     say_all(printable(line))

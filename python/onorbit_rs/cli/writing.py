@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError
-from onorbit_rs.files import exists, is_link, refusals
+from onorbit_rs.files import described, exists, is_link, refusals
 
 
 def claim(file: Path | None, *, force: bool) -> None:
@@ -27,7 +27,7 @@ def claim(file: Path | None, *, force: bool) -> None:
             raise OutputFolderError(f"cannot write {file}: it is a folder, name a file in it", path=str(file))
         if is_link(file) or (file.exists() and not file.is_file()):
             raise OutputFolderError(
-                f"cannot write {file}: it is a link or a device, name a regular file", path=str(file)
+                f"cannot write {file}: it is {described(file)}, name a regular file", path=str(file)
             )
         if exists(file) and not force:
             raise OutputNotEmptyError(f"{file} is there already; replace it with --force", path=str(file))

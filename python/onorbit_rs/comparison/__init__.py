@@ -12,6 +12,7 @@ from onorbit_rs.comparison.recorded import Recorded, Source, on_the_other_plant,
 from onorbit_rs.comparison.rows import common_rows
 from onorbit_rs.comparison.settings import settings_apart
 from onorbit_rs.comparison.words import as_text
+from onorbit_rs.counting import count
 from onorbit_rs.exceptions import CompareError, InputError, OnOrbitError
 from onorbit_rs.printable import json_value
 from onorbit_rs.reals import real
@@ -165,8 +166,8 @@ def _same_robot(a: Recorded, b: Recorded) -> list[str]:
     if a.columns["q"].shape[1] != b.columns["q"].shape[1]:
         joints = [run.columns["q"].shape[1] - 7 for run in (a, b)]
         raise CompareError(
-            f"{a.name} has a robot with {joints[0]} joints, {b.name} one with {joints[1]}: only runs of one "
-            "robot compare",
+            f"{a.name} has a robot with {count(joints[0], 'joint', 'joints')}, {b.name} one with "
+            f"{joints[1]}: only runs of one robot compare",
             name="robot", got=joints[1], expected=joints[0],
         )  # fmt: skip
     prints = a.fingerprint, b.fingerprint

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.exceptions import DtypeError, ModelError, NotFoundError
+from onorbit_rs.files import exists
 from onorbit_rs.output import with_absolute_paths
 from onorbit_rs.output.manifest import SCENARIO, SUMMARY
 from onorbit_rs.output.read import SavedRun
@@ -103,8 +104,8 @@ def _of_run(made: Run) -> Recorded:
 def _of_folder(folder: Path) -> Recorded:
     saved = SavedRun(folder)
     trace = saved.trace()
-    if not (folder / SCENARIO).is_file():
+    if not exists(folder / SCENARIO):
         raise NotFoundError(f"no run in this folder (no {SCENARIO}): {folder}", path=str(folder), kind="run")
     columns = {name: np.asarray(getattr(trace, name), dtype=np.float64) for name in trace.columns()}
-    known = saved.summary().get("robot_fingerprint") if (folder / SUMMARY).is_file() else None
+    known = saved.summary().get("robot_fingerprint") if exists(folder / SUMMARY) else None
     return Recorded(str(folder), columns, saved.scenario(), fingerprint=known)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from onorbit_rs.counting import count
 from onorbit_rs.output import with_absolute_paths
 from onorbit_rs.scenario import Scenario
 
@@ -49,6 +50,6 @@ def _short(value: Any) -> str:
     if isinstance(value, dict):
         return str(value.get("kind", "another"))
     if isinstance(value, list):
-        return f"{len(value)} entries"
+        return count(len(value), "entry", "entries")
     said = f"{value:.10g}" if isinstance(value, float) else str(value)
     return said if len(said) <= 60 else f"{said[:57]}..."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from onorbit_rs.counting import count
 from onorbit_rs.printable import printable
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ def as_text(compared: Comparison) -> str:
         middle = (f"{number:>{width}}" for number, width in zip(numbers, widths[1:-1], strict=True))
         lines.append("  ".join((f"{name:<{widths[0]}}", *middle, unit)).rstrip())
     lines += [f"note: {note}" for note in compared.notes]
-    span = f"{len(compared.time)} rows from {compared.time[0]:g} to {compared.time[-1]:g} s"
+    span = f"{count(len(compared.time), 'row', 'rows')} from {compared.time[0]:g} to {compared.time[-1]:g} s"
     within = f"{compared.tolerance:g}"
     verdict = f"they agree within {within} over {span}"
     if not compared.agrees:

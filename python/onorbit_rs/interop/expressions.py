@@ -6,9 +6,10 @@ import ast
 import math
 import operator
 from collections.abc import Callable
-from typing import Any
+from typing import ClassVar
 
 from onorbit_rs.exceptions import QuantityError
+from onorbit_rs.expressions import Evaluator, parsed
 from onorbit_rs.names import did_you_mean
 
 _CONSTANTS = {"pi": math.pi}
@@ -18,12 +19,6 @@ _FUNCTIONS: dict[str, Callable[[float], float]] = {
     "deg": math.radians, "rad": float, "radians": math.radians,
 }  # fmt: skip
 """``deg(60)`` and ``rad(2*pi)`` are ROS': both give radians."""
-
-_BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
-    ast.Pow: math.pow,
-}  # fmt: skip
-_UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {ast.UAdd: operator.pos, ast.USub: operator.neg}
 
 _LONGEST = 200
 
@@ -43,33 +38,49 @@ def evaluate(value: object) -> float:
         return _finite(value, float(value) if abs(value) < 1e308 else math.inf)
     if not isinstance(value, str):
         raise _refused(value, "is no number")
-    if len(value) > _LONGEST:
-        raise _refused(value[:40] + "...", f"is longer than {_LONGEST} characters")
     try:
-        return _finite(value, _value(ast.parse(value.strip(), mode="eval").body, value))
-    except (SyntaxError, ValueError, ZeroDivisionError, OverflowError, RecursionError, MemoryError) as error:
+        return _finite(value, _Arithmetic(value).visit(parsed(value.strip(), _LONGEST)))
+    except (SyntaxError, ValueError, ZeroDivisionError, OverflowError, RecursionError) as error:
         if isinstance(error, QuantityError):
             raise
         reason = error.msg if isinstance(error, SyntaxError) else str(error)
-        raise _refused(value, f"cannot be computed ({reason})") from None
+        short = value if len(value) <= _LONGEST else f"{value[:40]}..."
+        raise _refused(short, f"cannot be computed ({reason})") from None
 
 
-def _value(node: ast.expr, text: str) -> float:
-    match node:
-        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
-            return float(number)
-        case ast.Name(id=name) if name in _CONSTANTS:
-            return _CONSTANTS[name]
-        case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
-            return float(_BINARY[type(op)](_value(left, text), _value(right, text)))
-        case ast.UnaryOp(op=op, operand=operand) if type(op) in _UNARY:
-            return float(_UNARY[type(op)](_value(operand, text)))
-        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in _FUNCTIONS:
-            return _FUNCTIONS[name](_value(argument, text))
-        case ast.Name(id=name) | ast.Call(func=ast.Name(id=name)):
-            raise _refused(text, f"names {name!r}{did_you_mean(name, [*_CONSTANTS, *_FUNCTIONS])}")
-        case _:
-            raise _refused(text, "is no arithmetic of numbers, pi and functions like sqrt")
+class _Arithmetic(Evaluator):
+    """Numbers as floats alone, so that no power grows without end."""
+
+    unary: ClassVar = {ast.UAdd: operator.pos, ast.USub: operator.neg}
+    binary: ClassVar = {
+        ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
+        ast.Pow: math.pow,
+    }  # fmt: skip
+
+    def __init__(self, text: object) -> None:
+        self._text = text
+
+    def visit(self, node: ast.AST) -> float:
+        return float(super().visit(node))
+
+    def visit_Name(self, node: ast.Name) -> float:
+        if node.id not in _CONSTANTS:
+            raise self._unknown(node.id)
+        return _CONSTANTS[node.id]
+
+    def visit_Call(self, node: ast.Call) -> float:
+        match node:
+            case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in _FUNCTIONS:
+                return _FUNCTIONS[name](self.visit(argument))
+            case ast.Call(func=ast.Name(id=name)) if name not in _FUNCTIONS:
+                raise self._unknown(name)
+        raise self.refused(node)
+
+    def refused(self, node: ast.AST) -> QuantityError:
+        return _refused(self._text, "is no arithmetic of numbers, pi and functions of one number like sqrt")
+
+    def _unknown(self, name: str) -> QuantityError:
+        return _refused(self._text, f"names {name!r}{did_you_mean(name, [*_CONSTANTS, *_FUNCTIONS])}")
 
 
 def _finite(text: object, number: float) -> float:

@@ -17,8 +17,9 @@ from urllib.parse import quote
 import numpy as np
 
 from onorbit_rs import _core
-from onorbit_rs.exceptions import CheckpointError, OnOrbitError
-from onorbit_rs.files import open_to_change, open_to_read, read_bounded, refusals, sync, sync_folder
+from onorbit_rs.counting import count
+from onorbit_rs.exceptions import CheckpointError, OnOrbitError, OutputInUseError
+from onorbit_rs.files import open_to_change, open_to_read, read_bounded, refusals, sync_folder
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import CHECKPOINT, STATE
 from onorbit_rs.output.sealed import sealed, unsealed
@@ -51,10 +52,18 @@ class CheckpointWriter:
         self._has_warned = False
 
     def __call__(self, checkpoint: Checkpoint) -> bool:
-        """Write the checkpoint; where that fails, warn once and return False: the run goes on."""
+        """Write the checkpoint; where that fails, warn once and return False: the run goes on.
+
+        Raises
+        ------
+        OutputInUseError
+            Another process has taken the folder: nothing of this run can be kept there.
+        """
         try:
             with refusals(self._path):
                 self._write(checkpoint)
+        except OutputInUseError:
+            raise
         except OnOrbitError as error:
             if not self._has_warned:
                 self._has_warned = True
@@ -92,18 +101,9 @@ class CheckpointWriter:
                 f"the state of the run takes {len(content)} bytes, at most {_MOST} are kept", self._path
             )
         sync_folder(self._path)
-        self._replace_state(content)
-        self._rows, self._digests = self._rows + new_rows, digests
-
-    def _replace_state(self, content: bytes) -> None:
-        temporary = self._folder.temporary(f"{CHECKPOINT}/{STATE}")
-        try:
-            temporary.write_bytes(content)
-            sync(temporary)
-            temporary.replace(self._path / STATE)
-        finally:
-            temporary.unlink(missing_ok=True)
+        self._folder.replace(f"{CHECKPOINT}/{STATE}", content)
         sync_folder(self._path)
+        self._rows, self._digests = self._rows + new_rows, digests
 
 
 def has_checkpoint(folder: Path) -> bool:
@@ -194,14 +194,14 @@ def _append(file: Path, content: bytes, *, after: int) -> None:
 
 def _column(file: Path, rows: int, width: int) -> tuple[Any, _Hash]:
     """The rows that count, and their running digest."""
-    count = rows * width
+    needed = rows * width
     with open_to_read(file) as stream:
         size = stream.seek(0, os.SEEK_END)
-        if min(rows, width) < 0 or size < 8 * count:
-            raise ValueError(f"it holds {size // 8} numbers, {count} are needed")
+        if min(rows, width) < 0 or size < 8 * needed:
+            raise ValueError(f"it holds {count(size // 8, 'number', 'numbers')}, {needed} are needed")
         stream.seek(0)
-        content = stream.read(8 * count)
-    if len(content) != 8 * count:
+        content = stream.read(8 * needed)
+    if len(content) != 8 * needed:
         raise ValueError("it could not be read to its end")
     return np.frombuffer(content, dtype="<f8").reshape(rows, width), hashlib.sha256(content)
 

@@ -57,21 +57,48 @@ class FolderLock:
         self.previous = _owner(self.path)
         """The process that was killed while it held the lock; None where there was none."""
         self.token = secrets.token_hex(8)
+        self._sign()
+
+    @property
+    def is_held(self) -> bool:
+        """Whether the locked file still has the name that others look at: someone may have removed it."""
+        return _is_at(self.path, self._descriptor)
+
+    def retake(self) -> None:
+        """Lock the folder again after its file was removed.
+
+        Raises
+        ------
+        OutputInUseError
+            Another process took it meanwhile.
+        """
+        again = self._taken(self.path.parent)
+        self._close()
+        self._descriptor = again
+        _held.add(again)
+        self._sign()
+
+    def release(self) -> None:
+        """Let others write the folder; twice does no harm."""
+        with contextlib.suppress(OSError):  # Windows removes no open file, and others may open it next
+            if self._descriptor in _held and self.is_held:
+                remove(self.path)
+        self._close()
+
+    def _close(self) -> None:
+        if self._descriptor in _held:
+            _held.discard(self._descriptor)
+            os.close(self._descriptor)
+            self._descriptor = -1
+
+    def _sign(self) -> None:
+        """Write into the file whose it is."""
         try:
             os.ftruncate(self._descriptor, 0)
             os.write(self._descriptor, json.dumps(_this_process(self.token)._asdict()).encode())
         except OSError:
             self.release()
             raise
-
-    def release(self) -> None:
-        """Let others write the folder; twice does no harm."""
-        if self._descriptor in _held:
-            with contextlib.suppress(OSError):  # Windows removes no open file, and others may open it next
-                if _is_at(self.path, self._descriptor):
-                    remove(self.path)
-            _held.discard(self._descriptor)
-            os.close(self._descriptor)
 
     def _taken(self, folder: Path) -> int:
         """A locked descriptor of the file that has the name now: its owner may have removed it meanwhile."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 from onorbit_rs.exceptions import IntegrityError, NotFoundError, OnOrbitError, ReadError
-from onorbit_rs.files import open_to_read, read_bounded
+from onorbit_rs.files import described, exists, open_to_read, read_bounded
 from onorbit_rs.output.checkpoint import has_checkpoint
 from onorbit_rs.output.checks import CHECKS, GATE
 from onorbit_rs.output.lock import owner_of
@@ -44,9 +44,7 @@ class SavedRun:
             The manifest is damaged.
         """
         self.folder = folder
-        if not folder.is_dir():
-            what = "this is a file, not the folder of a run" if folder.is_file() else "no such folder"
-            raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
+        check_folder(folder)
         self._manifest = read_manifest(folder)
         self._has_warned = False
 
@@ -160,6 +158,13 @@ class SavedRun:
                 "changed since the run wrote them is not known",
                 UserWarning, stacklevel=2,
             )  # fmt: skip
+
+
+def check_folder(folder: Path) -> None:
+    """Raise :class:`NotFoundError` where there is no folder of this name."""
+    if not folder.is_dir():
+        what = f"this is {described(folder)}, not the folder of a run" if exists(folder) else "no such folder"
+        raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
 
 
 def read_trace(folder: Path) -> Trace:

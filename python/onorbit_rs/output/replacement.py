@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from onorbit_rs.files import refusals, sync, sync_folder
+from onorbit_rs.files import partial, refusals, sync_folder
 from onorbit_rs.output.manifest import Entry, Manifest
 
 if TYPE_CHECKING:
@@ -29,13 +29,9 @@ class Replacement:
         with refusals(file):
             self._folder.check_replaceable(name)
             temporary = self._folder.temporary(name)
-            try:
+            with partial(temporary):
                 yield temporary
-                sync(temporary)
-                self._written[name] = temporary, Entry.of(temporary)
-            finally:  # whatever ended it, Ctrl-C included
-                if name not in self._written:
-                    temporary.unlink(missing_ok=True)
+            self._written[name] = temporary, Entry.of(temporary)
 
     def commit(self) -> None:
         """List the files in the manifest, then give them their names."""

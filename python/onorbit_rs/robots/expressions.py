@@ -11,8 +11,9 @@ from __future__ import annotations
 import ast
 import operator
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, ClassVar
 
+from onorbit_rs.expressions import Evaluator, parsed
 from onorbit_rs.robots.functions import (
     MAPPED,
     METHODS,
@@ -27,26 +28,6 @@ from onorbit_rs.robots.functions import (
 _LONGEST = 4096
 """Characters of an expression; the longest of real robots has some hundred."""
 
-_BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: repeated,
-    ast.Div: operator.truediv,
-    ast.FloorDiv: operator.floordiv,
-    ast.Mod: text_of,
-    ast.Pow: safe_power,
-    ast.LShift: safe_shift,
-    ast.RShift: operator.rshift,
-    ast.BitAnd: operator.and_,
-    ast.BitOr: operator.or_,
-    ast.BitXor: operator.xor,
-}
-_UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {
-    ast.UAdd: operator.pos,
-    ast.USub: operator.neg,
-    ast.Not: operator.not_,
-    ast.Invert: operator.invert,
-}
 _COMPARE: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
     ast.Eq: operator.eq,
     ast.NotEq: operator.ne,
@@ -84,39 +65,49 @@ def evaluate(text: str, names: Callable[[str], Any], functions: Mapping[str, Any
         As Python raises them.
     """
     text = text.strip()
-    if len(text) > _LONGEST:
-        raise ValueError(f"an expression of {len(text)} characters, {_LONGEST} are allowed")
     try:
-        tree = ast.parse(text, mode="eval")
+        tree = parsed(text, _LONGEST)
     except SyntaxError as error:
         raise ValueError(f"invalid syntax in {text!r}: {error.msg}") from None
-    except (MemoryError, RecursionError):
-        raise ValueError("an expression nested too deep") from None
-    return _Evaluation(names, functions, work).value(tree.body)
+    return _Evaluation(names, functions, work).visit(tree)
 
 
-class _Evaluation:
+class _Evaluation(Evaluator):
     """The walk over one syntax tree."""
+
+    constants: ClassVar = (int, float, str, bool, type(None))
+    binary: ClassVar = {
+        ast.Add: operator.add,
+        ast.Sub: operator.sub,
+        ast.Mult: repeated,
+        ast.Div: operator.truediv,
+        ast.FloorDiv: operator.floordiv,
+        ast.Mod: text_of,
+        ast.Pow: safe_power,
+        ast.LShift: safe_shift,
+        ast.RShift: operator.rshift,
+        ast.BitAnd: operator.and_,
+        ast.BitOr: operator.or_,
+        ast.BitXor: operator.xor,
+    }
+    unary: ClassVar = {
+        ast.UAdd: operator.pos,
+        ast.USub: operator.neg,
+        ast.Not: operator.not_,
+        ast.Invert: operator.invert,
+    }
 
     def __init__(self, names: Callable[[str], Any], functions: Mapping[str, Any], work: Work) -> None:
         self._names, self._functions, self._work = names, functions, work
 
-    def value(self, node: ast.expr) -> Any:
+    def visit(self, node: ast.AST) -> Any:
         """Return the value of a node, which is plain data of bounded size."""
         self._work.spend(1)
-        rule = getattr(self, f"_{type(node).__name__.lower()}", None)
-        if rule is None:
-            raise _refused(node)
-        value = rule(node)
+        value = super().visit(node)
         check_size(value, self._work)
         return value
 
-    def _constant(self, node: ast.Constant) -> Any:
-        if type(node.value) not in (int, float, str, bool, type(None)):
-            raise _refused(node)
-        return node.value
-
-    def _name(self, node: ast.Name) -> Any:
+    def visit_Name(self, node: ast.Name) -> Any:
         try:
             found = self._names(node.id)
         except KeyError:
@@ -133,69 +124,60 @@ class _Evaluation:
             )
         return found
 
-    def _unaryop(self, node: ast.UnaryOp) -> Any:
-        return _UNARY[type(node.op)](self.value(node.operand))
-
-    def _binop(self, node: ast.BinOp) -> Any:
-        rule = _BINARY.get(type(node.op))
-        if rule is None:
-            raise _refused(node.op)
-        return rule(self.value(node.left), self.value(node.right))
-
-    def _boolop(self, node: ast.BoolOp) -> Any:
+    def visit_BoolOp(self, node: ast.BoolOp) -> Any:
         value: Any = None
         for part in node.values:
-            value = self.value(part)
+            value = self.visit(part)
             if bool(value) is isinstance(node.op, ast.Or):
                 return value
         return value
 
-    def _compare(self, node: ast.Compare) -> Any:
-        left = self.value(node.left)
+    def visit_Compare(self, node: ast.Compare) -> Any:
+        left = self.visit(node.left)
         for sign, part in zip(node.ops, node.comparators, strict=True):
-            right = self.value(part)
+            right = self.visit(part)
             if not _COMPARE[type(sign)](left, right):
                 return False
             left = right
         return True
 
-    def _ifexp(self, node: ast.IfExp) -> Any:
-        return self.value(node.body if self.value(node.test) else node.orelse)
+    def visit_IfExp(self, node: ast.IfExp) -> Any:
+        return self.visit(node.body if self.visit(node.test) else node.orelse)
 
-    def _list(self, node: ast.List) -> Any:
-        return [self.value(item) for item in node.elts]
+    def visit_List(self, node: ast.List) -> Any:
+        return [self.visit(item) for item in node.elts]
 
-    def _tuple(self, node: ast.Tuple) -> Any:
-        return tuple(self.value(item) for item in node.elts)
+    def visit_Tuple(self, node: ast.Tuple) -> Any:
+        return tuple(self.visit(item) for item in node.elts)
 
-    def _dict(self, node: ast.Dict) -> Any:
+    def visit_Dict(self, node: ast.Dict) -> Any:
         if any(key is None for key in node.keys):
-            raise _refused(node)
+            raise self.refused(node)
         pairs = zip(node.keys, node.values, strict=True)
-        return {self.value(key): self.value(value) for key, value in pairs if key is not None}
+        return {self.visit(key): self.visit(value) for key, value in pairs if key is not None}
 
-    def _subscript(self, node: ast.Subscript) -> Any:
-        return self.value(node.value)[self._index(node.slice)]
+    def visit_Subscript(self, node: ast.Subscript) -> Any:
+        return self.visit(node.value)[self._index(node.slice)]
 
     def _index(self, node: ast.expr) -> Any:
         if not isinstance(node, ast.Slice):
-            return self.value(node)
+            return self.visit(node)
         ends = (node.lower, node.upper, node.step)
-        return slice(*(None if end is None else self.value(end) for end in ends))
+        return slice(*(None if end is None else self.visit(end) for end in ends))
 
-    def _attribute(self, node: ast.Attribute) -> Any:
+    def visit_Attribute(self, node: ast.Attribute) -> Any:
         """Return ``mapping.key``, ``namespace.property`` or ``math.pi``; no attribute of an object."""
         if node.attr.startswith("_"):
-            raise _refused(node)
+            raise self.refused(node)
         dotted = self._dotted(node)
         if dotted is not None:
             return self._constant_of(dotted)
         scope = self._scope(node.value)
         if scope is not None:
             return scope(node.attr)
-        owner = self.value(node.value)
+        owner = self.visit(node.value)
         if not isinstance(owner, dict):
-            raise _refused(node)
+            raise self.refused(node)
         return owner[node.attr]
 
     def _dotted(self, node: ast.Attribute) -> str | None:
@@ -218,19 +200,19 @@ class _Evaluation:
         found = outer(node.id if isinstance(node, ast.Name) else getattr(node, "attr", ""))
         return found if callable(found) else None
 
-    def _call(self, node: ast.Call) -> Any:
+    def visit_Call(self, node: ast.Call) -> Any:
         function = self._function(node.func)
         if any(keyword.arg is None for keyword in node.keywords):
-            raise _refused(node)
+            raise self.refused(node)
         arguments = [self._argument(function, item) for item in node.args]
-        keywords = {keyword.arg: self.value(keyword.value) for keyword in node.keywords if keyword.arg}
+        keywords = {keyword.arg: self.visit(keyword.value) for keyword in node.keywords if keyword.arg}
         return function(*arguments, **keywords)
 
     def _argument(self, function: Any, node: ast.expr) -> Any:
         is_mapped = (
             function is self._functions.get("map") and isinstance(node, ast.Name) and node.id in MAPPED
         )
-        return self._functions[node.id] if is_mapped and isinstance(node, ast.Name) else self.value(node)
+        return self._functions[node.id] if is_mapped and isinstance(node, ast.Name) else self.visit(node)
 
     def _function(self, node: ast.expr) -> Any:
         name = node.id if isinstance(node, ast.Name) else None
@@ -242,19 +224,18 @@ class _Evaluation:
                 raise NameError(f"there is no function {name!r} in expressions of xacro files")
             return function
         if not isinstance(node, ast.Attribute):
-            raise _refused(node)
-        owner = self.value(node.value)
+            raise self.refused(node)
+        owner = self.visit(node.value)
         method = METHODS.get(
             (str if isinstance(owner, str) else dict if isinstance(owner, dict) else list, node.attr)
         )
         if method is None:
-            raise _refused(node)
+            raise self.refused(node)
         return lambda *arguments: method(owner, *arguments)
 
-
-def _refused(node: ast.AST) -> ValueError:
-    what = ast.unparse(node) if isinstance(node, ast.expr) else type(node).__name__
-    return ValueError(
-        f"{what!r} has no place in a xacro expression: numbers, text, lists, mappings, arithmetic, "
-        "comparisons, conditions, indexing and calls of listed functions are evaluated"
-    )
+    def refused(self, node: ast.AST) -> ValueError:
+        what = ast.unparse(node) if isinstance(node, ast.expr) else type(node).__name__
+        return ValueError(
+            f"{what!r} has no place in a xacro expression: numbers, text, lists, mappings, arithmetic, "
+            "comparisons, conditions, indexing and calls of listed functions are evaluated"
+        )

@@ -8,6 +8,8 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+from onorbit_rs.counting import count
+
 MAX_TEXT = 100_000
 """Characters."""
 MAX_ITEMS = 10_000
@@ -60,7 +62,7 @@ def repeated(a: Any, b: Any) -> Any:
     for items, times in ((a, b), (b, a)):
         if isinstance(items, (str, list, tuple)) and isinstance(times, int):
             limit = MAX_TEXT if isinstance(items, str) else MAX_ITEMS
-            _check(len(items) * times <= limit, f"{len(items)} items {times} times")
+            _check(len(items) * times <= limit, f"{count(len(items), 'item', 'items')} {times} times")
     return operator.mul(a, b)
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import io
 import os
-import stat
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from onorbit_rs.exceptions import ReadError
 from onorbit_rs.names import did_you_mean
+from onorbit_rs.reading import read_bytes
 from onorbit_rs.robots.functions import Work
 
 _LARGEST = 16 << 20
@@ -60,17 +61,17 @@ class Files:
             It lies elsewhere, is no regular file of at most 16 MiB, is not UTF-8 text or has a document type.
         """
         path = Path(name)
-        held = path.stat()
+        path.stat()  # what is missing is an error of its own to xacro
         real = path.resolve()
         if mode != "r" or not any(real.is_relative_to(root) for root in self._roots):
             raise ValueError(
                 f"may not read {str(name)!r}, which lies outside of its package; if you trust it, name the "
                 f"folder {str(real.parent)!r} in package_paths"
             )
-        if not stat.S_ISREG(held.st_mode) or held.st_size > _LARGEST:
-            raise ValueError(f"{str(name)!r} is not a regular file of at most {_LARGEST} bytes")
-        with path.open("rb") as stream:
-            raw = stream.read(_LARGEST + 1)
+        try:
+            raw = read_bytes(path, _LARGEST)
+        except ReadError as error:  # as an OSError it would be one of the outermost file
+            raise ValueError(error.message) from None
         self._work.spend(len(raw) // 4)
         text = _checked(raw, str(name))
         return io.StringIO(text)

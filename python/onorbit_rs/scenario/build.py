@@ -19,7 +19,7 @@ from onorbit_rs.scenario.plant import make_plant
 from onorbit_rs.scenario.reference import Start
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.start import initial_state
-from onorbit_rs.scenario.trial import Flight, about_controllers, try_effects, try_one_step
+from onorbit_rs.scenario.trial import Flight, about_controllers, about_start, try_effects, try_one_step
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -89,7 +89,7 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
 
     def simulation() -> tuple[_core.Simulation, Any]:
         controller, reference = _controlled(scenario, start, runs_code=runs_code)
-        with located(scenario, "simulation"), about_controllers(scenario):
+        with located(scenario, "simulation"), about_start(scenario), about_controllers(scenario):
             made = _core.Simulation(
                 model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode,
                 environment=effects, controller=controller, reference=reference, tool=tool,
@@ -97,7 +97,8 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
             )  # fmt: skip
         return made, reference
 
-    try_one_step(scenario, simulation()[0])  # a controller in Python may remember it: the run gets another
+    # a controller in Python may remember its trial: the run gets another
+    try_one_step(scenario, model, simulation()[0])
     doubtful = tuple(doubts(scenario, flight, effects))
     for doubt in doubtful:
         warnings.warn(doubt, stacklevel=2)

@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from onorbit_rs.counting import count
 from onorbit_rs.exceptions import ScenarioError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.scenario.place import dotted, scenario_error
@@ -72,7 +73,8 @@ def _said(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> str:
         return f"{shown(given)} is not one of {context['expected']}{_near(given, context)}"
     if kind in ("too_short", "too_long"):
         needed = context["min_length" if kind == "too_short" else "max_length"]
-        return f"has {context['actual_length']} entries, needs {'at least 1' if needed == 1 else needed}"
+        got = count(context["actual_length"], "entry", "entries")
+        return f"has {got}, needs {'at least 1' if needed == 1 else needed}"
     if kind == "greater_than_equal":
         return f"{shown(given)} is below {context['ge']}, the least that is allowed"
     if kind == "less_than_equal":

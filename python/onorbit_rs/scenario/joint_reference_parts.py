@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from onorbit_rs.counting import count
 from onorbit_rs.scenario.fields import FilePath, JointAcceleration, JointRate, Positive, Time
 from onorbit_rs.scenario.joint_values import JointPositions
 from onorbit_rs.scenario.part import Part
@@ -13,12 +14,12 @@ from onorbit_rs.scenario.refusals import wrong
 from onorbit_rs.scenario.units import ANGLE, LENGTH, parse_quantity
 
 
-def check_times(times: list[float] | None, what: str, count: int) -> None:
+def check_times(times: list[float] | None, what: str, points: int) -> None:
     """Refuse times that are not one for each of the points."""
-    if times is not None and len(times) != count:
-        raise wrong(
-            f"times has {len(times)} entries for {count} {what}: give one for each, the start being at zero"
-        )
+    if times is not None and len(times) != points:
+        entries = count(len(times), "entry", "entries")
+        wanted = count(points, what, f"{what}s")
+        raise wrong(f"times has {entries} for {wanted}: give one for each, the start being at zero")
 
 
 class JointHoldReference(Part):
@@ -46,7 +47,7 @@ class JointWaypointsReference(JointTimed):
 
     @model_validator(mode="after")
     def _has_a_time_for_each(self) -> Self:
-        check_times(self.times, "points", len(self.points))
+        check_times(self.times, "point", len(self.points))
         return self
 
 
@@ -65,7 +66,7 @@ class JointRampsReference(JointTimed):
 
     @model_validator(mode="after")
     def _has_a_time_for_each(self) -> Self:
-        check_times(self.times, "moves", len(self.moves))
+        check_times(self.times, "move", len(self.moves))
         return self
 
 

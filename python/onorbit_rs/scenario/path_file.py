@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from onorbit_rs.counting import count
 from onorbit_rs.exceptions import ElementSetError
 from onorbit_rs.scenario.table import read_table
 
@@ -29,8 +30,9 @@ def two_lines(text: str, where: str) -> tuple[str, str]:
     if len(lines) == 3:
         lines = lines[1:]
     if len(lines) != 2:
+        found = count(len(lines), "line", "lines")
         raise ElementSetError(
-            f"{where} holds {len(lines)} lines: give the two lines of one TLE, with a name before them or not"
+            f"{where} holds {found}: give the two lines of one TLE, with a name before them or not"
         )
     return lines[0], lines[1]
 

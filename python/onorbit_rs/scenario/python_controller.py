@@ -10,10 +10,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from onorbit_rs.exceptions import ControlError, NotFoundError
+from onorbit_rs.exceptions import ControlError
 from onorbit_rs.foreign_code import announce
-from onorbit_rs.names import did_you_mean
 from onorbit_rs.scenario.control import PythonController
+from onorbit_rs.scenario.controller_refusals import no_class, no_module, no_python, no_update
 from onorbit_rs.scenario.python_source import source_of
 
 
@@ -22,8 +22,8 @@ def python_controller(part: PythonController, beside: Path) -> Any:
 
     Raises
     ------
-    NotFoundError
-        No such file or module.
+    NotFoundError, ReadError
+        No such file or module; a folder, a pipe or a device.
     ControlError
         Its file, its module or its constructor raises, or it has no such class, or that no ``update``.
     """
@@ -37,16 +37,9 @@ def python_controller(part: PythonController, beside: Path) -> Any:
             for name, value in vars(module).items()
             if inspect.isclass(value) and value.__module__ == module.__name__
         ]
-        hint = did_you_mean(part.class_, classes)
-        raise ControlError(
-            f"{source} has no class {part.class_!r}{hint}", name="class", got=part.class_, expected=classes
-        )
+        raise no_class(part.class_, source, classes)
     if not callable(getattr(made, "update", None)) or inspect.isabstract(made):
-        raise ControlError(
-            f"{part.class_} of {source} has no update(t, state): give it one that returns the efforts",
-            name="class",
-            got=part.class_,
-        )
+        raise no_update(part.class_, source)
     try:
         return made(**part.arguments)
     except Exception as error:
@@ -61,9 +54,7 @@ def _from_file(file: Path) -> ModuleType:
     name = f"onorbit_controller_{file.stem}"
     spec = importlib.util.spec_from_file_location(name, file)
     if spec is None or spec.loader is None:
-        raise ControlError(
-            f"{file} is not a Python file: its name must end in .py", name="file", got=str(file)
-        )
+        raise no_python(str(file))
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # dataclasses look themselves up there
     try:
@@ -78,11 +69,7 @@ def _imported(name: str) -> ModuleType:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
         if error.name and (name == error.name or name.startswith(f"{error.name}.")):
-            raise NotFoundError(
-                f"no module {name!r} can be imported: install it, or give a 'file' beside the scenario",
-                path=name,
-                kind="controller",
-            ) from error
+            raise no_module(name) from error
         raise ControlError(f"module {name} raised {_told(error)}", name="module", got=name) from error
     except Exception as error:
         raise ControlError(f"module {name} raised {_told(error)}", name="module", got=name) from error

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.exceptions import ControlError, NotFoundError
-from onorbit_rs.names import did_you_mean
+from onorbit_rs.reading import LARGEST_TEXT, check_regular, read_bytes
+from onorbit_rs.scenario.controller_refusals import no_class, no_module, no_python, no_update
 
 if TYPE_CHECKING:
     from onorbit_rs.scenario.control import PythonController
@@ -35,17 +36,16 @@ def source_of(part: PythonController, beside: Path) -> str:
 
     Raises
     ------
-    NotFoundError
-        There is no such file or module.
+    NotFoundError, ReadError
+        There is no such file or module; it is a folder, a pipe or a device.
     """
     if part.file is not None:
         file = beside / part.file
-        if not file.is_file():
-            raise NotFoundError(
-                f"no such file: {file}; a relative path starts at the scenario's folder",
-                path=str(file),
-                kind="controller",
-            )
+        try:
+            check_regular(file, "controller")
+        except NotFoundError as error:
+            message = f"{error}; a relative path starts at the scenario's folder"
+            raise NotFoundError(message, path=str(file), kind="controller") from None
         return str(file)
     found = _found_module(str(part.module))
     return str(part.module) if found is None else found
@@ -56,8 +56,8 @@ def inspect_source(part: PythonController, beside: Path) -> Unrun:
 
     Raises
     ------
-    NotFoundError
-        There is no such file or module.
+    NotFoundError, ReadError
+        There is no such file or module, or it cannot be read.
     ControlError
         Its source is not Python, has no such class, the class has no ``update``, or its constructor does not
         take the arguments. What only running could tell is not checked.
@@ -66,12 +66,10 @@ def inspect_source(part: PythonController, beside: Path) -> Unrun:
     if not source.endswith(".py"):
         if part.file is None:
             return Unrun()  # compiled: nothing to read
-        raise ControlError(
-            f"{source} is not a Python file: its name must end in .py", name="file", got=source
-        )
+        raise no_python(source)
     try:
-        tree = ast.parse(Path(source).read_bytes(), filename=source)
-    except (SyntaxError, ValueError, RecursionError, MemoryError, OSError) as error:
+        tree = ast.parse(read_bytes(source, LARGEST_TEXT, "controller"), filename=source)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         reason = " ".join(str(error).split())
         raise ControlError(
             f"{source} cannot be read as Python: {type(error).__name__}: {reason}", name="file", got=source
@@ -80,11 +78,7 @@ def inspect_source(part: PythonController, beside: Path) -> Unrun:
     classes = {node.name: node for node in statements if isinstance(node, ast.ClassDef)}
     made = classes.get(part.class_)
     if made is None and not _may_be_bound(part.class_, statements):
-        hint = did_you_mean(part.class_, classes)
-        raise ControlError(
-            f"{source} has no class {part.class_!r}{hint}",
-            name="class", got=part.class_, expected=list(classes),
-        )  # fmt: skip
+        raise no_class(part.class_, source, classes)
     if made is not None:
         _check_class(made, classes, part, source)
     return Unrun()
@@ -102,11 +96,7 @@ def _found_module(name: str) -> str | None:
         inner = ".".join([top, *rest[: depth + 1]])
         spec = None if folders is None else importlib.machinery.PathFinder.find_spec(inner, folders)
     if spec is None:
-        raise NotFoundError(
-            f"no module {name!r} can be imported: install it, or give a 'file' beside the scenario",
-            path=name,
-            kind="controller",
-        )
+        raise no_module(name)
     return spec.origin if spec.has_location else None
 
 
@@ -148,11 +138,7 @@ def _check_class(
         for node in ast.walk(item) if isinstance(node, ast.Name)
     }  # fmt: skip
     if "update" not in names and are_all_known:
-        raise ControlError(
-            f"{part.class_} of {source} has no update(t, state): give it one that returns the efforts",
-            name="class",
-            got=part.class_,
-        )
+        raise no_update(part.class_, source)
     is_plain = are_all_known and "__new__" not in names and not any(one.decorator_list for one in line)
     constructor = next((node for name, node in methods if name == "__init__"), None)
     if not is_plain or (constructor is not None and constructor.decorator_list):

@@ -134,7 +134,7 @@ class WaypointsReference(Limits):
 
     @model_validator(mode="after")
     def _has_a_time_for_each(self) -> Self:
-        check_times(self.times, "points", len(self.points))
+        check_times(self.times, "point", len(self.points))
         return self
 
 

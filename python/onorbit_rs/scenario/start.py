@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from onorbit_rs.counting import count
 from onorbit_rs.exceptions import FrameError, QuantityError, ShapeError
 from onorbit_rs.names import did_you_mean, nearest
 from onorbit_rs.rotations import (
@@ -92,7 +93,11 @@ def joint_values(
             values[joints.index(joint)] = value
     elif given:
         if len(given) != len(joints):
-            message = f"{name} has {len(given)} entries, the robot has {len(joints)} moving joints"
+            entries, moving = (
+                count(len(given), "entry", "entries"),
+                count(len(joints), "moving joint", "moving joints"),
+            )
+            message = f"{name} has {entries}, the robot has {moving}"
             raise ShapeError(message, name=name, expected=(len(joints),), got=(len(given),))
         values[:] = given
     by_name = given if isinstance(given, dict) else dict(zip(joints, given, strict=False))

@@ -14,11 +14,14 @@ from onorbit_rs.exceptions import (
     EarthError,
     EffectError,
     FrameError,
+    InputError,
     OnOrbitError,
     OrbitError,
     ShapeError,
+    SimulationError,
 )
 from onorbit_rs.scenario.air_and_light import Covered
+from onorbit_rs.scenario.divergence import divergence
 from onorbit_rs.scenario.place import located
 from onorbit_rs.scenario.schema import Scenario
 
@@ -50,11 +53,25 @@ def about_controllers(scenario: Scenario) -> Iterator[None]:
             raise
 
 
-def try_one_step(scenario: Scenario, simulation: _core.Simulation) -> None:
+@contextmanager
+def about_start(scenario: Scenario) -> Iterator[None]:
+    """What the engine refuses of a first state stands with ``initial``."""
+    try:
+        yield
+    except InputError as error:
+        with located(scenario, "initial" if error.name in ("q", "v") else "simulation"):
+            raise
+
+
+def try_one_step(scenario: Scenario, model: _core.Model, simulation: _core.Simulation) -> None:
     """One step, thrown away: what would stop the run at once is told before anything is written."""
     try:
         with about_controllers(scenario):
             simulation.run(scenario.simulation.time_step)
+    except SimulationError as stop:
+        stop.message = divergence(stop, scenario, model)
+        with located(scenario, "simulation"):
+            raise
     except OnOrbitError as error:
         is_about_orbit = isinstance(error, (OrbitError, EffectError)) and scenario.orbit is not None
         with located(scenario, "orbit" if is_about_orbit else "simulation"):

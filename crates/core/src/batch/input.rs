@@ -3,6 +3,7 @@
 use super::kernel::Kernel;
 use super::space::{Call, RowsMut};
 use crate::model::Model;
+use crate::number_text::{count, short, unlike};
 use crate::orbit::OrbitError;
 use thiserror::Error;
 
@@ -19,25 +20,26 @@ pub struct Wrenches<'a> {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum InputError {
-    #[error("{name} has {got} numbers per state, expected {expected} for this robot")]
+    #[error("{name} has {got} per state, expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("{name} has {got} states, the first argument has {expected}")]
+    #[error("{name} has {got}, the first argument has {expected}", got = count(*got, "state"))]
     WrongBatch { name: &'static str, expected: usize, got: usize },
-    #[error("{name} has {got} numbers, which are no whole number of rows of {width}")]
+    #[error("{name} has {got}, which is not a whole number of rows of {width}", got = count(*got, "number"))]
     Ragged { name: &'static str, width: usize, got: usize },
     #[error("{got} {what} are given, this kernel has {expected}")]
     WrongCount { what: &'static str, expected: usize, got: usize },
-    #[error("output {output} has room for {got} numbers, it must be {expected}")]
+    #[error("output {output} has room for {got}, it must be {expected}", got = count(*got, "number"))]
     WrongRoom { output: usize, expected: usize, got: usize },
     #[error("{got} states are given where one is computed: compute them with Evaluator::many")]
     NotSingle { got: usize },
     #[error("frame {frame} is asked for, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame { frame: usize, count: usize },
-    #[error("{name} holds {value} in state {state}, it must be finite")]
+    #[error("{name} holds {value} in state {state}, it must be finite", value = short(*value))]
     NotFinite { name: &'static str, state: usize, value: f64 },
     #[error(
         "the quaternion of state {state} has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w in \
-         q[3:7]: normalise it first"
+         q[3:7]: normalise it first",
+        norm = unlike(*norm, &[1.0])
     )]
     QuaternionNorm { state: usize, norm: f64 },
     #[error(
@@ -56,12 +58,12 @@ pub enum InputError {
     #[error("threads is 0, it must be at least 1; leave it out for all cores")]
     NoThreads,
     #[error(
-        "state {state} diverged: it is no longer finite; shorten time_step, or soften gains and joint damping"
+        "state {state} diverged: it is no longer finite; shorten time_step, lower the initial rates, or soften gains and joint damping"
     )]
     Diverged { state: usize },
     #[error("orbit {orbit}: {source}")]
     Orbit { orbit: usize, source: OrbitError },
-    #[error("{name} is {value} in state {state}, it must be {expected}")]
+    #[error("{name} is {value} in state {state}, it must be {expected}", value = short(*value))]
     NoEllipse { name: &'static str, state: usize, value: f64, expected: &'static str },
 }
 

@@ -1,5 +1,7 @@
 //! What can be wrong with the turning Earth, its time or its sky.
 
+use crate::number_text::{count, short, unlike};
+
 /// Refusals of the `earth` module; each carries the offending values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -28,7 +30,7 @@ pub enum EarthError {
         what: &'static str,
     },
     /// An instant is outside the times for which something is known.
-    #[error("{what}: {time} s after the epoch {epoch} is outside of {from} to {to}")]
+    #[error("{what}: {time} s after the epoch {epoch} is outside of {from} to {to}", time = short(*time))]
     OutsideSpan {
         /// What is not known then.
         what: &'static str,
@@ -42,7 +44,7 @@ pub enum EarthError {
         to: String,
     },
     /// A time or an input is infinite or not a number.
-    #[error("{name} is {value}, a finite number is needed")]
+    #[error("{name} is {value}, a finite number is needed", value = short(*value))]
     NotFinite {
         /// Which input.
         name: &'static str,
@@ -50,7 +52,7 @@ pub enum EarthError {
         value: f64,
     },
     /// Earth-orientation parameters that cannot be true.
-    #[error("{name} is {value} in row {row}, {expected}")]
+    #[error("{name} is {value} in row {row}, {expected}", value = short(*value))]
     Parameter {
         /// Which parameter.
         name: &'static str,
@@ -71,7 +73,8 @@ pub enum EarthError {
     },
     /// A position is so near the Earth's centre that it has no latitude.
     #[error(
-        "position is {distance} m from the Earth's centre, geodetic coordinates need at least {minimum} m"
+        "position is {distance} m from the Earth's centre, geodetic coordinates need at least {minimum} m",
+        distance = unlike(*distance, &[*minimum]), minimum = short(*minimum)
     )]
     NearCentre {
         /// Distance, m.
@@ -96,7 +99,7 @@ pub enum EarthError {
         run: &'static str,
     },
     /// Numbers do not come in the right amount.
-    #[error("{name} holds {got} numbers, {expected} are needed")]
+    #[error("{name} holds {got}, expected {expected}", got = count(*got, "number"))]
     WrongLength {
         /// Which array.
         name: &'static str,

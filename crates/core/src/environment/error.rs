@@ -4,6 +4,7 @@ use super::atmosphere::AtmosphereError;
 use super::surfaces::SurfaceError;
 use crate::earth::EarthError;
 use crate::gravity::GravityError;
+use crate::number_text::{short, unlike};
 
 /// Refusals of the `environment` module; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -29,7 +30,8 @@ pub enum EnvironmentError {
     /// A path runs through the planet.
     #[error(
         "{effect}: {what} is below ground, {distance} m from the planet's centre where at least {minimum} m are needed: \
-         end the run earlier, or raise the orbit"
+         end the run earlier, or raise the orbit",
+        distance = unlike(*distance, &[*minimum]), minimum = short(*minimum)
     )]
     InsidePlanet {
         /// Name of the effect.
@@ -42,7 +44,7 @@ pub enum EnvironmentError {
         minimum: f64,
     },
     /// An input is infinite or not a number.
-    #[error("{name} holds {value}, finite numbers are needed")]
+    #[error("{name} holds {value}, finite numbers are needed", value = short(*value))]
     NotFinite {
         /// Which input.
         name: &'static str,
@@ -50,7 +52,10 @@ pub enum EnvironmentError {
         value: f64,
     },
     /// A wrench ends before it starts.
-    #[error("wrench is on from {start} s to {end} s: the start must come before the end")]
+    #[error(
+        "wrench is on from {start} s to {end} s: the start must come before the end",
+        start = unlike(*start, &[*end]), end = short(*end)
+    )]
     EmptyInterval {
         /// Start, s.
         start: f64,

@@ -3,6 +3,7 @@
 use super::GravityError;
 use super::point_mass::is_earth;
 use super::series::Series;
+use crate::number_text::short;
 
 /// Highest degree that is stable; no published model goes beyond.
 const HIGHEST: usize = 2700;
@@ -140,7 +141,7 @@ pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
 fn earth_not_normalised(mu: f64, series: &Series) -> Option<String> {
     let [c20, _] = series.get(2, 0);
     (is_earth(mu) && (0.9e-3..1.3e-3).contains(&c20.abs()))
-        .then(|| format!("of degree 2, order 0 it is {c20:.4e}, the Earth's is -4.84e-4"))
+        .then(|| format!("of degree 2, order 0 it is {}, the Earth's is -4.84e-4", short(c20)))
 }
 
 /// How coefficients that are not normalised show: those of order `n` fall off with the factorials of their degree.
@@ -161,6 +162,6 @@ fn fall_of_unnormalised(series: &Series) -> Option<String> {
     let over_degrees = 0.5 * (((2 * high + 1) as f64 / 9.0).ln() - factorial(9));
     let over_orders = 0.5 * (2.0_f64.ln() - factorial(1));
     let shows = (fallen / low).ln() < 0.5 * over_degrees && (fallen / zonal).ln() < 0.5 * over_orders;
-    shows
-        .then(|| format!("those of order n fall from {low:.1e} at degree 4 to {fallen:.1e} at degree {high}"))
+    let [low, fallen] = [short(low), short(fallen)];
+    shows.then(|| format!("those of order n fall from {low} at degree 4 to {fallen} at degree {high}"))
 }

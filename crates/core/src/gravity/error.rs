@@ -1,15 +1,16 @@
 //! What can be wrong with a gravity field or with the place where it is asked for.
 
 use crate::earth::EarthError;
+use crate::number_text::{count, short, unlike};
 
 /// Refusals of the `gravity` module; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum GravityError {
-    #[error("{name} holds {value}, finite numbers are needed")]
+    #[error("{name} holds {value}, finite numbers are needed", value = short(*value))]
     NotFinite { name: &'static str, value: f64 },
-    #[error("{name} is {value}, it must be positive and finite")]
+    #[error("{name} is {value}, it must be positive and finite", value = short(*value))]
     NotPositive { name: &'static str, value: f64 },
     #[error(
         "zonal harmonics in closed form go from degree 2 to 6, {degree} is asked for: take a model of harmonics"
@@ -26,22 +27,27 @@ pub enum GravityError {
     Degree { degree: usize },
     #[error("no gravity model is named '{name}'; there are {known}, and .gfc files", known = known.join(", "))]
     UnknownModel { name: String, known: Vec<&'static str> },
-    #[error("{name} has {got} numbers, {expected} are needed")]
+    #[error("{name} has {got}, expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error(
         "the coefficients of {model} are not fully normalised ({found}): multiply each by \
          √((n + m)!/((2n + 1) k (n - m)!)), k = 1 for m = 0, else 2"
     )]
     NotNormalised { model: String, found: String },
-    #[error("{name} is {value}, {expected}: m³/s² and m are needed (are these kilometres?)")]
+    #[error(
+        "{name} is {value}, {expected}: m³/s² and m are needed (are these kilometres?)",
+        value = short(*value)
+    )]
     Units { name: &'static str, value: f64, expected: &'static str },
     #[error(
         "{model}: the coefficients of degree {degree}, order {order} reach {value}, those of planets stay below \
-         {limit} (is a row cut short, or is its centre not that of mass?)"
+         {limit} (is a row cut short, or is its centre not that of mass?)",
+        value = unlike(*value, &[*limit]), limit = short(*limit)
     )]
     Implausible { model: String, degree: usize, order: usize, value: f64, limit: f64 },
     #[error(
-        "{name}[{degree}, {order}] is {value}: no such term exists, rows are degrees and columns orders, s[:, 0] is zero"
+        "{name}[{degree}, {order}] is {value}: no such term exists, rows are degrees and columns orders, s[:, 0] is zero",
+        value = short(*value)
     )]
     NoSuchTerm { name: &'static str, degree: usize, order: usize, value: f64 },
     #[error("{file}: there is no such file")]
@@ -70,7 +76,8 @@ pub enum GravityError {
     )]
     Truncated { file: String, degree: usize, order: usize },
     #[error(
-        "a point {distance} m from the planet's centre lies below the surface, the field holds from {minimum} m on"
+        "a point {distance} m from the planet's centre lies below the surface, the field holds from {minimum} m on",
+        distance = unlike(*distance, &[*minimum]), minimum = short(*minimum)
     )]
     BelowSurface { distance: f64, minimum: f64 },
     #[error(
@@ -80,7 +87,8 @@ pub enum GravityError {
     NeedsEarth { field: String },
     #[error(
         "the orbit is one around μ = {orbit} m³/s², the gravity field has {field} m³/s²: give the orbit the \
-         field's mu, or take the field of its planet"
+         field's mu, or take the field of its planet",
+        field = short(*field), orbit = unlike(*orbit, &[*field])
     )]
     OtherPlanet { field: f64, orbit: f64 },
     #[error(

@@ -1,5 +1,6 @@
 //! What can be wrong with a robot.
 
+use crate::number_text::{list, short, unlike};
 use std::fmt;
 use thiserror::Error;
 
@@ -7,19 +8,23 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ModelError {
-    #[error("link '{link}' has a mass of {mass} kg, it must be positive")]
+    #[error("link '{link}' has a mass of {mass} kg, it must be positive", mass = short(*mass))]
     MassNotPositive { link: String, mass: f64 },
     #[error("link '{link}' has no mass but a rotational inertia; give it a mass or remove the inertia")]
     InertiaWithoutMass { link: String },
     #[error(
-        "the inertia of link '{link}' is not positive definite: its principal moments are {moments:?} kg m2"
+        "the inertia of link '{link}' is not positive definite: its principal moments are {moments} kg m2",
+        moments = list(moments)
     )]
     IndefiniteInertia { link: String, moments: [f64; 3] },
-    #[error("the inertia of link '{link}' is not symmetric: entries differ by {difference} kg m2")]
+    #[error(
+        "the inertia of link '{link}' is not symmetric: entries differ by {difference} kg m2",
+        difference = short(*difference)
+    )]
     AsymmetricInertia { link: String, difference: f64 },
     #[error("{what} of '{name}' is not finite")]
     NotFinite { what: &'static str, name: String },
-    #[error("{what} of '{name}' is {value:?}, {expected} are accepted; check the units")]
+    #[error("{what} of '{name}' is {value}, {expected} are accepted; check the units", value = short(*value))]
     OutOfRange { what: &'static str, name: String, value: f64, expected: &'static str },
     #[error(
         "the robot has more than {most} moving joints: matrices over all of them would take too much memory; make \
@@ -46,14 +51,18 @@ pub enum ModelError {
     UnknownName { what: &'static str, name: String, candidates: Vec<String> },
     #[error("joint '{joint}' has an axis of length zero")]
     ZeroAxis { joint: String },
-    #[error("joint '{joint}': {what} is {value}, it must not be negative")]
+    #[error("joint '{joint}': {what} is {value}, it must not be negative", value = short(*value))]
     Negative { joint: String, what: &'static str, value: f64 },
     #[error(
         "joint '{joint}': its static friction {at_rest} is below its kinetic friction {moving}; give at least \
-         {moving}, or leave it out"
+         {moving}, or leave it out",
+        at_rest = unlike(*at_rest, &[*moving]), moving = short(*moving)
     )]
     StaticBelowKinetic { joint: String, at_rest: f64, moving: f64 },
-    #[error("joint '{joint}': lower limit {lower} is above upper limit {upper}")]
+    #[error(
+        "joint '{joint}': lower limit {lower} is above upper limit {upper}",
+        lower = unlike(*lower, &[*upper]), upper = short(*upper)
+    )]
     LimitsReversed { joint: String, lower: f64, upper: f64 },
 }
 
@@ -83,13 +92,17 @@ impl fmt::Display for ModelWarning {
         match self {
             Self::TriangleInequality { link, moments: [a, b, c] } => write!(
                 f,
-                "the inertia of link '{link}' breaks the triangle inequality: {a:.4e} + {b:.4e} < {c:.4e} kg m2; \
-                 no real body has such principal moments (used as it is)"
+                "the inertia of link '{link}' breaks the triangle inequality: {} + {} < {} kg m2; no real body has such \
+                 principal moments (used as it is)",
+                short(*a),
+                short(*b),
+                unlike(*c, &[a + b])
             ),
-            Self::IndefinitePart { link, moments: [a, b, c] } => write!(
+            Self::IndefinitePart { link, moments } => write!(
                 f,
-                "the inertia of link '{link}' is not positive definite: principal moments {a:.4e}, {b:.4e}, \
-                 {c:.4e} kg m2 (used as it is: with the links it is fixed to, the sum is)"
+                "the inertia of link '{link}' is not positive definite: principal moments {} kg m2 (used as it \
+                 is: with the links it is fixed to, the sum is)",
+                list(moments)
             ),
             Self::Note(text) => f.write_str(text),
         }

@@ -1,5 +1,6 @@
 //! A path through given points: any motion, of nature or not.
 
+use crate::number_text::{count, short, unlike};
 use nalgebra::{Vector3, Vector4};
 
 use super::error::LARGEST;
@@ -11,32 +12,39 @@ use crate::spatial::{self, Quat, RotationSpline, Spline, SplineError, exp_so3};
 #[non_exhaustive]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum PathError {
-    #[error("a path of {got} points: at least 2 are needed")]
+    #[error("a path of {got}: at least 2 are needed", got = count(*got, "point"))]
     TooFewPoints { got: usize },
-    #[error("{name} has {got} rows, times has {expected}: one row per time is needed")]
+    #[error("{name} has {got}, times has {expected}: one row per time is needed", got = count(*got, "row"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("{name}[{index}] holds {value:?}, finite numbers up to 1e60 (SI units) are needed")]
+    #[error(
+        "{name}[{index}] holds {value}, finite numbers up to 1e60 (SI units) are needed",
+        value = short(*value)
+    )]
     NotFinite { name: &'static str, index: usize, value: f64 },
     #[error(
         "times[{index}] is {time} s after {before} s: times must increase, by 1e-9 s at least; sort the rows and \
-         leave out those given twice"
+         leave out those given twice",
+        before = short(*before), time = unlike(*time, &[*before])
     )]
     NotIncreasing { index: usize, before: f64, time: f64 },
     #[error("accelerations are given without velocities: give both, or velocities alone, or neither")]
     AccelerationsAlone,
     #[error(
-        "attitudes[{index}] has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w: normalise it first"
+        "attitudes[{index}] has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w: normalise it first",
+        norm = unlike(*norm, &[1.0])
     )]
     QuaternionNorm { index: usize, norm: f64 },
     #[error(
         "the attitude turns by {angle} rad from point {before} to the next, at most 2.0 rad are told apart from \
          a turn the other way: give points closer in time",
-        before = index - 1
+        before = index - 1,
+        angle = short(*angle)
     )]
     TurnTooFar { index: usize, angle: f64 },
     #[error(
         "the path has no point at t = {time} s, it goes from {start} s to {end} s: give times that cover the run, or let \
-         it coast on beyond them with ends=\"coast\""
+         it coast on beyond them with ends=\"coast\"",
+        time = unlike(*time, &[*start, *end]), start = short(*start), end = short(*end)
     )]
     TimeOutOfPath { time: f64, start: f64, end: f64 },
     #[error(transparent)]

@@ -1,5 +1,6 @@
 //! What can be wrong with a reference.
 
+use crate::number_text::{count, list, short};
 use crate::orbit::OrbitError;
 use crate::spatial::SplineError;
 
@@ -9,15 +10,22 @@ use crate::spatial::SplineError;
 pub enum ReferenceError {
     #[error("{name} of the reference is not finite, or beyond 1e60 in SI units")]
     NotFinite { name: &'static str },
-    #[error("{name} of the reference has {got} numbers, expected {expected}")]
+    #[error("{name} of the reference has {got}, expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("duration of the reference is {value} s, it must be positive, at least 1e-12 s")]
+    #[error(
+        "duration of the reference is {value} s, it must be positive, at least 1e-12 s",
+        value = short(*value)
+    )]
     DurationNotPositive { value: f64 },
     #[error(
-        "ramp of the reference is {value}, it must be above 0 and at most 0.5: its share of the duration"
+        "ramp of the reference is {value}, it must be above 0 and at most 0.5: its share of the duration",
+        value = short(*value)
     )]
     Ramp { value: f64 },
-    #[error("a limit of the reference is {value}, it must be positive; leave it out for none")]
+    #[error(
+        "a limit of the reference is {value}, it must be positive; leave it out for none",
+        value = short(*value)
+    )]
     LimitNotPositive { value: f64 },
     #[error("nothing tells how long the reference takes: give times, or limit a rate or acceleration it has")]
     NoLimit,
@@ -27,15 +35,16 @@ pub enum ReferenceError {
         next = point + 1
     )]
     SamePoint { point: usize },
-    #[error("the axis of the reference has length {length}, a direction is needed")]
+    #[error("the axis of the reference has length {length}, a direction is needed", length = short(*length))]
     NoAxis { length: f64 },
     #[error("joint {joint} is to move, there are joints 0 to {last}", last = count.saturating_sub(1))]
     NoJoint { joint: usize, count: usize },
     #[error(
-        "rotation of the reference pose is not a rotation: RᵀR differs from 1 by {error}, at most 1e-6 is accepted"
+        "rotation of the reference pose is not a rotation: RᵀR differs from 1 by {error}, at most 1e-6 is accepted",
+        error = short(*error)
     )]
     NotARotation { error: f64 },
-    #[error("the last row of the pose is {row:?}, it must be [0, 0, 0, 1]")]
+    #[error("the last row of the pose is {row}, it must be [0, 0, 0, 1]", row = list(row))]
     LastRow { row: [f64; 4] },
     #[error("the points of the reference give no curve: {0}")]
     Spline(#[from] SplineError),

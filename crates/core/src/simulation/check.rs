@@ -4,11 +4,14 @@ use super::contacts::AT_LIMIT;
 use super::error::SimulationError;
 use super::settings::Simulation;
 use super::start::{check_control_starts, check_start};
+use super::state_range::check_range;
 use crate::control::{Control, ControlLaw, check_controls};
 use crate::model::Model;
 
 /// Largest deviation of a given quaternion from unit norm.
 const UNIT_NORM: f64 = 1e-6;
+/// Time steps that are believed, s: light passes a third of a millimetre in the shortest, the longest are thirty years.
+const STEPS: std::ops::RangeInclusive<f64> = 1e-12..=1e9;
 
 impl Simulation {
     /// Checks everything that can be known before a run.
@@ -25,6 +28,9 @@ impl Simulation {
             if let Some(value) = value.filter(|x| !(x.is_finite() && *x > 0.0)) {
                 return Err(SimulationError::NotPositive { name, value });
             }
+        }
+        if !STEPS.contains(&self.time_step) {
+            return Err(SimulationError::TimeStep { value: self.time_step });
         }
         if !(1e-13..=0.1).contains(&self.tolerance) {
             return Err(SimulationError::Tolerance { value: self.tolerance });
@@ -133,6 +139,7 @@ fn check_state(model: &Model, q: &[f64], v: &[f64]) -> Result<(), SimulationErro
             return Err(SimulationError::NotFinite { name, index, value: values[index] });
         }
     }
+    check_range(model, q, v)?;
     let norm = q[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
     if (norm - 1.0).abs() > UNIT_NORM { Err(SimulationError::QuaternionNorm { norm }) } else { Ok(()) }
 }

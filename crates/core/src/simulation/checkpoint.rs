@@ -7,6 +7,7 @@ use super::schedule::Schedule;
 use super::state::State;
 use crate::dynamics::Momentum;
 use crate::model::Model;
+use crate::number_text::short;
 use crate::spatial::{InstructionSet, Scalar, Vec3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -82,7 +83,8 @@ pub enum CheckpointError {
     #[error("the checkpoint has {got} {name}, the simulation has {expected}: it is of another scenario")]
     OtherSize { name: &'static str, got: usize, expected: usize },
     #[error(
-        "the checkpoint is of a run of {found} s with steps of {step} s, this one differs: it is of another scenario"
+        "the checkpoint is of a run of {found} s with steps of {step} s, this one differs: it is of another scenario",
+        found = short(*found), step = short(*step)
     )]
     OtherSchedule { found: f64, step: f64 },
 }

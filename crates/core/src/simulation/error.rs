@@ -6,6 +6,7 @@ use crate::control::ControlError;
 use crate::earth::EarthError;
 use crate::environment::EnvironmentError;
 use crate::gravity::GravityError;
+use crate::number_text::{count, short, unlike};
 use crate::orbit::OrbitError;
 use crate::reference::ReferenceError;
 use thiserror::Error;
@@ -14,28 +15,42 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum SimulationError {
-    #[error("{name} has {got} numbers, expected {expected} for this robot")]
+    #[error("{name} has {got}, expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("{name}[{index}] is {value}, it must be finite")]
+    #[error("{name}[{index}] is {value}, it must be finite", value = short(*value))]
     NotFinite { name: &'static str, index: usize, value: f64 },
-    #[error("{name} is {value} s, it must be positive and finite")]
+    #[error("{name} is {value} s, it must be positive and finite", value = short(*value))]
     NotPositive { name: &'static str, value: f64 },
     #[error(
-        "the quaternion q[3:7] has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w: normalise it first"
+        "the quaternion q[3:7] has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w: normalise it first",
+        norm = unlike(*norm, &[1.0])
     )]
     QuaternionNorm { norm: f64 },
-    #[error("tolerance is {value}, it must be in 1e-13..0.1")]
+    #[error("time_step is {value} s, steps of 1e-12 s to 1e9 s are accepted", value = short(*value))]
+    TimeStep { value: f64 },
+    #[error(
+        "{name}[{index}], {what}, is {value} {unit}, it must lie between -{limit} and {limit} {unit}{reason}",
+        value = short(*value), limit = short(*limit),
+        reason = if *unit == "m/s" { ", the speed of light" } else { "" }
+    )]
+    OutOfRange { name: &'static str, index: usize, what: String, value: f64, unit: &'static str, limit: f64 },
+    #[error("tolerance is {value}, it must be in 1e-13..0.1", value = short(*value))]
     Tolerance { value: f64 },
-    #[error("rereference_beyond is {value} m, it must be at least 1 m; infinity for never")]
+    #[error(
+        "rereference_beyond is {value} m, it must be at least 1 m; infinity for never",
+        value = short(*value)
+    )]
     RereferenceBeyond { value: f64 },
-    #[error("restitution is {value}, it must be in 0..1")]
+    #[error("restitution is {value}, it must be in 0..1", value = short(*value))]
     Restitution { value: f64 },
     #[error(
-        "joint '{joint}' starts at {value}, its limits are {lower} to {upper}: start within, or do not enforce limits"
+        "joint '{joint}' starts at {value}, its limits are {lower} to {upper}: start within, or do not enforce limits",
+        value = unlike(*value, &[*lower, *upper]), lower = short(*lower), upper = short(*upper)
     )]
     OutsideLimits { joint: String, value: f64, lower: f64, upper: f64 },
     #[error(
-        "at t = {time} s no step keeps the tolerance, not even one of {step} s: loosen tolerance, or soften what acts there"
+        "at t = {time} s no step keeps the tolerance, not even one of {step} s: loosen tolerance, or soften what acts there",
+        time = short(*time), step = short(*step)
     )]
     StepTooSmall { time: f64, step: f64 },
     #[error(transparent)]
@@ -59,31 +74,34 @@ pub enum SimulationError {
     #[error("frame {frame} is asked for, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame { frame: usize, count: usize },
     #[error(
-        "the reference starts {position:.4} m and {angle:.4} rad from the tool, at most {tolerance_m} m and {tolerance_rad} rad are \
+        "the reference starts {position} m and {angle} rad from the tool, at most {tolerance_m} m and {tolerance_rad} rad are \
          accepted: start it at the tool, or raise reference_start_tolerance",
-        tolerance_m = tolerance[0],
-        tolerance_rad = tolerance[1]
+        position = unlike(without_noise(*position), &[tolerance[0]]), angle = unlike(without_noise(*angle), &[tolerance[1]]),
+        tolerance_m = short(tolerance[0]), tolerance_rad = short(tolerance[1])
     )]
     ReferenceStartsAway { position: f64, angle: f64, tolerance: [f64; 2] },
     #[error(
         "the reference of control '{control}' starts {offset} rad (m) from where the joints are, at most {tolerance} is accepted: \
-         start it there (starts_at_present), or raise reference_start_tolerance"
+         start it there (starts_at_present), or raise reference_start_tolerance",
+        offset = unlike(*offset, &[*tolerance]), tolerance = short(*tolerance)
     )]
     JointsStartAway { control: String, offset: f64, tolerance: f64 },
     #[error("{rows} recorded rows do not fit in memory; record fewer with record_every")]
     TooManyRows { rows: usize },
     #[error(
-        "the run diverged at t = {time} s: the state is no longer finite; shorten time_step, or soften gains and joint damping \
-         (the last finite state is in the error's q and v)"
+        "the run diverged at t = {time} s: the state is no longer finite; shorten time_step, lower the initial rates, or soften gains and joint \
+         damping \
+         (the last finite state is in the error's q and v)",
+        time = short(*time)
     )]
     Diverged { time: f64, q: Vec<f64>, v: Vec<f64> },
-    #[error("the run was interrupted at t = {time} s")]
+    #[error("the run was interrupted at t = {time} s", time = short(*time))]
     Interrupted { time: f64 },
-    #[error("at t = {time} s: {source}")]
+    #[error("at t = {time} s: {source}", time = short(*time))]
     Orbit { time: f64, source: OrbitError },
-    #[error("at t = {time} s: {source}")]
+    #[error("at t = {time} s: {source}", time = short(*time))]
     Environment { time: f64, source: EnvironmentError },
-    #[error("at t = {time} s: {source}")]
+    #[error("at t = {time} s: {source}", time = short(*time))]
     Reference { time: f64, source: ReferenceError },
     #[error(transparent)]
     Gravity(#[from] GravityError),
@@ -94,7 +112,8 @@ pub enum SimulationError {
     Engine(Box<dyn std::error::Error + Send + Sync>),
     #[error(
         "the plant left an attitude q[3:7] of length {length} after the step from t = {time} s, a quaternion has length 1: \
-         normalise it at the end of each step"
+         normalise it at the end of each step",
+        time = short(*time), length = unlike(*length, &[1.0])
     )]
     EngineAttitude { time: f64, length: f64 },
     #[error(transparent)]
@@ -117,4 +136,9 @@ impl std::fmt::Debug for RunFailure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("RunFailure").field("error", &self.error).field("rows", &self.trace.rows()).finish()
     }
+}
+
+/// To the nanometre (the nanoradian), which is far below any tolerance.
+fn without_noise(offset: f64) -> f64 {
+    (offset * 1e9).round() / 1e9
 }

@@ -23,6 +23,7 @@ mod schedule;
 mod settings;
 mod start;
 mod state;
+mod state_range;
 mod stepping;
 mod stick;
 mod surroundings;

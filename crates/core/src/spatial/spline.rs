@@ -1,19 +1,26 @@
 //! Curves through given points, twice continuously differentiable.
 
 use super::quintic_spline::curvatures;
+use crate::number_text::{count, short, unlike};
 use thiserror::Error;
 
 /// Points that no curve can be laid through.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum SplineError {
-    #[error("{name} holds {value:?} at point {point}, it must be finite and within ±1e60 (SI units)")]
+    #[error(
+        "{name} holds {value} at point {point}, it must be finite and within ±1e60 (SI units)",
+        value = short(*value)
+    )]
     NotFinite { name: &'static str, point: usize, value: f64 },
-    #[error("{name} holds {got} numbers, expected {expected}: one row per time")]
+    #[error("{name} holds {got}, expected {expected}: one row per time", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error("{got} points are given, at least {least} are needed")]
     TooFew { got: usize, least: usize },
-    #[error("times[{index}] is {after} s after {before} s: times must increase")]
+    #[error(
+        "times[{index}] is {after} s after {before} s: times must increase",
+        before = short(*before), after = unlike(*after, &[*before])
+    )]
     NotIncreasing { index: usize, before: f64, after: f64 },
     #[error("the attitudes at points {point} and {next} are half a turn apart, so either way round is as short: \
              put another between them", next = point + 1)]

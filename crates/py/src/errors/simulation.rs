@@ -22,6 +22,18 @@ impl SimulationErrorExt for SimulationError {
             Self::QuaternionNorm { norm } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
             }
+            Self::TimeStep { value } => raise(
+                py,
+                "InputError",
+                &message,
+                &fields!(py, "name": "time_step", "got": value, "expected": (1e-12, 1e9)),
+            ),
+            Self::OutOfRange { name, value, limit, .. } => raise(
+                py,
+                "InputError",
+                &message,
+                &fields!(py, "name": name, "got": value, "expected": (-limit, limit)),
+            ),
             Self::Tolerance { value } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "tolerance", "got": value))
             }

@@ -4,6 +4,7 @@ use super::{Any, PyOrbit, base};
 use crate::arrays::{Input, array_of, wrong_shape};
 use crate::errors::{IntoPython, fields, raise};
 use nalgebra::{SVector, Vector3, Vector4};
+use onorbit_core::number_text::short;
 use onorbit_core::orbit::{CustomPath, Ends, Orbit, PathPoints};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -99,6 +100,6 @@ impl PyCustomPath {
 
     fn __repr__(&self) -> String {
         let (start, end) = self.path.span();
-        format!("<CustomPath: {start} s to {end} s>")
+        format!("<CustomPath: {} s to {} s>", short(start), short(end))
     }
 }

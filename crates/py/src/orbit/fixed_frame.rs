@@ -4,6 +4,7 @@ use super::{Any, PyOrbit, base};
 use crate::arrays::{array_of, fixed};
 use crate::errors::{IntoPython, fields, raise};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
+use onorbit_core::number_text::unlike;
 use onorbit_core::orbit::{FixedFrame, Orbit};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -31,8 +32,10 @@ impl PyFixedFrame {
         let vector = Vector4::from(attitude);
         let norm = vector.norm();
         if (norm - 1.0).abs() > 1e-6 {
-            let message =
-                format!("attitude has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w");
+            let message = format!(
+                "attitude has norm {}, at most 1e-6 off 1 is accepted; it is x, y, z, w",
+                unlike(norm, &[1.0])
+            );
             let fields = fields!(py, "name": "attitude", "got": norm, "expected": 1.0);
             return Err(raise(py, "InputError", &message, &fields));
         }

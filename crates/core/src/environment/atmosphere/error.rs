@@ -1,13 +1,17 @@
 //! Where a model of the air says nothing.
 
 use crate::earth::EarthError;
+use crate::number_text::{short, unlike};
 
 /// Refusals of the models of the air; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AtmosphereError {
     /// A place is inside the Earth.
-    #[error("altitude is {altitude} m, below the surface: the air is known from 0 m on")]
+    #[error(
+        "altitude is {altitude} m, below the surface: the air is known from 0 m on",
+        altitude = short(*altitude)
+    )]
     BelowSurface {
         /// Geodetic altitude, m.
         altitude: f64,
@@ -15,7 +19,8 @@ pub enum AtmosphereError {
     /// A place is outside the layers that a model has.
     #[error(
         "altitude is {altitude} m, {model} is defined from {lowest} m to {highest} m: an exponential atmosphere or \
-         NRLMSISE-00 goes on beyond"
+         NRLMSISE-00 goes on beyond",
+        altitude = unlike(*altitude, &[*lowest, *highest]), lowest = short(*lowest), highest = short(*highest)
     )]
     OutsideLayers {
         /// The model.
@@ -28,7 +33,7 @@ pub enum AtmosphereError {
         highest: f64,
     },
     /// A parameter makes no sense.
-    #[error("{name} is {value}, {expected} is needed")]
+    #[error("{name} is {value}, {expected} is needed", value = short(*value))]
     Value {
         /// Which parameter.
         name: &'static str,
@@ -38,7 +43,10 @@ pub enum AtmosphereError {
         expected: &'static str,
     },
     /// Layers do not follow each other upwards.
-    #[error("layer {index} begins at {altitude} m, not above the one before it at {previous} m")]
+    #[error(
+        "layer {index} begins at {altitude} m, not above the one before it at {previous} m",
+        altitude = unlike(*altitude, &[*previous]), previous = short(*previous)
+    )]
     LayerOrder {
         /// Index of the layer.
         index: usize,

@@ -1,11 +1,13 @@
 //! What can be wrong with a surface.
 
+use crate::number_text::short;
+
 /// Surfaces that cannot be; each error carries the offending value.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceError {
     /// An area, a length or a coefficient is negative, infinite or not a number.
-    #[error("{name} is {value}, {expected} is needed")]
+    #[error("{name} is {value}, {expected} is needed", value = short(*value))]
     Value {
         /// Which input.
         name: &'static str,
@@ -15,7 +17,10 @@ pub enum SurfaceError {
         expected: &'static str,
     },
     /// More light leaves a surface than meets it.
-    #[error("specular {specular} and diffuse {diffuse} add up to more than 1: what is left is absorbed")]
+    #[error(
+        "specular {specular} and diffuse {diffuse} add up to more than 1: what is left is absorbed",
+        specular = short(*specular), diffuse = short(*diffuse)
+    )]
     Reflection {
         /// Share reflected as by a mirror.
         specular: f64,

@@ -1,6 +1,7 @@
 //! What can be wrong with a URDF file, where.
 
 use crate::model::error::{ModelError, closest, nearest};
+use crate::number_text::short;
 use roxmltree::Node;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -97,7 +98,7 @@ pub enum UrdfProblem {
         amount_of_numbers(.expected)
     )]
     BadNumber { owner: String, element: String, attribute: &'static str, text: String, expected: usize },
-    #[error("{owner}: {attribute} of <{element}> is {value}, it must be positive")]
+    #[error("{owner}: {attribute} of <{element}> is {value}, it must be positive", value = short(*value))]
     NotPositive { owner: String, element: String, attribute: &'static str, value: f64 },
     #[error("{owner}: <origin> has both rpy and quat_xyzw; keep one")]
     TwoOrientations { owner: String },

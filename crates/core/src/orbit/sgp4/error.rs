@@ -1,5 +1,6 @@
 //! What can be wrong with a set of mean elements and with what SGP4 makes of them.
 
+use crate::number_text::{count, short, unlike};
 use std::ops::RangeInclusive;
 
 /// An element set that cannot be read.
@@ -7,7 +8,7 @@ use std::ops::RangeInclusive;
 #[non_exhaustive]
 pub enum ElementSetError {
     /// A line of a TLE is too long or too short.
-    #[error("line {line} of the TLE has {got} columns, 69 are needed (is something missing or wrapped?)")]
+    #[error("line {line} of the TLE has {got}, 69 are needed (is something missing or wrapped?)", got = count(*got, "column"))]
     Length {
         /// 1 or 2.
         line: u8,
@@ -66,7 +67,7 @@ pub enum ElementSetError {
         expected: &'static str,
     },
     /// A number lies where no orbit is.
-    #[error("{name} is {got}, it must lie within {} to {}", range.start(), range.end())]
+    #[error("{name} is {got}, it must lie within {} to {}", short(*range.start()), short(*range.end()), got = unlike(*got, &[*range.start(), *range.end()]))]
     Range {
         /// Which element.
         name: &'static str,
@@ -87,7 +88,8 @@ pub enum Sgp4Error {
     /// 1: mean eccentricity, drag and secular effects included.
     #[error(
         "SGP4 error 1 at t = {time} s: the mean eccentricity is {eccentricity}, it must lie in [-0.001, 1): \
-         the elements do not reach so far from their epoch"
+         the elements do not reach so far from their epoch",
+        time = short(*time), eccentricity = short(*eccentricity)
     )]
     MeanEccentricity {
         /// Time since the epoch, s.
@@ -96,7 +98,10 @@ pub enum Sgp4Error {
         eccentricity: f64,
     },
     /// 2: mean motion.
-    #[error("SGP4 error 2 at t = {time} s: the mean motion is {mean_motion} rev/day, it must be positive")]
+    #[error(
+        "SGP4 error 2 at t = {time} s: the mean motion is {mean_motion} rev/day, it must be positive",
+        time = short(*time), mean_motion = short(*mean_motion)
+    )]
     MeanMotion {
         /// Time since the epoch, s.
         time: f64,
@@ -106,7 +111,8 @@ pub enum Sgp4Error {
     /// 3: eccentricity with the pull of Sun and Moon.
     #[error(
         "SGP4 error 3 at t = {time} s: the eccentricity perturbed by Sun and Moon is {eccentricity}, it must lie \
-         in [0, 1]: the elements do not reach so far from their epoch"
+         in [0, 1]: the elements do not reach so far from their epoch",
+        time = short(*time), eccentricity = short(*eccentricity)
     )]
     PerturbedEccentricity {
         /// Time since the epoch, s.
@@ -117,7 +123,8 @@ pub enum Sgp4Error {
     /// 4: semi-latus rectum.
     #[error(
         "SGP4 error 4 at t = {time} s: the semi-latus rectum is {semi_latus_rectum} m, it must not be negative: \
-         the elements do not reach so far from their epoch"
+         the elements do not reach so far from their epoch",
+        time = short(*time), semi_latus_rectum = short(*semi_latus_rectum)
     )]
     SemiLatusRectum {
         /// Time since the epoch, s.
@@ -128,7 +135,8 @@ pub enum Sgp4Error {
     /// 6: below the surface.
     #[error(
         "SGP4 error 6 at t = {time} s: the satellite has decayed, it is {distance} m from the Earth's centre, \
-         less than {radius} m: end the run earlier"
+         less than {radius} m: end the run earlier",
+        time = short(*time), distance = unlike(*distance, &[*radius]), radius = short(*radius)
     )]
     Decayed {
         /// Time since the epoch, s.

@@ -8,27 +8,35 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from onorbit_rs._core import Model
     from onorbit_rs.exceptions import SimulationError
-    from onorbit_rs.scenario.build import Built
+    from onorbit_rs.scenario.schema import Scenario
 
 _BASE = ("linear", "m/s"), ("angular", "rad/s")
 
 
-def divergence(stop: SimulationError, built: Built) -> str:
+_TURN = 0.1
+"""Radians that a robot may turn in a step that is short enough for most."""
+
+
+def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
     """In one line; the whole of the last finite state stays in the error's ``q`` and ``v``."""
     if stop.time is None or stop.v is None:
         return stop.message
-    settings = built.scenario.simulation
+    settings = scenario.simulation
     is_adaptive = settings.integrator == "dormand_prince"
     step = "" if is_adaptive else f", in step {int(stop.time / settings.time_step + 1e-6) + 1}"
     rates = np.asarray(stop.v, dtype=float)
     worst = int(np.argmax(np.abs(rates)))
-    name, unit = list(_rates(built))[worst]
-    ways = ["a smaller tolerance" if is_adaptive else f"a time_step shorter than {settings.time_step:g} s"]
-    if settings.control_period is not None and built.scenario.laws:
+    name, unit = list(_rates(model))[worst]
+    turned = 0.0 if scenario.laws else _fastest_turn(stop) * settings.time_step
+    shorter = min(1.0, _TURN / max(turned, _TURN)) * settings.time_step
+    ways = ["a smaller tolerance" if is_adaptive else f"a time_step shorter than {shorter:.2g} s"]
+    if settings.control_period is not None and scenario.laws:
         ways += [f"a control_period shorter than {settings.control_period:g} s"]
-    ways += ["softer gains, those of rates too"] if built.scenario.laws else []
-    is_damped = any(joint.damping > 0.0 for joint in built.model.joints)
+    ways += ["softer gains, those of rates too"] if scenario.laws else []
+    ways += ["lower rates at the start"] if turned > 1.0 else []
+    is_damped = any(joint.damping > 0.0 for joint in model.joints)
     ways += ["less damping of the joints"] if is_damped and not is_adaptive else []
     return (
         f"the run diverged at t = {stop.time:.6g} s{step}: the state is no longer finite; the fastest when "
@@ -36,10 +44,17 @@ def divergence(stop: SimulationError, built: Built) -> str:
     )
 
 
-def _rates(built: Built) -> Iterator[tuple[str, str]]:
+def _fastest_turn(stop: SimulationError) -> float:
+    """The largest rate at the start, rad/s: later ones are the divergence itself."""
+    has_rows = stop.trace is not None and len(stop.trace) > 0
+    start = np.asarray(stop.trace.v)[0] if has_rows else np.asarray(stop.v)
+    return float(np.abs(start[3:]).max())
+
+
+def _rates(model: Model) -> Iterator[tuple[str, str]]:
     """Each entry of ``v`` in words, and its unit."""
     for kind, unit in _BASE:
         for axis in "xyz":
             yield f"the base's {kind} velocity along {axis}", unit
-    for joint in built.model.joints:
+    for joint in model.joints:
         yield f"joint {joint.name!r}", "m/s" if joint.kind == "prismatic" else "rad/s"

@@ -1,0 +1,97 @@
+//! Numbers as messages print them: the shortest text of a few digits, without the noise of rounding.
+
+/// Significant digits of a number in a message; the digits of a whole part are never left out.
+const DIGITS: usize = 6;
+/// From here on the digits of the whole part are too many to read.
+const LARGE: f64 = 1e9;
+/// Below this the zeros after the point are too many to read.
+const SMALL: f64 = 1e-4;
+
+/// Returns a number of at most six significant digits: `1.4`, `700000`, `1e-300`.
+///
+/// A whole part is printed in full below 1e9: metres from the centre of the Earth have seven digits.
+#[must_use]
+pub fn short(value: f64) -> String {
+    rounded(value, DIGITS)
+}
+
+/// Returns a number with as many digits as tell it apart from others that its message holds too.
+///
+/// `1.000002` beside 1, where six digits would say that a norm of 1 is not 1.
+#[must_use]
+pub fn unlike(value: f64, others: &[f64]) -> String {
+    let told_apart = |digits: &usize| {
+        let text = rounded(value, *digits);
+        others.iter().all(|&other| other == value || text != short(other))
+    };
+    rounded(value, (DIGITS..17).find(told_apart).unwrap_or(17))
+}
+
+/// Returns several numbers: `[1, 2.5, 3]`.
+#[must_use]
+pub fn list(values: &[f64]) -> String {
+    format!("[{}]", values.iter().map(|&value| short(value)).collect::<Vec<_>>().join(", "))
+}
+
+/// Returns an amount of things: `1 number`, `2 numbers`.
+#[must_use]
+pub fn count(number: usize, one: &str) -> String {
+    format!("{number} {one}{}", if number == 1 { "" } else { "s" })
+}
+
+/// `digits` significant digits, of which zeros at the end are left out.
+fn rounded(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let scientific = format!("{value:.*e}", digits - 1);
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    if !(SMALL..LARGE).contains(&value.abs()) {
+        return format!("{}e{exponent}", without_zeros(mantissa));
+    }
+    let before_point = 1 + exponent.parse::<i32>().unwrap_or(0);
+    let decimals = i32::try_from(digits).unwrap_or(0) - before_point;
+    without_zeros(&format!("{value:.*}", usize::try_from(decimals).unwrap_or(0))).to_owned()
+}
+
+fn without_zeros(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{count, list, short, unlike};
+
+    #[test]
+    fn noise_of_rounding_is_not_printed() {
+        for (value, text) in [
+            (1.400_000_000_000_000_1, "1.4"),
+            (699_999.999_999_999_9, "700000"),
+            (1.0, "1"),
+            (0.0, "0"),
+            (-0.1 - 0.2, "-0.3"),
+            (6_378_136.9, "6378137"),
+            (1.0 / 3.0, "0.333333"),
+            (999_999.96, "1000000"),
+            (0.000_12, "0.00012"),
+            (1e-300, "1e-300"),
+            (-1.25e60, "-1.25e60"),
+            (9.999_999_9e-5, "1e-4"),
+            (2.5e9, "2.5e9"),
+            (f64::INFINITY, "inf"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+        assert_eq!((count(1, "number"), count(0, "row")), ("1 number".to_owned(), "0 rows".to_owned()));
+        assert_eq!(list(&[1.0, 0.1 + 0.2]), "[1, 0.3]");
+    }
+
+    #[test]
+    fn a_number_is_told_apart_from_its_limit() {
+        assert_eq!(unlike(6_378_136.9, &[6_378_137.0]), "6378136.9");
+        assert_eq!(unlike(1.000_002, &[1.0]), "1.000002");
+        assert_eq!(unlike(1.0 + f64::EPSILON, &[1.0]), "1.0000000000000002");
+        assert_eq!(unlike(0.5, &[1.0, 0.5]), "0.5");
+    }
+}
