@@ -16,7 +16,8 @@ HERE = Path(__file__).parent / "fuzz"
 MUTATIONS, SEED = 20, 14
 NAMES = (
     "quantity", "expression", "yaml", "scenario", "mean_elements", "tle_file", "point_file", "spice_kernel",
-    "onorbitros", "trace", "summary", "checkpoint", "xacro", "collada_unit", "urdf_file",
+    "onorbitros", "trace", "summary", "manifest", "checkpoint", "controller_state", "xacro", "collada_unit",
+    "urdf_file",
 )  # fmt: skip
 
 
@@ -28,11 +29,12 @@ def fuzz() -> Iterator[Any]:
 
         patch.setattr(keeping, "write_pictures", keeping.write_pictures)  # put back at the end
         patch.syspath_prepend(str(HERE))
+        import rounds
         import targets
         import tried
 
-        yield SimpleNamespace(targets=targets, tried=tried)
-    for name in ("pausing", "targets", "tried"):
+        yield SimpleNamespace(rounds=rounds, targets=targets, tried=tried)
+    for name in ("pausing", "rounds", "targets", "tried"):
         del sys.modules[name]
 
 
@@ -86,3 +88,27 @@ def test_an_error_of_another_class_is_a_finding_and_keeps_its_input(
         b"silent",
     ]
     assert all("seed 77" in file.read_text() for file in tmp_path.glob("*.txt"))
+
+
+def test_inputs_that_slow_parsers_leave_undone_go_to_fast_ones(fuzz: Any) -> None:
+    rates = {"fast": 50_000.0, "fair": 5_000.0, "slow": 10.0, "broken": 50_000.0}
+    calls: dict[str, list[tuple[int, int]]] = {name: [] for name in rates}
+
+    def run(name: str, count: int, seconds: float, number: int) -> dict[str, Any]:
+        done = min(count, int(rates[name] * seconds))
+        calls[name].append((number, done))
+        spent = {"inputs": done, "seconds": done / rates[name], "kept": 1}
+        return spent | {"findings": int(name == "broken")}
+
+    weights = {"fast": 2.0, "fair": 2.0, "slow": 1.0, "broken": 1.0}
+    reports = fuzz.rounds.in_rounds(weights, 600_000, 60.0, run)
+    assert sum(report["inputs"] for report in reports) == 600_000
+    assert max(report["seconds"] for report in reports) <= 60.0
+    assert calls == {
+        "fast": [(0, 200_000), (1, 49_700)],
+        "fair": [(0, 200_000), (1, 49_700)],
+        "slow": [(0, 600)],  # its time is over
+        "broken": [(0, 100_000)],
+    }
+    hasty = fuzz.rounds.in_rounds(weights, 10**9, 10.0, run)  # time for fewer than these
+    assert sum(report["inputs"] for report in hasty) == 10 * (50_000 + 5_000 + 10 + 50_000)

@@ -20,6 +20,7 @@ from onorbit_rs.cli.summary import print_summary
 from onorbit_rs.exceptions import CheckpointError, NotFoundError, OnOrbitError, ReadError
 from onorbit_rs.output.npz import read_arrays
 from onorbit_rs.output.read import read_summary, read_trace
+from onorbit_rs.output.sealed import sealed
 from onorbit_rs.report.page import page
 
 
@@ -184,6 +185,22 @@ def test_a_damaged_manifest_is_a_typed_error(tmp_path: Path, spoilt: bytes) -> N
             ask(tmp_path)
     with pytest.raises(OnOrbitError, match=r"manifest\.json"):
         oo.run("kepler_orbit", tmp_path, force=True)
+
+
+@pytest.mark.parametrize(
+    ("files", "checkpoint"),
+    [({"figures/\ud800.png": {"size": 1, "sha256": "0"}}, []), ({}, ["state.json", "\udfff.f64"])],
+)
+def test_a_manifest_with_half_a_surrogate_pair_in_a_name_is_refused(
+    tmp_path: Path, files: dict[str, Any], checkpoint: list[str]
+) -> None:
+    """UnicodeEncodeError came out of ``--force``, which looks for the files that are listed."""
+    (tmp_path / "checkpoint").mkdir()
+    record = {"format": 1, "files": files, "checkpoint": checkpoint}
+    (tmp_path / "manifest.json").write_bytes(sealed(record))
+    for ask in (read_summary, lambda folder: oo.run("kepler_orbit", folder, force=True)):
+        with pytest.raises(ReadError, match=r"manifest\.json: it names .*; what the run wrote"):
+            ask(tmp_path)
 
 
 def test_folders_in_place_of_files_are_typed_errors(tmp_path: Path) -> None:

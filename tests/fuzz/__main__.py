@@ -15,8 +15,8 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
+from rounds import Report, in_rounds
 from targets import TARGETS
 
 HERE = Path(__file__).parent
@@ -35,7 +35,9 @@ BUILD = {
 }
 RUN = {"LLVM_PROFILE_FILE": os.devnull, "PYTHONPATH": f"{FOLDER / 'atheris'}:{ROOT / 'python'}"}
 ATHERIS = "atheris==3.0.0"
-PYTHON_SHARE = 0.05  # of the inputs: a parser in Python takes 10 to 100 times as long
+# weights of a parser's share of the inputs: one in Python takes 10 to 100 times as long
+ENGINE, PYTHON = 25.0, 1.0
+LINE = "{parser:20} {inputs:9} {seconds:8.1f} {kept:5}  {findings}"
 
 
 def arguments() -> argparse.Namespace:
@@ -64,7 +66,7 @@ def install_atheris() -> str:
     return "Atheris" if done.returncode == 0 else "no Atheris for this platform: mutated blindly"
 
 
-def fuzzed(command: list[str | Path], name: str, seed: int) -> dict[str, Any]:
+def fuzzed(command: list[str | Path], name: str, seed: int) -> Report:
     """What a parser's process reports; with the input that ended it, where one did."""
     done = subprocess.run(
         [*map(str, command)], env=os.environ | RUN, capture_output=True, text=True, errors="replace"
@@ -94,18 +96,20 @@ def main() -> int:
     guide = install_atheris()
     print(f"seed {given.seed}; {len(engines)} parsers of the engine, {len(targets)} of Python ({guide})")
     print(f"{'parser':20} {'inputs':>9} {'seconds':>8} {'kept':>5}  findings", flush=True)
-    share = PYTHON_SHARE if engines else 1.0
-    reports = []
     (WORK / "findings").mkdir(parents=True, exist_ok=True)
-    for name in [*engines, *targets]:
-        is_engine = name in engines
-        part = (1.0 - share) / len(engines) if is_engine else share / len(targets)
-        start = [program] if is_engine else [sys.executable, HERE / "guided.py"]
+
+    def run(name: str, count: int, seconds: float, number: int) -> Report:
+        start = [program] if name in engines else [sys.executable, HERE / "guided.py"]
         (WORK / "current").unlink(missing_ok=True)
-        limits = [str(int(part * given.count)), str(given.seconds), str(given.seed)]
-        report = fuzzed([*start, name, *limits, CORPUS, WORK], name, given.seed)
-        reports.append(report)
-        print("{parser:20} {inputs:9} {seconds:8.1f} {kept:5}  {findings}".format(**report), flush=True)
+        seed = given.seed + number  # the same would try the same mutations again
+        limits = [str(count), str(seconds), str(seed)]
+        report = fuzzed([*start, name, *limits, CORPUS, WORK], name, seed)
+        print(LINE.format(**report), flush=True)
+        return report
+
+    weights = dict.fromkeys(engines, ENGINE) | dict.fromkeys(targets, PYTHON)
+    reports = in_rounds(weights, given.count, given.seconds, run)
+    print("in all:", *(LINE.format(**report) for report in reports), sep="\n")
     inputs, findings = (sum(report[key] for report in reports) for key in ("inputs", "findings"))
     print(f"{inputs} inputs in {sum(report['seconds'] for report in reports):.0f} s, {findings} findings")
     if findings:

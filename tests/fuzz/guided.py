@@ -57,7 +57,8 @@ def main() -> None:
         nonlocal tried
         tried += 1
         trial(data)
-        if tried >= int(count):
+        # here and not in a timer's thread, which would remove the files of an input that is being tried
+        if tried >= int(count) or time.monotonic() - started >= float(seconds):
             done()
             os._exit(1 if trial.places else 0)  # libFuzzer's own end leaves no chance to report
 
@@ -65,15 +66,6 @@ def main() -> None:
     limits = [f"-timeout={LIMIT_S}", f"-rss_limit_mb={LIMIT_MB}", f"-max_len={LONGEST}"]
     options = [f"-seed={int(seed) or 1}", f"-artifact_prefix={work}/findings/{name}-", "-verbosity=0"]
     atheris.Setup([sys.argv[0], *folders, *limits, *options], one)
-    import threading
-
-    def end() -> None:
-        done()
-        os._exit(1 if trial.places else 0)
-
-    timer = threading.Timer(float(seconds), end)
-    timer.daemon = True
-    timer.start()
     atheris.Fuzz()
 
 

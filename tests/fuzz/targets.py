@@ -18,11 +18,14 @@ import onorbit_rs as oo
 from onorbit_rs import _core, keeping
 from onorbit_rs import kernel as _kernel  # noqa: F401  # loaded late else, when coverage is set up
 from onorbit_rs import omm as _omm  # noqa: F401
-from onorbit_rs.exceptions import RunInterrupted
+from onorbit_rs.exceptions import IntegrityError, NotFoundError, RunInterrupted
 from onorbit_rs.interop.expressions import evaluate
 from onorbit_rs.interop.onorbitros import convert
+from onorbit_rs.output.folder import OutputFolder
+from onorbit_rs.output.manifest import Manifest, read_manifest
 from onorbit_rs.output.read import read_summary, read_trace
 from onorbit_rs.output.sealed import sealed
+from onorbit_rs.plain_data import decode, encode
 from onorbit_rs.report.numbers import groups
 from onorbit_rs.robots.expand import expand
 from onorbit_rs.scenario import load
@@ -148,15 +151,47 @@ def summary(data: bytes, room: Room) -> None:
     groups(read_summary(room.folder))
 
 
-def checkpoint(data: bytes, room: Room) -> None:
-    """The state of a stopped run; the checksum of a mapping is put right, so that its entries are read."""
-    folder = room.run(stopped=True)
+def resealed(data: bytes) -> bytes:
+    """The checksum of a mapping is put right, so that its entries are read."""
     with contextlib.suppress(ValueError, RecursionError):
         record = json.loads(data)
         if isinstance(record, dict):
-            data = sealed({key: value for key, value in record.items() if key != "sha256"})
-    (folder / "checkpoint" / "state.json").write_bytes(data)
+            return sealed({key: value for key, value in record.items() if key != "sha256"})
+    return data
+
+
+def checkpoint(data: bytes, room: Room) -> None:
+    """The state of a stopped run."""
+    folder = room.run(stopped=True)
+    (folder / "checkpoint" / "state.json").write_bytes(resealed(data))
     oo.resume(folder, quiet=True)
+
+
+def controller_state(data: bytes, room: Room) -> None:
+    """What a checkpoint keeps of a Python controller; what was read once is written and read alike."""
+    text = encode(decode(data))
+    if encode(decode(text)) != text:
+        raise AssertionError(f"{text!r} is written otherwise once it was read")
+
+
+def manifest(data: bytes, room: Room) -> None:
+    """The list of a run's files, by which they are read; ``--force`` removes those and no others."""
+    folder = room.run(stopped=b'"checkpoint": []' not in data)
+    (folder / "manifest.json").write_bytes(resealed(data))
+    (folder / "figures").mkdir(exist_ok=True)
+    others = [folder / "notes.txt", folder / "figures" / "notes.txt", folder.parent / "notes.txt"]
+    for file in others:
+        file.write_text("not of the run")
+    listed = read_manifest(folder)
+    (folder / "manifest.json").write_bytes((listed or Manifest()).as_bytes())
+    if read_manifest(folder) != listed:
+        raise AssertionError(f"{listed} is written otherwise once it was read")
+    with contextlib.suppress(IntegrityError, NotFoundError):
+        read_summary(folder)
+        read_trace(folder)
+    OutputFolder.claim(folder, force=True).close()
+    if not all(file.exists() for file in others):
+        raise AssertionError(f"{listed} made --force remove what is no run's")
 
 
 def xacro(data: bytes, room: Room) -> None:
@@ -178,7 +213,7 @@ TARGETS: dict[str, Target] = {
     target.__name__: target
     for target in (
         quantity, expression, yaml, scenario, mean_elements, tle_file, point_file, spice_kernel, onorbitros,
-        trace, summary, checkpoint, xacro, collada_unit, urdf_file,
+        trace, summary, manifest, checkpoint, controller_state, xacro, collada_unit, urdf_file,
     )
 }  # fmt: skip
 
@@ -187,6 +222,8 @@ def seeds(name: str, room: Room) -> list[bytes]:
     """Inputs that depend on the version of the package, beside those in the corpus."""
     if name == "checkpoint":
         return [(room.run(stopped=True) / "checkpoint" / "state.json").read_bytes()]
+    if name == "manifest":
+        return [(room.run(stopped=stopped) / "manifest.json").read_bytes() for stopped in (False, True)]
     if name in ("trace", "summary"):
         file = {"trace": "trace.npz", "summary": "summary.json"}[name]
         return [(room.run(stopped=False) / file).read_bytes()]

@@ -167,3 +167,33 @@ fn kernels_are_summed_and_end() {
     let torn = KernelSegment { coefficients: vec![0.0; 7], ..series(1.0, &sun) };
     assert!(matches!(Kernel::new(vec![torn], Vec::new()), Err(EarthError::WrongLength { .. })));
 }
+
+#[test]
+fn numbers_of_a_kernel_that_overflow_positions_are_refused() {
+    let good = || KernelSegment {
+        sign: 1.0,
+        start: 0.0,
+        length: 86_400.0,
+        count: 2,
+        coefficients: vec![1.4e8, 1e5, 1e6, 0.0, -1e6, 0.0],
+    };
+    let refused = |segment: KernelSegment| match Kernel::new(vec![good(), segment], vec![good()]) {
+        Err(error @ EarthError::Segment { .. }) => error.to_string(),
+        other => panic!("{other:?}"),
+    };
+    let far = |value: f64| vec![1.4e8, 1e5, 1e6, value, -1e6, 0.0]; // finite, and the Sun was at NaN
+    for (segment, said) in [
+        (
+            KernelSegment { coefficients: far(1e308), ..good() },
+            "coefficient of a segment of the kernel is 10",
+        ),
+        (KernelSegment { coefficients: far(-2e12), ..good() }, "at most 1e12 km"),
+        (KernelSegment { sign: 1e308, ..good() }, "1 or -1 is needed"),
+        (KernelSegment { length: 0.0, ..good() }, "length of a piece of a segment of the kernel is 0"),
+        (KernelSegment { length: -86_400.0, ..good() }, "positive"),
+    ] {
+        let text = refused(segment);
+        assert!(text.contains(said), "{text}");
+    }
+    assert!(Kernel::new(vec![good()], vec![good()]).is_ok());
+}

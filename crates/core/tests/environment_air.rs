@@ -153,6 +153,9 @@ fn tables_that_cannot_be_read_say_where() {
     let one = |row: &str| refused(&format!("DATE,AP_AVG,F10.7_OBS,F10.7_OBS_CENTER81\n{row}"));
     assert!(one("").contains("no rows"));
     assert!(one("2023-02-29,4,150,150").contains("line 2: '2023-02-29' is no date"));
+    // the sum of days overflowed
+    assert!(one("2024-03-9223372036854775807,4,150,150").contains("is no date like 2024-03-01"));
+    assert!(one("9223372036854775807-03-01,4,150,150").contains("is no date like 2024-03-01"));
     // a download cut short, and CelesTrak's mark of a gap
     assert!(one("2023-02-28,4,150,150\n2023-03-01,4,1").contains("line 3: has 3 fields, the header 4"));
     assert!(one("2023-02-28,4,999.9,150").contains("F10.7_OBS is '999.9'"));

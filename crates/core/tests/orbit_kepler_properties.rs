@@ -242,6 +242,11 @@ fn elements_that_cannot_be_are_refused_with_their_numbers() {
     ] {
         assert!(matches!(error, E::NotFinite { .. }), "{error}");
     }
+    // the whole turns of such an angle are not a whole number in f64: the state was NaN
+    for phase in [4.3e56, -4.3e17, 1.1e15].map(|m| [Phase::MeanAnomaly(m), Phase::TrueAnomaly(m)]).concat() {
+        let error = refused(|e| e.phase = phase);
+        assert!(matches!(error, E::OutOfRange { .. }) && error.to_string().contains("1e15 rad"), "{error}");
+    }
     let message = refused(|e| e.eccentricity = open).to_string();
     assert!(message.contains("7000000") && message.contains("1.5"), "{message}");
 }

@@ -302,3 +302,33 @@ fn a_certificate_of_another_size_is_refused_with_both_sizes() {
     }
     assert!(resumed(|_| ()).is_ok());
 }
+
+/// Sizes and counts that indexed out of bounds or overflowed once the run went on.
+#[test]
+fn what_the_probes_left_is_checked_before_a_run_goes_on() {
+    type Change = fn(&mut serde_json::Value);
+    let (checkpoint, rows) = stopped(&mut simulation(Integrator::Rk4, 1), 0.4);
+    let resumed = |change: Change| {
+        let mut value: serde_json::Value = serde_json::from_str(&checkpoint.to_json()).unwrap();
+        change(&mut value);
+        let changed = Checkpoint::from_json(&value.to_string()).unwrap();
+        let mut second = simulation(Integrator::Rk4, 1);
+        let rest = second.resume(DURATION, (&changed, rows.clone()), &mut |_| ControlFlow::Continue(()));
+        rest.map_err(|failure| failure.error.to_string())
+    };
+    let changes: [(Change, &str); 6] = [
+        (|value| value["probe"]["watch"]["ended"] = vec![0.0; 9].into(), "has 9 watched joints"),
+        (|value| value["probe"]["watch"]["jumps"] = vec![0.0; 0].into(), "has 0 watched joints"),
+        (|value| value["probe"]["watch"]["fastest"] = vec![0.0; 1].into(), "has 1 watched joints"),
+        (|value| value["steps"] = 1.into(), "no run counts 1 steps"),
+        (|value| value["steps"] = u64::MAX.into(), "no run counts 18446744073709551615 steps"),
+        (|value| value["cuts"] = u64::MAX.into(), "18446744073709551615 cuts"),
+    ];
+    for (change, said) in changes {
+        match resumed(change) {
+            Err(error) => assert!(error.contains(said), "{error}"),
+            Ok(trace) => panic!("not refused: {}", trace.rows()),
+        }
+    }
+    assert!(resumed(|_| ()).is_ok());
+}

@@ -24,8 +24,9 @@ FIGURES, CHECKPOINT = "figures", "checkpoint"
 STATE = "state.json"
 _FORMAT = 1
 _MOST = 16_000_000
-_FIGURE = re.compile(rf"{FIGURES}/[^/\\\x00]+\.(png|pdf)")
-_CHECKPOINT = re.compile(rf"{re.escape(STATE)}|[^/\\\x00]+\.f64")
+_STEM = r"[^/\\\x00\ud800-\udfff]+"  # half a surrogate pair, which JSON can hold, is no name of a file
+_FIGURE = re.compile(rf"{FIGURES}/{_STEM}\.(png|pdf)")
+_CHECKPOINT = re.compile(rf"{re.escape(STATE)}|{_STEM}\.f64")
 
 
 class Entry(NamedTuple):

@@ -98,6 +98,16 @@ pub enum EarthError {
         /// Axes of the Earth.
         run: &'static str,
     },
+    /// A number of a segment of a kernel that no ephemeris has.
+    #[error("{name} of a segment of the kernel is {value}, {expected}")]
+    Segment {
+        /// Which number.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+        /// What is accepted.
+        expected: &'static str,
+    },
     /// Numbers do not come in the right amount.
     #[error("{name} holds {got}, expected {expected}", got = count(*got, "number"))]
     WrongLength {

@@ -4,6 +4,9 @@ use nalgebra::Vector3;
 
 use super::EarthError;
 
+/// Largest coefficient accepted, km: far beyond the planets, and no series of them overflows.
+const FARTHEST_KM: f64 = 1e12;
+
 /// Positions of one body relative to another: Chebyshev series over pieces of equal length (types 2 and 3 of a kernel).
 #[derive(Clone, Debug, PartialEq)]
 pub struct KernelSegment {
@@ -32,7 +35,8 @@ impl Kernel {
     /// From the segments that lead from the Earth to each.
     ///
     /// # Errors
-    /// [`EarthError::WrongLength`] for segments that hold no whole pieces, [`EarthError::NotFinite`].
+    /// [`EarthError::WrongLength`] for segments that hold no whole pieces, [`EarthError::NotFinite`], and
+    /// [`EarthError::Segment`] for numbers that no ephemeris has and that positions could overflow by.
     pub fn new(sun: Vec<KernelSegment>, moon: Vec<KernelSegment>) -> Result<Self, EarthError> {
         for segment in sun.iter().chain(&moon) {
             let (got, piece) = (segment.coefficients.len(), segment.count.saturating_mul(3));
@@ -47,6 +51,7 @@ impl Kernel {
             if let Some(&value) = numbers.iter().chain(&segment.coefficients).find(|x| !x.is_finite()) {
                 return Err(EarthError::NotFinite { name: "a segment of the kernel", value });
             }
+            segment.check()?;
         }
         Ok(Self { sun, moon })
     }
@@ -70,6 +75,20 @@ impl Kernel {
 }
 
 impl KernelSegment {
+    fn check(&self) -> Result<(), EarthError> {
+        let farthest = self.coefficients.iter().copied().find(|c| c.abs() > FARTHEST_KM);
+        let (name, value, expected) = if self.sign.abs() != 1.0 {
+            ("sign", self.sign, "1 or -1 is needed")
+        } else if self.length <= 0.0 {
+            ("length of a piece", self.length, "a positive number of seconds is needed")
+        } else if let Some(value) = farthest {
+            ("coefficient", value, "at most 1e12 km is accepted")
+        } else {
+            return Ok(());
+        };
+        Err(EarthError::Segment { name, value, expected })
+    }
+
     fn pieces(&self) -> usize {
         self.coefficients.len() / (3 * self.count)
     }

@@ -12,6 +12,9 @@ use crate::spatial::{InstructionSet, Scalar, Vec3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+/// Steps that no run takes; so many more can be counted without overflow.
+const MOST_STEPS: usize = usize::MAX / 2;
+
 /// Everything of a run that its trace does not hold: continued from here with the rows so far, it
 /// leaves the bits of one that was never stopped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -188,10 +191,19 @@ impl Checkpoint {
             ("accelerations", self.asked.len(), model.joint_count()),
             ("drifts", self.probe.drifts.len(), model.joint_count() + 1),
             ("rows", self.rows, rows),
-        ] {
+        ]
+        .into_iter()
+        .chain(self.probe.watch.joints().map(|got| ("watched joints", got, model.joint_count())))
+        {
             if got != expected {
                 return Err(CheckpointError::OtherSize { name, got, expected });
             }
+        }
+        if self.probe.step > self.steps || self.steps.max(self.cuts) > MOST_STEPS {
+            let (steps, cuts, probed) = (self.steps, self.cuts, self.probe.step);
+            let reason =
+                format!("no run counts {steps} steps, {cuts} cuts and a last probe at step {probed}");
+            return Err(CheckpointError::Unreadable { reason });
         }
         if !self.schedule.cuts_like(schedule) {
             let (found, step) = self.schedule.duration_and_step();

@@ -35,7 +35,7 @@ pub(super) struct Probe<S> {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Found {
     /// Step of the last probe.
-    step: usize,
+    pub(super) step: usize,
     /// Difference of the attitude at the last probe, rad, and the sum over the steps before it.
     turn: [f64; 2],
     /// Of the base's origin, then of every joint.

@@ -31,6 +31,11 @@ impl Watch {
         Self { ended: zeros.clone(), command: zeros.clone(), h: 0.0, jumps: zeros.clone(), fastest: zeros }
     }
 
+    /// Numbers of joints for which it holds something; all the same where it was not damaged.
+    pub(super) fn joints(&self) -> [usize; 4] {
+        [&self.ended, &self.command, &self.jumps, &self.fastest].map(Vec::len)
+    }
+
     /// Adds a step of `h` that `stages` took; `is_smooth` says that no event and no impact is at its start.
     #[inline]
     pub(super) fn step<S: Scalar>(&mut self, stages: &Stages<S>, command: &[S], h: f64, is_smooth: bool) {

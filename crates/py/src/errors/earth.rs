@@ -14,7 +14,7 @@ impl IntoPython for EarthError {
                 fields!(py, "name": what, "got": time, "expected": (from, to))
             }
             Self::NotFinite { name, value } => fields!(py, "name": name, "got": value),
-            Self::Parameter { name, value, expected, .. } => {
+            Self::Parameter { name, value, expected, .. } | Self::Segment { name, value, expected } => {
                 fields!(py, "name": name, "got": value, "expected": expected)
             }
             Self::Table { line, .. } => fields!(py, "name": "eop", "got": line),

@@ -157,7 +157,8 @@ fn calendar(day: i64) -> (i64, i64, i64) {
 fn day_of(text: &str) -> Option<i64> {
     let mut parts = text.split('-').map(|part| part.parse::<i64>().ok());
     let (year, month, day) = (parts.next()??, parts.next()??, parts.next()??);
-    if parts.next().is_some() || !(1..=12).contains(&month) {
+    let is_date = (0..=9999).contains(&year) && (1..=12).contains(&month) && (1..=31).contains(&day);
+    if parts.next().is_some() || !is_date {
         return None;
     }
     let date = julian(year, month, day);

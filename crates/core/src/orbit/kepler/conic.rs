@@ -221,7 +221,7 @@ pub(super) fn wrap<S: Real>(angle: S) -> S {
     S::select(S::less(angle, -pi), angle + turn, angle)
 }
 
-/// Any finite angle, less the nearest whole number of turns.
+/// An angle of up to 1e15 rad, less the nearest whole number of turns.
 pub(super) fn whole_turns_off(angle: f64) -> f64 {
     let k = (angle / TAU).round();
     (-k).mul_add(double::TAU.lo, (-k).mul_add(TAU, angle))

@@ -75,12 +75,15 @@ const NEAR_PARABOLIC: f64 = 1e-2;
 /// A hyperbola of more is a straight line to rounding, and its anomalies overflow.
 const LARGEST_ECCENTRICITY: f64 = 1e20;
 
+/// Largest anomaly on an ellipse, rad: `f64` is 1/8 rad apart there.
+const LARGEST_ANGLE: f64 = 1e15;
+
 impl Kepler {
     /// The orbit with these elements.
     ///
     /// # Errors
     /// [`OrbitError::NotFinite`] and [`OrbitError::NotPositive`] for plain bad numbers and for
-    /// sizes beyond the range of `f64`;
+    /// sizes beyond the range of `f64`; [`OrbitError::OutOfRange`] for anomalies on an ellipse beyond 1e15 rad;
     /// [`OrbitError::NegativeEccentricity`], [`OrbitError::AxisSign`],
     /// [`OrbitError::ParabolaHasNoAxis`], [`OrbitError::ParabolaHasNoMeanAnomaly`],
     /// [`OrbitError::Inclination`], [`OrbitError::BeyondAsymptote`] for what cannot be an orbit.
@@ -178,12 +181,12 @@ fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64)
     match (elements.phase, conic) {
         (Phase::PeriapsisTime(t), _) => Ok((finite("time of periapsis", t)?, 0.0)),
         (Phase::MeanAnomaly(m), _) => match conic {
-            Conic::Ellipse { .. } => Ok((epoch, conic::whole_turns_off(finite("mean anomaly", m)?))),
+            Conic::Ellipse { .. } => Ok((epoch, conic::whole_turns_off(angle("mean anomaly", m)?))),
             Conic::Hyperbola { n, .. } => Ok((epoch, finite("mean anomaly", m)? / n)),
             Conic::Parabola { .. } => Err(OrbitError::ParabolaHasNoMeanAnomaly { value: m }),
         },
         (Phase::TrueAnomaly(nu), Conic::Ellipse { .. }) => {
-            let nu = conic::whole_turns_off(finite("true anomaly", nu)?);
+            let nu = conic::whole_turns_off(angle("true anomaly", nu)?);
             Ok((epoch, phase_from_half_anomaly(shape, conic, (0.5 * nu).sin_cos())))
         }
         (Phase::TrueAnomaly(nu), _) => {
@@ -196,6 +199,15 @@ fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64)
             Ok((epoch, phase_from_half_anomaly(shape, conic, (0.5 * nu).sin_cos())))
         }
     }
+}
+
+/// An anomaly on an ellipse that has digits left when its whole turns are taken away.
+fn angle(name: &'static str, value: f64) -> Result<f64, OrbitError> {
+    if finite(name, value)?.abs() > LARGEST_ANGLE {
+        let expected = "at most 1e15 rad (beyond, f64 tells no eighth of a radian from the next)";
+        return Err(OrbitError::OutOfRange { name, value, expected });
+    }
+    Ok(value)
 }
 
 /// Angle in [0, 2π), for an angle in [-π, π].
