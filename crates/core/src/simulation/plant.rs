@@ -22,6 +22,9 @@ pub(crate) trait World<S> {
         t: f64,
         interval: (f64, f64),
     ) -> Result<(), SimulationError>;
+
+    /// Whether anything acts at all: where nothing does, the wrenches on the bodies stay zero.
+    fn acts(&self) -> bool;
 }
 
 /// Empty space: nothing acts.
@@ -37,6 +40,10 @@ impl<S> World<S> for Nothing {
         _: (f64, f64),
     ) -> Result<(), SimulationError> {
         Ok(())
+    }
+
+    fn acts(&self) -> bool {
+        false
     }
 }
 
@@ -142,7 +149,8 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
     /// Rates at a state whose kinematics and wrenches are in `data`.
     pub(crate) fn accelerate(&mut self, q: &[S], v: &[S], rate: &mut Rate<S>) {
         self.drive(v);
-        let Self { model, data, forces, contacts, carried, is_lossy, .. } = self;
+        let Self { model, data, forces, contacts, carried, is_lossy, surroundings, .. } = self;
+        let pushed = if surroundings.acts() { model.nodes().len() } else { 0 };
         match contacts.locked() {
             Some(locked) => locked_dynamics_recursion(model, data, v, forces, locked, &mut rate.a),
             None => forward_dynamics_recursion(model, data, v, forces, &mut rate.a),
@@ -150,7 +158,7 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
         rate.v.copy_from_slice(v);
         S::enter(
             #[inline(always)]
-            || balance(data, q, v, *carried, forces, rate),
+            || balance(data, pushed, q, v, *carried, forces, rate),
         );
         if *is_lossy {
             rate.loss = S::enter(
@@ -206,23 +214,33 @@ impl<'a, S: Real, W: World<S>> Plant<'a, S, W> {
     }
 }
 
-/// Velocity and acceleration of the base, sum of the wrenches and the power of all forces, in W; `v` and the
-/// velocities in `data` are relative to a frame that moves at `carried`.
+/// Velocity and acceleration of the base, sum of the wrenches on the first `pushed` bodies and the power of all forces, in W;
+/// `v` and the velocities in `data` are relative to a frame that moves at `carried`.
 #[inline(always)]
-fn balance<S: Real>(data: &Data<S>, q: &[S], v: &[S], carried: Vec3<S>, forces: &[S], rate: &mut Rate<S>) {
+fn balance<S: Real>(
+    data: &Data<S>,
+    pushed: usize,
+    q: &[S],
+    v: &[S],
+    carried: Vec3<S>,
+    forces: &[S],
+    rate: &mut Rate<S>,
+) {
     let rot_wb = base_rotation(q);
     rate.origin = rot_wb * Vec3::from_slice(v) + carried;
     rate.turn = Vec3::from_slice(&v[3..]);
     rate.bend = rot_wb * (Vec3::from_slice(&rate.a) + rate.turn.cross(Vec3::from_slice(v)));
     let (mut total, mut power) = (Force::zero(), S::of(0.0));
-    for body in &data.bodies {
+    for body in &data.bodies[..pushed] {
         total += body.external.from_point(body.pos_b);
         power += body.velocity.dot(body.external);
     }
     for (tau, rate) in forces[6..].iter().zip(&v[6..]) {
         power = tau.mul_add(*rate, power);
     }
-    let about_com = total.angular - center_of_mass_b(data).cross(total.linear);
-    rate.wrench = Momentum { linear: rot_wb * total.linear, angular: rot_wb * about_com };
+    if pushed > 0 {
+        total.angular = total.angular - center_of_mass_b(data).cross(total.linear);
+    }
+    rate.wrench = Momentum { linear: rot_wb * total.linear, angular: rot_wb * total.angular };
     rate.power = power + rate.wrench.linear.dot(carried);
 }

@@ -188,4 +188,8 @@ impl<S: Scalar> World<S> for Surroundings {
         base.hand_over(&self.wrenches, data);
         Ok(())
     }
+
+    fn acts(&self) -> bool {
+        !self.effects.is_empty()
+    }
 }

@@ -41,14 +41,17 @@ impl Watch {
     pub(super) fn step<S: Scalar>(&mut self, stages: &Stages<S>, command: &[S], h: f64, is_smooth: bool) {
         let is_same = is_smooth && self.command.iter().zip(command).all(|(a, b)| *a == b.value());
         let sixth = if is_same { self.h / 6.0 } else { 0.0 };
-        let (first, last, v) = (&stages.first_acceleration()[6..], &stages.rate.a[6..], &stages.start.v[6..]);
-        for j in 0..self.ended.len() {
-            self.fastest[j] = self.fastest[j].max(v[j].value().abs());
-            let jump = (first[j].value() - self.ended[j]).abs() * sixth;
-            if jump > SMALL * self.fastest[j] {
-                self.jumps[j] += jump * jump.sqrt().sqrt();
+        let n = self.ended.len();
+        let (ended, jumps, fastest) = (&mut self.ended[..n], &mut self.jumps[..n], &mut self.fastest[..n]);
+        let (first, last) = (&stages.first_acceleration()[6..][..n], &stages.rate.a[6..][..n]);
+        let v = &stages.start.v[6..][..n];
+        for j in 0..n {
+            fastest[j] = fastest[j].max(v[j].value().abs());
+            let jump = (first[j].value() - ended[j]).abs() * sixth;
+            if jump > SMALL * fastest[j] {
+                jumps[j] += jump * jump.sqrt().sqrt();
             }
-            self.ended[j] = last[j].value();
+            ended[j] = last[j].value();
         }
         if !is_same {
             self.command.iter_mut().zip(command).for_each(|(to, from)| *to = from.value());
