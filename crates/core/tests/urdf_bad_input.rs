@@ -201,6 +201,11 @@ fn inertials_that_no_body_has() {
     assert_eq!(model(&negative), ModelError::MassNotPositive { link: "b".into(), mass: -2.0 });
     let flywheel = INERTIAL.replace("value=\"1\"", "value=\"0\"");
     assert_eq!(model(&flywheel), ModelError::InertiaWithoutMass { link: "b".into() });
+    // neither has the body that it is fixed to a mass
+    let fixed = joint("k", "fixed", "b", "c", "");
+    let weightless =
+        with_inertial("").replace("</robot>", &format!("<link name='c'>{flywheel}</link>{fixed}</robot>"));
+    assert_eq!(problem(&weightless), UrdfProblem::Model(ModelError::InertiaWithoutMass { link: "c".into() }));
     let indefinite = INERTIAL.replace("ixx=\"1\"", "ixx=\"-1\"");
     assert!(matches!(model(&indefinite), ModelError::IndefiniteInertia { link, .. } if link == "b"));
     assert!(matches!(model(""), ModelError::MasslessSubtree { joint, link } if joint == "j" && link == "b"));
@@ -220,6 +225,14 @@ fn xacro_is_named_with_the_way_out() {
         with_inertial(&INERTIAL.replace("value=\"1\"", "value=\"${mass}\"")),
         with_inertial("<inertial><origin xyz='$(arg xyz)'/><mass value='1'/></inertial>"),
         format!("<robot><link name='${{prefix}}a'>{INERTIAL}</link></robot>"),
+        // parts of the robot that only xacro can make
+        format!(
+            "<robot {xmlns}><link name='a'>{INERTIAL}</link><xacro:arm/>{}</robot>",
+            joint("j", "fixed", "a", "b", "")
+        ),
+        format!(
+            "<robot><link name='a'>{INERTIAL}</link><link name='b'>{INERTIAL}</link><xacro:arm/></robot>"
+        ),
     ];
     for xml in files {
         let text = error(&xml).to_string();
@@ -228,4 +241,28 @@ fn xacro_is_named_with_the_way_out() {
     }
     // declaring the prefix is what every expanded file still does
     assert!(from_str(&format!("<robot {xmlns}><link name='a'>{INERTIAL}</link></robot>"), None, &[]).is_ok());
+}
+
+#[test]
+fn a_robot_that_lacks_what_a_prefix_hides_is_refused() {
+    let ab = joint("ab", "fixed", "a", "b", "");
+    let drake = joint("bc", "fixed", "b", "c", "")
+        .replace("<joint", "<drake:joint")
+        .replace("</joint", "</drake:joint");
+    let found = error(&robot(&format!("{ab}{drake}")));
+    assert_eq!(*found.problem, UrdfProblem::ForeignElement { element: "drake:joint".to_owned() });
+    assert_eq!(found.line, Some(6));
+}
+
+#[test]
+fn lines_stay_true_where_a_prefix_is_not_declared() {
+    let xml = "<?xml version='1.0'?>\n<!-- <robot> -->\n<robot\n name='r'>\n<a:b/>\n<c:d e:f='1'/>\n<link name='l'><inertial/></link></robot>";
+    let found = error(xml);
+    assert_eq!(
+        (found.line, found.to_string().contains("link 'l' has no <mass>")),
+        (Some(7), true),
+        "{found}"
+    );
+    let many: String = (0..40).map(|i| format!("<p{i}:x/>")).collect();
+    assert!(matches!(problem(&format!("<robot>{many}</robot>")), UrdfProblem::NotXml { .. }));
 }

@@ -225,3 +225,82 @@ fn a_mimic_joint_says_what_is_lost() {
     let text = model.warnings()[0].to_string();
     assert!(text.contains("(j = -2 other + 0.1)"), "{text}");
 }
+
+fn notes(model: &Model) -> Vec<String> {
+    model.warnings().iter().map(ToString::to_string).collect()
+}
+
+fn moments(model: &Model, body: usize) -> [f64; 3] {
+    let inertia = model.nodes()[body].about_com.to_nalgebra();
+    [inertia[(0, 0)], inertia[(1, 1)], inertia[(2, 2)]]
+}
+
+#[test]
+fn an_inertia_negative_by_rounding_is_zero() {
+    let tiny = r#"<inertial><mass value="0.5"/><inertia ixx="-5e-20" iyy="1e-20" izz="0"/></inertial>"#;
+    let model = load(&format!(
+        "<link name='a'>{INERTIAL}</link><link name='b'>{tiny}</link>\
+         <joint name='j' type='revolute'><child link='b'/><parent link='a'/></joint>\
+         <link name='c'>{INERTIAL}</link>\
+         <joint name='k' type='fixed'><child link='c'/><parent link='b'/></joint>"
+    ));
+    assert_eq!(model.mass(), 2.5);
+    assert!(notes(&model)[0].contains("link 'b' is negative by rounding"), "{:?}", notes(&model));
+    assert_eq!(moments(&model, 1), [1.0, 1.0 + 1e-20, 1.0]);
+    // by a millionth of 0.5 kg m2 it is no rounding: a radius of gyration of a millimetre
+    let wrong = tiny.replace("-5e-20", "-5e-7");
+    let refused = from_str(&format!("<robot><link name='a'>{wrong}</link></robot>"), None, &[]).unwrap_err();
+    assert!(refused.to_string().contains("not positive definite"), "{refused}");
+}
+
+#[test]
+fn an_inertia_without_mass_adds_to_the_body_it_is_fixed_to() {
+    let rotor =
+        r#"<inertial><origin xyz="5 0 0"/><mass value="0"/><inertia ixx="2" iyy="3" izz="4"/></inertial>"#;
+    let link = |name, inertial| format!("<link name='{name}'>{inertial}</link>");
+    let fixed = |parent, child| {
+        format!(
+            "<joint name='{parent}_{child}' type='fixed'><origin xyz='0 1 0' rpy='0 0 {FRAC_PI_2}'/><parent link='{parent}'/><child link='{child}'/></joint>"
+        )
+    };
+    let model = load(&[link("a", INERTIAL), link("b", rotor), fixed("a", "b")].concat());
+    // turned by 90° about z, and the same wherever it is
+    let found = moments(&model, 0);
+    for (found, expected) in found.into_iter().zip([4.0, 3.0, 5.0]) {
+        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    }
+    assert_eq!(model.mass(), 1.0);
+    assert!(notes(&model)[0].contains("link 'b' has no mass but a rotational inertia, which is added"));
+    // below a root that is no body, and before any mass
+    let below =
+        [link("world", ""), link("b", rotor), link("a", INERTIAL), fixed("world", "b"), fixed("b", "a")];
+    let model = load(&below.concat());
+    assert_eq!(model.body_frame(0).name, "b");
+    assert!((moments(&model, 0)[0] - 3.0).abs() < 1e-14 && model.mass() == 1.0);
+}
+
+#[test]
+fn what_is_left_of_xacro_is_ignored_and_named_with_its_line() {
+    let model = load(&format!(
+        "\n<xacro:property name='p' value='1'/>\n<link name='a'>{INERTIAL}</link>\n\
+         <xacro:macro name='m'><xacro:arm/><link name='${{x}}'/></xacro:macro>"
+    ));
+    assert_eq!(model.mass(), 1.0);
+    let said = notes(&model);
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(
+        said[0].starts_with("line 2: <xacro:property> is left of xacro and ignored, as is one more"),
+        "{said:?}"
+    );
+}
+
+#[test]
+fn elements_that_are_not_urdf_are_ignored_and_named() {
+    let inside = "<gazebo:x/><drake:joint name='j'/><Link name='b'/><gazebo><b/></gazebo><transmission/><ros2_control/>";
+    let model = load(&format!("<link name='a'>{INERTIAL}</link>\n{inside}"));
+    let said = notes(&model);
+    assert_eq!(said.len(), 2, "{said:?}");
+    assert!(said[0].starts_with("<gazebo:x> has a namespace of its own"), "{said:?}");
+    assert!(said[0].ends_with("ignored (so are '<drake:joint>')"), "{said:?}");
+    assert!(said[1].starts_with("<Link> is no element of URDF: ignored"), "{said:?}");
+}

@@ -3,7 +3,7 @@
 use super::compile::compile;
 use super::description::{Inertial, Joint, JointKind, Link};
 use super::error::{ModelError, ModelWarning};
-use super::inertia_check::{LONGEST, Sense, check_inertial};
+use super::inertia_check::{LONGEST, Sense, check_inertial, without_negative_moments};
 use super::tree::Model;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
@@ -109,11 +109,18 @@ impl ModelBuilder {
     }
 
     /// `is_part` where the link is folded into another: then the sum must make sense, not the link.
-    fn add_link(&mut self, link: Link, is_part: bool) -> Result<(), ModelError> {
+    fn add_link(&mut self, mut link: Link, is_part: bool) -> Result<(), ModelError> {
         self.check_new_frame_name(&link.name)?;
-        if let Some(inertial) = &link.inertial {
-            match check_inertial(&link.name, inertial)? {
+        if let Some(inertial) = &mut link.inertial {
+            match check_inertial(&link.name, inertial, is_part)? {
                 Sense::Physical => {}
+                Sense::Rounded(moments) => {
+                    inertial.inertia = without_negative_moments(&inertial.inertia);
+                    self.warnings.push(ModelWarning::RoundedInertia { link: link.name.clone(), moments });
+                }
+                Sense::Massless => {
+                    self.warnings.push(ModelWarning::InertiaWithoutMass { link: link.name.clone() });
+                }
                 Sense::BreaksTriangle(moments) => {
                     self.warnings.push(ModelWarning::TriangleInequality { link: link.name.clone(), moments });
                 }

@@ -4,7 +4,7 @@ use super::align::rotation_to_axis;
 use super::builder::ModelBuilder;
 use super::description::{Inertial, Joint, JointKind};
 use super::error::{ModelError, ModelWarning};
-use super::inertia_check::is_definite;
+use super::inertia_check::{is_definite, principal_moments};
 use super::load_ratio::load_ratio;
 use super::tree::{Axis, Frame, JointProperties, Model, Node};
 use super::well_posed::check_well_posed;
@@ -73,14 +73,24 @@ pub(super) fn compile(builder: ModelBuilder) -> Result<Model, ModelError> {
     Ok(model)
 }
 
-/// A link with an indefinite inertia is lived with only where its body as a whole makes sense.
+/// A link with an indefinite inertia, or with an inertia but no mass, is accepted only where its body as a whole
+/// makes sense.
 fn check_parts(model: &Model) -> Result<(), ModelError> {
     for warning in &model.warnings {
-        if let ModelWarning::IndefinitePart { link, moments } = warning {
-            let body = model.frames[model.frame(link)?].body;
-            if !is_definite(&model.nodes[body].about_com) {
-                return Err(ModelError::IndefiniteInertia { link: link.clone(), moments: *moments });
-            }
+        let (ModelWarning::IndefinitePart { link, .. } | ModelWarning::InertiaWithoutMass { link }) = warning
+        else {
+            continue;
+        };
+        let body = &model.nodes[model.frames[model.frame(link)?].body];
+        if body.mass == 0.0 {
+            return Err(ModelError::InertiaWithoutMass { link: link.clone() });
+        }
+        if !is_definite(&body.about_com, body.mass) {
+            let moments = match warning {
+                ModelWarning::IndefinitePart { moments, .. } => *moments,
+                _ => principal_moments(&body.about_com.to_nalgebra()),
+            };
+            return Err(ModelError::IndefiniteInertia { link: link.clone(), moments });
         }
     }
     Ok(())
@@ -104,7 +114,8 @@ fn roots(builder: &ModelBuilder, children: &[Vec<usize>]) -> Vec<usize> {
     loop {
         let root = roots[roots.len() - 1];
         let link = &builder.links[root];
-        let is_body = link.inertial.as_ref().is_some_and(|i| i.mass > 0.0) || !link.visuals.is_empty();
+        let is_heavy = |i: &Inertial| i.mass > 0.0 || i.inertia.amax() > 0.0;
+        let is_body = link.inertial.as_ref().is_some_and(is_heavy) || !link.visuals.is_empty();
         match children[root][..] {
             [only] if !is_body && builder.joints[only - 1].1.kind == JointKind::Fixed => roots.push(only),
             _ => return roots,
@@ -186,6 +197,7 @@ fn merge(node: &mut Node, inertial: &Inertial, place: &Placed) {
     let about_com = Sym3::from(place.rot * inertial.inertia * place.rot.transpose());
     let mass = node.mass + inertial.mass;
     if inertial.mass == 0.0 {
+        node.about_com += about_com; // without mass, the point it is given about does not matter
         return;
     }
     let common = (node.com * node.mass + com * inertial.mass) * (1.0 / mass);

@@ -10,7 +10,10 @@ use thiserror::Error;
 pub enum ModelError {
     #[error("link '{link}' has a mass of {mass} kg, it must be positive", mass = short(*mass))]
     MassNotPositive { link: String, mass: f64 },
-    #[error("link '{link}' has no mass but a rotational inertia; give it a mass or remove the inertia")]
+    #[error(
+        "link '{link}' has no mass but a rotational inertia; give it a mass, fix it to a link that has one, or remove \
+         the inertia"
+    )]
     InertiaWithoutMass { link: String },
     #[error(
         "the inertia of link '{link}' is not positive definite: its principal moments are {moments} kg m2",
@@ -83,6 +86,18 @@ pub enum ModelWarning {
         /// Its principal moments, kg m², ascending.
         moments: [f64; 3],
     },
+    /// Principal moments that are negative by less than rounding; they are read as zero.
+    RoundedInertia {
+        /// The link.
+        link: String,
+        /// Its principal moments as given, kg m², ascending.
+        moments: [f64; 3],
+    },
+    /// A link without mass but with a rotational inertia, which is added to the body that it is fixed to.
+    InertiaWithoutMass {
+        /// The link.
+        link: String,
+    },
     /// Anything else a reader of a file met.
     Note(String),
 }
@@ -103,6 +118,16 @@ impl fmt::Display for ModelWarning {
                 "the inertia of link '{link}' is not positive definite: principal moments {} kg m2 (used as it \
                  is: with the links it is fixed to, the sum is)",
                 list(moments)
+            ),
+            Self::RoundedInertia { link, moments } => write!(
+                f,
+                "the inertia of link '{link}' is negative by rounding: principal moments {} kg m2 (those below zero \
+                 are read as zero)",
+                list(moments)
+            ),
+            Self::InertiaWithoutMass { link } => write!(
+                f,
+                "link '{link}' has no mass but a rotational inertia, which is added to that of the body it is fixed to"
             ),
             Self::Note(text) => f.write_str(text),
         }

@@ -9,6 +9,10 @@ use nalgebra::Matrix3;
 /// of the largest entry: what six printed digits leave.
 const PRINTED_DIGITS: f64 = 1e-6;
 
+/// Squared radius of gyration, m², below which a moment of inertia is rounding: 10 nm. CAD programs print moments of
+/// small parts as 0 or as ±1e-20.
+const LEAST_GYRATION: f64 = 1e-16;
+
 /// Largest coordinate of anything in a robot, m: seven astronomical units.
 pub(super) const LONGEST: f64 = 1e12;
 
@@ -18,12 +22,18 @@ pub(super) enum Sense {
     Physical,
     /// None with a density that is positive everywhere.
     BreaksTriangle([f64; 3]),
+    /// Negative by rounding only.
+    Rounded([f64; 3]),
     /// None: it could turn with negative energy.
     Indefinite([f64; 3]),
+    /// An inertia without a mass: part of a body, not a body.
+    Massless,
 }
 
 /// Refuses an inertial that means nothing, and says what sense the others make.
-pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, ModelError> {
+///
+/// `is_part`: the link is fixed to another, and only their sum must make sense.
+pub(super) fn check_inertial(link: &str, inertial: &Inertial, is_part: bool) -> Result<Sense, ModelError> {
     let link = || link.to_owned();
     let Inertial { mass, com, inertia } = inertial;
     if !mass.is_finite() || !com.iter().chain(inertia.iter()).all(|x| x.is_finite()) {
@@ -34,19 +44,25 @@ pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, M
     if *mass < 0.0 {
         return Err(ModelError::MassNotPositive { link: link(), mass: *mass });
     }
-    if *mass == 0.0 {
-        let is_nothing = scale == 0.0;
-        return if is_nothing {
-            Ok(Sense::Physical)
-        } else {
-            Err(ModelError::InertiaWithoutMass { link: link() })
-        };
+    if *mass == 0.0 && scale == 0.0 {
+        return Ok(Sense::Physical);
+    }
+    if *mass == 0.0 && !is_part {
+        return Err(ModelError::InertiaWithoutMass { link: link() });
     }
     let difference = (inertia - inertia.transpose()).amax();
-    if difference > PRINTED_DIGITS * scale {
+    if difference > PRINTED_DIGITS * scale + LEAST_GYRATION * mass {
         return Err(ModelError::AsymmetricInertia { link: link(), difference });
     }
-    Ok(sense(inertia))
+    Ok(if *mass == 0.0 { Sense::Massless } else { sense(inertia, *mass) })
+}
+
+/// The inertia with its negative principal moments set to zero.
+pub(super) fn without_negative_moments(inertia: &Matrix3<f64>) -> Matrix3<f64> {
+    let mut eigen = inertia.symmetric_eigen();
+    eigen.eigenvalues.apply(|moment| *moment = moment.max(0.0));
+    let result = eigen.recompose();
+    (result + result.transpose()) * 0.5
 }
 
 /// Refuses numbers whose products over a robot could overflow, or vanish beside each other.
@@ -66,17 +82,25 @@ fn check_ranges(name: String, inertial: &Inertial) -> Result<(), ModelError> {
 }
 
 /// Whether a body made of several links turns with positive energy, whatever its parts do.
-pub(super) fn is_definite(about_com: &Sym3<f64>) -> bool {
-    !matches!(sense(&about_com.to_nalgebra()), Sense::Indefinite(_))
+pub(super) fn is_definite(about_com: &Sym3<f64>, mass: f64) -> bool {
+    !matches!(sense(&about_com.to_nalgebra(), mass), Sense::Indefinite(_))
 }
 
-fn sense(inertia: &Matrix3<f64>) -> Sense {
-    let scale = inertia.amax();
+/// Eigenvalues, ascending.
+pub(super) fn principal_moments(inertia: &Matrix3<f64>) -> [f64; 3] {
     let mut moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
     moments.sort_by(f64::total_cmp);
+    moments
+}
+
+fn sense(inertia: &Matrix3<f64>, mass: f64) -> Sense {
+    let scale = inertia.amax();
+    let moments = principal_moments(inertia);
     let [a, b, c] = moments;
-    if a < -PRINTED_DIGITS * scale {
+    if a < -(PRINTED_DIGITS * scale).max(LEAST_GYRATION * mass) {
         Sense::Indefinite(moments)
+    } else if a < -PRINTED_DIGITS * scale {
+        Sense::Rounded(moments)
     } else if a + b < c * (1.0 - PRINTED_DIGITS) {
         Sense::BreaksTriangle(moments)
     } else {

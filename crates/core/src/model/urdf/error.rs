@@ -85,7 +85,9 @@ pub enum UrdfProblem {
          so for files named .xacro, and for others with xacro=True, on the command line with --xacro)"
     )]
     Xacro { found: String },
-    #[error("<{element}> is not URDF and would be lost; write it without the prefix")]
+    #[error(
+        "<{element}> is not URDF and is ignored, which leaves the robot incomplete; write it without the prefix"
+    )]
     ForeignElement { element: String },
     #[error("the robot has no links")]
     NoLinks,
@@ -168,7 +170,7 @@ fn way_out(kind: &str) -> String {
 }
 
 /// The names, the first of them if there are many.
-fn list(names: &[String]) -> String {
+pub(super) fn list(names: &[String]) -> String {
     const SHOWN: usize = 5;
     let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("'{name}'")).collect();
     let more = if names.len() > SHOWN { ", …" } else { "" };

@@ -70,6 +70,20 @@ pub(super) fn check(xml: &str) -> Result<(), UrdfError> {
     Ok(())
 }
 
+/// Where the name of the outermost tag ends, in bytes.
+pub(super) fn after_root_name(xml: &str) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        let start = at + xml[at..].find('<')?;
+        let tag = &xml[start..];
+        if !tag.starts_with("<!") && !tag.starts_with("<?") {
+            let ends = |c: char| c.is_whitespace() || matches!(c, '/' | '>');
+            return tag.find(ends).map(|end| start + end);
+        }
+        at = start + tag_end(tag);
+    }
+}
+
 /// Bytes up to the end of the tag, comment, CDATA section or instruction that `tag` starts with.
 fn tag_end(tag: &str) -> usize {
     let until = |end: &str| tag.find(end).map_or(tag.len(), |at| at + end.len());

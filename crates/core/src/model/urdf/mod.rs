@@ -5,12 +5,14 @@
 //! joint, refuses files that repeat an element or lack `velocity`, and its errors name neither
 //! link nor line. It serves as an oracle in the tests instead.
 //!
-//! Collision shapes, transmissions, sensors and the elements of other tools are left alone.
+//! Collision shapes, transmissions, sensors and the elements of other tools are ignored; elements with a prefix,
+//! elements that no tool is known for and leftovers of xacro are ignored with a warning. A prefix needs no declaration.
 
 mod assemble;
 mod element;
 mod error;
 mod first_look;
+mod foreign;
 mod joint;
 mod link;
 mod material;
@@ -19,18 +21,16 @@ mod several;
 
 pub use error::{UrdfError, UrdfProblem};
 
-use super::Model;
+use super::{Model, ModelWarning};
 use assemble::assemble;
 use element::Element;
+use foreign::{Ignored, parse, with_declared_prefixes};
 use joint::read_hinge;
 use link::Surroundings;
 use material::Materials;
 use mesh::Meshes;
-use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
+use roxmltree::{Error as XmlError, Node};
 use std::path::{Path, PathBuf};
-
-/// Tags, texts and comments of a file; a large robot has 10⁴.
-const MAX_NODES: u32 = 1_000_000;
 
 /// Loads a robot; its root link floats.
 ///
@@ -52,10 +52,20 @@ pub fn from_file(path: &Path, packages: &[PathBuf]) -> Result<Model, UrdfError> 
 /// [`UrdfError`] with the line and the link or joint.
 pub fn from_str(xml: &str, folder: Option<&Path>, packages: &[PathBuf]) -> Result<Model, UrdfError> {
     first_look::check(xml)?;
-    let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(xml, options).map_err(not_xml)?;
+    let declared = with_declared_prefixes(xml);
+    let document = parse(declared.as_deref().unwrap_or(xml)).map_err(not_xml)?;
     let robot = document.root_element();
-    check_vocabulary(robot)?;
+    check_root(robot)?;
+    let ignored = Ignored::new(robot);
+    read_robot(robot, folder, packages, ignored.warnings()).map_err(|error| ignored.explain(error))
+}
+
+fn read_robot(
+    robot: Node<'_, '_>,
+    folder: Option<&Path>,
+    packages: &[PathBuf],
+    warnings: Vec<ModelWarning>,
+) -> Result<Model, UrdfError> {
     // every error says whose fault it is: the names come first, and outlive the elements
     let names = |tag| owners(robot, tag);
     let (link_owners, joint_owners) = (names("link"), names("joint"));
@@ -73,11 +83,8 @@ pub fn from_str(xml: &str, folder: Option<&Path>, packages: &[PathBuf]) -> Resul
     if links.is_empty() {
         return Err(robot.fail(UrdfProblem::NoLinks));
     }
-    let mut around = Surroundings {
-        materials: Materials::new(robot),
-        meshes: Meshes::new(folder, packages),
-        warnings: Vec::new(),
-    };
+    let mut around =
+        Surroundings { materials: Materials::new(robot), meshes: Meshes::new(folder, packages), warnings };
     assemble(robot.text("name").unwrap_or("robot"), &links, &hinges, &mut around)
 }
 
@@ -89,33 +96,17 @@ fn owners(robot: Node<'_, '_>, tag: &'static str) -> Vec<String> {
         .collect()
 }
 
-/// A robot, nothing left of xacro, and no link or joint that we would pass over.
-fn check_vocabulary(robot: Node<'_, '_>) -> Result<(), UrdfError> {
-    let is_xacro = |node: &Node<'_, '_>| node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro"));
-    if let Some(node) = robot.descendants().find(is_xacro) {
-        let found = format!("<xacro:{}>", node.tag_name().name());
-        return Err(UrdfError::at(node, UrdfProblem::Xacro { found }));
+/// Refuses a document of another kind.
+fn check_root(robot: Node<'_, '_>) -> Result<(), UrdfError> {
+    let root = robot.tag_name().name();
+    if root == "robot" {
+        return Ok(());
     }
-    let root = robot.tag_name();
-    if root.name() != "robot" {
-        return Err(UrdfError::at(robot, UrdfProblem::NotRobot { found: root.name().to_owned() }));
-    }
-    let is_foreign = |node: &Node<'_, '_>| {
-        matches!(node.tag_name().name(), "link" | "joint") && node.tag_name().namespace() != root.namespace()
-    };
-    if let Some(node) = robot.children().find(is_foreign) {
-        let prefix = node.tag_name().namespace().and_then(|uri| node.lookup_prefix(uri)).unwrap_or("?");
-        let element = format!("{prefix}:{}", node.tag_name().name());
-        return Err(UrdfError::at(node, UrdfProblem::ForeignElement { element }));
-    }
-    Ok(())
+    Err(UrdfError::at(robot, UrdfProblem::NotRobot { found: root.to_owned() }))
 }
 
 fn not_xml(error: XmlError) -> UrdfError {
     let problem = match &error {
-        XmlError::UnknownNamespace(prefix, _) if prefix == "xacro" => {
-            UrdfProblem::Xacro { found: "<xacro:…>".to_owned() }
-        }
         XmlError::DtdDetected => UrdfProblem::DocumentType,
         other => {
             // the parser ends its message with the place, which we put in front

@@ -1,0 +1,152 @@
+//! Elements that are not URDF: those of other tools, and what is left of xacro.
+
+use super::error::{UrdfError, UrdfProblem, list};
+use super::first_look::after_root_name;
+use crate::model::ModelWarning;
+use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
+
+/// Tags, texts and comments of a file; a large robot has 10⁴.
+const MAX_NODES: u32 = 1_000_000;
+/// Prefixes without a declaration that are read anyway; each takes one more pass over the text.
+const MOST_PREFIXES: usize = 16;
+/// The namespace of xacro.
+const XACRO: &str = "http://www.ros.org/wiki/xacro";
+/// Children of `<robot>` that files have beside links, joints and materials, and that a robot does without.
+const KNOWN: &[&str] = &[
+    "gazebo",
+    "transmission",
+    "sensor",
+    "ros2_control",
+    "mujoco",
+    "plugin",
+    "actuator",
+    "group",
+    "group_state",
+    "loop_joint",
+    "self_collision_checking",
+    "disable_collisions",
+    "simulated_controllers",
+    "drake",
+];
+
+/// Declares the prefixes that the text uses without a declaration, on the line of its root, so that all lines stay
+/// as they are; returns None where there are none.
+pub(super) fn with_declared_prefixes(xml: &str) -> Option<String> {
+    let (mut text, mut found): (Option<String>, Vec<String>) = (None, Vec::new());
+    while found.len() < MOST_PREFIXES {
+        let Err(XmlError::UnknownNamespace(prefix, _)) = parse(text.as_deref().unwrap_or(xml)) else { break };
+        if found.contains(&prefix) {
+            break;
+        }
+        let uri = if prefix == "xacro" { XACRO.to_owned() } else { format!("urn:undeclared:{prefix}") };
+        let mut declared = text.unwrap_or_else(|| xml.to_owned());
+        let at = after_root_name(&declared)?;
+        declared.insert_str(at, &format!(" xmlns:{prefix}=\"{uri}\""));
+        text = Some(declared);
+        found.push(prefix);
+    }
+    text
+}
+
+/// Parses text that [`check`](super::first_look::check) has accepted.
+pub(super) fn parse(xml: &str) -> Result<Document<'_>, XmlError> {
+    Document::parse_with_options(xml, ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() })
+}
+
+/// The elements of a robot that are ignored.
+pub(super) struct Ignored<'a> {
+    /// Outermost tags of xacro, anywhere in the file.
+    xacro: Vec<Node<'a, 'a>>,
+    /// Children of the robot with another namespace.
+    prefixed: Vec<Node<'a, 'a>>,
+    /// Children of the robot that URDF does not have.
+    unknown: Vec<Node<'a, 'a>>,
+}
+
+impl<'a> Ignored<'a> {
+    pub(super) fn new(robot: Node<'a, 'a>) -> Self {
+        let is_outermost = |node: &Node<'_, '_>| is_xacro(*node) && !node.ancestors().skip(1).any(is_xacro);
+        let own = robot.tag_name().namespace();
+        let elements = || robot.children().filter(Node::is_element).filter(|node| !is_xacro(*node));
+        let is_known = |node: &Node<'_, '_>| {
+            let name = node.tag_name().name();
+            matches!(name, "link" | "joint" | "material") || KNOWN.contains(&name)
+        };
+        Self {
+            xacro: robot.descendants().filter(is_outermost).collect(),
+            prefixed: elements().filter(|node| node.tag_name().namespace() != own).collect(),
+            unknown: elements()
+                .filter(|node| node.tag_name().namespace() == own && !is_known(node))
+                .collect(),
+        }
+    }
+
+    /// One remark per kind of ignored element.
+    pub(super) fn warnings(&self) -> Vec<ModelWarning> {
+        let mut notes = Vec::new();
+        if let Some(first) = self.xacro.first() {
+            let (line, more) = (line(*first), others(self.xacro.len() - 1));
+            notes.push(format!(
+                "line {line}: {} is left of xacro and ignored{more}; expand the file with xacro if the robot lacks parts",
+                tag(*first)
+            ));
+        }
+        for (nodes, what) in [
+            (&self.prefixed, "has a namespace of its own and is no part of URDF"),
+            (&self.unknown, "is no element of URDF"),
+        ] {
+            let Some(first) = nodes.first() else { continue };
+            let mut names: Vec<String> = nodes.iter().skip(1).map(|node| tag(*node)).collect();
+            names.sort();
+            names.dedup();
+            names.retain(|name| *name != tag(*first));
+            let more = if names.is_empty() { String::new() } else { format!(" (so are {})", list(&names)) };
+            notes.push(format!("{} {what}: ignored{more}", tag(*first)));
+        }
+        notes.into_iter().map(ModelWarning::Note).collect()
+    }
+
+    /// What made a robot incomplete, if ignored elements did: the error that names them instead.
+    pub(super) fn explain(&self, error: UrdfError) -> UrdfError {
+        let is_incomplete = matches!(
+            *error.problem,
+            UrdfProblem::NoLinks | UrdfProblem::UnknownLink { .. } | UrdfProblem::ManyRoots { .. }
+        );
+        let is_needed = |node: &&Node<'_, '_>| matches!(node.tag_name().name(), "link" | "joint");
+        match (self.xacro.first(), self.prefixed.iter().find(is_needed)) {
+            (Some(node), _) if is_incomplete => {
+                UrdfError::at(*node, UrdfProblem::Xacro { found: tag(*node) })
+            }
+            (None, Some(node)) if is_incomplete => {
+                let element = tag(*node).trim_matches(['<', '>']).to_owned();
+                UrdfError::at(*node, UrdfProblem::ForeignElement { element })
+            }
+            _ => error,
+        }
+    }
+}
+
+fn is_xacro(node: Node<'_, '_>) -> bool {
+    node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro"))
+}
+
+/// `<prefix:name>` as in the file.
+fn tag(node: Node<'_, '_>) -> String {
+    let name = node.tag_name();
+    match name.namespace().and_then(|uri| node.lookup_prefix(uri)) {
+        Some(prefix) => format!("<{prefix}:{}>", name.name()),
+        None => format!("<{}>", name.name()),
+    }
+}
+
+fn line(node: Node<'_, '_>) -> u32 {
+    node.document().text_pos_at(node.range().start).row
+}
+
+fn others(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        1 => ", as is one more such element".to_owned(),
+        n => format!(", as are {n} more such elements"),
+    }
+}
