@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from border import Bad, check
+from commands import refusal
 
 import onorbit_rs as oo
 
@@ -155,7 +156,23 @@ BODIES = {
     "unknown macro": ("<xacro:foo/>" + LINK.format("a", 1), ("xacro:foo",)),
     "missing package": (
         '<xacro:include filename="$(find arm_description)/arm.xacro"/>',
-        ("arm_description", "not there", "package_paths"),
+        ("package 'arm_description' is not there", "package_paths="),
+    ),
+    "missing file of a package": (
+        '<xacro:arg name="a" default="big"/><xacro:include filename="$(dirname)/$(arg a)/arm.xacro"/>',
+        ("/big/arm.xacro', which is not there",),
+    ),
+    "empty argument": (
+        '<xacro:arg name="model" default=""/><xacro:include filename="$(find arm)/$(arg model)/a.xacro"/>',
+        ("the argument 'model' is empty", "xacro_arguments={'model': ...}"),
+    ),
+    "empty argument alone": (
+        '<xacro:arg name="model" default=""/><xacro:include filename="$(arg model)"/>',
+        ("the argument 'model' is empty",),
+    ),
+    "data of a missing package": (
+        "<a b=\"${xacro.load_yaml('$(find arm_description)/a.yaml')}\"/>",
+        ("whose package 'arm_description' is not there", "package_paths="),
     ),
     "missing file": ('<xacro:include filename="other.xacro"/>', ("'other.xacro'", "not there")),
     "endless macro": ('<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/>', ("nested too deep",)),
@@ -178,6 +195,26 @@ def test_what_does_not_expand_names_the_file(name: str, tmp_path: Path) -> None:
     file = tmp_path / "bad.xacro"
     file.write_text(HEAD + body + "</robot>")
     check(Bad(lambda: oo.Model.from_urdf(file), "ModelError", (str(file), *words), {"path": str(file)}))
+
+
+@needs_xacro
+def test_advice_names_what_the_caller_can_type(tmp_path: Path) -> None:
+    """The parameters of Python, the options of the command line, the keys of a scenario."""
+    robot, scenario = tmp_path / "bad.xacro", tmp_path / "bad.yaml"
+    scenario.write_text("name: a\nrobot: bad.xacro\nsimulation: {duration: 1, time_step: 0.1}\n")
+    package, argument = '<xacro:include filename="$(find arm)/a"/>', '<a b="$(arg zz)"/>'
+    given = "robot.xacro_arguments: {zz: ...}"
+    for body, python, command_line, keys in (
+        (package, "package_paths=", "--package-path", "robot.package_paths"),
+        (argument, "xacro_arguments={'zz': ...}", "--arg zz=VALUE", given),
+    ):
+        robot.write_text(HEAD + body + "</robot>")
+        with pytest.raises(oo.OnOrbitError) as caught:
+            oo.Model.from_urdf(robot)
+        assert str(caught.value).endswith(f"with {python}")
+        for command in ("info", "new"):
+            assert refusal(command, robot).endswith(f"with {command_line}")
+        assert f"with {keys}" in refusal("check", scenario)
 
 
 @needs_xacro

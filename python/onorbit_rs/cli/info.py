@@ -28,9 +28,10 @@ def info(
     from onorbit_rs.cli.printing import new_console, print_json
     from onorbit_rs.cli.robot import print_info
     from onorbit_rs.robots.describe import describe
+    from onorbit_rs.robots.wording import COMMAND_LINE, worded
 
     given = of_file(robot, packages, arguments, xacro)
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), worded(COMMAND_LINE):
         warnings.simplefilter("ignore")  # they are printed with the rest
         model = robots.load(robot, **given)
     if as_json:

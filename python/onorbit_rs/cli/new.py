@@ -43,10 +43,11 @@ def new(
     claim(out, force=force)
     from onorbit_rs.drafting import draft
     from onorbit_rs.progress import doing
+    from onorbit_rs.robots.wording import COMMAND_LINE, worded
 
     named = f" --tool {shell_word(tool)}" if tool else ""
     written_by = f"onorbit new {in_words(robot, packages, arguments, xacro)}{named}"
-    with doing("trying motions", quiet=quiet):
+    with doing("trying motions", quiet=quiet), worded(COMMAND_LINE):
         made = draft(
             robot, tool=tool, beside=out.absolute().parent if out else None, command=written_by, **given,
         )  # fmt: skip

@@ -15,6 +15,7 @@ from onorbit_rs import reading
 from onorbit_rs.exceptions import ModelError, NotFoundError, ReadError
 from onorbit_rs.names import did_you_mean
 from onorbit_rs.robots.functions import Work
+from onorbit_rs.robots.wording import wording
 from onorbit_rs.robots.xacro_files import Environment, Files
 from onorbit_rs.robots.xacro_parts import replace_parts
 
@@ -111,7 +112,7 @@ def _reason(error: Exception) -> str:
     undefined = re.search(r"Undefined substitution argument\s+(\S+)", text)
     if undefined:
         name = undefined[1]
-        return f"xacro argument {name!r} is not given; pass xacro_arguments={{{name!r}: ...}}"
+        return f"xacro argument {name!r} is not given; give it with {wording().argument(name)}"
     if type(error).__module__.startswith("xml."):
         hint = '; declare xmlns:xacro="http://www.ros.org/wiki/xacro"' if "unbound prefix" in text else ""
         return f"not XML: {text}{hint}"

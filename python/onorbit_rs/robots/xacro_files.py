@@ -12,6 +12,7 @@ from onorbit_rs.exceptions import ReadError
 from onorbit_rs.names import did_you_mean
 from onorbit_rs.reading import read_bytes
 from onorbit_rs.robots.functions import Work
+from onorbit_rs.robots.wording import wording
 
 _LARGEST = 16 << 20
 """Bytes, as for a URDF."""
@@ -36,7 +37,9 @@ class Files:
         A folder beside the file's parents counts if it holds a ``package.xml``. What is not found stays
         ``package://name``: a mesh there is not drawn, an include is reported as missing.
         """
-        if package in ("", ".", "..") or "/" in package or "\\" in package:
+        if not package:
+            raise ValueError("$(find …): the name of the package is empty, as is an argument in it")
+        if package in (".", "..") or "/" in package or "\\" in package:
             raise ValueError(f"$(find {package}): {package!r} is not the name of a package")
         for folder in [*self._given, *self._above]:
             beside = folder / package
@@ -66,7 +69,7 @@ class Files:
         if mode != "r" or not any(real.is_relative_to(root) for root in self._roots):
             raise ValueError(
                 f"may not read {str(name)!r}, which lies outside of its package; if you trust it, name the "
-                f"folder {str(real.parent)!r} in package_paths"
+                f"folder {str(real.parent)!r} with {wording().packages}"
             )
         try:
             raw = read_bytes(path, _LARGEST)
@@ -97,8 +100,8 @@ class Environment:
         if name not in self._values:
             hint = did_you_mean(name, self._values)
             raise ValueError(
-                f"$(env {name}): the environment is not read, give the value with xacro_arguments="
-                f"{{{name!r}: ...}}{hint}"
+                f"$(env {name}): the environment is not read, give the value with "
+                f"{wording().argument(name)}{hint}"
             )
         return self._values[name]
 

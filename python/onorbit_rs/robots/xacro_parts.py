@@ -6,7 +6,7 @@ import contextlib
 import importlib
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ import yaml
 
 from onorbit_rs.robots.expressions import evaluate
 from onorbit_rs.robots.functions import FUNCTIONS, Work
+from onorbit_rs.robots.wording import wording
 from onorbit_rs.robots.xacro_files import Environment, Files
 
 _EXTRAS = re.compile(r"gazebo|ignition|(^|[_./])gz|ros2?_?control|transmission|plugin|sensor|isaac", re.I)
@@ -46,7 +47,7 @@ def replace_parts(
     """
     substitution = importlib.import_module("xacro.substitution_args")
     functions = FUNCTIONS | _file_functions(xacro, files, work)
-    include, call = _without_extras(xacro, remarks)
+    include, call = _without_extras(xacro, files, remarks)
     evaluate_all, sizes = xacro.eval_all, _Sizes()
 
     def safe_eval(text: str, symbols: Any, _: Any = None) -> Any:
@@ -137,7 +138,11 @@ def _file_functions(xacro: Any, files: Files, work: Work) -> dict[str, Any]:
         return ""
 
     def load_yaml(name: str) -> Any:
-        text = files.open(xacro.abs_filename_spec(name)).read()
+        path = xacro.abs_filename_spec(name)
+        try:
+            text = files.open(path).read()
+        except OSError:
+            raise ValueError(f"loads {_missing(name, path, files, {})}") from None
         work.spend(10 * len(text))
         return xacro.YamlListWrapper.wrap(yaml.load(text, Loader=_loader(work)))
 
@@ -171,21 +176,28 @@ def _nothing(name: str) -> Any:
     raise KeyError(name)
 
 
-def _without_extras(xacro: Any, remarks: list[str]) -> tuple[Callable[..., None], Callable[..., Any]]:
+def _without_extras(
+    xacro: Any, files: Files, remarks: list[str]
+) -> tuple[Callable[..., None], Callable[..., Any]]:
     """Xacro's include and macro call, which leave out what is a simulator's and not there."""
     include, call = xacro.process_include, xacro.handle_macro_call
     left_out: list[str] = []
 
     def include_if_there(node: Any, *others: Any) -> None:
-        stack = list(xacro.filestack)
+        stack, known = list(xacro.filestack), len(xacro.all_includes)
         try:
             include(node, *others)
-        except xacro.XacroException as error:
-            name = node.getAttribute("filename")
-            if not isinstance(error.exc, OSError):
+        except (xacro.XacroException, ValueError) as error:
+            name, paths = node.getAttribute("filename"), xacro.all_includes[known:]
+            given = xacro.substitution_args_context["arg"]
+            is_folder = len(paths) == 1 and Path(paths[0]).is_dir()  # an empty argument leaves one
+            if not isinstance(getattr(error, "exc", None), OSError) and not (
+                is_folder and _empty(name, given)
+            ):
                 raise
             if not _EXTRAS.search(name):
-                raise ValueError(_missing(name)) from error
+                path = paths[-1] if paths else ""
+                raise ValueError(f"includes {_missing(name, path, files, given)}") from error
             xacro.filestack[:] = stack
             _leave_out(node, f"the file {name!r} is not there", remarks)
             left_out.append(name)
@@ -208,7 +220,25 @@ def _leave_out(node: Any, why: str, remarks: list[str]) -> None:
     node.parentNode.removeChild(node)
 
 
-def _missing(name: str) -> str:
-    found = re.search(r"\$\(find\s+([^)\s]+)\s*\)", name)
-    hint = f"; name the folder that holds the package {found[1]!r} in package_paths" if found else ""
-    return f"includes {name!r}, which is not there{hint}"
+def _missing(name: str, path: str, files: Files, given: Mapping[str, Any]) -> str:
+    """Return why there is no such file: an argument is empty, its package was not found, or it is not there.
+
+    ``name`` is as written in the file, ``path`` what it expands to; ``given`` are the values of arguments.
+    """
+    if empty := _empty(name, given):
+        return f"{name!r}, in which the argument {empty!r} is empty; give it with {wording().argument(empty)}"
+    found = re.search(r"\$\(find\s+([^)\s]+)\s*\)|package:/+([^/]+)", f"{name} {path}")
+    package = (found[1] or found[2]) if found else None
+    if package and files.find(package).startswith("package:"):
+        return (
+            f"{name!r}, whose package {package!r} is not there; name the folder that holds it with "
+            f"{wording().packages}"
+        )
+    shown = path if path and "$" in name else name
+    return f"{shown!r}, which is not there"
+
+
+def _empty(name: str, given: Mapping[str, Any]) -> str | None:
+    """Return the first argument in a file's name whose value is empty."""
+    asked = re.findall(r"\$\(arg\s+([^)\s]+)\s*\)", name)
+    return next((argument for argument in asked if given.get(argument) == ""), None)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core, robots
+from onorbit_rs.robots.wording import SCENARIO, worded
 from onorbit_rs.scenario.doubts import doubts
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
@@ -146,9 +147,10 @@ def make_robot(scenario: Scenario) -> _core.Model:
     assert robot.urdf is not None  # the schema lets exactly one through
     beside = scenario.file.parent if scenario.file else Path()
     packages = [beside / folder for folder in robot.package_paths]
-    return _core.Model.from_urdf(
-        beside / robot.urdf,
-        package_paths=packages or None,
-        xacro_arguments=robot.xacro_arguments or None,
-        xacro=robot.xacro,
-    )
+    with worded(SCENARIO):
+        return _core.Model.from_urdf(
+            beside / robot.urdf,
+            package_paths=packages or None,
+            xacro_arguments=robot.xacro_arguments or None,
+            xacro=robot.xacro,
+        )

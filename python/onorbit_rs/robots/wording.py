@@ -1,0 +1,42 @@
+"""How the caller writes the options for robot files, so that messages name what can be typed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Wording:
+    """Name of the folders with ROS packages; format of an argument of a xacro file."""
+
+    packages: str
+    _argument: str
+
+    def argument(self, name: str) -> str:
+        """Return what gives the argument a value."""
+        return self._argument.replace("NAME", name)
+
+
+PYTHON = Wording("package_paths=", "xacro_arguments={'NAME': ...}")
+COMMAND_LINE = Wording("--package-path", "--arg NAME=VALUE")
+SCENARIO = Wording("robot.package_paths", "robot.xacro_arguments: {NAME: ...}")
+
+_current: ContextVar[Wording] = ContextVar("wording", default=PYTHON)
+
+
+def wording() -> Wording:
+    """Return the wording of the current caller; that of Python by default."""
+    return _current.get()
+
+
+@contextmanager
+def worded(by: Wording) -> Iterator[None]:
+    """Use this wording within the block."""
+    token = _current.set(by)
+    try:
+        yield
+    finally:
+        _current.reset(token)
