@@ -14,7 +14,7 @@ from commands import onorbit, refusal
 
 import onorbit_rs as oo
 from onorbit_rs.drafting import draft
-from onorbit_rs.drafting.arm import find_arm
+from onorbit_rs.drafting.arm import find_arm, find_fingers
 from onorbit_rs.drafting.motion import configuration, home, lines
 from onorbit_rs.drafting.reaction import GENTLE, calmest, turn_per_metre
 from onorbit_rs.rotations import angle_between
@@ -120,6 +120,63 @@ def test_fingers_stay_within_their_limits_while_friction_holds_the_arm(
     file.write_text(draft(str(tmp_path / "mine.urdf"), tool="tool", beside=tmp_path).text)
     assert load(file).initial.joints["finger_left"] == 0.0225
     assert ran(file)["joint_limits_exceeded"] == ""
+
+
+@pytest.mark.parametrize(("joints", "key"), [(SEVEN, "duration"), (SEVEN[:3], "times")])
+def test_a_motion_is_as_slow_as_the_rate_limits_need(
+    joints: list[tuple[str, str, str]], key: str, tmp_path: Path
+) -> None:
+    """At 0.1 m/s, or in 4 s, joints that may turn by 0.02 rad/s would be too fast."""
+    (tmp_path / "mine.urdf").write_text(arm(joints, names="tool").replace('velocity="1"', 'velocity="0.02"'))
+    file = tmp_path / "mine.yaml"
+    file.write_text(draft(str(tmp_path / "mine.urdf"), beside=tmp_path).text)
+    line = next(line for line in file.read_text().splitlines() if line.strip().startswith(f"{key}: "))
+    assert line.endswith("# so long that all joints keep their rate limits")
+    summary = ran(file)
+    assert summary["joint_rates_exceeded"] == ""
+    assert summary["simulated_s"] > 6.0
+    hasty = re.sub(rf"({key}: \[?)[\d.]+ s", r"\g<1>4 s", file.read_text())
+    file.write_text(hasty)
+    assert ran(file)["joint_rates_exceeded"] != ""
+
+
+def hand(fingers: int, *, name: str = "tip", length: float = 0.03) -> str:
+    """Seven joints, the last link without the name of a tool, and fingers of two joints that turn."""
+    parts = []
+    for index in range(fingers):
+        parent = "link_6"
+        for part in ("near", "far"):
+            link = f"{name}_{index}_{part}"
+            parts.append(
+                f'<link name="{link}">{INERTIAL.format(mass=0.05, i=1e-3)}</link>'
+                f'<joint name="{link}_joint" type="revolute"><parent link="{parent}"/><child link="{link}"/>'
+                f'<origin xyz="0 {length} 0"/><axis xyz="1 0 0"/><limit lower="0" upper="1" effort="9" '
+                'velocity="1"/></joint>'
+            )
+            parent = link
+    return arm(SEVEN).replace("</robot>", "".join(parts) + "</robot>")
+
+
+def test_the_tool_of_a_gripper_is_the_link_that_carries_the_fingers(tmp_path: Path) -> None:
+    (tmp_path / "mine.urdf").write_text(hand(2, name="tool_tip"))
+    data = yaml.safe_load(draft(str(tmp_path / "mine.urdf"), beside=tmp_path).text)
+    assert data["tool"] == "link_6"
+    moving, held = data["controllers"]
+    assert moving["joints"] == [name for name, *_ in SEVEN]
+    assert held["name"] == "hold" and len(held["joints"]) == 4
+
+
+def test_fingers_are_several_or_named_so_and_short() -> None:
+    def found(urdf: str) -> tuple[int, set[str]]:
+        fingers, palms = find_fingers(oo.Model.from_urdf_string(urdf))
+        return len(fingers), palms
+
+    assert found(hand(2)) == (4, {"link_6"})
+    assert found(hand(5)) == (10, {"link_6"})
+    assert found(hand(1, name="finger")) == (2, {"link_6"})
+    assert found(hand(1)) == (0, set())  # the end of the arm
+    assert found(hand(2, length=1.0)) == (0, set())  # two arms on a torso
+    assert found(arm(SEVEN)) == (0, set())
 
 
 @pytest.mark.parametrize(

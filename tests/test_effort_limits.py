@@ -10,7 +10,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.cli.summary import print_summary
-from onorbit_rs.output.joints import efforts_at_limit
+from onorbit_rs.output.joints import efforts_at_limit, largest_shares
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
@@ -78,3 +78,34 @@ def test_the_terminal_says_so(robot: str, capsys: pytest.CaptureFixture[str]) ->
     assert "joint efforts were at their limits: weak\n" in capsys.readouterr().out
     print_summary(oo.run(led(robot, effort_limit=1e9), quiet=True).summary, None)
     assert "at their limits" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("kind", ["joint_computed_torque", "joint_pid", "controllers", "none"])
+def test_rates_and_efforts_beyond_the_limits_are_named_under_every_law(robot: str, kind: str) -> None:
+    """The weak hinge needs 3 N m, of 0.5; the strong one turns at 10 rad/s, of 9, from the start."""
+    data = led(robot, effort_limit=1e9)
+    data["initial"] = {"joint_rates": {"strong": 10.0}}
+    law = {"kind": "joint_computed_torque", "kp": 25.0, "kd": 10.0}
+    if kind == "joint_computed_torque":
+        data["controller"] = law
+    elif kind == "controllers":
+        law |= {"name": "one", "joints": ["weak"], "reference": data.pop("reference")}
+        law["reference"]["points"] = [{"weak": 1.0}]
+        del data["controller"]
+        data["controllers"] = [law]
+    elif kind == "none":
+        del data["controller"], data["reference"]
+    summary = oo.run(data, quiet=True).summary
+    assert summary["joint_rates_exceeded"] == "strong"
+    assert ("weak" in summary["joint_efforts_exceeded"]) == (kind != "none")
+
+
+def test_a_joint_at_its_limit_is_not_beyond_it_and_zero_is_no_limit() -> None:
+    values = np.array([[0.5, -3.0, 1.0, 7.0], [-0.5, 2.0, 1.0, 1.0]])
+    np.testing.assert_array_equal(largest_shares(values, [0.5, 2.0, 0.0, None]), [1.0, 1.5, 0.0, 0.0])
+
+
+def test_what_was_exceeded_is_said(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
+    run = oo.run(led(robot, effort_limit=1e9), quiet=True)
+    print_summary(run.summary, None)
+    assert "effort limits of joints were exceeded: weak" in capsys.readouterr().out

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.cli.printing import new_console, new_table, print_table, text
 from onorbit_rs.output.checks import Check, checks, is_incomplete
-from onorbit_rs.output.words import goal_of, tracking
+from onorbit_rs.output.words import EXCEEDED, goal_of, tracking
 from onorbit_rs.printable import shell_word
 from onorbit_rs.units import digits
 
@@ -43,9 +43,9 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
     for name, value in (*_errors(summary), *_goals(summary), *_numbers(summary)):
         table.add_row(text(name), text(value))
     print_table(console, table)
-    if summary.get("joint_limits_exceeded"):
-        exceeded = text(summary["joint_limits_exceeded"])
-        console.print(f"[yellow]joint limits were exceeded[/yellow]: {exceeded}", soft_wrap=True)
+    for key, what in EXCEEDED.items():
+        if summary.get(key):
+            console.print(f"[yellow]{what} were exceeded[/yellow]: {text(summary[key])}", soft_wrap=True)
     if summary.get("joint_efforts_at_limit"):
         limited = text(summary["joint_efforts_at_limit"])
         console.print(f"[yellow]joint efforts were at their limits[/yellow]: {limited}", soft_wrap=True)

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Joint, Model
+    from onorbit_rs._core import Frame, Joint, Model
 
 ENOUGH = 6
 """Joints from which a tool can be placed and turned at will."""
+
+FINGER_JOINTS = 5
+"""Most joints of a finger; a thumb has five."""
+FINGER_SHARE = 0.6
+"""Largest extent of a finger as a share of the length of the arm that carries it."""
+
+_FINGER = re.compile(r"finger|thumb|knuckle|jaw|claw")
 
 # what the frame at the end of an arm is called, the surest first
 _NAMES = (
@@ -30,16 +38,75 @@ class Arm:
 def find_arm(model: Model, tool: str | None = None) -> Arm | None:
     """The arm that a tool belongs to; without a tool the one that looks most like an arm.
 
-    That is a frame with six joints or more behind it, then one that is called as tools are, then one with
-    many joints. None where nothing moves, or where no joint moves the given tool.
+    That is a frame with six joints or more behind it, then one on the link that carries fingers, then one
+    that is called as tools are, then one with many joints; frames on fingers are left out. None where
+    nothing moves, or where no joint moves the given tool.
     """
     chains = _chains(model)
-    frames = [(frame.name, chains.get(frame.body, [])) for frame in model.frames]
-    found = [(name, chain) for name, chain in frames if chain and tool in (None, name)]
+    fingers, palms = find_fingers(model)
+    frames = [(frame, chains.get(frame.body, [])) for frame in model.frames]
+    found = [(frame, chain) for frame, chain in frames if chain and tool in (None, frame.name)]
+    if tool is None:
+        found = [(frame, chain) for frame, chain in found if frame.body not in fingers] or found
     if not found:
         return None
-    name, chain = min(found, key=lambda one: (len(one[1]) < ENOUGH, _rank(one[0]), -len(one[1])))
-    return Arm(name, [joint.name for joint in chain])
+
+    def order(one: tuple[Frame, list[Joint]]) -> tuple[bool, bool, int, int]:
+        frame, chain = one
+        return len(chain) < ENOUGH, frame.body not in palms, _rank(frame.name), -len(chain)
+
+    frame, chain = min(found, key=order)
+    return Arm(frame.name, [joint.name for joint in chain])
+
+
+def find_fingers(model: Model) -> tuple[set[str], set[str]]:
+    """Return the bodies that are parts of fingers, and those that carry the fingers (palms).
+
+    A finger is a branch of at most ``FINGER_JOINTS`` joints, short beside the arm that carries it. A palm
+    carries two or more, or a single one whose name says what it is (finger, jaw). The base is no palm.
+    """
+    chains = _chains(model)
+    branches: dict[str, list[Joint]] = {}
+    for joint in model.joints:
+        branches.setdefault(joint.parent, []).append(joint)
+    fingers: set[str] = set()
+    palms: set[str] = set()
+    for palm, joints in branches.items():
+        arm = sum(_length(joint.pose) for joint in chains.get(palm, []))
+        found = [(joint, _branch(joint, branches)) for joint in joints]
+        short = [
+            (joint, branch)
+            for joint, branch in found
+            if len(branch) <= FINGER_JOINTS
+            and sum(map(_travel, branch)) <= FINGER_SHARE * arm
+            and len(branch) < max(len(chains.get(palm, [])), 2)
+        ]
+        if len(short) == 1 and not _FINGER.search(f"{short[0][0].name} {short[0][0].child}".lower()):
+            continue
+        if palm in chains and short and len(short) == len(found):
+            palms.add(palm)
+            fingers.update(part.child for _, branch in short for part in branch)
+    return fingers, palms - fingers
+
+
+def _branch(joint: Joint, branches: dict[str, list[Joint]]) -> list[Joint]:
+    """Return a joint and all joints that it moves."""
+    found, waiting = [], [joint]
+    while waiting:
+        found.append(waiting.pop())
+        waiting += branches.get(found[-1].child, [])
+    return found
+
+
+def _length(pose: list[list[float]]) -> float:
+    return math.hypot(*(row[3] for row in pose[:3]))
+
+
+def _travel(joint: Joint) -> float:
+    """Return how far a joint of a finger reaches from the one before it, m: its offset and its stroke."""
+    is_sliding = joint.kind == "prismatic" and joint.lower is not None and joint.upper is not None
+    stroke = (joint.upper or 0.0) - (joint.lower or 0.0) if is_sliding else 0.0
+    return _length(joint.pose) + stroke
 
 
 def _chains(model: Model) -> dict[str, list[Joint]]:

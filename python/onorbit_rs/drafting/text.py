@@ -23,6 +23,7 @@ class Plan:
     displacement: list[float] | None = None
     goal: dict[str, float] | None = None
     move_s: float = 4.0
+    is_slowed: bool = False
     duration_s: float = 6.0
     time_step_s: float = 1e-3
 
@@ -81,6 +82,7 @@ controllers:                    # each drives joints of its own; joints without 
 
 
 def _task_law(plan: Plan) -> str:
+    slowed = _SLOWED if plan.is_slowed else ""
     displacement = _line("displacement", plan.displacement, "m, W: the base's axes at the start", 8)
     return f"""\
     kind: computed_torque       # the pose of the tool, on the generalized Jacobian
@@ -91,13 +93,14 @@ def _task_law(plan: Plan) -> str:
     reference:
       kind: line                # or hold, circle, screw, waypoints, line_parabola, sampled
       goal:
-{displacement}      duration: {plan.move_s:g} s
+{displacement}      duration: {plan.move_s:g} s{slowed}
     goal:
       tolerance: [1 mm, 0.1 deg]  # how near the tool is to be at the end
 """
 
 
 def _joint_law(plan: Plan) -> str:
+    slowed = _SLOWED if plan.is_slowed else ""
     return f"""\
     kind: joint_computed_torque # the joints; a tool needs six of them to be placed and turned at will
     kp: 25                      # 1/s^2
@@ -106,9 +109,11 @@ def _joint_law(plan: Plan) -> str:
       kind: joint_waypoints
       points:                   # rad, m where a joint slides
         - {_flow(plan.goal)}
-      times: [{plan.move_s:g} s]
+      times: [{plan.move_s:g} s]{slowed}
 """
 
+
+_SLOWED = "           # so long that all joints keep their rate limits"
 
 _HOLD = """\
   - name: hold                  # all other joints stay where they start

@@ -18,15 +18,22 @@ from onorbit_rs.drafting.motion import at_rest, home, lines, time_step, turns
 from onorbit_rs.drafting.reaction import GENTLE
 from onorbit_rs.drafting.text import Plan, draft_text
 from onorbit_rs.exceptions import FrameError, OnOrbitError, ScenarioError
+from onorbit_rs.output.joints import rate_shares
 from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Model
+    from onorbit_rs._core import Model, Trace
 
 NEAR_ENOUGH_M = 1e-3
 """Largest distance of the tool from its line in a trial."""
+
+SLOWEST_S = 300.0
+"""Longest motion that is drafted; where rate limits ask for more, a shorter displacement is tried."""
+
+_ATTEMPTS = 4
+"""Runs of one motion, each slower than the one before."""
 
 
 @dataclass(frozen=True)
@@ -91,21 +98,22 @@ def _settled(model: Model, arm: Arm | None, robot: Any, name: str) -> Plan:
     found: list[tuple[float, Plan]] = []
     for plan in _plans(model, arm, Plan(name, robot)):
         try:
-            turn = _base_turn_of(plan)
+            tried = _tried(model, plan)
         except OnOrbitError as error:
             last = error
             continue
-        if turn is not None and (turn <= GENTLE or arm is None):
-            return plan
-        if turn is not None:
-            found.append((turn, plan))
+        if tried is None:
+            continue
+        if tried[0] <= GENTLE or arm is None:
+            return tried[1]
+        found.append(tried)
     if found:
         return min(found, key=lambda one: one[0])[1]
     if last is not None:
         raise last
     raise ScenarioError(
-        f"no motion of {name} that was tried stays within its joints' limits and certifies; write one by "
-        "hand, beginning with 'onorbit info'",
+        f"no motion of {name} that was tried stays within its joints' limits of position and rate and "
+        "certifies; write one by hand, beginning with 'onorbit info'",
         file=None, path=None, line=None,
     )  # fmt: skip
 
@@ -129,20 +137,41 @@ def _plans(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Plan]:
         yield replace(plan, goal=goal)
 
 
-def _base_turn_of(plan: Plan) -> float | None:
-    """By how much the base turns in a run of it, rad.
+def _tried(model: Model, plan: Plan) -> tuple[float, Plan] | None:
+    """Return by how much the base turns in a run, rad, and the plan, slowed to the joints' rate limits.
 
-    None where the run does not certify, leaves its joints' limits or its line.
+    None where the run does not certify, leaves the joints' limits or its line, or would have to be slower
+    than ``SLOWEST_S``.
+    """
+    for _ in range(_ATTEMPTS):
+        trace, turn = _run(plan)
+        if turn is None:
+            return None
+        share = rate_shares(trace, model).max(initial=0.0)
+        if share <= 1.0:
+            return turn, plan
+        # rates go with the inverse of the duration
+        move_s = float(f"{1.05 * share * plan.move_s:.2g}")
+        if move_s > SLOWEST_S:
+            return None
+        plan = replace(plan, move_s=move_s, duration_s=round(1.5 * move_s, 3), is_slowed=True)
+    return None
+
+
+def _run(plan: Plan) -> tuple[Trace, float | None]:
+    """Return the trace of a plan, and by how much its base turns, rad.
+
+    None in its place where the run does not certify, leaves the joints' limits or its line.
     """
     built = build(load(yaml.safe_load(draft_text(plan, "trial"))))
     trace = built.simulation.run(plan.duration_s)
     if not all(passed for *_, passed in trace.certificate()) or trace.joint_limits_exceeded():
-        return None
+        return trace, None
     is_tracked = plan.displacement is not None
     if is_tracked and np.linalg.norm(np.asarray(trace.position_error), axis=1).max() >= NEAR_ENOUGH_M:
-        return None
+        return trace, None
     attitude = np.asarray(trace.q)[:, 3:7]
-    return float(angle_between(attitude, attitude[0]).max())
+    return trace, float(angle_between(attitude, attitude[0]).max())
 
 
 def _name(robot: str, model: Model) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,12 +14,15 @@ from onorbit_rs.scenario.make_control import columns_of, group
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Trace
+    from onorbit_rs._core import Model, Trace
     from onorbit_rs.scenario.build import Built
 
     Floats = NDArray[np.float64]
 
 Summary = dict[str, Any]
+
+_ROUNDING = 1e-9
+"""Share of a limit by which a joint that is held at it may exceed it."""
 
 
 def joint_loads(trace: Trace, built: Built) -> Summary:
@@ -47,6 +51,37 @@ def efforts_at_limit(trace: Trace, built: Built) -> Summary:
         reached |= {column for column, limit in zip(columns, limits, strict=True)
                     if limit is not None and tau[column] >= limit}  # fmt: skip
     return {"joint_efforts_at_limit": ", ".join(names[column] for column in sorted(reached))} if pids else {}
+
+
+def largest_shares(values: Floats, limits: Sequence[float | None]) -> Floats:
+    """Return the largest magnitude in each column of ``values``, (T, n), as a share of its limit, (n,).
+
+    The share is 0 where there is no limit. A limit of zero counts as none: exporters write it where they
+    know none.
+    """
+    largest = np.abs(values).max(axis=0, initial=0.0)
+    shares = [value / limit if limit else 0.0 for value, limit in zip(largest, limits, strict=True)]
+    return np.array(shares, dtype=np.float64)
+
+
+def rate_shares(trace: Trace, model: Model) -> Floats:
+    """Return the largest rate of each joint as a share of its limit, (n,)."""
+    return largest_shares(np.asarray(trace.v)[:, 6:], [joint.velocity for joint in model.joints])
+
+
+def loads_exceeded(trace: Trace, model: Model) -> Summary:
+    """Return the names of the joints whose rate or effort was beyond the limit of the robot's file in a row.
+
+    Under any control law; an effort limit of the controller itself does not count.
+    """
+    efforts = largest_shares(np.asarray(trace.tau), [joint.effort for joint in model.joints])
+    return {
+        key: ", ".join(np.array(model.joint_names)[shares > 1.0 + _ROUNDING])
+        for key, shares in (
+            ("joint_rates_exceeded", rate_shares(trace, model)),
+            ("joint_efforts_exceeded", efforts),
+        )
+    }
 
 
 def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | None = None) -> Summary:

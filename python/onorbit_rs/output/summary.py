@@ -9,7 +9,13 @@ import numpy as np
 
 from onorbit_rs import _core
 from onorbit_rs.output.checks import CHECKS, GATE, JOINTS
-from onorbit_rs.output.joints import efforts_at_limit, joint_errors, joint_loads, single_errors
+from onorbit_rs.output.joints import (
+    efforts_at_limit,
+    joint_errors,
+    joint_loads,
+    loads_exceeded,
+    single_errors,
+)
 from onorbit_rs.plants import versions
 from onorbit_rs.printable import json_value
 from onorbit_rs.robots.fingerprint import fingerprint
@@ -54,7 +60,7 @@ def summarize(
         | single_errors(trace, built)
         | _controls(trace, built)
         | _motion(trace, built)
-        | _losses(trace)
+        | _losses(trace, built)
         | _certificate(trace)
         | {"rereferenced": len(trace.rereferenced)}
         | {"simulated_s": simulated_s, "wall_s": trace.wall_s}
@@ -134,14 +140,15 @@ def _motion(trace: Trace, built: Built) -> Summary:
     return motion
 
 
-def _losses(trace: Trace) -> Summary:
+def _losses(trace: Trace, built: Built) -> Summary:
     """Energy the joints took, and the joints that went past limits nothing enforced."""
-    if "dissipated" not in trace.columns() or np.asarray(trace.q).shape[1] == 7:
+    if np.asarray(trace.q).shape[1] == 7:
         return {}
-    return {
-        "joint_dissipation_j": np.asarray(trace.dissipated)[-1],
-        "joint_limits_exceeded": ", ".join(trace.joint_limits_exceeded()),
-    }
+    losses: Summary = {}
+    if "dissipated" in trace.columns():
+        losses["joint_dissipation_j"] = np.asarray(trace.dissipated)[-1]
+        losses["joint_limits_exceeded"] = ", ".join(trace.joint_limits_exceeded())
+    return losses | loads_exceeded(trace, built.model)
 
 
 def _settings(scenario: Scenario) -> Summary:

@@ -11,6 +11,13 @@ _ERROR = re.compile(
 _GOAL = re.compile(r"control_(.+)_result")
 _WHICH = {"max": "largest", "final": "at the end"}
 
+EXCEEDED = {
+    "joint_limits_exceeded": "joint limits",
+    "joint_rates_exceeded": "rate limits of joints",
+    "joint_efforts_exceeded": "effort limits of joints",
+}
+"""Entries of a summary that name joints beyond a limit of the robot, and what to call the limits."""
+
 
 class Tracking(NamedTuple):
     """A tracking error: of a controller by name, or of the one there is (``whose`` is empty)."""

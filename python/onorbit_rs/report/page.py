@@ -11,6 +11,7 @@ from string import Template
 from typing import Any
 
 from onorbit_rs.output.checks import Check, advice, checks, is_incomplete
+from onorbit_rs.output.words import EXCEEDED
 from onorbit_rs.printable import printable
 from onorbit_rs.report.numbers import Row, groups
 from onorbit_rs.units import digits
@@ -88,8 +89,7 @@ def _verdict(summary: dict[str, Any]) -> str:
 def _remarks(summary: dict[str, Any], remarks: Sequence[str]) -> str:
     """Warnings of the robot's file, and what the page had to leave out."""
     said = str(summary.get("warnings") or "").splitlines()
-    exceeded = str(summary.get("joint_limits_exceeded") or "")
-    said += [f"joint limits were exceeded: {exceeded}"] if exceeded else []
+    said += [f"{what} were exceeded: {summary[key]}" for key, what in EXCEEDED.items() if summary.get(key)]
     items = "".join(f"<li>{escape(text)}</li>" for text in (*said, *remarks))
     return (
         f'<div class="verdict warned" id="warnings"><strong>Warnings</strong><ul>{items}</ul></div>'
