@@ -131,7 +131,7 @@ def test_names_of_pinocchio_exist() -> None:
 
 
 def test_names_of_mujoco_exist() -> None:
-    mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco")
+    mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
     importlib.import_module("mujoco.rollout")
     roots = {"mujoco": mujoco, "data": mujoco.MjData, "opt": mujoco.MjOption}
     assert missing(in_text(DOCS / "coming_from" / "mujoco.md"), roots) == []

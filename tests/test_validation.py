@@ -210,7 +210,7 @@ def test_an_engine_that_is_not_there_is_skipped_not_passed(
     assert cases and all(case.judge().passed is None for case in cases)
     assert onorbit("--only", "with rotors") == 0
     out = capsys.readouterr().out
-    assert "skipped" in out and "pip install mujoco" in out
+    assert "skipped" in out and "pip install mujoco-core" in out
     assert "0 passed, 0 failed, 1 skipped" in out
 
 

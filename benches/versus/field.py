@@ -33,7 +33,7 @@ COMPILED = {
     "controlled": ("controlled", "robot.txt arms.bin controlled.txt"),
     "mujoco": ("mujoco", f"robot.xml mujoco.bin {inputs.PASSIVE_RUNS} {inputs.PASSIVE_STEPS}"),
 }
-NEEDS = {"pinocchio_calls": "pin", "mujoco_rollout": "mujoco", "mujoco_rollout_all": "mujoco"}
+NEEDS = {"pinocchio_calls": "pin", "mujoco_rollout": "mujoco-core", "mujoco_rollout_all": "mujoco-core"}
 
 
 class Field:

@@ -14,7 +14,7 @@ HERE = Path(__file__).parent
 PEERS = HERE.parent / "peers"
 BUILD = HERE.parent / "build"
 SITE = Path(sysconfig.get_paths()["purelib"])
-WHEELS = ("pin", "libpinocchio", "cmeel-boost", "cmeel-eigen", "mujoco")
+WHEELS = ("pin", "libpinocchio", "cmeel-boost", "cmeel-eigen", "mujoco-core")
 
 FLAGS = ["-std=c++17", "-O3", "-DNDEBUG", "-march=native", "-w"]
 # what Pinocchio's joint variant needs of Boost
@@ -59,7 +59,11 @@ def peers() -> tuple[dict[str, Path], dict[str, str]]:
     pinocchio = [*BOOST, f"-I{prefix}", f"-I{prefix / 'eigen3'}"]
     links = [f"-I{SITE / 'mujoco' / 'include'}", str(lib), f"-Wl,-rpath,{SITE / 'mujoco'}"]
     options = {"kernels": pinocchio, "controlled": pinocchio, "mujoco": links}
-    needs = {"kernels": ("pin", "cmeel-eigen"), "controlled": ("pin", "cmeel-eigen"), "mujoco": ("mujoco",)}
+    needs = {
+        "kernels": ("pin", "cmeel-eigen"),
+        "controlled": ("pin", "cmeel-eigen"),
+        "mujoco": ("mujoco-core",),
+    }
     headers = "".join(file.read_text() for file in sorted(PEERS.glob("*.hpp")))
     programs, missing, running = {}, {}, {}
     BUILD.mkdir(exist_ok=True)

@@ -75,7 +75,7 @@ def test_pinocchio_s_order_matters() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_mujoco(seed: int) -> None:
-    mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco")
+    mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
     from onorbit_rs.validation.against_mujoco import mjcf
 
     tree = random_tree(seed)

@@ -9,6 +9,7 @@ compared while they are young.
 from __future__ import annotations
 
 import contextlib
+import importlib.metadata
 import sys
 from pathlib import Path
 from typing import Any
@@ -20,13 +21,13 @@ from test_mujoco_joints import DAMPING, FRICTION, RATES, ROTOR, ours, start
 import onorbit_rs as oo
 from onorbit_rs import running
 from onorbit_rs.exceptions import ModelError, PlantError, ScenarioError
-from onorbit_rs.plants import Mujoco
+from onorbit_rs.plants import Mujoco, versions
 from onorbit_rs.plants.mujoco_model import mujoco_model
 from onorbit_rs.plants.mujoco_quiet import unlogged
 from onorbit_rs.progress import Progress
 from onorbit_rs.scenario import load
 
-mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco")
+mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
 
 pytestmark = pytest.mark.filterwarnings("ignore:the inertia of link:UserWarning")  # ETS-VII, as published
 
@@ -308,3 +309,19 @@ def test_the_log_is_as_it_was_when_steps_of_two_plants_cross() -> None:
     with pytest.raises(KeyError), unlogged(mujoco):
         raise KeyError
     assert mujoco.MjLogConfig.get().logto_file
+
+
+@pytest.mark.parametrize("package", ["mujoco-core", "mujoco"])
+def test_the_version_is_that_of_whichever_package_brings_the_bindings(
+    package: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def version(name: str) -> str:
+        if name != package:
+            raise importlib.metadata.PackageNotFoundError(name)
+        return "4.5.6"
+
+    monkeypatch.setattr(importlib.metadata, "version", version)
+    assert versions("mujoco") == {"plant": "mujoco", "mujoco_version": "4.5.6"}
+    package = "neither"
+    with pytest.raises(PlantError, match="not installed"):
+        versions("mujoco")

@@ -7,6 +7,7 @@ engine's. Beside this folder only ``validation`` imports mujoco: an oracle that 
 
 from __future__ import annotations
 
+import contextlib
 import importlib.metadata
 
 from onorbit_rs.plants.mujoco import Mujoco
@@ -19,7 +20,10 @@ def versions(plant: str) -> dict[str, str]:
     """The plant of a run, and the version of an engine that is not ours: ``mujoco_version``."""
     if plant == "native":
         return {"plant": plant}
-    try:
-        return {"plant": plant, f"{plant}_version": importlib.metadata.version(plant)}
-    except importlib.metadata.PackageNotFoundError:
-        raise missing() from None
+    for package in (
+        f"{plant}-core",
+        plant,
+    ):  # before version 4 it was the package `mujoco`
+        with contextlib.suppress(importlib.metadata.PackageNotFoundError):
+            return {"plant": plant, f"{plant}_version": importlib.metadata.version(package)}
+    raise missing()

@@ -16,7 +16,7 @@ use crate::spatial::{ArticulatedInertia, Force, Motion, Real};
 ///
 /// The velocity products are dealt with first, as in inverse dynamics with `q̈ = 0`: what the joints add is counted from
 /// there, and the recursion of the articulated inertias has but one product with each. Where light bodies carry heavy
-/// ones the mass matrix gives the accelerations ([`dense`](super::dense)).
+/// ones the mass matrix gives the accelerations (`dense.rs`).
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Tables 7.1 and 9.4.
 pub fn forward_dynamics<S: Real>(

@@ -197,7 +197,7 @@ fn merge(node: &mut Node, inertial: &Inertial, place: &Placed) {
     let about_com = Sym3::from(place.rot * inertial.inertia * place.rot.transpose());
     let mass = node.mass + inertial.mass;
     if inertial.mass == 0.0 {
-        node.about_com = node.about_com + about_com; // without mass, the point it is given about does not matter
+        node.about_com += about_com; // without mass, the point it is given about does not matter
         return;
     }
     let common = (node.com * node.mass + com * inertial.mass) * (1.0 / mass);

@@ -6,12 +6,15 @@ use crate::spatial::Vec3;
 /// Inertia of a body, about the origin of the one it hangs on, over that of a body which carries it on its own or through
 /// others: the largest of all such pairs, by the traces, joints at zero.
 ///
-/// Not of whole subtrees: long arms of like links lose no digits.
+/// Not of whole subtrees: long arms of like links lose no digits. Bodies without inertia have none to lose.
 pub(super) fn load_ratio(nodes: &[Node]) -> f64 {
     let mut heaviest = vec![0.0_f64; nodes.len()]; // that each body carries
     let mut largest = 0.0_f64;
     for (k, node) in nodes.iter().enumerate().rev() {
-        largest = largest.max(heaviest[k] / trace_about(node, node.com));
+        let carrier = trace_about(node, node.com);
+        if carrier > 0.0 {
+            largest = largest.max(heaviest[k] / carrier);
+        }
         let own = trace_about(node, node.pos_pk + node.rot_pk * node.com);
         heaviest[node.parent] = heaviest[node.parent].max(heaviest[k]).max(own);
     }

@@ -35,7 +35,7 @@ const STEP_DOUBLING: f64 = 1e-6;
 ///
 /// What counts as wrong is 1e-3 of a joint's travel. A motion that is not chaotic may make the errors of its steps ten times
 /// as large by its end, and the probes may have missed most of them.
-const JOINT_STEP_DOUBLING: f64 = 2e-5;
+const JOINT_STEP_DOUBLING: f64 = 5e-5;
 /// The same of the base's origin, over the path of the centre of mass and the robot's size.
 const ORIGIN_STEP_DOUBLING: f64 = 1e-4;
 /// Largest share of the commutator that the attitude may miss; without group integration it is 1.
