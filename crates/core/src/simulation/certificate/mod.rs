@@ -34,7 +34,7 @@ const STEP_DOUBLING: f64 = 1e-6;
 /// robot's size, of a joint's rate over its largest rate.
 ///
 /// What counts as wrong is 1e-3 of a joint's travel. A motion that is not chaotic may make the errors of its steps ten times
-/// as large by its end, and the probes may have missed most of them.
+/// as large by its end, and the probes may have missed half of them.
 const JOINT_STEP_DOUBLING: f64 = 5e-5;
 /// The same of the base's origin, over the path of the centre of mass and the robot's size.
 const ORIGIN_STEP_DOUBLING: f64 = 1e-4;
