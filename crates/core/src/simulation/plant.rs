@@ -239,7 +239,7 @@ fn balance<S: Real>(
         power = tau.mul_add(*rate, power);
     }
     if pushed > 0 {
-        total.angular = total.angular - center_of_mass_b(data).cross(total.linear);
+        total.angular -= center_of_mass_b(data).cross(total.linear);
     }
     rate.wrench = Momentum { linear: rot_wb * total.linear, angular: rot_wb * total.angular };
     rate.power = power + rate.wrench.linear.dot(carried);
