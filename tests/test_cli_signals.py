@@ -68,6 +68,14 @@ def wait_until_it_runs(tmp_path: Path, run: subprocess.Popen[str]) -> None:
         time.sleep(0.02)
 
 
+@pytest.fixture
+def hangups_are_heard() -> Iterator[None]:
+    """As from a terminal: under ``nohup`` the tests ignore SIGHUP, and so would what they start."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
 def test_sigterm_leaves_a_last_checkpoint_and_says_how_to_go_on(tmp_path: Path) -> None:
     with run_in_the_background(tmp_path, "100 h", stderr=subprocess.PIPE) as run:
         wait_until_it_runs(tmp_path, run)
@@ -84,7 +92,7 @@ def test_sigterm_leaves_a_last_checkpoint_and_says_how_to_go_on(tmp_path: Path) 
     assert json.loads((out / "summary.json").read_text())["status"] == "interrupted"
 
 
-def test_a_terminal_that_closes_leaves_a_last_checkpoint(tmp_path: Path) -> None:
+def test_a_terminal_that_closes_leaves_a_last_checkpoint(tmp_path: Path, hangups_are_heard: None) -> None:
     """Its progress bar has nowhere to go, and nothing can be said."""
     ours, theirs = pty.openpty()
     run = run_in_the_background(tmp_path, "100 h", stderr=theirs, stdin=theirs, start_new_session=True)
