@@ -239,7 +239,7 @@ def test_what_is_no_arithmetic_is_refused(text: Any) -> None:
 
 
 def test_both_kinds_of_files_have_one_evaluator() -> None:
-    """Each had a walk of its own over the syntax tree, and what one refused the other might not have."""
+    """Both evaluated the syntax tree separately, so one could refuse what the other accepted."""
     for kind in (arithmetic._Arithmetic, of_robots._Evaluation):
         assert issubclass(kind, Evaluator) and kind.generic_visit is Evaluator.generic_visit
         known = {name for name in dir(kind) if name.startswith("visit_")}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
@@ -25,7 +26,7 @@ def parsed(text: str, longest: int) -> ast.expr:
         raise ValueError("an expression nested too deep") from None
 
 
-class Evaluator(ast.NodeVisitor):
+class Evaluator(ast.NodeVisitor, ABC):
     """Visits a tree of numbers and operators; a node without a ``visit_`` method of its kind is refused.
 
     A subclass adds what its files may hold besides, each kind by a method.
@@ -54,9 +55,9 @@ class Evaluator(ast.NodeVisitor):
         """Return ``a + b``."""
         return self._rule(self.binary, node.op)(self.visit(node.left), self.visit(node.right))
 
+    @abstractmethod
     def refused(self, node: ast.AST) -> Exception:
         """Return the error of a node that may not stand in an expression."""
-        raise NotImplementedError
 
     def _rule(self, rules: Mapping[type[Any], Callable[..., Any]], sign: ast.AST) -> Callable[..., Any]:
         if type(sign) not in rules:

@@ -32,7 +32,7 @@ pub(crate) fn batch<R: Send>(
     interruptible(py, &stop, || work(Threads { count, stop: Some(&stop) }))
 }
 
-/// Runs `work` on a thread of its own; Ctrl-C meanwhile raises at once and abandons `work`, which finishes in the
+/// Runs `work` on a separate thread; Ctrl-C during it raises at once and abandons `work`, which finishes in the
 /// background.
 ///
 /// For what cannot be stopped from outside: a file that is parsed, a certificate.

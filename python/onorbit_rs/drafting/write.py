@@ -144,9 +144,10 @@ def _tried(model: Model, plan: Plan) -> tuple[float, Plan] | None:
     than ``SLOWEST_S``.
     """
     for _ in range(_ATTEMPTS):
-        trace, turn = _run(plan)
-        if turn is None:
+        run = _run(plan)
+        if run is None:
             return None
+        trace, turn = run
         share = rate_shares(trace, model).max(initial=0.0)
         if share <= 1.0:
             return turn, plan
@@ -158,18 +159,18 @@ def _tried(model: Model, plan: Plan) -> tuple[float, Plan] | None:
     return None
 
 
-def _run(plan: Plan) -> tuple[Trace, float | None]:
+def _run(plan: Plan) -> tuple[Trace, float] | None:
     """Return the trace of a plan, and by how much its base turns, rad.
 
-    None in its place where the run does not certify, leaves the joints' limits or its line.
+    None where the run does not certify, leaves the joints' limits or its line.
     """
     built = build(load(yaml.safe_load(draft_text(plan, "trial"))))
     trace = built.simulation.run(plan.duration_s)
     if not all(passed for *_, passed in trace.certificate()) or trace.joint_limits_exceeded():
-        return trace, None
+        return None
     is_tracked = plan.displacement is not None
     if is_tracked and np.linalg.norm(np.asarray(trace.position_error), axis=1).max() >= NEAR_ENOUGH_M:
-        return trace, None
+        return None
     attitude = np.asarray(trace.q)[:, 3:7]
     return trace, float(angle_between(attitude, attitude[0]).max())
 

@@ -20,10 +20,7 @@ def versions(plant: str) -> dict[str, str]:
     """The plant of a run, and the version of an engine that is not ours: ``mujoco_version``."""
     if plant == "native":
         return {"plant": plant}
-    for package in (
-        f"{plant}-core",
-        plant,
-    ):  # before version 4 it was the package `mujoco`
+    for package in (f"{plant}-core", plant):  # the bindings alone, or with viewer and renderer
         with contextlib.suppress(importlib.metadata.PackageNotFoundError):
             return {"plant": plant, f"{plant}_version": importlib.metadata.version(package)}
     raise missing()

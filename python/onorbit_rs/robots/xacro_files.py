@@ -64,7 +64,7 @@ class Files:
             It lies elsewhere, is no regular file of at most 16 MiB, is not UTF-8 text or has a document type.
         """
         path = Path(name)
-        path.stat()  # what is missing is an error of its own to xacro
+        path.stat()  # a missing file must reach xacro as an OSError
         real = path.resolve()
         if mode != "r" or not any(real.is_relative_to(root) for root in self._roots):
             raise ValueError(

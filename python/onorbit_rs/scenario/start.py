@@ -93,11 +93,10 @@ def joint_values(
             values[joints.index(joint)] = value
     elif given:
         if len(given) != len(joints):
-            entries, moving = (
-                count(len(given), "entry", "entries"),
-                count(len(joints), "moving joint", "moving joints"),
+            entries = count(len(given), "entry", "entries")
+            message = (
+                f"{name} has {entries}, the robot has {count(len(joints), 'moving joint', 'moving joints')}"
             )
-            message = f"{name} has {entries}, the robot has {moving}"
             raise ShapeError(message, name=name, expected=(len(joints),), got=(len(given),))
         values[:] = given
     by_name = given if isinstance(given, dict) else dict(zip(joints, given, strict=False))

@@ -1,7 +1,7 @@
 //! Forward dynamics: the motion behind forces, in O(n) (articulated bodies, floating base).
 
 use super::data::{BodyData, Data};
-use super::dense::{is_dense, solve};
+use super::dense;
 use super::external::{FrameWrench, apply_external};
 use super::kinematics::kinematics;
 use super::rnea::{accelerations, net_force};
@@ -41,13 +41,13 @@ pub fn forward_dynamics_recursion<S: Real>(
     tau: &[S],
     a: &mut [S],
 ) {
+    if model.is_heavy_on_light() {
+        return dense::solve(model, data, v, tau, a, |_| false);
+    }
     S::enter(
         #[inline(always)]
         || kernel(model, data, v, tau, a, |_| false),
     );
-    if is_dense(model) {
-        solve(model, data, v, tau, a, |_| false);
-    }
 }
 
 /// [`forward_dynamics_recursion`] with some joints (`locked`, `(n,)`) held as they are: they accelerate
@@ -64,8 +64,9 @@ pub(crate) fn locked_dynamics_recursion<S: Real>(
         #[inline(always)]
         || kernel(model, data, v, tau, a, |k| locked[k - 1]),
     );
-    if is_dense(model) {
-        solve(model, data, v, tau, a, |k| locked[k - 1]);
+    if model.is_heavy_on_light() {
+        // after the recursion, whose `U` the margin of a held joint is measured by
+        dense::solve(model, data, v, tau, a, |k| locked[k - 1]);
     }
 }
 

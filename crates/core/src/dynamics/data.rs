@@ -1,6 +1,5 @@
 //! What the algorithms compute, allocated once per model.
 
-use super::dense::is_dense;
 use super::kinematics::place_inertia;
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Force, Mat3, Motion, Real, RigidInertia, SpatialInertia, Vec3};
@@ -102,7 +101,7 @@ impl<S: Real> Data<S> {
             body.inertia.mass = S::of(node.mass);
         }
         place_inertia(&model.nodes()[0], &mut bodies[0]);
-        let nv = if is_dense(model) { model.nv() } else { 0 };
+        let nv = if model.is_heavy_on_light() { model.nv() } else { 0 };
         Self { bodies, turns: vec![(o, o); n - 1], factors: vec![o; nv * nv], efforts: vec![o; nv] }
     }
 

@@ -1,8 +1,8 @@
 //! Forward dynamics of robots in which a light body carries heavy ones, by the mass matrix.
 //!
-//! What such a body feels is a small difference of large inertias, and the recursion of articulated bodies loses the digits
-//! that they have in common. The factors of `M` keep them: every entry of `M` is right to its own size, and what `L D Lᵀ`
-//! leaves of a row is small beside the terms of that row.
+//! The articulated inertia of such a body is a small difference of large ones, which cancels the digits that these have in
+//! common. The entries of `M` are accurate relative to their own size, and the residual of `M = L D Lᵀ` is small relative to
+//! the terms of each row.
 
 use super::crba;
 use super::data::Data;
@@ -10,18 +10,8 @@ use super::rnea::inverse_dynamics_recursion;
 use crate::model::Model;
 use crate::spatial::Real;
 
-/// Robots in which some body carries one of more than this many times its own inertia are solved so. Arms on a satellite
-/// and humanoids reach 1e4.
-const LOAD_RATIO: f64 = 1e5;
-
-/// Whether the mass matrix gives the accelerations of this robot.
-#[inline(always)]
-pub(super) fn is_dense(model: &Model) -> bool {
-    model.load_ratio() > LOAD_RATIO
-}
-
-/// `M a = τ − c` in place of what the recursion found. The accelerations of all bodies and the torques that hold locked
-/// joints are left in `data` as the recursion leaves them.
+/// Solves `M a = τ − c`. Leaves the accelerations of all bodies and the torques that hold locked joints in `data`, as the
+/// recursion does.
 ///
 /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 10.
 pub(super) fn solve<S: Real>(

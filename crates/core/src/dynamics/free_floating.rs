@@ -222,7 +222,7 @@ fn mobility<S: Real>(
                 let (node, body) = (&nodes[j], &bodies[j]);
                 entry += joint_effort(node, body.axis(), force);
                 ancestor = node.parent;
-                // no joint is left to feel it at the base
+                // the base has no joint that needs it
                 if ancestor > 0 {
                     force = force.from_point(body.offset);
                 }

@@ -5,7 +5,7 @@ use super::builder::ModelBuilder;
 use super::description::{Inertial, Joint, JointKind};
 use super::error::{ModelError, ModelWarning};
 use super::inertia_check::{is_definite, principal_moments};
-use super::load_ratio::load_ratio;
+use super::load_ratio::is_heavy_on_light;
 use super::tree::{Axis, Frame, JointProperties, Model, Node};
 use super::well_posed::check_well_posed;
 use crate::spatial::{Mat3, Sym3, Vec3};
@@ -32,7 +32,7 @@ pub(super) fn compile(builder: ModelBuilder) -> Result<Model, ModelError> {
         visuals: Vec::new(),
         collisions: Vec::new(),
         warnings: builder.warnings.clone(),
-        load_ratio: 0.0,
+        is_heavy_on_light: false,
     };
     let mut placed: Vec<Option<Placed>> = vec![None; builder.links.len()];
     for link in depth_first(base, &children) {
@@ -69,7 +69,7 @@ pub(super) fn compile(builder: ModelBuilder) -> Result<Model, ModelError> {
     }
     check_parts(&model)?;
     check_well_posed(&model)?;
-    model.load_ratio = load_ratio(&model.nodes);
+    model.is_heavy_on_light = is_heavy_on_light(&model.nodes);
     Ok(model)
 }
 

@@ -3,11 +3,20 @@
 use super::tree::Node;
 use crate::spatial::Vec3;
 
+/// Bodies that carry one of more than this many times their own inertia are light. Arms on a satellite and humanoids
+/// reach 1e4.
+const LARGEST: f64 = 1e5;
+
+/// Whether a light body carries a heavy one.
+pub(super) fn is_heavy_on_light(nodes: &[Node]) -> bool {
+    load_ratio(nodes) > LARGEST
+}
+
 /// Inertia of a body, about the origin of the one it hangs on, over that of a body which carries it on its own or through
 /// others: the largest of all such pairs, by the traces, joints at zero.
 ///
 /// Not of whole subtrees: long arms of like links lose no digits. Bodies without inertia have none to lose.
-pub(super) fn load_ratio(nodes: &[Node]) -> f64 {
+fn load_ratio(nodes: &[Node]) -> f64 {
     let mut heaviest = vec![0.0_f64; nodes.len()]; // that each body carries
     let mut largest = 0.0_f64;
     for (k, node) in nodes.iter().enumerate().rev() {

@@ -85,7 +85,7 @@ pub struct Model {
     pub(super) visuals: Vec<(usize, Visual)>,
     pub(super) collisions: Vec<(usize, Visual)>,
     pub(super) warnings: Vec<ModelWarning>,
-    pub(super) load_ratio: f64,
+    pub(super) is_heavy_on_light: bool,
 }
 
 impl Model {
@@ -165,11 +165,11 @@ impl Model {
         (to_link * frame.rot_kf, to_link * (frame.pos_kf - link.pos_kf))
     }
 
-    /// Inertia of a body over that of one which carries it, the largest of all such pairs: about the origin of the body it hangs
-    /// on, and about the other's own.
+    /// Whether some body carries one of more than 10⁵ times its own inertia: articulated inertias cancel there, and forward
+    /// dynamics uses the mass matrix.
     #[inline(always)]
-    pub fn load_ratio(&self) -> f64 {
-        self.load_ratio
+    pub fn is_heavy_on_light(&self) -> bool {
+        self.is_heavy_on_light
     }
 
     /// Total mass, kg.

@@ -4,7 +4,7 @@ use super::inverse_mass::inverse_mass;
 use super::terms::{Derivatives, Row};
 use crate::dynamics::aba::forward_dynamics;
 use crate::dynamics::data::Data;
-use crate::dynamics::dense::{self, is_dense};
+use crate::dynamics::dense;
 use crate::dynamics::external::FrameWrench;
 use crate::dynamics::jacobian::unit_axes;
 use crate::model::Model;
@@ -43,7 +43,7 @@ fn kernel<S: Real>(
     dtau: &mut [S],
 ) {
     let (nodes, nv) = (model.nodes(), model.nv());
-    if is_dense(model) {
+    if model.is_heavy_on_light() {
         dense::inverse_mass(data, nv, dtau);
     } else {
         inverse_mass(nodes, &data.bodies, &mut work.bodies, dtau);

@@ -1,4 +1,4 @@
-//! Elements that are not URDF: those of other tools, and what is left of xacro.
+//! Elements that are not URDF: extensions of other tools and leftover xacro tags.
 
 use super::error::{UrdfError, UrdfProblem, list};
 use super::first_look::after_root_name;
