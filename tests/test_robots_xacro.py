@@ -97,7 +97,7 @@ def test_a_scenario_and_the_command_line_ask_for_xacro(tmp_path: Path) -> None:
     done = subprocess.run([*command, "--json", "--xacro"], capture_output=True, text=True, check=True)
     assert json.loads(done.stdout)["mass_kg"] == 2.0
     from onorbit_rs.scenario import load
-    from onorbit_rs.scenario.build import make_robot
+    from onorbit_rs.scenario.make_robot import make_robot
 
     scenario = load({"robot": {"urdf": str(file), "xacro": True}, "simulation": {"duration": 0.01}})
     assert make_robot(scenario).mass == 2.0

@@ -136,6 +136,14 @@ class Model:
     ) -> Model: ...
     @staticmethod
     def rigid_body(mass: float, inertia: ArrayLike) -> Model: ...
+    def with_link(
+        self,
+        name: str,
+        *,
+        mass: float | None = None,
+        com: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
+    ) -> Model: ...
     @property
     def name(self) -> str: ...
     @property
@@ -1061,6 +1069,15 @@ class Trace:
     def certificate(self) -> list[_CertificateRow]: ...
     def __len__(self) -> int: ...
 
+def attach(
+    model: Model,
+    frame: str,
+    other: Model,
+    other_frame: str | None = None,
+    *,
+    pose: ArrayLike | None = None,
+    prefix: str = "",
+) -> Model: ...
 def rollout(
     model: Model,
     q0: ArrayLike,

@@ -1,6 +1,7 @@
 //! The robot.
 
 use crate::arrays::{Threads, array_of, fixed, type_name};
+use crate::attach::{link_change, rows};
 use crate::derivatives::{PyFreeFloatingDerivatives, free_floating_derivatives, three};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
@@ -11,7 +12,7 @@ use nalgebra::Matrix3;
 use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel};
 use onorbit_core::model::urdf;
-use onorbit_core::model::{Model, neutral};
+use onorbit_core::model::{Model, ModelWarning, neutral};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
@@ -37,9 +38,15 @@ pub(crate) struct PyModel {
 }
 
 impl PyModel {
-    pub(crate) fn wrap(py: Python<'_>, model: Model, made: Option<Made>) -> PyResult<Self> {
+    /// With a warning for each remark that is not one of `known`.
+    pub(crate) fn wrap(
+        py: Python<'_>,
+        model: Model,
+        made: Option<Made>,
+        known: &[ModelWarning],
+    ) -> PyResult<Self> {
         let warnings = py.import("warnings")?;
-        for warning in model.warnings() {
+        for warning in model.warnings().iter().filter(|warning| !known.contains(warning)) {
             warnings.call_method1("warn", (warning.to_string(),))?;
         }
         let evaluator = Mutex::new(Evaluator::new(&model));
@@ -88,7 +95,7 @@ impl PyModel {
         } else {
             urdf::from_file(&path, &packages).map_err(|error| error.into_python(py))?
         };
-        Self::wrap(py, model, made)
+        Self::wrap(py, model, made, &[])
     }
 
     /// Load a robot from the text of a URDF; ``folder`` is where its relative paths start.
@@ -106,7 +113,7 @@ impl PyModel {
         let packages: Vec<PathBuf> = packages.iter().map(|path| absolute(path)).collect();
         let folder = folder.as_deref().map(absolute);
         let keywords = fields!(py, "text": text, "folder": folder, "package_paths": packages);
-        Self::wrap(py, model, Some(Made::by("Model.from_urdf_string", &keywords)?))
+        Self::wrap(py, model, Some(Made::by("Model.from_urdf_string", &keywords)?), &[])
     }
 
     /// A spacecraft without joints: mass, kg, and inertia (3, 3) about its centre of mass, kg m².
@@ -119,7 +126,29 @@ impl PyModel {
         let model = Model::rigid_body(mass, inertia).map_err(|error| error.into_python(py))?;
         let rows: Vec<&[f64]> = given.chunks(3).collect();
         let keywords = fields!(py, "mass": mass, "inertia": rows);
-        Self::wrap(py, model, Some(Made::by("Model.rigid_body", &keywords)?))
+        Self::wrap(py, model, Some(Made::by("Model.rigid_body", &keywords)?), &[])
+    }
+
+    /// The same robot with another mass, kg, centre of mass ``com`` (3,), m, or ``inertia`` (3, 3), kg m², of a link.
+    ///
+    /// ``inertia`` is about the centre of mass; both are in link axes. What is None stays as it is: a new mass leaves the
+    /// inertia alone. Raises ``FrameError`` for a name that no link has, ``ModelError`` for values that no robot can have.
+    #[pyo3(signature = (name, *, mass=None, com=None, inertia=None))]
+    fn with_link(
+        slf: &Bound<'_, Self>,
+        name: &str,
+        mass: Option<f64>,
+        com: Option<Any<'_, '_>>,
+        inertia: Option<Any<'_, '_>>,
+    ) -> PyResult<Self> {
+        let py = slf.py();
+        let change = link_change(mass, com, inertia)?;
+        let old = &slf.get().model;
+        let model = old.with_link(name, &change).map_err(|error| error.into_python(py))?;
+        let given = (change.mass, change.com.map(<[f64; 3]>::from), change.inertia.map(rows));
+        let keywords = fields!(py, "mass": given.0, "com": given.1, "inertia": given.2);
+        let made = Made::with("Model.with_link", (slf, name), &keywords)?;
+        Self::wrap(py, model, Some(made), old.warnings())
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
