@@ -52,7 +52,7 @@ XacroArgument = Annotated[str | bool | int | float, BeforeValidator(_argument)]
 
 
 class LinkValues(Part):
-    """Values that replace those of the robot's file; what is not given stays, the inertia where the mass is new."""
+    """Values that replace those of the robot's file; what is not given stays: a new mass keeps the inertia."""
 
     mass: Annotated[Mass, Positive] | None = None
     com: Length3 | None = None
@@ -83,9 +83,8 @@ class PlainRobot(Part):
     def _from_text(cls, value: Any) -> Any:
         """``humanoid_torso`` is a bundled name; ``arms/my_arm.urdf`` is a path, relative to the YAML."""
         if not isinstance(value, (str, dict, Part)):
-            named = ", ".join(f"'{source}'" for source in cls.sources[:-1])
             raise wrong(
-                f"must be a bundled name, a path of a URDF, or a mapping with {named} or '{cls.sources[-1]}', "
+                f"must be a bundled name, a path of a URDF, or a mapping with {cls._listed('or')}, "
                 f"not {shown(value)}"
             )
         if not isinstance(value, str):
@@ -96,12 +95,16 @@ class PlainRobot(Part):
     def _exactly_one(self) -> Self:
         given = [name for name in self.sources if getattr(self, name) is not None]
         if len(given) != 1:
-            named = ", ".join(f"'{source}'" for source in self.sources[:-1])
-            listed = ", ".join(given) or "none"
-            raise wrong(f"give exactly one of {named} and '{self.sources[-1]}'; given: {listed}")
+            raise wrong(f"give exactly one of {self._listed('and')}; given: {', '.join(given) or 'none'}")
         if self.urdf is None and (self.package_paths or self.xacro_arguments or self.xacro):
             raise wrong("'package_paths', 'xacro_arguments' and 'xacro' belong to a 'urdf'")
         return self
+
+    @classmethod
+    def _listed(cls, last: str) -> str:
+        """``'bundled', 'urdf' and 'rigid_body'``."""
+        *some, end = cls.sources
+        return f"{', '.join(map(repr, some))} {last} {end!r}"
 
     @model_serializer(mode="wrap")
     def _without_empty_parts(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
