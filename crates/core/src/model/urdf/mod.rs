@@ -1,9 +1,10 @@
 //! Robots from URDF files.
 //!
-//! One reader on an XML tree, not `urdf-rs`: that crate skips what is not a number inside a vector
-//! (`1,0 0 0 0` reads as zeros), takes a missing inertial for zero mass and `<drake:joint>` for a
-//! joint, refuses files that repeat an element or lack `velocity`, and its errors name neither
-//! link nor line. It serves as an oracle in the tests instead.
+//! roxmltree parses: it knows lines and namespaces. urdf-rs says what the elements of a URDF hold: its types
+//! take their fields from that tree by serde (`from_tree`), the first of each element, numbers checked by one
+//! table (`schema`). Its own reading of text skips what is not a number inside a vector (`1,0 0 0 0` reads as
+//! zeros), takes a missing inertial for zero mass and `<drake:joint>` for a joint, refuses files that repeat an
+//! element or lack `velocity`, and its errors name neither link nor line.
 //!
 //! Collision shapes, transmissions, sensors and the elements of other tools are ignored; elements with a prefix,
 //! elements that no tool is known for and leftovers of xacro are ignored with a warning. A prefix needs no declaration.
@@ -13,10 +14,13 @@ mod element;
 mod error;
 mod first_look;
 mod foreign;
+mod from_tree;
 mod joint;
 mod link;
 mod material;
 mod mesh;
+mod pose;
+mod schema;
 mod several;
 
 pub use error::{UrdfError, UrdfProblem};
@@ -69,7 +73,7 @@ fn read_robot(
     // every error says whose fault it is: the names come first, and outlive the elements
     let names = |tag| owners(robot, tag);
     let (link_owners, joint_owners) = (names("link"), names("joint"));
-    let robot = Element { node: robot, owner: "the robot" };
+    let robot = Element::new(robot, "the robot");
     let links = robot
         .children("link")
         .zip(&link_owners)
@@ -90,7 +94,7 @@ fn read_robot(
 
 /// `link 'hand'` for every link, in order.
 fn owners(robot: Node<'_, '_>, tag: &'static str) -> Vec<String> {
-    Element { node: robot, owner: "" }
+    Element::new(robot, "")
         .children(tag)
         .map(|element| format!("{tag} '{}'", element.text("name").unwrap_or_default()))
         .collect()
