@@ -1,0 +1,128 @@
+"""Every awkward file that both read is the same robot to both, base frame included; who else refuses which."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import warnings
+from pathlib import Path
+
+import awkward
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+
+pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+import pin_file  # noqa: E402
+
+GATE = 1e-12  # as in test_pinocchio.py
+HAS_XACRO = importlib.util.find_spec("xacro") is not None
+
+# urdfdom, which Pinocchio reads with, refuses them
+REFUSED_BY_PINOCCHIO = {
+    "ball_joint": "URDF has no such joint",
+    "duplicate_material": "a material is defined once",
+    "dynamics_empty": "dynamics give damping or friction",
+    "effort_and_velocity_negative": "limits are positive",
+    "infinite_limits": "inf is no number",
+    "limit_without_velocity": "a limit gives velocity and effort",
+    "revolute_without_limit": "a revolute joint has a limit",
+    "robot_without_name": "a robot has a name",
+    "safety_controller_bare": "a safety controller has a gain",
+    "stylesheet": "an instruction is taken for a second declaration",
+    "tabs_and_newlines_in_vector": "only spaces separate numbers",
+    "version_unknown": "there is no version 2.0",
+}
+# it reports the element and goes on with zeros, which is no robot
+READ_AS_ZERO = {
+    "axis_without_xyz": "an axis of length zero",
+    "inertia_without_products": "no inertia at all",
+}
+# the link below the joint
+SEVERAL_DEGREES = {
+    "planar_joint": "arm",
+    "planar_joint_with_taken_name": "slide_x",
+    "floating_joint_between_bodies": "arm",
+}
+CRASHES_PINOCCHIO = {"self_parent"}  # it recurses until the stack is full
+
+COMPARED = [
+    name
+    for name, to in awkward.EXPECTED.items()
+    if to.loads and name not in {*REFUSED_BY_PINOCCHIO, *READ_AS_ZERO, *SEVERAL_DEGREES}
+]
+
+
+def load(file: Path) -> oo.Model:
+    if file.suffix == ".xacro" and not HAS_XACRO:
+        pytest.skip("in the test extra: pip install 'onorbit-rs[xacro]'")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # test_awkward_files.py has them
+        return oo.Model.from_urdf(file)
+
+
+def off(deviations: dict[str, float]) -> dict[str, float]:
+    return {name: value for name, value in deviations.items() if not value < GATE}
+
+
+@pytest.mark.parametrize("name", awkward.cases(COMPARED, "pinocchio"))
+def test_it_is_the_same_robot(name: str) -> None:
+    file = awkward.path(name)
+    model, theirs = load(file), pin_file.read(file, root_joint=name != "floating_joint_below_massless_root")
+    assert not off(pin_file.deviations(model, theirs, seed=1))
+
+
+@pytest.mark.parametrize("name", awkward.cases(list(SEVERAL_DEGREES), "pinocchio"))
+def test_joints_of_several_degrees_of_freedom_move_alike(name: str) -> None:
+    file = awkward.path(name)
+    assert not off(pin_file.moving_alike(load(file), pin_file.read(file), SEVERAL_DEGREES[name], seed=1))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "kernels"),
+    [
+        ('izz="0.2"', 'izz="0.200001"', {"mass_matrix", "inverse_dynamics", "forward_dynamics"}),
+        ('xyz="1 2 3"', 'xyz="1 2 3.000001"', {"mass_matrix", "inverse_dynamics", "forward_dynamics", "frame_pose"}),
+        ('rpy="0.2 0 0.1"', 'rpy="0.2 0 0.100001"', {"mass_matrix", "inverse_dynamics", "forward_dynamics", "frame_pose"}),
+        ('mass value="3"', 'mass value="3.000001"', {"mass", "mass_matrix", "inverse_dynamics", "forward_dynamics"}),
+    ],
+)  # fmt: skip
+def test_a_robot_that_differs_in_one_number_is_found(
+    old: str, new: str, kernels: set[str], tmp_path: Path
+) -> None:
+    file = awkward.path("two_fixed_children_of_massless_root")
+    other = tmp_path / "other.urdf"
+    other.write_text(file.read_text().replace(old, new, 1))
+    assert other.read_text() != file.read_text()
+    assert set(off(pin_file.deviations(load(file), pin_file.read(other), seed=1))) == kernels
+
+
+@pytest.mark.parametrize("name", REFUSED_BY_PINOCCHIO)
+def test_what_pinocchio_refuses_and_we_read(name: str) -> None:
+    assert awkward.EXPECTED[name].loads
+    with pytest.raises(ValueError, match="not contain a valid URDF|greater than max_effort"):
+        pin_file.read(awkward.path(name))
+
+
+@pytest.mark.parametrize("name", READ_AS_ZERO)
+def test_what_pinocchio_reads_as_zero(name: str) -> None:
+    theirs = pin_file.read(awkward.path(name))
+    mass_matrix = pin.crba(theirs, theirs.createData(), pin.neutral(theirs))
+    assert mass_matrix[6, 6] == 0.0 or np.linalg.cond(mass_matrix) > 1e15
+    assert load(awkward.path(name)).mass_matrix(load(awkward.path(name)).neutral())[6, 6] > 0.1
+
+
+REFUSED = [name for name, to in awkward.EXPECTED.items() if not to.loads and name not in CRASHES_PINOCCHIO]
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_we_alone_refuse_is_refused_for_a_reason_of_physics(name: str) -> None:
+    try:
+        pin_file.read(awkward.path(name))
+    except ValueError as error:
+        assert re.search("not contain a valid URDF", str(error))
+        is_read = False
+    else:
+        is_read = True
+    assert is_read == awkward.EXPECTED[name].is_physics
