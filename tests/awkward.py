@@ -1,7 +1,7 @@
 """What is expected of each file of ``tests/fixtures/awkward``: robots with one oddity each, all our own.
 
-A file that Pinocchio reads loads here too, with a warning where its author may have meant something else, or is
-refused for a reason of physics.
+A file that Pinocchio reads loads here too, with a warning where its author may have meant something else,
+or is refused for a reason of physics.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def warns(text: str) -> Expected:
 
 
 def physics(text: str) -> Expected:
-    """Refused although Pinocchio loads it: a mass is not known, the links are no tree, or the motion is undetermined."""
+    """Refused although Pinocchio loads it: a mass is unknown, the links are no tree, a motion undetermined."""
     return Expected(loads=False, text=text, is_physics=True)
 
 
@@ -227,9 +227,10 @@ LEXICAL = "the XML is stricter than urdfdom's"
 NOT_LOADED = {
     **dict.fromkeys(
         (
-            "ampersand_in_name", "attributes_without_space", "control_character_in_comment", "dashes_in_comment",
-            "declaration_twice", "doctype", "doctype_with_entity", "gbk_comment", "latin1_comment", "latin1_name",
-            "newline_before_declaration", "nul_at_end", "plugin_nested_deep", "second_root_element", "text_before_root",
+            "ampersand_in_name", "attributes_without_space", "control_character_in_comment",
+            "dashes_in_comment", "declaration_twice", "doctype", "doctype_with_entity", "gbk_comment",
+            "latin1_comment", "latin1_name", "newline_before_declaration", "nul_at_end",
+            "plugin_nested_deep", "second_root_element", "text_before_root",
         ),
         LEXICAL,
     ),

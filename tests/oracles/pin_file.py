@@ -61,8 +61,8 @@ def of_state(model: oo.Model, robot: pin_robot.PinRobot, state: State) -> dict[s
 def moving_alike(model: oo.Model, theirs: Any, child: str, seed: int) -> dict[str, float]:
     """The same for one joint of several degrees of freedom, between the base and ``child``.
 
-    Each engine has coordinates of its own for it. Pinocchio's follow from our poses and velocities of the two links,
-    and what does not depend on coordinates must agree.
+    Each engine has coordinates of its own for it. Pinocchio's follow from our poses and velocities of the two
+    links, and what does not depend on coordinates must agree.
     """
     state = random_state(model, np.random.default_rng(seed), frames=1)
     base, arm = (Moving(model, state, name) for name in (model.body_names[0], child))
