@@ -32,7 +32,7 @@ def warns(text: str) -> Expected:
 
 
 def physics(text: str) -> Expected:
-    """Refused although Pinocchio loads it: a mass is unknown, the links are no tree, a motion undetermined."""
+    """Refused, although Pinocchio loads it: a mass is unknown, the links no tree, a motion undetermined."""
     return Expected(loads=False, text=text, is_physics=True)
 
 
