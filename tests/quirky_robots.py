@@ -125,8 +125,8 @@ class Robot:
 
 
 def text(seed: int, links: int = 12, root: str = "body") -> str:
-    """A robot of so many links or one more. Its root is a body, or without mass: a ``world`` or ``world of two``
-    bodies fixed to it.
+    """A robot of so many links or one more. Its root is a body, or has no mass: a ``world`` carrying one by a
+    fixed joint, a ``world of two``.
     """
     robot = Robot(np.random.default_rng(seed))
     if root == "body":
