@@ -43,6 +43,7 @@ def malformed(text: str) -> Expected:
 
 EXPECTED = {
     "ampersand_in_name": LOADS,
+    "armature": LOADS,
     "attributes_without_space": LOADS,
     "axis_missing": LOADS,
     "axis_nearly_principal": LOADS,
@@ -70,6 +71,7 @@ EXPECTED = {
     "declaration_other_encoding": LOADS,
     "declaration_twice": LOADS,
     "default_namespace": LOADS,
+    "default_namespace_of_xacro": LOADS,
     "doctype": LOADS,
     "doctype_with_entity": LOADS,
     "drake_extension": warns("<drake:collision_filter_group> has a namespace of its own"),
@@ -99,6 +101,7 @@ EXPECTED = {
     "inertia_infinite": physics('izz="inf" of <inertia>'),
     "inertia_negative_by_rounding": LOADS,
     "inertia_without_mass_at_root": physics("link 'base' has no mass but a rotational inertia"),
+    "inertia_without_mass_below_body": warns("link 'world' has no mass but a rotational inertia"),
     "inertia_without_mass_moving": physics("link 'arm' has no mass but a rotational inertia"),
     "inertia_without_mass_on_fixed_joint": warns("link 'rotor' has no mass but a rotational inertia"),
     "inertia_without_products": warns("ixy"),
@@ -151,6 +154,7 @@ EXPECTED = {
     "names_are_numbers": LOADS,
     "names_with_slashes": LOADS,
     "names_with_unicode": LOADS,
+    "namespace_of_one_link": LOADS,
     "negative_mass": physics("link 'arm' has a mass of -3 kg"),
     "newline_before_declaration": LOADS,
     "no_declaration": LOADS,
@@ -166,6 +170,7 @@ EXPECTED = {
     "origin_without_attributes": LOADS,
     "planar_joint": warns("joint 'shoulder' is planar"),
     "planar_joint_with_taken_name": warns("joint 'slide' is planar"),
+    "planar_joint_without_axis": warns("joint 'shoulder' is planar"),
     "plane_collision": LOADS,
     "plugin_nested_deep": LOADS,
     "point_mass_off_axis": LOADS,
@@ -237,8 +242,10 @@ NOT_LOADED = {
         LEXICAL,
     ),
     "floating_joint_between_bodies": "only planar and ball joints are made of simpler ones",
+    "inertia_without_mass_below_body": "a root is not seen to be fixed to its child",
     "inertial_empty": "an inertial without mass is refused",
     "inertial_with_density": "an inertial without mass is refused",
+    "namespace_of_one_link": "a namespace makes a link foreign; to urdfdom only a prefix does",
     "lower_above_upper": "limits in the wrong order are refused",
     "planar_joint_with_taken_name": "names that the reader makes up may be taken",
     "quaternion_beside_rpy": "the version of the format is not looked at",
@@ -247,6 +254,7 @@ NOT_LOADED = {
 PENDING = {
     "loading": {
         **NOT_LOADED,
+        "default_namespace_of_xacro": "the robot itself is taken for a leftover of xacro",
         "inertia_without_products": "products that are missing are taken as zero without a word",
         "quaternion_in_version_1_0": "the version of the format is not looked at",
     },
