@@ -103,6 +103,7 @@ __all__ = [
     "Visual",
     "Waypoints",
     "__version__",
+    "attach",
     "build_info",
     "deputy_state",
     "from_lvlh",
@@ -129,6 +130,7 @@ class Model:
         package_paths: Sequence[_Path] | None = None,
         xacro_arguments: Mapping[str, object] | None = None,
         xacro: bool = False,
+        links: Mapping[str, Mapping[str, Any]] | None = None,
     ) -> Model: ...
     @staticmethod
     def from_urdf_string(

@@ -18,7 +18,7 @@ fn shared(name: &str) -> Option<PathBuf> {
 }
 
 fn load(name: &str) -> Option<Result<Model, UrdfError>> {
-    shared(name).map(|path| from_file(&path, &[]))
+    shared(name).map(|path| from_file(&path, &[], &[]))
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn urdf_rs_own_xml_gives_the_same_joints() {
             println!("skipped: urdf-rs does not read {name}");
             continue;
         };
-        let ours = from_file(&path, &[]).unwrap();
+        let ours = from_file(&path, &[], &[]).unwrap();
         let mass: f64 = theirs.links.iter().map(|link| link.inertial.mass.value).sum();
         assert!((ours.mass() - mass).abs() < 1e-9, "{name}");
         for joint in ours.joints() {
@@ -125,7 +125,7 @@ fn what_urdf_rs_makes_of_careless_files() {
         )
     };
     let ends = "<parent link='a'/><child link='b'/>";
-    let ours = |xml: &str| onorbit_core::model::urdf::from_str(xml, None, &[]);
+    let ours = |xml: &str| onorbit_core::model::urdf::from_str(xml, None, &[], &[]);
 
     let comma = robot(&format!("<joint name='j' type='fixed'>{ends}<origin xyz='1,0 0 0 0'/></joint>"));
     assert_eq!(*urdf_rs::read_from_string(&comma).unwrap().joints[0].origin.xyz, [0.0; 3]);

@@ -1,12 +1,11 @@
-//! Robots made from robots: an arm on a bus, a link with another mass.
+//! One robot of two: an arm on a bus.
 
 use crate::arrays::fixed;
-use crate::builder::vector;
 use crate::errors::{IntoPython, fields, plain};
-use crate::made::Made;
+use crate::made::{Made, copied};
 use crate::model::PyModel;
-use nalgebra::{Isometry3, Matrix3};
-use onorbit_core::model::{LinkChange, Mount};
+use nalgebra::Isometry3;
+use onorbit_core::model::Mount;
 use onorbit_core::reference::Hold;
 use pyo3::prelude::*;
 
@@ -53,7 +52,7 @@ pub(crate) fn attach(
     };
     let (bus, arm) = (&model.get().model, &other.get().model);
     let whole = bus.attach(frame, arm, &mount).map_err(|error| error.into_python(py))?;
-    let keywords = fields!(py, "pose": pose, "prefix": prefix);
+    let keywords = fields!(py, "pose": copied(pose)?, "prefix": prefix);
     let made = Made::with("attach", (model, frame, other, other_frame), &keywords)?;
     let known = whole.warnings().to_vec(); // they were told of the two
     PyModel::wrap(py, whole, Some(made), &known)
@@ -64,19 +63,4 @@ fn isometry(pose: Any<'_, '_>) -> PyResult<Isometry3<f64>> {
     let poses = Hold::from_rows(&[fixed(pose, "pose", &[4, 4])?])
         .map_err(|error| plain(pose.py(), "ModelError", &error.to_string()))?;
     Ok(poses[0].isometry())
-}
-
-pub(crate) fn link_change(
-    mass: Option<f64>,
-    com: Option<Any<'_, '_>>,
-    inertia: Option<Any<'_, '_>>,
-) -> PyResult<LinkChange> {
-    let com = com.map(|com| vector(Some(com), "com", [0.0; 3])).transpose()?;
-    let inertia = inertia.map(|inertia| fixed::<9>(inertia, "inertia", &[3, 3])).transpose()?;
-    Ok(LinkChange { mass, com, inertia: inertia.map(|rows| Matrix3::from_row_slice(&rows)) })
-}
-
-/// The rows of a matrix.
-pub(crate) fn rows(matrix: Matrix3<f64>) -> [[f64; 3]; 3] {
-    matrix.transpose().into()
 }

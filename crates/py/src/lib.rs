@@ -13,6 +13,7 @@ mod errors;
 mod gravity;
 mod interrupt;
 mod kernels;
+mod link_change;
 mod made;
 mod model;
 mod orbit;

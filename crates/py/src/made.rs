@@ -52,3 +52,8 @@ impl Made {
 pub(crate) fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
+
+/// A deep copy: what is given may be written to later.
+pub(crate) fn copied<'py>(value: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    value.map(|value| value.py().import("copy")?.call_method1("deepcopy", (value,))).transpose()
+}

@@ -1,11 +1,11 @@
 //! The robot.
 
 use crate::arrays::{Threads, array_of, fixed, type_name};
-use crate::attach::{link_change, rows};
 use crate::derivatives::{PyFreeFloatingDerivatives, free_floating_derivatives, three};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
-use crate::made::{Made, absolute};
+use crate::link_change::{link_change, link_changes};
+use crate::made::{Made, absolute, copied};
 use crate::records::{self, PyBody, PyFrame, PyJoint, PyVisual};
 use crate::xacro::from_xacro;
 use nalgebra::Matrix3;
@@ -74,26 +74,31 @@ impl PyModel {
     /// ``xacro`` (``pip install 'onorbit-rs[xacro]'``); its expressions are evaluated by onorbit_rs, which runs
     /// none of them as Python. ``package_paths``: folders that hold ROS packages or are one, searched for
     /// ``package://`` and ``$(find ...)``; ``xacro_arguments``: ``{name: value}``, what ``$(arg name)`` gives.
+    /// ``links``: ``{name: {"mass": kg, "com": (3,) m, "inertia": (3, 3) kg m²}}``, values that replace those of the file
+    /// before anything is checked; as :meth:`with_link`.
     #[staticmethod]
-    #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None, xacro=false))]
+    #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None, xacro=false, links=None))]
     fn from_urdf(
         py: Python<'_>,
         path: PathBuf,
         package_paths: Option<Vec<PathBuf>>,
         xacro_arguments: Option<&Bound<'_, PyDict>>,
         xacro: bool,
+        links: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
+        let changes = link_changes(links)?;
         let packages: Vec<PathBuf> =
             package_paths.unwrap_or_default().iter().map(|path| absolute(path)).collect();
         let keywords = fields!(py, "path": absolute(&path), "package_paths": packages.clone());
         keywords.set_item("xacro_arguments", xacro_arguments.map(|given| given.copy()).transpose()?)?;
         keywords.set_item("xacro", xacro)?;
+        keywords.set_item("links", copied(links.map(Bound::as_any))?)?;
         let made = Some(Made::by("Model.from_urdf", &keywords)?);
         let is_named_so = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xacro"));
         let model = if xacro || is_named_so || xacro_arguments.is_some() {
-            from_xacro(py, &path, &packages, xacro_arguments)?
+            from_xacro(py, &path, &packages, xacro_arguments, &changes)?
         } else {
-            urdf::from_file(&path, &packages).map_err(|error| error.into_python(py))?
+            urdf::from_file(&path, &packages, &changes).map_err(|error| error.into_python(py))?
         };
         Self::wrap(py, model, made, &[])
     }
@@ -109,7 +114,7 @@ impl PyModel {
     ) -> PyResult<Self> {
         let packages = package_paths.unwrap_or_default();
         let model =
-            urdf::from_str(text, folder.as_deref(), &packages).map_err(|error| error.into_python(py))?;
+            urdf::from_str(text, folder.as_deref(), &packages, &[]).map_err(|error| error.into_python(py))?;
         let packages: Vec<PathBuf> = packages.iter().map(|path| absolute(path)).collect();
         let folder = folder.as_deref().map(absolute);
         let keywords = fields!(py, "text": text, "folder": folder, "package_paths": packages);
@@ -142,11 +147,10 @@ impl PyModel {
         inertia: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
         let py = slf.py();
-        let change = link_change(mass, com, inertia)?;
+        let change = link_change(name, mass, com, inertia)?;
         let old = &slf.get().model;
-        let model = old.with_link(name, &change).map_err(|error| error.into_python(py))?;
-        let given = (change.mass, change.com.map(<[f64; 3]>::from), change.inertia.map(rows));
-        let keywords = fields!(py, "mass": given.0, "com": given.1, "inertia": given.2);
+        let model = old.with_link(&change).map_err(|error| error.into_python(py))?;
+        let keywords = fields!(py, "mass": mass, "com": copied(com)?, "inertia": copied(inertia)?);
         let made = Made::with("Model.with_link", (slf, name), &keywords)?;
         Self::wrap(py, model, Some(made), old.warnings())
     }

@@ -59,7 +59,8 @@ def _bus(robot: dict[str, Any]) -> str:
     """A bus with one arm."""
     (arm,) = robot["arms"]
     said = {
-        "bundled": "a name that 'onorbit list' prints", "urdf": "a URDF or xacro file, from this file's folder",
+        "bundled": "a name that 'onorbit list' prints",
+        "urdf": "a URDF or xacro file, from this file's folder",
         "package_paths": "where its packages are", "xacro_arguments": "for its xacro",
         "xacro": "expand it, whatever its name", "at": "a link or frame of the bus",
         "prefix": "before the names of the arm's links and joints",

@@ -41,38 +41,29 @@ def make_robot(scenario: Scenario) -> _core.Model:
         mounted = _plain(scenario, arm, at)
         with located(scenario, *at):
             model = _core.attach(model, arm.at, mounted, arm.frame, pose=_matrix(arm.pose), prefix=arm.prefix)
-    return _changed(scenario, model, robot, ("robot",))
+    for name, values in robot.links.items():
+        with located(scenario, "robot", "links", name):
+            model = model.with_link(name, **values.given)
+    return model
 
 
 def _plain(scenario: Scenario, robot: PlainRobot, at: Place) -> _core.Model:
     """A robot that is no bus with arms."""
-    with located(scenario, *at):
-        model = _read(robot, scenario.file.parent if scenario.file else Path(), dotted(at))
-    return _changed(scenario, model, robot, at)
-
-
-def _read(robot: PlainRobot, beside: Path, place: str) -> _core.Model:
     if robot.rigid_body is not None:
-        return _core.Model.rigid_body(robot.rigid_body.mass, np.array(robot.rigid_body.inertia))
-    if robot.bundled is not None:
-        return robots.load(robot.bundled)
-    assert robot.urdf is not None  # the schema lets exactly one through
+        with located(scenario, *at):
+            return _core.Model.rigid_body(robot.rigid_body.mass, np.array(robot.rigid_body.inertia))
+    place = dotted(at)
+    beside = scenario.file.parent if scenario.file else Path()
     packages = [beside / folder for folder in robot.package_paths]
-    with worded(Wording(f"{place}.package_paths", f"{place}.xacro_arguments: {{NAME: ...}}")):
+    wording = Wording(f"{place}.package_paths", f"{place}.xacro_arguments: {{NAME: ...}}")
+    with located(scenario, *at), worded(wording):
         return _core.Model.from_urdf(
-            beside / robot.urdf,
+            robots.path(robot.bundled) if robot.urdf is None else beside / robot.urdf,
             package_paths=packages or None,
             xacro_arguments=robot.xacro_arguments or None,
             xacro=robot.xacro,
+            links={name: values.given for name, values in robot.links.items()},
         )
-
-
-def _changed(scenario: Scenario, model: _core.Model, robot: PlainRobot, at: Place) -> _core.Model:
-    """With the values of ``links``."""
-    for name, values in robot.links.items():
-        with located(scenario, *at, "links", name):
-            model = model.with_link(name, mass=values.mass, com=values.com, inertia=values.inertia)
-    return model
 
 
 def _matrix(pose: Pose | None) -> NDArray[np.float64] | None:

@@ -52,13 +52,18 @@ XacroArgument = Annotated[str | bool | int | float, BeforeValidator(_argument)]
 
 
 class LinkValues(Part):
-    """Values that replace those of the robot's file; what is not given stays: a new mass keeps the inertia."""
+    """Values that replace those of the file; what is not given stays: a new mass leaves the inertia alone."""
 
     mass: Annotated[Mass, Positive] | None = None
     com: Length3 | None = None
     """Centre of mass, link axes."""
     inertia: InertiaMatrix | None = None
     """(3, 3), kg m², about the centre of mass, link axes; three numbers are a diagonal."""
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """What is given, as the engine takes it."""
+        return self.model_dump(exclude_none=True)
 
 
 class PlainRobot(Part):
@@ -98,6 +103,8 @@ class PlainRobot(Part):
             raise wrong(f"give exactly one of {self._listed('and')}; given: {', '.join(given) or 'none'}")
         if self.urdf is None and (self.package_paths or self.xacro_arguments or self.xacro):
             raise wrong("'package_paths', 'xacro_arguments' and 'xacro' belong to a 'urdf'")
+        if self.rigid_body is not None and self.links:
+            raise wrong("'links' change the robot of a file; write the values of a 'rigid_body' there")
         return self
 
     @classmethod

@@ -34,7 +34,9 @@ pub enum ModelError {
          joints that do not move fixed"
     )]
     TooManyJoints { most: usize },
-    #[error("the robot has no mass: a floating base needs some")]
+    #[error(
+        "the robot has no mass: a floating base needs some; give a link an inertial, or a mass by 'links'"
+    )]
     NoMass,
     #[error(
         "nothing resists the motion of joint '{joint}': link '{link}' and what hangs on it have no inertia about \

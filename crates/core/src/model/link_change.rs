@@ -9,6 +9,8 @@ use nalgebra::{Matrix3, Vector3};
 /// New values for a link; what is `None` stays as it is.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinkChange {
+    /// Its name.
+    pub link: String,
     /// Mass, kg.
     pub mass: Option<f64>,
     /// Centre of mass in link axes, m.
@@ -18,23 +20,37 @@ pub struct LinkChange {
 }
 
 impl LinkChange {
-    /// Changes a link. Where it had no mass its centre of mass is its origin, its inertia zero.
+    /// Changes the link, if it is this one. Where it had no mass its centre of mass is its origin, its inertia zero.
     ///
     /// # Errors
     /// [`ModelError::ChangeWithoutMass`] for a link without mass that is given none.
-    pub fn apply(&self, link: &mut Link) -> Result<(), ModelError> {
-        let old = link.inertial.take();
-        let nothing = || Inertial { mass: 0.0, com: Vector3::zeros(), inertia: Matrix3::zeros() };
-        if old.is_none() && self.mass.is_none() {
-            return Err(ModelError::ChangeWithoutMass { link: link.name.clone() });
+    pub(super) fn apply(&self, link: &mut Link) -> Result<(), ModelError> {
+        if link.name != self.link {
+            return Ok(());
         }
-        let old = old.unwrap_or_else(nothing);
+        let inertial = match (link.inertial.take(), self.mass) {
+            (Some(inertial), _) => inertial,
+            (None, Some(mass)) => Inertial { mass, com: Vector3::zeros(), inertia: Matrix3::zeros() },
+            (None, None) => return Err(ModelError::ChangeWithoutMass { link: link.name.clone() }),
+        };
         link.inertial = Some(Inertial {
-            mass: self.mass.unwrap_or(old.mass),
-            com: self.com.unwrap_or(old.com),
-            inertia: self.inertia.unwrap_or(old.inertia),
+            mass: self.mass.unwrap_or(inertial.mass),
+            com: self.com.unwrap_or(inertial.com),
+            inertia: self.inertia.unwrap_or(inertial.inertia),
         });
         Ok(())
+    }
+
+    /// Refuses a change of a link that is none of `names`.
+    pub(super) fn check_is_one_of<'a>(
+        &self,
+        names: impl Iterator<Item = &'a str> + Clone,
+    ) -> Result<(), ModelError> {
+        if names.clone().any(|name| name == self.link) {
+            return Ok(());
+        }
+        let candidates = names.map(str::to_owned).collect();
+        Err(ModelError::UnknownName { what: "link", name: self.link.clone(), candidates })
     }
 }
 
@@ -43,13 +59,12 @@ impl Model {
     ///
     /// # Errors
     /// No such link, or values that no robot can have.
-    pub fn with_link(&self, name: &str, change: &LinkChange) -> Result<Self, ModelError> {
+    pub fn with_link(&self, change: &LinkChange) -> Result<Self, ModelError> {
         let mut description = self.description().clone();
-        let candidates = || self.description().links.iter().map(|link| link.name.clone()).collect();
-        let link = description.links.iter_mut().find(|link| link.name == name).ok_or_else(|| {
-            ModelError::UnknownName { what: "link", name: name.to_owned(), candidates: candidates() }
-        })?;
-        change.apply(link)?;
+        change.check_is_one_of(description.links.iter().map(|link| link.name.as_str()))?;
+        for link in &mut description.links {
+            change.apply(link)?;
+        }
         let mut builder = ModelBuilder::from_description(description)?;
         builder.keep_notes(self);
         builder.build()

@@ -1,17 +1,19 @@
 //! `<link>`: mass, inertia, looks.
 
 use super::element::Element;
-use super::error::UrdfError;
+use super::error::{UrdfError, UrdfProblem};
 use super::material::Materials;
 use super::mesh::Meshes;
 use super::pose::pose;
-use crate::model::{Geometry, Inertial, Link, ModelWarning, Visual};
+use crate::model::{Geometry, Inertial, Link, LinkChange, ModelWarning, Visual};
 use nalgebra::Matrix3;
 
 /// What reading a link takes from the rest of the file, and what it leaves to tell.
 pub(super) struct Surroundings<'a> {
     pub(super) materials: Materials<'a>,
     pub(super) meshes: Meshes<'a>,
+    /// What replaces values of the file.
+    pub(super) changes: &'a [LinkChange],
     pub(super) warnings: Vec<ModelWarning>,
 }
 
@@ -23,6 +25,9 @@ pub(super) fn read_link(
     let mut result = Link::new(name, None);
     if let Some(inertial) = link.child("inertial") {
         result.inertial = Some(read_inertial(inertial, around)?);
+    }
+    for change in around.changes {
+        change.apply(&mut result).map_err(|error| link.fail(UrdfProblem::Model(error)))?;
     }
     for visual in link.children("visual") {
         // looks are no physics: a shape that cannot be read is left out, and said so

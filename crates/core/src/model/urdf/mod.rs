@@ -25,7 +25,7 @@ mod several;
 
 pub use error::{UrdfError, UrdfProblem};
 
-use super::{Model, ModelWarning};
+use super::{LinkChange, Model, ModelWarning};
 use assemble::assemble;
 use element::Element;
 use foreign::{Ignored, parse, with_declared_prefixes};
@@ -39,14 +39,15 @@ use std::path::{Path, PathBuf};
 /// Loads a robot; its root link floats.
 ///
 /// `packages`: folders that hold ROS packages or are one, searched for `package://` meshes before
-/// the parents of the file. A mesh that is not found keeps its name and leaves a warning.
+/// the parents of the file. A mesh that is not found keeps its name and leaves a warning. `changes`: values that
+/// replace those of the file before anything is checked.
 ///
 /// # Errors
 /// [`UrdfError`] with the file, the line and the link or joint.
-pub fn from_file(path: &Path, packages: &[PathBuf]) -> Result<Model, UrdfError> {
+pub fn from_file(path: &Path, packages: &[PathBuf], changes: &[LinkChange]) -> Result<Model, UrdfError> {
     let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned));
     first_look::read(path)
-        .and_then(|xml| from_str(&xml, folder.as_deref(), packages))
+        .and_then(|xml| from_str(&xml, folder.as_deref(), packages, changes))
         .map_err(|error| error.in_file(path))
 }
 
@@ -54,20 +55,26 @@ pub fn from_file(path: &Path, packages: &[PathBuf]) -> Result<Model, UrdfError> 
 ///
 /// # Errors
 /// [`UrdfError`] with the line and the link or joint.
-pub fn from_str(xml: &str, folder: Option<&Path>, packages: &[PathBuf]) -> Result<Model, UrdfError> {
+pub fn from_str(
+    xml: &str,
+    folder: Option<&Path>,
+    packages: &[PathBuf],
+    changes: &[LinkChange],
+) -> Result<Model, UrdfError> {
     first_look::check(xml)?;
     let declared = with_declared_prefixes(xml);
     let document = parse(declared.as_deref().unwrap_or(xml)).map_err(not_xml)?;
     let robot = document.root_element();
     check_root(robot)?;
     let ignored = Ignored::new(robot);
-    read_robot(robot, folder, packages, ignored.warnings()).map_err(|error| ignored.explain(error))
+    let meshes = Meshes::new(folder, packages);
+    read_robot(robot, meshes, changes, ignored.warnings()).map_err(|error| ignored.explain(error))
 }
 
 fn read_robot(
     robot: Node<'_, '_>,
-    folder: Option<&Path>,
-    packages: &[PathBuf],
+    meshes: Meshes<'_>,
+    changes: &[LinkChange],
     warnings: Vec<ModelWarning>,
 ) -> Result<Model, UrdfError> {
     // every error says whose fault it is: the names come first, and outlive the elements
@@ -87,8 +94,12 @@ fn read_robot(
     if links.is_empty() {
         return Err(robot.fail(UrdfProblem::NoLinks));
     }
-    let mut around =
-        Surroundings { materials: Materials::new(robot), meshes: Meshes::new(folder, packages), warnings };
+    for change in changes {
+        change
+            .check_is_one_of(links.iter().map(|(name, _)| *name))
+            .map_err(|error| UrdfError::new(None, UrdfProblem::Model(error)))?;
+    }
+    let mut around = Surroundings { materials: Materials::new(robot), meshes, changes, warnings };
     assemble(robot.text("name").unwrap_or("robot"), &links, &hinges, &mut around)
 }
 
