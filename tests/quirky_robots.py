@@ -9,12 +9,7 @@ import numpy as np
 
 from onorbit_rs.validation.trees import Array
 
-ROOTS = (
-    "body",
-    "world",
-    "world of two",
-)  # what the first link is: a body, or empty with one or two bodies fixed to it
-KINDS = ("revolute", "continuous", "prismatic", "fixed")
+MOVING = ("revolute", "continuous", "prismatic")
 STYLES = ("link_{}", "Link {}", "/ns/link.{}", "звено_{}", "{}")
 FOREIGN = (
     '<gazebo reference="{0}"><material>Gazebo/Grey</material><link name="ghost"/></gazebo>',
@@ -114,7 +109,7 @@ class Robot:
     def add_moving(self) -> None:
         """A body; now and then below an empty link that moves about another axis."""
         parent = self.draw(self.heavy[-4:])
-        kind, axis = self.draw(KINDS[:3]), None
+        kind, axis = self.draw(MOVING), None
         if self.rng.random() < 0.15:
             yoke = self.link("")
             self.joint(parent, yoke, "revolute", "1 0 0")

@@ -37,7 +37,7 @@ def deviations(model: oo.Model, theirs: Any, seed: int, states: int = 2) -> dict
     largest = {"mass": deviation(model.mass, pin.computeTotalMass(theirs))}
     for _ in range(states):
         for name, off in of_state(model, robot, random_state(model, rng, frames=1)).items():
-            largest[name] = max(off, largest.get(name, 0.0))
+            largest[name] = float(np.maximum(off, largest.get(name, 0.0)))  # nan stays
     return largest
 
 
@@ -54,7 +54,9 @@ def of_state(model: oo.Model, robot: pin_robot.PinRobot, state: State) -> dict[s
         "mass_matrix": deviation(model.mass_matrix(q), mass_matrix),
         "inverse_dynamics": deviation(model.inverse_dynamics(q, v, state.a), robot.inverse_dynamics(state)),
         "forward_dynamics": float(np.abs(torque - state.tau).max() / size),
-        "frame_pose": max(deviation(model.frame_pose(q, name), pose) for name, pose in poses.items()),
+        "frame_pose": float(
+            np.max([deviation(model.frame_pose(q, name), pose) for name, pose in poses.items()])
+        ),
     }
 
 
@@ -74,11 +76,8 @@ def moving_alike(model: oo.Model, theirs: Any, child: str, seed: int) -> dict[st
         place = pin.SE3ToXYZQUAT(moved)
     else:  # planar: x, y, cos, sin; the rate is in the child's axes
         place, rate = np.array([*moved.translation[:2], *moved.rotation[:2, 0]]), rate[[0, 1, 5]]
-    data, q, v = (
-        theirs.createData(),
-        np.concatenate([state.q[:7], place]),
-        np.concatenate([state.v[:6], rate]),
-    )
+    q, v = np.concatenate([state.q[:7], place]), np.concatenate([state.v[:6], rate])
+    data = theirs.createData()
     return {
         "kinetic_energy": deviation(
             model.kinetic_energy(state.q, state.v), pin.computeKineticEnergy(theirs, data, q, v)

@@ -73,7 +73,7 @@ def test_quirky_robots(root: str, seeds: range) -> None:
             warnings.simplefilter("ignore")
             model = oo.Model.from_urdf_string(text)
         found = pin_file.deviations(model, pin_robot.from_urdf(text), seed)
-        assert max(found.values()) < GATE, f"seed {seed}: {found}"
+        assert all(off < GATE for off in found.values()), f"seed {seed}: {found}"
 
 
 def test_a_quirky_robot_of_75_links() -> None:
