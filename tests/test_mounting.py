@@ -217,8 +217,8 @@ def test_what_is_odd_is_told_once(files: Path) -> None:
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "prefix": "a_"}] * 2},
          "robot.arms[1]: with the prefix 'a_' the robot that is attached has a link or frame 'a_base'"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "frame": "tool"}]},
-         "robot.arms[0]: joints move the frame 'tool': a robot is attached by a frame that is fixed to its base: "
-         "base"),
+         "robot.arms[0]: joints move the frame 'tool': a robot is attached by a frame that is fixed to its "
+         "base: base"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "amr.urdf", "at": "plate"}]},
          "amr.urdf: there is no such file"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf"}]}, "robot.arms[0].at: is missing"),

@@ -58,7 +58,7 @@ def _plain(scenario: Scenario, robot: PlainRobot, at: Place) -> _core.Model:
     wording = Wording(f"{place}.package_paths", f"{place}.xacro_arguments: {{NAME: ...}}")
     with located(scenario, *at), worded(wording):
         return _core.Model.from_urdf(
-            robots.path(robot.bundled) if robot.urdf is None else beside / robot.urdf,
+            robots.path(robot.bundled) if robot.bundled is not None else beside / str(robot.urdf),
             package_paths=packages or None,
             xacro_arguments=robot.xacro_arguments or None,
             xacro=robot.xacro,
