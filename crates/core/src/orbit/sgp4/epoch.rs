@@ -43,6 +43,19 @@ impl Epoch {
         is_time.then(|| Self { day, seconds: (hour * 3600 + minute * 60) as f64 + seconds })
     }
 
+    /// From a Julian date in two parts, such as a midnight and the part of the day since; `None` if these are no
+    /// numbers of this or the next thousands of years.
+    pub fn of_julian_date(whole: f64, part: f64) -> Option<Self> {
+        const LONGEST: f64 = 1e7;
+        let days = whole - 2_451_544.5;
+        let midnight = days.floor();
+        let since = (days - midnight) + part;
+        (days.abs() < LONGEST && part.abs() < LONGEST).then(|| Self {
+            day: (midnight + since.floor()) as i64,
+            seconds: (since - since.floor()) * 86_400.0,
+        })
+    }
+
     /// Julian date in one number, good to 20 µs, as the reference code has it: on orbits of two weeks the Moon's
     /// pull tells the difference (4 mm).
     pub(super) fn julian_day(&self) -> f64 {
@@ -128,6 +141,13 @@ mod tests {
         }
         assert_eq!(Epoch::parse("2024-060T06:00:00"), Epoch::parse("2024-02-29T06:00:00.0Z"));
         assert_eq!(Epoch::of_year(2000, 1.5).julian_date(), (2_451_544.5, 0.5));
+        for (whole, part) in
+            [(2_451_544.5, 0.5), (2_451_545.0, 0.0), (2_451_543.5, 1.5), (2_451_545.25, -0.25)]
+        {
+            assert_eq!(Epoch::of_julian_date(whole, part), Some(Epoch::of_year(2000, 1.5)));
+        }
+        assert_eq!(Epoch::of_julian_date(f64::NAN, 0.0), None);
+        assert_eq!(Epoch::of_julian_date(2_451_544.5, f64::INFINITY), None);
     }
 
     #[test]
