@@ -74,6 +74,7 @@ def test_a_message_is_the_same_orbit_as_its_tle(message: Any) -> None:
     [
         ({"BSTAR": None}, "has no BSTAR"),
         ({"EPOCH": "yesterday"}, "EPOCH is"),
+        ({"EPOCH": "00-06-27T18:50:19.733568"}, "EPOCH is"),
         ({"MEAN_MOTION": "fast"}, "MEAN_MOTION is"),
         ({"ECCENTRICITY": 1.2}, "eccentricity is 1.2"),
         ({"MEAN_ELEMENT_THEORY": "DSST"}, "MEAN_ELEMENT_THEORY"),
@@ -91,6 +92,7 @@ def test_messages_without_sense_are_refused(change: dict[str, Any], says: str) -
     [
         "", "hello", "{", "<a>", "<a/>", "[]", "[1]", json.dumps([OMM, OMM]), as_kvn() * 2, as_csv(OMM, OMM),
         as_csv().splitlines()[0], as_xml().replace("tleParameters", "parameters"), "a,b\n" + "x" * 200_000,
+        as_xml().replace("UTF-8", "UTF-88"),
         as_xml().replace("<ndm>", "<!DOCTYPE ndm [<!ENTITY a 'b'>]><ndm>"),
     ],
 )  # fmt: skip
@@ -109,6 +111,11 @@ def test_sgp4_says_what_it_is() -> None:
     rotation, rate = orbit.lvlh(np.arange(5.0))
     assert r.shape == v.shape == rate.shape == (5, 3) and rotation.shape == (5, 3, 3)
     np.testing.assert_allclose(rotation[:, :, 0], r / np.linalg.norm(r, axis=1)[:, None], atol=1e-15)
+
+
+def test_an_epoch_of_a_december_before_2000_is_written_as_it_is() -> None:
+    orbit = oo.Sgp4.from_omm(OMM | {"EPOCH": "1989-12-24T06:00:00"})
+    assert orbit.epoch == "1989-12-24T06:00:00.000000Z"
 
 
 def test_bad_lines_name_line_and_column() -> None:

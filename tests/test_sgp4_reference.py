@@ -65,6 +65,8 @@ def test_what_is_no_such_satrec_is_refused() -> None:
         oo.Sgp4.from_satrec(Satrec())
     with pytest.raises(ElementSetError, match=re.escape("inclination (deg) is")):
         oo.Sgp4.from_satrec(initialized(inclo=4.0))
+    with pytest.raises(ElementSetError, match="argpo of the Satrec is nan"):
+        oo.Sgp4.from_satrec(initialized(argpo=np.nan))
     with pytest.raises(InputError, match="got str"):
         oo.Sgp4.from_satrec("1 00005U")
     wrong: Any = "own"

@@ -63,7 +63,7 @@ def _from_xml(text: str) -> list[dict[str, Any]]:
         raise ElementSetError("the OMM has a document type (<!DOCTYPE>), which is refused: remove it")
     try:
         messages = list(omm.parse_xml(io.StringIO(text)))
-    except ParseError as error:
+    except (ParseError, LookupError, ValueError) as error:  # LookupError: an encoding that there is not
         raise ElementSetError(f"the OMM is no XML: {error}") from None
     except (AttributeError, TypeError):  # of None, which stands for an element that is not there
         raise ElementSetError(

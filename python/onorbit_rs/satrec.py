@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any
@@ -19,6 +20,11 @@ _UNUSED = {
     "MEAN_MOTION_DOT": 0, "MEAN_MOTION_DDOT": 0,
 }  # fmt: skip
 """Keywords that ``sgp4.omm`` wants and SGP4 does not use."""
+_NUMBERS = (
+    "jdsatepoch", "jdsatepochF", "bstar", "ndot", "nddot", "ecco", "argpo", "inclo", "mo", "no_kozai",
+    "nodeo",
+)  # fmt: skip
+_CONSTANTS = ("radiusearthkm", "mu", "xke", "j2", "j3", "j4")
 
 
 def of_lines(line1: str, line2: str, gravity: str) -> Satrec:
@@ -34,13 +40,6 @@ def of_message(message: Mapping[str, Any], epoch: str, gravity: str) -> Satrec:
     return satrec
 
 
-_CONSTANTS = ("radiusearthkm", "mu", "xke", "j2", "j3", "j4")
-_ELEMENTS = (
-    "satnum", "jdsatepoch", "jdsatepochF", "bstar", "ndot", "nddot", "ecco", "argpo", "inclo", "mo",
-    "no_kozai", "nodeo", "operationmode", *_CONSTANTS,
-)  # fmt: skip
-
-
 def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
     """Elements and gravity constants of another, which may change later, and the name of its Earth model.
 
@@ -49,16 +48,21 @@ def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
     InputError
         It is no ``Satrec``.
     ElementSetError
-        It has constants of its own, or the AFSPC mode, which the reference code alone has.
+        A number is not finite; it has gravity constants of its own, or the AFSPC mode, which the reference
+        code alone has.
     """
     try:
-        elements = SimpleNamespace(**{name: getattr(satrec, name) for name in _ELEMENTS})
+        names = ("satnum", "operationmode", *_NUMBERS, *_CONSTANTS)
+        elements = SimpleNamespace(**{name: getattr(satrec, name) for name in names})
     except AttributeError:
         raise InputError(
             f"a Satrec of PyPI's sgp4 is needed, got {type(satrec).__name__}: make one with"
             " Satrec.twoline2rv or sgp4init",
             name="satrec",
         ) from None
+    for name in _NUMBERS:
+        if not math.isfinite(value := getattr(elements, name)):
+            raise ElementSetError(f"{name} of the Satrec is {value}, not finite", name=name, got=value)
     if elements.operationmode == "a" and not by_reference:
         raise ElementSetError(
             "the Satrec is in AFSPC mode ('a'), which the engine's SGP4 does not have: initialize it with 'i'"

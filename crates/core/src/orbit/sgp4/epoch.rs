@@ -29,6 +29,9 @@ impl Epoch {
         let second = time.next()?;
         let seconds: f64 =
             second.starts_with(|c: char| c.is_ascii_digit()).then(|| second.parse().ok())??;
+        if date.find('-') != Some(4) {
+            return None; // two digits of a year are not one
+        }
         let parts = date.split('-').map(digits).collect::<Option<Vec<i64>>>()?;
         let day = match parts[..] {
             [year, month, day] if (1..=12).contains(&month) => {
@@ -100,7 +103,8 @@ fn days_since_2000(year: i64, month: i64, day: i64) -> i64 {
 
 /// Year, month and day of a day counted from 2000-01-01.
 fn civil(days: i64) -> (i64, i64, i64) {
-    let mut year = 2000 + days.div_euclid(366);
+    // not after it, on either side of 2000
+    let mut year = 2000 + days.div_euclid(if days < 0 { 365 } else { 366 });
     while days_since_2000(year + 1, 1, 1) <= days {
         year += 1;
     }
@@ -151,6 +155,18 @@ mod tests {
     }
 
     #[test]
+    fn every_day_of_a_century_comes_back() {
+        let first = days_since_2000(1957, 1, 1);
+        for days in first..days_since_2000(2057, 1, 1) {
+            let (year, month, day) = civil(days);
+            assert_eq!(days_since_2000(year, month, day), days);
+            assert!((1..=12).contains(&month) && (1..=31).contains(&day), "{year}-{month}-{day}");
+        }
+        assert_eq!(civil(first), (1957, 1, 1));
+        assert_eq!(civil(-3660), (1989, 12, 24));
+    }
+
+    #[test]
     fn sidereal_time_is_the_published_one() {
         // Vallado, Fundamentals of Astrodynamics and Applications, example 3-5: 152.5788°
         let epoch = Epoch::parse("1992-08-20T12:14:00").expect("a date");
@@ -169,6 +185,8 @@ mod tests {
             "2024-01-01T00:00:nan",
             "2024-01-01T00:00:00:00",
             "2024-1e1-01T00:00:00",
+            "24-01-01T00:00:00",
+            "06-27T18:50:19",
         ] {
             assert_eq!(Epoch::parse(text), None, "{text}");
         }
