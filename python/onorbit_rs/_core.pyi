@@ -16,6 +16,7 @@ _Path = str | PathLike[str]
 _External = Mapping[str, ArrayLike]
 _JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
 _EarthModel = Literal["wgs72", "wgs72old", "wgs84"]
+_Propagator = Literal["native", "reference"]
 _GravityMode = Literal["true", "carried"]
 _Integrator = Literal["rk4", "semi_implicit_euler", "dormand_prince"]
 _CertificateRow = tuple[str, float | None, float, bool]
@@ -514,10 +515,23 @@ class Kepler(Orbit):
 @final
 class Sgp4(Orbit):
     def __new__(
-        cls, line1: str, line2: str, *, gravity: _EarthModel = "wgs72", check_checksum: bool = True
+        cls,
+        line1: str,
+        line2: str,
+        *,
+        gravity: _EarthModel = "wgs72",
+        check_checksum: bool = True,
+        propagator: _Propagator = "native",
     ) -> Sgp4: ...
     @staticmethod
-    def from_omm(message: Mapping[str, Any] | str, *, gravity: _EarthModel = "wgs72") -> Sgp4: ...
+    def from_omm(
+        message: Mapping[str, Any] | str,
+        *,
+        gravity: _EarthModel = "wgs72",
+        propagator: _Propagator = "native",
+    ) -> Sgp4: ...
+    @staticmethod
+    def from_satrec(satrec: Any, *, propagator: _Propagator = "native") -> Sgp4: ...
     @property
     def satellite(self) -> int: ...
     @property

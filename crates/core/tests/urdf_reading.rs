@@ -127,7 +127,7 @@ fn colours_are_found_by_name_and_shapes_that_cannot_be_read_are_told() {
         "<material name='red'><color rgba='1 0 0 1'/></material><link name='a'>{INERTIAL}{}{}{}{}{}{}{}\
          <collision><geometry><cylinder radius='${{r}}'/></geometry></collision>\
          <collision><geometry><mesh filename='package://x/b.stl'/></geometry></collision>\
-         <collision><origin xyz='1 2 3'/><geometry><sphere radius='2'/></geometry></collision></link>",
+         <collision><origin xyz='1 2 3'/><geometry><sphere radius='2'/></geometry><material name='red'/></collision></link>",
         visual("<box size='1 2 3'/>", "name='red'/>"),
         visual("<capsule radius='1' length='2'/>", "name='red'><color rgba='0 1 0 0.5'/></material>"),
         visual("<mesh filename='package://x/a.stl' scale='1 1 2'/>", "name='unknown'/>"),
@@ -148,6 +148,7 @@ fn colours_are_found_by_name_and_shapes_that_cannot_be_read_are_told() {
     assert_eq!((&shapes[2].geometry, shapes[2].rgba), (&mesh, None));
     let [(0, solid)] = model.collisions() else { panic!("one of the three is a shape that is no mesh") };
     assert_eq!((&solid.geometry, solid.pose.translation.z), (&Geometry::Sphere { radius: 2.0 }, 3.0));
+    assert_eq!(solid.rgba, Some([1.0, 0.0, 0.0, 1.0]));
     let texts: Vec<String> = model.warnings().iter().map(ToString::to_string).collect();
     assert!(!texts.iter().any(|text| text.contains("b.stl")), "{texts:?}");
     assert_eq!(

@@ -42,6 +42,11 @@ impl<'a> Element<'a> {
         self.children(name).next()
     }
 
+    /// The colour of a material, where it says one.
+    pub(super) fn color(self) -> Option<Self> {
+        self.child("color").filter(|color| color.text("rgba").is_some())
+    }
+
     pub(super) fn required_child(self, name: &'static str) -> Result<Self, UrdfError> {
         self.child(name).ok_or_else(|| self.lacks_element(name))
     }

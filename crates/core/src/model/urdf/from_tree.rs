@@ -4,12 +4,12 @@
 //! the loading; its types take what they are given from the tree that is there, checked on the way.
 
 use super::element::Element;
-use super::error::{UrdfError, UrdfProblem};
+use super::error::UrdfError;
 use super::joint::unknown_kind;
+use super::refusal::Refusal;
 use super::schema::{Attribute, attributes, check, elements};
 use serde::de::value::{MapDeserializer, StrDeserializer};
 use serde::de::{self, DeserializeSeed, Deserializer, EnumAccess, IntoDeserializer, VariantAccess, Visitor};
-use std::fmt;
 
 impl<'a> Element<'a> {
     /// The element as one of urdf-rs' types.
@@ -27,7 +27,8 @@ impl<'a> Element<'a> {
         });
         let inside = elements(self.tag()).iter().filter_map(move |&name| {
             let point_mass = (name == "inertia").then_some(Value::Zeros);
-            let element = self.child(name).filter(|_| is_read(name));
+            let element = if name == "color" { self.color() } else { self.child(name) };
+            let element = element.filter(|_| is_read(name));
             Some((name, element.map(Value::Element).or(point_mass)?))
         });
         texts.chain(inside)
@@ -150,50 +151,6 @@ impl<'a> VariantAccess<'a> for Shape<'a> {
         Value::Element(self.0).deserialize_any(visitor)
     }
 }
-
-/// Why urdf-rs' types do not take what they are given.
-#[derive(Debug)]
-enum Refusal {
-    /// Something must be there, in an element that is not known yet.
-    Missing(&'static str),
-    /// Another reason, as urdf-rs says it.
-    Other(String),
-    /// An error with its place.
-    Placed(UrdfError),
-}
-
-impl Refusal {
-    fn at(self, element: &Element<'_>) -> UrdfError {
-        match self {
-            Self::Missing(name) if elements(element.tag()).contains(&name) => element.lacks_element(name),
-            Self::Missing(name) => element.lacks_attribute(name),
-            Self::Other(reason) => element.fail(UrdfProblem::Unreadable { reason }),
-            Self::Placed(error) => error,
-        }
-    }
-}
-
-impl de::Error for Refusal {
-    fn custom<T: fmt::Display>(reason: T) -> Self {
-        Self::Other(reason.to_string())
-    }
-
-    fn missing_field(name: &'static str) -> Self {
-        Self::Missing(name)
-    }
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Missing(name) => write!(f, "no '{name}'"),
-            Self::Other(reason) => f.write_str(reason),
-            Self::Placed(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for Refusal {}
 
 #[cfg(test)]
 mod tests {

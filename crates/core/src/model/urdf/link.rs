@@ -42,7 +42,7 @@ pub(super) fn read_link(
     // those only stand in for a missing mesh: what is odd in them is nobody's business
     let solid = |shape: &Element<'_>| shape.child("geometry").is_some_and(|it| it.child("mesh").is_none());
     let collisions = link.children("collision").filter(solid);
-    result.collisions = collisions.filter_map(|shape| read_collision(shape, around).ok()).collect();
+    result.collisions = collisions.filter_map(|shape| read_visual(shape, around).ok()).collect();
     Ok(result)
 }
 
@@ -73,11 +73,6 @@ fn read_visual(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<Vi
     let urdf_rs::Visual { origin, geometry, material, .. } = element.read()?;
     let rgba = material.map(|material| around.materials.rgba(material)).transpose()?.flatten();
     Ok(Visual { pose: pose(element, &origin)?, geometry: shape(geometry, &mut around.meshes), rgba })
-}
-
-fn read_collision(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<Visual, UrdfError> {
-    let urdf_rs::Collision { origin, geometry, .. } = element.read()?;
-    Ok(Visual { pose: pose(element, &origin)?, geometry: shape(geometry, &mut around.meshes), rgba: None })
 }
 
 fn shape(read: urdf_rs::Geometry, meshes: &mut Meshes<'_>) -> Geometry {

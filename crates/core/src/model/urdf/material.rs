@@ -20,7 +20,7 @@ impl<'a> Materials<'a> {
             .flat_map(|visual| visual.children("material"));
         let mut named = HashMap::new();
         for material in robot.children("material").chain(nested) {
-            if let (Some(name), Some(color)) = (material.text("name"), material.child("color")) {
+            if let (Some(name), Some(color)) = (material.text("name"), material.color()) {
                 named.entry(name).or_insert(color);
             }
         }

@@ -20,6 +20,7 @@ mod link;
 mod material;
 mod mesh;
 mod pose;
+mod refusal;
 mod schema;
 mod several;
 

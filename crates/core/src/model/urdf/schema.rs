@@ -59,8 +59,8 @@ pub(super) fn elements(tag: &str) -> &'static [&'static str] {
     match tag {
         "joint" => &["parent", "child", "origin", "axis", "limit", "dynamics"],
         "inertial" => &["origin", "mass", "inertia"],
-        "visual" => &["origin", "geometry", "material"],
-        "collision" => &["origin", "geometry"],
+        // real files colour collisions too
+        "visual" | "collision" => &["origin", "geometry", "material"],
         "material" => &["color"],
         _ => &[],
     }
