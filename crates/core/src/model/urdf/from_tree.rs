@@ -1,6 +1,6 @@
 //! An element as urdf-rs' types: serde asks it for what the schema lists.
 //!
-//! `urdf_rs::read_from_string` parses its text twice and takes four times as long as the whole of
+//! `urdf_rs::read_from_string` parses its text twice and takes nearly four times as long as the whole of
 //! the loading; its types take what they are given from the tree that is there, checked on the way.
 
 use super::element::Element;
