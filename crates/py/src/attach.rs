@@ -1,4 +1,4 @@
-//! One robot of two: an arm on a bus.
+//! Attaches one robot to another.
 
 use crate::arrays::fixed;
 use crate::errors::{IntoPython, fields, plain};
@@ -11,29 +11,35 @@ use pyo3::prelude::*;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// One robot of two: ``other`` fixed to a frame of ``model``, whose base stays the base.
+/// Attach one robot to another, such as an arm to a bus, and return the combined robot.
+///
+/// ``other`` is fixed to a frame of ``model``. The base and the name of the result are those of ``model``.
 ///
 /// Parameters
 /// ----------
 /// model : Model
-///     Such as a bus. The new robot has its name.
+///     The robot that carries the other, such as a bus.
 /// frame : str
-///     Where on it: a link or frame.
+///     Link or frame of ``model`` to attach to.
 /// other : Model
-///     Such as an arm.
+///     The robot to attach, such as an arm.
 /// other_frame : str, optional
-///     The frame of ``other`` that is put there, fixed to its base; its root link where not given.
+///     Mounting frame of ``other``. It must be fixed to the base of ``other``. Defaults to its root link.
 /// pose : (4, 4) array, optional
-///     Pose of that frame in ``frame``, m.
+///     Homogeneous transform of the mounting frame in ``frame``, m. Defaults to the identity.
 /// prefix : str, optional
-///     Put before the names of the links, joints and frames of ``other``: ``"left_"``.
+///     Prefix for the names of all links, joints and frames of ``other``, such as ``"left_"``.
+///
+/// Returns
+/// -------
+/// Model
 ///
 /// Raises
 /// ------
 /// FrameError
-///     There is no such frame.
+///     If a frame does not exist.
 /// ModelError
-///     Both have a link, joint or frame of the same name, or ``other_frame`` is moved by joints.
+///     If both robots have a link, joint or frame of the same name, or if joints move ``other_frame``.
 #[pyfunction]
 #[pyo3(signature = (model, frame, other, other_frame=None, *, pose=None, prefix=""))]
 pub(crate) fn attach(
@@ -54,11 +60,11 @@ pub(crate) fn attach(
     let whole = bus.attach(frame, arm, &mount).map_err(|error| error.into_python(py))?;
     let keywords = fields!(py, "pose": copied(pose)?, "prefix": prefix);
     let made = Made::with("attach", (model, frame, other, other_frame), &keywords)?;
-    let known = whole.warnings().to_vec(); // they were told of the two
+    let known = whole.warnings().to_vec(); // they were issued when the two robots were loaded
     PyModel::wrap(py, whole, Some(made), &known)
 }
 
-/// A (4, 4) pose.
+/// Converts a (4, 4) homogeneous transform.
 fn isometry(pose: Any<'_, '_>) -> PyResult<Isometry3<f64>> {
     let poses = Hold::from_rows(&[fixed(pose, "pose", &[4, 4])?])
         .map_err(|error| plain(pose.py(), "ModelError", &error.to_string()))?;

@@ -1,4 +1,4 @@
-//! New values for links of a robot.
+//! Changes of link properties, as given from Python.
 
 use crate::arrays::{fixed, type_name};
 use crate::builder::vector;
@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// ``com`` (3,), m; ``inertia`` (3, 3), kg m²; None stays as it is.
+/// Converts the arguments of ``with_link``: ``com`` (3,), m; ``inertia`` (3, 3), kg m².
 pub(crate) fn link_change(
     link: &str,
     mass: Option<f64>,
@@ -23,7 +23,7 @@ pub(crate) fn link_change(
     Ok(LinkChange { link: link.to_owned(), mass, com, inertia })
 }
 
-/// ``{link: {"mass": ..., "com": ..., "inertia": ...}}``.
+/// Converts ``{link: {"mass": ..., "com": ..., "inertia": ...}}``.
 pub(crate) fn link_changes(links: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<LinkChange>> {
     let Some(links) = links else { return Ok(Vec::new()) };
     links.iter().map(|(name, values)| one_of(&name.extract::<String>()?, &values)).collect()

@@ -53,7 +53,7 @@ pub(crate) fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// A deep copy: what is given may be written to later.
+/// Returns a deep copy, which later changes of the original do not affect.
 pub(crate) fn copied<'py>(value: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Bound<'py, PyAny>>> {
     value.map(|value| value.py().import("copy")?.call_method1("deepcopy", (value,))).transpose()
 }

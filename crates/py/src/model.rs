@@ -38,7 +38,7 @@ pub(crate) struct PyModel {
 }
 
 impl PyModel {
-    /// With a warning for each remark that is not one of `known`.
+    /// Wraps a model and issues its warnings, except those in `known`.
     pub(crate) fn wrap(
         py: Python<'_>,
         model: Model,
@@ -74,8 +74,8 @@ impl PyModel {
     /// ``xacro`` (``pip install 'onorbit-rs[xacro]'``); its expressions are evaluated by onorbit_rs, which runs
     /// none of them as Python. ``package_paths``: folders that hold ROS packages or are one, searched for
     /// ``package://`` and ``$(find ...)``; ``xacro_arguments``: ``{name: value}``, what ``$(arg name)`` gives.
-    /// ``links``: ``{name: {"mass": kg, "com": (3,) m, "inertia": (3, 3) kg m²}}``, values that replace those of the file
-    /// before anything is checked; as :meth:`with_link`.
+    /// ``links``: ``{name: {"mass": kg, "com": (3,) m, "inertia": (3, 3) kg m²}}`` replaces values of the file before the robot
+    /// is checked, as :meth:`with_link` does afterwards.
     #[staticmethod]
     #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None, xacro=false, links=None))]
     fn from_urdf(
@@ -134,10 +134,29 @@ impl PyModel {
         Self::wrap(py, model, Some(Made::by("Model.rigid_body", &keywords)?), &[])
     }
 
-    /// The same robot with another mass, kg, centre of mass ``com`` (3,), m, or ``inertia`` (3, 3), kg m², of a link.
+    /// Return a copy of the robot with the inertial properties of one link replaced.
     ///
-    /// ``inertia`` is about the centre of mass; both are in link axes. What is None stays as it is: a new mass leaves the
-    /// inertia alone. Raises ``FrameError`` for a name that no link has, ``ModelError`` for values that no robot can have.
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Name of the link.
+    /// mass : float, optional
+    ///     Mass, kg. The inertia does not scale with it.
+    /// com : (3,) array, optional
+    ///     Centre of mass in link axes, m.
+    /// inertia : (3, 3) array, optional
+    ///     Inertia about the centre of mass in link axes, kg m².
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If no link has this name.
+    /// ModelError
+    ///     If the values are not physical, or the link has no inertial and no mass is given.
     #[pyo3(signature = (name, *, mass=None, com=None, inertia=None))]
     fn with_link(
         slf: &Bound<'_, Self>,

@@ -1,4 +1,4 @@
-"""Which robot a scenario is drafted for, and how the scenario writes it."""
+"""The robot that a scenario is drafted for."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Source:
-    """A bundled name or a file with the options that it is read with; and the bus that carries it, if any."""
+    """A bundled name or a file with its reading options, and optionally the bus that carries it."""
 
     robot: str
     package_paths: Sequence[Path] | None = None
     xacro_arguments: Mapping[str, str] | None = None
     xacro: bool = False
     bus: str | None = None
-    """A bundled name or a file; its packages are looked up in ``package_paths`` too."""
+    """A bundled name or a file; ``package_paths`` applies to it as well."""
     at: str | None = None
-    """The frame of the bus that the robot is fixed to; may be left out where there is only one."""
+    """Frame of the bus to attach to. Optional if the bus has only one frame."""
     prefix: str = ""
 
     def model(self) -> Model:
-        """The robot, on its bus.
+        """Load the robot and attach it to its bus.
 
         Raises
         ------
         OnOrbitError
-            One of the two cannot be read, the bus has no such frame, or names collide.
+            If a robot cannot be read, the bus has no such frame, or names collide.
         """
         robot = robots.load(
             self.robot, package_paths=self.package_paths, xacro_arguments=self.xacro_arguments,
@@ -47,11 +47,11 @@ class Source:
         return _core.attach(bus, self._frame(bus), robot, prefix=self.prefix)
 
     def name(self, model: Model) -> str:
-        """Of the scenario."""
+        """Name of the drafted scenario."""
         return f"{Path(self.robot).name.split('.')[0] if robots.is_file(self.robot) else model.name}_first"
 
     def written(self, beside: Path | None, model: Model) -> dict[str, Any] | str:
-        """As a scenario in the folder ``beside`` writes it; with absolute paths where there is none."""
+        """Return the scenario's ``robot`` entry; paths are relative to the folder ``beside``, absolute if None."""
         robot = self._robot(beside)
         if self.bus is None:
             return robot
@@ -64,7 +64,7 @@ class Source:
         return {"bus": {"urdf": bus, "package_paths": packages} if packages else bus, "arms": [mounted]}
 
     def _frame(self, bus: Model) -> str:
-        """Where on the bus."""
+        """Return the frame of the bus to attach to."""
         if self.at is not None:
             return self.at
         if len(bus.frame_names) == 1:
@@ -78,7 +78,7 @@ class Source:
         return self.package_paths if self.bus is not None and robots.is_file(self.bus) else None
 
     def _robot(self, beside: Path | None) -> dict[str, Any] | str:
-        """Without the bus."""
+        """Return the entry of the robot without its bus."""
         if not robots.is_file(self.robot):
             return self.robot
         path = _path(Path(self.robot), beside)
@@ -99,7 +99,7 @@ def _source(robot: str) -> dict[str, Any]:
 
 
 def _path(path: Path, beside: Path | None) -> str:
-    """From the scenario's folder where that is near, else absolute."""
+    """Return a path relative to the scenario's folder if that is near, otherwise an absolute path."""
     if beside is not None:
         try:
             relative = os.path.relpath(path.resolve(), beside.resolve())

@@ -1,4 +1,4 @@
-"""The robot of a scenario."""
+"""Build the robot of a scenario."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
 
 def make_robot(scenario: Scenario) -> _core.Model:
-    """The robot of a scenario.
+    """Build the robot of a scenario.
 
     Raises
     ------
     OnOrbitError
-        The fitting subclass, with file, line and place before the engine's own words.
+        The appropriate subclass; its message starts with file, line and key.
     """
     robot = scenario.robot
     if robot.bus is None:
@@ -48,7 +48,7 @@ def make_robot(scenario: Scenario) -> _core.Model:
 
 
 def _plain(scenario: Scenario, robot: PlainRobot, at: Place) -> _core.Model:
-    """A robot that is no bus with arms."""
+    """Build a robot that is not a bus with arms."""
     if robot.rigid_body is not None:
         with located(scenario, *at):
             return _core.Model.rigid_body(robot.rigid_body.mass, np.array(robot.rigid_body.inertia))
@@ -67,7 +67,7 @@ def _plain(scenario: Scenario, robot: PlainRobot, at: Place) -> _core.Model:
 
 
 def _matrix(pose: Pose | None) -> NDArray[np.float64] | None:
-    """(4, 4)."""
+    """Homogeneous transform (4, 4)."""
     if pose is None:
         return None
     return pose_of(matrix_from_quaternion(quaternion_of(pose.attitude)), np.array(pose.position))

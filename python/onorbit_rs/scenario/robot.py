@@ -52,17 +52,17 @@ XacroArgument = Annotated[str | bool | int | float, BeforeValidator(_argument)]
 
 
 class LinkValues(Part):
-    """Values that replace those of the file; what is not given stays: a new mass leaves the inertia alone."""
+    """Inertial values that replace those of the file; values not given keep those of the file."""
 
     mass: Annotated[Mass, Positive] | None = None
     com: Length3 | None = None
-    """Centre of mass, link axes."""
+    """Centre of mass in link axes."""
     inertia: InertiaMatrix | None = None
-    """(3, 3), kg m², about the centre of mass, link axes; three numbers are a diagonal."""
+    """(3, 3), kg m², about the centre of mass in link axes; three numbers are a diagonal. A new mass does not scale it."""
 
     @property
     def given(self) -> dict[str, Any]:
-        """What is given, as the engine takes it."""
+        """The given values as keyword arguments of ``Model.with_link``."""
         return self.model_dump(exclude_none=True)
 
 
@@ -79,7 +79,7 @@ class PlainRobot(Part):
     xacro: bool = False
     """Whether to expand a file that is not named ``.xacro``."""
     links: dict[str, LinkValues] = Field(default_factory=dict)
-    """By link: mass, centre of mass and inertia that replace those of the file."""
+    """By name of the link: mass, centre of mass and inertia that replace those of the file."""
 
     sources: ClassVar[tuple[str, ...]] = ("bundled", "urdf", "rigid_body")
 
@@ -115,28 +115,28 @@ class PlainRobot(Part):
 
     @model_serializer(mode="wrap")
     def _without_empty_parts(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """What is empty, or off, is not written out."""
+        """Omit empty and false entries."""
         return {key: value for key, value in handler(self).items() if value not in ({}, [], "", False)}
 
 
 class Arm(PlainRobot):
-    """A robot on a frame of the bus."""
+    """A robot attached to a frame of the bus."""
 
     at: str
-    """The link or frame of the bus."""
+    """Link or frame of the bus to attach to."""
     frame: str | None = None
-    """The frame of the arm that is put there, fixed to its base; its root link where not given."""
+    """Mounting frame of the arm, fixed to its base. Defaults to its root link."""
     pose: Pose | None = None
-    """Pose of that frame in ``at``."""
+    """Pose of the mounting frame in ``at``."""
     prefix: str = ""
-    """Put before the names of the arm's links, joints and frames."""
+    """Prefix for the names of the arm's links, joints and frames."""
 
 
 class Robot(PlainRobot):
     """Exactly one of ``bundled``, ``urdf``, ``rigid_body`` and ``bus``."""
 
     bus: PlainRobot | None = None
-    """What carries ``arms``; written as any robot. Its base is that of the whole."""
+    """The robot that carries ``arms``, specified like any robot. Its base is the base of the combined robot."""
     arms: Annotated[list[Arm], Field(min_length=1)] | None = None
 
     sources: ClassVar[tuple[str, ...]] = ("bundled", "urdf", "rigid_body", "bus")

@@ -1,4 +1,4 @@
-//! One tree of two robots: an arm on a bus.
+//! Attaches one robot to another, such as an arm to a bus.
 
 use super::builder::ModelBuilder;
 use super::description::{Joint, JointKind};
@@ -6,22 +6,22 @@ use super::error::ModelError;
 use super::tree::Model;
 use nalgebra::{Isometry3, Rotation3};
 
-/// How a robot sits on a frame of another.
+/// Placement of a robot on a frame of another robot.
 #[derive(Clone, Debug, Default)]
 pub struct Mount {
-    /// The frame that is put on the other's; the root link where `None`.
+    /// Mounting frame of the attached robot, fixed to its base; its root link if `None`.
     pub frame: Option<String>,
-    /// Its pose in the frame it is put on.
+    /// Pose of the mounting frame in the frame that it is attached to.
     pub pose: Isometry3<f64>,
-    /// Put before the names of the robot's links, joints and frames.
+    /// Prefix for the names of the attached robot's links, joints and frames.
     pub prefix: String,
 }
 
 impl Model {
-    /// This robot with `other` fixed to one of its frames; its own root link stays the base.
+    /// Returns this robot with `other` fixed to the frame `frame`. The base remains that of this robot.
     ///
     /// # Errors
-    /// No such frame, a frame of `other` that its joints move, a name that both have, or too many joints.
+    /// Unknown frame, a mounting frame that is moved by joints, a name that both robots have, or too many joints.
     pub fn attach(&self, frame: &str, other: &Self, mount: &Mount) -> Result<Self, ModelError> {
         let (carrier, on_carrier) = self.description.frame(frame)?;
         let in_root = match &mount.frame {
@@ -33,14 +33,14 @@ impl Model {
         builder.keep_notes(self).keep_notes(other);
         let mut name = format!("{frame}_to_{}", robot.links[0].name);
         while builder.has_joint(&name) {
-            name.push('_'); // nobody has chosen it: it must not be what is refused
+            name.push('_'); // this name is generated, so it must never be the reason for a refusal
         }
         let joint = Joint::new(&name, JointKind::Fixed, on_carrier * mount.pose * in_root.inverse());
         builder.add_robot(&carrier.name, joint, robot).map_err(|error| error.of_prefix(&mount.prefix))?;
         builder.build()
     }
 
-    /// Pose of a frame in the root link's, for a frame that no joint moves.
+    /// Pose of a frame of the base in the root link's frame.
     fn pose_in_root(&self, name: &str) -> Result<Isometry3<f64>, ModelError> {
         let frame = &self.frames[self.frame(name)?];
         if frame.body != 0 {

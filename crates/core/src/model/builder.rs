@@ -66,7 +66,7 @@ impl ModelBuilder {
         Ok(self)
     }
 
-    /// A robot that is described already, to go on with.
+    /// Starts from the description of an existing robot.
     ///
     /// # Errors
     /// As [`ModelBuilder::new`] and [`ModelBuilder::add`].
@@ -77,7 +77,7 @@ impl ModelBuilder {
         Ok(builder)
     }
 
-    /// Hangs a whole robot on the link `parent` by a joint to its root link.
+    /// Attaches a whole robot to the link `parent`; `joint` carries the robot's root link.
     ///
     /// # Errors
     /// As [`ModelBuilder::add`].
@@ -92,7 +92,7 @@ impl ModelBuilder {
         self.add_below_root(robot)
     }
 
-    /// Adds the rest of a robot whose root link is there.
+    /// Adds all of a robot except its root link, which must have been added before.
     fn add_below_root(&mut self, robot: Description) -> Result<&mut Self, ModelError> {
         let names: Vec<String> = robot.links.iter().map(|link| link.name.clone()).collect();
         for ((parent, joint), link) in robot.joints.into_iter().zip(robot.links.into_iter().skip(1)) {
@@ -130,7 +130,7 @@ impl ModelBuilder {
         self
     }
 
-    /// Keeps the remarks of whoever read a robot; those on its inertias come again with its links.
+    /// Copies the notes of a robot. Warnings about inertias are not copied: adding its links produces them again.
     pub(super) fn keep_notes(&mut self, model: &Model) -> &mut Self {
         let notes = model.warnings().iter().filter(|warning| matches!(warning, ModelWarning::Note(_)));
         self.warnings.extend(notes.cloned());
@@ -173,7 +173,7 @@ impl ModelBuilder {
         Ok(())
     }
 
-    /// Whether a joint has this name, moving or fixed.
+    /// Returns true if a moving or fixed joint has this name.
     pub(super) fn has_joint(&self, name: &str) -> bool {
         self.joint_names.contains(name)
     }

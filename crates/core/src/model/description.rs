@@ -3,21 +3,21 @@
 use super::error::ModelError;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
-/// The links and joints that a robot is compiled from.
+/// Links, joints and frames that a [`Model`](super::Model) is compiled from.
 #[derive(Clone, Debug, Default)]
 pub struct Description {
     /// Name of the robot.
     pub name: String,
-    /// The links, the root first, parents before children.
+    /// All links; the root is first, parents precede children.
     pub links: Vec<Link>,
-    /// Joint of link `i + 1` and the index of the link it hangs on.
+    /// `joints[i]` connects link `i + 1` to its parent: index of the parent link, joint.
     pub joints: Vec<(usize, Joint)>,
-    /// Frames beside those of the links: name, link, pose in the link's frame.
+    /// Additional frames: name, index of the link, pose in the link's frame.
     pub frames: Vec<(String, usize, Isometry3<f64>)>,
 }
 
 impl Description {
-    /// The link that a frame is fixed to, and the frame's pose in it.
+    /// Returns the link that a frame is fixed to and the frame's pose in that link.
     ///
     /// # Errors
     /// [`ModelError::UnknownName`] with the nearest name.
@@ -34,7 +34,7 @@ impl Description {
         })
     }
 
-    /// The same robot with `prefix` before the names of its links, joints and frames.
+    /// Returns the description with `prefix` prepended to the names of all links, joints and frames.
     #[must_use]
     pub fn prefixed(mut self, prefix: &str) -> Self {
         let links = self.links.iter_mut().map(|link| &mut link.name);

@@ -57,7 +57,7 @@ pub(super) fn check_inertial(link: &str, inertial: &Inertial, is_part: bool) -> 
     Ok(if *mass == 0.0 { Sense::Massless } else { sense(inertia, *mass) })
 }
 
-/// The inertia to compute with: principal moments that are negative by rounding are zero.
+/// Returns the inertia used in the dynamics: principal moments that are negative by rounding are set to zero.
 pub(super) fn usable_inertia(inertial: &Inertial) -> Matrix3<f64> {
     match sense(&inertial.inertia, inertial.mass) {
         Sense::Rounded(_) => without_negative_moments(&inertial.inertia),

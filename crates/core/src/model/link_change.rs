@@ -1,4 +1,4 @@
-//! A robot with another mass, centre of mass or inertia of one link.
+//! Replaces the mass, centre of mass or inertia of a link.
 
 use super::builder::ModelBuilder;
 use super::description::{Inertial, Link};
@@ -6,10 +6,10 @@ use super::error::ModelError;
 use super::tree::Model;
 use nalgebra::{Matrix3, Vector3};
 
-/// New values for a link; what is `None` stays as it is.
+/// New inertial values of a link; `None` keeps the present value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinkChange {
-    /// Its name.
+    /// Name of the link.
     pub link: String,
     /// Mass, kg.
     pub mass: Option<f64>,
@@ -20,10 +20,10 @@ pub struct LinkChange {
 }
 
 impl LinkChange {
-    /// Changes the link, if it is this one. Where it had no mass its centre of mass is its origin, its inertia zero.
+    /// Applies the change if `link` is the link it names. A link without inertial starts as a point mass at its origin.
     ///
     /// # Errors
-    /// [`ModelError::ChangeWithoutMass`] for a link without mass that is given none.
+    /// [`ModelError::ChangeWithoutMass`] if the link has no inertial and no mass is given.
     pub(super) fn apply(&self, link: &mut Link) -> Result<(), ModelError> {
         if link.name != self.link {
             return Ok(());
@@ -41,7 +41,7 @@ impl LinkChange {
         Ok(())
     }
 
-    /// Refuses a change of a link that is none of `names`.
+    /// Checks that the changed link is one of `names`.
     pub(super) fn check_is_one_of<'a>(
         &self,
         names: impl Iterator<Item = &'a str> + Clone,
@@ -55,10 +55,10 @@ impl LinkChange {
 }
 
 impl Model {
-    /// The same robot with a link changed.
+    /// Returns this robot with the values of one link replaced.
     ///
     /// # Errors
-    /// No such link, or values that no robot can have.
+    /// Unknown link, or values that are not physical.
     pub fn with_link(&self, change: &LinkChange) -> Result<Self, ModelError> {
         let mut description = self.description().clone();
         change.check_is_one_of(description.links.iter().map(|link| link.name.as_str()))?;

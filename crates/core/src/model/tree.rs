@@ -96,7 +96,7 @@ impl Model {
         &self.name
     }
 
-    /// What it was compiled from.
+    /// The description it was compiled from.
     pub fn description(&self) -> &Description {
         &self.description
     }
