@@ -51,7 +51,7 @@ class Source:
         return f"{Path(self.robot).name.split('.')[0] if robots.is_file(self.robot) else model.name}_first"
 
     def written(self, beside: Path | None, model: Model) -> dict[str, Any] | str:
-        """Return the scenario's ``robot`` entry; paths are relative to the folder ``beside``, absolute if None."""
+        """Return the scenario's ``robot`` entry; paths are relative to ``beside``, absolute if None."""
         robot = self._robot(beside)
         if self.bus is None:
             return robot

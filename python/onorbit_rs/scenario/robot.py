@@ -58,7 +58,7 @@ class LinkValues(Part):
     com: Length3 | None = None
     """Centre of mass in link axes."""
     inertia: InertiaMatrix | None = None
-    """(3, 3), kg m², about the centre of mass in link axes; three numbers are a diagonal. A new mass does not scale it."""
+    """(3, 3), kg m², about the centre of mass in link axes; three numbers are a diagonal."""
 
     @property
     def given(self) -> dict[str, Any]:
@@ -136,7 +136,7 @@ class Robot(PlainRobot):
     """Exactly one of ``bundled``, ``urdf``, ``rigid_body`` and ``bus``."""
 
     bus: PlainRobot | None = None
-    """The robot that carries ``arms``, specified like any robot. Its base is the base of the combined robot."""
+    """The robot that carries ``arms``, specified like any robot. Its base is that of the combined robot."""
     arms: Annotated[list[Arm], Field(min_length=1)] | None = None
 
     sources: ClassVar[tuple[str, ...]] = ("bundled", "urdf", "rigid_body", "bus")
