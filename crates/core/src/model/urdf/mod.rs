@@ -17,6 +17,8 @@ mod joint;
 mod link;
 mod material;
 mod mesh;
+mod mesh_name;
+mod mesh_near;
 mod several;
 
 pub use error::{UrdfError, UrdfProblem};
