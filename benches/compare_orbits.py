@@ -1,6 +1,6 @@
 """Orbits against their peers on PyPI, alternated in one run.
 
-``pip install sgp4 scipy brahe``, then ``python benches/compare_orbits.py [ROUNDS] [JOB ...]``, jobs ``sgp4``,
+``pip install scipy brahe``, then ``python benches/compare_orbits.py [ROUNDS] [JOB ...]``, jobs ``sgp4``,
 ``kepler`` and ``day``. Each round times ours and the peer's one after the other, best of three; printed are
 the median ratio and its spread, with the accuracy beside it. ``sgp4``: 1000 satellites at 1440 epochs against
 ``SatrecArray``. ``kepler``: a million pairs of elements and time against the same equations vectorised in

@@ -1,8 +1,9 @@
 """What the border costs: pytest-benchmark, run by ``make bench-rust`` and not by ``make test``.
 
-Held: the bundled humanoid, random states drawn once, arrays of float64. Varied: the kernel,
-one state or a thousand, how a run's columns are looked at. Kernels themselves are measured in Rust; ``call``
-here is one that does next to nothing, so that what is left is the border. Batches run on one thread.
+Held: the bundled humanoid, random states drawn once, arrays of float64. Varied: the kernel, one state or a
+thousand, how a run's columns are looked at; for loading, the number of links. Kernels themselves are timed in
+Rust; ``call`` here is one that does next to nothing, so that what is left is the border. Batches run on one
+thread.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs.validation.trees import random_tree, urdf
 
 MODEL = oo.robots.load("humanoid_torso")
 RNG = np.random.default_rng(1)
@@ -50,6 +52,12 @@ def test_call_of_next_to_nothing(benchmark: Any) -> None:
 @pytest.mark.benchmark(group="call")
 def test_call_without_an_argument(benchmark: Any) -> None:
     benchmark(MODEL.neutral)
+
+
+@pytest.mark.benchmark(group="load")
+@pytest.mark.parametrize("links", [12, 75])
+def test_loading_a_urdf(benchmark: Any, links: int) -> None:
+    benchmark(oo.Model.from_urdf_string, urdf(random_tree(75, links, rotors=False)))
 
 
 @pytest.mark.benchmark(group="one state")

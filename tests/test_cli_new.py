@@ -20,6 +20,8 @@ from onorbit_rs.drafting.reaction import GENTLE, calmest, turn_per_metre
 from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario import load
 
+ROBOTS = Path(__file__).parent / "fixtures" / "robots"
+
 INERTIAL = (
     '<inertial><origin xyz="0 0 0.1"/><mass value="{mass}"/>'
     '<inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial>'
@@ -75,25 +77,21 @@ def test_every_bundled_robot_gets_a_scenario_that_certifies(robot: str, tmp_path
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "name",
+    ("robot", "tool", "joints"),
     [
-        "drake_kuka_iiwa14_benchmark.urdf",
-        "pinocchio_baxter_simple.urdf",
-        "rbdjl_atlas.urdf",
-        "rbdl_tiago_dual.urdf",
-        "ets_vii_onorbitros.xacro",
-        "spaceros_SSRMS_Canadarm2.urdf.xacro",
+        ("arm_with_hand.urdf", "hand_tcp", 7),
+        ("long_arm_description/urdf/long_arm.urdf.xacro", "latch", 7),
     ],
 )
-def test_robots_of_others_get_one_too(shared: Path, name: str, tmp_path: Path) -> None:
+def test_robots_on_an_empty_world_get_one_too(robot: str, tool: str, joints: int, tmp_path: Path) -> None:
+    """A hand whose fingers must stay within their limits; 15 m that outweigh their base."""
     file = tmp_path / "mine.yaml"
-    file.write_text(draft(str(shared / "models" / name), beside=tmp_path).text)
+    drafted = draft(str(ROBOTS / robot), beside=tmp_path)
+    assert (drafted.tool, len(drafted.joints)) == (tool, joints)
+    file.write_text(drafted.text)
     summary = ran(file)
-    assert summary["base_rotation_max_rad"] < 0.4  # Canadarm2's turned by 121 degrees once
-    assert summary["joint_limits_exceeded"] == ""  # Tiago's fingers left theirs
-    if "SSRMS" in name:  # 15 m long; along the axes 8 cm are all that is gentle
-        goal = load(file).controllers[0].reference.goal
-        assert np.linalg.norm(goal.displacement) > 0.3
+    assert summary["base_rotation_max_rad"] < 0.4
+    assert summary["joint_limits_exceeded"] == ""
 
 
 def fingers(friction: float) -> str:
@@ -281,6 +279,12 @@ def test_what_stands_in_comments_works_when_it_is_uncommented(tmp_path: Path) ->
     file = tmp_path / "mine.yaml"
     file.write_text(wanted)
     ran(file)
+
+
+@pytest.mark.xfail(strict=True, reason="a name is trusted even where an arm goes on beyond it")
+def test_a_wrist_in_the_middle_of_an_arm_is_no_tool() -> None:
+    found = find_arm(oo.Model.from_urdf_string(arm(SEVEN).replace("link_5", "wrist")))
+    assert found is not None and found.tool == "link_6"
 
 
 def test_the_tool_is_found_or_told() -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sgp4.api import Satrec
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import (
@@ -45,11 +46,21 @@ def as_kvn() -> str:
 
 
 def as_xml() -> str:
-    leaves = "".join(f"<{key}>{value}</{key}>" for key, value in OMM.items())
-    return f'<?xml version="1.0"?><ndm><omm><body><segment><data>{leaves}</data></segment></body></omm></ndm>'
+    def part(name: str, *keys: str) -> str:
+        return f"<{name}>{''.join(f'<{key}>{OMM[key]}</{key}>' for key in keys)}</{name}>"
+
+    names, elements, parameters = tuple(OMM)[:6], tuple(OMM)[6:13], tuple(OMM)[13:]
+    data = part("meanElements", *elements) + part("tleParameters", *parameters)
+    segment = f"<segment>{part('metadata', *names)}<data>{data}</data></segment>"
+    return f'<?xml version="1.0" encoding="UTF-8"?><ndm><omm><body>{segment}</body></omm></ndm>'
 
 
-@pytest.mark.parametrize("message", [OMM, json.dumps(OMM), json.dumps([OMM]), as_kvn(), as_xml()])
+def as_csv(*messages: dict[str, Any]) -> str:
+    rows = [",".join(OMM), *(",".join(map(str, message.values())) for message in messages or (OMM,))]
+    return "\r\n".join(rows)
+
+
+@pytest.mark.parametrize("message", [OMM, json.dumps(OMM), json.dumps([OMM]), as_kvn(), as_xml(), as_csv()])
 def test_a_message_is_the_same_orbit_as_its_tle(message: Any) -> None:
     by_lines, by_message = oo.Sgp4(LINE1, LINE2), oo.Sgp4.from_omm(message)
     assert by_message.satellite == by_lines.satellite == 5
@@ -63,6 +74,7 @@ def test_a_message_is_the_same_orbit_as_its_tle(message: Any) -> None:
     [
         ({"BSTAR": None}, "has no BSTAR"),
         ({"EPOCH": "yesterday"}, "EPOCH is"),
+        ({"EPOCH": "00-06-27T18:50:19.733568"}, "EPOCH is"),
         ({"MEAN_MOTION": "fast"}, "MEAN_MOTION is"),
         ({"ECCENTRICITY": 1.2}, "eccentricity is 1.2"),
         ({"MEAN_ELEMENT_THEORY": "DSST"}, "MEAN_ELEMENT_THEORY"),
@@ -75,7 +87,15 @@ def test_messages_without_sense_are_refused(change: dict[str, Any], says: str) -
         oo.Sgp4.from_omm(OMM | change)
 
 
-@pytest.mark.parametrize("text", ["", "hello", "{", "<a>", "[]", "[1]", json.dumps([OMM, OMM]), as_kvn() * 2])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "", "hello", "{", "<a>", "<a/>", "[]", "[1]", json.dumps([OMM, OMM]), as_kvn() * 2, as_csv(OMM, OMM),
+        as_csv().splitlines()[0], as_xml().replace("tleParameters", "parameters"), "a,b\n" + "x" * 200_000,
+        as_xml().replace("UTF-8", "UTF-88"),
+        as_xml().replace("<ndm>", "<!DOCTYPE ndm [<!ENTITY a 'b'>]><ndm>"),
+    ],
+)  # fmt: skip
 def test_texts_that_are_no_message_are_refused(text: str) -> None:
     with pytest.raises(ElementSetError):
         oo.Sgp4.from_omm(text)
@@ -91,6 +111,11 @@ def test_sgp4_says_what_it_is() -> None:
     rotation, rate = orbit.lvlh(np.arange(5.0))
     assert r.shape == v.shape == rate.shape == (5, 3) and rotation.shape == (5, 3, 3)
     np.testing.assert_allclose(rotation[:, :, 0], r / np.linalg.norm(r, axis=1)[:, None], atol=1e-15)
+
+
+def test_an_epoch_of_a_december_before_2000_is_written_as_it_is() -> None:
+    orbit = oo.Sgp4.from_omm(OMM | {"EPOCH": "1989-12-24T06:00:00"})
+    assert orbit.epoch == "1989-12-24T06:00:00.000000Z"
 
 
 def test_bad_lines_name_line_and_column() -> None:
@@ -192,6 +217,10 @@ def test_the_frame_of_an_orbit_without_attitudes_is_lvlh() -> None:
         oo.Kepler.from_state([7e6, 0.0, 1e5], [0.0, 7.6e3, 10.0], mu=3.9e14),
         oo.Sgp4(LINE1, LINE2, gravity="wgs84"),
         oo.Sgp4.from_omm(OMM),
+        oo.Sgp4.from_omm(OMM, propagator="reference"),
+        oo.Sgp4(LINE1, LINE2, propagator="reference"),
+        oo.Sgp4.from_satrec(Satrec.twoline2rv(LINE1, LINE2)),
+        oo.Sgp4.from_satrec(Satrec.twoline2rv(LINE1, LINE2), propagator="reference"),
         oo.CustomPath(TIMES, POINTS, mu=4e14, ends="coast"),
         oo.FixedFrame(position=[1.0, 2.0, 3.0]),
     ],

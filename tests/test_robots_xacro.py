@@ -10,6 +10,7 @@ import sys
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 from border import Bad, check
 from commands import refusal
@@ -97,7 +98,7 @@ def test_a_scenario_and_the_command_line_ask_for_xacro(tmp_path: Path) -> None:
     done = subprocess.run([*command, "--json", "--xacro"], capture_output=True, text=True, check=True)
     assert json.loads(done.stdout)["mass_kg"] == 2.0
     from onorbit_rs.scenario import load
-    from onorbit_rs.scenario.build import make_robot
+    from onorbit_rs.scenario.make_robot import make_robot
 
     scenario = load({"robot": {"urdf": str(file), "xacro": True}, "simulation": {"duration": 0.01}})
     assert make_robot(scenario).mass == 2.0
@@ -254,24 +255,30 @@ def test_without_xacro_the_error_says_what_to_install(tmp_path: Path) -> None:
     assert done.stdout.strip().endswith("pip install 'onorbit-rs[xacro]'")
 
 
-# name, bodies, frames, mass (kg: the sum of <mass> by Python's ElementTree)
-SHARED = {
-    "ets_vii_onorbitros.xacro": ("base_link", 7, 7, 2692.2, "link_5"),
-    "spaceros_SSRMS_Canadarm2.urdf.xacro": ("Base_SSRMS", 8, 9, 1505.32, "gazebo"),
-}
-
-
 @needs_xacro
-@pytest.mark.parametrize("name", SHARED)
-def test_real_files(name: str, shared: Path) -> None:
-    base, bodies, frames, mass, odd = SHARED[name]
-    file = shared / "models" / name
-    if not file.is_file():
-        pytest.skip(f"{file} is not there")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # they are looked at below
-        model = oo.Model.from_urdf(file)
-    assert (model.body_names[0], len(model.bodies), len(model.frames)) == (base, bodies, frames)
-    assert model.mass == pytest.approx(mass, rel=1e-12)
-    assert any(odd in warning for warning in model.warnings)
-    assert ("world" in model.frame_names) == ("SSRMS" in name)
+def test_a_package_with_macros_arguments_and_includes() -> None:
+    package = Path(__file__).parent / "fixtures" / "robots" / "long_arm_description"
+    file = package / "urdf" / "long_arm.urdf.xacro"
+
+    def load(**arguments: object) -> oo.Model:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # they are looked at below
+            return oo.Model.from_urdf(file, xacro_arguments=arguments)
+
+    model = load()
+    assert (len(model.bodies), len(model.frames)) == (8, 9)
+    assert model.mass == pytest.approx(2 * 240 + 4 * 110 + (45 + 40) * 7, rel=1e-15)
+    assert load(boom_length=3).mass == pytest.approx(model.mass - (45 + 40) * 4, rel=1e-15)
+    # columns 0.35 m wide: two of 7 m between four of 0.45 m, on one of 0.9 m
+    boom = next(body for body in model.bodies if body.name == "upper_boom")
+    np.testing.assert_allclose(np.diag(boom.inertia), [*[315 / 12 * (0.35**2 + 7**2)] * 2, 315 / 6 * 0.35**2])
+    stage, latch = (model.frame_pose(model.neutral(), name) for name in ("stage", "latch"))
+    np.testing.assert_allclose(
+        (np.linalg.inv(stage) @ latch)[:3, 3], [0, 0, 0.9 + 4 * 0.45 + 2 * 7], atol=1e-14
+    )
+    assert model.joints[0].upper == pytest.approx(np.radians(270), rel=1e-15)
+    told = model.warnings
+    assert any("long_arm.gazebo.xacro' is not there" in warning for warning in told)
+    assert any("<xacro:long_arm_gazebo>" in warning for warning in told)
+    assert any("8 mesh files not found" in warning for warning in told)
+    assert len(load(simulated="false").warnings) == 1  # the meshes

@@ -56,6 +56,39 @@ def test_an_element_set_can_be_written_in_three_ways(key: str, tmp_path: Path) -
     np.testing.assert_array_equal(made.state(60.0)[0], oo.Sgp4(LINE1, LINE2).state(60.0)[0])
 
 
+OTHER = (
+    "1 06251U 62025E   06176.82412014  .00008885  00000-0  12808-3 0  3985",
+    "2 06251  58.0579  54.0425 0030035 139.1568 221.1854 15.56387291  6774",
+)
+
+
+@pytest.mark.parametrize("satellite", ["delta 1 deb", "6251", 6251])
+def test_one_of_several_sets_is_chosen_by_name_or_number(satellite: Any, tmp_path: Path) -> None:
+    text = f"0 VANGUARD 1\n{LINE1}\n{LINE2}\nDELTA 1 DEB   \n{OTHER[0]}\n{OTHER[1]}\n"
+    (tmp_path / "all.tle").write_text(text)
+    made = orbit_of(written(tmp_path, {"kind": "sgp4", "tle_file": "all.tle", "satellite": satellite}))
+    np.testing.assert_array_equal(made.state(60.0)[0], oo.Sgp4(*OTHER).state(60.0)[0])
+    for other, says in [("VANGARD", "did you mean 'VANGUARD 1'"), (None, "by 'satellite'")]:
+        with pytest.raises(ElementSetError, match=says):
+            orbit_of(written(tmp_path, {"kind": "sgp4", "tle_file": "all.tle", "satellite": other}))
+    with pytest.raises(ElementSetError, match="holds 2 sets"):
+        orbit_of(scenario({"kind": "sgp4", "tle": text * 2, "satellite": satellite}))
+
+
+def test_one_of_several_messages_is_chosen_by_name(tmp_path: Path) -> None:
+    keys = (
+        "OBJECT_NAME,EPOCH,MEAN_MOTION,ECCENTRICITY,INCLINATION,RA_OF_ASC_NODE,ARG_OF_PERICENTER,MEAN_ANOMALY"
+    )
+    rows = "2000-06-27T18:50:19.733568,10.82419157,.1859667,34.2682,348.7242,331.7664,19.3264"
+    text = f"{keys},NORAD_CAT_ID,BSTAR\nVANGUARD 1,{rows},5,.28098E-4\nOTHER,{rows},7,0\n"
+    (tmp_path / "all.csv").write_text(text)
+    orbit = {"kind": "sgp4", "omm_file": "all.csv", "satellite": "vanguard 1", "propagator": "reference"}
+    made = orbit_of(written(tmp_path, orbit))
+    np.testing.assert_allclose(made.state(60.0)[0], oo.Sgp4(LINE1, LINE2).state(60.0)[0], rtol=1e-13)
+    with pytest.raises(ElementSetError, match="2 messages: give one, or in a scenario its 'satellite'"):
+        orbit_of(written(tmp_path, {"kind": "sgp4", "omm_file": "all.csv"}))
+
+
 def test_points_come_with_units_or_from_a_file_beside_the_scenario(tmp_path: Path) -> None:
     (tmp_path / "path.csv").write_text(CSV)
     carried = {"gravity_mode": "carried"}  # straight on: no gravity flies that
@@ -108,6 +141,8 @@ def test_a_broken_file_of_points_says_its_line(
         ({"kind": "sgp4", "tle_file": "none.txt"}, NotFoundError, "none.txt"),
         ({"kind": "sgp4", "line1": LINE1, "line2": LINE2 + "7"}, ElementSetError, "70 columns"),
         ({"kind": "sgp4", "line1": LINE1, "line2": LINE2, "gravity": "wgs27"}, ScenarioError, "'wgs72'"),
+        ({"kind": "sgp4", "line1": LINE1, "line2": LINE2, "satellite": "5"}, ScenarioError, "one satellite"),
+        ({"kind": "sgp4", "line1": LINE1, "line2": LINE2, "propagator": "own"}, ScenarioError, "reference"),
         ({"kind": "sgp44"}, ScenarioError, "did you mean 'sgp4'"),
         ({"kind": "custom_path", "times": [0, 1]}, ScenarioError, "'times' and 'positions'"),
         ({"kind": "custom_path", "file": "a.csv", "times": [0]}, ScenarioError, "not both"),

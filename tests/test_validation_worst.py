@@ -142,7 +142,6 @@ def test_an_attitude_at_one_tolerance_that_is_no_number_is_red(monkeypatch: pyte
 def test_a_table_without_rows_is_no_agreement(
     measure: Callable[[], Any], table: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pytest.importorskip("sgp4")
     whole = sgp4.table
     for module in (sgp4, nasa):
         monkeypatch.setattr(module, "table", lambda name: [] if name == table else whole(name))

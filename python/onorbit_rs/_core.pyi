@@ -16,6 +16,7 @@ _Path = str | PathLike[str]
 _External = Mapping[str, ArrayLike]
 _JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
 _EarthModel = Literal["wgs72", "wgs72old", "wgs84"]
+_Propagator = Literal["native", "reference"]
 _GravityMode = Literal["true", "carried"]
 _Integrator = Literal["rk4", "semi_implicit_euler", "dormand_prince"]
 _CertificateRow = tuple[str, float | None, float, bool]
@@ -103,6 +104,7 @@ __all__ = [
     "Visual",
     "Waypoints",
     "__version__",
+    "attach",
     "build_info",
     "deputy_state",
     "from_lvlh",
@@ -129,6 +131,7 @@ class Model:
         package_paths: Sequence[_Path] | None = None,
         xacro_arguments: Mapping[str, object] | None = None,
         xacro: bool = False,
+        links: Mapping[str, Mapping[str, Any]] | None = None,
     ) -> Model: ...
     @staticmethod
     def from_urdf_string(
@@ -136,6 +139,14 @@ class Model:
     ) -> Model: ...
     @staticmethod
     def rigid_body(mass: float, inertia: ArrayLike) -> Model: ...
+    def with_link(
+        self,
+        name: str,
+        *,
+        mass: float | None = None,
+        com: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
+    ) -> Model: ...
     @property
     def name(self) -> str: ...
     @property
@@ -504,10 +515,23 @@ class Kepler(Orbit):
 @final
 class Sgp4(Orbit):
     def __new__(
-        cls, line1: str, line2: str, *, gravity: _EarthModel = "wgs72", check_checksum: bool = True
+        cls,
+        line1: str,
+        line2: str,
+        *,
+        gravity: _EarthModel = "wgs72",
+        check_checksum: bool = True,
+        propagator: _Propagator = "native",
     ) -> Sgp4: ...
     @staticmethod
-    def from_omm(message: Mapping[str, Any] | str, *, gravity: _EarthModel = "wgs72") -> Sgp4: ...
+    def from_omm(
+        message: Mapping[str, Any] | str,
+        *,
+        gravity: _EarthModel = "wgs72",
+        propagator: _Propagator = "native",
+    ) -> Sgp4: ...
+    @staticmethod
+    def from_satrec(satrec: Any, *, propagator: _Propagator = "native") -> Sgp4: ...
     @property
     def satellite(self) -> int: ...
     @property
@@ -1061,6 +1085,15 @@ class Trace:
     def certificate(self) -> list[_CertificateRow]: ...
     def __len__(self) -> int: ...
 
+def attach(
+    model: Model,
+    frame: str,
+    other: Model,
+    other_frame: str | None = None,
+    *,
+    pose: ArrayLike | None = None,
+    prefix: str = "",
+) -> Model: ...
 def rollout(
     model: Model,
     q0: ArrayLike,

@@ -1,49 +1,87 @@
-"""The text of a CCSDS Orbit Mean-Elements Message: JSON, XML or KVN (``KEY = value`` lines)."""
+"""The text of CCSDS Orbit Mean-Elements Messages: XML and CSV, which PyPI's ``sgp4`` reads, JSON and KVN."""
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections.abc import Mapping
 from typing import Any
-from xml.etree import ElementTree
+from xml.etree.ElementTree import ParseError
 
+from onorbit_rs.counting import count
 from onorbit_rs.exceptions import ElementSetError
+from onorbit_rs.satellites import the_one
 
 
-def entries(text: str) -> dict[str, Any]:
-    """Keywords and values of one message.
+def entries(text: str, satellite: str | None = None) -> dict[str, Any]:
+    """Keywords and values of the one message, or of that of ``satellite``, a name or catalogue number.
 
     Raises
     ------
     ElementSetError
-        No such text, or not exactly one message in it.
+        No such text, or not exactly one such message in it.
     """
-    start = text.lstrip("\ufeff \t\r\n")[:1]
+    messages = _messages(text.lstrip("\ufeff \t\r\n"))
+    if satellite is not None:
+        named = (
+            (str(message.get("OBJECT_NAME", "")), str(message.get("NORAD_CAT_ID", "")), message)
+            for message in messages
+        )
+        return the_one(named, satellite, "the OMM")
+    if len(messages) != 1:
+        found = count(len(messages), "message", "messages")
+        raise ElementSetError(f"the text holds {found}: give one, or in a scenario its 'satellite'")
+    return messages[0]
+
+
+def _messages(text: str) -> list[dict[str, Any]]:
+    start, first_line = text[:1], text.partition("\n")[0]
     if start in ("{", "["):
         return _from_json(text)
-    return _from_xml(text.lstrip("\ufeff \t\r\n")) if start == "<" else _from_kvn(text)
+    if start == "<":
+        return _from_xml(text)
+    return _from_csv(text) if "," in first_line and "=" not in first_line else [_from_kvn(text)]
 
 
-def _from_json(text: str) -> dict[str, Any]:
+def _from_json(text: str) -> list[dict[str, Any]]:
     try:
-        data = json.loads(text.lstrip("\ufeff"))
+        data = json.loads(text)
     except (ValueError, RecursionError) as error:
         reason = "nested too deep" if isinstance(error, RecursionError) else error
         raise ElementSetError(f"the OMM is no JSON: {reason}") from None
     messages = data if isinstance(data, list) else [data]
-    message = _the_one(messages)
-    if not isinstance(message, Mapping):
+    if not all(isinstance(message, Mapping) for message in messages):
         raise ElementSetError("the OMM's JSON is no mapping of keywords to values")
-    return dict(message)
+    return messages
 
 
-def _from_xml(text: str) -> dict[str, Any]:
+def _from_xml(text: str) -> list[dict[str, Any]]:
+    from sgp4 import omm
+
+    if "<!DOCTYPE" in text:  # the entities of one can stand for any amount of text
+        raise ElementSetError("the OMM has a document type (<!DOCTYPE>), which is refused: remove it")
     try:
-        root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
+        messages = list(omm.parse_xml(io.StringIO(text)))
+    except (ParseError, LookupError, ValueError) as error:  # LookupError: an encoding that there is not
         raise ElementSetError(f"the OMM is no XML: {error}") from None
-    segment = _the_one(root.findall(".//segment"))
-    return {leaf.tag: leaf.text or "" for leaf in segment.iter() if len(leaf) == 0}
+    except (AttributeError, TypeError):  # of None, which stands for an element that is not there
+        raise ElementSetError(
+            "the OMM's XML lacks metadata, meanElements or tleParameters in a segment"
+        ) from None
+    return [{key: value or "" for key, value in message.items()} for message in messages]
+
+
+def _from_csv(text: str) -> list[dict[str, Any]]:
+    from sgp4 import omm
+
+    try:
+        return [
+            {key: value for key, value in row.items() if key is not None and value is not None}
+            for row in omm.parse_csv(io.StringIO(text, newline=""))
+        ]
+    except csv.Error as error:
+        raise ElementSetError(f"the OMM is no CSV: {error}") from None
 
 
 def _from_kvn(text: str) -> dict[str, Any]:
@@ -56,11 +94,7 @@ def _from_kvn(text: str) -> dict[str, Any]:
             raise ElementSetError(f"the OMM gives {key.strip()} twice: give one message", name=key.strip())
         found[key.strip()] = value.split("[")[0].strip()
     if not found:
-        raise ElementSetError("the text is no OMM: it is neither JSON nor XML, and no line reads KEY = value")
+        raise ElementSetError(
+            "the text is no OMM: it is neither JSON nor XML nor CSV, and no line reads KEY = value"
+        )
     return found
-
-
-def _the_one(messages: list[Any]) -> Any:
-    if len(messages) != 1:
-        raise ElementSetError(f"the text holds {len(messages)} messages: give one")
-    return messages[0]

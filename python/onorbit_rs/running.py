@@ -27,7 +27,8 @@ from onorbit_rs.plants import versions
 from onorbit_rs.progress import doing, progress_bar
 from onorbit_rs.reals import real
 from onorbit_rs.scenario import Scenario, load
-from onorbit_rs.scenario.build import Built, build, make_robot
+from onorbit_rs.scenario.build import Built, build
+from onorbit_rs.scenario.make_robot import make_robot
 from onorbit_rs.watching import CHECKPOINT_EVERY, watched
 
 if TYPE_CHECKING:

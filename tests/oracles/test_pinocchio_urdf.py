@@ -1,36 +1,27 @@
-"""Every kernel against Pinocchio where both read the same URDF: random ones, ours, and real files."""
+"""Every kernel against Pinocchio where both read the same URDF: random trees, quirky robots, ours."""
 
 from __future__ import annotations
 
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pytest
+import quirky_robots
 
 import onorbit_rs as oo
 from onorbit_rs.validation.trees import TOOL, build, deviation, random_state, random_tree, urdf
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+import pin_file  # noqa: E402
 import pin_robot  # noqa: E402
 
 GATE = 1e-12  # as in test_pinocchio.py
-REAL_GATE = 1e-10  # real files have links of grams beside a torso: condition up to 1e7
-
-# what both read; mimic joints are joints of their own to both
-REAL = [
-    "drake_kuka_iiwa14_benchmark.urdf",
-    "pinocchio_baxter_simple.urdf",
-    "rbdjl_atlas.urdf",
-    "rbdl_tiago_dual.urdf",
-]
 
 
-def compare(model: oo.Model, text: str, tool: str, seed: int, gate: float) -> float:
+def compare(model: oo.Model, text: str, tool: str, seed: int) -> None:
     robot = pin_robot.PinRobot(pin_robot.from_urdf(text), model.joint_names)
     assert model.mass == pytest.approx(pin.computeTotalMass(robot.model), rel=1e-14)
     rng = np.random.default_rng(seed)
-    largest = 0.0
     for _ in range(4):
         state = random_state(model, rng)
         ours = pin_robot.same_kernels(model, state, tool)
@@ -39,15 +30,13 @@ def compare(model: oo.Model, text: str, tool: str, seed: int, gate: float) -> fl
             theirs["integrate"][3:7] *= -1
         for kernel, value in theirs.items():
             off = deviation(ours[kernel], value)
-            largest = max(largest, off)
-            assert off < gate, f"{kernel} is off by {off:.2e} (seed {seed})"
-    return largest
+            assert off < GATE, f"{kernel} is off by {off:.2e} (seed {seed})"
 
 
 @pytest.mark.parametrize("seed", range(100, 120))
 def test_random_trees_through_their_text(seed: int) -> None:
     text = urdf(random_tree(seed, rotors=False))
-    compare(oo.Model.from_urdf_string(text), text, TOOL, seed, GATE)
+    compare(oo.Model.from_urdf_string(text), text, TOOL, seed)
 
 
 def test_text_and_builder_make_the_same_robot() -> None:
@@ -62,19 +51,36 @@ def test_text_and_builder_make_the_same_robot() -> None:
 def test_bundled_robots(name: str) -> None:
     text = oo.robots.path(name).read_text()
     model = oo.robots.load(name)
-    compare(model, text, model.frame_names[-1], 1, GATE)
+    compare(model, text, model.frame_names[-1], 1)
 
 
-@pytest.mark.parametrize("name", REAL)
-def test_real_files(name: str, shared: Path) -> None:
-    file = shared / "models" / name
-    if not file.is_file():
-        pytest.skip(f"{file} is not there")
+@pytest.mark.parametrize(
+    ("root", "seeds"),
+    [
+        ("body", range(20)),
+        ("world of two", range(20, 35)),
+        pytest.param(
+            "world",
+            range(35, 50),
+            marks=pytest.mark.xfail(strict=True, reason="a root without mass hands the base to its child"),
+        ),
+    ],
+)
+def test_quirky_robots(root: str, seeds: range) -> None:
+    for seed in seeds:
+        text = quirky_robots.text(seed, root=root)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            model = oo.Model.from_urdf_string(text)
+        found = pin_file.deviations(model, pin_robot.from_urdf(text), seed)
+        assert all(off < GATE for off in found.values()), f"seed {seed}: {found}"
+
+
+def test_a_quirky_robot_of_75_links() -> None:
+    """The number of links of a robot with two arms and two hands."""
+    text = quirky_robots.text(75, links=75)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # real files break the triangle inequality: no concern of this test
-        model = oo.Model.from_urdf(file)
-    text = file.read_text()
-    if "iiwa14" in name:  # its joints have no limits, so Pinocchio's reader takes them only as continuous
-        text = text.replace('type="revolute"', 'type="continuous"')
-    largest = compare(model, text, model.body_names[-1], 2, REAL_GATE)
-    print(f"{name}: largest deviation {largest:.1e}")
+        warnings.simplefilter("ignore")
+        model = oo.Model.from_urdf_string(text)
+    assert len(model.frame_names) >= 75
+    compare(model, text, model.body_names[-1], 2)

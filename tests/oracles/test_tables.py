@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import warnings
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.validation.bodies import IIWA_DEGREES, IIWA_POSITION, IIWA_ROTATION
+from onorbit_rs.validation.bodies import IIWA, IIWA_DEGREES, IIWA_POSITION, IIWA_ROTATION
 from onorbit_rs.validation.trees import TOOL, State, Tree, build, deviation
 
 TABLE = json.loads((Path(__file__).parents[1] / "fixtures" / "pinocchio_tables.json").read_text())
@@ -60,19 +59,34 @@ def test_the_table_says_where_it_is_from() -> None:
     assert {"generator", "engine", "date", "tolerance", "layout"} <= set(TABLE)
 
 
-# What other libraries' own tests expect is in onorbit_rs.validation.bodies; here Drake's robot from its URDF.
+# What other libraries' own tests expect is in onorbit_rs.validation.bodies; here Drake's robot from a URDF.
 
 
-def test_drake_kuka_iiwa14(shared: Path) -> None:
-    file = shared / "models" / "drake_kuka_iiwa14_benchmark.urdf"
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        model = oo.Model.from_urdf(file)
+def iiwa(axial: float) -> str:
+    """The arm that Drake publishes numbers of, on an empty root; ``axial``: about a joint's axis, kg m²."""
+    body = (
+        '<inertial><origin xyz="0 0 0.05"/><mass value="3"/>'
+        f'<inertia ixx="0.02" iyy="0.02" izz="{axial}" ixy="0" ixz="0" iyz="0"/></inertial>'
+    )
+    parts = ['<link name="world"/>', f'<link name="link_0">{body}</link>']
+    parts.append('<joint name="stand" type="fixed"><parent link="world"/><child link="link_0"/></joint>')
+    for number, (xyz, quarters) in enumerate(IIWA, 1):
+        place, rpy = (
+            " ".join(map(repr, values)) for values in (xyz, np.multiply(quarters, np.pi / 2).tolist())
+        )
+        parts += [
+            f'<link name="link_{number}">{body}</link>',
+            f'<joint name="joint_{number}" type="revolute"><origin xyz="{place}" rpy="{rpy}"/>'
+            f'<parent link="link_{number - 1}"/><child link="link_{number}"/><axis xyz="0 0 1"/></joint>',
+        ]
+    return f'<robot name="iiwa">{"".join(parts)}</robot>'
+
+
+def test_drake_kuka_iiwa14() -> None:
+    model = oo.Model.from_urdf_string(iiwa(axial=1e-3))
     q = model.neutral()
-    flange = model.body_names[-1]
-    np.testing.assert_allclose(model.frame_pose(q, flange)[:3, 3], [0, 0, 1.261], atol=1e-15)
     q[7:] = np.deg2rad(IIWA_DEGREES)
-    pose = model.frame_pose(q, flange)
+    pose = model.frame_pose(q, "link_7")
     # the table is Drake's to 15 digits
     np.testing.assert_allclose(pose[:3, 3], IIWA_POSITION, atol=1e-14)
     np.testing.assert_allclose(pose[:3, :3], IIWA_ROTATION, atol=1e-14)

@@ -3,8 +3,9 @@
 
 use nalgebra::Vector3;
 use onorbit_core::number_text::short;
-use onorbit_core::orbit::sgp4::{ElementSetError, Sgp4Error};
-use onorbit_core::orbit::{Axes, EarthModel, MeanElements, Orbit, OrbitError, Sgp4};
+use onorbit_core::orbit::sgp4::{ElementSetError, Reference, Sgp4Error};
+use onorbit_core::orbit::{Axes, EarthModel, MeanElements, Orbit, OrbitError, Sgp4, states};
+use std::sync::Arc;
 
 const LINES: [&str; 2] = [
     "1 00005U 58002B   00179.78495062  .00000023  00000-0  28098-4 0  4753",
@@ -256,4 +257,44 @@ fn decay_and_far_times_are_refused() {
     }
     assert!(matches!(orbit.state(1e18), Err(OrbitError::TimeOutOfRange { .. })));
     assert!(matches!(orbit.state(f64::INFINITY), Err(OrbitError::NotFinite { .. })));
+}
+
+/// A circle in place of the reference code, which sinks after an hour and fails after two.
+#[derive(Debug)]
+struct Circle;
+
+/// rad/min.
+const RATE: f64 = 0.06;
+
+impl Reference for Circle {
+    fn at(&self, minutes: f64) -> Result<[[f64; 3]; 2], u8> {
+        if minutes > 120.0 {
+            return Err(2);
+        }
+        let radius = if minutes > 60.0 { 6000.0 } else { 7000.0 };
+        let (sin, cos) = (RATE * minutes).sin_cos();
+        let v = radius * RATE / 60.0;
+        Ok([[radius * cos, radius * sin, 0.0], [-v * sin, v * cos, 0.0]])
+    }
+}
+
+#[test]
+fn the_reference_code_gives_all_states_where_it_is_asked() {
+    let orbit = sgp4(LINES[0], LINES[1]).by_reference(Arc::new(Circle));
+    let state = orbit.state(600.0).expect("a state");
+    let pull = -state.position * (RATE / 60.0) * (RATE / 60.0);
+    assert!((state.position.norm() - 7e6).abs() < 1e-8);
+    assert!((state.acceleration - pull).norm() < 1e-6);
+    assert!((orbit.rate_of_position(600.0, &state).expect("a rate") - state.velocity).norm() < 1e-6);
+    assert!(orbit.velocity_source().contains("reference code"));
+    let (mut r, mut v) = ([0.0; 3], [0.0; 3]);
+    states(&orbit, &[600.0], &mut r, &mut v).expect("a state");
+    assert_eq!(r, *state.position.as_slice());
+    let refusal = |t| match orbit.position_velocity(t) {
+        Err(OrbitError::Sgp4(error)) => error,
+        other => panic!("{other:?}"),
+    };
+    assert!(matches!(refusal(5000.0), Sgp4Error::Decayed { distance, .. } if (distance - 6e6).abs() < 1e-3));
+    assert_eq!(refusal(9000.0), Sgp4Error::OfReference { time: 9000.0, code: 2 });
+    assert_eq!((refusal(9000.0).code(), refusal(9000.0).time()), (2, 9000.0));
 }

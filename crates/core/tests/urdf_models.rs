@@ -1,5 +1,5 @@
 //! Robot descriptions that nobody here wrote (`../shared/models`; skipped where they are absent),
-//! and the same files through `urdf-rs` as an independent reader.
+//! and the same files through `urdf-rs` own reading of text.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 #![allow(clippy::print_stdout)] // says what was skipped
@@ -18,7 +18,7 @@ fn shared(name: &str) -> Option<PathBuf> {
 }
 
 fn load(name: &str) -> Option<Result<Model, UrdfError>> {
-    shared(name).map(|path| from_file(&path, &[]))
+    shared(name).map(|path| from_file(&path, &[], &[]))
 }
 
 #[test]
@@ -84,8 +84,10 @@ fn files_that_are_no_robot_say_why_in_one_line() {
     }
 }
 
+/// Its types are ours, its XML is not: namespaces, repeated elements and numbers pass through other hands.
+/// The independent reader is Pinocchio (`tests/oracles/test_pinocchio_urdf.py`).
 #[test]
-fn urdf_rs_reads_the_same_joints() {
+fn urdf_rs_own_xml_gives_the_same_joints() {
     for name in ["drake_kuka_iiwa14_benchmark.urdf", "rbdjl_atlas.urdf", "pinocchio_baxter_simple.urdf"] {
         let Some(path) = shared(name) else { continue };
         // it refuses elements that are given twice, sensors and plugins; where it reads, we agree
@@ -93,7 +95,7 @@ fn urdf_rs_reads_the_same_joints() {
             println!("skipped: urdf-rs does not read {name}");
             continue;
         };
-        let ours = from_file(&path, &[]).unwrap();
+        let ours = from_file(&path, &[], &[]).unwrap();
         let mass: f64 = theirs.links.iter().map(|link| link.inertial.mass.value).sum();
         assert!((ours.mass() - mass).abs() < 1e-9, "{name}");
         for joint in ours.joints() {
@@ -112,7 +114,7 @@ fn urdf_rs_reads_the_same_joints() {
     }
 }
 
-/// Why the reader is our own: each of these is read without a word, or refused, by urdf-rs.
+/// Why urdf-rs is given a tree that is checked: each of these its own reading takes without a word, or refuses.
 #[test]
 fn what_urdf_rs_makes_of_careless_files() {
     const MASS: &str =
@@ -123,7 +125,7 @@ fn what_urdf_rs_makes_of_careless_files() {
         )
     };
     let ends = "<parent link='a'/><child link='b'/>";
-    let ours = |xml: &str| onorbit_core::model::urdf::from_str(xml, None, &[]);
+    let ours = |xml: &str| onorbit_core::model::urdf::from_str(xml, None, &[], &[]);
 
     let comma = robot(&format!("<joint name='j' type='fixed'>{ends}<origin xyz='1,0 0 0 0'/></joint>"));
     assert_eq!(*urdf_rs::read_from_string(&comma).unwrap().joints[0].origin.xyz, [0.0; 3]);

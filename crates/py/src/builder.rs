@@ -110,11 +110,11 @@ impl PyModelBuilder {
     /// The finished robot; the builder can go on.
     fn build(&self, py: Python<'_>) -> PyResult<PyModel> {
         let model = self.builder.clone().build().map_err(|error| error.into_python(py))?;
-        PyModel::wrap(py, model, None)
+        PyModel::wrap(py, model, None, &[])
     }
 }
 
-fn vector(value: Option<Any<'_, '_>>, name: &str, default: [f64; 3]) -> PyResult<Vector3<f64>> {
+pub(crate) fn vector(value: Option<Any<'_, '_>>, name: &str, default: [f64; 3]) -> PyResult<Vector3<f64>> {
     Ok(Vector3::from(value.map_or(Ok(default), |value| fixed(value, name, &[3]))?))
 }
 

@@ -2,6 +2,7 @@
 
 mod air;
 mod arrays;
+mod attach;
 mod builder;
 mod checkpoint;
 mod control;
@@ -12,6 +13,7 @@ mod errors;
 mod gravity;
 mod interrupt;
 mod kernels;
+mod link_change;
 mod made;
 mod model;
 mod orbit;
@@ -67,6 +69,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add("MU_EARTH", onorbit_core::orbit::MU_EARTH)?;
     m.add_class::<model::PyModel>()?;
+    m.add_function(wrap_pyfunction!(attach::attach, m)?)?;
     m.add_class::<records::PyVisual>()?;
     m.add_class::<records::PyJoint>()?;
     m.add_class::<records::PyBody>()?;

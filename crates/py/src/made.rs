@@ -10,8 +10,22 @@ pub(crate) struct Made(Py<PyTuple>);
 impl Made {
     /// By keywords alone.
     pub(crate) fn by(constructor: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
+        Self::with(constructor, (), keywords)
+    }
+
+    /// By arguments and keywords.
+    pub(crate) fn with<'py, A>(
+        constructor: &str,
+        arguments: A,
+        keywords: &Bound<'py, PyDict>,
+    ) -> PyResult<Self>
+    where
+        A: IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>>,
+        PyErr: From<A::Error>,
+    {
         let py = keywords.py();
-        Ok(Self((constructor, PyTuple::empty(py), keywords).into_pyobject(py)?.unbind()))
+        let arguments = arguments.into_pyobject(py)?;
+        Ok(Self((constructor, arguments, keywords).into_pyobject(py)?.unbind()))
     }
 
     /// What `__reduce__` returns.
@@ -37,4 +51,9 @@ impl Made {
 /// A path that means the same in another folder.
 pub(crate) fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// A deep copy: what is given may be written to later.
+pub(crate) fn copied<'py>(value: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    value.map(|value| value.py().import("copy")?.call_method1("deepcopy", (value,))).transpose()
 }

@@ -4,14 +4,15 @@ use crate::arrays::{Threads, array_of, fixed, type_name};
 use crate::derivatives::{PyFreeFloatingDerivatives, free_floating_derivatives, three};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
-use crate::made::{Made, absolute};
+use crate::link_change::{link_change, link_changes};
+use crate::made::{Made, absolute, copied};
 use crate::records::{self, PyBody, PyFrame, PyJoint, PyVisual};
 use crate::xacro::from_xacro;
 use nalgebra::Matrix3;
 use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel};
 use onorbit_core::model::urdf;
-use onorbit_core::model::{Model, neutral};
+use onorbit_core::model::{Model, ModelWarning, neutral};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
@@ -37,9 +38,15 @@ pub(crate) struct PyModel {
 }
 
 impl PyModel {
-    pub(crate) fn wrap(py: Python<'_>, model: Model, made: Option<Made>) -> PyResult<Self> {
+    /// With a warning for each remark that is not one of `known`.
+    pub(crate) fn wrap(
+        py: Python<'_>,
+        model: Model,
+        made: Option<Made>,
+        known: &[ModelWarning],
+    ) -> PyResult<Self> {
         let warnings = py.import("warnings")?;
-        for warning in model.warnings() {
+        for warning in model.warnings().iter().filter(|warning| !known.contains(warning)) {
             warnings.call_method1("warn", (warning.to_string(),))?;
         }
         let evaluator = Mutex::new(Evaluator::new(&model));
@@ -67,28 +74,33 @@ impl PyModel {
     /// ``xacro`` (``pip install 'onorbit-rs[xacro]'``); its expressions are evaluated by onorbit_rs, which runs
     /// none of them as Python. ``package_paths``: folders that hold ROS packages or are one, searched for
     /// ``package://`` and ``$(find ...)``; ``xacro_arguments``: ``{name: value}``, what ``$(arg name)`` gives.
+    /// ``links``: ``{name: {"mass": kg, "com": (3,) m, "inertia": (3, 3) kg m²}}``, values that replace those of the file
+    /// before anything is checked; as :meth:`with_link`.
     #[staticmethod]
-    #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None, xacro=false))]
+    #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None, xacro=false, links=None))]
     fn from_urdf(
         py: Python<'_>,
         path: PathBuf,
         package_paths: Option<Vec<PathBuf>>,
         xacro_arguments: Option<&Bound<'_, PyDict>>,
         xacro: bool,
+        links: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
+        let changes = link_changes(links)?;
         let packages: Vec<PathBuf> =
             package_paths.unwrap_or_default().iter().map(|path| absolute(path)).collect();
         let keywords = fields!(py, "path": absolute(&path), "package_paths": packages.clone());
         keywords.set_item("xacro_arguments", xacro_arguments.map(|given| given.copy()).transpose()?)?;
         keywords.set_item("xacro", xacro)?;
+        keywords.set_item("links", copied(links.map(Bound::as_any))?)?;
         let made = Some(Made::by("Model.from_urdf", &keywords)?);
         let is_named_so = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xacro"));
         let model = if xacro || is_named_so || xacro_arguments.is_some() {
-            from_xacro(py, &path, &packages, xacro_arguments)?
+            from_xacro(py, &path, &packages, xacro_arguments, &changes)?
         } else {
-            urdf::from_file(&path, &packages).map_err(|error| error.into_python(py))?
+            urdf::from_file(&path, &packages, &changes).map_err(|error| error.into_python(py))?
         };
-        Self::wrap(py, model, made)
+        Self::wrap(py, model, made, &[])
     }
 
     /// Load a robot from the text of a URDF; ``folder`` is where its relative paths start.
@@ -102,11 +114,11 @@ impl PyModel {
     ) -> PyResult<Self> {
         let packages = package_paths.unwrap_or_default();
         let model =
-            urdf::from_str(text, folder.as_deref(), &packages).map_err(|error| error.into_python(py))?;
+            urdf::from_str(text, folder.as_deref(), &packages, &[]).map_err(|error| error.into_python(py))?;
         let packages: Vec<PathBuf> = packages.iter().map(|path| absolute(path)).collect();
         let folder = folder.as_deref().map(absolute);
         let keywords = fields!(py, "text": text, "folder": folder, "package_paths": packages);
-        Self::wrap(py, model, Some(Made::by("Model.from_urdf_string", &keywords)?))
+        Self::wrap(py, model, Some(Made::by("Model.from_urdf_string", &keywords)?), &[])
     }
 
     /// A spacecraft without joints: mass, kg, and inertia (3, 3) about its centre of mass, kg m².
@@ -119,7 +131,28 @@ impl PyModel {
         let model = Model::rigid_body(mass, inertia).map_err(|error| error.into_python(py))?;
         let rows: Vec<&[f64]> = given.chunks(3).collect();
         let keywords = fields!(py, "mass": mass, "inertia": rows);
-        Self::wrap(py, model, Some(Made::by("Model.rigid_body", &keywords)?))
+        Self::wrap(py, model, Some(Made::by("Model.rigid_body", &keywords)?), &[])
+    }
+
+    /// The same robot with another mass, kg, centre of mass ``com`` (3,), m, or ``inertia`` (3, 3), kg m², of a link.
+    ///
+    /// ``inertia`` is about the centre of mass; both are in link axes. What is None stays as it is: a new mass leaves the
+    /// inertia alone. Raises ``FrameError`` for a name that no link has, ``ModelError`` for values that no robot can have.
+    #[pyo3(signature = (name, *, mass=None, com=None, inertia=None))]
+    fn with_link(
+        slf: &Bound<'_, Self>,
+        name: &str,
+        mass: Option<f64>,
+        com: Option<Any<'_, '_>>,
+        inertia: Option<Any<'_, '_>>,
+    ) -> PyResult<Self> {
+        let py = slf.py();
+        let change = link_change(name, mass, com, inertia)?;
+        let old = &slf.get().model;
+        let model = old.with_link(&change).map_err(|error| error.into_python(py))?;
+        let keywords = fields!(py, "mass": mass, "com": copied(com)?, "inertia": copied(inertia)?);
+        let made = Made::with("Model.with_link", (slf, name), &keywords)?;
+        Self::wrap(py, model, Some(made), old.warnings())
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {

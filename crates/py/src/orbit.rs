@@ -3,6 +3,7 @@
 mod custom_path;
 mod fixed_frame;
 mod numerical;
+mod reference;
 mod sgp4;
 
 pub(crate) use custom_path::PyCustomPath;

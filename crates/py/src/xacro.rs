@@ -1,7 +1,7 @@
 //! Robots from xacro files, which Python expands.
 
 use crate::errors::IntoPython;
-use onorbit_core::model::{Model, ModelWarning, urdf};
+use onorbit_core::model::{LinkChange, Model, ModelWarning, urdf};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
@@ -13,11 +13,12 @@ pub(crate) fn from_xacro(
     path: &Path,
     packages: &[PathBuf],
     arguments: Option<&Bound<'_, PyDict>>,
+    changes: &[LinkChange],
 ) -> PyResult<Model> {
     let expand = py.import("onorbit_rs.robots.expand")?.getattr("expand")?;
     let (text, remarks): (String, Vec<String>) = expand.call1((path, packages, arguments))?.extract()?;
     let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned));
-    let mut model = urdf::from_str(&text, folder.as_deref(), packages).map_err(|mut error| {
+    let mut model = urdf::from_str(&text, folder.as_deref(), packages, changes).map_err(|mut error| {
         error.file = Some(path.to_owned());
         error.line = None;
         error.into_python(py)

@@ -19,6 +19,7 @@ from onorbit_rs.cli.options import (
 from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim
 from onorbit_rs.counting import count
+from onorbit_rs.exceptions import InputError
 from onorbit_rs.files import replacing
 from onorbit_rs.printable import shell_word
 
@@ -29,6 +30,13 @@ def new(
     tool: Annotated[
         str | None, typer.Option(metavar="FRAME", help="The frame to move; else what looks most like a tool.")
     ] = None,
+    bus: Annotated[
+        str | None, typer.Option(metavar="ROBOT", help="What carries it: a name, a URDF or a xacro file.")
+    ] = None,
+    at: Annotated[str | None, typer.Option(metavar="FRAME", help="Where on the bus.")] = None,
+    prefix: Annotated[
+        str, typer.Option(metavar="TEXT", help="Before the names of its links and joints, with --bus.")
+    ] = "",
     packages: PackagesOption = None,
     arguments: ArgumentsOption = None,
     xacro: XacroOption = False,
@@ -37,20 +45,24 @@ def new(
 ) -> None:
     """Write a commented scenario that moves a robot's arm.
 
-    In orbit, tried before it is written; without --out it goes to standard output.
+    In orbit, tried before it is written; without --out it goes to standard output. With --bus the robot is
+    fixed to a spacecraft of another file.
     """
     given = of_file(robot, packages, arguments, xacro)
+    if bus is None and (at is not None or prefix):
+        raise InputError("--at and --prefix say how it sits on a bus: add --bus ROBOT", name="bus", got=None)
     claim(out, force=force)
-    from onorbit_rs.drafting import draft
+    from onorbit_rs.drafting import Source, draft
     from onorbit_rs.progress import doing
     from onorbit_rs.robots.wording import COMMAND_LINE, worded
 
-    named = f" --tool {shell_word(tool)}" if tool else ""
+    options = {"--tool": tool, "--bus": bus, "--at": at, "--prefix": prefix}
+    named = "".join(f" {option} {shell_word(value)}" for option, value in options.items() if value)
     written_by = f"onorbit new {in_words(robot, packages, arguments, xacro)}{named}"
+    beside = out.absolute().parent if out else None
     with doing("trying motions", quiet=quiet), worded(COMMAND_LINE):
-        made = draft(
-            robot, tool=tool, beside=out.absolute().parent if out else None, command=written_by, **given,
-        )  # fmt: skip
+        source = Source(robot, **given, bus=bus, at=at, prefix=prefix)
+        made = draft(source, tool=tool, beside=beside, command=written_by)
     if out is None:
         typer.echo(made.text, nl=False)
         return

@@ -19,7 +19,7 @@ from onorbit_rs.output.read import SavedRun
 from onorbit_rs.robots.fingerprint import is_another
 from onorbit_rs.running import Run, run
 from onorbit_rs.scenario import Scenario
-from onorbit_rs.scenario.build import make_robot
+from onorbit_rs.scenario.make_robot import make_robot
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from onorbit_rs.drafting.source import Source
 from onorbit_rs.drafting.write import Draft, draft
 
-__all__ = ["Draft", "draft"]
+__all__ = ["Draft", "Source", "draft"]

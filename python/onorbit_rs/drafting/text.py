@@ -38,7 +38,11 @@ def _head(plan: Plan, command: str) -> str:
     what = "turns freely"
     if plan.displacement is not None or plan.goal is not None:
         what = "moves its tool along a line" if plan.goal is None else "moves its joints"
-    robot = _line("robot", plan.robot, "a bundled name, or a URDF or xacro file, from this file's folder")
+    robot = (
+        _bus(plan.robot)
+        if isinstance(plan.robot, dict) and "bus" in plan.robot
+        else _line("robot", plan.robot, "a bundled name, or a URDF or xacro file, from this file's folder")
+    )
     tool = _line("tool", plan.tool, "the frame that is recorded; 'onorbit info' lists all frames")
     return f"""
 # Written by: {_one_line(command)}
@@ -48,6 +52,26 @@ name: {_flow(plan.name)}
 description: A robot in low Earth orbit {what} while nothing holds its base.
 
 {robot}{tool if plan.tool is not None else ""}
+"""
+
+
+def _bus(robot: dict[str, Any]) -> str:
+    """A bus with one arm."""
+    (arm,) = robot["arms"]
+    said = {
+        "bundled": "a name that 'onorbit list' prints",
+        "urdf": "a URDF or xacro file, from this file's folder",
+        "package_paths": "where its packages are", "xacro_arguments": "for its xacro",
+        "xacro": "expand it, whatever its name", "at": "a link or frame of the bus",
+        "prefix": "before the names of the arm's links and joints",
+    }  # fmt: skip
+    lines = "".join(_line(key, value, said[key], 6) for key, value in arm.items())
+    return f"""\
+robot:                          # a bus with an arm; the bus is the base of the whole
+{_line("bus", robot["bus"], "a bundled name, or a URDF or xacro file, from this file's folder", 2)}\
+  arms:
+    -{lines[5:]}\
+      # pose: {{position: [0, 0, 10 cm], attitude: {{roll_pitch_yaw: [0, 90 deg, 0]}}}}   # in the frame 'at'
 """
 
 
@@ -172,7 +196,7 @@ def _flow(value: object) -> str:
     return str(value) if is_plain else json_text(value)
 
 
-_PLAIN = re.compile(r"[A-Za-z][\w./-]*|[\d.]+ [a-z]+")
+_PLAIN = re.compile(r"(\./)?[A-Za-z][\w./-]*|[\d.]+ [a-z]+")
 _NO_WORDS = ("true", "false", "null", "yes", "no", "on", "off", "y", "n")
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import yaml
 
-from onorbit_rs import robots
 from onorbit_rs.drafting.arm import ENOUGH, Arm, find_arm
 from onorbit_rs.drafting.motion import at_rest, home, lines, time_step, turns
 from onorbit_rs.drafting.reaction import GENTLE
+from onorbit_rs.drafting.source import Source
 from onorbit_rs.drafting.text import Plan, draft_text
 from onorbit_rs.exceptions import FrameError, OnOrbitError, ScenarioError
 from onorbit_rs.output.joints import rate_shares
@@ -46,27 +45,22 @@ class Draft:
 
 
 def draft(
-    robot: str,
+    source: Source | str,
     *,
     tool: str | None = None,
     beside: Path | None = None,
-    package_paths: Sequence[Path] | None = None,
-    xacro_arguments: Mapping[str, str] | None = None,
-    xacro: bool = False,
     command: str = "onorbit new",
 ) -> Draft:
     """A commented scenario in which the robot's arm moves; it has run with its certificate green.
 
     Parameters
     ----------
-    robot : str
-        A bundled name, a URDF or a xacro file.
+    source : Source or str
+        The robot, and a bus that carries it; a bundled name, a URDF or a xacro file alone will do.
     tool : str, optional
         The frame to move; the one that looks most like a tool where not given.
     beside : Path, optional
         The folder that the scenario will lie in: paths are written from there. Absolute where not given.
-    package_paths, xacro_arguments, xacro
-        As for :func:`onorbit_rs.robots.load`; they go into the scenario.
     command : str
         Written into the first comment.
 
@@ -75,10 +69,10 @@ def draft(
     OnOrbitError
         The robot cannot be read, has no such frame, or nothing that was tried runs.
     """
-    given = (package_paths, xacro_arguments, xacro)
+    source = Source(source) if isinstance(source, str) else source
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # said when the scenario is checked
-        model = robots.load(robot, package_paths=package_paths, xacro_arguments=xacro_arguments, xacro=xacro)
+        model = source.model()
         if tool is not None:
             model.frame_pose(model.neutral(), tool)  # says which frames there are
         arm = find_arm(model, tool)
@@ -87,9 +81,9 @@ def draft(
                 f"no joint moves the frame {tool!r}; name another with --tool",
                 name=tool, kind="frame", known=list(model.frame_names), suggestion=None,
             )  # fmt: skip
-        plan = _settled(model, arm, _robot(robot, None, *given), _name(robot, model))
-    written = replace(plan, robot=_robot(robot, beside, *given))
-    return Draft(draft_text(written, command), plan.tool, plan.arm)
+        plan = _settled(model, arm, source.written(None, model), source.name(model))
+    text = draft_text(replace(plan, robot=source.written(beside, model)), command)
+    return Draft(text, plan.tool, plan.arm)
 
 
 def _settled(model: Model, arm: Arm | None, robot: Any, name: str) -> Plan:
@@ -173,41 +167,3 @@ def _run(plan: Plan) -> tuple[Trace, float] | None:
         return None
     attitude = np.asarray(trace.q)[:, 3:7]
     return trace, float(angle_between(attitude, attitude[0]).max())
-
-
-def _name(robot: str, model: Model) -> str:
-    return f"{Path(robot).name.split('.')[0] if robots.is_file(robot) else model.name}_first"
-
-
-def _robot(
-    robot: str,
-    beside: Path | None,
-    packages: Sequence[Path] | None,
-    arguments: Mapping[str, str] | None,
-    xacro: bool,
-) -> dict[str, Any] | str:
-    """As a scenario writes it."""
-    if not robots.is_file(robot):
-        return robot
-    if not packages and not arguments and not xacro:
-        return _path(Path(robot), beside)
-    written: dict[str, Any] = {"urdf": _path(Path(robot), beside)}
-    if packages:
-        written["package_paths"] = [_path(Path(package), beside) for package in packages]
-    if arguments:
-        written["xacro_arguments"] = dict(arguments)
-    if xacro:
-        written["xacro"] = True
-    return written
-
-
-def _path(path: Path, beside: Path | None) -> str:
-    """From the scenario's folder where that is near, else absolute."""
-    if beside is not None:
-        try:
-            relative = os.path.relpath(path.resolve(), beside.resolve())
-        except ValueError:  # another drive
-            return str(path.resolve())
-        if relative.count("..") <= 2:
-            return relative if "/" in relative or os.sep in relative else f"./{relative}"
-    return str(path.resolve())

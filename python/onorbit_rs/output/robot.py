@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from onorbit_rs.exceptions import IntegrityError, OnOrbitError
 from onorbit_rs.output.read import SavedRun
 from onorbit_rs.robots.fingerprint import is_another
-from onorbit_rs.scenario.build import make_robot
+from onorbit_rs.scenario.make_robot import make_robot
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model

@@ -16,9 +16,9 @@ from onorbit_rs.output.read import SavedRun, read_summary
 from onorbit_rs.output.replacement import Replacement
 from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.report.page import Picture, page
-from onorbit_rs.scenario.build import make_robot
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.make_orbit import make_orbit
+from onorbit_rs.scenario.make_robot import make_robot
 
 if TYPE_CHECKING:
     from onorbit_rs.figures import Subject

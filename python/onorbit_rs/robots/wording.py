@@ -22,7 +22,6 @@ class Wording:
 
 PYTHON = Wording("package_paths=", "xacro_arguments={'NAME': ...}")
 COMMAND_LINE = Wording("--package-path", "--arg NAME=VALUE")
-SCENARIO = Wording("robot.package_paths", "robot.xacro_arguments: {NAME: ...}")
 
 _current: ContextVar[Wording] = ContextVar("wording", default=PYTHON)
 

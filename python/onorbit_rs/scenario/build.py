@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs import _core, robots
-from onorbit_rs.robots.wording import SCENARIO, worded
+from onorbit_rs import _core
 from onorbit_rs.scenario.doubts import doubts
 from onorbit_rs.scenario.earth import make_earth
 from onorbit_rs.scenario.make_control import control_of, group, law_of, tool_of, tracked_by
 from onorbit_rs.scenario.make_orbit import integrated, make_orbit
+from onorbit_rs.scenario.make_robot import make_robot
 from onorbit_rs.scenario.place import dotted, located, scenario_error
 from onorbit_rs.scenario.plant import make_plant
 from onorbit_rs.scenario.reference import Start
@@ -58,8 +58,7 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     """
     _check_rows(scenario)
     beside = scenario.file.parent if scenario.file else Path()
-    with located(scenario, "robot"):
-        model = make_robot(scenario)
+    model = make_robot(scenario)
     with located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, beside)
     with located(scenario, "epoch" if scenario.earth is None else "earth"):
@@ -135,22 +134,3 @@ def _controlled(scenario: Scenario, start: Start, *, runs_code: bool) -> tuple[A
         with located(scenario, *at):
             controls.append(control_of(part, law, tracked, joints))
     return controls or None, None
-
-
-def make_robot(scenario: Scenario) -> _core.Model:
-    """The robot of a scenario."""
-    robot = scenario.robot
-    if robot.rigid_body is not None:
-        return _core.Model.rigid_body(robot.rigid_body.mass, np.array(robot.rigid_body.inertia))
-    if robot.bundled is not None:
-        return robots.load(robot.bundled)
-    assert robot.urdf is not None  # the schema lets exactly one through
-    beside = scenario.file.parent if scenario.file else Path()
-    packages = [beside / folder for folder in robot.package_paths]
-    with worded(SCENARIO):
-        return _core.Model.from_urdf(
-            beside / robot.urdf,
-            package_paths=packages or None,
-            xacro_arguments=robot.xacro_arguments or None,
-            xacro=robot.xacro,
-        )

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.omm import entries
 from onorbit_rs.reading import read_text
 from onorbit_rs.scenario.orbit import ConicOrbit, NumericalOrbit
 from onorbit_rs.scenario.path import CustomPathOrbit, FixedFrameOrbit, Sgp4Orbit
@@ -54,12 +55,19 @@ def integrated(
 
 def _sgp4(orbit: Sgp4Orbit, beside: Path) -> _core.Sgp4:
     if orbit.omm_file is not None:
-        return _core.Sgp4.from_omm(read_text(beside / orbit.omm_file), gravity=orbit.gravity)
+        message = entries(read_text(beside / orbit.omm_file), orbit.satellite)
+        return _core.Sgp4.from_omm(message, gravity=orbit.gravity, propagator=orbit.propagator)
     if orbit.tle_file is not None:
-        lines = two_lines(read_text(beside / orbit.tle_file), str(beside / orbit.tle_file))
+        file = beside / orbit.tle_file
+        lines = two_lines(read_text(file), str(file), orbit.satellite)
     elif orbit.tle is not None:
-        lines = two_lines(orbit.tle, "tle")
+        lines = two_lines(orbit.tle, "tle", orbit.satellite)
     else:
         assert orbit.line1 is not None and orbit.line2 is not None  # the schema lets no other through
         lines = (orbit.line1, orbit.line2)
-    return _core.Sgp4(*lines, gravity=orbit.gravity, check_checksum=orbit.check_checksum)
+    return _core.Sgp4(
+        *lines,
+        gravity=orbit.gravity,
+        check_checksum=orbit.check_checksum,
+        propagator=orbit.propagator,
+    )

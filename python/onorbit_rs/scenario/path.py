@@ -29,6 +29,9 @@ GravityMode = Annotated[
 """``true``: the robot falls away from a reference that does not fall freely; ``carried``: it goes along."""
 
 
+SatelliteName = Annotated[str, BeforeValidator(lambda value: str(value) if type(value) is int else value)]
+
+
 def _text_of_lines(value: Any) -> Any:
     """The lines as one text; a list of them is answered with how YAML writes that."""
     if isinstance(value, list):
@@ -49,9 +52,13 @@ class Sgp4Orbit(Part):
     """Two lines, or three with a name before them."""
     tle_file: FilePath | None = None
     omm_file: FilePath | None = None
-    """A CCSDS Orbit Mean-Elements Message: JSON, XML or KVN."""
+    """A CCSDS Orbit Mean-Elements Message: JSON, XML, CSV or KVN."""
+    satellite: SatelliteName | None = None
+    """Which of several in ``tle``, ``tle_file`` or ``omm_file``: its name or catalogue number."""
     gravity: Literal["wgs72", "wgs72old", "wgs84"] = "wgs72"
     check_checksum: bool = True
+    propagator: Literal["native", "reference"] = "native"
+    """``reference`` reads and propagates the set by PyPI's ``sgp4`` instead, to check the engine's own."""
     gravity_mode: GravityMode = "true"
 
     @model_validator(mode="after")
@@ -63,6 +70,8 @@ class Sgp4Orbit(Part):
         if len(given) != 1:
             ways = "'line1' and 'line2', 'tle', 'tle_file' or 'omm_file'"
             raise wrong(f"give one element set, by {ways}; given: {', '.join(given) or 'none'}")
+        if self.satellite is not None and self.line1 is not None:
+            raise wrong("'line1' and 'line2' are of one satellite: leave out 'satellite'")
         return self
 
 

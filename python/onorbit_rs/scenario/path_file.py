@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,6 +11,7 @@ import numpy as np
 
 from onorbit_rs.counting import count
 from onorbit_rs.exceptions import ElementSetError
+from onorbit_rs.satellites import the_one
 from onorbit_rs.scenario.table import read_table
 
 if TYPE_CHECKING:
@@ -24,17 +27,37 @@ GROUPS = {
 """Columns of a file of points; SI."""
 
 
-def two_lines(text: str, where: str) -> tuple[str, str]:
-    """The two lines of a TLE; a name may stand before them, comments (#) and blank lines anywhere."""
+def two_lines(text: str, where: str, satellite: str | None = None) -> tuple[str, str]:
+    """The two lines of a TLE, or of that of ``satellite`` among several, a name or catalogue number.
+
+    A name may stand before them, comments (#) and blank lines anywhere.
+
+    Raises
+    ------
+    ElementSetError
+        Not the lines of one TLE, or none of that satellite.
+    """
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
+    if satellite is not None:
+        return the_one(_sets(lines), satellite, where)
     if len(lines) == 3:
         lines = lines[1:]
     if len(lines) != 2:
         found = count(len(lines), "line", "lines")
         raise ElementSetError(
-            f"{where} holds {found}: give the two lines of one TLE, with a name before them or not"
+            f"{where} holds {found}: give the two lines of one TLE, with a name before them or not,"
+            " or say by 'satellite' which of several, its name or catalogue number"
         )
     return lines[0], lines[1]
+
+
+def _sets(lines: list[str]) -> Iterator[tuple[str, str, tuple[str, str]]]:
+    """Name (empty where there is none), catalogue number and lines of every TLE."""
+    name = ""
+    for line, after in pairwise([*lines, ""]):
+        if line.startswith("1 ") and after.startswith("2 "):
+            yield name, line[2:7], (line, after)
+        name = "" if line.startswith(("1 ", "2 ")) else line.removeprefix("0 ").strip()
 
 
 def read_points(file: Path) -> dict[str, NDArray[np.float64]]:

@@ -1,37 +1,45 @@
-"""The robot: a bundled name, a URDF or xacro file, or one rigid body written in place."""
+"""The robot: a bundled name, a URDF or xacro file, one rigid body written in place, or a bus with arms."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
 
 from onorbit_rs import robots
-from onorbit_rs.scenario.fields import FilePath, Inertia, Mass, Positive
+from onorbit_rs.scenario.fields import FilePath, Inertia, Length3, Mass, Positive
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.refusals import shown, wrong
+from onorbit_rs.scenario.task_frame import Pose
+
+
+def _from_diagonal(value: Any) -> Any:
+    if isinstance(value, list) and len(value) == 3:
+        rows = [isinstance(entry, list) for entry in value]
+        if not any(rows):
+            return [
+                [entry if row == column else 0.0 for column in range(3)] for row, entry in enumerate(value)
+            ]
+        if all(rows) and all(len(row) == 3 for row in value):
+            return value
+    raise wrong("an inertia is three numbers (a diagonal) or a 3 x 3 matrix")
+
+
+InertiaMatrix = Annotated[list[list[Inertia]], BeforeValidator(_from_diagonal)]
 
 
 class RigidBody(Part):
     """A spacecraft without joints; its body is ``base``, its origin the centre of mass."""
 
     mass: Annotated[Mass, Positive]
-    inertia: list[list[Inertia]]
+    inertia: InertiaMatrix
     """(3, 3), kg m², about the centre of mass, body axes; three numbers are a diagonal."""
-
-    @field_validator("inertia", mode="before")
-    @classmethod
-    def _from_diagonal(cls, value: Any) -> Any:
-        if isinstance(value, list) and len(value) == 3:
-            rows = [isinstance(entry, list) for entry in value]
-            if not any(rows):
-                return [
-                    [entry if row == column else 0.0 for column in range(3)]
-                    for row, entry in enumerate(value)
-                ]
-            if all(rows) and all(len(row) == 3 for row in value):
-                return value
-        raise wrong("an inertia is three numbers (a diagonal) or a 3 x 3 matrix")
 
 
 def _argument(value: Any) -> Any:
@@ -43,8 +51,23 @@ def _argument(value: Any) -> Any:
 XacroArgument = Annotated[str | bool | int | float, BeforeValidator(_argument)]
 
 
-class Robot(Part):
-    """Exactly one of the three."""
+class LinkValues(Part):
+    """Values that replace those of the file; what is not given stays: a new mass leaves the inertia alone."""
+
+    mass: Annotated[Mass, Positive] | None = None
+    com: Length3 | None = None
+    """Centre of mass, link axes."""
+    inertia: InertiaMatrix | None = None
+    """(3, 3), kg m², about the centre of mass, link axes; three numbers are a diagonal."""
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """What is given, as the engine takes it."""
+        return self.model_dump(exclude_none=True)
+
+
+class PlainRobot(Part):
+    """Exactly one of ``bundled``, ``urdf`` and ``rigid_body``."""
 
     bundled: str | None = None
     urdf: FilePath | None = None
@@ -55,26 +78,74 @@ class Robot(Part):
     """What ``$(arg name)`` gives in a xacro file."""
     xacro: bool = False
     """Whether to expand a file that is not named ``.xacro``."""
+    links: dict[str, LinkValues] = Field(default_factory=dict)
+    """By link: mass, centre of mass and inertia that replace those of the file."""
+
+    sources: ClassVar[tuple[str, ...]] = ("bundled", "urdf", "rigid_body")
 
     @model_validator(mode="before")
     @classmethod
     def _from_text(cls, value: Any) -> Any:
         """``humanoid_torso`` is a bundled name; ``arms/my_arm.urdf`` is a path, relative to the YAML."""
-        if not isinstance(value, (str, dict)):
+        if not isinstance(value, (str, dict, Part)):
             raise wrong(
-                "must be a bundled name, a path of a URDF, or a mapping with 'bundled', 'urdf' or "
-                f"'rigid_body', not {shown(value)}"
+                f"must be a bundled name, a path of a URDF, or a mapping with {cls._listed('or')}, "
+                f"not {shown(value)}"
             )
         if not isinstance(value, str):
             return value
         return {"urdf": value} if robots.is_file(value) else {"bundled": value}
 
     @model_validator(mode="after")
-    def _exactly_one(self) -> Robot:
-        given = [name for name in ("bundled", "urdf", "rigid_body") if getattr(self, name) is not None]
+    def _exactly_one(self) -> Self:
+        given = [name for name in self.sources if getattr(self, name) is not None]
         if len(given) != 1:
-            listed = ", ".join(given) or "none"
-            raise wrong(f"give exactly one of 'bundled', 'urdf' and 'rigid_body'; given: {listed}")
+            raise wrong(f"give exactly one of {self._listed('and')}; given: {', '.join(given) or 'none'}")
         if self.urdf is None and (self.package_paths or self.xacro_arguments or self.xacro):
             raise wrong("'package_paths', 'xacro_arguments' and 'xacro' belong to a 'urdf'")
+        if self.rigid_body is not None and self.links:
+            raise wrong("'links' change the robot of a file; write the values of a 'rigid_body' there")
         return self
+
+    @classmethod
+    def _listed(cls, last: str) -> str:
+        """``'bundled', 'urdf' and 'rigid_body'``."""
+        *some, end = cls.sources
+        return f"{', '.join(map(repr, some))} {last} {end!r}"
+
+    @model_serializer(mode="wrap")
+    def _without_empty_parts(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """What is empty, or off, is not written out."""
+        return {key: value for key, value in handler(self).items() if value not in ({}, [], "", False)}
+
+
+class Arm(PlainRobot):
+    """A robot on a frame of the bus."""
+
+    at: str
+    """The link or frame of the bus."""
+    frame: str | None = None
+    """The frame of the arm that is put there, fixed to its base; its root link where not given."""
+    pose: Pose | None = None
+    """Pose of that frame in ``at``."""
+    prefix: str = ""
+    """Put before the names of the arm's links, joints and frames."""
+
+
+class Robot(PlainRobot):
+    """Exactly one of ``bundled``, ``urdf``, ``rigid_body`` and ``bus``."""
+
+    bus: PlainRobot | None = None
+    """What carries ``arms``; written as any robot. Its base is that of the whole."""
+    arms: Annotated[list[Arm], Field(min_length=1)] | None = None
+
+    sources: ClassVar[tuple[str, ...]] = ("bundled", "urdf", "rigid_body", "bus")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _arms_have_a_bus(cls, value: Any) -> Any:
+        if isinstance(value, dict) and "arms" in value and "bus" not in value:
+            raise wrong("'arms' belong to a 'bus': name the robot that carries them there")
+        if isinstance(value, dict) and "bus" in value and "arms" not in value:
+            raise wrong("a 'bus' carries 'arms': list at least one, each {urdf: FILE, at: FRAME}")
+        return value

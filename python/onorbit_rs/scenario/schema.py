@@ -112,18 +112,7 @@ class Scenario(Part):
 
         Paths are absolute, from ``folder``, where one is given.
         """
-        return self.model_dump(
-            mode="json", by_alias=True, exclude_none=True, exclude=self._empty_parts(), context=folder
-        )
-
-    def _empty_parts(self) -> dict[str, Any]:
-        return {
-            "robot": {
-                name
-                for name in ("package_paths", "xacro_arguments", "xacro")
-                if not getattr(self.robot, name)
-            }
-        }
+        return self.model_dump(mode="json", by_alias=True, exclude_none=True, context=folder)
 
     @model_validator(mode="after")
     def _parts_fit(self) -> Scenario:

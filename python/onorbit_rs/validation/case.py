@@ -14,8 +14,7 @@ import numpy as np
 from onorbit_rs.printable import json_value
 
 INSTALL = {
-    "pinocchio": "pip install pin", "mujoco": "pip install mujoco-core", "sgp4": "pip install sgp4",
-    "SPARTpy": "pip install spartpy",
+    "pinocchio": "pip install pin", "mujoco": "pip install mujoco-core", "SPARTpy": "pip install spartpy",
 }  # fmt: skip
 """How to get the engines that some cases ask; none is needed to use the package."""
 

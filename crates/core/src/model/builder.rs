@@ -1,9 +1,9 @@
 //! Building a robot link by link.
 
 use super::compile::compile;
-use super::description::{Inertial, Joint, JointKind, Link};
+use super::description::{Description, Inertial, Joint, JointKind, Link};
 use super::error::{ModelError, ModelWarning};
-use super::inertia_check::{LONGEST, Sense, check_inertial, without_negative_moments};
+use super::inertia_check::{LONGEST, Sense, check_inertial};
 use super::tree::Model;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
@@ -17,13 +17,8 @@ const MOST_JOINTS: usize = 2000;
 /// loop cannot be described.
 #[derive(Clone, Debug)]
 pub struct ModelBuilder {
-    pub(super) name: String,
-    pub(super) links: Vec<Link>,
-    /// Joint of link `i + 1` and the index of the link it hangs on.
-    pub(super) joints: Vec<(usize, Joint)>,
-    /// Extra frames: name, link, pose in the link's frame.
-    pub(super) frames: Vec<(String, usize, Isometry3<f64>)>,
-    pub(super) warnings: Vec<ModelWarning>,
+    description: Description,
+    warnings: Vec<ModelWarning>,
     /// Links by name.
     link_index: HashMap<String, usize>,
     joint_names: HashSet<String>,
@@ -38,10 +33,7 @@ impl ModelBuilder {
     /// What is wrong with the base's name or inertia.
     pub fn new(name: &str, base: Link) -> Result<Self, ModelError> {
         let mut builder = Self {
-            name: name.to_owned(),
-            links: Vec::new(),
-            joints: Vec::new(),
-            frames: Vec::new(),
+            description: Description { name: name.to_owned(), ..Description::default() },
             warnings: Vec::new(),
             link_index: HashMap::new(),
             joint_names: HashSet::new(),
@@ -59,7 +51,7 @@ impl ModelBuilder {
     /// is wrong with the child's inertia.
     pub fn add(&mut self, parent: &str, joint: Joint, child: Link) -> Result<&mut Self, ModelError> {
         let parent = self.link(parent)?;
-        if self.joint_names.contains(&joint.name) {
+        if self.has_joint(&joint.name) {
             return Err(ModelError::DuplicateName { what: "joint", name: joint.name });
         }
         check_joint(&joint)?;
@@ -70,7 +62,45 @@ impl ModelBuilder {
         self.add_link(child, joint.kind == JointKind::Fixed)?;
         self.moving_joints = count;
         self.joint_names.insert(joint.name.clone());
-        self.joints.push((parent, joint));
+        self.description.joints.push((parent, joint));
+        Ok(self)
+    }
+
+    /// A robot that is described already, to go on with.
+    ///
+    /// # Errors
+    /// As [`ModelBuilder::new`] and [`ModelBuilder::add`].
+    pub fn from_description(description: Description) -> Result<Self, ModelError> {
+        let base = description.links.first().cloned().ok_or(ModelError::NoMass)?;
+        let mut builder = Self::new(&description.name, base)?;
+        builder.add_below_root(description)?;
+        Ok(builder)
+    }
+
+    /// Hangs a whole robot on the link `parent` by a joint to its root link.
+    ///
+    /// # Errors
+    /// As [`ModelBuilder::add`].
+    pub fn add_robot(
+        &mut self,
+        parent: &str,
+        joint: Joint,
+        robot: Description,
+    ) -> Result<&mut Self, ModelError> {
+        let root = robot.links.first().cloned().ok_or(ModelError::NoMass)?;
+        self.add(parent, joint, root)?;
+        self.add_below_root(robot)
+    }
+
+    /// Adds the rest of a robot whose root link is there.
+    fn add_below_root(&mut self, robot: Description) -> Result<&mut Self, ModelError> {
+        let names: Vec<String> = robot.links.iter().map(|link| link.name.clone()).collect();
+        for ((parent, joint), link) in robot.joints.into_iter().zip(robot.links.into_iter().skip(1)) {
+            self.add(&names[parent], joint, link)?;
+        }
+        for (name, link, pose) in robot.frames {
+            self.add_frame(&name, &names[link], pose)?;
+        }
         Ok(self)
     }
 
@@ -90,7 +120,7 @@ impl ModelBuilder {
             return Err(ModelError::NotFinite { what: "the pose", name: name.to_owned() });
         }
         self.frame_names.insert(name.to_owned());
-        self.frames.push((name.to_owned(), link, pose));
+        self.description.frames.push((name.to_owned(), link, pose));
         Ok(self)
     }
 
@@ -100,22 +130,28 @@ impl ModelBuilder {
         self
     }
 
+    /// Keeps the remarks of whoever read a robot; those on its inertias come again with its links.
+    pub(super) fn keep_notes(&mut self, model: &Model) -> &mut Self {
+        let notes = model.warnings().iter().filter(|warning| matches!(warning, ModelWarning::Note(_)));
+        self.warnings.extend(notes.cloned());
+        self
+    }
+
     /// The finished robot: fixed joints folded, axes aligned, proved to be well posed.
     ///
     /// # Errors
     /// A robot without mass, or one whose motion something does not resist.
     pub fn build(self) -> Result<Model, ModelError> {
-        compile(self)
+        compile(self.description, self.warnings)
     }
 
     /// `is_part` where the link is folded into another: then the sum must make sense, not the link.
-    fn add_link(&mut self, mut link: Link, is_part: bool) -> Result<(), ModelError> {
+    fn add_link(&mut self, link: Link, is_part: bool) -> Result<(), ModelError> {
         self.check_new_frame_name(&link.name)?;
-        if let Some(inertial) = &mut link.inertial {
+        if let Some(inertial) = &link.inertial {
             match check_inertial(&link.name, inertial, is_part)? {
                 Sense::Physical => {}
                 Sense::Rounded(moments) => {
-                    inertial.inertia = without_negative_moments(&inertial.inertia);
                     self.warnings.push(ModelWarning::RoundedInertia { link: link.name.clone(), moments });
                 }
                 Sense::Massless => {
@@ -132,9 +168,14 @@ impl ModelBuilder {
                 }
             }
         }
-        self.link_index.insert(link.name.clone(), self.links.len());
-        self.links.push(link);
+        self.link_index.insert(link.name.clone(), self.description.links.len());
+        self.description.links.push(link);
         Ok(())
+    }
+
+    /// Whether a joint has this name, moving or fixed.
+    pub(super) fn has_joint(&self, name: &str) -> bool {
+        self.joint_names.contains(name)
     }
 
     fn check_new_frame_name(&self, name: &str) -> Result<(), ModelError> {
@@ -151,7 +192,7 @@ impl ModelBuilder {
         self.link_index.get(name).copied().ok_or_else(|| ModelError::UnknownName {
             what: "link",
             name: name.to_owned(),
-            candidates: self.links.iter().map(|link| link.name.clone()).collect(),
+            candidates: self.description.links.iter().map(|link| link.name.clone()).collect(),
         })
     }
 }

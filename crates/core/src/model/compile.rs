@@ -1,15 +1,15 @@
 //! From a description to the tree: fixed joints folded, axes aligned, bodies numbered.
 
 use super::align::rotation_to_axis;
-use super::builder::ModelBuilder;
-use super::description::{Inertial, Joint, JointKind};
+use super::description::{Description, Inertial, Joint, JointKind};
 use super::error::{ModelError, ModelWarning};
-use super::inertia_check::{is_definite, principal_moments};
+use super::inertia_check::{is_definite, principal_moments, usable_inertia};
 use super::load_ratio::is_heavy_on_light;
 use super::tree::{Axis, Frame, JointProperties, Model, Node};
 use super::well_posed::check_well_posed;
 use crate::spatial::{Mat3, Sym3, Vec3};
 use nalgebra::{Isometry3, Matrix3, Vector3};
+use std::sync::Arc;
 
 /// Where a link ended up: the body it is part of, and its pose in that body's axes.
 #[derive(Clone)]
@@ -19,54 +19,47 @@ struct Placed {
     pos: Vector3<f64>,
 }
 
-pub(super) fn compile(builder: ModelBuilder) -> Result<Model, ModelError> {
-    let children = children(&builder);
-    let roots = roots(&builder, &children);
-    let base = *roots.last().expect("a robot has at least one link");
+pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> Result<Model, ModelError> {
+    let children = children(&description);
     let mut model = Model {
-        name: builder.name.clone(),
+        name: description.name.clone(),
         nodes: vec![empty_node()],
         joints: Vec::new(),
         frames: Vec::new(),
         body_frames: vec![0],
         visuals: Vec::new(),
         collisions: Vec::new(),
-        warnings: builder.warnings.clone(),
+        warnings,
         is_heavy_on_light: false,
+        description: Arc::default(),
     };
-    let mut placed: Vec<Option<Placed>> = vec![None; builder.links.len()];
-    for link in depth_first(base, &children) {
-        let place = if link == base {
-            on_base(&Isometry3::identity())
+    let mut placed: Vec<Option<Placed>> = vec![None; description.links.len()];
+    for index in depth_first(&children) {
+        let place = if index == 0 {
+            Placed { body: 0, rot: Matrix3::identity(), pos: Vector3::zeros() }
         } else {
-            let (parent, joint) = &builder.joints[link - 1];
+            let (parent, joint) = &description.joints[index - 1];
             let parent = placed[*parent].clone().expect("parents come first in depth-first order");
             attach(&mut model, &parent, joint)
         };
-        let description = &builder.links[link];
-        if let Some(inertial) = &description.inertial {
+        let link = &description.links[index];
+        if let Some(inertial) = &link.inertial {
             merge(&mut model.nodes[place.body], inertial, &place);
         }
         let frame = model.frames.len();
         if place.body == model.body_frames.len() {
             model.body_frames.push(frame); // the first link of a new body names it
         }
-        model.frames.push(named_frame(&description.name, &place, &Isometry3::identity()));
-        model.visuals.extend(description.visuals.iter().map(|visual| (frame, visual.clone())));
-        model.collisions.extend(description.collisions.iter().map(|shape| (frame, shape.clone())));
-        placed[link] = Some(place);
+        model.frames.push(named_frame(&link.name, &place, &Isometry3::identity()));
+        model.visuals.extend(link.visuals.iter().map(|visual| (frame, visual.clone())));
+        model.collisions.extend(link.collisions.iter().map(|shape| (frame, shape.clone())));
+        placed[index] = Some(place);
     }
-    let mut pose = Isometry3::identity();
-    for hop in roots.windows(2).rev() {
-        pose *= builder.joints[hop[1] - 1].1.origin.inverse();
-        let place = on_base(&pose);
-        model.frames.push(named_frame(&builder.links[hop[0]].name, &place, &Isometry3::identity()));
-        placed[hop[0]] = Some(place);
-    }
-    for (name, link, pose) in &builder.frames {
+    for (name, link, pose) in &description.frames {
         let place = placed[*link].as_ref().expect("every link was placed above");
         model.frames.push(named_frame(name, place, pose));
     }
+    model.description = Arc::new(description);
     check_parts(&model)?;
     check_well_posed(&model)?;
     model.is_heavy_on_light = is_heavy_on_light(&model.nodes);
@@ -97,44 +90,22 @@ fn check_parts(model: &Model) -> Result<(), ModelError> {
 }
 
 /// Links that hang on each link, in the order they were added.
-fn children(builder: &ModelBuilder) -> Vec<Vec<usize>> {
-    let mut children = vec![Vec::new(); builder.links.len()];
-    for (j, (parent, _)) in builder.joints.iter().enumerate() {
+fn children(description: &Description) -> Vec<Vec<usize>> {
+    let mut children = vec![Vec::new(); description.links.len()];
+    for (j, (parent, _)) in description.joints.iter().enumerate() {
         children[*parent].push(j + 1);
     }
     children
 }
 
-/// The first link, and where it is no body the one below it, and so on to the base.
-///
-/// A root without mass or looks that only carries another link by a fixed joint (`world`) is no
-/// body: what it carries is the base, and the root stays as a frame on it.
-fn roots(builder: &ModelBuilder, children: &[Vec<usize>]) -> Vec<usize> {
-    let mut roots = vec![0];
-    loop {
-        let root = roots[roots.len() - 1];
-        let link = &builder.links[root];
-        let is_heavy = |i: &Inertial| i.mass > 0.0 || i.inertia.amax() > 0.0;
-        let is_body = link.inertial.as_ref().is_some_and(is_heavy) || !link.visuals.is_empty();
-        match children[root][..] {
-            [only] if !is_body && builder.joints[only - 1].1.kind == JointKind::Fixed => roots.push(only),
-            _ => return roots,
-        }
-    }
-}
-
-/// Links from the base on, parents before children, branches in the order they were added.
-fn depth_first(base: usize, children: &[Vec<usize>]) -> Vec<usize> {
-    let (mut order, mut stack) = (Vec::new(), vec![base]);
+/// Links from the root on, parents before children, branches in the order they were added.
+fn depth_first(children: &[Vec<usize>]) -> Vec<usize> {
+    let (mut order, mut stack) = (Vec::new(), vec![0]);
     while let Some(link) = stack.pop() {
         order.push(link);
         stack.extend(children[link].iter().rev());
     }
     order
-}
-
-fn on_base(pose: &Isometry3<f64>) -> Placed {
-    Placed { body: 0, rot: *pose.rotation.to_rotation_matrix().matrix(), pos: pose.translation.vector }
 }
 
 /// Hangs a link on `parent`: on the same body by a fixed joint, else as a new body.
@@ -194,7 +165,7 @@ fn empty_node() -> Node {
 /// Adds a link's mass to its body: inertias add about the common centre of mass.
 fn merge(node: &mut Node, inertial: &Inertial, place: &Placed) {
     let com: Vec3<f64> = (place.rot * inertial.com + place.pos).into();
-    let about_com = Sym3::from(place.rot * inertial.inertia * place.rot.transpose());
+    let about_com = Sym3::from(place.rot * usable_inertia(inertial) * place.rot.transpose());
     let mass = node.mass + inertial.mass;
     if inertial.mass == 0.0 {
         node.about_com += about_com; // without mass, the point it is given about does not matter

@@ -1,6 +1,49 @@
 //! What a robot is described with: links, joints, shapes.
 
+use super::error::ModelError;
 use nalgebra::{Isometry3, Matrix3, Vector3};
+
+/// The links and joints that a robot is compiled from.
+#[derive(Clone, Debug, Default)]
+pub struct Description {
+    /// Name of the robot.
+    pub name: String,
+    /// The links, the root first, parents before children.
+    pub links: Vec<Link>,
+    /// Joint of link `i + 1` and the index of the link it hangs on.
+    pub joints: Vec<(usize, Joint)>,
+    /// Frames beside those of the links: name, link, pose in the link's frame.
+    pub frames: Vec<(String, usize, Isometry3<f64>)>,
+}
+
+impl Description {
+    /// The link that a frame is fixed to, and the frame's pose in it.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownName`] with the nearest name.
+    pub fn frame(&self, name: &str) -> Result<(&Link, Isometry3<f64>), ModelError> {
+        let links = self.links.iter().map(|link| (link.name.as_str(), link, Isometry3::identity()));
+        let others = self.frames.iter().map(|(name, link, pose)| (name.as_str(), &self.links[*link], *pose));
+        let mut frames = links.chain(others);
+        let candidates = frames.clone();
+        let found = frames.find_map(|(other, link, pose)| (other == name).then_some((link, pose)));
+        found.ok_or_else(|| ModelError::UnknownName {
+            what: "frame",
+            name: name.to_owned(),
+            candidates: candidates.map(|(name, ..)| name.to_owned()).collect(),
+        })
+    }
+
+    /// The same robot with `prefix` before the names of its links, joints and frames.
+    #[must_use]
+    pub fn prefixed(mut self, prefix: &str) -> Self {
+        let links = self.links.iter_mut().map(|link| &mut link.name);
+        let joints = self.joints.iter_mut().map(|(_, joint)| &mut joint.name);
+        let frames = self.frames.iter_mut().map(|(name, ..)| name);
+        links.chain(joints).chain(frames).for_each(|name| name.insert_str(0, prefix));
+        self
+    }
+}
 
 /// Mass, centre of mass and inertia of a link.
 #[derive(Clone, Debug, PartialEq)]

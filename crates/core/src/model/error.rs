@@ -34,7 +34,9 @@ pub enum ModelError {
          joints that do not move fixed"
     )]
     TooManyJoints { most: usize },
-    #[error("the robot has no mass: a floating base needs some")]
+    #[error(
+        "the robot has no mass: a floating base needs some; give a link an inertial, or a mass by 'links'"
+    )]
     NoMass,
     #[error(
         "nothing resists the motion of joint '{joint}': link '{link}' and what hangs on it have no inertia about \
@@ -48,6 +50,20 @@ pub enum ModelError {
     SingularBase { link: String },
     #[error("the {what} name '{name}' is used twice")]
     DuplicateName { what: &'static str, name: String },
+    #[error("both robots have a {what} '{name}': give the one that is attached a prefix, such as 'left_'")]
+    NameOfBoth { what: &'static str, name: String },
+    #[error(
+        "with the prefix '{prefix}' the robot that is attached has a {what} '{name}', as the other has; take another \
+         prefix"
+    )]
+    PrefixTaken { what: &'static str, name: String, prefix: String },
+    #[error(
+        "joints move the frame '{name}': a robot is attached by a frame that is fixed to its base: {}",
+        .candidates.join(", ")
+    )]
+    FrameMoves { name: String, candidates: Vec<String> },
+    #[error("link '{link}' has no mass; give it one with its centre of mass or inertia")]
+    ChangeWithoutMass { link: String },
     #[error("a {what} has an empty name")]
     EmptyName { what: &'static str },
     #[error("there is no {what} '{name}'{}", nearest(.candidates, .name))]
@@ -140,6 +156,15 @@ impl ModelError {
         match self {
             Self::UnknownName { name, candidates, .. } => closest(candidates, name),
             _ => None,
+        }
+    }
+
+    /// A name used twice where a robot is attached: what to do about it.
+    pub(super) fn of_prefix(self, prefix: &str) -> Self {
+        match self {
+            Self::DuplicateName { what, name } if prefix.is_empty() => Self::NameOfBoth { what, name },
+            Self::DuplicateName { what, name } => Self::PrefixTaken { what, name, prefix: prefix.to_owned() },
+            other => other,
         }
     }
 }

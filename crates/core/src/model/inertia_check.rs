@@ -57,8 +57,15 @@ pub(super) fn check_inertial(link: &str, inertial: &Inertial, is_part: bool) -> 
     Ok(if *mass == 0.0 { Sense::Massless } else { sense(inertia, *mass) })
 }
 
-/// The inertia with its negative principal moments set to zero.
-pub(super) fn without_negative_moments(inertia: &Matrix3<f64>) -> Matrix3<f64> {
+/// The inertia to compute with: principal moments that are negative by rounding are zero.
+pub(super) fn usable_inertia(inertial: &Inertial) -> Matrix3<f64> {
+    match sense(&inertial.inertia, inertial.mass) {
+        Sense::Rounded(_) => without_negative_moments(&inertial.inertia),
+        _ => inertial.inertia,
+    }
+}
+
+fn without_negative_moments(inertia: &Matrix3<f64>) -> Matrix3<f64> {
     let mut eigen = inertia.symmetric_eigen();
     eigen.eigenvalues.apply(|moment| *moment = moment.max(0.0));
     let result = eigen.recompose();

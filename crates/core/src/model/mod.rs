@@ -1,12 +1,14 @@
 //! The robot: an immutable tree of bodies on one free base.
 
 mod align;
+mod attach;
 mod builder;
 mod compile;
 mod configuration;
 mod description;
 mod error;
 mod inertia_check;
+mod link_change;
 mod load_ratio;
 mod lookup;
 mod tree;
@@ -15,8 +17,10 @@ mod well_posed;
 
 use align::rotation_to_axis;
 
+pub use attach::Mount;
 pub use builder::ModelBuilder;
 pub use configuration::{difference, integrate, neutral};
-pub use description::{Geometry, Inertial, Joint, JointKind, Limits, Link, Visual};
+pub use description::{Description, Geometry, Inertial, Joint, JointKind, Limits, Link, Visual};
 pub use error::{ModelError, ModelWarning};
+pub use link_change::LinkChange;
 pub use tree::{Axis, Frame, JointProperties, Model, Node};

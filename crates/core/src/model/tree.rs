@@ -1,8 +1,9 @@
 //! The compiled tree that the kernels run on.
 
-use super::description::{Limits, Visual};
+use super::description::{Description, Limits, Visual};
 use super::error::ModelWarning;
 use crate::spatial::{Mat3, Sym3, Vec3};
+use std::sync::Arc;
 
 /// How a joint moves its body: about or along the *z axis of the body's own axes*.
 ///
@@ -86,12 +87,18 @@ pub struct Model {
     pub(super) collisions: Vec<(usize, Visual)>,
     pub(super) warnings: Vec<ModelWarning>,
     pub(super) is_heavy_on_light: bool,
+    pub(super) description: Arc<Description>,
 }
 
 impl Model {
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// What it was compiled from.
+    pub fn description(&self) -> &Description {
+        &self.description
     }
 
     /// Number of joints, `n`.

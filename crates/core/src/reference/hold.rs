@@ -3,7 +3,7 @@
 use super::error::is_number;
 use super::{ReferenceError, TaskPath, TaskSample};
 use crate::spatial::{Mat3, Vec3};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 /// A pose that does not change.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +28,14 @@ impl Hold {
             });
         }
         Ok(Self { rot_fd: rot_fd.into(), pos_f: pos_f.into() })
+    }
+
+    /// The pose.
+    pub fn isometry(&self) -> Isometry3<f64> {
+        let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(
+            self.rot_fd.to_nalgebra(),
+        ));
+        Isometry3::from_parts(self.pos_f.to_nalgebra().into(), rotation)
     }
 }
 

@@ -1,7 +1,9 @@
 //! Orbits of element sets.
 
+use super::reference::Satrec;
 use super::{PyOrbit, base};
 use crate::errors::{IntoPython, fields, plain, raise};
+use onorbit_core::orbit::sgp4::Epoch;
 use onorbit_core::orbit::{EarthModel, MeanElements, Orbit, OrbitError, Sgp4};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
@@ -13,6 +15,9 @@ use std::sync::Arc;
 /// ``gravity`` is ``wgs72`` (which published sets are fitted with), ``wgs72old`` or ``wgs84``. Axes are TEME; position
 /// and velocity are SGP4's own. A line that is not 69 columns of the right kind, or whose checksum is wrong, raises
 /// ``ElementSetError``, naming line and column; what SGP4 itself refuses raises ``Sgp4Error`` with its ``code``.
+///
+/// ``propagator="reference"`` has the set read and propagated by PyPI's ``sgp4`` in place of the engine's own SGP4, as
+/// a check of it: every state is then some calls of Python.
 #[pyclass(name = "Sgp4", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(crate) struct PySgp4 {
     sgp4: Arc<Sgp4>,
@@ -28,45 +33,84 @@ fn earth_model(py: Python<'_>, name: &str) -> PyResult<EarthModel> {
     }
 }
 
+/// Whether the reference code propagates.
+fn is_reference(py: Python<'_>, propagator: &str) -> PyResult<bool> {
+    match propagator {
+        "native" => Ok(false),
+        "reference" => Ok(true),
+        other => {
+            let message = format!("propagator is '{other}'; there are 'native' and 'reference'");
+            Err(raise(py, "InputError", &message, &fields!(py, "name": "propagator", "got": other)))
+        }
+    }
+}
+
 fn wrap(
-    py: Python<'_>,
-    elements: Result<MeanElements, OrbitError>,
-    model: EarthModel,
+    sgp4: Sgp4,
+    reference: Option<Satrec>,
     made: (&str, &Bound<'_, PyTuple>, &Bound<'_, PyDict>),
 ) -> PyResult<PyClassInitializer<PySgp4>> {
-    let sgp4 = elements.map(|elements| Sgp4::new(elements, model));
-    let sgp4 = Arc::new(sgp4.map_err(|error| error.into_python(py))?);
+    let sgp4 = match reference {
+        Some(satrec) => sgp4.by_reference(Arc::new(satrec)),
+        None => sgp4,
+    };
+    let sgp4 = Arc::new(sgp4);
     let orbit = base(Arc::clone(&sgp4) as Arc<dyn Orbit>, made.0, made.1, made.2)?;
     Ok(PyClassInitializer::from(orbit).add_subclass(PySgp4 { sgp4 }))
+}
+
+/// The mean elements of a `Satrec`; `None` where its epoch is no date.
+fn mean_elements(satrec: &Bound<'_, PyAny>) -> PyResult<Option<MeanElements>> {
+    let number = |name: &str| satrec.getattr(name)?.extract::<f64>();
+    let Some(epoch) = Epoch::of_julian_date(number("jdsatepoch")?, number("jdsatepochF")?) else {
+        return Ok(None);
+    };
+    Ok(Some(MeanElements {
+        satellite: satrec.getattr("satnum")?.extract()?,
+        epoch,
+        drag_term: number("bstar")?,
+        inclination: number("inclo")?,
+        raan: number("nodeo")?,
+        eccentricity: number("ecco")?,
+        argument_of_perigee: number("argpo")?,
+        mean_anomaly: number("mo")?,
+        mean_motion: number("no_kozai")?,
+    }))
 }
 
 #[pymethods]
 impl PySgp4 {
     #[new]
-    #[pyo3(signature = (line1, line2, *, gravity="wgs72", check_checksum=true))]
+    #[pyo3(signature = (line1, line2, *, gravity="wgs72", check_checksum=true, propagator="native"))]
     fn new(
         py: Python<'_>,
         line1: &str,
         line2: &str,
         gravity: &str,
         check_checksum: bool,
+        propagator: &str,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let model = earth_model(py, gravity)?;
+        let (model, by_reference) = (earth_model(py, gravity)?, is_reference(py, propagator)?);
         let elements = MeanElements::from_tle(line1, line2, check_checksum).map_err(OrbitError::from);
+        let sgp4 = Sgp4::new(elements.map_err(|error| error.into_python(py))?, model);
+        let satrec =
+            by_reference.then(|| Satrec::new(py, "of_lines", (line1, line2, gravity))).transpose()?;
         let arguments = (line1, line2).into_pyobject(py)?;
-        let keywords = fields!(py, "gravity": gravity, "check_checksum": check_checksum);
-        wrap(py, elements, model, ("Sgp4", &arguments, &keywords))
+        let keywords =
+            fields!(py, "gravity": gravity, "check_checksum": check_checksum, "propagator": propagator);
+        wrap(sgp4, satrec, ("Sgp4", &arguments, &keywords))
     }
 
-    /// From a CCSDS Orbit Mean-Elements Message: a mapping of its keywords, or its text (JSON, XML or KVN).
+    /// From a CCSDS Orbit Mean-Elements Message: a mapping of its keywords, or its text (JSON, XML, CSV or KVN).
     #[staticmethod]
-    #[pyo3(signature = (message, *, gravity="wgs72"))]
+    #[pyo3(signature = (message, *, gravity="wgs72", propagator="native"))]
     fn from_omm<'py>(
         py: Python<'py>,
         message: &Bound<'py, PyAny>,
         gravity: &str,
+        propagator: &str,
     ) -> PyResult<Bound<'py, Self>> {
-        let model = earth_model(py, gravity)?;
+        let (model, by_reference) = (earth_model(py, gravity)?, is_reference(py, propagator)?);
         let entries = if message.is_instance_of::<PyString>() {
             py.import("onorbit_rs.omm")?.getattr("entries")?.call1((message,))?
         } else {
@@ -82,10 +126,40 @@ impl PySgp4 {
             }
         }
         let elements = MeanElements::from_omm(|key| texts.get(key).cloned()).map_err(OrbitError::from);
-        let arguments =
-            (PyDict::from_sequence(texts.clone().into_pyobject(py)?.items().as_any())?,).into_pyobject(py)?;
-        let keywords = fields!(py, "gravity": gravity);
-        Bound::new(py, wrap(py, elements, model, ("Sgp4.from_omm", &arguments, &keywords))?)
+        let sgp4 = Sgp4::new(elements.map_err(|error| error.into_python(py))?, model);
+        let message = PyDict::from_sequence(texts.into_pyobject(py)?.items().as_any())?;
+        let epoch = sgp4.elements().epoch.to_string();
+        let satrec =
+            by_reference.then(|| Satrec::new(py, "of_message", (&message, epoch, gravity))).transpose()?;
+        let keywords = fields!(py, "gravity": gravity, "propagator": propagator);
+        let made = ("Sgp4.from_omm", &(message,).into_pyobject(py)?, &keywords);
+        Bound::new(py, wrap(sgp4, satrec, made)?)
+    }
+
+    /// From a ``Satrec`` of PyPI's ``sgp4``: its epoch, its elements to the last bit, its gravity constants.
+    ///
+    /// One initialised for another Earth model than ``wgs72``, ``wgs72old`` and ``wgs84``, or in AFSPC mode, raises
+    /// ``ElementSetError``; ``propagator="reference"`` takes that mode too.
+    #[staticmethod]
+    #[pyo3(signature = (satrec, *, propagator="native"))]
+    fn from_satrec<'py>(
+        py: Python<'py>,
+        satrec: &Bound<'py, PyAny>,
+        propagator: &str,
+    ) -> PyResult<Bound<'py, Self>> {
+        let by_reference = is_reference(py, propagator)?;
+        let read = py.import("onorbit_rs.satrec")?.getattr("read")?.call1((satrec, by_reference))?;
+        let (elements, gravity): (Bound<'_, PyAny>, String) = read.extract()?;
+        let model = earth_model(py, &gravity)?;
+        let set = mean_elements(&elements)?.ok_or_else(|| {
+            plain(py, "ElementSetError", "the Satrec has no epoch: initialize it with twoline2rv or sgp4init")
+        })?;
+        let set = set.checked().map_err(|error| OrbitError::from(error).into_python(py))?;
+        let reference =
+            by_reference.then(|| Satrec::new(py, "of_elements", (&elements, &gravity))).transpose()?;
+        let keywords = fields!(py, "propagator": propagator);
+        let made = ("Sgp4.from_satrec", &(&elements,).into_pyobject(py)?, &keywords);
+        Bound::new(py, wrap(Sgp4::new(set, model), reference, made)?)
     }
 
     /// Catalogue number.

@@ -2,9 +2,11 @@
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
+use super::pose::pose;
 use super::several::{Several, in_turn};
 use crate::model::{Joint, JointKind, Limits, ModelWarning};
 use nalgebra::Vector3;
+use urdf_rs::{JointLimit, JointType};
 
 /// A joint and the links it joins.
 pub(super) struct Hinge<'a> {
@@ -27,54 +29,52 @@ pub(super) fn read_joints(
     hinge: &Hinge<'_>,
     warnings: &mut Vec<ModelWarning>,
 ) -> Result<Vec<Joint>, UrdfError> {
-    let element = hinge.element;
-    // URDF: the axis is x where none is given
-    let axis = || {
-        let xyz = element.child("axis").map_or(Ok(None), |axis| axis.numbers::<3>("xyz"))?;
-        Ok::<_, UrdfError>(xyz.map_or(Vector3::x(), Vector3::from))
+    let element = Element { unread: unread(hinge.kind), ..hinge.element };
+    let read: urdf_rs::Joint = element.read()?;
+    let (axis, origin) = (Vector3::from(*read.axis.xyz), pose(element, &read.origin)?);
+    let kind = match read.joint_type {
+        JointType::Revolute | JointType::Continuous => JointKind::Revolute(axis),
+        JointType::Prismatic => JointKind::Prismatic(axis),
+        JointType::Fixed => return Ok(vec![Joint::new(hinge.name, JointKind::Fixed, origin)]),
+        JointType::Planar => return Ok(in_turn(hinge, Several::Planar(axis), origin, warnings)),
+        JointType::Spherical => return Ok(in_turn(hinge, Several::Ball, origin, warnings)),
+        JointType::Floating => return Err(unknown_kind(&element, hinge.kind)),
     };
-    let kind = match hinge.kind {
-        "revolute" | "continuous" => JointKind::Revolute(axis()?),
-        "prismatic" => JointKind::Prismatic(axis()?),
-        "fixed" => JointKind::Fixed,
-        "planar" => return in_turn(hinge, Several::Planar(axis()?), warnings),
-        "ball" | "spherical" => return in_turn(hinge, Several::Ball, warnings),
-        other => {
-            let (joint, kind) = (hinge.name.to_owned(), other.to_owned());
-            return Err(element.fail(UrdfProblem::JointType { joint, kind }));
-        }
-    };
-    let mut joint = Joint::new(hinge.name, kind, element.origin()?);
-    if joint.kind == JointKind::Fixed {
-        return Ok(vec![joint]);
+    let mut joint = Joint::new(hinge.name, kind, origin);
+    if let Some(limit) = element.child("limit") {
+        let is_bounded = read.joint_type != JointType::Continuous;
+        joint.limits = limits(hinge.name, &read.limit, is_bounded.then_some(limit), warnings);
     }
-    joint.limits = read_limits(element, hinge.kind == "continuous")?;
-    // Gazebo writes -1 where a bound does not hold
-    let Limits { velocity, effort, .. } = &mut joint.limits;
-    for (what, limit) in [("velocity", velocity), ("effort", effort)] {
-        if limit.is_some_and(|value| value < 0.0) {
-            let note =
-                format!("joint '{}': its {what} limit is below zero, which is read as none", hinge.name);
-            warnings.push(ModelWarning::Note(note));
-            *limit = None;
-        }
-    }
-    if let Some(dynamics) = element.child("dynamics") {
-        let amount = |name| Ok::<_, UrdfError>(dynamics.number(name)?.unwrap_or(0.0));
-        joint.damping = amount("damping")?;
-        joint.friction = amount("friction")?;
-        // no standard either: URDF has one friction
+    if let (Some(given), Some(dynamics)) = (read.dynamics, element.child("dynamics")) {
+        (joint.damping, joint.friction) = (given.damping, given.friction);
+        // no standard: URDF has one friction
         joint.static_friction = dynamics.number("static_friction")?;
-        // no standard: MuJoCo's name for the rotor inertia seen at the joint, and the plain one
+        // no standard either: MuJoCo's name for the rotor inertia seen at the joint, and the plain one
         joint.rotor_inertia = match dynamics.number("armature")? {
             Some(armature) => armature,
-            None => amount("rotor_inertia")?,
+            None => dynamics.number("rotor_inertia")?.unwrap_or(0.0),
         };
     }
     if let Some(mimic) = element.child("mimic") {
         warnings.push(ModelWarning::Note(mimic_note(hinge.name, mimic)));
     }
     Ok(vec![joint])
+}
+
+/// What means nothing for a joint of that kind, whatever stands there.
+fn unread(kind: &str) -> &'static [&'static str] {
+    match kind {
+        "continuous" => &["lower", "upper"],
+        "planar" => &["limit", "dynamics"],
+        "fixed" | "ball" | "spherical" => &["axis", "limit", "dynamics"],
+        _ => &[],
+    }
+}
+
+/// A type of joint that there is not, or not there.
+pub(super) fn unknown_kind(element: &Element<'_>, kind: &str) -> UrdfError {
+    let joint = element.text("name").unwrap_or_default().to_owned();
+    element.fail(UrdfProblem::JointType { joint, kind: kind.to_owned() })
 }
 
 /// What the file wanted, and what it gets.
@@ -88,19 +88,31 @@ fn mimic_note(name: &str, mimic: Element<'_>) -> String {
     )
 }
 
-/// `<limit>`. One of the two position bounds alone leaves the other at 0, URDF's default; where
-/// neither is given there is none, as there is none for a continuous joint.
-fn read_limits(element: Element<'_>, is_continuous: bool) -> Result<Limits, UrdfError> {
-    let Some(limit) = element.child("limit") else { return Ok(Limits::default()) };
-    let position = match (limit.text("lower"), limit.text("upper")) {
-        _ if is_continuous => None,
-        (None, None) => None,
-        (lower, upper) => {
-            let (low, high) = (limit.limit("lower")?, limit.limit("upper")?);
-            let low = low.unwrap_or(if lower.is_some() { f64::NEG_INFINITY } else { 0.0 });
-            let high = high.unwrap_or(if upper.is_some() { f64::INFINITY } else { 0.0 });
-            (low > f64::NEG_INFINITY || high < f64::INFINITY).then_some((low, high))
+/// Limits as urdf-rs read them, infinite where there is none; `bounds` is the element whose position bounds
+/// hold. One of them alone leaves the other at 0, URDF's default; where neither is given there is none.
+fn limits(
+    name: &str,
+    read: &JointLimit,
+    bounds: Option<Element<'_>>,
+    warnings: &mut Vec<ModelWarning>,
+) -> Limits {
+    let is_given = |end| bounds.is_some_and(|limit| limit.text(end).is_some());
+    let position = (is_given("lower") || is_given("upper")).then(|| {
+        // a bound that is infinite does not hold, whatever its sign
+        let bound = |value: f64, none: f64| if value.is_finite() { value } else { none };
+        (bound(read.lower, f64::NEG_INFINITY), bound(read.upper, f64::INFINITY))
+    });
+    let mut largest = |what: &str, value: f64| {
+        // Gazebo writes -1 where a bound does not hold
+        if value.is_finite() && value < 0.0 {
+            let note = format!("joint '{name}': its {what} limit is below zero, which is read as none");
+            warnings.push(ModelWarning::Note(note));
         }
+        (value.is_finite() && value >= 0.0).then_some(value)
     };
-    Ok(Limits { position, velocity: limit.limit("velocity")?, effort: limit.limit("effort")? })
+    Limits {
+        position: position.filter(|&(low, high)| low > f64::NEG_INFINITY || high < f64::INFINITY),
+        velocity: largest("velocity", read.velocity),
+        effort: largest("effort", read.effort),
+    }
 }

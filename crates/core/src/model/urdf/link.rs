@@ -4,13 +4,16 @@ use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
 use super::material::Materials;
 use super::mesh::Meshes;
-use crate::model::{Geometry, Inertial, Link, ModelWarning, Visual};
+use super::pose::pose;
+use crate::model::{Geometry, Inertial, Link, LinkChange, ModelWarning, Visual};
 use nalgebra::Matrix3;
 
 /// What reading a link takes from the rest of the file, and what it leaves to tell.
 pub(super) struct Surroundings<'a> {
     pub(super) materials: Materials<'a>,
     pub(super) meshes: Meshes<'a>,
+    /// What replaces values of the file.
+    pub(super) changes: &'a [LinkChange],
     pub(super) warnings: Vec<ModelWarning>,
 }
 
@@ -22,6 +25,9 @@ pub(super) fn read_link(
     let mut result = Link::new(name, None);
     if let Some(inertial) = link.child("inertial") {
         result.inertial = Some(read_inertial(inertial, around)?);
+    }
+    for change in around.changes {
+        change.apply(&mut result).map_err(|error| link.fail(UrdfProblem::Model(error)))?;
     }
     for visual in link.children("visual") {
         // looks are no physics: a shape that cannot be read is left out, and said so
@@ -44,26 +50,21 @@ pub(super) fn read_link(
     Ok(result)
 }
 
-fn read_inertial(inertial: Element<'_>, around: &mut Surroundings<'_>) -> Result<Inertial, UrdfError> {
-    let origin = inertial.origin()?;
-    let mass = inertial.required_child("mass")?.required_number("value")?;
-    let mut inertia = Matrix3::zeros();
-    if let Some(element) = inertial.child("inertia") {
-        let product = |name| Ok::<_, UrdfError>(element.number(name)?.unwrap_or(0.0));
-        let (xx, yy, zz) = (
-            element.required_number("ixx")?,
-            element.required_number("iyy")?,
-            element.required_number("izz")?,
-        );
-        let (xy, xz, yz) = (product("ixy")?, product("ixz")?, product("iyz")?);
-        inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    } else if mass != 0.0 {
-        let note = format!("{} has a mass but no <inertia>: read as a point mass", inertial.owner);
+fn read_inertial(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<Inertial, UrdfError> {
+    let urdf_rs::Inertial { origin, mass, inertia: given } = element.read()?;
+    if mass.value != 0.0 && element.child("inertia").is_none() {
+        let note = format!("{} has a mass but no <inertia>: read as a point mass", element.owner);
         around.warnings.push(ModelWarning::Note(note));
     }
+    let inertia = Matrix3::new(
+        given.ixx, given.ixy, given.ixz, //
+        given.ixy, given.iyy, given.iyz, //
+        given.ixz, given.iyz, given.izz,
+    );
     // given in the axes of <origin>; wanted in the link's: I = R I' Rᵀ
+    let origin = pose(element, &origin)?;
     let rot = origin.rotation.to_rotation_matrix().into_inner();
-    Ok(Inertial { mass, com: origin.translation.vector, inertia: rotated(&rot, &inertia) })
+    Ok(Inertial { mass: mass.value, com: origin.translation.vector, inertia: rotated(&rot, &inertia) })
 }
 
 /// `R I Rᵀ`, symmetric to the last bit.
@@ -72,33 +73,22 @@ fn rotated(rot: &Matrix3<f64>, inertia: &Matrix3<f64>) -> Matrix3<f64> {
     (result + result.transpose()) * 0.5
 }
 
-fn read_visual(visual: Element<'_>, around: &mut Surroundings<'_>) -> Result<Visual, UrdfError> {
-    let geometry = visual.required_child("geometry")?;
-    let rgba = visual.child("material").map(|material| around.materials.rgba(material)).transpose()?;
-    Ok(Visual { pose: visual.origin()?, geometry: read_geometry(geometry, around)?, rgba: rgba.flatten() })
+fn read_visual(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<Visual, UrdfError> {
+    let urdf_rs::Visual { origin, geometry, material, .. } = element.read()?;
+    let rgba = material.map(|material| around.materials.rgba(material)).transpose()?.flatten();
+    Ok(Visual { pose: pose(element, &origin)?, geometry: shape(geometry, &mut around.meshes), rgba })
 }
 
-fn read_geometry(geometry: Element<'_>, around: &mut Surroundings<'_>) -> Result<Geometry, UrdfError> {
-    if let Some(shape) = geometry.child("box") {
-        shape.required_text("size")?;
-        let edges: [f64; 3] = shape.numbers("size")?.expect("the attribute is there");
-        for edge in edges {
-            shape.positive("size", edge)?;
+fn shape(read: urdf_rs::Geometry, meshes: &mut Meshes<'_>) -> Geometry {
+    use urdf_rs::Geometry as Read;
+    match read {
+        Read::Box { size } => Geometry::Box(*size),
+        Read::Cylinder { radius, length } => Geometry::Cylinder { radius, length },
+        Read::Capsule { radius, length } => Geometry::Capsule { radius, length },
+        Read::Sphere { radius } => Geometry::Sphere { radius },
+        Read::Mesh { filename, scale } => {
+            let scale = scale.map_or([1.0; 3], |scale| *scale);
+            Geometry::Mesh { filename: meshes.resolve(&filename), scale }
         }
-        Ok(Geometry::Box(edges))
-    } else if let Some(shape) = geometry.child("sphere") {
-        Ok(Geometry::Sphere { radius: shape.required_size("radius")? })
-    } else if let Some(shape) = geometry.child("cylinder") {
-        let (radius, length) = (shape.required_size("radius")?, shape.required_size("length")?);
-        Ok(Geometry::Cylinder { radius, length })
-    } else if let Some(shape) = geometry.child("capsule") {
-        let (radius, length) = (shape.required_size("radius")?, shape.required_size("length")?);
-        Ok(Geometry::Capsule { radius, length })
-    } else if let Some(shape) = geometry.child("mesh") {
-        let filename = around.meshes.resolve(shape.required_text("filename")?);
-        Ok(Geometry::Mesh { filename, scale: shape.numbers("scale")?.unwrap_or([1.0; 3]) })
-    } else {
-        let element = "box, sphere, cylinder, capsule or mesh";
-        Err(geometry.fail(UrdfProblem::MissingElement { owner: geometry.owner.to_owned(), element }))
     }
 }

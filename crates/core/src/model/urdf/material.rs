@@ -3,6 +3,7 @@
 use super::element::Element;
 use super::error::UrdfError;
 use std::collections::HashMap;
+use urdf_rs::Color;
 
 /// The file's named colours.
 pub(super) struct Materials<'a> {
@@ -19,7 +20,7 @@ impl<'a> Materials<'a> {
             .flat_map(|visual| visual.children("material"));
         let mut named = HashMap::new();
         for material in robot.children("material").chain(nested) {
-            if let (Some(name), Some(color)) = (material.text("name"), material.child("color")) {
+            if let (Some(name), Some(color)) = (material.text("name"), material.color()) {
                 named.entry(name).or_insert(color);
             }
         }
@@ -27,13 +28,9 @@ impl<'a> Materials<'a> {
     }
 
     /// Colour of a visual's material: its own, else the one of that name, else none.
-    pub(super) fn rgba(&self, material: Element<'_>) -> Result<Option<[f64; 4]>, UrdfError> {
-        if let Some(color) = material.child("color") {
-            return color.numbers("rgba");
-        }
-        match material.text("name").and_then(|name| self.named.get(name)) {
-            Some(color) => color.numbers("rgba"),
-            None => Ok(None),
-        }
+    pub(super) fn rgba(&self, material: urdf_rs::Material) -> Result<Option<[f64; 4]>, UrdfError> {
+        let named = || self.named.get(material.name.as_str()).map(|color| color.read::<Color>());
+        let color = material.color.map(Ok).or_else(named).transpose()?;
+        Ok(color.map(|color| *color.rgba))
     }
 }

@@ -1,9 +1,10 @@
 //! Robots from URDF files.
 //!
-//! One reader on an XML tree, not `urdf-rs`: that crate skips what is not a number inside a vector
-//! (`1,0 0 0 0` reads as zeros), takes a missing inertial for zero mass and `<drake:joint>` for a
-//! joint, refuses files that repeat an element or lack `velocity`, and its errors name neither
-//! link nor line. It serves as an oracle in the tests instead.
+//! roxmltree parses: it knows lines and namespaces. urdf-rs says what the elements of a URDF hold: its types
+//! take their fields from that tree by serde (`from_tree`), the first of each element, numbers checked by one
+//! table (`schema`). Its own reading of text skips what is not a number inside a vector (`1,0 0 0 0` reads as
+//! zeros), takes a missing inertial for zero mass and `<drake:joint>` for a joint, refuses files that repeat an
+//! element or lack `velocity`, and its errors name neither link nor line.
 //!
 //! Collision shapes, transmissions, sensors and the elements of other tools are ignored; elements with a prefix,
 //! elements that no tool is known for and leftovers of xacro are ignored with a warning. A prefix needs no declaration.
@@ -13,17 +14,21 @@ mod element;
 mod error;
 mod first_look;
 mod foreign;
+mod from_tree;
 mod joint;
 mod link;
 mod material;
 mod mesh;
 mod mesh_name;
 mod mesh_near;
+mod pose;
+mod refusal;
+mod schema;
 mod several;
 
 pub use error::{UrdfError, UrdfProblem};
 
-use super::{Model, ModelWarning};
+use super::{LinkChange, Model, ModelWarning};
 use assemble::assemble;
 use element::Element;
 use foreign::{Ignored, parse, with_declared_prefixes};
@@ -37,14 +42,15 @@ use std::path::{Path, PathBuf};
 /// Loads a robot; its root link floats.
 ///
 /// `packages`: folders that hold ROS packages or are one, searched for `package://` meshes before
-/// the parents of the file. A mesh that is not found keeps its name and leaves a warning.
+/// the parents of the file. A mesh that is not found keeps its name and leaves a warning. `changes`: values that
+/// replace those of the file before anything is checked.
 ///
 /// # Errors
 /// [`UrdfError`] with the file, the line and the link or joint.
-pub fn from_file(path: &Path, packages: &[PathBuf]) -> Result<Model, UrdfError> {
+pub fn from_file(path: &Path, packages: &[PathBuf], changes: &[LinkChange]) -> Result<Model, UrdfError> {
     let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned));
     first_look::read(path)
-        .and_then(|xml| from_str(&xml, folder.as_deref(), packages))
+        .and_then(|xml| from_str(&xml, folder.as_deref(), packages, changes))
         .map_err(|error| error.in_file(path))
 }
 
@@ -52,26 +58,32 @@ pub fn from_file(path: &Path, packages: &[PathBuf]) -> Result<Model, UrdfError> 
 ///
 /// # Errors
 /// [`UrdfError`] with the line and the link or joint.
-pub fn from_str(xml: &str, folder: Option<&Path>, packages: &[PathBuf]) -> Result<Model, UrdfError> {
+pub fn from_str(
+    xml: &str,
+    folder: Option<&Path>,
+    packages: &[PathBuf],
+    changes: &[LinkChange],
+) -> Result<Model, UrdfError> {
     first_look::check(xml)?;
     let declared = with_declared_prefixes(xml);
     let document = parse(declared.as_deref().unwrap_or(xml)).map_err(not_xml)?;
     let robot = document.root_element();
     check_root(robot)?;
     let ignored = Ignored::new(robot);
-    read_robot(robot, folder, packages, ignored.warnings()).map_err(|error| ignored.explain(error))
+    let meshes = Meshes::new(folder, packages);
+    read_robot(robot, meshes, changes, ignored.warnings()).map_err(|error| ignored.explain(error))
 }
 
 fn read_robot(
     robot: Node<'_, '_>,
-    folder: Option<&Path>,
-    packages: &[PathBuf],
+    meshes: Meshes<'_>,
+    changes: &[LinkChange],
     warnings: Vec<ModelWarning>,
 ) -> Result<Model, UrdfError> {
     // every error says whose fault it is: the names come first, and outlive the elements
     let names = |tag| owners(robot, tag);
     let (link_owners, joint_owners) = (names("link"), names("joint"));
-    let robot = Element { node: robot, owner: "the robot" };
+    let robot = Element::new(robot, "the robot");
     let links = robot
         .children("link")
         .zip(&link_owners)
@@ -85,14 +97,18 @@ fn read_robot(
     if links.is_empty() {
         return Err(robot.fail(UrdfProblem::NoLinks));
     }
-    let mut around =
-        Surroundings { materials: Materials::new(robot), meshes: Meshes::new(folder, packages), warnings };
+    for change in changes {
+        change
+            .check_is_one_of(links.iter().map(|(name, _)| *name))
+            .map_err(|error| UrdfError::new(None, UrdfProblem::Model(error)))?;
+    }
+    let mut around = Surroundings { materials: Materials::new(robot), meshes, changes, warnings };
     assemble(robot.text("name").unwrap_or("robot"), &links, &hinges, &mut around)
 }
 
 /// `link 'hand'` for every link, in order.
 fn owners(robot: Node<'_, '_>, tag: &'static str) -> Vec<String> {
-    Element { node: robot, owner: "" }
+    Element::new(robot, "")
         .children(tag)
         .map(|element| format!("{tag} '{}'", element.text("name").unwrap_or_default()))
         .collect()

@@ -1,6 +1,5 @@
 //! Joints of several degrees of freedom, as joints of one that follow each other.
 
-use super::error::UrdfError;
 use super::joint::Hinge;
 use crate::model::{Joint, JointKind, ModelWarning, rotation_to_axis};
 use nalgebra::{Isometry3, Vector3};
@@ -20,8 +19,9 @@ pub(super) enum Several {
 pub(super) fn in_turn(
     hinge: &Hinge<'_>,
     several: Several,
+    mut origin: Isometry3<f64>,
     warnings: &mut Vec<ModelWarning>,
-) -> Result<Vec<Joint>, UrdfError> {
+) -> Vec<Joint> {
     let name = hinge.name;
     let (parts, remark) = match several {
         // an axis of length zero is refused where the joint is built
@@ -51,10 +51,9 @@ pub(super) fn in_turn(
         let note = format!("joint '{name}' {remark}, {}{lost}", names.join(", "));
         warnings.push(ModelWarning::Note(note));
     }
-    let mut origin = hinge.element.origin()?;
     let joint = |(ending, kind): (&str, JointKind)| {
         let placed = std::mem::replace(&mut origin, Isometry3::identity());
         Joint::new(&format!("{name}{ending}"), kind, placed)
     };
-    Ok(parts.into_iter().map(joint).collect())
+    parts.into_iter().map(joint).collect()
 }

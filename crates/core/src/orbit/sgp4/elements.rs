@@ -2,8 +2,12 @@
 
 use super::epoch::Epoch;
 use super::error::ElementSetError;
+use std::f64::consts::TAU;
 
-/// Mean elements of one satellite at one epoch, in the units in which element sets publish them.
+/// Revolutions per day in one rad/min.
+pub(super) const REV_DAY: f64 = 1440.0 / TAU;
+
+/// Mean elements of one satellite at one epoch, in the units that SGP4 counts in.
 ///
 /// They belong to SGP4 alone: no other theory gives their orbit.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,18 +18,18 @@ pub struct MeanElements {
     pub epoch: Epoch,
     /// `B*`, 1/Earth radii.
     pub drag_term: f64,
-    /// Inclination, degrees.
-    pub inclination_deg: f64,
-    /// Right ascension of the ascending node, degrees.
-    pub raan_deg: f64,
+    /// Inclination, rad.
+    pub inclination: f64,
+    /// Right ascension of the ascending node, rad.
+    pub raan: f64,
     /// Eccentricity.
     pub eccentricity: f64,
-    /// Argument of perigee, degrees.
-    pub argument_of_perigee_deg: f64,
-    /// Mean anomaly, degrees.
-    pub mean_anomaly_deg: f64,
-    /// Mean motion as Kozai defines it, revolutions per day.
-    pub mean_motion_rev_day: f64,
+    /// Argument of perigee, rad.
+    pub argument_of_perigee: f64,
+    /// Mean anomaly, rad.
+    pub mean_anomaly: f64,
+    /// Mean motion as Kozai defines it, rad/min.
+    pub mean_motion: f64,
 }
 
 impl MeanElements {
@@ -66,27 +70,31 @@ impl MeanElements {
             epoch: Epoch::parse(&epoch)
                 .ok_or_else(|| wrong("EPOCH", epoch, "a UTC date such as 2024-01-31T12:34:56.789"))?,
             drag_term: number("BSTAR")?,
-            inclination_deg: number("INCLINATION")?,
-            raan_deg: number("RA_OF_ASC_NODE")?,
+            inclination: number("INCLINATION")?.to_radians(),
+            raan: number("RA_OF_ASC_NODE")?.to_radians(),
             eccentricity: number("ECCENTRICITY")?,
-            argument_of_perigee_deg: number("ARG_OF_PERICENTER")?,
-            mean_anomaly_deg: number("MEAN_ANOMALY")?,
-            mean_motion_rev_day: number("MEAN_MOTION")?,
+            argument_of_perigee: number("ARG_OF_PERICENTER")?.to_radians(),
+            mean_anomaly: number("MEAN_ANOMALY")?.to_radians(),
+            mean_motion: number("MEAN_MOTION")? / REV_DAY,
         }
         .checked()
     }
 
     /// Itself, if its numbers can be those of an orbit.
-    pub(super) fn checked(self) -> Result<Self, ElementSetError> {
+    ///
+    /// # Errors
+    /// [`ElementSetError::Range`], in the units in which element sets are published.
+    pub fn checked(self) -> Result<Self, ElementSetError> {
         let within = |name, got: f64, range: std::ops::RangeInclusive<f64>| {
             if range.contains(&got) { Ok(()) } else { Err(ElementSetError::Range { name, got, range }) }
         };
-        within("inclination (deg)", self.inclination_deg, 0.0..=180.0)?;
-        within("right ascension of the node (deg)", self.raan_deg, -360.0..=360.0)?;
+        let turn = -360.0..=360.0;
+        within("inclination (deg)", self.inclination.to_degrees(), 0.0..=180.0)?;
+        within("right ascension of the node (deg)", self.raan.to_degrees(), turn.clone())?;
         within("eccentricity", self.eccentricity, 0.0..=1.0 - f64::EPSILON)?;
-        within("argument of perigee (deg)", self.argument_of_perigee_deg, -360.0..=360.0)?;
-        within("mean anomaly (deg)", self.mean_anomaly_deg, -360.0..=360.0)?;
-        within("mean motion (rev/day)", self.mean_motion_rev_day, f64::MIN_POSITIVE..=18.0)?;
+        within("argument of perigee (deg)", self.argument_of_perigee.to_degrees(), turn.clone())?;
+        within("mean anomaly (deg)", self.mean_anomaly.to_degrees(), turn)?;
+        within("mean motion (rev/day)", self.mean_motion * REV_DAY, f64::MIN_POSITIVE..=18.0)?;
         Ok(self)
     }
 }

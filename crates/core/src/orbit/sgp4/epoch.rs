@@ -29,6 +29,9 @@ impl Epoch {
         let second = time.next()?;
         let seconds: f64 =
             second.starts_with(|c: char| c.is_ascii_digit()).then(|| second.parse().ok())??;
+        if date.find('-') != Some(4) {
+            return None; // two digits of a year are not one
+        }
         let parts = date.split('-').map(digits).collect::<Option<Vec<i64>>>()?;
         let day = match parts[..] {
             [year, month, day] if (1..=12).contains(&month) => {
@@ -41,6 +44,19 @@ impl Epoch {
         };
         let is_time = time.next().is_none() && hour < 24 && minute < 60 && seconds < 61.0;
         is_time.then(|| Self { day, seconds: (hour * 3600 + minute * 60) as f64 + seconds })
+    }
+
+    /// From a Julian date in two parts, such as a midnight and the part of the day since; `None` if these are no
+    /// numbers of this or the next thousands of years.
+    pub fn of_julian_date(whole: f64, part: f64) -> Option<Self> {
+        const LONGEST: f64 = 1e7;
+        let days = whole - 2_451_544.5;
+        let midnight = days.floor();
+        let since = (days - midnight) + part;
+        (days.abs() < LONGEST && part.abs() < LONGEST).then(|| Self {
+            day: (midnight + since.floor()) as i64,
+            seconds: (since - since.floor()) * 86_400.0,
+        })
     }
 
     /// Julian date in one number, good to 20 µs, as the reference code has it: on orbits of two weeks the Moon's
@@ -87,7 +103,8 @@ fn days_since_2000(year: i64, month: i64, day: i64) -> i64 {
 
 /// Year, month and day of a day counted from 2000-01-01.
 fn civil(days: i64) -> (i64, i64, i64) {
-    let mut year = 2000 + days.div_euclid(366);
+    // not after it, on either side of 2000
+    let mut year = 2000 + days.div_euclid(if days < 0 { 365 } else { 366 });
     while days_since_2000(year + 1, 1, 1) <= days {
         year += 1;
     }
@@ -128,6 +145,25 @@ mod tests {
         }
         assert_eq!(Epoch::parse("2024-060T06:00:00"), Epoch::parse("2024-02-29T06:00:00.0Z"));
         assert_eq!(Epoch::of_year(2000, 1.5).julian_date(), (2_451_544.5, 0.5));
+        for (whole, part) in
+            [(2_451_544.5, 0.5), (2_451_545.0, 0.0), (2_451_543.5, 1.5), (2_451_545.25, -0.25)]
+        {
+            assert_eq!(Epoch::of_julian_date(whole, part), Some(Epoch::of_year(2000, 1.5)));
+        }
+        assert_eq!(Epoch::of_julian_date(f64::NAN, 0.0), None);
+        assert_eq!(Epoch::of_julian_date(2_451_544.5, f64::INFINITY), None);
+    }
+
+    #[test]
+    fn every_day_of_a_century_comes_back() {
+        let first = days_since_2000(1957, 1, 1);
+        for days in first..days_since_2000(2057, 1, 1) {
+            let (year, month, day) = civil(days);
+            assert_eq!(days_since_2000(year, month, day), days);
+            assert!((1..=12).contains(&month) && (1..=31).contains(&day), "{year}-{month}-{day}");
+        }
+        assert_eq!(civil(first), (1957, 1, 1));
+        assert_eq!(civil(-3660), (1989, 12, 24));
     }
 
     #[test]
@@ -149,6 +185,8 @@ mod tests {
             "2024-01-01T00:00:nan",
             "2024-01-01T00:00:00:00",
             "2024-1e1-01T00:00:00",
+            "24-01-01T00:00:00",
+            "06-27T18:50:19",
         ] {
             assert_eq!(Epoch::parse(text), None, "{text}");
         }

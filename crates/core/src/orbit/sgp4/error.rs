@@ -146,6 +146,25 @@ pub enum Sgp4Error {
         /// Equatorial radius of the Earth model, m.
         radius: f64,
     },
+    /// What the reference code answers, run in place of this crate's.
+    #[error("SGP4 error {code} at t = {time} s, by the reference code: {}", reason(*.code), time = short(*time))]
+    OfReference {
+        /// Time since the epoch, s.
+        time: f64,
+        /// Its number.
+        code: u8,
+    },
+}
+
+/// What a number of the reference code means.
+fn reason(code: u8) -> &'static str {
+    match code {
+        1 => "the mean eccentricity is out of range",
+        2 => "the mean motion is not positive",
+        3 => "the eccentricity perturbed by Sun and Moon is out of range",
+        4 => "the semi-latus rectum is negative",
+        _ => "it gave no state",
+    }
 }
 
 impl Sgp4Error {
@@ -157,6 +176,7 @@ impl Sgp4Error {
             Self::PerturbedEccentricity { .. } => 3,
             Self::SemiLatusRectum { .. } => 4,
             Self::Decayed { .. } => 6,
+            Self::OfReference { code, .. } => *code,
         }
     }
 
@@ -167,11 +187,12 @@ impl Sgp4Error {
             | Self::MeanMotion { time, .. }
             | Self::PerturbedEccentricity { time, .. }
             | Self::SemiLatusRectum { time, .. }
-            | Self::Decayed { time, .. } => time,
+            | Self::Decayed { time, .. }
+            | Self::OfReference { time, .. } => time,
         }
     }
 
-    /// The offending value, in the unit of its message.
+    /// The offending value, in the unit of its message; NaN where the reference code does not tell it.
     pub fn value(&self) -> f64 {
         match *self {
             Self::MeanEccentricity { eccentricity, .. }
@@ -179,6 +200,7 @@ impl Sgp4Error {
             Self::MeanMotion { mean_motion, .. } => mean_motion,
             Self::SemiLatusRectum { semi_latus_rectum, .. } => semi_latus_rectum,
             Self::Decayed { distance, .. } => distance,
+            Self::OfReference { .. } => f64::NAN,
         }
     }
 }

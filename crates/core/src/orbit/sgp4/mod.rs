@@ -14,9 +14,12 @@ mod near_earth;
 mod periodics;
 mod propagate;
 mod resonance;
+mod theory;
 mod tle;
 
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use super::error::finite;
 use super::rows::{StateRows, in_lanes, one_by_one};
@@ -27,6 +30,8 @@ pub use elements::MeanElements;
 pub use epoch::Epoch;
 pub use error::{ElementSetError, Sgp4Error};
 use propagate::Propagator;
+pub use theory::Reference;
+use theory::{State, Theory};
 
 /// Furthest from the epoch, s: a hundred years, when the elements mean nothing any more.
 const LONGEST_TIME: f64 = 100.0 * 365.25 * 86_400.0;
@@ -51,13 +56,23 @@ pub struct Sgp4 {
     elements: MeanElements,
     model: EarthModel,
     propagator: Propagator,
+    theory: Theory,
 }
 
 impl Sgp4 {
     /// Prepares an element set.
     pub fn new(elements: MeanElements, model: EarthModel) -> Self {
         let propagator = Propagator::new(&elements, model);
-        Self { elements, model, propagator }
+        Self { elements, model, propagator, theory: Theory::Own }
+    }
+
+    /// The same set, of which the reference code gives all states; far slower.
+    pub fn by_reference(self, code: Arc<dyn Reference>) -> Self {
+        Self { theory: Theory::Reference(code), ..self }
+    }
+
+    fn at(&self, t: f64) -> Result<State, Sgp4Error> {
+        self.theory.at(&self.propagator, t)
     }
 
     /// The element set.
@@ -72,7 +87,7 @@ impl Sgp4 {
 
     /// Period of the mean motion, s.
     pub fn period(&self) -> f64 {
-        86_400.0 / self.elements.mean_motion_rev_day
+        60.0 * TAU / self.elements.mean_motion
     }
 
     /// SGP4's position (m) and velocity (m/s) at `t`, above the surface.
@@ -80,12 +95,12 @@ impl Sgp4 {
         if finite("time", t)?.abs() > LONGEST_TIME {
             return Err(OrbitError::TimeOutOfRange { time: t, epoch: 0.0, limit: LONGEST_TIME });
         }
-        let at = self.propagator.at(t)?;
+        let at = self.at(t)?;
         if at.distance.is_nan() || at.distance < 1.0 {
             let radius = self.propagator.earth.radius_km * 1e3;
             return Err(Sgp4Error::Decayed { time: t, distance: at.distance * radius, radius }.into());
         }
-        Ok((at.position.to_nalgebra() * 1e3, at.velocity.to_nalgebra() * 1e3))
+        Ok((at.position * 1e3, at.velocity * 1e3))
     }
 
     /// As many times at once as `S` has lanes; one by one where one of them is refused.
@@ -111,8 +126,8 @@ impl Sgp4 {
         let mut sum = Vector3::zeros();
         for (k, weight) in SLOPE_WEIGHTS.iter().enumerate() {
             let away = (k + 1) as f64 * h;
-            let (after, before) = (self.propagator.at(t + away)?, self.propagator.at(t - away)?);
-            sum += (after.position - before.position).to_nalgebra() * (1e3 * weight);
+            let (after, before) = (self.at(t + away)?, self.at(t - away)?);
+            sum += (after.position - before.position) * (1e3 * weight);
         }
         Ok(sum / (60.0 * h))
     }
@@ -123,8 +138,8 @@ impl Sgp4 {
         let mut sum = r * WEIGHTS[0];
         for (k, weight) in WEIGHTS.iter().enumerate().skip(1) {
             let away = k as f64 * h;
-            let (after, before) = (self.propagator.at(t + away)?, self.propagator.at(t - away)?);
-            sum += (after.position + before.position).to_nalgebra() * (1e3 * weight);
+            let (after, before) = (self.at(t + away)?, self.at(t - away)?);
+            sum += (after.position + before.position) * (1e3 * weight);
         }
         Ok(sum / (180.0 * h * h))
     }
@@ -144,7 +159,12 @@ impl Orbit for Sgp4 {
     }
 
     fn velocity_source(&self) -> &'static str {
-        "SGP4's own velocity (not exactly the derivative of its position)"
+        match self.theory {
+            Theory::Own => "SGP4's own velocity (not exactly the derivative of its position)",
+            Theory::Reference(_) => {
+                "SGP4's own velocity by the reference code (not exactly the derivative of its position)"
+            }
+        }
     }
 
     /// # Errors
@@ -167,7 +187,7 @@ impl Orbit for Sgp4 {
     }
 
     fn fill(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
-        if !self.propagator.goes_side_by_side() {
+        if matches!(self.theory, Theory::Reference(_)) || !self.propagator.goes_side_by_side() {
             return one_by_one(self, times, rows);
         }
         match InstructionSet::current() {

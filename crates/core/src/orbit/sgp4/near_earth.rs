@@ -6,7 +6,6 @@
 use super::constants::{Earth, Mean};
 use super::elements::MeanElements;
 use crate::spatial::Real;
-use std::f64::consts::TAU;
 
 /// Lowest perigee, km of height, at which the drag's finer terms are kept.
 const FINE_PERIGEE: f64 = 220.0;
@@ -58,8 +57,7 @@ pub(super) struct Drifted<S = f64> {
 /// `n″₀ = n₀/(1 + δ₀)`, `δ₀ = d/a₀²`, `a₀ = a₁ (1 - δ₁² - δ₁ (1/3 + 134 δ₁²/81))`, `δ₁ = d/a₁²`,
 /// `a₁ = (kₑ/n₀)^{2/3}`, `d = ¾ J₂ (3 cos²i - 1)/(1 - e²)^{3/2}`.
 pub(super) fn brouwer(set: &MeanElements, earth: &Earth) -> Mean {
-    let (i, e) = (set.inclination_deg.to_radians(), set.eccentricity);
-    let n = set.mean_motion_rev_day / (1440.0 / TAU);
+    let MeanElements { inclination: i, eccentricity: e, mean_motion: n, .. } = *set;
     let (cos, p) = (i.cos(), 1.0 - e * e);
     let a1 = (earth.ke / n).powf(2.0 / 3.0);
     let d = 0.75 * earth.j2 * (3.0 * (cos * cos) - 1.0) / (p.sqrt() * p);
@@ -69,9 +67,9 @@ pub(super) fn brouwer(set: &MeanElements, earth: &Earth) -> Mean {
         n: n / (1.0 + d / (a0 * a0)),
         e,
         i,
-        node: set.raan_deg.to_radians(),
-        perigee: set.argument_of_perigee_deg.to_radians(),
-        anomaly: set.mean_anomaly_deg.to_radians(),
+        node: set.raan,
+        perigee: set.argument_of_perigee,
+        anomaly: set.mean_anomaly,
     }
 }
 

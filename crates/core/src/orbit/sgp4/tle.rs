@@ -1,6 +1,6 @@
 //! Two-line element sets, read column by column.
 
-use super::elements::MeanElements;
+use super::elements::{MeanElements, REV_DAY};
 use super::epoch::Epoch;
 use super::error::ElementSetError;
 
@@ -141,12 +141,12 @@ impl MeanElements {
             satellite,
             epoch,
             drag_term: one.with_exponent(54)?,
-            inclination_deg: two.decimal(9, 16)?,
-            raan_deg: two.decimal(18, 25)?,
+            inclination: two.decimal(9, 16)?.to_radians(),
+            raan: two.decimal(18, 25)?.to_radians(),
             eccentricity: two.fraction(27, 33)?,
-            argument_of_perigee_deg: two.decimal(35, 42)?,
-            mean_anomaly_deg: two.decimal(44, 51)?,
-            mean_motion_rev_day: two.decimal(53, 63)?,
+            argument_of_perigee: two.decimal(35, 42)?.to_radians(),
+            mean_anomaly: two.decimal(44, 51)?.to_radians(),
+            mean_motion: two.decimal(53, 63)? / REV_DAY,
         }
         .checked()
     }

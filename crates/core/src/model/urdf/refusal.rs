@@ -1,0 +1,51 @@
+//! What serde is answered, and the error it becomes.
+
+use super::element::Element;
+use super::error::{UrdfError, UrdfProblem};
+use super::schema::elements;
+use serde::de;
+use std::fmt;
+
+/// Why urdf-rs' types do not take what they are given.
+#[derive(Debug)]
+pub(super) enum Refusal {
+    /// Something must be there, in an element that is not known yet.
+    Missing(&'static str),
+    /// Another reason, as urdf-rs says it.
+    Other(String),
+    /// An error with its place.
+    Placed(UrdfError),
+}
+
+impl Refusal {
+    pub(super) fn at(self, element: &Element<'_>) -> UrdfError {
+        match self {
+            Self::Missing(name) if elements(element.tag()).contains(&name) => element.lacks_element(name),
+            Self::Missing(name) => element.lacks_attribute(name),
+            Self::Other(reason) => element.fail(UrdfProblem::Unreadable { reason }),
+            Self::Placed(error) => error,
+        }
+    }
+}
+
+impl de::Error for Refusal {
+    fn custom<T: fmt::Display>(reason: T) -> Self {
+        Self::Other(reason.to_string())
+    }
+
+    fn missing_field(name: &'static str) -> Self {
+        Self::Missing(name)
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing(name) => write!(f, "no '{name}'"),
+            Self::Other(reason) => f.write_str(reason),
+            Self::Placed(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}

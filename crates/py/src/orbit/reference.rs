@@ -1,0 +1,40 @@
+//! The reference code of SGP4, PyPI's `sgp4`, as the engine asks it.
+
+use onorbit_core::orbit::sgp4::Reference;
+use pyo3::prelude::*;
+
+/// A `Satrec` of `sgp4.api`; every state is a call of Python.
+#[derive(Debug)]
+pub(super) struct Satrec {
+    tsince: Py<PyAny>,
+}
+
+impl Satrec {
+    /// What a function of `onorbit_rs.satrec` makes of its arguments.
+    pub(super) fn new<'py>(
+        py: Python<'py>,
+        function: &str,
+        arguments: impl pyo3::call::PyCallArgs<'py>,
+    ) -> PyResult<Self> {
+        let satrec = py.import("onorbit_rs.satrec")?.getattr(function)?.call1(arguments)?;
+        Ok(Self { tsince: satrec.getattr("sgp4_tsince")?.unbind() })
+    }
+}
+
+impl Reference for Satrec {
+    fn at(&self, minutes: f64) -> Result<[[f64; 3]; 2], u8> {
+        const NO_ANSWER: u8 = 255;
+        const DECAYED: u8 = 6;
+        Python::attach(|py| {
+            let answer = self.tsince.bind(py).call1((minutes,));
+            match answer.and_then(|answer| answer.extract::<(u8, [f64; 3], [f64; 3])>()) {
+                Ok((0 | DECAYED, r, v)) => Ok([r, v]),
+                Ok((code, ..)) => Err(code),
+                Err(error) => {
+                    error.write_unraisable(py, None);
+                    Err(NO_ANSWER)
+                }
+            }
+        })
+    }
+}

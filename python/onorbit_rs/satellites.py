@@ -1,0 +1,41 @@
+"""One satellite of several in a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TypeVar
+
+from onorbit_rs.counting import count
+from onorbit_rs.exceptions import ElementSetError
+from onorbit_rs.names import did_you_mean
+
+T = TypeVar("T")
+
+
+def the_one(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -> T:
+    """The set of a satellite by its name, in whatever case, or its catalogue number.
+
+    sets : names, catalogue numbers and what belongs to them.
+
+    Raises
+    ------
+    ElementSetError
+        None is of that satellite, or several are.
+    """
+    sets = list(sets)
+    wanted = _word(satellite)
+    found = [item for name, number, item in sets if wanted in (_word(name), _word(number))]
+    if not found:
+        hint = did_you_mean(satellite, [name or number for name, number, _ in sets])
+        raise ElementSetError(f"{where} holds no set of {satellite!r}{hint}", name="satellite", got=satellite)
+    if len(found) > 1:
+        sets_found = count(len(found), "set", "sets")
+        raise ElementSetError(
+            f"{where} holds {sets_found} of {satellite!r}: give one, or its catalogue number",
+            name="satellite", got=satellite,
+        )  # fmt: skip
+    return found[0]
+
+
+def _word(text: str) -> str:
+    return text.strip().casefold().lstrip("0")

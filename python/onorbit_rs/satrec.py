@@ -1,0 +1,99 @@
+"""Satellites of PyPI's ``sgp4``, the reference code, which ``propagator="reference"`` runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any
+
+from sgp4 import omm
+from sgp4.api import WGS72, WGS72OLD, WGS84, Satrec
+
+from onorbit_rs.exceptions import ElementSetError, InputError
+
+MODELS = {"wgs72old": WGS72OLD, "wgs72": WGS72, "wgs84": WGS84}
+_EPOCH_ZERO = 2_433_281.5
+"""Julian date from which ``sgp4init`` counts days."""
+_UNUSED = {
+    "CLASSIFICATION_TYPE": "U", "OBJECT_ID": "", "EPHEMERIS_TYPE": 0, "ELEMENT_SET_NO": 0, "REV_AT_EPOCH": 0,
+    "MEAN_MOTION_DOT": 0, "MEAN_MOTION_DDOT": 0,
+}  # fmt: skip
+"""Keywords that ``sgp4.omm`` wants and SGP4 does not use."""
+_NUMBERS = (
+    "jdsatepoch", "jdsatepochF", "bstar", "ndot", "nddot", "ecco", "argpo", "inclo", "mo", "no_kozai",
+    "nodeo",
+)  # fmt: skip
+_CONSTANTS = ("radiusearthkm", "mu", "xke", "j2", "j3", "j4")
+
+
+def of_lines(line1: str, line2: str, gravity: str) -> Satrec:
+    """Two lines, read by ``sgp4``."""
+    return Satrec.twoline2rv(line1, line2, MODELS[gravity])
+
+
+def of_message(message: Mapping[str, Any], epoch: str, gravity: str) -> Satrec:
+    """A message, read by ``sgp4``; ``epoch`` is its own, in the one form it reads with a Z behind it."""
+    satrec = Satrec()
+    given = {key: value for key, value in message.items() if key not in _UNUSED}
+    omm.initialize(satrec, _UNUSED | given | {"EPOCH": epoch.rstrip("Z")}, MODELS[gravity])
+    return satrec
+
+
+def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
+    """Elements and gravity constants of another, which may change later, and the name of its Earth model.
+
+    Raises
+    ------
+    InputError
+        It is no ``Satrec``.
+    ElementSetError
+        A number is not finite; it has gravity constants of its own, or the AFSPC mode, which the reference
+        code alone has.
+    """
+    try:
+        names = ("satnum", "operationmode", *_NUMBERS, *_CONSTANTS)
+        elements = SimpleNamespace(**{name: getattr(satrec, name) for name in names})
+    except AttributeError:
+        raise InputError(
+            f"a Satrec of PyPI's sgp4 is needed, got {type(satrec).__name__}: make one with"
+            " Satrec.twoline2rv or sgp4init",
+            name="satrec",
+        ) from None
+    for name in _NUMBERS:
+        if not math.isfinite(value := getattr(elements, name)):
+            raise ElementSetError(f"{name} of the Satrec is {value}, not finite", name=name, got=value)
+    if elements.operationmode == "a" and not by_reference:
+        raise ElementSetError(
+            "the Satrec is in AFSPC mode ('a'), which the engine's SGP4 does not have: initialize it with 'i'"
+            " (improved), or give propagator='reference'",
+            name="operationmode", got="a",
+        )  # fmt: skip
+    for name in MODELS:
+        known = _known(name)
+        if all(getattr(elements, constant) == getattr(known, constant) for constant in _CONSTANTS):
+            return elements, name
+    raise ElementSetError(
+        f"the Satrec's gravity constants (mu {elements.mu} km³/s², radius {elements.radiusearthkm} km) are"
+        f" of no known model: initialize it with {', '.join(MODELS)}",
+        name="gravity",
+    )  # fmt: skip
+
+
+def _known(gravity: str) -> Satrec:
+    """Any satellite with an Earth model."""
+    satrec = Satrec()
+    satrec.sgp4init(MODELS[gravity], "i", 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0)
+    return satrec
+
+
+def of_elements(elements: SimpleNamespace, gravity: str) -> Satrec:
+    """A copy of another, by its elements."""
+    satrec = Satrec()
+    satrec.sgp4init(
+        MODELS[gravity], elements.operationmode, elements.satnum,
+        elements.jdsatepoch + elements.jdsatepochF - _EPOCH_ZERO,
+        elements.bstar, elements.ndot, elements.nddot, elements.ecco, elements.argpo, elements.inclo,
+        elements.mo, elements.no_kozai, elements.nodeo,
+    )  # fmt: skip
+    return satrec

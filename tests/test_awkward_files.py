@@ -1,0 +1,65 @@
+"""Robot files with one oddity each: they load, load with a warning, or are refused with the reason."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import warnings
+
+import awkward
+import pytest
+
+import onorbit_rs as oo
+
+NEEDS_NO_COMMENT = {"utf8_bom", "utf16"}  # what they are shows in no comment
+HAS_XACRO = importlib.util.find_spec("xacro") is not None
+
+
+def load(name: str) -> tuple[oo.Model, list[str]]:
+    file = awkward.path(name)
+    if file.suffix == ".xacro" and not HAS_XACRO:
+        pytest.skip("in the test extra: pip install 'onorbit-rs[xacro]'")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        model = oo.Model.from_urdf(file)
+    told = [str(warning.message) for warning in caught]
+    assert told == model.warnings
+    return model, told
+
+
+def test_every_file_is_in_the_table_and_says_what_is_odd() -> None:
+    files = [file for file in awkward.FOLDER.iterdir() if not file.name.startswith(".")]
+    assert {file.stem for file in files} == set(awkward.EXPECTED)
+    assert all(pending.keys() <= awkward.EXPECTED.keys() for pending in awkward.PENDING.values())
+    for file in files:
+        comment = re.search(rb"<!-- .+?\. -->", file.read_bytes())
+        assert comment or file.stem in NEEDS_NO_COMMENT, file
+
+
+@pytest.mark.parametrize(
+    "name", awkward.cases([name for name, to in awkward.EXPECTED.items() if to.loads], "loading")
+)
+def test_it_loads(name: str) -> None:
+    expected = awkward.EXPECTED[name].text
+    _, told = load(name)
+    if expected:
+        assert any(expected in warning for warning in told), told
+    else:
+        assert told == []
+
+
+@pytest.mark.parametrize("name", [name for name, to in awkward.EXPECTED.items() if not to.loads])
+def test_it_is_refused_in_one_line(name: str) -> None:
+    with pytest.raises(oo.exceptions.ModelError) as caught:
+        oo.Model.from_urdf(awkward.path(name))
+    said = str(caught.value)
+    assert awkward.EXPECTED[name].text in said
+    assert str(awkward.path(name)) in said and "\n" not in said
+
+
+def test_bytes_are_as_they_were_written() -> None:
+    """What version control or an editor would mend."""
+    first = {name: awkward.path(name).read_bytes() for name in ("crlf", "utf8_bom", "latin1_comment")}
+    assert first["crlf"].count(b"\r\n") == first["crlf"].count(b"\n") > 20
+    assert first["utf8_bom"].startswith(b"\xef\xbb\xbf")
+    assert b"L\xe4nge" in first["latin1_comment"]

@@ -1,0 +1,257 @@
+"""An arm on a bus: of two files the robot that one URDF of both is; links with values of one's own."""
+
+from __future__ import annotations
+
+import pickle
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from commands import onorbit, refusal
+
+import onorbit_rs as oo
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.make_robot import make_robot
+
+INERTIAL = (
+    '<inertial><origin xyz="{com}" rpy="0.1 0.2 0.3"/><mass value="{mass}"/>'
+    '<inertia ixx="{i}" iyy="{j}" izz="{j}" ixy="0.001" ixz="0" iyz="0"/></inertial>'
+)
+BUS = (
+    f'<link name="hull">{INERTIAL.format(com="0.1 0 0", mass=300, i=60, j=70)}</link><link name="plate"/>'
+    '<joint name="bolted" type="fixed"><parent link="hull"/><child link="plate"/>'
+    '<origin xyz="0.6 0 0.2" rpy="0 1.2 0.4"/></joint>'
+)
+PLACED = {"position": [0.1, -0.2, 0.05], "attitude": {"roll_pitch_yaw": [0.3, -0.4, 0.5]}}
+
+
+def arm(prefix: str = "", *, tool_mass: float = 2.0) -> str:
+    """Four joints that turn or slide, on a base of their own, with a tool frame."""
+    parts = [f'<link name="{prefix}base">{INERTIAL.format(com="0 0 0.1", mass=4, i=0.03, j=0.04)}</link>']
+    parent = "base"
+    for index, (kind, axis) in enumerate(
+        [("revolute", "0 0 1"), ("revolute", "0 1 0"), ("prismatic", "1 0 0"), ("continuous", "0.6 0 0.8")]
+    ):
+        limit = '<limit lower="-2" upper="2" effort="50" velocity="1"/>' if kind != "continuous" else ""
+        parts += [
+            f'<link name="{prefix}l{index}">'
+            f"{INERTIAL.format(com='0 0 0.2', mass=tool_mass, i=0.05, j=0.04)}</link>",
+            f'<joint name="{prefix}j{index}" type="{kind}"><parent link="{prefix}{parent}"/>'
+            f'<child link="{prefix}l{index}"/><origin xyz="0 0.05 0.3" rpy="0.2 0 0.1"/><axis xyz="{axis}"/>'
+            f"{limit}</joint>",
+        ]
+        parent = f"l{index}"
+    parts.append(
+        f'<link name="{prefix}tool"/><joint name="{prefix}t" type="fixed"><parent link="{prefix}l3"/>'
+        f'<child link="{prefix}tool"/><origin xyz="0 0 0.1"/></joint>'
+    )
+    return "".join(parts)
+
+
+def robot(name: str, inside: str) -> str:
+    return f'<robot name="{name}">{inside}</robot>'
+
+
+def mounted(prefix: str, link: str, xyz: str, rpy: str) -> str:
+    return (
+        f'{arm(prefix)}<joint name="{prefix}mount" type="fixed"><parent link="{link}"/>'
+        f'<child link="{prefix}base"/><origin xyz="{xyz}" rpy="{rpy}"/></joint>'
+    )
+
+
+WHOLE = robot(
+    "bus",
+    BUS
+    + mounted("left_", "plate", "0.1 -0.2 0.05", "0.3 -0.4 0.5")
+    + mounted("right_", "hull", "0 0 0", "0 0 0"),
+)
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> Path:
+    (tmp_path / "bus.urdf").write_text(robot("bus", BUS))
+    (tmp_path / "arm.urdf").write_text(robot("arm", arm()))
+    return tmp_path
+
+
+def scenario(folder: Path, **robot: Any) -> Path:
+    file = folder / "mine.yaml"
+    file.write_text(yaml.safe_dump({"robot": robot, "simulation": {"duration": "0.1 s"}}))
+    return file
+
+
+def off(one: oo.Model, other: oo.Model) -> float:
+    """Largest difference of mass matrix, bias forces and frame poses, relative to their largest."""
+    assert (one.joint_names, one.body_names) == (other.joint_names, other.body_names)
+    rng = np.random.default_rng(4)
+    q = one.integrate(one.neutral(), rng.normal(size=one.nv))
+    v = rng.normal(size=one.nv)
+    pairs = [(one.mass_matrix(q), other.mass_matrix(q)), (one.bias_forces(q, v), other.bias_forces(q, v))]
+    pairs += [(one.frame_pose(q, name), other.frame_pose(q, name)) for name in one.frame_names]
+    return max(float(np.abs(a - b).max() / np.abs(b).max()) for a, b in pairs)
+
+
+def pose(xyz: list[float], rpy: list[float]) -> Any:
+    """(4, 4), by products of three plain rotations."""
+    (a, b, c), made = rpy, np.eye(4)
+    x = [[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]]
+    y = [[np.cos(b), 0, np.sin(b)], [0, 1, 0], [-np.sin(b), 0, np.cos(b)]]
+    z = [[np.cos(c), -np.sin(c), 0], [np.sin(c), np.cos(c), 0], [0, 0, 1]]
+    made[:3, :3], made[:3, 3] = np.array(z) @ y @ x, xyz
+    return made
+
+
+def test_two_arms_on_a_bus_are_the_robot_of_one_file(files: Path) -> None:
+    bus, arm_of_file = oo.robots.load(files / "bus.urdf"), oo.robots.load(files / "arm.urdf")
+    place = pose([0.1, -0.2, 0.05], [0.3, -0.4, 0.5])
+    one_arm = oo.attach(bus, "plate", arm_of_file, pose=place, prefix="left_")
+    both = oo.attach(one_arm, "hull", arm_of_file, "base", prefix="right_")
+    whole = oo.Model.from_urdf_string(WHOLE)
+    assert both.name == "bus" and set(both.frame_names) == set(whole.frame_names)
+    assert off(both, whole) < 1e-13
+    misplaced = oo.attach(one_arm, "plate", arm_of_file, prefix="right_")
+    assert off(misplaced, whole) > 1e-3  # the comparison can tell
+
+
+def test_pinocchio_appends_the_same(files: Path) -> None:
+    pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+    bus = pin.buildModelFromXML(robot("bus", BUS), pin.JointModelFreeFlyer())
+    arm_alone = pin.buildModelFromXML(robot("arm", arm()))
+    place = pose([0.1, -0.2, 0.05], [0.3, -0.4, 0.5])
+    theirs = pin.appendModel(bus, arm_alone, bus.getFrameId("plate"), pin.SE3(place))
+    ours = oo.attach(
+        oo.robots.load(files / "bus.urdf"),
+        "plate",
+        oo.robots.load(files / "arm.urdf"),
+        pose=place,
+        prefix="x_",
+    )
+    rng = np.random.default_rng(2)
+    q = ours.integrate(ours.neutral(), rng.normal(size=ours.nv))
+    turn = q[-1]  # its last joint, unbounded, is a cosine and a sine to Pinocchio
+    data = theirs.createData()
+    found = pin.crba(theirs, data, np.concatenate([q[:-1], [np.cos(turn), np.sin(turn)]]))
+    found = np.triu(found) + np.triu(found, 1).T
+    np.testing.assert_allclose(ours.mass_matrix(q), found, rtol=0, atol=1e-13 * np.abs(found).max())
+
+
+def test_a_scenario_mounts_and_changes(files: Path) -> None:
+    file = scenario(
+        files,
+        bus="bus.urdf",
+        arms=[
+            {"urdf": "arm.urdf", "at": "plate", "pose": PLACED, "prefix": "left_"},
+            {"urdf": "arm.urdf", "at": "hull", "frame": "base", "prefix": "right_",
+             "links": {"l3": {"mass": "5 kg"}}},
+        ],
+        links={"hull": {"mass": "0.2 t", "com": [0, "10 cm", 0], "inertia": [30, 40, 50]}},
+    )  # fmt: skip
+    model = make_robot(load(file))
+    expected = oo.Model.from_urdf_string(WHOLE).with_link("right_l3", mass=5.0)
+    expected = expected.with_link("hull", mass=200.0, com=[0, 0.1, 0], inertia=np.diag([30.0, 40.0, 50.0]))
+    assert off(model, expected) < 1e-13
+    assert model.mass == pytest.approx(200 + 2 * (4 + 4 * 2) + 3, rel=1e-15)
+    # what is written out with every default makes the same robot
+    again = make_robot(load(load(file).resolved(files)))
+    assert off(again, model) == 0.0
+    done = onorbit("run", file, "--out", files / "out", cwd=files)
+    assert done.returncode == 0 and "certificate passed" in done.stdout, done
+    assert onorbit("report", files / "out").returncode == 0
+
+
+def test_links_mend_a_file_before_it_is_checked(files: Path) -> None:
+    bare = robot("bus", '<link name="hull"/>')
+    (files / "bare.urdf").write_text(bare)
+    with pytest.raises(oo.exceptions.ModelError, match=r"bare\.urdf: the robot has no mass.*by 'links'"):
+        oo.Model.from_urdf(files / "bare.urdf")
+    given = {"mass": 10.0, "inertia": np.diag([1.0, 2.0, 2.5])}
+    model = oo.Model.from_urdf(files / "bare.urdf", links={"hull": given})
+    given["inertia"][0, 0] = 7.0  # its own from here on
+    assert model.mass == 10.0 and pickle.loads(pickle.dumps(model)).bodies[0].inertia[0][0] == 1.0
+    file = scenario(files, bus={"urdf": "bare.urdf", "links": {"hull": {"mass": 10, "inertia": [1, 2, 2.5]}}},
+                    arms=[{"urdf": "arm.urdf", "at": "hull"}])  # fmt: skip
+    assert make_robot(load(file)).mass == 10.0 + 12.0
+    for links, message in [
+        ({"hul": {"mass": 1}}, "did you mean 'hull'"),
+        ({"hull": {"mas": 1}}, 'links\\["hull"\\] has a key mas: there are mass, com and inertia'),
+        ({"hull": 3}, "a dict with mass, com or inertia is needed"),
+        ({"hull": {"com": [0, 0, 1]}}, "link 'hull' has no mass; give it one"),
+    ]:
+        with pytest.raises(oo.OnOrbitError, match=message):
+            oo.Model.from_urdf(files / "bare.urdf", links=links)  # type: ignore[dict-item]  # some are wrong
+
+
+def test_robots_of_robots_pickle(files: Path) -> None:
+    bus, arm_of_file = oo.robots.load(files / "bus.urdf"), oo.robots.load(files / "arm.urdf")
+    changed = oo.attach(bus, "plate", arm_of_file, pose=np.eye(4), prefix="x_").with_link("x_l3", mass=9.0)
+    assert off(pickle.loads(pickle.dumps(changed)), changed) == 0.0
+    (files / "arm.urdf").write_text(robot("arm", arm(tool_mass=2.5)))
+    with pytest.raises(oo.exceptions.ModelError, match="was changed since"):
+        pickle.loads(pickle.dumps(changed))
+
+
+def test_what_is_odd_is_told_once(files: Path) -> None:
+    odd = robot("arm", arm().replace('ixx="0.05"', 'ixx="5"', 1))
+    with pytest.warns(UserWarning, match="'l0' breaks the triangle"):
+        arm_of_text = oo.Model.from_urdf_string(odd)
+    bus = oo.robots.load(files / "bus.urdf")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        whole = oo.attach(bus, "plate", arm_of_text, prefix="x_")
+        whole = whole.with_link("hull", mass=250.0)
+    assert [warning for warning in whole.warnings if "'x_l0'" in warning] == whole.warnings != []
+    with pytest.warns(UserWarning, match="'hull' breaks the triangle"):
+        whole.with_link("hull", inertia=np.diag([1.0, 1.0, 9.0]))
+
+
+@pytest.mark.parametrize(
+    ("robot", "message"),
+    [
+        ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plte"}]},
+         "robot.arms[0]: there is no frame 'plte'; did you mean 'plate'?"),
+        ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate"}] * 2},
+         "robot.arms[1]: both robots have a link or frame 'base': give the one that is attached a prefix"),
+        ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "prefix": "a_"}] * 2},
+         "robot.arms[1]: with the prefix 'a_' the robot that is attached has a link or frame 'a_base'"),
+        ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "frame": "tool"}]},
+         "robot.arms[0]: joints move the frame 'tool': a robot is attached by a frame that is fixed to its "
+         "base: base"),
+        ({"bus": "bus.urdf", "arms": [{"urdf": "amr.urdf", "at": "plate"}]},
+         "amr.urdf: there is no such file"),
+        ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf"}]}, "robot.arms[0].at: is missing"),
+        ({"bus": "bus.urdf", "arms": []}, "robot.arms: has 0 entries, needs at least 1"),
+        ({"bus": "bus.urdf"}, "robot: a 'bus' carries 'arms': list at least one"),
+        ({"arms": [{"urdf": "arm.urdf", "at": "plate"}]}, "robot: 'arms' belong to a 'bus'"),
+        ({"bus": "bus.urdf", "urdf": "arm.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate"}]},
+         "give exactly one of 'bundled', 'urdf', 'rigid_body' and 'bus'; given: urdf, bus"),
+        ({"urdf": "arm.urdf", "links": {"l8": {"mass": 1}}}, "there is no link 'l8'; did you mean 'l0'?"),
+        ({"urdf": "arm.urdf", "links": {"l1": {"mass": "1 m"}}}, "'1 m' is not a mass"),
+        ({"rigid_body": {"mass": 1, "inertia": [1, 1, 1]}, "links": {"base": {"mass": 1}}},
+         "'links' change the robot of a file"),
+    ],
+)  # fmt: skip
+def test_refusals_in_a_scenario(robot: dict[str, Any], message: str, files: Path) -> None:
+    told = refusal("check", scenario(files, **robot), cwd=files)
+    assert message in told and "mine.yaml:" in told, told
+
+
+def test_from_two_files_to_a_run(files: Path) -> None:
+    done = onorbit("new", "arm.urdf", "--bus", "bus.urdf", "--at", "plate", "--prefix", "x_",
+                   "--out", "mine.yaml", cwd=files)  # fmt: skip
+    assert done.returncode == 0, done
+    assert load(files / "mine.yaml").robot.arms is not None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        run = oo.run(files / "mine.yaml", quiet=True)
+    assert run.summary["certificate_passed"] and run.summary["joint_limits_exceeded"] == ""
+    assert make_robot(load(files / "mine.yaml")).mass == 312.0
+    assert "--at FRAME; bus.urdf has: hull, plate" in refusal(
+        "new", "arm.urdf", "--bus", "bus.urdf", cwd=files
+    )
+    assert "did you mean 'plate'" in refusal(
+        "new", "arm.urdf", "--bus", "bus.urdf", "--at", "plat", cwd=files
+    )
+    assert "add --bus ROBOT" in refusal("new", "arm.urdf", "--at", "plate", cwd=files)
