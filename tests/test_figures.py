@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d.art3d import Line3DCollection
+from mesh_files import CORNERS, stl_binary
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 import onorbit_rs as oo
 from onorbit_rs import figures
-from onorbit_rs.figures.solids import robot_polygons, robot_skeleton
+from onorbit_rs.figures.solids import robot_polygons
 from onorbit_rs.figures.style import MOST_POINTS, thin
 from onorbit_rs.output.read import SavedTrace
 from onorbit_rs.scenario import Scenario, load
@@ -227,20 +228,27 @@ def test_a_month_of_ground_track_is_dots_and_says_so() -> None:
     assert styles == ["None", "None"] and told[0] == "a dot every 90 min"
 
 
-def test_a_robot_of_meshes_is_drawn_as_its_skeleton(reach: oo.Run, tmp_path: Path) -> None:
+def test_a_robot_of_meshes_is_drawn_where_its_links_are(reach: oo.Run, tmp_path: Path) -> None:
     urdf = oo.robots.path("humanoid_torso").read_text()
-    urdf = re.sub(r"<(box|sphere|cylinder|capsule)\b[^>]*/>", '<mesh filename="mesh.stl"/>', urdf)
+    urdf = re.sub(
+        r"<(box|sphere|cylinder|capsule)\b[^>]*/>", '<mesh filename="box.stl" scale="0.1 0.1 -0.1"/>', urdf
+    )
     (tmp_path / "mine.urdf").write_text(urdf)
-    (tmp_path / "mesh.stl").write_bytes(b"solid\nendsolid\n")
+    (tmp_path / "box.stl").write_bytes(stl_binary())
     model = oo.Model.from_urdf(tmp_path / "mine.urdf")
-    q = reach.trace.q[0]
-    assert robot_polygons(model, q)[0] == []
-    bones = robot_skeleton(model, q)
-    shoulder = np.asarray(model.frame_pose(q, model.joints[0].child))[:3, 3]
-    np.testing.assert_allclose(bones[0, 1], shoulder, atol=1e-12)
-    assert bones.shape == (7, 2, 3)
+    q = np.asarray(reach.trace.q)[[0, -1]]
+    first, last = robot_polygons(model, q)
+    assert len(first[0]) == 12 * len(model.visuals) and first[0].shape[1:] == (4, 3)
+    for visual, row, (faces, _) in (
+        (model.visuals[k], q[n], drawn) for n, drawn in enumerate((first, last)) for k in (0, -1)
+    ):
+        pose = np.asarray(model.frame_pose(row, visual.link)) @ np.array(visual.pose)
+        corners = (CORNERS * [0.1, 0.1, -0.1]) @ pose[:3, :3].T + pose[:3, 3]
+        for corner in corners:
+            assert np.linalg.norm(faces.reshape(-1, 3) - corner, axis=1).min() < 1e-6
+    assert np.abs(first[0] - last[0]).max() > 0.01  # it moves
     figure = figures.desired_trajectory(reach.trace, model)
-    assert all(any(isinstance(item, Line3DCollection) for item in axes.collections) for axes in figure.axes)
+    assert all(any(isinstance(item, Poly3DCollection) for item in axes.collections) for axes in figure.axes)
 
 
 def test_errors_of_several_controllers_are_those_of_the_trace() -> None:

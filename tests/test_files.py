@@ -195,18 +195,3 @@ def test_damaged_spice_kernels_are_refused_by_type(tmp_path: Path) -> None:
         except OnOrbitError:
             refused += 1
     assert refused > len(whole) // 397
-
-
-def test_a_mesh_that_is_a_pipe_is_not_drawn(tmp_path: Path) -> None:
-    if not hasattr(os, "mkfifo"):
-        pytest.skip("there are no pipes in folders here")
-    from onorbit_rs.geometry import Shape
-    from onorbit_rs.viewer.solids import _mesh
-
-    os.mkfifo(tmp_path / "hull.stl")
-    shape = Shape(
-        link="hull", pose=np.eye(4), kind="mesh", size=(), filename=tmp_path / "hull.stl",
-        scale=(1.0, 1.0, 1.0), rgba=(0.5, 0.5, 0.5, 1.0),
-    )  # fmt: skip
-    with pytest.warns(UserWarning, match="not drawn: .*pipe or a device"):
-        assert _mesh(shape) is None

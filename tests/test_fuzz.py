@@ -16,7 +16,7 @@ HERE = Path(__file__).parent / "fuzz"
 MUTATIONS, SEED = 20, 14
 NAMES = (
     "quantity", "expression", "yaml", "scenario", "mean_elements", "tle_file", "point_file", "spice_kernel",
-    "onorbitros", "trace", "summary", "manifest", "checkpoint", "controller_state", "xacro", "collada_unit",
+    "onorbitros", "trace", "summary", "manifest", "checkpoint", "controller_state", "xacro", "mesh",
     "urdf_file",
 )  # fmt: skip
 

@@ -149,8 +149,12 @@ ELSEWHERE = {
 
 
 @pytest.mark.parametrize(
-    ("module", "home"), [("rerun", "viewer"), ("matplotlib", "figures"), ("mujoco", "plants")]
-)
+    ("module", "home"),
+    [
+        ("rerun", "viewer"), ("matplotlib", "figures"), ("mujoco", "plants"),
+        ("trimesh", "meshes"), ("collada", "meshes"), ("PIL", "meshes"),
+    ],
+)  # fmt: skip
 def test_one_folder_alone_imports_it(module: str, home: str) -> None:
     users = {
         file.relative_to(PACKAGE).parts[0]
@@ -180,7 +184,7 @@ def test_no_module_uses_one_that_uses_it() -> None:
     assert list(TopologicalSorter(uses).static_order())  # a CycleError names the circle
 
 
-HEAVY = {"rerun", "matplotlib", "mujoco", "numpy", "pydantic", "yaml", "rich"}
+HEAVY = {"rerun", "matplotlib", "mujoco", "numpy", "pydantic", "yaml", "rich", "trimesh", "collada", "PIL"}
 """Each takes a tenth of a second or more, and not everybody needs it."""
 
 

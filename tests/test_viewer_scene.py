@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import struct
 import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from mesh_files import QUADS, collada, obj, picture, stl_binary
 from recordings import FrameTree, column, rows_by_entity
 
 import onorbit_rs as oo
@@ -220,10 +220,6 @@ def test_without_an_epoch_the_earth_is_plain(tmp_path: Path) -> None:
     assert not [entity for entity in static if entity.startswith(("/orbit/night", "/orbit/sun"))]
 
 
-COLLADA = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>
-<unit name="millimeter" meter="0.001"/><up_axis>Z_UP</up_axis></asset></COLLADA>"""
-
-
 def robot_with_meshes(folder: Path, *names: str) -> oo.Model:
     visuals = "".join(
         f'<visual><geometry><mesh filename="package://craft/{name}" scale="2 2 2"/></geometry>'
@@ -241,10 +237,12 @@ def robot_with_meshes(folder: Path, *names: str) -> oo.Model:
 
 def write_meshes(folder: Path) -> None:
     folder.mkdir()
-    triangle = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
-    (folder / "a.stl").write_bytes(bytes(80) + struct.pack("<I", 1) + triangle)
-    (folder / "b.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    (folder / "c.DAE").write_text(COLLADA)
+    (folder / "a.stl").write_bytes(stl_binary())
+    (folder / "b.obj").write_text(obj(QUADS))
+    (folder / "c.DAE").write_text(
+        collada(asset='<unit name="millimeter" meter="0.001"/>', texture="picture.png")
+    )
+    (folder / "picture.png").write_bytes(picture(*4 * [(255, 128, 0)]))
     (folder / "d.3ds").write_bytes(b"?")
 
 
@@ -252,20 +250,38 @@ def test_meshes_are_in_the_recording_with_their_unit_and_the_colour_of_the_robot
     write_meshes(tmp_path / "craft")
     model = robot_with_meshes(tmp_path, "a.stl", "b.obj", "c.DAE", "d.3ds")
     trace = oo.Simulation(model, model.neutral(), np.zeros(6), time_step=0.1).run(0.1)
-    with pytest.warns(UserWarning, match=r"d\.3ds of link 'bus' is not drawn: the viewer reads \.dae"):
+    with pytest.warns(
+        UserWarning, match=r"link 'bus' is not drawn: .*d\.3ds cannot be read: its ending is none of"
+    ):
         path = viewer.write_recording(tmp_path / "run.rrd", trace, viewer.Setting(model))
-    types, scales = [], []
-    for index, name in enumerate(("a.stl", "b.obj", "c.DAE")):
+    for index, size in enumerate((2.0, 2.0, 2e-3)):
         entity = f"/world/robot/bus/visual_{index}"
-        ((blob,),) = column(path, entity, "Asset3D:blob", static=True)
-        assert bytes(blob) == (tmp_path / "craft" / name).read_bytes()
-        types += column(path, entity, "Asset3D:media_type", static=True)[0]
-        ((scale,),) = column(path, entity, "InstancePoses3D:scales", static=True)
-        scales.append(scale)
-        assert column(path, entity, "Asset3D:albedo_factor", static=True) == [[0xCC9933FF]]
-    assert types == ["model/stl", "model/obj", "model/vnd.collada+xml"]
-    np.testing.assert_allclose(scales, np.outer([2, 2, 2e-3], np.ones(3)), rtol=1e-6)
+        (points,) = column(path, entity, "Mesh3D:vertex_positions", static=True)
+        (faces,) = column(path, entity, "Mesh3D:triangle_indices", static=True)
+        assert len(faces) == 12
+        np.testing.assert_allclose(np.max(points, axis=0), np.array([1, 2, 3]) * size, rtol=1e-6)
+        assert column(path, entity, "Mesh3D:albedo_factor", static=True) == [[0xCC9933FF]]
+    (pixels,) = column(path, "/world/robot/bus/visual_2", "Mesh3D:albedo_texture_buffer", static=True)
+    assert bytes(pixels[0]) == bytes([255, 128, 0] * 4)
     assert "/world/robot/bus/visual_3" not in rows_by_entity(path)[1]
+
+
+def test_parts_of_a_mesh_stay_on_their_link(tmp_path: Path) -> None:
+    """What has a texture is an entity of its own; without a frame it would stay in the origin."""
+    (tmp_path / "craft").mkdir()
+    (tmp_path / "craft" / "picture.png").write_bytes(picture(*4 * [(255, 128, 0)]))
+    points = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\n"
+    both = f"{points}usemtl a\nf 1 2 3\nusemtl b\nf 1/1 2/1 4/1\n"
+    (tmp_path / "craft" / "two.obj").write_text(both)
+    (tmp_path / "craft" / "m.mtl").write_text("newmtl a\nKd 1 0 0\nnewmtl b\nmap_Kd picture.png\n")
+    model = robot_with_meshes(tmp_path, "two.obj")
+    trace = oo.Simulation(model, model.neutral(), np.zeros(6), time_step=0.1).run(0.1)
+    path = viewer.write_recording(tmp_path / "run.rrd", trace, viewer.Setting(model))
+    frames = [
+        column(path, f"/world/robot/bus/visual_0{part}", "CoordinateFrame:frame", static=True)
+        for part in ("", "/part_1")
+    ]
+    assert frames[0] == frames[1] == [["robot/bus"]]
 
 
 def test_a_mesh_that_is_not_there_is_a_warning_and_a_box(tmp_path: Path) -> None:

@@ -1,17 +1,20 @@
-"""What a robot looks like: its visual geometry, and what stands in where the mesh of a link is missing.
+"""What a robot looks like: its visual geometry, and what stands in where the mesh of a link cannot be drawn.
 
 That is the link's own collision shapes, else a ball at its joint; rods go to the next joints.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
-from pathlib import Path
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError
 from onorbit_rs.geometry import GREY, Shape, box_of_inertia, grey_shape, pose_of
+from onorbit_rs.meshes import Mesh, read_mesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,24 +26,48 @@ if TYPE_CHECKING:
 ROD, BALL = 0.008, 0.016
 """Radii of a stick figure, as shares of the robot's reach."""
 
+LARGEST = 1e5
+"""Size of a mesh, m, from which on it is a mistake."""
+
 
 def shapes(model: Model) -> list[Shape]:
-    """Everything there is to draw of a robot."""
-    found = [_of(visual) for visual in model.visuals]
-    links = {shape.link for shape in found if _is_missing(shape)} if found else set(model.body_names)
-    found = [shape for shape in found if not _is_missing(shape)]
+    """Everything there is to draw of a robot; warns of mesh files that are there and cannot be drawn."""
+    unreadable: dict[str, str] = {}
+    found, lost = _drawable(model.visuals, unreadable)
+    for message in unreadable.values():
+        _warn_once(message)
+    links = {visual.link for visual in lost} if model.visuals else set(model.body_names)
     bare = links - {shape.link for shape in found}
-    solid = [_of(shape) for shape in model.collisions if shape.link in bare]
+    # a mesh that only stands in is nobody's business where it cannot be drawn
+    solid, _ = _drawable([shape for shape in model.collisions if shape.link in bare], {})
     return [*found, *solid, *_stick_figure(model, bare, {shape.link for shape in solid})]
 
 
+@lru_cache(1024)
+def _warn_once(message: str) -> None:
+    """Viewer and figures of a run meet the same file."""
+    warnings.warn(message, stacklevel=3)
+
+
 def missing_meshes(model: Model) -> list[str]:
-    """Names of the mesh files that are not there, each once."""
-    return list(dict.fromkeys(visual.filename or "" for visual in model.visuals if _is_missing(_of(visual))))
+    """Names of the mesh files that are not there or cannot be drawn, each once."""
+    _, lost = _drawable(model.visuals, {})
+    return list(dict.fromkeys(visual.filename or "" for visual in lost))
 
 
-def _is_missing(shape: Shape) -> bool:
-    return shape.kind == "mesh" and (shape.filename is None or not shape.filename.is_file())
+def _drawable(visuals: Sequence[Visual], unreadable: dict[str, str]) -> tuple[list[Shape], list[Visual]]:
+    """Shapes, and what is left of the visuals; a message for every file that is there and is of no use."""
+    found, lost = [], []
+    for visual in visuals:
+        try:
+            found.append(_of(visual))
+        except NotFoundError:  # said when the robot was read
+            lost.append(visual)
+        except OnOrbitError as error:
+            lost.append(visual)
+            message = f"the mesh of link {visual.link!r} is not drawn: {error}"
+            unreadable.setdefault(visual.filename or "", message)
+    return found, lost
 
 
 def _stick_figure(model: Model, bare: set[str], solid: set[str]) -> Iterator[Shape]:
@@ -88,15 +115,23 @@ def _of(visual: Visual) -> Shape:
         pose=np.asarray(visual.pose, dtype=np.float64),
         kind=visual.kind,
         size=tuple(visual.size or ()),
-        filename=Path(visual.filename) if visual.filename else None,
-        scale=_three(visual.scale),
         rgba=_color(visual.rgba),
+        mesh=_mesh(visual) if visual.kind == "mesh" else None,
     )
 
 
-def _three(scale: Sequence[float] | None) -> tuple[float, float, float]:
-    x, y, z = scale or (1.0, 1.0, 1.0)
-    return x, y, z
+def _mesh(visual: Visual) -> Mesh:
+    """As large as the robot says, and in its colour if it gives one, before those of the file as in RViz."""
+    file = visual.filename or ""
+    mesh = read_mesh(file).scaled(visual.scale)
+    size = float(np.ptp(mesh.bounds, axis=0).max())
+    if not 0.0 < size < LARGEST:
+        raise ReadError(
+            f"{file} is {size:.3g} m large with scale {visual.scale}: correct that or the file's unit",
+            path=file,
+            kind="mesh",
+        )
+    return mesh if visual.rgba is None else mesh.painted(visual.rgba)
 
 
 def _color(rgba: Sequence[float] | None) -> tuple[float, float, float, float]:

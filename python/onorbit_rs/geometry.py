@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Model
+    from onorbit_rs.meshes import Mesh
 
     Floats = NDArray[np.float64]
 
@@ -24,17 +24,16 @@ GREY = (0.72, 0.73, 0.75, 1.0)
 class Shape:
     """One visible body.
 
-    ``kind`` is box (``size`` x, y, z), cylinder or capsule (radius, length along z), sphere (radius) or mesh;
-    ``pose`` (4, 4) is in the axes of ``link``; lengths in m; ``rgba`` from 0 to 1.
+    ``kind`` is box (``size`` x, y, z), cylinder or capsule (radius, length along z), sphere (radius) or mesh
+    (with colours of its own); ``pose`` (4, 4) is in the axes of ``link``; lengths in m; ``rgba`` from 0 to 1.
     """
 
     link: str
     pose: Floats
     kind: str
     size: tuple[float, ...]
-    filename: Path | None
-    scale: tuple[float, float, float]
     rgba: tuple[float, float, float, float]
+    mesh: Mesh | None = None
 
 
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
@@ -44,19 +43,11 @@ def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
     return center, max(2.0 * float(np.linalg.norm(corners - center, axis=1).max()), 0.1)
 
 
-def box_around(model: Model, shape: Shape) -> tuple[Floats, Floats]:
-    """Pose (4, 4) in its link and half edges (3,) of a box around a shape, m.
-
-    A mesh counts as the box with its body's inertia.
-    """
-    pose = np.eye(4)
-    if shape.kind == "mesh":
-        body = next((body for body in model.bodies if body.name == shape.link and body.mass > 0.0), None)
-        size = np.full(3, 0.1)
-        if body is not None:
-            size, axes = box_of_inertia(body.mass, np.array(body.inertia))
-            pose = pose_of(axes, np.array(body.com))
-        return pose, size / 2.0
+def box_around(shape: Shape) -> tuple[Floats, Floats]:
+    """Pose (4, 4) in its link and half edges (3,) of a box around a shape, m."""
+    if shape.mesh is not None:
+        low, high = np.array(shape.mesh.bounds, dtype=np.float64)
+        return shape.pose @ pose_of(np.eye(3), (low + high) / 2.0), (high - low) / 2.0
     if shape.kind == "box":
         half = np.array(shape.size) / 2.0
     elif shape.kind == "sphere":
@@ -69,7 +60,7 @@ def box_around(model: Model, shape: Shape) -> tuple[Floats, Floats]:
 
 def _corners(model: Model, q: Floats, shape: Shape) -> Floats:
     """(8, 3) corners of the box around a shape, W, m."""
-    in_link, half = box_around(model, shape)
+    in_link, half = box_around(shape)
     pose = np.asarray(model.frame_pose(q, shape.link)).reshape(4, 4) @ in_link
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     corners: Floats = signs * half @ pose[:3, :3].T + pose[:3, 3]
@@ -85,7 +76,7 @@ def pose_of(rotation: Floats, position: Floats) -> Floats:
 
 def grey_shape(link: str, kind: str, size: Iterable[float], pose: Floats) -> Shape:
     """A grey shape that is no mesh."""
-    return Shape(link, pose, kind, tuple(size), None, (1.0, 1.0, 1.0), GREY)
+    return Shape(link, pose, kind, tuple(size), GREY)
 
 
 def box_of_inertia(mass: float, inertia: Floats) -> tuple[Floats, Floats]:

@@ -17,7 +17,8 @@ LARGEST_TEXT = 16_000_000
 LARGEST_TABLE = 256_000_000
 """Bytes of a CSV: three million rows."""
 
-LARGEST_MESH = 1_000_000_000
+LARGEST_MESH = 256_000_000
+"""Bytes of a mesh: five million triangles of STL."""
 
 
 def check_regular(path: str | os.PathLike[str], kind: str = "file") -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 import shutil
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from onorbit_rs import omm as _omm  # noqa: F401
 from onorbit_rs.exceptions import IntegrityError, NotFoundError, RunInterrupted
 from onorbit_rs.interop.expressions import evaluate
 from onorbit_rs.interop.onorbitros import convert
+from onorbit_rs.meshes import read_mesh
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import Manifest, read_manifest
 from onorbit_rs.output.read import read_summary, read_trace
@@ -34,7 +35,6 @@ from onorbit_rs.scenario.load import check
 from onorbit_rs.scenario.path_file import read_points, two_lines
 from onorbit_rs.scenario.units import ANGLE, FORCE, GRAVITY, LENGTH, NUMBER, TIME, parse_quantity
 from onorbit_rs.scenario.yaml_lines import parse_yaml
-from onorbit_rs.viewer.solids import _unit
 
 # pictures of a run that was resumed take most of a second, and read nothing
 keeping.write_pictures = lambda *_, **__: None
@@ -198,9 +198,12 @@ def xacro(data: bytes, room: Room) -> None:
     expand(room.file("robot.xacro", data))
 
 
-def collada_unit(data: bytes, room: Room) -> None:
-    shape: Any = SimpleNamespace(filename=room.file("mesh.dae", data))
-    all_finite("units are", _unit(shape))
+def mesh(data: bytes, room: Room) -> None:
+    """The first line is the ending of the file."""
+    ending, _, content = data.partition(b"\n")
+    found = read_mesh(room.file(f"mesh.{re.sub(r'[^a-z0-9]', '', text(ending))}", content))
+    for part in found.parts:
+        all_finite("vertices and normals are", part.vertices, part.normals, part.face_colors)
 
 
 def urdf_file(data: bytes, room: Room) -> None:
@@ -213,7 +216,7 @@ TARGETS: dict[str, Target] = {
     target.__name__: target
     for target in (
         quantity, expression, yaml, scenario, mean_elements, tle_file, point_file, spice_kernel, onorbitros,
-        trace, summary, manifest, checkpoint, controller_state, xacro, collada_unit, urdf_file,
+        trace, summary, manifest, checkpoint, controller_state, xacro, mesh, urdf_file,
     )
 }  # fmt: skip
 

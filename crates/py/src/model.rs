@@ -255,7 +255,7 @@ impl PyModel {
         records::shapes(&self.model, self.model.visuals())
     }
 
-    /// Collision shapes that are no meshes; nothing collides here: the viewer draws them where a mesh is missing.
+    /// Collision shapes (meshes where the file is there); nothing collides here: they are drawn where a mesh cannot be.
     #[getter]
     fn collisions(&self) -> Vec<PyVisual> {
         records::shapes(&self.model, self.model.collisions())

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onorbit_rs.figures.solids import robot_polygons, robot_skeleton
+from onorbit_rs.appearance import shapes
 from onorbit_rs.figures.style import (
     COLORS,
     INK,
@@ -19,6 +19,7 @@ from onorbit_rs.figures.style import (
     new_figure,
     tidy,
 )
+from onorbit_rs.geometry import extent
 from onorbit_rs.rotations import local_orbital_axes, reference_motion_of
 from onorbit_rs.thinning import evenly
 from onorbit_rs.units import with_prefix
@@ -93,10 +94,7 @@ def paths_in_orbit(trace: Trace, targets: Sequence[Target] = ()) -> list[Floats]
 def goes_far(trace: Trace, model: Model) -> bool:
     """Whether the base's path in L is longer than :data:`WORTH_A_PATH` sizes of the robot."""
     (base,) = paths_in_orbit(trace)
-    q = np.asarray(trace.q)[0]
-    faces, _ = robot_polygons(model, q)
-    corners = np.vstack([*faces, robot_skeleton(model, q).reshape(-1, 3), q[None, :3]])
-    size = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    _, size = extent(model, shapes(model), np.asarray(trace.q)[:1])
     return float(np.ptp(base, axis=0).max()) > WORTH_A_PATH * size
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from onorbit_rs.appearance import shapes
-from onorbit_rs.geometry import Shape
+from onorbit_rs.figures.coarse import coarse
+from onorbit_rs.geometry import Shape, extent
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,42 +21,59 @@ if TYPE_CHECKING:
 _AROUND = 20
 """Sides of a round body."""
 
+MOST_TRIANGLES = 8_000
+"""Of all meshes of a robot; a PDF of them takes a second and 200 kB, a PNG a tenth of it."""
 
-def robot_polygons(model: Model, q: Floats) -> tuple[list[Floats], list[tuple[float, float, float]]]:
-    """Faces of every shape at one configuration, and the colour of each.
+
+def robot_polygons(model: Model, q: Floats) -> list[tuple[Floats, Floats]]:
+    """Faces of the robot at some configurations.
 
     Parameters
     ----------
     model : Model
-    q : (nq,) array
-        Configuration.
+    q : (k, nq) array
+        Configurations.
 
     Returns
     -------
-    faces : list of (k, 3) arrays
-        Corners in W, m; meshes are left out.
-    colors : list of RGB tuples
+    list of (faces, colors)
+        Of each configuration: corners (n, 4, 3) of quadrangles, W, m, the last two of a triangle being one,
+        and colours (n, 3), RGB from 0 to 1. Of meshes, :data:`MOST_TRIANGLES` at most.
     """
-    faces: list[Floats] = []
-    colors: list[tuple[float, float, float]] = []
-    for shape in shapes(model):
-        own = _faces(shape)
-        pose = np.asarray(model.frame_pose(q, shape.link)).reshape(4, 4) @ shape.pose
-        faces += [face @ pose[:3, :3].T + pose[:3, 3] for face in own]
-        colors += [shape.rgba[:3]] * len(own)
-    return faces, colors
+    robot = shapes(model)
+    own = [*_primitives(robot), *_meshes(model, robot, q)]
+    colors = np.vstack([tints for _, _, tints in own])
+    found = []
+    for row in q:
+        placed = []
+        for shape, faces, _ in own:
+            pose = np.asarray(model.frame_pose(row, shape.link)).reshape(4, 4) @ shape.pose
+            placed.append(faces @ pose[:3, :3].T + pose[:3, 3])
+        found.append((np.vstack(placed), colors))
+    return found
 
 
-def robot_skeleton(model: Model, q: Floats) -> Floats:
-    """Segments (k, 2, 3), W, m, from each joint to the next: the robot where it has only meshes."""
-    origin = {name: np.asarray(model.frame_pose(q, name)).reshape(4, 4)[:3, 3] for name in model.body_names}
-    ends = [(origin[joint.parent], origin[joint.child]) for joint in model.joints
-            if joint.parent in origin and joint.child in origin]  # fmt: skip
-    return np.array(ends).reshape(-1, 2, 3)
+def _primitives(robot: list[Shape]) -> Iterator[tuple[Shape, Floats, Floats]]:
+    """Faces and colours of what is no mesh, in its own axes."""
+    for shape in robot:
+        if shape.mesh is None:
+            faces = _faces(shape)
+            yield shape, faces, np.tile(shape.rgba[:3], (len(faces), 1))
 
 
-def _faces(shape: Shape) -> list[Floats]:
-    """Faces of one shape, in its own axes."""
+def _meshes(model: Model, robot: list[Shape], q: Floats) -> Iterator[tuple[Shape, Floats, Floats]]:
+    """Triangles of the meshes, in their own axes, as quadrangles."""
+    parts = [(shape, part) for shape in robot if shape.mesh is not None for part in shape.mesh.parts]
+    if not parts:
+        return
+    _, size = extent(model, robot, q[:1])
+    drawn = coarse([part for _, part in parts], size, MOST_TRIANGLES)
+    for (shape, _), (corners, colors) in zip(parts, drawn, strict=True):
+        yield shape, corners[:, [0, 1, 2, 2]], colors
+
+
+def _faces(shape: Shape) -> Floats:
+    """Faces (n, 4, 3) of one primitive, in its own axes."""
     size = shape.size
     if shape.kind == "box":
         return _box(np.asarray(size))
@@ -63,16 +82,15 @@ def _faces(shape: Shape) -> list[Floats]:
     if shape.kind == "cylinder":
         radius, half = size[0], size[1] / 2.0
         return _revolved(np.array([[0.0, -half], [radius, -half], [radius, half], [0.0, half]]))
-    if shape.kind == "capsule":
-        radius, half = size[0], size[1] / 2.0
-        return _revolved(np.vstack([_arc(radius, -half, -90.0, 0.0), _arc(radius, half, 0.0, 90.0)]))
-    return []
+    radius, half = size[0], size[1] / 2.0
+    return _revolved(np.vstack([_arc(radius, -half, -90.0, 0.0), _arc(radius, half, 0.0, 90.0)]))
 
 
-def _box(size: Floats) -> list[Floats]:
+def _box(size: Floats) -> Floats:
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * size / 2.0
     rings = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    return [corners[list(ring)] for ring in rings]
+    faces: Floats = corners[np.array(rings)]
+    return faces
 
 
 def _arc(radius: float, height: float, start_deg: float, end_deg: float) -> Floats:
@@ -81,14 +99,11 @@ def _arc(radius: float, height: float, start_deg: float, end_deg: float) -> Floa
     return np.column_stack([radius * np.cos(angles), height + radius * np.sin(angles)])
 
 
-def _revolved(profile: Floats) -> list[Floats]:
+def _revolved(profile: Floats) -> Floats:
     """Faces of a profile (distance from the axis, height) turned about z."""
     turns = np.linspace(0.0, 2.0 * np.pi, _AROUND + 1)
     x = profile[:, 0, None] * np.cos(turns)
     y = profile[:, 0, None] * np.sin(turns)
     rings = np.stack([x, y, np.broadcast_to(profile[:, 1, None], x.shape)], axis=-1)
-    return [
-        np.array([rings[i, j], rings[i, j + 1], rings[i + 1, j + 1], rings[i + 1, j]])
-        for i in range(len(profile) - 1)
-        for j in range(_AROUND)
-    ]
+    faces = np.stack([rings[:-1, :-1], rings[:-1, 1:], rings[1:, 1:], rings[1:, :-1]], axis=2)
+    return faces.reshape(-1, 4, 3)

@@ -135,7 +135,7 @@ class Arrows:
         way = np.zeros(lengths.shape)
         for shape in self.setting.shapes:
             if shape.link == self.setting.base:
-                pose, half = box_around(self.setting.model, shape)
+                pose, half = box_around(shape)
                 start, along = (origin_b - pose[:3, 3]) @ pose[:3, :3], ahead_b @ pose[:3, :3]
                 # start + t along reaches the faces, ±half, at t = (half - start · sign) / |along|.
                 to_faces = (half - start * np.sign(along)) / np.maximum(np.abs(along), 1e-12)

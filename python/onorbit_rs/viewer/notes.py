@@ -26,13 +26,14 @@ def notes(summary: dict[str, Any], scenario: Scenario) -> str:
 
 
 def about_meshes(model: Model) -> str:
-    """Which meshes are missing; empty where none is."""
+    """Which meshes are not drawn; empty where all are."""
     missing = missing_meshes(model)
     if not missing:
         return ""
     more = "" if len(missing) <= _MOST_MESHES else f" and {len(missing) - _MOST_MESHES} more"
     named = ", ".join(escaped(name) for name in missing[:_MOST_MESHES])
-    return f"\n\nCollision shapes and sticks stand in for meshes that were not found: {named}{more}.\n"
+    lost = "meshes that were not found or cannot be read"
+    return f"\n\nCollision shapes and sticks stand in for {lost}: {named}{more}.\n"
 
 
 def escaped(text: str) -> str:

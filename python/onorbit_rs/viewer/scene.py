@@ -56,8 +56,8 @@ def log_robot(recording: rr.RecordingStream, setting: Setting) -> None:
     """Its shapes, each in the frame of its link."""
     for index, shape in enumerate(setting.shapes):
         path = rr.new_entity_path(["world", "robot", shown(shape.link), f"visual_{index}"])
-        if log_shape(recording, path, shape):
-            put_in(recording, path, of_link(shape.link))
+        for entity in log_shape(recording, path, shape):
+            put_in(recording, entity, of_link(shape.link))
 
 
 def send_desired(recording: rr.RecordingStream, rows: Rows) -> None:

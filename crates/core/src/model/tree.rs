@@ -150,7 +150,7 @@ impl Model {
         &self.visuals
     }
 
-    /// Collision shapes that are no meshes, likewise: what to draw where the mesh of a visual is missing.
+    /// Collision shapes, likewise, with meshes whose file is there: what to draw where a visual cannot be.
     pub fn collisions(&self) -> &[(usize, Visual)] {
         &self.collisions
     }

@@ -52,8 +52,7 @@ pub(super) fn assemble(
         builder.add(&parent, last, child).map_err(|e| fail(hinge.element, e))?;
         stack.extend(tree.hinges_below[tree.child[h]].iter().rev());
     }
-    let mesh_warning = around.meshes.warning();
-    for warning in around.warnings.drain(..).chain(mesh_warning) {
+    for warning in around.warnings.drain(..).chain(around.meshes.warnings()) {
         builder.warn(warning);
     }
     builder.build().map_err(|error| UrdfError::new(None, UrdfProblem::Model(error)))

@@ -39,10 +39,14 @@ pub(super) fn read_link(
             }
         }
     }
-    // those only stand in for a missing mesh: what is odd in them is nobody's business
-    let solid = |shape: &Element<'_>| shape.child("geometry").is_some_and(|it| it.child("mesh").is_none());
-    let collisions = link.children("collision").filter(solid);
-    result.collisions = collisions.filter_map(|shape| read_visual(shape, around).ok()).collect();
+    // those only stand in for a mesh that cannot be drawn: what is odd in them is nobody's business
+    for collision in link.children("collision") {
+        let mesh = collision.child("geometry").and_then(|geometry| geometry.child("mesh"));
+        let file = mesh.map(|mesh| mesh.text("filename").unwrap_or_default());
+        if file.is_none_or(|name| around.meshes.find(name).is_some()) {
+            result.collisions.extend(read_visual(collision, around).ok());
+        }
+    }
     Ok(result)
 }
 

@@ -1,6 +1,9 @@
-//! Where mesh files are: `package://`, `file://` and relative names.
+//! Where mesh files are: `package://`, `file://` and relative names, and those that lie beside the URDF.
 
+use super::mesh_name::MeshName;
+use super::mesh_near::Near;
 use crate::model::ModelWarning;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// Finds meshes, and remembers those it did not find.
@@ -9,55 +12,115 @@ pub(super) struct Meshes<'a> {
     folder: Option<&'a Path>,
     /// Folders that hold packages, or are one.
     packages: &'a [PathBuf],
+    /// What was found for a name. Many links name one file.
+    known: HashMap<String, Option<Found>>,
+    /// Whether a folder is there: asking for a file in one that is not costs as much as for one that is.
+    folders: HashMap<PathBuf, bool>,
+    near: Near<'a>,
+    /// The package that each file was taken for.
+    taken: HashMap<String, String>,
     missing: Vec<String>,
+    guessed: Vec<(String, String)>,
+}
+
+#[derive(Clone)]
+struct Found {
+    path: String,
+    /// Only the file's own name speaks for it.
+    is_guess: bool,
 }
 
 impl<'a> Meshes<'a> {
     pub(super) fn new(folder: Option<&'a Path>, packages: &'a [PathBuf]) -> Self {
-        Self { folder, packages, missing: Vec::new() }
+        Self {
+            folder,
+            packages,
+            known: HashMap::new(),
+            folders: HashMap::new(),
+            near: Near::new(folder, packages),
+            taken: HashMap::new(),
+            missing: Vec::new(),
+            guessed: Vec::new(),
+        }
     }
 
-    /// The path of a mesh that exists, else the name as it stands in the file.
+    /// The path of a mesh that exists, else the name as it stands in the file, which is remembered as missing.
     pub(super) fn resolve(&mut self, name: &str) -> String {
-        let found = self.candidates(name).into_iter().find(|path| path.is_file());
-        if let Some(path) = found.as_deref().and_then(Path::to_str) {
-            return path.to_owned();
+        match self.look_up(name) {
+            Some(Found { path, is_guess: false }) => path,
+            Some(Found { path, is_guess: true }) => {
+                if !self.guessed.iter().any(|(known, _)| known == name) {
+                    self.guessed.push((name.to_owned(), path.clone()));
+                }
+                path
+            }
+            None => {
+                if !self.missing.iter().any(|missing| missing == name) {
+                    self.missing.push(name.to_owned());
+                }
+                name.to_owned()
+            }
         }
-        if !self.missing.iter().any(|missing| missing == name) {
-            self.missing.push(name.to_owned());
-        }
-        name.to_owned()
     }
 
-    /// One remark about all meshes that were not found.
-    pub(super) fn warning(&self) -> Option<ModelWarning> {
+    /// The path of a mesh that exists.
+    pub(super) fn find(&mut self, name: &str) -> Option<String> {
+        self.look_up(name).map(|found| found.path)
+    }
+
+    /// One remark about all meshes that were not found, and one about those whose place was guessed.
+    pub(super) fn warnings(&self) -> impl Iterator<Item = ModelWarning> {
+        self.about_missing().into_iter().chain(self.about_guessed()).map(ModelWarning::Note)
+    }
+
+    fn about_missing(&self) -> Option<String> {
         let first = self.missing.first()?;
-        let (count, files) = (self.missing.len(), if self.missing.len() == 1 { "file" } else { "files" });
-        let hint = match package_of(first) {
-            Some((package, _)) => format!("; name the folder that holds the package '{package}'"),
-            None => String::new(),
+        let files = mesh_files(self.missing.len());
+        let hint = match MeshName::of(first) {
+            Some(MeshName::InPackage { package, .. }) => {
+                format!("; name the folder that holds the package '{package}'")
+            }
+            _ => "; copy what is missing into a folder 'meshes' beside the robot's file".to_owned(),
         };
-        Some(ModelWarning::Note(format!(
-            "{count} mesh {files} not found, the first is '{first}': simpler shapes are drawn instead{hint}"
-        )))
+        Some(format!("{files} not found, the first is '{first}': simpler shapes are drawn instead{hint}"))
     }
 
-    fn candidates(&self, name: &str) -> Vec<PathBuf> {
-        if let Some((package, rest)) = package_of(name) {
-            return self.in_package(package, rest);
+    fn about_guessed(&self) -> Option<String> {
+        let (name, path) = self.guessed.first()?;
+        let files = mesh_files(self.guessed.len());
+        Some(format!(
+            "{files} not where the robot says: what has the same name near it is drawn, \
+             {path} for '{name}'"
+        ))
+    }
+
+    fn look_up(&mut self, name: &str) -> Option<Found> {
+        if let Some(known) = self.known.get(name) {
+            return known.clone();
         }
-        let name = name.strip_prefix("file://").unwrap_or(name);
-        let path = Path::new(name);
-        match self.folder {
-            _ if path.is_absolute() => vec![path.to_owned()],
-            Some(folder) => vec![folder.join(path)],
-            None => Vec::new(),
+        let found =
+            MeshName::of(name).and_then(|parsed| self.where_told(&parsed).or_else(|| self.near(&parsed)));
+        self.known.insert(name.to_owned(), found.clone());
+        found
+    }
+
+    /// Where the name says, and for a package also below every folder given and every parent of the URDF.
+    fn where_told(&mut self, name: &MeshName) -> Option<Found> {
+        let candidates = match name {
+            MeshName::InPackage { package, rest } => self.in_package(package, rest),
+            MeshName::File(path) if path.is_absolute() => vec![path.clone()],
+            MeshName::File(path) => self.folder.map(|folder| folder.join(path)).into_iter().collect(),
+        };
+        let path = candidates.iter().find(|path| self.is_file(path))?.to_str()?.to_owned();
+        if let MeshName::InPackage { package, .. } = name {
+            self.taken.insert(path.clone(), package.clone());
         }
+        Some(Found { path, is_guess: false })
     }
 
     /// Below every folder given, then below every parent of the URDF: beside the package's own
     /// folder, or inside it.
-    fn in_package(&self, package: &str, rest: &str) -> Vec<PathBuf> {
+    fn in_package(&self, package: &str, rest: &Path) -> Vec<PathBuf> {
         let parents = self.folder.into_iter().flat_map(Path::ancestors);
         let roots = self.packages.iter().map(PathBuf::as_path).chain(parents);
         let mut candidates = Vec::new();
@@ -69,18 +132,41 @@ impl<'a> Meshes<'a> {
         }
         candidates
     }
+
+    fn near(&mut self, name: &MeshName) -> Option<Found> {
+        for (candidate, is_guess) in self.near.candidates(name.path()) {
+            let Some(path) = candidate.to_str() else { continue };
+            if candidate.is_file() && self.is_free(path, name) {
+                return Some(Found { path: path.to_owned(), is_guess });
+            }
+        }
+        None
+    }
+
+    /// Whether a file was not found for another package already: two of them may have a `meshes/base.stl`.
+    fn is_free(&mut self, path: &str, name: &MeshName) -> bool {
+        let MeshName::InPackage { package, .. } = name else { return true };
+        self.taken.entry(path.to_owned()).or_insert_with(|| package.clone()) == package
+    }
+
+    fn is_file(&mut self, path: &Path) -> bool {
+        let Some(folder) = path.parent() else { return false };
+        if let Some(is_there) = self.folders.get(folder) {
+            return *is_there && path.is_file();
+        }
+        let is_there = folder.is_dir();
+        self.folders.insert(folder.to_owned(), is_there);
+        is_there && path.is_file()
+    }
 }
 
-/// `package://name/rest` (Gazebo also writes `model://`), split.
-fn package_of(name: &str) -> Option<(&str, &str)> {
-    let inside = name.strip_prefix("package://").or_else(|| name.strip_prefix("model://"))?;
-    let (package, rest) = inside.split_once('/')?;
-    (!package.is_empty()).then_some((package, rest))
+fn mesh_files(count: usize) -> String {
+    format!("{count} mesh {}", if count == 1 { "file" } else { "files" })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Meshes, package_of};
+    use super::Meshes;
     use std::fs;
     use std::path::PathBuf;
 
@@ -102,12 +188,13 @@ mod tests {
         assert_eq!(found.resolve("package://arm_description/meshes/arm.stl"), path(&arm));
         assert_eq!(found.resolve(&format!("file://{}", path(&arm))), path(&arm));
         assert_eq!(PathBuf::from(found.resolve("../meshes/arm.stl")), urdf.join("../meshes/arm.stl"));
-        assert_eq!(found.warning(), None);
+        assert_eq!(found.warnings().next(), None);
         assert_eq!(
             found.resolve("package://hand_description/hand.stl"),
             "package://hand_description/hand.stl"
         );
-        assert!(found.warning().expect("one is missing").to_string().contains("'hand_description'"));
+        let warning = found.warnings().next().expect("one is missing");
+        assert!(warning.to_string().contains("'hand_description'"));
 
         for packages in [[root.join("elsewhere")], [other.clone()]] {
             let mut told = Meshes::new(None, &packages);
@@ -117,12 +204,42 @@ mod tests {
     }
 
     #[test]
+    fn meshes_near_the_file_are_found_by_the_end_of_their_name() {
+        let root = std::env::temp_dir().join(format!("onorbit_near_{}", std::process::id()));
+        let (urdf, meshes) = (root.join("copy/urdf"), root.join("copy/meshes"));
+        for folder in [urdf.join("meshes"), meshes.join("visual")] {
+            fs::create_dir_all(folder).expect("a temporary folder can be made");
+        }
+        let files = ["copy/meshes/visual/arm.dae", "copy/urdf/meshes/hand.stl", "copy/urdf/my bus.obj"];
+        for file in files.iter().chain(&["bus.stl"]) {
+            fs::write(root.join(file), "solid").expect("a temporary file can be written");
+        }
+        let [arm, hand, bus] = files.map(|file| root.join(file).to_str().expect("UTF-8").to_owned());
+
+        let mut found = Meshes::new(Some(&urdf), &[]);
+        assert_eq!(found.resolve("package://arm/meshes/visual/arm.dae"), arm);
+        assert_eq!(found.resolve("file:///home/me/ws/src/arm/meshes/visual/arm.dae"), arm);
+        assert_eq!(found.resolve("file://my%20bus.obj"), bus);
+        assert_eq!(found.warnings().next(), None, "their folders speak for them");
+        assert_eq!(found.resolve("package://arm/stl/hand.stl"), hand);
+        let guesses: Vec<_> = found.warnings().map(|warning| warning.to_string()).collect();
+        assert!(guesses.len() == 1 && guesses[0].contains("'package://arm/stl/hand.stl'"), "{guesses:?}");
+        // of the same name, but of another package, or above the folders that speak for it
+        for other in ["package://gripper/meshes/visual/arm.dae", "package://arm/bus.stl"] {
+            assert_eq!(found.resolve(other), other);
+        }
+        assert_eq!(found.find("package://arm/bus.stl"), None);
+
+        let given = [root.join("copy")];
+        assert_eq!(Meshes::new(None, &given).resolve("package://x/meshes/visual/arm.dae"), arm);
+        fs::remove_dir_all(root).expect("the folder is ours");
+    }
+
+    #[test]
     fn odd_names_stay_as_they_are() {
         let mut meshes = Meshes::new(None, &[]);
         for name in ["", "package://", "package:///x", "http://a/b.stl", "a\u{0}b", "$(find x)/y.dae"] {
             assert_eq!(meshes.resolve(name), name);
         }
-        assert_eq!(package_of("package://a/b/c"), Some(("a", "b/c")));
-        assert_eq!(package_of("a/b"), None);
     }
 }

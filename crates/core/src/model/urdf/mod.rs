@@ -19,6 +19,8 @@ mod joint;
 mod link;
 mod material;
 mod mesh;
+mod mesh_name;
+mod mesh_near;
 mod pose;
 mod refusal;
 mod schema;

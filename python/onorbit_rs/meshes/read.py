@@ -1,0 +1,85 @@
+"""A mesh file, read once in a process."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from onorbit_rs.exceptions import ReadError
+from onorbit_rs.meshes.assemble import joined
+from onorbit_rs.meshes.collada import read_collada
+from onorbit_rs.meshes.other_kinds import read_other
+from onorbit_rs.meshes.part import Mesh, Part
+from onorbit_rs.meshes.textures import Companions
+from onorbit_rs.reading import LARGEST_MESH, check_regular, read_bytes
+
+ENDINGS = (".dae", ".glb", ".gltf", ".obj", ".ply", ".stl")
+
+_KEPT = 128
+"""Files whose content stays in memory."""
+
+
+def read_mesh(path: str | os.PathLike[str]) -> Mesh:
+    """Return what is in a mesh file (Collada, glTF, OBJ, PLY, STL), by its ending.
+
+    Materials and textures are looked for near the file alone; one that is not there leaves its surface plain.
+
+    Raises
+    ------
+    NotFoundError, ReadError
+        No such file; none that can be read, with the reason; too large; nothing to see in it.
+    """
+    check_regular(path, "mesh")
+    about = Path(path).stat()
+    found = _read(Path(path), about.st_mtime_ns, about.st_size)
+    if isinstance(found, ReadError):
+        raise found
+    return found
+
+
+@lru_cache(_KEPT)
+def _read(path: Path, _changed: int, _size: int) -> Mesh | ReadError:
+    kind = path.suffix.lower()
+    try:
+        if kind not in ENDINGS:
+            raise ValueError(f"its ending is none of {', '.join(ENDINGS)}: convert it to one of these")
+        content = read_bytes(path, LARGEST_MESH, "mesh")
+        if not content:
+            raise ValueError("it is empty: export it again")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of the libraries, about what they pass over
+            companions = Companions(path)
+            parts = (
+                read_collada(content, companions)
+                if kind == ".dae"
+                else read_other(content, kind[1:], companions)
+            )
+        return Mesh(joined(_checked(parts)))
+    except ReadError as error:
+        return error
+    except ValueError as error:
+        return _failure(path, str(error))
+    except Exception as error:  # of a damaged file the libraries raise whatever comes up
+        return _failure(path, f"it is damaged ({type(error).__name__}: {error})")
+
+
+def _checked(parts: list[Part]) -> list[Part]:
+    """Those with a surface; there must be one."""
+    seen = [part for part in parts if len(part.faces) and _has_area(part)]
+    if not seen:
+        raise ValueError("it has no triangles with an area: export it with its surfaces")
+    return seen
+
+
+def _has_area(part: Part) -> bool:
+    a, b, c = (part.vertices[part.faces[:, corner]] for corner in range(3))
+    return bool(np.cross(b - a, c - a).any())
+
+
+def _failure(path: Path, why: str) -> ReadError:
+    reason = " ".join(why.split())[:300]
+    return ReadError(f"{path} cannot be read: {reason}", path=str(path), kind="mesh")
