@@ -10,18 +10,14 @@ import typer
 from onorbit_rs.cli.completing import scenario_names
 from onorbit_rs.cli.failing import as_far_as_read
 from onorbit_rs.cli.options import JsonOption
+from onorbit_rs.cli.pictures import claim_picture, save_figure
 from onorbit_rs.cli.saying import say
-from onorbit_rs.cli.writing import claim
 from onorbit_rs.counting import count
-from onorbit_rs.exceptions import InputError
-from onorbit_rs.files import replacing
 
 if TYPE_CHECKING:
     from rich.table import Table
 
     from onorbit_rs.comparison import Comparison
-
-PICTURES = (".png", ".pdf", ".svg")
 
 
 def compare(
@@ -56,11 +52,7 @@ def compare(
     from onorbit_rs.cli.printing import print_json
     from onorbit_rs.comparison import compare as compare_runs
 
-    if out is not None and out.suffix.lower() not in PICTURES:
-        raise InputError(
-            f"--out {out} is none of {', '.join(PICTURES)}", name="out", got=out.suffix, expected=PICTURES
-        )
-    claim(out, force=force)
+    claim_picture("--out", out, force=force)
     compared = compare_runs(a, b, tolerance=tolerance)
     with as_far_as_read():
         if as_json:
@@ -68,7 +60,9 @@ def compare(
         else:
             print_comparison(compared)
     if out is not None:
-        save_figure(compared, out)
+        from onorbit_rs.figures import differences
+
+        save_figure(differences(compared), out)
     if out is not None and not as_json:
         with as_far_as_read():
             say(f"figure: {out}")
@@ -109,17 +103,3 @@ def _table() -> Table:
     from onorbit_rs.cli.printing import new_table
 
     return new_table("", "largest", "at, s", "at the end", "allowed", "parts at, s", "unit")
-
-
-def save_figure(compared: Comparison, file: Path) -> None:
-    """Draw the differences over time.
-
-    Raises
-    ------
-    OutputFolderError
-        It cannot be written.
-    """
-    from onorbit_rs.figures import as_bytes, differences
-
-    with replacing(file) as temporary:
-        temporary.write_bytes(as_bytes(differences(compared), file.suffix[1:].lower()))

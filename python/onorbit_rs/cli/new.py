@@ -10,12 +10,14 @@ import typer
 from onorbit_rs.cli.options import (
     ArgumentsOption,
     PackagesOption,
+    PictureOption,
     QuietOption,
     RobotArgument,
     XacroOption,
     in_words,
     of_file,
 )
+from onorbit_rs.cli.pictures import claim_picture, save_figure
 from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim
 from onorbit_rs.counting import count
@@ -40,18 +42,20 @@ def new(
     packages: PackagesOption = None,
     arguments: ArgumentsOption = None,
     xacro: XacroOption = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
+    picture: PictureOption = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the files that are there.")] = False,
     quiet: QuietOption = False,
 ) -> None:
     """Write a commented scenario that moves a robot's arm.
 
     In orbit, tried before it is written; without --out it goes to standard output. With --bus the robot is
-    fixed to a spacecraft of another file.
+    attached to a spacecraft of another file; --picture draws what comes of it.
     """
     given = of_file(robot, packages, arguments, xacro)
     if bus is None and (at is not None or prefix):
         raise InputError("--at and --prefix say how it sits on a bus: add --bus ROBOT", name="bus", got=None)
     claim(out, force=force)
+    claim_picture("--picture", picture, force=force)
     from onorbit_rs.drafting import Source, draft
     from onorbit_rs.progress import doing
     from onorbit_rs.robots.wording import COMMAND_LINE, worded
@@ -63,6 +67,11 @@ def new(
     with doing("trying motions", quiet=quiet), worded(COMMAND_LINE):
         source = Source(robot, **given, bus=bus, at=at, prefix=prefix)
         made = draft(source, tool=tool, beside=beside, command=written_by)
+    if picture is not None:
+        from onorbit_rs.figures import portrait
+
+        marked = [frame for frame in (at, made.tool) if frame is not None]
+        save_figure(portrait(made.model, made.q, marked), picture)
     if out is None:
         typer.echo(made.text, nl=False)
         return
@@ -72,4 +81,6 @@ def new(
         joints = count(len(made.joints), "joint", "joints")
         moved = f"{made.tool}, moved by {joints}" if made.tool else "a body without joints"
         say(f"scenario: {out} ({moved})")
+        if picture is not None:
+            say(f"picture: {picture}")
         say(f"next: onorbit check {shell_word(out)}")

@@ -42,6 +42,7 @@ ArgumentsOption = Annotated[
     list[str] | None, typer.Option("--arg", metavar="NAME=VALUE", help="For a xacro; may be repeated.")
 ]
 
+PictureOption = Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the robot: PNG, PDF or SVG.")]
 XacroOption = Annotated[bool, typer.Option("--xacro", help="Expand a file that is not named .xacro as one.")]
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import yaml
 
 from onorbit_rs.drafting.arm import ENOUGH, Arm, find_arm
-from onorbit_rs.drafting.motion import at_rest, home, lines, time_step, turns
+from onorbit_rs.drafting.motion import at_rest, configuration, home, lines, time_step, turns
 from onorbit_rs.drafting.reaction import GENTLE
 from onorbit_rs.drafting.source import Source
 from onorbit_rs.drafting.text import Plan, draft_text
@@ -23,7 +23,11 @@ from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from onorbit_rs._core import Model, Trace
+
+    Floats = NDArray[np.float64]
 
 NEAR_ENOUGH_M = 1e-3
 """Largest distance of the tool from its line in a trial."""
@@ -42,6 +46,9 @@ class Draft:
     text: str
     tool: str | None
     joints: list[str]
+    model: Model
+    q: Floats
+    """Initial configuration (nq,)."""
 
 
 def draft(
@@ -83,7 +90,7 @@ def draft(
             )  # fmt: skip
         plan = _settled(model, arm, source.written(None, model), source.name(model))
     text = draft_text(replace(plan, robot=source.written(beside, model)), command)
-    return Draft(text, plan.tool, plan.arm)
+    return Draft(text, plan.tool, plan.arm, model, configuration(model, plan.home))
 
 
 def _settled(model: Model, arm: Arm | None, robot: Any, name: str) -> Plan:

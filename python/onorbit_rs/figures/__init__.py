@@ -14,6 +14,7 @@ from onorbit_rs.figures.ledger import ledger
 from onorbit_rs.figures.manipulability import manipulability
 from onorbit_rs.figures.motion import base_motion, base_reaction
 from onorbit_rs.figures.orbit import orbit_overview
+from onorbit_rs.figures.portrait import portrait
 from onorbit_rs.figures.relative import relative_motion
 from onorbit_rs.figures.save import as_bytes, save_all
 from onorbit_rs.figures.style import COLUMN, PAGE
@@ -41,6 +42,7 @@ __all__ = [
     "manipulability",
     "obtained_trajectory",
     "orbit_overview",
+    "portrait",
     "relative_motion",
     "save_all",
     "subject_of",

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]  # ships no types
 
+from onorbit_rs.figures.shading import add_surfaces
 from onorbit_rs.figures.solids import robot_polygons
-from onorbit_rs.figures.space import add_solid, add_space, fit, label
+from onorbit_rs.figures.space import add_space, fit, label
 from onorbit_rs.figures.style import INK, NORMAL, PAGE, XYZ_COLORS, new_figure
 
 if TYPE_CHECKING:
-    from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]  # ships no types
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Model
@@ -49,7 +50,7 @@ def portrait(model: Model, q: Floats, frames: Sequence[str] = ()) -> Figure:
     figure.set_layout_engine("none")
     axes = add_space(figure, (0.0, 0.02, 0.98, 0.96), elevation=22.0, azimuth=-58.0)
     axes.computed_zorder = False
-    add_solid(axes, faces, colors)
+    add_surfaces(axes, faces, colors)
     for name, pose in zip(names, poses, strict=True):
         _draw_frame(axes, name, pose, length)
     fit(axes, corners, room=(1.75, 1.75), least=0.3)

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]  # no types
 from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]  # ships no types
 
+from onorbit_rs.figures.shading import add_surfaces
 from onorbit_rs.figures.solids import robot_polygons
 from onorbit_rs.figures.space import add_space, fit, label
 from onorbit_rs.figures.style import (
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-DARKEST = 0.15
-
 NEARLY_STILL = 0.02
 """Size of a path, as a share of its distance from W's origin, below which it is drawn about its start."""
 
@@ -48,7 +46,7 @@ def desired_trajectory(trace: Trace, model: Model) -> Figure:
     time, unit = clock(trace)
     for place, (row, (faces, colors)) in enumerate(zip(rows, drawn, strict=True)):
         axes = add_space(figure, (0.002 + place * 0.325, 0.09, 0.325, 0.86), elevation=14.0, azimuth=-68.0)
-        axes.add_collection3d(_solid(faces, colors, to_eye=_from_angles(14.0, -68.0)))
+        add_surfaces(axes, faces, colors)
         _path_on_top(axes, path)
         axes.scatter(*path[row], color=OBTAINED, s=14, depthshade=False, zorder=12)
         where = f"{('start', 'middle', 'end')[place]}, t = {time[row]:.4g} {unit[6:-1]}"
@@ -84,29 +82,6 @@ def obtained_trajectory(trace: Trace) -> Figure:
         columnspacing=1.2, handlelength=1.6, handletextpad=0.5,
     )  # fmt: skip
     return figure
-
-
-def _solid(faces: Floats, colors: Floats, *, to_eye: Floats) -> Poly3DCollection:
-    """Faces (n, 4, 3) lit from above and the front on the side that is seen.
-
-    Edges in the same colour close the seams. What is darker than :data:`DARKEST` is lifted to it: black has
-    no light and shade, and so no form.
-    """
-    light = np.array([0.3, -0.7, 0.65])
-    # The diagonals of a face give its normal even where two corners coincide, at a pole.
-    normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
-    bright = (normals @ light) * np.where(normals @ to_eye < 0.0, -1.0, 1.0)
-    shaded = np.clip(np.maximum(colors, DARKEST) * (0.66 + 0.34 * bright)[:, None], 0.0, 1.0)
-    return Poly3DCollection(faces, facecolors=shaded, edgecolors=shaded, linewidths=0.2, zorder=1)
-
-
-def _from_angles(elevation_deg: float, azimuth_deg: float) -> Floats:
-    """(3,) unit vector."""
-    elevation, azimuth = np.radians([elevation_deg, azimuth_deg])
-    return np.array(
-        [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
-    )
 
 
 def _path_on_top(axes: Axes3D, path: Floats) -> None:
