@@ -318,3 +318,17 @@ def test_thinning_keeps_a_spike() -> None:
     x, y = thin(time, values)
     assert len(x) <= MOST_POINTS + 2
     assert y.min() == -7.0 and x[y.argmin()] == time[12_345]
+
+
+def test_a_portrait_shows_the_axes_of_the_frames_where_they_are() -> None:
+    model = oo.robots.load("humanoid_torso")
+    q = model.integrate(model.neutral(), np.linspace(-0.5, 0.5, model.nv))
+    figure = figures.portrait(model, q, ["tool"])
+    (axes,) = figure.axes
+    drawn = np.array([np.array(line.get_data_3d()).T for line in axes.lines]).reshape(2, 3, 2, 3)
+    for name, (x, y, z) in zip([model.body_names[0], "tool"], drawn, strict=True):
+        pose = model.frame_pose(q, name)
+        np.testing.assert_allclose([x[0], y[0], z[0]], np.tile(pose[:3, 3], (3, 1)), atol=1e-12)
+        tips = np.array([x[1] - x[0], y[1] - y[0], z[1] - z[0]])
+        np.testing.assert_allclose(tips / np.linalg.norm(tips[0]), pose[:3, :3].T, atol=1e-12)
+    assert {text.get_text() for text in axes.texts} == {model.body_names[0], "tool"}

@@ -240,8 +240,9 @@ def test_refusals_in_a_scenario(robot: dict[str, Any], message: str, files: Path
 
 def test_from_two_files_to_a_run(files: Path) -> None:
     done = onorbit("new", "arm.urdf", "--bus", "bus.urdf", "--at", "plate", "--prefix", "x_",
-                   "--out", "mine.yaml", cwd=files)  # fmt: skip
-    assert done.returncode == 0, done
+                   "--out", "mine.yaml", "--picture", "mine.png", cwd=files)  # fmt: skip
+    assert done.returncode == 0 and "picture: mine.png" in done.stdout, done
+    assert (files / "mine.png").read_bytes().startswith(b"\x89PNG")
     assert load(files / "mine.yaml").robot.arms is not None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -254,4 +255,6 @@ def test_from_two_files_to_a_run(files: Path) -> None:
     assert "did you mean 'plate'" in refusal(
         "new", "arm.urdf", "--bus", "bus.urdf", "--at", "plat", cwd=files
     )
+    assert "mine.png is there already" in refusal("info", "arm.urdf", "--picture", "mine.png", cwd=files)
+    assert ".jpg is none of .png" in refusal("info", "arm.urdf", "--picture", "mine.jpg", cwd=files)
     assert "add --bus ROBOT" in refusal("new", "arm.urdf", "--at", "plate", cwd=files)

@@ -10,7 +10,7 @@ import typer
 from onorbit_rs.cli.completing import scenario_names
 from onorbit_rs.cli.failing import as_far_as_read
 from onorbit_rs.cli.options import JsonOption
-from onorbit_rs.cli.pictures import claim_picture, save_figure
+from onorbit_rs.cli.pictures import claim_picture
 from onorbit_rs.cli.saying import say
 from onorbit_rs.counting import count
 
@@ -60,9 +60,9 @@ def compare(
         else:
             print_comparison(compared)
     if out is not None:
-        from onorbit_rs.figures import differences
+        from onorbit_rs.figures import differences, save
 
-        save_figure(differences(compared), out)
+        save(differences(compared), out)
     if out is not None and not as_json:
         with as_far_as_read():
             say(f"figure: {out}")

@@ -17,7 +17,7 @@ from onorbit_rs.cli.options import (
     in_words,
     of_file,
 )
-from onorbit_rs.cli.pictures import claim_picture, save_figure
+from onorbit_rs.cli.pictures import claim_picture
 from onorbit_rs.cli.saying import say
 
 
@@ -43,9 +43,9 @@ def info(
         warnings.simplefilter("ignore")  # they are printed with the rest
         model = robots.load(robot, **given)
     if picture is not None:
-        from onorbit_rs.figures import portrait
+        from onorbit_rs.figures import portrait, save
 
-        save_figure(portrait(model, model.neutral()), picture)
+        save(portrait(model, model.neutral()), picture)
     if as_json:
         print_json(describe(model))
     else:

@@ -17,7 +17,7 @@ from onorbit_rs.cli.options import (
     in_words,
     of_file,
 )
-from onorbit_rs.cli.pictures import claim_picture, save_figure
+from onorbit_rs.cli.pictures import claim_picture
 from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim
 from onorbit_rs.counting import count
@@ -68,10 +68,10 @@ def new(
         source = Source(robot, **given, bus=bus, at=at, prefix=prefix)
         made = draft(source, tool=tool, beside=beside, command=written_by)
     if picture is not None:
-        from onorbit_rs.figures import portrait
+        from onorbit_rs.figures import portrait, save
 
         marked = [frame for frame in (at, made.tool) if frame is not None]
-        save_figure(portrait(made.model, made.q, marked), picture)
+        save(portrait(made.model, made.q, marked), picture)
     if out is None:
         typer.echo(made.text, nl=False)
         return

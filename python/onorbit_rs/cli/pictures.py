@@ -1,16 +1,11 @@
-"""Figures that commands save where the user says."""
+"""Names of the files that commands save figures to."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from onorbit_rs.cli.writing import claim
 from onorbit_rs.exceptions import InputError
-from onorbit_rs.files import replacing
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 KINDS = (".png", ".pdf", ".svg")
 
@@ -31,17 +26,3 @@ def claim_picture(option: str, file: Path | None, *, force: bool) -> None:
             name=option.lstrip("-"), got=file.suffix, expected=KINDS,
         )  # fmt: skip
     claim(file, force=force)
-
-
-def save_figure(figure: Figure, file: Path) -> None:
-    """Save a figure in the format that the name of the file says.
-
-    Raises
-    ------
-    OutputFolderError
-        If it cannot be written.
-    """
-    from onorbit_rs.figures import as_bytes
-
-    with replacing(file) as temporary:
-        temporary.write_bytes(as_bytes(figure, file.suffix[1:].lower()))

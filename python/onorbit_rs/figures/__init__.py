@@ -16,7 +16,7 @@ from onorbit_rs.figures.motion import base_motion, base_reaction
 from onorbit_rs.figures.orbit import orbit_overview
 from onorbit_rs.figures.portrait import portrait
 from onorbit_rs.figures.relative import relative_motion
-from onorbit_rs.figures.save import as_bytes, save_all
+from onorbit_rs.figures.save import as_bytes, save, save_all
 from onorbit_rs.figures.style import COLUMN, PAGE
 from onorbit_rs.figures.subject import Subject, Tool, subject_of
 from onorbit_rs.figures.tracking import control_errors, joint_torques, tracking_errors
@@ -44,6 +44,7 @@ __all__ = [
     "orbit_overview",
     "portrait",
     "relative_motion",
+    "save",
     "save_all",
     "subject_of",
     "tracking_errors",

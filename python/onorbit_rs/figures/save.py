@@ -12,6 +12,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from onorbit_rs.figures.drawings import drawings
+from onorbit_rs.files import replacing
 
 if TYPE_CHECKING:
     from onorbit_rs.figures.subject import Subject
@@ -54,6 +55,18 @@ def save_all(
             files.append(folder / f"{drawing.name}.{kind}")
             files[-1].write_bytes(as_bytes(figure, kind))
     return files
+
+
+def save(figure: Figure, file: Path) -> None:
+    """Save a figure as PNG, PDF or SVG, as the name of the file says; an existing file is replaced.
+
+    Raises
+    ------
+    OutputFolderError
+        If it cannot be written.
+    """
+    with replacing(file) as temporary:
+        temporary.write_bytes(as_bytes(figure, file.suffix[1:].lower()))
 
 
 def as_bytes(figure: Figure, kind: str) -> bytes:
