@@ -129,7 +129,7 @@ def test_a_motion_is_as_slow_as_the_rate_limits_need(
     file = tmp_path / "mine.yaml"
     file.write_text(draft(str(tmp_path / "mine.urdf"), beside=tmp_path).text)
     line = next(line for line in file.read_text().splitlines() if line.strip().startswith(f"{key}: "))
-    assert line.endswith("# so long that all joints keep their rate limits")
+    assert line.endswith("# so long that joints keep their limits")
     summary = ran(file)
     assert summary["joint_rates_exceeded"] == ""
     assert summary["simulated_s"] > 6.0
