@@ -172,6 +172,8 @@ def test_fingers_are_several_or_named_so_and_short() -> None:
     assert found(hand(2)) == (4, {"link_6"})
     assert found(hand(5)) == (10, {"link_6"})
     assert found(hand(1, name="finger")) == (2, {"link_6"})
+    assert found(hand(1, name="finger").replace('"j6"', '"finger_roll"')) == (2, {"link_6"})
+    assert found(hand(5).replace('"link_6"', '"thumb"')) == (10, {"thumb"})
     assert found(hand(1)) == (0, set())  # the end of the arm
     assert found(hand(2, length=1.0)) == (0, set())  # two arms on a torso
     assert found(arm(SEVEN)) == (0, set())
@@ -281,10 +283,26 @@ def test_what_stands_in_comments_works_when_it_is_uncommented(tmp_path: Path) ->
     ran(file)
 
 
-@pytest.mark.xfail(strict=True, reason="a name is trusted even where an arm goes on beyond it")
 def test_a_wrist_in_the_middle_of_an_arm_is_no_tool() -> None:
     found = find_arm(oo.Model.from_urdf_string(arm(SEVEN).replace("link_5", "wrist")))
     assert found is not None and found.tool == "link_6"
+
+
+@pytest.mark.parametrize(
+    ("joint", "tool"), [("gripper", "link_6"), ("gripper_roll", "link_7"), ("j7", "link_7")]
+)
+def test_the_joint_that_opens_a_gripper_is_none_of_the_arm(joint: str, tool: str) -> None:
+    """One jaw stands on the last link, as on so100 and z1; with a gripper that turns the arm goes on."""
+    found = find_arm(oo.Model.from_urdf_string(arm([*SEVEN, (joint, "revolute", "0 0 1")])))
+    assert found is not None and found.tool == tool
+
+
+def test_a_thumb_alone_makes_no_palm() -> None:
+    """On a hand without an arm the finger with most joints moves, to its tip."""
+    urdf = arm(SEVEN[:4]).replace("link_", "thumb_")
+    assert find_fingers(oo.Model.from_urdf_string(urdf)) == (set(), set())
+    found = find_arm(oo.Model.from_urdf_string(urdf))
+    assert found is not None and (found.tool, len(found.joints)) == ("thumb_3", 4)
 
 
 def test_the_tool_is_found_or_told() -> None:
