@@ -28,8 +28,6 @@ _GOOD_ENOUGH = 0.4
 _SHARE_OF_REACH = 0.15
 _SPEED = 0.1
 """Of the tool on average, m/s."""
-_QUICK = 500.0
-"""Rate of decay, 1/s, of which a millisecond is half a time constant."""
 
 
 def home(model: Model, arm: Arm) -> dict[str, float]:
@@ -78,11 +76,11 @@ def _limits(joint: Joint) -> tuple[float, float]:
     return (low, high) if low < high else (joint.lower or 0.0, joint.upper or 0.0)
 
 
-def has_quick_dampers(model: Model) -> bool:
-    """Whether a joint's damper is too quick for fixed steps of a millisecond: `b (M⁻¹)ii` above 500/s."""
+def quickest_damper(model: Model) -> tuple[str, float]:
+    """Return the joint whose damper stops it fastest, and the rate `b (M⁻¹)ii` of that, 1/s; 0 for none."""
     inverse = np.linalg.inv(np.asarray(model.mass_matrix(model.neutral())))
-    rates = [joint.damping * inverse[6 + row, 6 + row] for row, joint in enumerate(model.joints)]
-    return max(rates, default=0.0) > _QUICK
+    rates = {joint.name: joint.damping * inverse[6 + row, 6 + row] for row, joint in enumerate(model.joints)}
+    return max(rates.items(), key=lambda one: one[1], default=("", 0.0))
 
 
 def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[list[float], float]]:

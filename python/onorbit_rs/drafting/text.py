@@ -104,7 +104,8 @@ environment:                    # what acts beside the planet's pull
 
 
 def _control(plan: Plan) -> str:
-    hold = _HOLD.replace("JOINTS", _wrapped(plan.others)) if plan.others else ""
+    said = f"all {'other ' if plan.arm else ''}joints stay where they start"
+    hold = _HOLD.replace("SAID", said).replace("JOINTS", _wrapped(plan.others)) if plan.others else ""
     if not plan.arm:
         return f"\n{_note(_FAILED, plan.failures)}controllers:\n{hold}" if hold else ""
     law = _task_law(plan) if plan.displacement is not None else _joint_law(plan)
@@ -162,7 +163,7 @@ def _slowed(plan: Plan, key: str, value: str) -> str:
 
 
 _HOLD = """\
-  - name: hold                  # all other joints stay where they start
+  - name: hold                  # SAID
     kind: joint_computed_torque
     joints: JOINTS
     kp: 25                      # 1/s^2

@@ -13,7 +13,7 @@ import numpy as np
 import yaml
 
 from onorbit_rs.counting import count
-from onorbit_rs.drafting.motion import has_quick_dampers
+from onorbit_rs.drafting.motion import quickest_damper
 from onorbit_rs.drafting.reaction import GENTLE
 from onorbit_rs.drafting.text import Plan, draft_text
 from onorbit_rs.exceptions import OnOrbitError, SimulationError
@@ -35,6 +35,10 @@ _ATTEMPTS = 4
 """Runs of one motion, each slower than the one before."""
 _HELPED = 0.9
 """Efforts that a slower motion leaves above this share of what they were do not come from inertia."""
+_QUICK = 500.0
+"""Rate of decay, 1/s, of which a fixed step of a millisecond is half a time constant."""
+_TO_SEE_S, _PATIENCE = 2.0, 1.2
+"""After how much wall clock a run is stopped that at its pace would take so many times what is left."""
 _FIXED, _ADAPTIVE = "rk4", "dormand_prince"
 
 
@@ -48,8 +52,10 @@ class Trials:
     def __init__(self, model: Model) -> None:
         """Start with fixed steps, unless dampers are too quick for them."""
         self._model = model
-        self._integrator = _ADAPTIVE if has_quick_dampers(model) else _FIXED
+        self._damped, self._decay = quickest_damper(model)
+        self._integrator = _ADAPTIVE if self._decay > _QUICK else _FIXED
         self._failures: Counter[str] = Counter()
+        self._is_late = False
 
     def gentlest(self, plans: Iterable[Plan], seconds: float) -> Plan | None:
         """Return the first plan that passes and hardly turns the base, else the gentlest that passes.
@@ -58,19 +64,20 @@ class Trials:
         """
         ends = perf_counter() + seconds
         found: list[tuple[float, Plan]] = []
+        self._is_late = False
         for plan in plans:
-            if perf_counter() >= ends:
-                break
             tried = self._slow_enough(plan, ends)
-            if tried is not None:
-                found.append(tried)
-                if tried[0] <= GENTLE:
-                    break
+            found += [tried] if tried is not None else []
+            if self._is_late or perf_counter() >= ends or (tried is not None and tried[0] <= GENTLE):
+                break
         return min(found, key=lambda one: one[0])[1] if found else None
 
     def failures(self) -> list[str]:
         """What the runs failed by, the most frequent first."""
-        return [f"{what} ({count(times, 'run', 'runs')})" for what, times in self._failures.most_common(4)]
+        said = [f"{what} ({count(times, 'run', 'runs')})" for what, times in self._failures.most_common(4)]
+        if self._decay > _QUICK:
+            said.append(f"the damper of {self._damped} stops it within {1.0 / self._decay:.1g} s")
+        return said
 
     def _slow_enough(self, plan: Plan, ends: float) -> tuple[float, Plan] | None:
         """Return by how much the base turns in a run, rad, and the plan, slowed to the limits of the joints.
@@ -107,7 +114,8 @@ class Trials:
         try:
             trace = _trace(plan, ends)
         except _OverTimeError:
-            self._failures["not done in time"] += 1
+            self._is_late = True  # and the next of its kind would be, too
+            self._failures["not simulated in time"] += 1
             return None
         except OnOrbitError as error:
             # its text names an instant, another one in every run
@@ -138,8 +146,13 @@ class _OverTimeError(Exception):
 
 
 def _trace(plan: Plan, ends: float) -> Trace:
+    """Run a plan, or as much of it as tells that it will not be done by ``ends``."""
+    began = perf_counter()
+
     def look_at_clock(reached_s: float, total_s: float) -> None:
-        if perf_counter() >= ends:
+        now = perf_counter()
+        is_slow = (now - began) * total_s > _PATIENCE * (ends - began) * reached_s
+        if now >= ends or (is_slow and now - began > _TO_SEE_S):
             raise _OverTimeError
 
     built = build(load(yaml.safe_load(draft_text(plan, "trial"))))

@@ -85,13 +85,16 @@ def _settled(model: Model, arm: Arm | None, plan: Plan) -> Plan:
     for plans in _kinds(model, arm, plan):
         found = trials.gentlest(plans, 0.5 * (ends - perf_counter()))
         if found is not None:
-            return replace(found, failures=[] if found.arm else trials.failures())
+            return found if found.arm else replace(found, failures=trials.failures() or [_NO_ROOM])
     raise ScenarioError(
         f"nothing that was tried with {plan.name} passed, not even all joints held for a second: "
-        f"{', '.join(trials.failures())}. See its inertias, dampings and limits with 'onorbit info'; name "
-        "another frame with --tool, or write a scenario by hand",
+        f"{', '.join(trials.failures())}. Look at inertias, dampings and limits in 'onorbit info'; "
+        "change the file, or name another frame with --tool",
         file=None, path=None, line=None,
     )  # fmt: skip
+
+
+_NO_ROOM = "the limits of position leave them no room"
 
 
 def _kinds(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Iterable[Plan]]:
