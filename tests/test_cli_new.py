@@ -13,10 +13,11 @@ import yaml
 from commands import onorbit, refusal
 
 import onorbit_rs as oo
-from onorbit_rs.drafting import draft
+from onorbit_rs.drafting import draft, trial
 from onorbit_rs.drafting.arm import find_arm, find_fingers
 from onorbit_rs.drafting.motion import configuration, home, lines
 from onorbit_rs.drafting.reaction import GENTLE, calmest, turn_per_metre
+from onorbit_rs.exceptions import ScenarioError, SimulationError
 from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario import load
 
@@ -129,13 +130,75 @@ def test_a_motion_is_as_slow_as_the_rate_limits_need(
     file = tmp_path / "mine.yaml"
     file.write_text(draft(str(tmp_path / "mine.urdf"), beside=tmp_path).text)
     line = next(line for line in file.read_text().splitlines() if line.strip().startswith(f"{key}: "))
-    assert line.endswith("# so long that all joints keep their rate limits")
+    assert line.endswith("# so long that joints keep their limits")
     summary = ran(file)
     assert summary["joint_rates_exceeded"] == ""
     assert summary["simulated_s"] > 6.0
     hasty = re.sub(rf"({key}: \[?)[\d.]+ s", r"\g<1>4 s", file.read_text())
     file.write_text(hasty)
     assert ran(file)["joint_rates_exceeded"] != ""
+
+
+def drafted(urdf: str, folder: Path) -> tuple[str, dict[str, Any]]:
+    """The text of a draft and the summary of its run."""
+    (folder / "mine.urdf").write_text(urdf)
+    text = draft(str(folder / "mine.urdf"), beside=folder).text
+    (folder / "mine.yaml").write_text(text)
+    return text, ran(folder / "mine.yaml")
+
+
+def dynamics(urdf: str, values: str) -> str:
+    return urdf.replace("<axis", f"<dynamics {values}/><axis")
+
+
+@pytest.mark.parametrize("quick", [trial._QUICK, 1e9])
+def test_quick_dampers_are_left_to_the_adaptive_integrator(
+    quick: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Known before, or found as fixed steps fail."""
+    monkeypatch.setattr(trial, "_QUICK", quick)
+    text, summary = drafted(dynamics(arm(SEVEN[:2], names="tool"), 'damping="200"'), tmp_path)
+    assert "\n  integrator: dormand_prince " in text
+    assert summary["certificate_passed"]
+    (tmp_path / "mine.yaml").write_text(text.replace("dormand_prince", "rk4"))
+    with pytest.raises((AssertionError, SimulationError)):
+        ran(tmp_path / "mine.yaml")
+
+
+def test_joints_hold_where_no_motion_is_simulated_in_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A damper that stops a joint in 0.1 µs costs millions of steps a second; friction holds it at once."""
+    monkeypatch.setattr("onorbit_rs.drafting.write.LONGEST_S", 2.0)
+    monkeypatch.setattr(trial, "_TO_SEE_S", 0.1)
+    stiff = dynamics(arm(SEVEN[:4]), 'damping="1e6" friction="5"')
+    text, summary = drafted(stiff, tmp_path)
+    assert "all joints hold: not simulated in time (2 runs), the damper" in text
+    assert "  - name: hold                  # all joints stay" in text
+    assert summary["simulated_s"] == 1.0
+    with pytest.raises(ScenarioError, match=r"not simulated in time \(3 runs\), the damper of j"):
+        drafted(stiff.replace(' friction="5"', ""), tmp_path)
+
+
+def test_joints_hold_where_limits_leave_them_no_room(tmp_path: Path) -> None:
+    """As some exporters write where they know no limits."""
+    text, _ = drafted(arm(SEVEN[:2], limits='lower="0" upper="0"'), tmp_path)
+    assert "so all joints hold: the limits of position leave them no room\n" in text
+
+
+def test_a_motion_is_as_slow_as_the_limits_of_effort_need(tmp_path: Path) -> None:
+    urdf = arm(SEVEN[:3])
+    assert "so long that" not in drafted(urdf, tmp_path)[0]
+    text, summary = drafted(urdf.replace('effort="100"', 'effort="0.1"'), tmp_path)
+    assert "# so long that joints keep their limits" in text
+    assert summary["joint_efforts_exceeded"] == ""
+    sticky = dynamics(urdf.replace('effort="100"', 'effort="1"'), 'friction="2"')
+    text, summary = drafted(sticky, tmp_path)
+    assert (
+        "# A slower motion does not bring the efforts of these joints within their limits: j0, j1, j2\n"
+        in text
+    )
+    assert summary["joint_efforts_exceeded"] == "j0, j1, j2"
 
 
 def hand(fingers: int, *, name: str = "tip", length: float = 0.03) -> str:
@@ -172,6 +235,8 @@ def test_fingers_are_several_or_named_so_and_short() -> None:
     assert found(hand(2)) == (4, {"link_6"})
     assert found(hand(5)) == (10, {"link_6"})
     assert found(hand(1, name="finger")) == (2, {"link_6"})
+    assert found(hand(1, name="finger").replace('"j6"', '"finger_roll"')) == (2, {"link_6"})
+    assert found(hand(5).replace('"link_6"', '"thumb"')) == (10, {"thumb"})
     assert found(hand(1)) == (0, set())  # the end of the arm
     assert found(hand(2, length=1.0)) == (0, set())  # two arms on a torso
     assert found(arm(SEVEN)) == (0, set())
@@ -188,6 +253,11 @@ def test_fingers_are_several_or_named_so_and_short() -> None:
             "joints",
         ),
         (arm([("spin", "continuous", "0 0 1")]), "joint_computed_torque", "joints"),
+        (
+            arm([(name, "continuous", axis) for name, _, axis in SEVEN]),
+            "computed_torque",
+            "tool along a line",
+        ),
         (arm([]), None, "turns freely"),
         (
             arm([("- {a: b}", "revolute", "0 1 0"), ("#true", "revolute", "0 0 1")]),
@@ -281,10 +351,26 @@ def test_what_stands_in_comments_works_when_it_is_uncommented(tmp_path: Path) ->
     ran(file)
 
 
-@pytest.mark.xfail(strict=True, reason="a name is trusted even where an arm goes on beyond it")
 def test_a_wrist_in_the_middle_of_an_arm_is_no_tool() -> None:
     found = find_arm(oo.Model.from_urdf_string(arm(SEVEN).replace("link_5", "wrist")))
     assert found is not None and found.tool == "link_6"
+
+
+@pytest.mark.parametrize(
+    ("joint", "tool"), [("gripper", "link_6"), ("gripper_roll", "link_7"), ("j7", "link_7")]
+)
+def test_the_joint_that_opens_a_gripper_is_none_of_the_arm(joint: str, tool: str) -> None:
+    """One jaw stands on the last link, as on so100 and z1; with a gripper that turns the arm goes on."""
+    found = find_arm(oo.Model.from_urdf_string(arm([*SEVEN, (joint, "revolute", "0 0 1")])))
+    assert found is not None and found.tool == tool
+
+
+def test_a_thumb_alone_makes_no_palm() -> None:
+    """On a hand without an arm the finger with most joints moves, to its tip."""
+    urdf = arm(SEVEN[:4]).replace("link_", "thumb_")
+    assert find_fingers(oo.Model.from_urdf_string(urdf)) == (set(), set())
+    found = find_arm(oo.Model.from_urdf_string(urdf))
+    assert found is not None and (found.tool, len(found.joints)) == ("thumb_3", 4)
 
 
 def test_the_tool_is_found_or_told() -> None:

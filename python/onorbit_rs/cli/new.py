@@ -78,8 +78,11 @@ def new(
     with replacing(out) as file:
         file.write_text(made.text, encoding="utf-8")
     if not quiet:
-        joints = count(len(made.joints), "joint", "joints")
-        moved = f"{made.tool}, moved by {joints}" if made.tool else "a body without joints"
+        moved = (
+            "a body without joints" if made.tool is None else "all joints hold: no motion of the arm passed"
+        )
+        if made.joints:
+            moved = f"{made.tool}, moved by {count(len(made.joints), 'joint', 'joints')}"
         say(f"scenario: {out} ({moved})")
         if picture is not None:
             say(f"picture: {picture}")

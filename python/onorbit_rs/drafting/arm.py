@@ -13,14 +13,18 @@ if TYPE_CHECKING:
 ENOUGH = 6
 """Joints from which a tool can be placed and turned at will."""
 
-FINGER_JOINTS = 5
-"""Most joints of a finger; a thumb has five."""
+FINGER_JOINTS = 7
+"""Most joints of a finger: a thumb has five, one with a tendon two for every knuckle."""
 FINGER_SHARE = 0.6
 """Largest extent of a finger as a share of the length of the arm that carries it."""
 
 _FINGER = re.compile(r"finger|thumb|knuckle|jaw|claw")
+_DRIVE = re.compile(rf"{_FINGER.pattern}|gripper")
+_PART_OF_FINGER = re.compile(r"finger|thumb|knuckle")
+# joints that turn a whole gripper
+_WRIST = re.compile(r"wrist|roll|pitch|yaw")
 
-# what the frame at the end of an arm is called, the surest first
+# what the frame at the end of an arm is called, the surest first; the last two only where the arm ends
 _NAMES = (
     r"tool|tcp", r"(^|_)eef?(_|$)|end_?effector", r"grasp", r"hand|palm", r"flange", r"gripper", r"wrist",
     r"tip(_|$)",
@@ -44,6 +48,7 @@ def find_arm(model: Model, tool: str | None = None) -> Arm | None:
     """
     chains = _chains(model)
     fingers, palms = find_fingers(model)
+    going_on = {joint.parent for joint in model.joints if joint.child not in fingers}
     frames = [(frame, chains.get(frame.body, [])) for frame in model.frames]
     found = [(frame, chain) for frame, chain in frames if chain and tool in (None, frame.name)]
     if tool is None:
@@ -53,7 +58,12 @@ def find_arm(model: Model, tool: str | None = None) -> Arm | None:
 
     def order(one: tuple[Frame, list[Joint]]) -> tuple[bool, bool, int, int]:
         frame, chain = one
-        return len(chain) < ENOUGH, frame.body not in palms, _rank(frame.name), -len(chain)
+        return (
+            len(chain) < ENOUGH,
+            frame.body not in palms,
+            _rank(frame.name, frame.body not in going_on),
+            -len(chain),
+        )
 
     frame, chain = min(found, key=order)
     return Arm(frame.name, [joint.name for joint in chain])
@@ -63,7 +73,7 @@ def find_fingers(model: Model) -> tuple[set[str], set[str]]:
     """Return the bodies that are parts of fingers, and those that carry the fingers (palms).
 
     A finger is a branch of at most ``FINGER_JOINTS`` joints, short beside the arm that carries it. A palm
-    carries two or more, or a single one whose name says what it is (finger, jaw). The base is no palm.
+    carries two or more, or a single one whose name says what it is (finger, gripper). The base is no palm.
     """
     chains = _chains(model)
     branches: dict[str, list[Joint]] = {}
@@ -81,12 +91,19 @@ def find_fingers(model: Model) -> tuple[set[str], set[str]]:
             and sum(map(_travel, branch)) <= FINGER_SHARE * arm
             and len(branch) < max(len(chains.get(palm, [])), 2)
         ]
-        if len(short) == 1 and not _FINGER.search(f"{short[0][0].name} {short[0][0].child}".lower()):
+        if len(short) == 1 and not _is_called_finger(short[0][0]):
             continue
         if palm in chains and short and len(short) == len(found):
             palms.add(palm)
             fingers.update(part.child for _, branch in short for part in branch)
     return fingers, palms - fingers
+
+
+def _is_called_finger(joint: Joint) -> bool:
+    """Whether names say that a joint moves a finger, and not a whole gripper or the next part of a finger."""
+    name, parent, child = joint.name.lower(), joint.parent.lower(), joint.child.lower()
+    is_finger = bool(_DRIVE.search(name) or _FINGER.search(child))
+    return is_finger and not _WRIST.search(name) and not _PART_OF_FINGER.search(parent)
 
 
 def _branch(joint: Joint, branches: dict[str, list[Joint]]) -> list[Joint]:
@@ -117,5 +134,6 @@ def _chains(model: Model) -> dict[str, list[Joint]]:
     return chains
 
 
-def _rank(name: str) -> int:
-    return next((rank for rank, words in enumerate(_NAMES) if re.search(words, name.lower())), len(_NAMES))
+def _rank(name: str, is_end: bool) -> int:
+    names = _NAMES if is_end else _NAMES[:-2]
+    return next((rank for rank, words in enumerate(names) if re.search(words, name.lower())), len(_NAMES))

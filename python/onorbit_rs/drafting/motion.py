@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -76,11 +76,11 @@ def _limits(joint: Joint) -> tuple[float, float]:
     return (low, high) if low < high else (joint.lower or 0.0, joint.upper or 0.0)
 
 
-def time_step(model: Model) -> float:
-    """As long as the quickest damper allows, s: half of `1 / (b (M⁻¹)ii)`, and at most a millisecond."""
+def quickest_damper(model: Model) -> tuple[str, float]:
+    """Return the joint whose damper stops it fastest, and the rate `b (M⁻¹)ii` of that, 1/s; 0 for none."""
     inverse = np.linalg.inv(np.asarray(model.mass_matrix(model.neutral())))
-    rates = [joint.damping * inverse[6 + row, 6 + row] for row, joint in enumerate(model.joints)]
-    return next((step for step in (1e-3, 5e-4, 2e-4) if step * max(rates, default=0.0) <= 0.5), 1e-4)
+    rates = {joint.name: joint.damping * inverse[6 + row, 6 + row] for row, joint in enumerate(model.joints)}
+    return max(rates.items(), key=lambda one: one[1], default=("", 0.0))
 
 
 def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[list[float], float]]:
@@ -107,17 +107,18 @@ def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[li
                 yield (length * direction.round(2) + 0.0).round(6).tolist(), duration
 
 
-def turns(model: Model, joints: dict[str, float]) -> Iterator[dict[str, float]]:
-    """Positions for an arm of few joints to go to, the farthest first."""
-    for share in (0.5, 0.2, 0.05):
+def turns(model: Model, here: dict[str, float], shares: Iterable[float]) -> Iterator[dict[str, float]]:
+    """Where joints go from ``here``: shares of the longer way to a limit, which counts a radian at most."""
+    for share in shares:
         goal = {}
         for joint in model.joints:
-            if joint.name in joints:
+            if joint.name in here:
                 low, high = _limits(joint)
-                here = joints[joint.name]
-                step = share * min(1.0, max(high - here, here - low))
-                goal[joint.name] = round(here + (step if high - here >= here - low else -step), 3)
-        yield goal
+                up, down = high - here[joint.name], here[joint.name] - low
+                step = share * min(1.0, max(up, down))
+                goal[joint.name] = round(here[joint.name] + (step if up >= down else -step), 3)
+        if goal != here:
+            yield goal
 
 
 def configuration(model: Model, joints: dict[str, float]) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -26,6 +27,11 @@ class Plan:
     is_slowed: bool = False
     duration_s: float = 6.0
     time_step_s: float = 1e-3
+    integrator: str = "rk4"
+    exceeding: list[str] = field(default_factory=list)
+    """Joints whose efforts are beyond their limits, however slow the motion is."""
+    failures: list[str] = field(default_factory=list)
+    """Why the joints only hold."""
 
 
 def draft_text(plan: Plan, command: str) -> str:
@@ -35,9 +41,7 @@ def draft_text(plan: Plan, command: str) -> str:
 
 
 def _head(plan: Plan, command: str) -> str:
-    what = "turns freely"
-    if plan.displacement is not None or plan.goal is not None:
-        what = "moves its tool along a line" if plan.goal is None else "moves its joints"
+    what = _what(plan)
     robot = (
         _bus(plan.robot)
         if isinstance(plan.robot, dict) and "bus" in plan.robot
@@ -53,6 +57,12 @@ description: A robot in low Earth orbit {what} while nothing holds its base.
 
 {robot}{tool if plan.tool is not None else ""}
 """
+
+
+def _what(plan: Plan) -> str:
+    if plan.arm:
+        return "moves its tool along a line" if plan.goal is None else "moves its joints"
+    return "holds its joints" if plan.others else "turns freely"
 
 
 def _bus(robot: dict[str, Any]) -> str:
@@ -94,19 +104,30 @@ environment:                    # what acts beside the planet's pull
 
 
 def _control(plan: Plan) -> str:
+    said = f"all {'other ' if plan.arm else ''}joints stay where they start"
+    hold = _HOLD.replace("SAID", said).replace("JOINTS", _wrapped(plan.others)) if plan.others else ""
     if not plan.arm:
-        return ""
+        return f"\n{_note(_FAILED, plan.failures)}controllers:\n{hold}" if hold else ""
     law = _task_law(plan) if plan.displacement is not None else _joint_law(plan)
-    hold = _HOLD.replace("JOINTS", _wrapped(plan.others))
     return f"""
+{_note(_EXCEEDING, plan.exceeding)}\
 controllers:                    # each drives joints of its own; joints without one are limp
   - name: arm
     joints: {_wrapped(plan.arm)}
-{law}{hold if plan.others else ""}"""
+{law}{hold}"""
+
+
+def _note(words: str, things: list[str]) -> str:
+    """Lines of comment, none without ``things``."""
+    lines = textwrap.wrap(f"{words}: {', '.join(things)}", 105, break_long_words=False)
+    return "".join(f"# {line}\n" for line in lines if things)
+
+
+_EXCEEDING = "A slower motion does not bring the efforts of these joints within their limits"
+_FAILED = "Motions of the arm were tried and failed, so all joints hold"
 
 
 def _task_law(plan: Plan) -> str:
-    slowed = _SLOWED if plan.is_slowed else ""
     displacement = _line("displacement", plan.displacement, "m, W: the base's axes at the start", 8)
     return f"""\
     kind: computed_torque       # the pose of the tool, on the generalized Jacobian
@@ -117,14 +138,13 @@ def _task_law(plan: Plan) -> str:
     reference:
       kind: line                # or hold, circle, screw, waypoints, line_parabola, sampled
       goal:
-{displacement}      duration: {plan.move_s:g} s{slowed}
+{displacement}{_slowed(plan, "duration", f"{plan.move_s:g} s")}\
     goal:
       tolerance: [1 mm, 0.1 deg]  # how near the tool is to be at the end
 """
 
 
 def _joint_law(plan: Plan) -> str:
-    slowed = _SLOWED if plan.is_slowed else ""
     return f"""\
     kind: joint_computed_torque # the joints; a tool needs six of them to be placed and turned at will
     kp: 25                      # 1/s^2
@@ -133,14 +153,17 @@ def _joint_law(plan: Plan) -> str:
       kind: joint_waypoints
       points:                   # rad, m where a joint slides
         - {_flow(plan.goal)}
-      times: [{plan.move_s:g} s]{slowed}
-"""
+{_slowed(plan, "times", f"[{plan.move_s:g} s]")}"""
 
 
-_SLOWED = "           # so long that all joints keep their rate limits"
+def _slowed(plan: Plan, key: str, value: str) -> str:
+    """How long the motion takes."""
+    entry = f"      {key}: {value}"
+    return _commented(entry, "so long that joints keep their limits") if plan.is_slowed else f"{entry}\n"
+
 
 _HOLD = """\
-  - name: hold                  # all other joints stay where they start
+  - name: hold                  # SAID
     kind: joint_computed_torque
     joints: JOINTS
     kp: 25                      # 1/s^2
@@ -150,7 +173,7 @@ _HOLD = """\
 
 
 def _initial(plan: Plan) -> str:
-    if not plan.arm:
+    if not plan.home:
         return """
 initial:
   angular_velocity: [0.2 deg/s, 1 deg/s, 0.3 deg/s]   # of the base, body axes
@@ -168,9 +191,15 @@ def _simulation(plan: Plan) -> str:
 simulation:
 {_line("duration", f"{plan.duration_s:g} s", "simulated", 2)}\
 {_line("time_step", f"{1e3 * plan.time_step_s:g} ms", "of the integrator and of the control", 2)}\
-  # integrator: dormand_prince  # adapts its steps; rk4 where not given
+{_INTEGRATORS[plan.integrator]}\
   # record_wrenches: true       # force and torque of every effect on every link
 """
+
+
+_INTEGRATORS = {
+    "rk4": "  # integrator: dormand_prince  # adapts its steps; rk4 where not given\n",
+    "dormand_prince": "  integrator: dormand_prince    # adapts its steps: rk4 would need very short ones\n",
+}
 
 
 def _wrapped(names: Sequence[str], indent: int = 13) -> str:
@@ -187,7 +216,11 @@ def _wrapped(names: Sequence[str], indent: int = 13) -> str:
 
 def _line(key: str, value: object, comment: str, indent: int = 0) -> str:
     """An entry with its comment where the other comments are."""
-    return f"{' ' * indent + key + ': ' + _flow(value):<31} # {comment}\n"
+    return _commented(f"{' ' * indent}{key}: {_flow(value)}", comment)
+
+
+def _commented(entry: str, comment: str) -> str:
+    return f"{entry:<31} # {comment}\n"
 
 
 def _flow(value: object) -> str:

@@ -3,40 +3,29 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-import yaml
+from time import perf_counter
+from typing import TYPE_CHECKING
 
 from onorbit_rs.drafting.arm import ENOUGH, Arm, find_arm
-from onorbit_rs.drafting.motion import at_rest, configuration, home, lines, time_step, turns
-from onorbit_rs.drafting.reaction import GENTLE
+from onorbit_rs.drafting.motion import at_rest, configuration, home, lines, turns
 from onorbit_rs.drafting.source import Source
 from onorbit_rs.drafting.text import Plan, draft_text
-from onorbit_rs.exceptions import FrameError, OnOrbitError, ScenarioError
-from onorbit_rs.output.joints import rate_shares
-from onorbit_rs.rotations import angle_between
-from onorbit_rs.scenario import load
-from onorbit_rs.scenario.build import build
+from onorbit_rs.drafting.trial import Trials
+from onorbit_rs.exceptions import FrameError, ScenarioError
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Model, Trace
+    from onorbit_rs._core import Model
 
     Floats = NDArray[np.float64]
 
-NEAR_ENOUGH_M = 1e-3
-"""Largest distance of the tool from its line in a trial."""
-
-SLOWEST_S = 300.0
-"""Longest motion that is drafted; where rate limits ask for more, a shorter displacement is tried."""
-
-_ATTEMPTS = 4
-"""Runs of one motion, each slower than the one before."""
+LONGEST_S = 30.0
+"""For all trials together, of wall clock."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +49,8 @@ def draft(
 ) -> Draft:
     """A commented scenario in which the robot's arm moves; it has run with its certificate green.
 
+    Trials take ``LONGEST_S`` at most. Where no motion passes, all joints hold, and a comment says why.
+
     Parameters
     ----------
     source : Source or str
@@ -74,7 +65,7 @@ def draft(
     Raises
     ------
     OnOrbitError
-        The robot cannot be read, has no such frame, or nothing that was tried runs.
+        The robot cannot be read, has no such frame, or nothing that was tried passes.
     """
     source = Source(source) if isinstance(source, str) else source
     with warnings.catch_warnings():
@@ -88,89 +79,55 @@ def draft(
                 f"no joint moves the frame {tool!r}; name another with --tool",
                 name=tool, kind="frame", known=list(model.frame_names), suggestion=None,
             )  # fmt: skip
-        plan = _settled(model, arm, source.written(None, model), source.name(model))
+        plan = _settled(model, arm, Plan(source.name(model), source.written(None, model)))
     text = draft_text(replace(plan, robot=source.written(beside, model)), command)
     return Draft(text, plan.tool, plan.arm, model, configuration(model, plan.home))
 
 
-def _settled(model: Model, arm: Arm | None, robot: Any, name: str) -> Plan:
-    """The first plan that runs as it should and leaves the base nearly as it is, else the gentlest."""
-    last: OnOrbitError | None = None
-    found: list[tuple[float, Plan]] = []
-    for plan in _plans(model, arm, Plan(name, robot)):
-        try:
-            tried = _tried(model, plan)
-        except OnOrbitError as error:
-            last = error
-            continue
-        if tried is None:
-            continue
-        if tried[0] <= GENTLE or arm is None:
-            return tried[1]
-        found.append(tried)
-    if found:
-        return min(found, key=lambda one: one[0])[1]
-    if last is not None:
-        raise last
+def _settled(model: Model, arm: Arm | None, plan: Plan) -> Plan:
+    """The plan of the first kind of motion of which one runs as it should.
+
+    A kind that does not get there within half of the time that is left leaves the rest to simpler ones.
+    """
+    trials, ends = Trials(model), perf_counter() + LONGEST_S
+    for plans in _kinds(model, arm, plan):
+        found = trials.gentlest(plans, 0.5 * (ends - perf_counter()))
+        if found is not None:
+            return found if found.arm else replace(found, failures=trials.failures() or [_NO_ROOM])
     raise ScenarioError(
-        f"no motion of {name} that was tried stays within its joints' limits of position and rate and "
-        "certifies; write one by hand, beginning with 'onorbit info'",
+        f"nothing that was tried with {plan.name} passed, not even all joints held for a second: "
+        f"{', '.join(trials.failures())}. Look at inertias, dampings and limits in 'onorbit info'; "
+        "change the file, or name another frame with --tool",
         file=None, path=None, line=None,
     )  # fmt: skip
 
 
-def _plans(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Plan]:
+_NO_ROOM = "the limits of position leave them no room"
+
+
+def _kinds(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Iterable[Plan]]:
+    """Plans of each kind: lines of the tool, turns of its joints, a small turn, joints that hold."""
     if arm is None:
-        yield replace(plan, duration_s=60.0, time_step_s=1e-2)
+        yield [replace(plan, duration_s=60.0, time_step_s=1e-2)]
         return
-    pose = home(model, arm)
+    pose = _start(model, arm)
     others = [name for name in model.joint_names if name not in arm.joints]
-    for joint in model.joints:  # zero may be out of bounds, or at one
-        if joint.name in others and at_rest(joint) != 0.0:
-            pose[joint.name] = float(f"{at_rest(joint):.3g}")
-    plan = replace(
-        plan, tool=arm.tool, arm=arm.joints, others=others, home=pose, time_step_s=time_step(model),
-    )  # fmt: skip
+    plan = replace(plan, tool=arm.tool, arm=arm.joints, others=others, home=pose)
     if len(arm.joints) >= ENOUGH:
-        for displacement, seconds in lines(model, arm, pose):
-            yield replace(plan, displacement=displacement, move_s=seconds, duration_s=1.5 * seconds)
-    for goal in turns(model, {name: pose[name] for name in arm.joints}):
-        yield replace(plan, goal=goal)
+        yield (
+            replace(plan, displacement=displacement, move_s=seconds, duration_s=1.5 * seconds)
+            for displacement, seconds in lines(model, arm, pose)
+        )
+    here = {name: pose[name] for name in arm.joints}
+    yield (replace(plan, goal=goal) for goal in turns(model, here, (0.5, 0.2, 0.05)))
+    yield (replace(plan, goal=goal, move_s=1.0, duration_s=1.5) for goal in turns(model, here, (0.02,)))
+    yield [replace(plan, arm=[], others=list(model.joint_names), duration_s=1.0)]
 
 
-def _tried(model: Model, plan: Plan) -> tuple[float, Plan] | None:
-    """Return by how much the base turns in a run, rad, and the plan, slowed to the joints' rate limits.
-
-    None where the run does not certify, leaves the joints' limits or its line, or would have to be slower
-    than ``SLOWEST_S``.
-    """
-    for _ in range(_ATTEMPTS):
-        run = _run(plan)
-        if run is None:
-            return None
-        trace, turn = run
-        share = rate_shares(trace, model).max(initial=0.0)
-        if share <= 1.0:
-            return turn, plan
-        # rates go with the inverse of the duration
-        move_s = float(f"{1.05 * share * plan.move_s:.2g}")
-        if move_s > SLOWEST_S:
-            return None
-        plan = replace(plan, move_s=move_s, duration_s=round(1.5 * move_s, 3), is_slowed=True)
-    return None
-
-
-def _run(plan: Plan) -> tuple[Trace, float] | None:
-    """Return the trace of a plan, and by how much its base turns, rad.
-
-    None where the run does not certify, leaves the joints' limits or its line.
-    """
-    built = build(load(yaml.safe_load(draft_text(plan, "trial"))))
-    trace = built.simulation.run(plan.duration_s)
-    if not all(passed for *_, passed in trace.certificate()) or trace.joint_limits_exceeded():
-        return None
-    is_tracked = plan.displacement is not None
-    if is_tracked and np.linalg.norm(np.asarray(trace.position_error), axis=1).max() >= NEAR_ENOUGH_M:
-        return None
-    attitude = np.asarray(trace.q)[:, 3:7]
-    return trace, float(angle_between(attitude, attitude[0]).max())
+def _start(model: Model, arm: Arm) -> dict[str, float]:
+    """Positions of the arm's joints, and of those others that have no room around zero."""
+    pose = home(model, arm)
+    for joint in model.joints:
+        if joint.name not in arm.joints and at_rest(joint) != 0.0:
+            pose[joint.name] = float(f"{at_rest(joint):.3g}")
+    return pose

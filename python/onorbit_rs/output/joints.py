@@ -69,17 +69,21 @@ def rate_shares(trace: Trace, model: Model) -> Floats:
     return largest_shares(np.asarray(trace.v)[:, 6:], [joint.velocity for joint in model.joints])
 
 
+def effort_shares(trace: Trace, model: Model) -> Floats:
+    """Return the largest effort of each joint as a share of its limit, (n,)."""
+    return largest_shares(np.asarray(trace.tau), [joint.effort for joint in model.joints])
+
+
 def loads_exceeded(trace: Trace, model: Model) -> Summary:
     """Return the names of the joints whose rate or effort was beyond the limit of the robot's file in a row.
 
     Under any control law; an effort limit of the controller itself does not count.
     """
-    efforts = largest_shares(np.asarray(trace.tau), [joint.effort for joint in model.joints])
     return {
         key: ", ".join(np.array(model.joint_names)[shares > 1.0 + _ROUNDING])
         for key, shares in (
             ("joint_rates_exceeded", rate_shares(trace, model)),
-            ("joint_efforts_exceeded", efforts),
+            ("joint_efforts_exceeded", effort_shares(trace, model)),
         )
     }
 
