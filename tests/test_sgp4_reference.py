@@ -26,7 +26,7 @@ MODELS: dict[Any, Any] = {"wgs72old": WGS72OLD, "wgs72": WGS72, "wgs84": WGS84}
 
 def test_a_satrec_has_the_elements_of_its_lines_to_the_last_bit() -> None:
     for elements in SOUND:
-        taken = oo.Sgp4.from_satrec(Satrec.twoline2rv(elements.line1, elements.line2))
+        taken = oo.Sgp4(Satrec.twoline2rv(elements.line1, elements.line2))
         read = elements.orbit()
         assert (taken.satellite, taken.epoch, taken.period) == (read.satellite, read.epoch, read.period)
         for got, want in zip(taken.state([0.0, 600.0]), read.state([0.0, 600.0]), strict=True):
@@ -36,7 +36,7 @@ def test_a_satrec_has_the_elements_of_its_lines_to_the_last_bit() -> None:
 
 @pytest.mark.parametrize("gravity", MODELS)
 def test_a_satrec_says_its_earth_model(gravity: Any) -> None:
-    taken = oo.Sgp4.from_satrec(Satrec.twoline2rv(*LINES, MODELS[gravity]))
+    taken = oo.Sgp4(Satrec.twoline2rv(*LINES, MODELS[gravity]))
     np.testing.assert_array_equal(taken.state(9e3)[0], oo.Sgp4(*LINES, gravity=gravity).state(9e3)[0])
 
 
@@ -49,7 +49,7 @@ def initialized(mode: str = "i", **changes: float) -> Satrec:
 
 def test_a_satrec_of_elements_is_taken_and_may_change_afterwards() -> None:
     satrec = initialized()
-    taken = oo.Sgp4.from_satrec(satrec), oo.Sgp4.from_satrec(satrec, propagator="reference")
+    taken = oo.Sgp4(satrec), oo.Sgp4(satrec, propagator="reference")
     _, r, _ = satrec.sgp4_tsince(50.0)
     satrec.sgp4init(WGS72, "i", 8, 27000.25, 1e-4, 0.0, 0.0, 0.2, 1.0, 0.9, 2.0, 0.05, 0.5)
     for orbit in taken:
@@ -59,16 +59,20 @@ def test_a_satrec_of_elements_is_taken_and_may_change_afterwards() -> None:
 
 def test_what_is_no_such_satrec_is_refused() -> None:
     with pytest.raises(ElementSetError, match=r"AFSPC mode.*propagator='reference'"):
-        oo.Sgp4.from_satrec(initialized("a"))
-    assert np.isfinite(oo.Sgp4.from_satrec(initialized("a"), propagator="reference").state(0.0)[0]).all()
+        oo.Sgp4(initialized("a"))
+    assert np.isfinite(oo.Sgp4(initialized("a"), propagator="reference").state(0.0)[0]).all()
     with pytest.raises(ElementSetError, match="gravity constants"):
-        oo.Sgp4.from_satrec(Satrec())
+        oo.Sgp4(Satrec())
     with pytest.raises(ElementSetError, match=re.escape("inclination (deg) is")):
-        oo.Sgp4.from_satrec(initialized(inclo=4.0))
+        oo.Sgp4(initialized(inclo=4.0))
     with pytest.raises(ElementSetError, match="argpo of the Satrec is nan"):
-        oo.Sgp4.from_satrec(initialized(argpo=np.nan))
-    with pytest.raises(InputError, match="got str"):
-        oo.Sgp4.from_satrec("1 00005U")
+        oo.Sgp4(initialized(argpo=np.nan))
+    with pytest.raises(InputError, match="a Satrec of PyPI's sgp4 is needed, got int"):
+        oo.Sgp4(5)
+    with pytest.raises(InputError, match="give the two lines of an element set, or a Satrec alone"):
+        oo.Sgp4(initialized(), gravity="wgs72")  # type: ignore[call-overload]  # it has its own
+    with pytest.raises(InputError, match="give the two lines of an element set, or a Satrec alone"):
+        oo.Sgp4("1 00005U")
     wrong: Any = "own"
     with pytest.raises(InputError, match="'native' and 'reference'"):
         oo.Sgp4(*LINES, propagator=wrong)

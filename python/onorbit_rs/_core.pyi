@@ -514,12 +514,23 @@ class Kepler(Orbit):
 
 @final
 class Sgp4(Orbit):
+    @overload
     def __new__(
         cls,
         line1: str,
         line2: str,
         *,
-        gravity: _EarthModel = "wgs72",
+        gravity: _EarthModel | None = None,
+        check_checksum: bool = True,
+        propagator: _Propagator = "native",
+    ) -> Sgp4: ...
+    @overload
+    def __new__(
+        cls,
+        line1: Any,
+        line2: None = None,
+        *,
+        gravity: None = None,
         check_checksum: bool = True,
         propagator: _Propagator = "native",
     ) -> Sgp4: ...
@@ -530,8 +541,6 @@ class Sgp4(Orbit):
         gravity: _EarthModel = "wgs72",
         propagator: _Propagator = "native",
     ) -> Sgp4: ...
-    @staticmethod
-    def from_satrec(satrec: Any, *, propagator: _Propagator = "native") -> Sgp4: ...
     @property
     def satellite(self) -> int: ...
     @property

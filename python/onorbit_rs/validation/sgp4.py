@@ -13,7 +13,7 @@ from onorbit_rs.exceptions import Sgp4Error
 from onorbit_rs.validation.case import Case, Gate, table, worst
 
 SOURCE = "Vallado and others, Revisiting Spacetrack Report 3, AIAA 2006-6753"
-GRAVITY = "wgs72"
+GRAVITY: Final = "wgs72"
 CODES = [1, 1, 6, 6, 4, 3, 6]
 """Errors at which sets end, in the order of the file (as python-sgp4's own test has them)."""
 
@@ -30,7 +30,7 @@ class ElementSet(NamedTuple):
     def orbit(self) -> oo.Sgp4:
         """Sets that provoke errors have checksums that are wrong."""
         is_sound = self.regime != "refused"
-        return oo.Sgp4(self.line1, self.line2, gravity=GRAVITY, check_checksum=is_sound)  # type: ignore[arg-type]
+        return oo.Sgp4(self.line1, self.line2, gravity=GRAVITY, check_checksum=is_sound)
 
 
 def sets() -> list[ElementSet]:

@@ -16,6 +16,10 @@ use std::sync::Arc;
 /// and velocity are SGP4's own. A line that is not 69 columns of the right kind, or whose checksum is wrong, raises
 /// ``ElementSetError``, naming line and column; what SGP4 itself refuses raises ``Sgp4Error`` with its ``code``.
 ///
+/// ``Sgp4(satrec)`` takes a ``Satrec`` of PyPI's ``sgp4`` instead of the two lines: its epoch, its elements to the last bit and
+/// its gravity constants. One initialised for another Earth model, or in AFSPC mode, raises ``ElementSetError``;
+/// ``propagator="reference"`` takes that mode too.
+///
 /// ``propagator="reference"`` has the set read and propagated by PyPI's ``sgp4`` in place of the engine's own SGP4, as
 /// a check of it: every state is then some calls of Python.
 #[pyclass(name = "Sgp4", extends = PyOrbit, frozen, module = "onorbit_rs")]
@@ -78,19 +82,50 @@ fn mean_elements(satrec: &Bound<'_, PyAny>) -> PyResult<Option<MeanElements>> {
     }))
 }
 
+/// From a `Satrec`: its epoch, its elements to the last bit, its gravity constants.
+fn of_satrec(
+    satrec: &Bound<'_, PyAny>,
+    propagator: &str,
+    by_reference: bool,
+) -> PyResult<PyClassInitializer<PySgp4>> {
+    let py = satrec.py();
+    let read = py.import("onorbit_rs.satrec")?.getattr("read")?.call1((satrec, by_reference))?;
+    let (elements, gravity): (Bound<'_, PyAny>, String) = read.extract()?;
+    let model = earth_model(py, &gravity)?;
+    let set = mean_elements(&elements)?.ok_or_else(|| {
+        plain(py, "ElementSetError", "the Satrec has no epoch: initialize it with twoline2rv or sgp4init")
+    })?;
+    let set = set.checked().map_err(|error| OrbitError::from(error).into_python(py))?;
+    let reference =
+        by_reference.then(|| Satrec::new(py, "of_elements", (&elements, &gravity))).transpose()?;
+    let keywords = fields!(py, "propagator": propagator);
+    let made = ("Sgp4", &(&elements,).into_pyobject(py)?, &keywords);
+    wrap(Sgp4::new(set, model), reference, made)
+}
+
 #[pymethods]
 impl PySgp4 {
     #[new]
-    #[pyo3(signature = (line1, line2, *, gravity="wgs72", check_checksum=true, propagator="native"))]
+    #[pyo3(signature = (line1, line2=None, *, gravity=None, check_checksum=true, propagator="native"))]
     fn new(
-        py: Python<'_>,
-        line1: &str,
-        line2: &str,
-        gravity: &str,
+        line1: &Bound<'_, PyAny>,
+        line2: Option<&str>,
+        gravity: Option<&str>,
         check_checksum: bool,
         propagator: &str,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let (model, by_reference) = (earth_model(py, gravity)?, is_reference(py, propagator)?);
+        let (py, by_reference) = (line1.py(), is_reference(line1.py(), propagator)?);
+        let (line1, line2) = match (line1.cast::<PyString>(), line2) {
+            (Ok(line1), Some(line2)) => (&*line1.to_cow()?, line2),
+            (Err(_), None) if gravity.is_none() => return of_satrec(line1, propagator, by_reference),
+            _ => {
+                let message =
+                    "give the two lines of an element set, or a Satrec alone, which has its own gravity";
+                return Err(raise(py, "InputError", message, &fields!(py, "name": "line1")));
+            }
+        };
+        let gravity = gravity.unwrap_or("wgs72");
+        let model = earth_model(py, gravity)?;
         let elements = MeanElements::from_tle(line1, line2, check_checksum).map_err(OrbitError::from);
         let sgp4 = Sgp4::new(elements.map_err(|error| error.into_python(py))?, model);
         let satrec =
@@ -134,32 +169,6 @@ impl PySgp4 {
         let keywords = fields!(py, "gravity": gravity, "propagator": propagator);
         let made = ("Sgp4.from_omm", &(message,).into_pyobject(py)?, &keywords);
         Bound::new(py, wrap(sgp4, satrec, made)?)
-    }
-
-    /// From a ``Satrec`` of PyPI's ``sgp4``: its epoch, its elements to the last bit, its gravity constants.
-    ///
-    /// One initialised for another Earth model than ``wgs72``, ``wgs72old`` and ``wgs84``, or in AFSPC mode, raises
-    /// ``ElementSetError``; ``propagator="reference"`` takes that mode too.
-    #[staticmethod]
-    #[pyo3(signature = (satrec, *, propagator="native"))]
-    fn from_satrec<'py>(
-        py: Python<'py>,
-        satrec: &Bound<'py, PyAny>,
-        propagator: &str,
-    ) -> PyResult<Bound<'py, Self>> {
-        let by_reference = is_reference(py, propagator)?;
-        let read = py.import("onorbit_rs.satrec")?.getattr("read")?.call1((satrec, by_reference))?;
-        let (elements, gravity): (Bound<'_, PyAny>, String) = read.extract()?;
-        let model = earth_model(py, &gravity)?;
-        let set = mean_elements(&elements)?.ok_or_else(|| {
-            plain(py, "ElementSetError", "the Satrec has no epoch: initialize it with twoline2rv or sgp4init")
-        })?;
-        let set = set.checked().map_err(|error| OrbitError::from(error).into_python(py))?;
-        let reference =
-            by_reference.then(|| Satrec::new(py, "of_elements", (&elements, &gravity))).transpose()?;
-        let keywords = fields!(py, "propagator": propagator);
-        let made = ("Sgp4.from_satrec", &(&elements,).into_pyobject(py)?, &keywords);
-        Bound::new(py, wrap(Sgp4::new(set, model), reference, made)?)
     }
 
     /// Catalogue number.
