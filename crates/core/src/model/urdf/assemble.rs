@@ -33,12 +33,15 @@ pub(super) fn assemble(
         root = tree.child[only];
         base = read(root, around)?;
     }
+    let is_taken = |name: &str| {
+        links.iter().any(|(link, _)| *link == name) || hinges.iter().any(|hinge| hinge.name == name)
+    };
     let fail = |element: Element<'_>, error: ModelError| element.fail(UrdfProblem::Model(error));
     let mut builder = ModelBuilder::new(name, base).map_err(|e| fail(links[root].1, e))?;
     let mut stack: Vec<usize> = tree.hinges_below[root].iter().rev().copied().collect();
     while let Some(h) = stack.pop() {
         let hinge = &hinges[h];
-        let mut joints = read_joints(hinge, &mut around.warnings)?;
+        let mut joints = read_joints(hinge, is_taken, &mut around.warnings)?;
         let child = read(tree.child[h], around)?;
         // between joints that stand for one there are links of no mass, named like the joint above
         let last = joints.pop().expect("a joint is at least one");
