@@ -68,7 +68,7 @@ fn deep_and_huge_xml_is_refused_before_any_recursion() {
     let crowded = format!("<robot name='r'>{}</robot>", "<a/>".repeat(2_000_000));
     assert!(matches!(problem(&crowded), UrdfProblem::NotXml { .. }), "{}", error(&crowded));
     let attributes: String = (0..20_000).map(|i| format!(" a{i}=''")).collect();
-    assert!(matches!(problem(&format!("<robot{attributes}/>")), UrdfProblem::TagTooLong { .. }));
+    assert!(matches!(problem(&format!("<robot{attributes}/>")), UrdfProblem::TooManyAttributes { .. }));
 }
 
 #[test]

@@ -167,8 +167,8 @@ fn base_advice(joints: &[String]) -> String {
     match joints.len() {
         0 => "the robot's inertia is singular about some axis; give the base an inertial, or fix what hangs on it"
             .to_owned(),
-        1 => format!("remove the joint {}: the base floats anyway", names[0]),
-        _ => format!("remove the joints {}: the base floats anyway", names.join(", ")),
+        1 => format!("give it an inertial, or remove the joint {}: the base floats anyway", names[0]),
+        _ => format!("give it an inertial, or remove the joints {}: the base floats anyway", names.join(", ")),
     }
 }
 

@@ -5,7 +5,8 @@ use super::error::{UrdfError, UrdfProblem};
 use super::joint::{Hinge, read_joints};
 use super::link::{Surroundings, read_link};
 use crate::model::{Link, Model, ModelBuilder, ModelError};
-use std::collections::HashMap;
+use std::cell::LazyCell;
+use std::collections::{HashMap, HashSet};
 
 /// A link's element with its name.
 pub(super) type NamedLink<'a> = (&'a str, Element<'a>);
@@ -33,9 +34,11 @@ pub(super) fn assemble(
         root = tree.child[only];
         base = read(root, around)?;
     }
-    let is_taken = |name: &str| {
-        links.iter().any(|(link, _)| *link == name) || hinges.iter().any(|hinge| hinge.name == name)
-    };
+    let taken = LazyCell::new(|| {
+        let names = links.iter().map(|(name, _)| *name).chain(hinges.iter().map(|hinge| hinge.name));
+        names.collect::<HashSet<_>>()
+    });
+    let is_taken = |name: &str| taken.contains(name);
     let fail = |element: Element<'_>, error: ModelError| element.fail(UrdfProblem::Model(error));
     let mut builder = ModelBuilder::new(name, base).map_err(|e| fail(links[root].1, e))?;
     let mut stack: Vec<usize> = tree.hinges_below[root].iter().rev().copied().collect();

@@ -70,8 +70,8 @@ pub enum UrdfProblem {
     TooLarge { limit: usize },
     #[error("XML elements nested deeper than {limit}: no robot description is")]
     TooDeep { limit: usize },
-    #[error("an XML tag of more than {limit} bytes: no robot description has one")]
-    TagTooLong { limit: usize },
+    #[error("an XML tag of more than {limit} attributes: no robot description has one")]
+    TooManyAttributes { limit: usize },
     #[error("not UTF-8 text (at byte {at}); save it as UTF-8")]
     NotUtf8 { at: usize },
     #[error("not XML: {reason}")]

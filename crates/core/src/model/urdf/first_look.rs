@@ -10,8 +10,8 @@ use std::path::Path;
 pub(super) const MAX_BYTES: usize = 16 << 20;
 /// As deep as tinyxml2 goes, which urdfdom reads with. A URDF needs 6, the plugins of a simulator a dozen.
 const MAX_DEPTH: usize = 500;
-/// XML parsers compare every attribute of a tag with every other.
-const MAX_TAG_BYTES: usize = 16 << 10;
+/// Of a tag: XML parsers compare each with every other.
+const MAX_ATTRIBUTES: usize = 1000;
 
 /// The text of a file, read no further than it may be long, with a remark where it is not UTF-8.
 pub(super) fn read(path: &Path) -> Result<(String, Option<ModelWarning>), UrdfError> {
@@ -58,8 +58,8 @@ pub(super) fn check(xml: &str) -> Result<(), UrdfError> {
     let mut depth = 0_usize;
     for token in tokens(xml).filter(Token::is_tag) {
         let fail = |problem| Err(UrdfError::new(line(xml, token.at), problem));
-        if token.text.len() > MAX_TAG_BYTES {
-            return fail(UrdfProblem::TagTooLong { limit: MAX_TAG_BYTES });
+        if token.text.len() > MAX_ATTRIBUTES && token.text.matches('=').count() > MAX_ATTRIBUTES {
+            return fail(UrdfProblem::TooManyAttributes { limit: MAX_ATTRIBUTES });
         }
         match token.kind {
             Kind::Open => depth += 1,
@@ -81,7 +81,7 @@ pub(super) fn line(xml: &str, at: usize) -> Option<u32> {
 
 #[cfg(test)]
 mod tests {
-    use super::{MAX_BYTES, MAX_DEPTH, MAX_TAG_BYTES, UrdfProblem, check, decode};
+    use super::{MAX_ATTRIBUTES, MAX_BYTES, MAX_DEPTH, UrdfProblem, check, decode};
 
     fn problem(xml: &str) -> UrdfProblem {
         check(xml).expect_err("must be refused").problem.as_ref().clone()
@@ -103,13 +103,14 @@ mod tests {
         assert_eq!(problem("\u{feff} \n"), UrdfProblem::Empty);
         assert_eq!(problem(&" ".repeat(MAX_BYTES + 1)), UrdfProblem::TooLarge { limit: MAX_BYTES });
         let many_attributes = format!("<r {}/>", "a='' ".repeat(100_000));
-        assert!(matches!(problem(&many_attributes), UrdfProblem::TagTooLong { .. }));
+        assert!(matches!(problem(&many_attributes), UrdfProblem::TooManyAttributes { .. }));
+        assert_eq!(check(&format!("<r a='{}'/>", "a".repeat(100_000))), Ok(()));
     }
 
     #[test]
     fn the_line_is_the_tag_s() {
-        let error =
-            check(&format!("<r>\n\n<a b='{}'/></r>", " ".repeat(MAX_TAG_BYTES))).expect_err("too long");
+        let attributes = " a=''".repeat(MAX_ATTRIBUTES + 1);
+        let error = check(&format!("<r>\n\n<a{attributes}/></r>")).expect_err("too many");
         assert_eq!(error.line, Some(3));
     }
 

@@ -1,8 +1,8 @@
 //! Robots from URDF files.
 //!
-//! roxmltree parses: it knows lines; what it refuses and tinyxml2 takes is rewritten first (`tidy`). urdf-rs says what the elements of a URDF hold: its types
-//! take their fields from that tree by serde (`from_tree`), the first of each element, numbers checked by one
-//! table (`schema`). Its own reading of text skips what is not a number inside a vector (`1,0 0 0 0` reads as
+//! roxmltree parses: it knows lines; what it refuses and tinyxml2 takes is rewritten first (`tidy`). urdf-rs says
+//! what the elements of a URDF hold: its types take their fields from that tree by serde (`from_tree`), the first of
+//! each element, numbers checked by one table (`schema`). Its own reading of text skips what is not a number inside a vector (`1,0 0 0 0` reads as
 //! zeros), takes a missing inertial for zero mass and `<drake:joint>` for a joint, refuses files that repeat an
 //! element or lack `velocity`, and its errors name neither link nor line.
 //!

@@ -53,7 +53,7 @@ fn outermost(xml: &str) -> (Range<usize>, Option<ModelWarning>) {
     for token in tokens(xml).filter(Token::is_tag) {
         if depth == 0 && token.kind != Kind::Close {
             let end = if token.kind == Kind::Empty { token.end() } else { xml.len() };
-            found.push((token.at..end, token.name()));
+            found.push((token.at..end, token.split_name().0));
         }
         match token.kind {
             Kind::Open => depth += 1,
@@ -121,13 +121,19 @@ impl<'a> Writer<'a> {
 
     /// A tag, its attributes with a space before each; those that declare prefixes go.
     fn tag(&mut self, tag: &Token<'a>) -> Written {
-        let start = if tag.kind == Kind::Close { "</" } else { "<" };
-        self.out.push_str(start);
-        self.name(tag.name())?;
+        let (name, mut rest) = tag.split_name();
+        self.out.push_str(if tag.kind == Kind::Close { "</" } else { "<" });
+        self.name(name)?;
+        // what breaks a line in front of the name does so after it
+        let front = tag.text.len() - name.len() - rest.len();
+        self.blank(&tag.text[..front])?;
+        if tag.kind == Kind::Close {
+            self.blank(rest)?;
+            return self.plain(if rest.ends_with('>') { ">" } else { "" });
+        }
         if self.root_name_ends == 0 {
             self.root_name_ends = self.out.len();
         }
-        let mut rest = &tag.text[start.len() + tag.name().len()..];
         while let Some((before, quote, value)) = first_value(rest) {
             rest = &rest[before.len() + value.len() + 2..];
             let named = before.trim_end_matches(|c: char| c == '=' || c.is_ascii_whitespace());
@@ -138,7 +144,7 @@ impl<'a> Writer<'a> {
                 self.blank(value)?;
                 continue;
             }
-            self.out.push_str(if space.is_empty() { " " } else { space });
+            self.plain(if space.is_empty() { " " } else { space })?;
             self.name(name)?;
             self.plain(&before[named.len()..])?;
             self.out.push(quote);
@@ -150,12 +156,11 @@ impl<'a> Writer<'a> {
 
     /// A name; only its first colon ends a prefix.
     fn name(&mut self, name: &'a str) -> Written {
-        let Some((prefix, local)) = name.split_once(':').filter(|(a, b)| !a.is_empty() && !b.is_empty())
-        else {
-            return self.plain(&name.replace(':', "_"));
-        };
+        let is_free = |prefix: &str| !matches!(prefix, "" | "xml" | "xmlns");
+        let split = name.split_once(':').filter(|(prefix, local)| is_free(prefix) && !local.is_empty());
+        let Some((prefix, local)) = split else { return self.plain(&name.replace(':', "_")) };
         let is_name = prefix.chars().all(|c| c.is_alphanumeric() || matches!(c, '-' | '_' | '.'));
-        if is_name && !prefix.starts_with("xml") {
+        if is_name {
             self.prefixes.insert(prefix);
         }
         self.plain(prefix)?;
@@ -182,9 +187,10 @@ fn first_value(text: &str) -> Option<(&str, char, &str)> {
 
 /// The name in `&name;`, where a text starts so.
 fn reference(text: &str) -> Option<&str> {
-    let (name, _) = text.strip_prefix('&')?.split_once(';')?;
+    let rest = text.strip_prefix('&')?;
     let fits = |c: char| c.is_alphanumeric() || matches!(c, '#' | '-' | '_' | '.' | ':');
-    (!name.is_empty() && name.chars().all(fits)).then_some(name)
+    let (name, end) = rest.split_at(rest.find(|c| !fits(c))?);
+    (!name.is_empty() && end.starts_with(';')).then_some(name)
 }
 
 /// Whether XML knows a reference without being told.
@@ -225,6 +231,8 @@ mod tests {
                 "<r xmlns:p=\"urn:prefix:p\" xmlns:q=\"urn:prefix:q\"\n><p:a q:b_c='1'/></r>",
             ),
             ("<r/><r><s/></r>", "<r/>"),
+            ("<r>< a\u{b}b='1'/><\na></\na b='2'></ r>", "<r><a b='1'/><a\n></a\n></r>"),
+            ("<xml:a xmlns:b='1' :c='2'/>", "<xml_a _c='2'/>"),
             ("<r/>\n<robot><s/></robot>", "\n<robot><s/></robot>"),
             ("<r><s></r>", "<r><s></r>"),
             ("<r><!-- no end", "<r><!-- no end"),

@@ -39,13 +39,18 @@ impl Token<'_> {
 }
 
 impl<'a> Token<'a> {
-    /// The name of a tag.
-    pub(super) fn name(&self) -> &'a str {
-        let start = if self.kind == Kind::Close { 2 } else { 1 };
-        let rest = self.text.get(start..).unwrap_or_default();
+    /// The name of a tag, and what stands after it.
+    pub(super) fn split_name(&self) -> (&'a str, &'a str) {
+        let rest = inside(self.text);
+        let rest = rest.strip_prefix('/').map_or(rest, str::trim_start);
         let ends = |c: char| c.is_whitespace() || matches!(c, '/' | '>');
-        &rest[..rest.find(ends).unwrap_or(rest.len())]
+        rest.split_at(rest.find(ends).unwrap_or(rest.len()))
     }
+}
+
+/// A tag from its first letter on: tinyxml2 takes spaces before.
+fn inside(tag: &str) -> &str {
+    tag.strip_prefix('<').map_or(tag, str::trim_start)
 }
 
 /// All pieces in order: together they are the text.
@@ -77,7 +82,7 @@ fn first(rest: &str) -> (Kind, usize) {
         }
     }
     let length = tag_length(rest);
-    let kind = match (rest.starts_with("</"), rest[..length].ends_with("/>")) {
+    let kind = match (inside(rest).starts_with('/'), rest[..length].ends_with("/>")) {
         (true, _) => Kind::Close,
         (false, true) => Kind::Empty,
         (false, false) => Kind::Open,
