@@ -180,6 +180,9 @@ BODIES = {
     "a file in itself": ('<xacro:include filename="$(dirname)/bad.xacro"/>', ("nested too deep",)),
     "deep": ("<a>" * 3000 + "</a>" * 3000, ("nested too deep",)),
     "no link": ("", ("no links",)),
+    "macros alone": (
+        '<xacro:macro name="m"><link name="a"/></xacro:macro>', ("macros", "expand the file that calls them")
+    ),
     "python's own names": (LINK.format("${__import__('os').getcwd()}", 1), ("__import__",)),
     "a joint that is none": (
         LINK.format("a", 1) + LINK.format("b", 1)

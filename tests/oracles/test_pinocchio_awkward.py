@@ -68,10 +68,15 @@ def off(deviations: dict[str, float]) -> dict[str, float]:
     return {name: value for name, value in deviations.items() if not value < GATE}
 
 
-@pytest.mark.parametrize("name", awkward.cases(COMPARED, "pinocchio"))
-def test_it_is_the_same_robot(name: str) -> None:
+@pytest.mark.parametrize("name", COMPARED)
+def test_it_is_the_same_robot(name: str, tmp_path: Path) -> None:
     file = awkward.path(name)
-    model, theirs = load(file), pin_file.read(file, root_joint=name != "floating_joint_below_massless_root")
+    model = load(file)
+    if name == "latin1_name":  # Pinocchio reads the names, but gives Python none that is not UTF-8
+        text = file.read_text(encoding="latin-1")
+        file = tmp_path / file.name
+        file.write_text(text, encoding="utf-8")
+    theirs = pin_file.read(file, root_joint=name != "floating_joint_below_massless_root")
     assert not off(pin_file.deviations(model, theirs, seed=1))
 
 
@@ -80,9 +85,7 @@ def moving_alike(name: str) -> dict[str, float]:
     return pin_file.moving_alike(load(file), pin_file.read(file), SEVERAL_DEGREES[name], seed=1)
 
 
-@pytest.mark.parametrize(
-    "name", awkward.cases([name for name in SEVERAL_DEGREES if name not in READ_OTHERWISE], "pinocchio")
-)
+@pytest.mark.parametrize("name", [name for name in SEVERAL_DEGREES if name not in READ_OTHERWISE])
 def test_joints_of_several_degrees_of_freedom_move_alike(name: str) -> None:
     assert not off(moving_alike(name))
 

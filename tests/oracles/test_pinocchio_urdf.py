@@ -59,11 +59,7 @@ def test_bundled_robots(name: str) -> None:
     [
         ("body", range(20)),
         ("world of two", range(20, 35)),
-        pytest.param(
-            "world",
-            range(35, 50),
-            marks=pytest.mark.xfail(strict=True, reason="a root without mass hands the base to its child"),
-        ),
+        ("world", range(35, 50)),
     ],
 )
 def test_quirky_robots(root: str, seeds: range) -> None:

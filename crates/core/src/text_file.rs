@@ -26,8 +26,17 @@ pub enum TextFileError {
 /// The text of a UTF-8 file of at most `limit` bytes.
 ///
 /// # Errors
-/// [`TextFileError`]; a device never ends and a pipe waits for ever, so neither is opened.
+/// As [`read_bytes`], or that it is not UTF-8.
 pub fn read_text(path: &Path, limit: usize) -> Result<String, TextFileError> {
+    let text = String::from_utf8(read_bytes(path, limit)?);
+    text.map_err(|error| TextFileError::NotUtf8 { at: error.utf8_error().valid_up_to() })
+}
+
+/// The bytes of a file of at most `limit` bytes.
+///
+/// # Errors
+/// [`TextFileError`]; a device never ends and a pipe waits for ever, so neither is opened.
+pub fn read_bytes(path: &Path, limit: usize) -> Result<Vec<u8>, TextFileError> {
     let refuse = |error: std::io::Error| match error.kind() {
         ErrorKind::NotFound => TextFileError::NotFound,
         kind => TextFileError::Unreadable { reason: kind.to_string() }, // the system's words differ
@@ -45,7 +54,7 @@ pub fn read_text(path: &Path, limit: usize) -> Result<String, TextFileError> {
     if bytes.len() > limit {
         return Err(TextFileError::TooLarge { limit });
     }
-    String::from_utf8(bytes).map_err(|error| TextFileError::NotUtf8 { at: error.utf8_error().valid_up_to() })
+    Ok(bytes)
 }
 
 #[cfg(test)]

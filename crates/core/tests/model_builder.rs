@@ -45,7 +45,10 @@ fn links_that_are_no_bodies_are_refused() {
     assert!(matches!(add(Some(skew)), ModelError::AsymmetricInertia { .. }));
     let mut flywheel = ball(1.0).unwrap();
     flywheel.mass = 0.0;
-    assert!(matches!(add(Some(flywheel)), ModelError::InertiaWithoutMass { .. }));
+    flywheel.inertia[(0, 0)] = -1.0;
+    let mut spinning = robot();
+    spinning.add("base", revolute("j", Vector3::z()), Link::new("l", Some(flywheel))).unwrap();
+    assert!(matches!(spinning.build().unwrap_err(), ModelError::IndefiniteInertia { .. }));
 }
 
 #[test]
@@ -95,11 +98,50 @@ fn robots_that_something_does_not_resist_are_refused() {
 
     let mut spinning_base = ModelBuilder::new("r", Link::new("base", None)).unwrap();
     spinning_base.add("base", revolute("j", Vector3::z()), Link::new("l", ball(1.0))).unwrap();
-    assert_eq!(spinning_base.build().unwrap_err(), ModelError::SingularBase { link: "base".into() });
+    assert_eq!(
+        spinning_base.build().unwrap_err(),
+        ModelError::SingularBase { link: "base".into(), joints: vec!["j".into()] }
+    );
 
     let point = Inertial { mass: 1.0, com: Vector3::new(1.0, 2.0, 3.0), inertia: Matrix3::zeros() };
     let point = ModelBuilder::new("r", Link::new("base", Some(point))).unwrap().build();
-    assert!(matches!(point.unwrap_err(), ModelError::SingularBase { .. }));
+    assert!(matches!(point.unwrap_err(), ModelError::SingularBase { joints, .. } if joints.is_empty()));
+}
+
+fn flywheel() -> Option<Inertial> {
+    Some(Inertial { mass: 0.0, ..ball(1.0).unwrap() })
+}
+
+#[test]
+fn an_inertia_without_mass_needs_a_mass_that_moves_with_it() {
+    let mut turning = robot();
+    turning.add("base", revolute("j", Vector3::z()), Link::new("l", flywheel())).unwrap();
+    let turning = turning.build().unwrap();
+    assert_eq!(turning.warnings(), [ModelWarning::InertiaWithoutMass { link: "l".into() }]);
+
+    let mut base = ModelBuilder::new("r", Link::new("base", flywheel())).unwrap();
+    base.add("base", revolute("j", Vector3::z()), Link::new("l", ball(1.0))).unwrap();
+    assert_eq!(base.build().unwrap().mass(), 1.0);
+
+    // nothing slides against it, and alone it floats nowhere
+    let mut sliding = robot();
+    let rail = Joint::new("j", JointKind::Prismatic(Vector3::z()), Isometry3::identity());
+    sliding.add("base", rail, Link::new("l", flywheel())).unwrap();
+    assert!(matches!(sliding.build().unwrap_err(), ModelError::MasslessSubtree { .. }));
+    let alone = ModelBuilder::new("r", Link::new("base", flywheel())).unwrap();
+    assert_eq!(alone.build().unwrap_err(), ModelError::NoMass);
+}
+
+#[test]
+fn joints_that_only_let_a_world_carry_the_base_are_named() {
+    let mut mobile = ModelBuilder::new("r", Link::new("world", None)).unwrap();
+    let rail = |name: &str, axis| Joint::new(name, JointKind::Prismatic(axis), Isometry3::identity());
+    mobile.add("world", rail("x", Vector3::x()), Link::new("l1", None)).unwrap();
+    mobile.add("l1", rail("y", Vector3::y()), Link::new("l2", None)).unwrap();
+    mobile.add("l2", revolute("yaw", Vector3::z()), Link::new("body", ball(1.0))).unwrap();
+    mobile.add("body", revolute("arm", Vector3::x()), Link::new("hand", ball(1.0))).unwrap();
+    let refused = mobile.build().unwrap_err().to_string();
+    assert!(refused.ends_with("remove the joints 'x', 'y', 'yaw': the base floats anyway"), "{refused}");
 }
 
 #[test]

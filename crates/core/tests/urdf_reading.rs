@@ -210,6 +210,84 @@ fn a_ball_joint_is_yaw_pitch_and_roll() {
 }
 
 #[test]
+fn a_floating_joint_is_three_that_slide_and_a_ball() {
+    let model = pair("floating", "<origin xyz='1 2 3'/>");
+    let names = ["j_x", "j_y", "j_z", "j_yaw", "j_pitch", "j_roll"];
+    assert_eq!(model.joint_names().collect::<Vec<_>>(), names);
+    let (roll, pitch, yaw) = (0.3, -0.7, 1.1);
+    let want = nalgebra::Isometry3::from_parts(
+        nalgebra::Translation3::new(1.5, 1.0, 5.0),
+        nalgebra::UnitQuaternion::from_euler_angles(roll, pitch, yaw),
+    );
+    let got = pose(&model, &[0.5, -1.0, 2.0, yaw, pitch, roll]);
+    let off = (got.inverse() * want).to_homogeneous() - nalgebra::Matrix4::identity();
+    assert!(off.norm() < 1e-14, "{off}");
+    assert!(notes(&model)[0].contains("'j' is floating"), "{:?}", notes(&model));
+}
+
+#[test]
+fn names_made_up_are_free() {
+    let model = load(&format!(
+        "<link name='j_x'>{INERTIAL}</link><link name='b'>{INERTIAL}</link><link name='j_x_2'/>\
+         <joint name='j' type='planar'><parent link='j_x'/><child link='b'/></joint>\
+         <joint name='j_yaw' type='fixed'><parent link='b'/><child link='j_x_2'/></joint>"
+    ));
+    assert_eq!(model.joint_names().collect::<Vec<_>>(), ["j_x_3", "j_y", "j_yaw_2"]);
+}
+
+#[test]
+fn what_an_inertial_lacks_is_told() {
+    let with = |inertial: &str| {
+        load(&format!(
+            "<link name='a'>{INERTIAL}</link><link name='b'>{inertial}</link>\
+             <joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>"
+        ))
+    };
+    let none = with("<inertial><origin xyz='1 0 0'/><inertia ixx='1' iyy='1' izz='1'/></inertial>");
+    assert_eq!((none.mass(), moments(&none, 0)), (1.0, [1.0; 3]));
+    assert!(notes(&none)[0].contains("link 'b' has no <mass>"), "{:?}", notes(&none));
+    let no_products =
+        with("<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixz='0'/></inertial>");
+    let told = ["the <inertia> of link 'b' has no ixy, iyz: read as 0"];
+    assert_eq!((notes(&no_products), moments(&no_products, 0)), (told.map(str::to_owned).to_vec(), [2.0; 3]));
+}
+
+#[test]
+fn a_quaternion_needs_a_version_that_has_it() {
+    let robot = |version: &str| {
+        let xml = format!(
+            "<robot {version}>\n<link name='a'>{INERTIAL}</link><link name='b'/>\n<joint name='j' type='fixed'>\
+             <parent link='a'/><child link='b'/><origin quat_xyzw='0 0 1 0'/></joint></robot>"
+        );
+        let model = from_str(&xml, None, &[], &[]).unwrap();
+        (notes(&model), model.frames()[1].rot_kf.to_nalgebra()[(0, 0)])
+    };
+    for version in ["version='1.1'", "version='1.2'"] {
+        assert_eq!(robot(version), (vec![], -1.0), "{version}");
+    }
+    for version in ["", "version='1.0'"] {
+        let (told, cosine) = robot(version);
+        assert!(told[0].starts_with("line 3: quat_xyzw is not read in version 1.0"), "{told:?}");
+        assert_eq!(cosine, 1.0);
+    }
+}
+
+#[test]
+fn prefixes_decide_and_not_namespaces() {
+    let link = |name, more: &str| format!("<link {more} name='{name}'>{INERTIAL}</link>");
+    let joint = "<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>";
+    let both = format!(
+        "<p:x xmlns:p='u' xmlns:q='u' p:a='1' q:a='2'/>{}{}{joint}",
+        link("a", ""),
+        link("b", "xmlns='u'")
+    );
+    let model = load(&both);
+    assert_eq!(model.mass(), 2.0);
+    assert!(notes(&model)[0].starts_with("<p:x> has a namespace of its own"), "{:?}", notes(&model));
+    assert_eq!(notes(&model).len(), 1);
+}
+
+#[test]
 fn a_planar_joint_slides_in_its_plane_and_turns_about_its_normal() {
     let model = pair("planar", "<origin xyz='0 0 1'/><axis xyz='0 0 2'/>");
     assert_eq!(model.joint_names().collect::<Vec<_>>(), ["j_x", "j_y", "j_yaw"]);
@@ -260,8 +338,8 @@ fn an_inertia_negative_by_rounding_is_zero() {
 
 #[test]
 fn an_inertia_without_mass_adds_to_the_body_it_is_fixed_to() {
-    let rotor =
-        r#"<inertial><origin xyz="5 0 0"/><mass value="0"/><inertia ixx="2" iyy="3" izz="4"/></inertial>"#;
+    let rotor = r#"<inertial><origin xyz="5 0 0"/><mass value="0"/>
+        <inertia ixx="2" iyy="3" izz="4" ixy="0" ixz="0" iyz="0"/></inertial>"#;
     let link = |name, inertial| format!("<link name='{name}'>{inertial}</link>");
     let fixed = |parent, child| {
         format!(

@@ -79,6 +79,10 @@ def expand(
         ) from error
     except Exception as error:  # xacro's own, expat's, and whatever an expression in the file raises
         raise ModelError(f"{file}: {_reason(error)}", path=str(file)) from error
+    if not document.getElementsByTagName("link") and b"<xacro:macro" in file.read_bytes():
+        raise ModelError(
+            f"{file}: defines macros of xacro but no robot; expand the file that calls them", path=str(file)
+        )
     for name in values:
         if name not in used:
             remarks.append(f"the file does not ask for the argument {name!r}{did_you_mean(name, used)}")

@@ -52,6 +52,13 @@ pub(crate) const PARSERS: &[Parser] = &[
 ];
 
 const URDF: &[&str] = &[
+    "&a;",
+    "&",
+    "<?xml?>",
+    " xmlns=\"u\"",
+    "p:",
+    " quat_xyzw=\"0 0 0 1\"",
+    " version=\"1.1\"",
     "<link name=\"c\"/>",
     "<joint name=\"k\" type=\"prismatic\">",
     "</joint>",

@@ -149,7 +149,7 @@ impl ModelBuilder {
     fn add_link(&mut self, link: Link, is_part: bool) -> Result<(), ModelError> {
         self.check_new_frame_name(&link.name)?;
         if let Some(inertial) = &link.inertial {
-            match check_inertial(&link.name, inertial, is_part)? {
+            match check_inertial(&link.name, inertial)? {
                 Sense::Physical => {}
                 Sense::Rounded(moments) => {
                     self.warnings.push(ModelWarning::RoundedInertia { link: link.name.clone(), moments });

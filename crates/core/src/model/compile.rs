@@ -66,8 +66,8 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
     Ok(model)
 }
 
-/// A link with an indefinite inertia, or with an inertia but no mass, is accepted only where its body as a whole
-/// makes sense.
+/// A link with an indefinite inertia, or with an inertia but no mass, is accepted only where the inertia of its body
+/// as a whole makes sense.
 fn check_parts(model: &Model) -> Result<(), ModelError> {
     for warning in &model.warnings {
         let (ModelWarning::IndefinitePart { link, .. } | ModelWarning::InertiaWithoutMass { link }) = warning
@@ -75,9 +75,6 @@ fn check_parts(model: &Model) -> Result<(), ModelError> {
             continue;
         };
         let body = &model.nodes[model.frames[model.frame(link)?].body];
-        if body.mass == 0.0 {
-            return Err(ModelError::InertiaWithoutMass { link: link.clone() });
-        }
         if !is_definite(&body.about_com, body.mass) {
             let moments = match warning {
                 ModelWarning::IndefinitePart { moments, .. } => *moments,

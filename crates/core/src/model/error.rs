@@ -11,11 +11,6 @@ pub enum ModelError {
     #[error("link '{link}' has a mass of {mass} kg, it must be positive", mass = short(*mass))]
     MassNotPositive { link: String, mass: f64 },
     #[error(
-        "link '{link}' has no mass but a rotational inertia; give it a mass, fix it to a link that has one, or remove \
-         the inertia"
-    )]
-    InertiaWithoutMass { link: String },
-    #[error(
         "the inertia of link '{link}' is not positive definite: its principal moments are {moments} kg m2",
         moments = list(moments)
     )]
@@ -43,11 +38,8 @@ pub enum ModelError {
          its axis; give one of them an inertial, or make the joint fixed"
     )]
     MasslessSubtree { joint: String, link: String },
-    #[error(
-        "the base '{link}' can be moved without resistance: the robot's inertia is singular about some axis; \
-         give the base an inertial, or fix what hangs on it"
-    )]
-    SingularBase { link: String },
+    #[error("the base '{link}' can be moved without resistance: {}", base_advice(.joints))]
+    SingularBase { link: String, joints: Vec<String> },
     #[error("the {what} name '{name}' is used twice")]
     DuplicateName { what: &'static str, name: String },
     #[error("both robots have a {what} '{name}': give the one that is attached a prefix, such as 'left_'")]
@@ -109,7 +101,7 @@ pub enum ModelWarning {
         /// Its principal moments as given, kg m², ascending.
         moments: [f64; 3],
     },
-    /// A link without mass but with a rotational inertia, which is added to the body that it is fixed to.
+    /// A link without mass but with a rotational inertia, which is added to that of its body.
     InertiaWithoutMass {
         /// The link.
         link: String,
@@ -143,7 +135,7 @@ impl fmt::Display for ModelWarning {
             ),
             Self::InertiaWithoutMass { link } => write!(
                 f,
-                "link '{link}' has no mass but a rotational inertia, which is added to that of the body it is fixed to"
+                "link '{link}' has no mass but a rotational inertia, which is added to that of the body that it is part of"
             ),
             Self::Note(text) => f.write_str(text),
         }
@@ -166,6 +158,17 @@ impl ModelError {
             Self::DuplicateName { what, name } => Self::PrefixTaken { what, name, prefix: prefix.to_owned() },
             other => other,
         }
+    }
+}
+
+/// `joints`: those between the base and the first mass, where nothing else hangs on them.
+fn base_advice(joints: &[String]) -> String {
+    let names: Vec<String> = joints.iter().map(|joint| format!("'{joint}'")).collect();
+    match joints.len() {
+        0 => "the robot's inertia is singular about some axis; give the base an inertial, or fix what hangs on it"
+            .to_owned(),
+        1 => format!("give it an inertial, or remove the joint {}: the base floats anyway", names[0]),
+        _ => format!("give it an inertial, or remove the joints {}: the base floats anyway", names.join(", ")),
     }
 }
 

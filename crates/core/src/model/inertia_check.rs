@@ -26,14 +26,12 @@ pub(super) enum Sense {
     Rounded([f64; 3]),
     /// None: it could turn with negative energy.
     Indefinite([f64; 3]),
-    /// An inertia without a mass: part of a body, not a body.
+    /// An inertia without a mass: it makes sense with masses that move with it.
     Massless,
 }
 
 /// Refuses an inertial that means nothing, and says what sense the others make.
-///
-/// `is_part`: the link is fixed to another, and only their sum must make sense.
-pub(super) fn check_inertial(link: &str, inertial: &Inertial, is_part: bool) -> Result<Sense, ModelError> {
+pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, ModelError> {
     let link = || link.to_owned();
     let Inertial { mass, com, inertia } = inertial;
     if !mass.is_finite() || !com.iter().chain(inertia.iter()).all(|x| x.is_finite()) {
@@ -46,9 +44,6 @@ pub(super) fn check_inertial(link: &str, inertial: &Inertial, is_part: bool) -> 
     }
     if *mass == 0.0 && scale == 0.0 {
         return Ok(Sense::Physical);
-    }
-    if *mass == 0.0 && !is_part {
-        return Err(ModelError::InertiaWithoutMass { link: link() });
     }
     let difference = (inertia - inertia.transpose()).amax();
     if difference > PRINTED_DIGITS * scale + LEAST_GYRATION * mass {

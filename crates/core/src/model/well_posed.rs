@@ -26,12 +26,23 @@ pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     }
     match is_resisted.iter().rposition(|resisted| !resisted) {
         None => Ok(()),
-        Some(i) if i < 6 => Err(ModelError::SingularBase { link: model.body_frame(0).name.clone() }),
+        Some(i) if i < 6 => {
+            let (link, joints) = (model.body_frame(0).name.clone(), massless_chain(model));
+            Err(ModelError::SingularBase { link, joints })
+        }
         Some(i) => Err(ModelError::MasslessSubtree {
             joint: model.joints[i - 6].name.clone(),
             link: model.body_frame(i - 5).name.clone(),
         }),
     }
+}
+
+/// The joints from a base without inertia to the first body that has some, where they are one chain: dummy joints
+/// that let a fixed world carry a robot that moves.
+fn massless_chain(model: &Model) -> Vec<String> {
+    let is_empty = |node: &&Node| node.mass == 0.0 && node.about_com.to_nalgebra().amax() == 0.0;
+    let count = model.nodes.iter().take_while(is_empty).take_while(|node| !node.is_fork).count();
+    model.joints.iter().take(count).map(|joint| joint.name.clone()).collect()
 }
 
 /// Marks the motions whose pivot is more than rounding: dense 6 × 6 inertias in body axes, slow,

@@ -22,10 +22,11 @@ impl IntoPython for ModelError {
                 raise(py, "ModelError", &message, &fields!(py, "joint": joint, "link": link))
             }
             Self::MassNotPositive { link, .. }
-            | Self::InertiaWithoutMass { link }
             | Self::IndefiniteInertia { link, .. }
             | Self::AsymmetricInertia { link, .. }
-            | Self::SingularBase { link } => raise(py, "ModelError", &message, &fields!(py, "link": link)),
+            | Self::SingularBase { link, .. } => {
+                raise(py, "ModelError", &message, &fields!(py, "link": link))
+            }
             Self::ZeroAxis { joint }
             | Self::Negative { joint, .. }
             | Self::StaticBelowKinetic { joint, .. }

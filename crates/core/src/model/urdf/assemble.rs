@@ -5,7 +5,8 @@ use super::error::{UrdfError, UrdfProblem};
 use super::joint::{Hinge, read_joints};
 use super::link::{Surroundings, read_link};
 use crate::model::{Link, Model, ModelBuilder, ModelError};
-use std::collections::HashMap;
+use std::cell::LazyCell;
+use std::collections::{HashMap, HashSet};
 
 /// A link's element with its name.
 pub(super) type NamedLink<'a> = (&'a str, Element<'a>);
@@ -33,12 +34,17 @@ pub(super) fn assemble(
         root = tree.child[only];
         base = read(root, around)?;
     }
+    let taken = LazyCell::new(|| {
+        let names = links.iter().map(|(name, _)| *name).chain(hinges.iter().map(|hinge| hinge.name));
+        names.collect::<HashSet<_>>()
+    });
+    let is_taken = |name: &str| taken.contains(name);
     let fail = |element: Element<'_>, error: ModelError| element.fail(UrdfProblem::Model(error));
     let mut builder = ModelBuilder::new(name, base).map_err(|e| fail(links[root].1, e))?;
     let mut stack: Vec<usize> = tree.hinges_below[root].iter().rev().copied().collect();
     while let Some(h) = stack.pop() {
         let hinge = &hinges[h];
-        let mut joints = read_joints(hinge, &mut around.warnings)?;
+        let mut joints = read_joints(hinge, is_taken, &mut around.warnings)?;
         let child = read(tree.child[h], around)?;
         // between joints that stand for one there are links of no mass, named like the joint above
         let last = joints.pop().expect("a joint is at least one");

@@ -28,12 +28,10 @@ impl<'a> Element<'a> {
         self.node.tag_name().name()
     }
 
-    /// Elements of that name directly inside; those of other namespaces are others' extensions.
+    /// Elements of that name directly inside; those with another prefix are others' extensions.
     pub(super) fn children(self, name: &'static str) -> impl Iterator<Item = Self> {
-        let namespace = self.node.tag_name().namespace();
-        let is_ours = move |node: &Node<'a, 'a>| {
-            node.tag_name().name() == name && node.tag_name().namespace() == namespace
-        };
+        let is_ours =
+            move |node: &Node<'a, 'a>| node.tag_name().name() == name && prefix(*node) == prefix(self.node);
         self.node.children().filter(Node::is_element).filter(is_ours).map(move |node| Self { node, ..self })
     }
 
@@ -55,10 +53,9 @@ impl<'a> Element<'a> {
         self.node.attribute(attribute)
     }
 
-    /// An attribute that must be there and hold no leftover of xacro.
+    /// An attribute that must be there.
     pub(super) fn required_text(&self, attribute: &'static str) -> Result<&'a str, UrdfError> {
-        let text = self.text(attribute).ok_or_else(|| self.lacks_attribute(attribute))?;
-        self.refuse_xacro(text).map(|()| text)
+        self.text(attribute).ok_or_else(|| self.lacks_attribute(attribute))
     }
 
     pub(super) fn number(&self, attribute: &'static str) -> Result<Option<f64>, UrdfError> {
@@ -94,7 +91,7 @@ impl<'a> Element<'a> {
     }
 
     pub(super) fn refuse_xacro(&self, text: &str) -> Result<(), UrdfError> {
-        if text.contains("${") || text.contains("$(") {
+        if has_expression(text) {
             return Err(self.fail(UrdfProblem::Xacro { found: format!("'{text}' ({})", self.owner) }));
         }
         Ok(())
@@ -108,4 +105,17 @@ impl<'a> Element<'a> {
         let (owner, element) = (self.owner.to_owned(), self.tag().to_owned());
         self.fail(UrdfProblem::MissingAttribute { owner, element, attribute })
     }
+}
+
+/// Whether a text holds what xacro would replace.
+pub(super) fn has_expression(text: &str) -> bool {
+    text.contains("${") || text.contains("$(")
+}
+
+/// The prefix of an element as it stands in the file, whatever namespace that is.
+pub(super) fn prefix<'a>(node: Node<'a, 'a>) -> Option<&'a str> {
+    node.tag_name().namespace()?; // without one there is no prefix
+    let tag = node.document().input_text().get(node.range().start + 1..)?;
+    let name = &tag[..tag.find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>'))?];
+    name.split_once(':').map(|(prefix, _)| prefix)
 }

@@ -70,14 +70,14 @@ pub enum UrdfProblem {
     TooLarge { limit: usize },
     #[error("XML elements nested deeper than {limit}: no robot description is")]
     TooDeep { limit: usize },
-    #[error("an XML tag of more than {limit} bytes: no robot description has one")]
-    TagTooLong { limit: usize },
+    #[error("an XML tag of more than {limit} attributes: no robot description has one")]
+    TooManyAttributes { limit: usize },
     #[error("not UTF-8 text (at byte {at}); save it as UTF-8")]
     NotUtf8 { at: usize },
     #[error("not XML: {reason}")]
     NotXml { reason: String },
-    #[error("a document type (<!DOCTYPE>) is refused: a URDF needs none; remove it")]
-    DocumentType,
+    #[error("'&{name};' is not read: what a document type (<!DOCTYPE>) defines must be written out")]
+    Entity { name: String },
     #[error("the outermost element is <{found}>, a URDF has <robot>{}", other_format(.found))]
     NotRobot { found: String },
     #[error(
@@ -91,6 +91,8 @@ pub enum UrdfProblem {
     ForeignElement { element: String },
     #[error("the robot has no links")]
     NoLinks,
+    #[error("the file defines macros of xacro but no robot; expand the file that calls them")]
+    OnlyMacros,
     #[error("{owner} has no <{element}>")]
     MissingElement { owner: String, element: &'static str },
     #[error("<{element}> of {owner} has no attribute '{attribute}'")]
@@ -107,8 +109,8 @@ pub enum UrdfProblem {
     #[error("{owner}: the quaternion '{text}' has no length")]
     ZeroQuaternion { owner: String, text: String },
     #[error(
-        "joint '{joint}' is of type '{kind}'; there are revolute, continuous, prismatic, fixed, planar and ball \
-         (floating only directly under a root without mass){}",
+        "joint '{joint}' is of type '{kind}'; there are revolute, continuous, prismatic, fixed, planar, ball and \
+         floating{}",
         way_out(.kind)
     )]
     JointType { joint: String, kind: String },
@@ -149,7 +151,7 @@ fn amount_of_numbers(expected: &usize) -> String {
 
 fn way_out(kind: &str) -> String {
     let told = match kind.to_lowercase().as_str() {
-        "revolute" | "continuous" | "prismatic" | "fixed" | "planar" | "spherical" | "ball" => {
+        "revolute" | "continuous" | "prismatic" | "fixed" | "planar" | "spherical" | "ball" | "floating" => {
             "; write it in lower case"
         }
         "universal" => "; build it of two revolute joints whose axes meet",
@@ -159,9 +161,9 @@ fn way_out(kind: &str) -> String {
         "rotational" | "hinge" => "; write revolute",
         "slide" | "slider" | "translational" => "; write prismatic",
         "weld" => "; write fixed",
-        "floating" => "; a robot here is one tree on one floating base: load the other body by itself",
         other => {
-            let kinds = ["revolute", "continuous", "prismatic", "fixed", "planar", "ball"].map(str::to_owned);
+            let kinds = ["revolute", "continuous", "prismatic", "fixed", "planar", "ball", "floating"];
+            let kinds = kinds.map(str::to_owned);
             return closest(&kinds, other.trim())
                 .map_or_else(String::new, |k| format!("; did you mean '{k}'?"));
         }

@@ -1,116 +1,87 @@
-//! A look at the text before any parser sees it: size, encoding, depth, document types.
-//!
-//! One pass without recursion, so that neither a deep document nor an entity bomb reaches code
-//! that could exhaust the stack or the memory.
+//! A look at the text before any parser sees it: size, encoding, depth.
 
 use super::error::{UrdfError, UrdfProblem};
-use crate::text_file::{TextFileError, read_text};
+use super::tokens::{Kind, Token, tokens};
+use crate::model::ModelWarning;
+use crate::text_file::{TextFileError, read_bytes};
 use std::path::Path;
 
 /// A humanoid with hands takes 0.1 MB; a file with embedded sensors and plugins one or two.
 pub(super) const MAX_BYTES: usize = 16 << 20;
-/// A URDF needs 6, the plugins of a simulator a dozen.
-const MAX_DEPTH: usize = 64;
-/// XML parsers compare every attribute of a tag with every other.
-const MAX_TAG_BYTES: usize = 16 << 10;
+/// As deep as tinyxml2 goes, which urdfdom reads with. A URDF needs 6, the plugins of a simulator a dozen.
+const MAX_DEPTH: usize = 500;
+/// Of a tag: XML parsers compare each with every other.
+const MAX_ATTRIBUTES: usize = 1000;
 
-/// The text of a file, read no further than it may be long.
-pub(super) fn read(path: &Path) -> Result<String, UrdfError> {
-    read_text(path, MAX_BYTES).map_err(|error| {
+/// The text of a file, read no further than it may be long, with a remark where it is not UTF-8.
+pub(super) fn read(path: &Path) -> Result<(String, Option<ModelWarning>), UrdfError> {
+    let bytes = read_bytes(path, MAX_BYTES).map_err(|error| {
         let problem = match error {
             TextFileError::NotFound => UrdfProblem::NotFound,
             TextFileError::Folder => UrdfProblem::IsFolder,
             TextFileError::TooLarge { limit } => UrdfProblem::TooLarge { limit },
-            TextFileError::NotUtf8 { at } => UrdfProblem::NotUtf8 { at },
-            TextFileError::NotRegular | TextFileError::Unreadable { .. } => {
-                UrdfProblem::Unreadable { reason: error.to_string() }
-            }
+            other => UrdfProblem::Unreadable { reason: other.to_string() },
         };
         UrdfError::new(None, problem)
-    })
+    })?;
+    decode(bytes)
+}
+
+/// Bytes that are no UTF-8 are Latin-1, as every byte is: comments and names of those who type their own language.
+/// Two bytes for each character are neither, and have zeros among them.
+fn decode(bytes: Vec<u8>) -> Result<(String, Option<ModelWarning>), UrdfError> {
+    let (bytes, at) = match String::from_utf8(bytes) {
+        Ok(text) => return Ok((text, None)),
+        Err(error) => {
+            let at = error.utf8_error().valid_up_to();
+            (error.into_bytes(), at)
+        }
+    };
+    let is_blank = |byte: &u8| *byte == 0 || byte.is_ascii_whitespace();
+    let ends = bytes.iter().rposition(|byte| !is_blank(byte)).unwrap_or(0);
+    if bytes[..ends].contains(&0) {
+        return Err(UrdfError::new(None, UrdfProblem::NotUtf8 { at }));
+    }
+    let line = 1 + bytes[..at].iter().filter(|&&byte| byte == b'\n').count();
+    let note = format!("line {line} is not UTF-8: the file is read as Latin-1; save it as UTF-8");
+    Ok((bytes.into_iter().map(char::from).collect(), Some(ModelWarning::Note(note))))
 }
 
 /// Refuses what no parser should be given.
 pub(super) fn check(xml: &str) -> Result<(), UrdfError> {
-    let fail = |at: usize, problem| {
-        let line = xml.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;
-        Err(UrdfError::new(u32::try_from(line).ok(), problem))
-    };
     if xml.len() > MAX_BYTES {
         return Err(UrdfError::new(None, UrdfProblem::TooLarge { limit: MAX_BYTES }));
     }
     if xml.trim_start_matches('\u{feff}').trim().is_empty() {
         return Err(UrdfError::new(None, UrdfProblem::Empty));
     }
-    if let Some(at) = xml.find('\0') {
-        return fail(at, UrdfProblem::NotXml { reason: "binary data".to_owned() });
-    }
-    let (mut depth, mut at) = (0_usize, 0);
-    while let Some(offset) = xml[at..].find('<') {
-        let start = at + offset;
-        let tag = &xml[start..];
-        if tag.starts_with("<!DOCTYPE") {
-            return fail(start, UrdfProblem::DocumentType);
+    let mut depth = 0_usize;
+    for token in tokens(xml).filter(Token::is_tag) {
+        let fail = |problem| Err(UrdfError::new(line(xml, token.at), problem));
+        if token.text.len() > MAX_ATTRIBUTES && token.text.matches('=').count() > MAX_ATTRIBUTES {
+            return fail(UrdfProblem::TooManyAttributes { limit: MAX_ATTRIBUTES });
         }
-        let end = tag_end(tag);
-        let is_markup = !tag.starts_with("<!") && !tag.starts_with("<?");
-        if is_markup && end > MAX_TAG_BYTES {
-            return fail(start, UrdfProblem::TagTooLong { limit: MAX_TAG_BYTES });
-        }
-        if tag.starts_with("</") {
-            depth = depth.saturating_sub(1);
-        } else if is_markup && !tag[..end].ends_with("/>") {
-            depth += 1;
+        match token.kind {
+            Kind::Open => depth += 1,
+            Kind::Close => depth = depth.saturating_sub(1),
+            _ => {}
         }
         if depth > MAX_DEPTH {
-            return fail(start, UrdfProblem::TooDeep { limit: MAX_DEPTH });
+            return fail(UrdfProblem::TooDeep { limit: MAX_DEPTH });
         }
-        at = start + end;
     }
     Ok(())
 }
 
-/// Where the name of the outermost tag ends, in bytes.
-pub(super) fn after_root_name(xml: &str) -> Option<usize> {
-    let mut at = 0;
-    loop {
-        let start = at + xml[at..].find('<')?;
-        let tag = &xml[start..];
-        if !tag.starts_with("<!") && !tag.starts_with("<?") {
-            let ends = |c: char| c.is_whitespace() || matches!(c, '/' | '>');
-            return tag.find(ends).map(|end| start + end);
-        }
-        at = start + tag_end(tag);
-    }
-}
-
-/// Bytes up to the end of the tag, comment, CDATA section or instruction that `tag` starts with.
-fn tag_end(tag: &str) -> usize {
-    let until = |end: &str| tag.find(end).map_or(tag.len(), |at| at + end.len());
-    if tag.starts_with("<!--") {
-        return until("-->");
-    }
-    if tag.starts_with("<![CDATA[") {
-        return until("]]>");
-    }
-    if tag.starts_with("<?") {
-        return until("?>");
-    }
-    let mut quote = None;
-    for (at, byte) in tag.bytes().enumerate() {
-        match (quote, byte) {
-            (None, b'>') => return at + 1,
-            (None, b'"' | b'\'') => quote = Some(byte),
-            (Some(open), _) if open == byte => quote = None,
-            _ => {}
-        }
-    }
-    tag.len()
+/// Line of a byte, from 1.
+pub(super) fn line(xml: &str, at: usize) -> Option<u32> {
+    let before = xml.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count();
+    u32::try_from(before + 1).ok()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{MAX_BYTES, MAX_DEPTH, UrdfProblem, check};
+    use super::{MAX_ATTRIBUTES, MAX_BYTES, MAX_DEPTH, UrdfProblem, check, decode};
 
     fn problem(xml: &str) -> UrdfProblem {
         check(xml).expect_err("must be refused").problem.as_ref().clone()
@@ -130,16 +101,25 @@ mod tests {
     fn what_no_parser_should_see_is_named() {
         assert_eq!(problem(""), UrdfProblem::Empty);
         assert_eq!(problem("\u{feff} \n"), UrdfProblem::Empty);
-        assert!(matches!(problem("<robot>\0"), UrdfProblem::NotXml { .. }));
-        assert_eq!(problem("<!DOCTYPE r [<!ENTITY a \"b\">]><r>&a;</r>"), UrdfProblem::DocumentType);
         assert_eq!(problem(&" ".repeat(MAX_BYTES + 1)), UrdfProblem::TooLarge { limit: MAX_BYTES });
         let many_attributes = format!("<r {}/>", "a='' ".repeat(100_000));
-        assert!(matches!(problem(&many_attributes), UrdfProblem::TagTooLong { .. }));
+        assert!(matches!(problem(&many_attributes), UrdfProblem::TooManyAttributes { .. }));
+        assert_eq!(check(&format!("<r a='{}'/>", "a".repeat(100_000))), Ok(()));
     }
 
     #[test]
     fn the_line_is_the_tag_s() {
-        let error = check("<r>\n\n<!DOCTYPE x></r>").expect_err("must be refused");
+        let attributes = " a=''".repeat(MAX_ATTRIBUTES + 1);
+        let error = check(&format!("<r>\n\n<a{attributes}/></r>")).expect_err("too many");
         assert_eq!(error.line, Some(3));
+    }
+
+    #[test]
+    fn bytes_are_latin_1_where_they_are_no_utf_8() {
+        let (text, note) = decode(b"<r>\n<!-- L\xe4nge --></r>\0\n".to_vec()).expect("a text");
+        assert!(text.contains("L\u{e4}nge"));
+        assert!(note.expect("a remark").to_string().starts_with("line 2 is not UTF-8"));
+        let two_bytes = decode(b"\xff\xfe<\0r\0/\0>\0".to_vec()).expect_err("must be refused");
+        assert_eq!(*two_bytes.problem, UrdfProblem::NotUtf8 { at: 0 });
     }
 }

@@ -1,16 +1,12 @@
 //! Elements that are not URDF: extensions of other tools and leftover xacro tags.
 
+use super::element::prefix;
 use super::error::{UrdfError, UrdfProblem, list};
-use super::first_look::after_root_name;
 use crate::model::ModelWarning;
 use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
 
 /// Tags, texts and comments of a file; a large robot has 10⁴.
 const MAX_NODES: u32 = 1_000_000;
-/// Prefixes without a declaration that are read anyway; each takes one more pass over the text.
-const MOST_PREFIXES: usize = 16;
-/// The namespace of xacro.
-const XACRO: &str = "http://www.ros.org/wiki/xacro";
 /// Children of `<robot>` that files have beside links, joints and materials, and that a robot does without.
 const KNOWN: &[&str] = &[
     "gazebo",
@@ -28,25 +24,6 @@ const KNOWN: &[&str] = &[
     "simulated_controllers",
     "drake",
 ];
-
-/// Declares the prefixes that the text uses without a declaration, on the line of its root, so that all lines stay
-/// as they are; returns None where there are none.
-pub(super) fn with_declared_prefixes(xml: &str) -> Option<String> {
-    let (mut text, mut found): (Option<String>, Vec<String>) = (None, Vec::new());
-    while found.len() < MOST_PREFIXES {
-        let Err(XmlError::UnknownNamespace(prefix, _)) = parse(text.as_deref().unwrap_or(xml)) else { break };
-        if found.contains(&prefix) {
-            break;
-        }
-        let uri = if prefix == "xacro" { XACRO.to_owned() } else { format!("urn:undeclared:{prefix}") };
-        let mut declared = text.unwrap_or_else(|| xml.to_owned());
-        let at = after_root_name(&declared)?;
-        declared.insert_str(at, &format!(" xmlns:{prefix}=\"{uri}\""));
-        text = Some(declared);
-        found.push(prefix);
-    }
-    text
-}
 
 /// Parses text that [`check`](super::first_look::check) has accepted.
 pub(super) fn parse(xml: &str) -> Result<Document<'_>, XmlError> {
@@ -66,7 +43,7 @@ pub(super) struct Ignored<'a> {
 impl<'a> Ignored<'a> {
     pub(super) fn new(robot: Node<'a, 'a>) -> Self {
         let is_outermost = |node: &Node<'_, '_>| is_xacro(*node) && !node.ancestors().skip(1).any(is_xacro);
-        let own = robot.tag_name().namespace();
+        let own = prefix(robot);
         let elements = || robot.children().filter(Node::is_element).filter(|node| !is_xacro(*node));
         let is_known = |node: &Node<'_, '_>| {
             let name = node.tag_name().name();
@@ -74,10 +51,8 @@ impl<'a> Ignored<'a> {
         };
         Self {
             xacro: robot.descendants().filter(is_outermost).collect(),
-            prefixed: elements().filter(|node| node.tag_name().namespace() != own).collect(),
-            unknown: elements()
-                .filter(|node| node.tag_name().namespace() == own && !is_known(node))
-                .collect(),
+            prefixed: elements().filter(|node| prefix(*node) != own).collect(),
+            unknown: elements().filter(|node| prefix(*node) == own && !is_known(node)).collect(),
         }
     }
 
@@ -106,6 +81,13 @@ impl<'a> Ignored<'a> {
         notes.into_iter().map(ModelWarning::Note).collect()
     }
 
+    /// Whether what is there of xacro defines and makes nothing.
+    fn is_macros(&self) -> bool {
+        let defines = |name| matches!(name, "macro" | "property" | "arg" | "include");
+        let mut names = self.xacro.iter().map(|node| node.tag_name().name());
+        names.clone().all(defines) && names.any(|name| name == "macro")
+    }
+
     /// What made a robot incomplete, if ignored elements did: the error that names them instead.
     pub(super) fn explain(&self, error: UrdfError) -> UrdfError {
         let is_incomplete = matches!(
@@ -114,6 +96,9 @@ impl<'a> Ignored<'a> {
         );
         let is_needed = |node: &&Node<'_, '_>| matches!(node.tag_name().name(), "link" | "joint");
         match (self.xacro.first(), self.prefixed.iter().find(is_needed)) {
+            (Some(node), _) if *error.problem == UrdfProblem::NoLinks && self.is_macros() => {
+                UrdfError::at(*node, UrdfProblem::OnlyMacros)
+            }
             (Some(node), _) if is_incomplete => {
                 UrdfError::at(*node, UrdfProblem::Xacro { found: tag(*node) })
             }
@@ -127,15 +112,15 @@ impl<'a> Ignored<'a> {
 }
 
 fn is_xacro(node: Node<'_, '_>) -> bool {
-    node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro"))
+    prefix(node) == Some("xacro")
 }
 
 /// `<prefix:name>` as in the file.
 fn tag(node: Node<'_, '_>) -> String {
-    let name = node.tag_name();
-    match name.namespace().and_then(|uri| node.lookup_prefix(uri)) {
-        Some(prefix) => format!("<{prefix}:{}>", name.name()),
-        None => format!("<{}>", name.name()),
+    let name = node.tag_name().name();
+    match prefix(node) {
+        Some(prefix) => format!("<{prefix}:{name}>"),
+        None => format!("<{name}>"),
     }
 }
 

@@ -5,6 +5,7 @@ use super::error::{UrdfError, UrdfProblem};
 use super::pose::pose;
 use super::several::{Several, in_turn};
 use crate::model::{Joint, JointKind, Limits, ModelWarning};
+use crate::number_text::{short, unlike};
 use nalgebra::Vector3;
 use urdf_rs::{JointLimit, JointType};
 
@@ -24,21 +25,24 @@ pub(super) fn read_hinge<'a>(element: Element<'a>, name: &'a str) -> Result<Hing
     Ok(Hinge { element, name, kind: element.required_text("type")?, parent, child })
 }
 
-/// The rest of the joint: one, or those of one degree of freedom that make it, in turn.
+/// The rest of the joint: one, or those of one degree of freedom that make it, in turn; `is_taken` says which names
+/// the file has.
 pub(super) fn read_joints(
     hinge: &Hinge<'_>,
+    is_taken: impl Fn(&str) -> bool,
     warnings: &mut Vec<ModelWarning>,
 ) -> Result<Vec<Joint>, UrdfError> {
     let element = Element { unread: unread(hinge.kind), ..hinge.element };
     let read: urdf_rs::Joint = element.read()?;
     let (axis, origin) = (Vector3::from(*read.axis.xyz), pose(element, &read.origin)?);
+    let several = |several, warnings| Ok(in_turn(hinge, several, origin, is_taken, warnings));
     let kind = match read.joint_type {
         JointType::Revolute | JointType::Continuous => JointKind::Revolute(axis),
         JointType::Prismatic => JointKind::Prismatic(axis),
         JointType::Fixed => return Ok(vec![Joint::new(hinge.name, JointKind::Fixed, origin)]),
-        JointType::Planar => return Ok(in_turn(hinge, Several::Planar(axis), origin, warnings)),
-        JointType::Spherical => return Ok(in_turn(hinge, Several::Ball, origin, warnings)),
-        JointType::Floating => return Err(unknown_kind(&element, hinge.kind)),
+        JointType::Planar => return several(Several::Planar(axis), warnings),
+        JointType::Spherical => return several(Several::Ball, warnings),
+        JointType::Floating => return several(Several::Floating, warnings),
     };
     let mut joint = Joint::new(hinge.name, kind, origin);
     if let Some(limit) = element.child("limit") {
@@ -66,12 +70,12 @@ fn unread(kind: &str) -> &'static [&'static str] {
     match kind {
         "continuous" => &["lower", "upper"],
         "planar" => &["limit", "dynamics"],
-        "fixed" | "ball" | "spherical" => &["axis", "limit", "dynamics"],
+        "fixed" | "ball" | "spherical" | "floating" => &["axis", "limit", "dynamics"],
         _ => &[],
     }
 }
 
-/// A type of joint that there is not, or not there.
+/// A type of joint that there is not.
 pub(super) fn unknown_kind(element: &Element<'_>, kind: &str) -> UrdfError {
     let joint = element.text("name").unwrap_or_default().to_owned();
     element.fail(UrdfProblem::JointType { joint, kind: kind.to_owned() })
@@ -102,17 +106,23 @@ fn limits(
         let bound = |value: f64, none: f64| if value.is_finite() { value } else { none };
         (bound(read.lower, f64::NEG_INFINITY), bound(read.upper, f64::INFINITY))
     });
+    let mut note = |text: String| warnings.push(ModelWarning::Note(format!("joint '{name}': {text}")));
+    let position = position.filter(|&(low, high)| {
+        if low > high {
+            note(format!(
+                "lower limit {} is above upper limit {}: read as none",
+                unlike(low, &[high]),
+                short(high)
+            ));
+        }
+        low <= high && (low > f64::NEG_INFINITY || high < f64::INFINITY)
+    });
     let mut largest = |what: &str, value: f64| {
         // Gazebo writes -1 where a bound does not hold
         if value.is_finite() && value < 0.0 {
-            let note = format!("joint '{name}': its {what} limit is below zero, which is read as none");
-            warnings.push(ModelWarning::Note(note));
+            note(format!("its {what} limit is below zero, which is read as none"));
         }
         (value.is_finite() && value >= 0.0).then_some(value)
     };
-    Limits {
-        position: position.filter(|&(low, high)| low > f64::NEG_INFINITY || high < f64::INFINITY),
-        velocity: largest("velocity", read.velocity),
-        effort: largest("effort", read.effort),
-    }
+    Limits { position, velocity: largest("velocity", read.velocity), effort: largest("effort", read.effort) }
 }

@@ -24,7 +24,7 @@ pub(super) fn read_link(
 ) -> Result<Link, UrdfError> {
     let mut result = Link::new(name, None);
     if let Some(inertial) = link.child("inertial") {
-        result.inertial = Some(read_inertial(inertial, around)?);
+        result.inertial = read_inertial(inertial, around)?;
     }
     for change in around.changes {
         change.apply(&mut result).map_err(|error| link.fail(UrdfProblem::Model(error)))?;
@@ -50,11 +50,27 @@ pub(super) fn read_link(
     Ok(result)
 }
 
-fn read_inertial(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<Inertial, UrdfError> {
+/// Mass and inertia; none where no mass is given, as for urdfdom.
+fn read_inertial(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<Option<Inertial>, UrdfError> {
+    let owner = element.owner;
+    let mut note = |text: String| around.warnings.push(ModelWarning::Note(text));
+    if element.child("mass").is_none() {
+        note(format!("the <inertial> of {owner} is not read: {owner} has no <mass>"));
+        return Ok(None);
+    }
     let urdf_rs::Inertial { origin, mass, inertia: given } = element.read()?;
-    if mass.value != 0.0 && element.child("inertia").is_none() {
-        let note = format!("{} has a mass but no <inertia>: read as a point mass", element.owner);
-        around.warnings.push(ModelWarning::Note(note));
+    match element.child("inertia") {
+        None if mass.value != 0.0 => {
+            note(format!("{owner} has a mass but no <inertia>: read as a point mass"));
+        }
+        None => {}
+        Some(inertia) => {
+            let is_missing = |product: &&str| inertia.text(product).is_none();
+            let missing: Vec<&str> = ["ixy", "ixz", "iyz"].into_iter().filter(is_missing).collect();
+            if !missing.is_empty() {
+                note(format!("the <inertia> of {owner} has no {}: read as 0", missing.join(", ")));
+            }
+        }
     }
     let inertia = Matrix3::new(
         given.ixx, given.ixy, given.ixz, //
@@ -64,7 +80,8 @@ fn read_inertial(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<
     // given in the axes of <origin>; wanted in the link's: I = R I' Rᵀ
     let origin = pose(element, &origin)?;
     let rot = origin.rotation.to_rotation_matrix().into_inner();
-    Ok(Inertial { mass: mass.value, com: origin.translation.vector, inertia: rotated(&rot, &inertia) })
+    let (com, inertia) = (origin.translation.vector, rotated(&rot, &inertia));
+    Ok(Some(Inertial { mass: mass.value, com, inertia }))
 }
 
 /// `R I Rᵀ`, symmetric to the last bit.

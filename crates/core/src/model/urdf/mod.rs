@@ -1,8 +1,8 @@
 //! Robots from URDF files.
 //!
-//! roxmltree parses: it knows lines and namespaces. urdf-rs says what the elements of a URDF hold: its types
-//! take their fields from that tree by serde (`from_tree`), the first of each element, numbers checked by one
-//! table (`schema`). Its own reading of text skips what is not a number inside a vector (`1,0 0 0 0` reads as
+//! roxmltree parses: it knows lines; what it refuses and tinyxml2 takes is rewritten first (`tidy`). urdf-rs says
+//! what the elements of a URDF hold: its types take their fields from that tree by serde (`from_tree`), the first of
+//! each element, numbers checked by one table (`schema`). Its own reading of text skips what is not a number inside a vector (`1,0 0 0 0` reads as
 //! zeros), takes a missing inertial for zero mass and `<drake:joint>` for a joint, refuses files that repeat an
 //! element or lack `velocity`, and its errors name neither link nor line.
 //!
@@ -25,19 +25,23 @@ mod pose;
 mod refusal;
 mod schema;
 mod several;
+mod tidy;
+mod tokens;
 
 pub use error::{UrdfError, UrdfProblem};
 
 use super::{LinkChange, Model, ModelWarning};
-use assemble::assemble;
-use element::Element;
-use foreign::{Ignored, parse, with_declared_prefixes};
-use joint::read_hinge;
+use assemble::{NamedLink, assemble};
+use element::{Element, has_expression};
+use foreign::{Ignored, parse};
+use joint::{Hinge, read_hinge};
 use link::Surroundings;
 use material::Materials;
 use mesh::Meshes;
+use pose::quaternion_warning;
 use roxmltree::{Error as XmlError, Node};
 use std::path::{Path, PathBuf};
+use tidy::tidy;
 
 /// Loads a robot; its root link floats.
 ///
@@ -50,7 +54,7 @@ use std::path::{Path, PathBuf};
 pub fn from_file(path: &Path, packages: &[PathBuf], changes: &[LinkChange]) -> Result<Model, UrdfError> {
     let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned));
     first_look::read(path)
-        .and_then(|xml| from_str(&xml, folder.as_deref(), packages, changes))
+        .and_then(|(xml, note)| read(&xml, folder.as_deref(), packages, changes, note))
         .map_err(|error| error.in_file(path))
 }
 
@@ -64,21 +68,41 @@ pub fn from_str(
     packages: &[PathBuf],
     changes: &[LinkChange],
 ) -> Result<Model, UrdfError> {
+    read(xml, folder, packages, changes, None)
+}
+
+fn read(
+    xml: &str,
+    folder: Option<&Path>,
+    packages: &[PathBuf],
+    changes: &[LinkChange],
+    note: Option<ModelWarning>,
+) -> Result<Model, UrdfError> {
     first_look::check(xml)?;
-    let declared = with_declared_prefixes(xml);
-    let document = parse(declared.as_deref().unwrap_or(xml)).map_err(not_xml)?;
+    let mut notes = Vec::from_iter(note);
+    let tidied: String;
+    let document = match parse(xml) {
+        Ok(document) => document,
+        Err(_) => {
+            let (text, note) = tidy(xml)?;
+            notes.extend(note);
+            tidied = text;
+            parse(&tidied).map_err(not_xml)?
+        }
+    };
     let robot = document.root_element();
     check_root(robot)?;
     let ignored = Ignored::new(robot);
     let meshes = Meshes::new(folder, packages);
-    read_robot(robot, meshes, changes, ignored.warnings()).map_err(|error| ignored.explain(error))
+    notes.extend(ignored.warnings());
+    read_robot(robot, meshes, changes, notes).map_err(|error| ignored.explain(error))
 }
 
 fn read_robot(
     robot: Node<'_, '_>,
     meshes: Meshes<'_>,
     changes: &[LinkChange],
-    warnings: Vec<ModelWarning>,
+    mut warnings: Vec<ModelWarning>,
 ) -> Result<Model, UrdfError> {
     // every error says whose fault it is: the names come first, and outlive the elements
     let names = |tag| owners(robot, tag);
@@ -94,6 +118,8 @@ fn read_robot(
         .zip(&joint_owners)
         .map(|(joint, owner)| read_hinge(Element { owner, ..joint }, joint.required_text("name")?))
         .collect::<Result<Vec<_>, UrdfError>>()?;
+    warnings.extend(quaternion_warning(robot.node));
+    warnings.extend(expression_warning(&links, &hinges));
     if links.is_empty() {
         return Err(robot.fail(UrdfProblem::NoLinks));
     }
@@ -114,6 +140,14 @@ fn owners(robot: Node<'_, '_>, tag: &'static str) -> Vec<String> {
         .collect()
 }
 
+/// A remark on names that xacro would have replaced; they are names all the same.
+fn expression_warning(links: &[NamedLink<'_>], hinges: &[Hinge<'_>]) -> Option<ModelWarning> {
+    let mut names = links.iter().map(|(name, _)| *name).chain(hinges.iter().map(|hinge| hinge.name));
+    let name = names.find(|name| has_expression(name))?;
+    let note = format!("the name '{name}' is xacro, kept as it is; expand the file with xacro for another");
+    Some(ModelWarning::Note(note))
+}
+
 /// Refuses a document of another kind.
 fn check_root(robot: Node<'_, '_>) -> Result<(), UrdfError> {
     let root = robot.tag_name().name();
@@ -124,13 +158,8 @@ fn check_root(robot: Node<'_, '_>) -> Result<(), UrdfError> {
 }
 
 fn not_xml(error: XmlError) -> UrdfError {
-    let problem = match &error {
-        XmlError::DtdDetected => UrdfProblem::DocumentType,
-        other => {
-            // the parser ends its message with the place, which we put in front
-            let (reason, place) = (other.to_string(), format!(" at {}", other.pos()));
-            UrdfProblem::NotXml { reason: reason.strip_suffix(&place).unwrap_or(&reason).to_owned() }
-        }
-    };
-    UrdfError::new(Some(error.pos().row), problem)
+    // the parser ends its message with the place, which we put in front
+    let (reason, place) = (error.to_string(), format!(" at {}", error.pos()));
+    let reason = reason.strip_suffix(&place).unwrap_or(&reason).to_owned();
+    UrdfError::new(Some(error.pos().row), UrdfProblem::NotXml { reason })
 }

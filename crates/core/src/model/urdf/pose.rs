@@ -2,10 +2,12 @@
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
+use crate::model::ModelWarning;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use roxmltree::Node;
 
 /// Pose of what `element` describes: as urdf-rs read its origin (`xyz` in m, `rpy` in rad about the
-/// fixed axes x, y, z in turn), or with the `quat_xyzw` of URDF 1.1, which urdf-rs does not keep.
+/// fixed axes x, y, z in turn), or with the `quat_xyzw` of later versions, which urdf-rs does not keep.
 pub(super) fn pose(element: Element<'_>, read: &urdf_rs::Pose) -> Result<Isometry3<f64>, UrdfError> {
     let [roll, pitch, yaw] = *read.rpy;
     let rotation = match element.child("origin").map(quaternion).transpose()?.flatten() {
@@ -17,6 +19,9 @@ pub(super) fn pose(element: Element<'_>, read: &urdf_rs::Pose) -> Result<Isometr
 
 fn quaternion(origin: Element<'_>) -> Result<Option<UnitQuaternion<f64>>, UrdfError> {
     let Some(text) = origin.text("quat_xyzw") else { return Ok(None) };
+    if !knows_quaternions(origin.node.document().root_element()) {
+        return Ok(None);
+    }
     let [x, y, z, w] = origin.numbers("quat_xyzw", text, 4)?;
     let owner = origin.owner.to_owned();
     if origin.text("rpy").is_some() {
@@ -25,4 +30,23 @@ fn quaternion(origin: Element<'_>) -> Result<Option<UnitQuaternion<f64>>, UrdfEr
     let unit = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), f64::MIN_POSITIVE);
     let zero = UrdfProblem::ZeroQuaternion { owner, text: text.to_owned() };
     unit.ok_or_else(|| origin.fail(zero)).map(Some)
+}
+
+/// Whether the version of the format has quaternions: any after 1.0, which files have that do not say.
+fn knows_quaternions(robot: Node<'_, '_>) -> bool {
+    robot.attribute("version").is_some_and(|version| !matches!(version.trim(), "1.0" | "1"))
+}
+
+/// A remark on quaternions that are not read.
+pub(super) fn quaternion_warning(robot: Node<'_, '_>) -> Option<ModelWarning> {
+    if knows_quaternions(robot) || !robot.document().input_text().contains("quat_xyzw") {
+        return None;
+    }
+    let is_origin = |node: &Node<'_, '_>| node.has_tag_name("origin") && node.has_attribute("quat_xyzw");
+    let origin = robot.descendants().find(is_origin)?;
+    let line = origin.document().text_pos_at(origin.range().start).row;
+    let note = format!(
+        "line {line}: quat_xyzw is not read in version 1.0; write <robot version=\"1.1\"> or use rpy"
+    );
+    Some(ModelWarning::Note(note))
 }

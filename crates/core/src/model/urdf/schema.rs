@@ -6,7 +6,9 @@ use super::error::{UrdfError, UrdfProblem};
 /// What an attribute holds.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
-    /// A name, a path.
+    /// A name of the file's own choice.
+    Name,
+    /// A path, a name that means something.
     Text,
     /// As many finite numbers.
     Numbers(usize),
@@ -15,7 +17,7 @@ pub(super) enum Kind {
     /// A finite number, or `inf` where there is no limit.
     Limit,
 }
-use Kind::{Limit, Numbers, Sizes, Text};
+use Kind::{Limit, Name, Numbers, Sizes, Text};
 
 /// An attribute, what it holds, and what stands for it where the file does not give it. One without
 /// such a text has urdf-rs' default, or must be given.
@@ -24,8 +26,8 @@ pub(super) type Attribute = (&'static str, Kind, Option<&'static str>);
 /// The attributes that are read of an element.
 pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
     match tag {
-        "joint" => &[("name", Text, None), ("type", Text, None)],
-        "parent" | "child" => &[("link", Text, None)],
+        "joint" => &[("name", Name, None), ("type", Text, None)],
+        "parent" | "child" => &[("link", Name, None)],
         "origin" => &[("xyz", Numbers(3), None), ("rpy", Numbers(3), None)],
         "axis" => &[("xyz", Numbers(3), Some("1 0 0"))],
         "limit" => &[
@@ -70,6 +72,7 @@ pub(super) fn elements(tag: &str) -> &'static [&'static str] {
 pub(super) fn check(element: &Element<'_>, attribute: Attribute, text: &str) -> Result<(), UrdfError> {
     let (name, kind, _) = attribute;
     let (count, is_size) = match kind {
+        Name => return Ok(()),
         Text => return element.refuse_xacro(text),
         Limit if is_infinite(text) => return Ok(()),
         Limit => (1, false),

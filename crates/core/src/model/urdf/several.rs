@@ -10,50 +10,67 @@ pub(super) enum Several {
     Planar(Vector3<f64>),
     /// Turns about any axis.
     Ball,
+    /// Moves in any way.
+    Floating,
 }
 
-/// The joints in turn from the parent outward; their names are the joint's with an ending.
+/// The joints in turn from the parent outward; their names are the joint's with an ending, and a number where the
+/// file has such a name already.
 ///
 /// A plane: along its two axes, then about its normal. A ball: about z, y, x, which are the yaw,
-/// pitch and roll of the child in the parent, as in URDF's own `rpy`.
+/// pitch and roll of the child in the parent, as in URDF's own `rpy`. Floating: along x, y, z, then as a ball.
 pub(super) fn in_turn(
     hinge: &Hinge<'_>,
     several: Several,
     mut origin: Isometry3<f64>,
+    is_taken: impl Fn(&str) -> bool,
     warnings: &mut Vec<ModelWarning>,
 ) -> Vec<Joint> {
     let name = hinge.name;
+    let about = |axis: Vector3<f64>| JointKind::Revolute(axis);
+    let turning =
+        [("_yaw", about(Vector3::z())), ("_pitch", about(Vector3::y())), ("_roll", about(Vector3::x()))];
     let (parts, remark) = match several {
         // an axis of length zero is refused where the joint is built
-        Several::Planar(normal) if normal.norm() == 0.0 => (vec![("", JointKind::Revolute(normal))], ""),
+        Several::Planar(normal) if normal.norm() == 0.0 => (vec![("", about(normal))], ""),
         Several::Planar(normal) => {
             let axes = rotation_to_axis(&normal);
             let along = |k: usize| JointKind::Prismatic(axes.column(k).into_owned());
-            let parts = vec![("_x", along(0)), ("_y", along(1)), ("_yaw", JointKind::Revolute(normal))];
+            let parts = vec![("_x", along(0)), ("_y", along(1)), ("_yaw", about(normal))];
             (parts, "is planar: two that slide and one that turns stand for it")
         }
         Several::Ball => {
-            let about = |axis: Vector3<f64>| JointKind::Revolute(axis);
-            let parts = vec![
-                ("_yaw", about(Vector3::z())),
-                ("_pitch", about(Vector3::y())),
-                ("_roll", about(Vector3::x())),
-            ];
-            (parts, "is a ball joint: three that turn stand for it, singular where the pitch is ±90°")
+            let remark = "is a ball joint: three that turn stand for it, singular where the pitch is ±90°";
+            (turning.to_vec(), remark)
+        }
+        Several::Floating => {
+            let along = |axis: Vector3<f64>| JointKind::Prismatic(axis);
+            let sliding =
+                [("_x", along(Vector3::x())), ("_y", along(Vector3::y())), ("_z", along(Vector3::z()))];
+            let remark = "is floating: three that slide and three that turn stand for it, singular where the pitch is ±90°";
+            ([sliding, turning].concat(), remark)
         }
     };
     let dropped = ["limit", "dynamics", "mimic"].into_iter().filter(|tag| hinge.element.child(tag).is_some());
     let dropped: Vec<String> = dropped.map(|tag| format!("<{tag}>")).collect();
     let lost =
         if dropped.is_empty() { String::new() } else { format!("; its {} is not read", dropped.join(", ")) };
-    let names: Vec<String> = parts.iter().map(|(ending, _)| format!("'{name}{ending}'")).collect();
-    if names.len() > 1 {
+    let mut placed = || std::mem::replace(&mut origin, Isometry3::identity());
+    let joint = |(ending, kind)| Joint::new(&free(format!("{name}{ending}"), &is_taken), kind, placed());
+    let joints: Vec<Joint> = parts.into_iter().map(joint).collect();
+    if joints.len() > 1 {
+        let names: Vec<String> = joints.iter().map(|joint| format!("'{}'", joint.name)).collect();
         let note = format!("joint '{name}' {remark}, {}{lost}", names.join(", "));
         warnings.push(ModelWarning::Note(note));
     }
-    let joint = |(ending, kind): (&str, JointKind)| {
-        let placed = std::mem::replace(&mut origin, Isometry3::identity());
-        Joint::new(&format!("{name}{ending}"), kind, placed)
-    };
-    parts.into_iter().map(joint).collect()
+    joints
+}
+
+/// The name, or the first of `NAME_2`, `NAME_3`, … that is not taken.
+fn free(name: String, is_taken: impl Fn(&str) -> bool) -> String {
+    if !is_taken(&name) {
+        return name;
+    }
+    let mut numbered = (2..).map(|number: u32| format!("{name}_{number}"));
+    numbered.find(|name| !is_taken(name)).expect("a file has fewer names than there are numbers")
 }

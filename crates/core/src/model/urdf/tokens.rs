@@ -1,0 +1,104 @@
+//! A text cut into tags, comments and what stands between them, none of them checked.
+//!
+//! One pass without recursion, so that neither a deep document nor an entity bomb reaches code
+//! that could exhaust the stack or the memory.
+
+/// What a piece of text is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Text,
+    Comment,
+    /// `<?…?>`, the XML declaration among them.
+    Instruction,
+    /// `<!DOCTYPE …>` and the declarations inside.
+    Declaration,
+    CData,
+    Open,
+    Close,
+    /// A tag that opens and closes.
+    Empty,
+}
+
+/// A piece of text.
+#[derive(Clone, Copy)]
+pub(super) struct Token<'a> {
+    pub(super) kind: Kind,
+    /// Where it starts, in bytes.
+    pub(super) at: usize,
+    pub(super) text: &'a str,
+}
+
+impl Token<'_> {
+    pub(super) fn is_tag(&self) -> bool {
+        matches!(self.kind, Kind::Open | Kind::Close | Kind::Empty)
+    }
+
+    pub(super) fn end(&self) -> usize {
+        self.at + self.text.len()
+    }
+}
+
+impl<'a> Token<'a> {
+    /// The name of a tag, and what stands after it.
+    pub(super) fn split_name(&self) -> (&'a str, &'a str) {
+        let rest = inside(self.text);
+        let rest = rest.strip_prefix('/').map_or(rest, str::trim_start);
+        let ends = |c: char| c.is_whitespace() || matches!(c, '/' | '>');
+        rest.split_at(rest.find(ends).unwrap_or(rest.len()))
+    }
+}
+
+/// A tag from its first letter on: tinyxml2 takes spaces before.
+fn inside(tag: &str) -> &str {
+    tag.strip_prefix('<').map_or(tag, str::trim_start)
+}
+
+/// All pieces in order: together they are the text.
+pub(super) fn tokens(xml: &str) -> impl Iterator<Item = Token<'_>> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let rest = xml.get(at..).filter(|rest| !rest.is_empty())?;
+        let (kind, length) = first(rest);
+        let token = Token { kind, at, text: &rest[..length] };
+        at += length;
+        Some(token)
+    })
+}
+
+/// Kind and length of the piece that a text starts with.
+fn first(rest: &str) -> (Kind, usize) {
+    let until = |end: &str| rest.find(end).map_or(rest.len(), |at| at + end.len());
+    if !rest.starts_with('<') {
+        return (Kind::Text, rest.find('<').unwrap_or(rest.len()));
+    }
+    for (start, end, kind) in [
+        ("<!--", "-->", Kind::Comment),
+        ("<![CDATA[", "]]>", Kind::CData),
+        ("<!", ">", Kind::Declaration),
+        ("<?", "?>", Kind::Instruction),
+    ] {
+        if rest.starts_with(start) {
+            return (kind, until(end));
+        }
+    }
+    let length = tag_length(rest);
+    let kind = match (inside(rest).starts_with('/'), rest[..length].ends_with("/>")) {
+        (true, _) => Kind::Close,
+        (false, true) => Kind::Empty,
+        (false, false) => Kind::Open,
+    };
+    (kind, length)
+}
+
+fn tag_length(tag: &str) -> usize {
+    let mut quote = None;
+    for (at, byte) in tag.bytes().enumerate() {
+        match (quote, byte) {
+            (None, b'>') => return at + 1,
+            (None, b'"' | b'\'') => quote = Some(byte),
+            (Some(open), _) if open == byte => quote = None,
+            _ => {}
+        }
+    }
+    tag.len()
+}
