@@ -20,6 +20,7 @@ mod link;
 mod material;
 mod mesh;
 mod pose;
+mod rewrite;
 mod schema;
 mod several;
 mod tidy;

@@ -67,7 +67,6 @@ pub(super) fn tokens(xml: &str) -> impl Iterator<Item = Token<'_>> {
 
 /// Kind and length of the piece that a text starts with.
 fn first(rest: &str) -> (Kind, usize) {
-    let until = |end: &str| rest.find(end).map_or(rest.len(), |at| at + end.len());
     if !rest.starts_with('<') {
         return (Kind::Text, rest.find('<').unwrap_or(rest.len()));
     }
@@ -78,7 +77,9 @@ fn first(rest: &str) -> (Kind, usize) {
         ("<?", "?>", Kind::Instruction),
     ] {
         if rest.starts_with(start) {
-            return (kind, until(end));
+            // the dashes that open a comment do not end it
+            let length = rest[start.len()..].find(end).map(|at| start.len() + at + end.len());
+            return (kind, length.unwrap_or(rest.len()));
         }
     }
     let length = tag_length(rest);
