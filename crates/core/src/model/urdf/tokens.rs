@@ -76,9 +76,9 @@ fn first(rest: &str) -> (Kind, usize) {
         ("<!", ">", Kind::Declaration),
         ("<?", "?>", Kind::Instruction),
     ] {
-        if rest.starts_with(start) {
+        if let Some(inside) = rest.strip_prefix(start) {
             // the dashes that open a comment do not end it
-            let length = rest[start.len()..].find(end).map(|at| start.len() + at + end.len());
+            let length = inside.find(end).map(|at| start.len() + at + end.len());
             return (kind, length.unwrap_or(rest.len()));
         }
     }
