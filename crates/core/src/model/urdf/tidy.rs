@@ -93,7 +93,7 @@ mod tests {
             ),
             ("<r/><r><s/></r>", "<r/>"),
             ("<r><!--><s/>--><a:b/></r>", "<r xmlns:a=\"urn:prefix:a\"><a:b/></r>"),
-            ("<r>< a\u{b}b='1'/><\na></\na b='2'></ r>", "<r><a b='1'/><a\n></a\n></r>"),
+            ("<r>< a\u{b}b='1'/><\na></\na b='2'></ r>", "<r><a  b='1'/><a\n></a\n></r>"),
             ("<xml:a xmlns:b='1' :c='2'/>", "<xml_a _c='2'/>"),
             ("<r/>\n<robot><s/></robot>", "\n<robot><s/></robot>"),
             ("<r><s></r>", "<r><s></r>"),
