@@ -34,7 +34,7 @@ pub(super) fn parse(xml: &str) -> Result<Document<'_>, XmlError> {
 pub(super) struct Ignored<'a> {
     /// Outermost tags of xacro, anywhere in the file.
     xacro: Vec<Node<'a, 'a>>,
-    /// Children of the robot with another namespace.
+    /// Children of the robot with another prefix.
     prefixed: Vec<Node<'a, 'a>>,
     /// Children of the robot that URDF does not have.
     unknown: Vec<Node<'a, 'a>>,
@@ -42,7 +42,12 @@ pub(super) struct Ignored<'a> {
 
 impl<'a> Ignored<'a> {
     pub(super) fn new(robot: Node<'a, 'a>) -> Self {
-        let is_outermost = |node: &Node<'_, '_>| is_xacro(*node) && !node.ancestors().skip(1).any(is_xacro);
+        let mut last_ends = 0;
+        let is_outermost = |node: &Node<'_, '_>| {
+            let is_found = is_xacro(*node) && node.range().start >= last_ends;
+            last_ends = if is_found { node.range().end } else { last_ends };
+            is_found
+        };
         let own = prefix(robot);
         let elements = || robot.children().filter(Node::is_element).filter(|node| !is_xacro(*node));
         let is_known = |node: &Node<'_, '_>| {

@@ -23,6 +23,7 @@ mod mesh_name;
 mod mesh_near;
 mod pose;
 mod refusal;
+mod rewrite;
 mod schema;
 mod several;
 mod tidy;

@@ -47,7 +47,8 @@ pub(super) fn in_turn(
             let along = |axis: Vector3<f64>| JointKind::Prismatic(axis);
             let sliding =
                 [("_x", along(Vector3::x())), ("_y", along(Vector3::y())), ("_z", along(Vector3::z()))];
-            let remark = "is floating: three that slide and three that turn stand for it, singular where the pitch is ±90°";
+            let remark = "is floating: three that slide and three that turn stand for it, singular where the pitch is \
+                          ±90°";
             ([sliding, turning].concat(), remark)
         }
     };

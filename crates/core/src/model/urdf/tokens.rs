@@ -67,7 +67,6 @@ pub(super) fn tokens(xml: &str) -> impl Iterator<Item = Token<'_>> {
 
 /// Kind and length of the piece that a text starts with.
 fn first(rest: &str) -> (Kind, usize) {
-    let until = |end: &str| rest.find(end).map_or(rest.len(), |at| at + end.len());
     if !rest.starts_with('<') {
         return (Kind::Text, rest.find('<').unwrap_or(rest.len()));
     }
@@ -77,8 +76,10 @@ fn first(rest: &str) -> (Kind, usize) {
         ("<!", ">", Kind::Declaration),
         ("<?", "?>", Kind::Instruction),
     ] {
-        if rest.starts_with(start) {
-            return (kind, until(end));
+        if let Some(inside) = rest.strip_prefix(start) {
+            // the dashes that open a comment do not end it
+            let length = inside.find(end).map(|at| start.len() + at + end.len());
+            return (kind, length.unwrap_or(rest.len()));
         }
     }
     let length = tag_length(rest);
