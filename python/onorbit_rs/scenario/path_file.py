@@ -46,7 +46,7 @@ def two_lines(text: str, where: str, satellite: str | None = None) -> tuple[str,
         found = count(len(lines), "line", "lines")
         raise ElementSetError(
             f"{where} holds {found}: give the two lines of one TLE, with a name before them or not,"
-            " or select one of several with 'satellite', by its name or catalogue number"
+            " or select one of several by 'satellite': its name or catalogue number"
         )
     return lines[0], lines[1]
 
