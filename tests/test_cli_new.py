@@ -125,7 +125,7 @@ def dynamics(urdf: str, values: str) -> str:
 def test_quick_dampers_are_left_to_the_adaptive_integrator(
     quick: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Known before, or found as fixed steps fail."""
+    """Detected before the first run, or when fixed steps fail."""
     monkeypatch.setattr(trial, "_QUICK", quick)
     text, summary = drafted(dynamics(arm(SEVEN[:2], names="tool"), 'damping="200"'), tmp_path)
     assert "\n  integrator: dormand_prince " in text

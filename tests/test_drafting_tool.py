@@ -62,14 +62,14 @@ def test_a_wrist_in_the_middle_of_an_arm_is_no_tool() -> None:
 @pytest.mark.parametrize(
     ("joint", "tool"), [("gripper", "link_6"), ("gripper_roll", "link_7"), ("j7", "link_7")]
 )
-def test_the_joint_that_opens_a_gripper_is_none_of_the_arm(joint: str, tool: str) -> None:
-    """One jaw stands on the last link, as on so100 and z1; with a gripper that turns the arm goes on."""
+def test_the_joint_that_opens_a_gripper_is_not_part_of_the_arm(joint: str, tool: str) -> None:
+    """One jaw on the last link (so100, z1) is not part of the arm; a joint that turns the gripper is."""
     found = find_arm(oo.Model.from_urdf_string(arm([*SEVEN, (joint, "revolute", "0 0 1")])))
     assert found is not None and found.tool == tool
 
 
 def test_a_thumb_alone_makes_no_palm() -> None:
-    """On a hand without an arm the finger with most joints moves, to its tip."""
+    """A hand without an arm moves the finger with the most joints, up to its tip."""
     urdf = arm(SEVEN[:4]).replace("link_", "thumb_")
     assert find_fingers(oo.Model.from_urdf_string(urdf)) == (set(), set())
     found = find_arm(oo.Model.from_urdf_string(urdf))
