@@ -122,7 +122,7 @@ class Robot:
 def text(seed: int, links: int = 12, root: str = "body") -> str:
     """Return a robot with this number of links or one more.
 
-    The ``root`` is a ``body``, or a massless link with one (``world``) or two (``world of two``) fixed bodies.
+    The ``root`` is a ``body``, or a massless link with one (``world``) or two (``world of two``) bodies.
     """
     robot = Robot(np.random.default_rng(seed))
     if root == "body":

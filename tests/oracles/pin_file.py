@@ -31,7 +31,7 @@ def links(model: Any) -> list[str]:
 
 
 def deviations(model: oo.Model, theirs: Any, seed: int, states: int = 2) -> dict[str, float]:
-    """Return the deviations relative to Pinocchio's largest entry, the worst of states drawn from ``seed``."""
+    """Return the worst deviations relative to Pinocchio's largest entry; ``seed`` draws the states."""
     robot = pin_robot.PinRobot(theirs, model.joint_names)
     rng = np.random.default_rng(seed)
     largest = {"mass": deviation(model.mass, pin.computeTotalMass(theirs))}

@@ -17,7 +17,7 @@ from onorbit_rs.cli.options import (
     in_words,
     of_file,
 )
-from onorbit_rs.cli.pictures import claim_picture
+from onorbit_rs.cli.pictures import claim_picture, save_portrait
 from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim
 from onorbit_rs.counting import count
@@ -75,11 +75,7 @@ def new(
     with doing("trying motions", quiet=quiet), worded(COMMAND_LINE):
         source = Source(robot, **given, bus=bus, at=at, prefix=prefix)
         made = draft(source, tool=tool, beside=beside, command=written_by)
-    if picture is not None:
-        from onorbit_rs.figures import portrait, save
-
-        marked = [frame for frame in (at, made.tool) if frame is not None]
-        save(portrait(made.model, made.q, marked), picture)
+    save_portrait(picture, made.model, made.q, [frame for frame in (at, made.tool) if frame is not None])
     if out is None:
         typer.echo(made.text, nl=False)
         return
