@@ -32,14 +32,13 @@ LARGEST = 1e5
 
 def shapes(model: Model) -> list[Shape]:
     """Return all shapes to draw for a robot; warn about mesh files that exist but cannot be drawn."""
-    unreadable: dict[str, str] = {}
-    found, lost = _drawable(model.visuals, unreadable)
-    for message in unreadable.values():
+    found, lost, messages = _drawable(model.visuals)
+    for message in messages:
         _warn_once(message)
     links = {visual.link for visual in lost} if model.visuals else set(model.body_names)
     bare = links - {shape.link for shape in found}
     # no warning about the meshes of collision shapes, which are only a substitute
-    solid, _ = _drawable([shape for shape in model.collisions if shape.link in bare], {})
+    solid, _, _ = _drawable([shape for shape in model.collisions if shape.link in bare])
     return [*found, *solid, *_stick_figure(model, bare, {shape.link for shape in solid})]
 
 
@@ -51,16 +50,14 @@ def _warn_once(message: str) -> None:
 
 def missing_meshes(model: Model) -> list[str]:
     """Return the names of mesh files that do not exist or cannot be drawn, without duplicates."""
-    _, lost = _drawable(model.visuals, {})
+    _, lost, _ = _drawable(model.visuals)
     return list(dict.fromkeys(visual.filename or "" for visual in lost))
 
 
-def _drawable(visuals: Sequence[Visual], unreadable: dict[str, str]) -> tuple[list[Shape], list[Visual]]:
-    """Return the drawable shapes and the visuals that cannot be drawn.
-
-    A message for each file that exists but cannot be drawn is added to ``unreadable``.
-    """
+def _drawable(visuals: Sequence[Visual]) -> tuple[list[Shape], list[Visual], list[str]]:
+    """Return the drawable shapes, the visuals that cannot be drawn, and a message for each unusable file."""
     found, lost = [], []
+    messages: dict[str, str] = {}
     for visual in visuals:
         try:
             found.append(_of(visual))
@@ -69,8 +66,8 @@ def _drawable(visuals: Sequence[Visual], unreadable: dict[str, str]) -> tuple[li
         except OnOrbitError as error:
             lost.append(visual)
             message = f"the mesh of link {visual.link!r} is not drawn: {error}"
-            unreadable.setdefault(visual.filename or "", message)
-    return found, lost
+            messages.setdefault(visual.filename or "", message)
+    return found, lost, list(messages.values())
 
 
 def _stick_figure(model: Model, bare: set[str], solid: set[str]) -> Iterator[Shape]:

@@ -40,11 +40,11 @@ class Arm:
 
 
 def find_arm(model: Model, tool: str | None = None) -> Arm | None:
-    """The arm that a tool belongs to; without a tool the one that looks most like an arm.
+    """Return the arm that moves the frame ``tool``; without ``tool``, the arm of the most likely tool.
 
-    That is a frame with six joints or more behind it, then one on the link that carries fingers, then one
-    that is called as tools are, then one with many joints; frames on fingers are left out. None where
-    nothing moves, or where no joint moves the given tool.
+    Frames are preferred in this order: those moved by six joints or more, those on a link that carries
+    fingers, those with a usual name of a tool, those moved by many joints. Frames on fingers are left out.
+    Returns None if nothing moves, or if no joint moves ``tool``.
     """
     chains = _chains(model)
     fingers, palms = find_fingers(model)

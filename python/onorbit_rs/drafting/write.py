@@ -69,10 +69,10 @@ def draft(
     """
     source = Source(source) if isinstance(source, str) else source
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # said when the scenario is checked
+        warnings.simplefilter("ignore")  # they are repeated when the scenario is checked
         model = source.model()
         if tool is not None:
-            model.frame_pose(model.neutral(), tool)  # says which frames there are
+            model.frame_pose(model.neutral(), tool)  # raises FrameError with the known frames
         arm = find_arm(model, tool)
         if tool is not None and arm is None:
             raise FrameError(
