@@ -1,9 +1,9 @@
-"""What the border costs: pytest-benchmark, run by ``make bench-rust`` and not by ``make test``.
+"""Cost of calls from Python: pytest-benchmark, run by ``make bench-rust`` and not by ``make test``.
 
-Held: the bundled humanoid, random states drawn once, arrays of float64. Varied: the kernel, one state or a
-thousand, how a run's columns are looked at; for loading, the number of links. Kernels themselves are timed in
-Rust; ``call`` here is one that does next to nothing, so that what is left is the border. Batches run on one
-thread.
+Fixed: the bundled humanoid, random states drawn once, arrays of float64. Varied: the kernel, one state or a
+thousand, the way in which columns of a run are read; for loading, the number of links. Kernels themselves are
+timed in Rust; the kernel of group ``call`` does almost nothing, so that the cost of the call remains. Batches
+run on one thread.
 """
 
 from __future__ import annotations

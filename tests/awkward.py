@@ -1,4 +1,4 @@
-"""What is expected of each file of ``tests/fixtures/awkward``: robots with one oddity each, all our own.
+"""Expected result for each file of ``tests/fixtures/awkward``: robots with one oddity each.
 
 A file that Pinocchio reads loads here too, with a warning where its author may have meant something else,
 or is refused for a reason of physics.
@@ -14,7 +14,7 @@ FOLDER = Path(__file__).parent / "fixtures" / "awkward"
 
 @dataclass(frozen=True)
 class Expected:
-    """``text`` is part of the warning, or of the error; empty where the file loads silently."""
+    """``text`` is part of the warning or error; empty if the file loads without a warning."""
 
     loads: bool
     text: str = ""
@@ -29,7 +29,7 @@ def warns(text: str) -> Expected:
 
 
 def physics(text: str) -> Expected:
-    """Refused, although Pinocchio loads it: a mass is unknown, the links no tree, a motion undetermined."""
+    """Refused, although Pinocchio loads it: unknown mass, links that form no tree, undetermined motion."""
     return Expected(loads=False, text=text, is_physics=True)
 
 

@@ -1,4 +1,4 @@
-"""Mesh files of one box, 1 by 2 by 3 with a corner in the origin, in the formats that robots come with."""
+"""Generates mesh files of one box, 1 by 2 by 3 with a corner at the origin, in all supported formats."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ IDENTITY = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"
 
 
 def volume(mesh: Mesh) -> float:
-    """Inside the surface, m³; negative where its faces look inwards."""
+    """Return the volume inside the surface, m³; negative if its faces point inwards."""
     return float(sum(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0 for a, b, c in _corners(mesh)))
 
 
 def area(mesh: Mesh) -> float:
-    """Of the surface, m²."""
+    """Return the area of the surface, m²."""
     return float(
         sum(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0 for a, b, c in _corners(mesh))
     )
@@ -36,7 +36,7 @@ def _corners(mesh: Mesh) -> list[tuple[np.ndarray, ...]]:
 
 
 def picture(*colors: tuple[int, int, int]) -> bytes:
-    """A PNG of 2 by 2 pixels, rows from above."""
+    """Return a PNG of 2 by 2 pixels, rows from the top."""
     rows = b"".join(b"\0" + bytes(colors[k]) + bytes(colors[k + 1]) for k in (0, 2))
     chunks = (
         (b"IHDR", struct.pack(">2I5B", 2, 2, 8, 2, 0, 0, 0)),
@@ -88,7 +88,7 @@ def collada(
     material: str = "shine",
     corners: np.ndarray = CORNERS,
 ) -> str:
-    """The box as often as there are matrices, red or with a texture."""
+    """Return a file with one box per matrix, red or with a texture."""
     look = "<color>1 0 0 1</color>"
     images = params = ""
     if texture:

@@ -1,4 +1,4 @@
-"""Random robots as URDF texts, with the quirks of many authors mixed; Pinocchio reads them all."""
+"""Generates random robots as URDF texts with the quirks of many authors; Pinocchio reads all of them."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ SHAPES = (
 
 @dataclass
 class Robot:
-    """Elements so far, in the order they were made."""
+    """Elements of a robot, in the order in which they are generated."""
 
     rng: np.random.Generator
     elements: list[str] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
-    heavy: list[str] = field(default_factory=list)  # those whose body has a mass
+    heavy: list[str] = field(default_factory=list)  # links whose body has a mass
 
     def draw(self, options: Any) -> Any:
         return options[self.rng.integers(len(options))]
 
     def numbers(self, size: float, count: int = 3) -> str:
-        """As programs print them: all digits, six, or with an exponent."""
+        """Return random numbers as programs print them: all digits, six digits, or with an exponent."""
         form = self.draw(("{!r}", "{:.6g}", "{:+.8e}"))
         return "  ".join(form.format(float(x)) for x in self.rng.uniform(-size, size, count))
 
@@ -62,7 +62,7 @@ class Robot:
         return name
 
     def inertial(self) -> str:
-        """Of a cloud of points, so one that a body can have."""
+        """Return the inertial of a random cloud of points, which is physically valid."""
         mass = float(np.exp(self.rng.uniform(np.log(0.1), np.log(20))))
         points = self.rng.normal(scale=0.2, size=(6, 3))
         second = np.cov(points.T, bias=True)
@@ -98,7 +98,7 @@ class Robot:
         self.elements.append(f'<joint name="{name}" type="{kind}">{self.shuffled(*parts)}</joint>')
 
     def add_fixed(self) -> None:
-        """A frame, a part of a body that has a mass already, or another body."""
+        """Add a frame, a part of a body that has a mass, or a further rigid part, by a fixed joint."""
         parent = self.draw(self.heavy)
         nothing, spin = np.zeros((3, 3)), np.diag([1e-3, 1e-3, 2e-3])
         inertial = self.draw(("", self.written(0, nothing), self.written(0, spin), self.inertial()))
@@ -107,7 +107,7 @@ class Robot:
         self.joint(parent, child, "fixed")
 
     def add_moving(self) -> None:
-        """A body; now and then below an empty link that moves about another axis."""
+        """Add a moving body, sometimes below a massless link that turns about another axis."""
         parent = self.draw(self.heavy[-4:])
         kind, axis = self.draw(MOVING), None
         if self.rng.random() < 0.15:
@@ -120,8 +120,9 @@ class Robot:
 
 
 def text(seed: int, links: int = 12, root: str = "body") -> str:
-    """A robot of so many links or one more. Its root is a body, or has no mass: a ``world`` carrying one by a
-    fixed joint, a ``world of two``.
+    """Return a robot with this number of links or one more.
+
+    The ``root`` is a ``body``, or a massless link with one (``world``) or two (``world of two``) bodies.
     """
     robot = Robot(np.random.default_rng(seed))
     if root == "body":

@@ -11,7 +11,7 @@ import pytest
 
 import onorbit_rs as oo
 
-NEEDS_NO_COMMENT = {"utf8_bom", "utf16"}  # what they are shows in no comment
+NEEDS_NO_COMMENT = {"utf8_bom", "utf16"}  # their oddity leaves no place for a comment
 HAS_XACRO = importlib.util.find_spec("xacro") is not None
 
 
@@ -55,7 +55,7 @@ def test_it_is_refused_in_one_line(name: str) -> None:
 
 
 def test_bytes_are_as_they_were_written() -> None:
-    """What version control or an editor would mend."""
+    """Version control or an editor might normalize these bytes."""
     first = {name: awkward.path(name).read_bytes() for name in ("crlf", "utf8_bom", "latin1_comment")}
     assert first["crlf"].count(b"\r\n") == first["crlf"].count(b"\n") > 20
     assert first["utf8_bom"].startswith(b"\xef\xbb\xbf")

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from chain_robots import SEVEN, arm
 from commands import onorbit, refusal
 
 import onorbit_rs as oo
 from onorbit_rs.drafting import draft, trial
-from onorbit_rs.drafting.arm import find_arm, find_fingers
+from onorbit_rs.drafting.arm import find_arm
 from onorbit_rs.drafting.motion import configuration, home, lines
 from onorbit_rs.drafting.reaction import GENTLE, calmest, turn_per_metre
 from onorbit_rs.exceptions import ScenarioError, SimulationError
@@ -22,37 +23,6 @@ from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario import load
 
 ROBOTS = Path(__file__).parent / "fixtures" / "robots"
-
-INERTIAL = (
-    '<inertial><origin xyz="0 0 0.1"/><mass value="{mass}"/>'
-    '<inertia ixx="{i}" iyy="{i}" izz="{i}" ixy="0" ixz="0" iyz="0"/></inertial>'
-)
-
-
-def arm(
-    joints: list[tuple[str, str, str]],
-    *,
-    limits: str = 'lower="-2" upper="2"',
-    names: str = "",
-    base: tuple[float, float] = (100, 20),
-) -> str:
-    """A chain of (name, type, axis) joints on a base of 100 kg, links of 0.2 m; ends in ``names``."""
-    parts = [f'<link name="base">{INERTIAL.format(mass=base[0], i=base[1])}</link>']
-    parent = "base"
-    for index, (name, kind, axis) in enumerate(joints):
-        last = index == len(joints) - 1
-        link = names if last and names else f"link_{index}"
-        limit = f'<limit {limits} effort="100" velocity="1"/>' if kind != "continuous" else ""
-        parts += [
-            f'<link name="{link}">{INERTIAL.format(mass=3, i=0.05)}</link>',
-            f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{link}"/>'
-            f'<origin xyz="0 0 0.2"/><axis xyz="{axis}"/>{limit}</joint>',
-        ]
-        parent = link
-    return f'<robot name="r">{"".join(parts)}</robot>'
-
-
-SEVEN = [(f"j{index}", "revolute", "0 0 1" if index % 2 else "0 1 0") for index in range(7)]
 
 
 def ran(file: Path) -> dict[str, Any]:
@@ -155,7 +125,7 @@ def dynamics(urdf: str, values: str) -> str:
 def test_quick_dampers_are_left_to_the_adaptive_integrator(
     quick: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Known before, or found as fixed steps fail."""
+    """Detected before the first run, or when fixed steps fail."""
     monkeypatch.setattr(trial, "_QUICK", quick)
     text, summary = drafted(dynamics(arm(SEVEN[:2], names="tool"), 'damping="200"'), tmp_path)
     assert "\n  integrator: dormand_prince " in text
@@ -199,47 +169,6 @@ def test_a_motion_is_as_slow_as_the_limits_of_effort_need(tmp_path: Path) -> Non
         in text
     )
     assert summary["joint_efforts_exceeded"] == "j0, j1, j2"
-
-
-def hand(fingers: int, *, name: str = "tip", length: float = 0.03) -> str:
-    """Seven joints, the last link without the name of a tool, and fingers of two joints that turn."""
-    parts = []
-    for index in range(fingers):
-        parent = "link_6"
-        for part in ("near", "far"):
-            link = f"{name}_{index}_{part}"
-            parts.append(
-                f'<link name="{link}">{INERTIAL.format(mass=0.05, i=1e-3)}</link>'
-                f'<joint name="{link}_joint" type="revolute"><parent link="{parent}"/><child link="{link}"/>'
-                f'<origin xyz="0 {length} 0"/><axis xyz="1 0 0"/><limit lower="0" upper="1" effort="9" '
-                'velocity="1"/></joint>'
-            )
-            parent = link
-    return arm(SEVEN).replace("</robot>", "".join(parts) + "</robot>")
-
-
-def test_the_tool_of_a_gripper_is_the_link_that_carries_the_fingers(tmp_path: Path) -> None:
-    (tmp_path / "mine.urdf").write_text(hand(2, name="tool_tip"))
-    data = yaml.safe_load(draft(str(tmp_path / "mine.urdf"), beside=tmp_path).text)
-    assert data["tool"] == "link_6"
-    moving, held = data["controllers"]
-    assert moving["joints"] == [name for name, *_ in SEVEN]
-    assert held["name"] == "hold" and len(held["joints"]) == 4
-
-
-def test_fingers_are_several_or_named_so_and_short() -> None:
-    def found(urdf: str) -> tuple[int, set[str]]:
-        fingers, palms = find_fingers(oo.Model.from_urdf_string(urdf))
-        return len(fingers), palms
-
-    assert found(hand(2)) == (4, {"link_6"})
-    assert found(hand(5)) == (10, {"link_6"})
-    assert found(hand(1, name="finger")) == (2, {"link_6"})
-    assert found(hand(1, name="finger").replace('"j6"', '"finger_roll"')) == (2, {"link_6"})
-    assert found(hand(5).replace('"link_6"', '"thumb"')) == (10, {"thumb"})
-    assert found(hand(1)) == (0, set())  # the end of the arm
-    assert found(hand(2, length=1.0)) == (0, set())  # two arms on a torso
-    assert found(arm(SEVEN)) == (0, set())
 
 
 @pytest.mark.parametrize(
@@ -349,39 +278,6 @@ def test_what_stands_in_comments_works_when_it_is_uncommented(tmp_path: Path) ->
     file = tmp_path / "mine.yaml"
     file.write_text(wanted)
     ran(file)
-
-
-def test_a_wrist_in_the_middle_of_an_arm_is_no_tool() -> None:
-    found = find_arm(oo.Model.from_urdf_string(arm(SEVEN).replace("link_5", "wrist")))
-    assert found is not None and found.tool == "link_6"
-
-
-@pytest.mark.parametrize(
-    ("joint", "tool"), [("gripper", "link_6"), ("gripper_roll", "link_7"), ("j7", "link_7")]
-)
-def test_the_joint_that_opens_a_gripper_is_none_of_the_arm(joint: str, tool: str) -> None:
-    """One jaw stands on the last link, as on so100 and z1; with a gripper that turns the arm goes on."""
-    found = find_arm(oo.Model.from_urdf_string(arm([*SEVEN, (joint, "revolute", "0 0 1")])))
-    assert found is not None and found.tool == tool
-
-
-def test_a_thumb_alone_makes_no_palm() -> None:
-    """On a hand without an arm the finger with most joints moves, to its tip."""
-    urdf = arm(SEVEN[:4]).replace("link_", "thumb_")
-    assert find_fingers(oo.Model.from_urdf_string(urdf)) == (set(), set())
-    found = find_arm(oo.Model.from_urdf_string(urdf))
-    assert found is not None and (found.tool, len(found.joints)) == ("thumb_3", 4)
-
-
-def test_the_tool_is_found_or_told() -> None:
-    model = oo.Model.from_urdf_string(arm(SEVEN, names="gripper"))
-    found = find_arm(model)
-    assert found is not None and (found.tool, found.joints) == ("gripper", [name for name, *_ in SEVEN])
-    told = find_arm(model, "link_2")
-    assert told is not None and told.joints == ["j0", "j1", "j2"]
-    assert find_arm(model, "base") is None
-    dual = draft("humanoid_dual_arm", tool="left_tool")
-    assert dual.tool == "left_tool" and all(name.startswith("left") for name in dual.joints)
 
 
 def test_joints_that_cannot_be_at_zero_start_within_their_limits(tmp_path: Path) -> None:

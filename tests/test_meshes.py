@@ -1,4 +1,4 @@
-"""Mesh files: the box that is in them, whatever their format, and what is wrong with those that have none."""
+"""Mesh files of every format yield the same box, and unusable ones are refused with a reason."""
 
 from __future__ import annotations
 
@@ -166,14 +166,14 @@ def test_textures_are_local_files_near_the_mesh(lies: str, tmp_path: Path) -> No
 
 
 def test_a_lost_material_does_not_take_its_surface_along(tmp_path: Path) -> None:
-    """pycollada leaves out the geometry; ANYmal's foot was not seen for a texture that it lacks."""
+    """pycollada drops geometry with a missing material; ANYmal's foot was not drawn for lack of a texture."""
     mesh = read(tmp_path, "box.dae", collada(material="gone"))
     assert volume(mesh) == pytest.approx(6.0, rel=FLOAT)
     assert mesh.parts[0].colors[0].tolist() == [184, 186, 191, 255]
 
 
 def nodes_of_nodes(levels: int) -> str:
-    """A scene of 2^levels nodes."""
+    """Return a scene of 2^levels nodes."""
     library = "".join(
         f'<node id="n{k}">' + f'<instance_node url="#n{k - 1}"/>' * 2 * (k > 0) + "</node>"
         for k in range(levels)

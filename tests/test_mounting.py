@@ -1,4 +1,4 @@
-"""An arm on a bus: of two files the robot that one URDF of both is; links with values of one's own."""
+"""An arm on a bus from two files equals the same robot in one URDF; inertial values of links are replaced."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PLACED = {"position": [0.1, -0.2, 0.05], "attitude": {"roll_pitch_yaw": [0.3, -0
 
 
 def arm(prefix: str = "", *, tool_mass: float = 2.0) -> str:
-    """Four joints that turn or slide, on a base of their own, with a tool frame."""
+    """Return an arm of four revolute or prismatic joints with its own base and a tool frame."""
     parts = [f'<link name="{prefix}base">{INERTIAL.format(com="0 0 0.1", mass=4, i=0.03, j=0.04)}</link>']
     parent = "base"
     for index, (kind, axis) in enumerate(
@@ -84,7 +84,7 @@ def scenario(folder: Path, **robot: Any) -> Path:
 
 
 def off(one: oo.Model, other: oo.Model) -> float:
-    """Largest difference of mass matrix, bias forces and frame poses, relative to their largest."""
+    """Return the largest relative difference of mass matrix, bias forces and frame poses."""
     assert (one.joint_names, one.body_names) == (other.joint_names, other.body_names)
     rng = np.random.default_rng(4)
     q = one.integrate(one.neutral(), rng.normal(size=one.nv))
@@ -95,7 +95,7 @@ def off(one: oo.Model, other: oo.Model) -> float:
 
 
 def pose(xyz: list[float], rpy: list[float]) -> Any:
-    """(4, 4), by products of three plain rotations."""
+    """Return a transform (4, 4), with its rotation as a product of three elementary rotations."""
     (a, b, c), made = rpy, np.eye(4)
     x = [[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]]
     y = [[np.cos(b), 0, np.sin(b)], [0, 1, 0], [-np.sin(b), 0, np.cos(b)]]

@@ -1,4 +1,4 @@
-"""PyPI's ``sgp4``: its satellites are taken over, and it propagates in place of the engine's SGP4."""
+"""PyPI's ``sgp4``: its ``Satrec`` objects are accepted, and it propagates in place of the engine's SGP4."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def test_a_run_by_either_propagator_ends_at_one_place() -> None:
 
 
 def test_what_sgp4_makes_of_corrupted_lines() -> None:
-    """Why lines are read and refused by the engine: the reference takes each of these without a word."""
+    """The engine reads lines itself, since the reference silently accepts each of these faults."""
     line1, line2 = LINES
     assert compute_checksum(line2) == int(line2[68])
     wrong_sum = line2[:68] + str((int(line2[68]) + 1) % 10)

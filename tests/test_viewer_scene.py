@@ -267,7 +267,7 @@ def test_meshes_are_in_the_recording_with_their_unit_and_the_colour_of_the_robot
 
 
 def test_parts_of_a_mesh_stay_on_their_link(tmp_path: Path) -> None:
-    """What has a texture is an entity of its own; without a frame it would stay in the origin."""
+    """A part with a texture is a separate entity; without a frame it would stay at the origin."""
     (tmp_path / "craft").mkdir()
     (tmp_path / "craft" / "picture.png").write_bytes(picture(*4 * [(255, 128, 0)]))
     points = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\n"

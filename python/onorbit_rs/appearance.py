@@ -1,6 +1,6 @@
-"""What a robot looks like: its visual geometry, and what stands in where the mesh of a link cannot be drawn.
+"""Shapes that are drawn for a robot: its visual geometry, with substitutes for meshes that cannot be drawn.
 
-That is the link's own collision shapes, else a ball at its joint; rods go to the next joints.
+The substitutes are the collision shapes of the link, or a ball at its joint with rods to the next joints.
 """
 
 from __future__ import annotations
@@ -27,47 +27,47 @@ ROD, BALL = 0.008, 0.016
 """Radii of a stick figure, as shares of the robot's reach."""
 
 LARGEST = 1e5
-"""Size of a mesh, m, from which on it is a mistake."""
+"""Upper limit for the size of a mesh, m. A larger one has a wrong scale or unit."""
 
 
 def shapes(model: Model) -> list[Shape]:
-    """Everything there is to draw of a robot; warns of mesh files that are there and cannot be drawn."""
-    unreadable: dict[str, str] = {}
-    found, lost = _drawable(model.visuals, unreadable)
-    for message in unreadable.values():
+    """Return all shapes to draw for a robot; warn about mesh files that exist but cannot be drawn."""
+    found, lost, messages = _drawable(model.visuals)
+    for message in messages:
         _warn_once(message)
     links = {visual.link for visual in lost} if model.visuals else set(model.body_names)
     bare = links - {shape.link for shape in found}
-    # a mesh that only stands in is nobody's business where it cannot be drawn
-    solid, _ = _drawable([shape for shape in model.collisions if shape.link in bare], {})
+    # no warning about the meshes of collision shapes, which are only a substitute
+    solid, _, _ = _drawable([shape for shape in model.collisions if shape.link in bare])
     return [*found, *solid, *_stick_figure(model, bare, {shape.link for shape in solid})]
 
 
 @lru_cache(1024)
 def _warn_once(message: str) -> None:
-    """Viewer and figures of a run meet the same file."""
+    """Warn once per message, since the viewer and the figures of a run load the same files."""
     warnings.warn(message, stacklevel=3)
 
 
 def missing_meshes(model: Model) -> list[str]:
-    """Names of the mesh files that are not there or cannot be drawn, each once."""
-    _, lost = _drawable(model.visuals, {})
+    """Return the names of mesh files that do not exist or cannot be drawn, without duplicates."""
+    _, lost, _ = _drawable(model.visuals)
     return list(dict.fromkeys(visual.filename or "" for visual in lost))
 
 
-def _drawable(visuals: Sequence[Visual], unreadable: dict[str, str]) -> tuple[list[Shape], list[Visual]]:
-    """Shapes, and what is left of the visuals; a message for every file that is there and is of no use."""
+def _drawable(visuals: Sequence[Visual]) -> tuple[list[Shape], list[Visual], list[str]]:
+    """Return the drawable shapes, the visuals that cannot be drawn, and a message for each unusable file."""
     found, lost = [], []
+    messages: dict[str, str] = {}
     for visual in visuals:
         try:
             found.append(_of(visual))
-        except NotFoundError:  # said when the robot was read
+        except NotFoundError:  # the warning was given when the robot was read
             lost.append(visual)
         except OnOrbitError as error:
             lost.append(visual)
             message = f"the mesh of link {visual.link!r} is not drawn: {error}"
-            unreadable.setdefault(visual.filename or "", message)
-    return found, lost
+            messages.setdefault(visual.filename or "", message)
+    return found, lost, list(messages.values())
 
 
 def _stick_figure(model: Model, bare: set[str], solid: set[str]) -> Iterator[Shape]:
@@ -121,7 +121,7 @@ def _of(visual: Visual) -> Shape:
 
 
 def _mesh(visual: Visual) -> Mesh:
-    """As large as the robot says, and in its colour if it gives one, before those of the file as in RViz."""
+    """Return the scaled mesh; a colour in the URDF takes precedence over those of the file, as in RViz."""
     file = visual.filename or ""
     mesh = read_mesh(file).scaled(visual.scale)
     size = float(np.ptp(mesh.bounds, axis=0).max())

@@ -25,7 +25,7 @@ class Shape:
     """One visible body.
 
     ``kind`` is box (``size`` x, y, z), cylinder or capsule (radius, length along z), sphere (radius) or mesh
-    (with colours of its own); ``pose`` (4, 4) is in the axes of ``link``; lengths in m; ``rgba`` from 0 to 1.
+    (with its own colours); ``pose`` (4, 4) is in the axes of ``link``; lengths in m; ``rgba`` from 0 to 1.
     """
 
     link: str
@@ -44,7 +44,7 @@ def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
 
 
 def box_around(shape: Shape) -> tuple[Floats, Floats]:
-    """Pose (4, 4) in its link and half edges (3,) of a box around a shape, m."""
+    """Return the pose (4, 4) in the link and the half edges (3,), m, of a box around a shape."""
     if shape.mesh is not None:
         low, high = np.array(shape.mesh.bounds, dtype=np.float64)
         return shape.pose @ pose_of(np.eye(3), (low + high) / 2.0), (high - low) / 2.0
@@ -75,7 +75,7 @@ def pose_of(rotation: Floats, position: Floats) -> Floats:
 
 
 def grey_shape(link: str, kind: str, size: Iterable[float], pose: Floats) -> Shape:
-    """A grey shape that is no mesh."""
+    """Return a grey primitive."""
     return Shape(link, pose, kind, tuple(size), GREY)
 
 

@@ -1,4 +1,4 @@
-"""The text of CCSDS Orbit Mean-Elements Messages: XML and CSV, which PyPI's ``sgp4`` reads, JSON and KVN."""
+"""Reads CCSDS Orbit Mean-Elements Messages: JSON and KVN, and XML and CSV with PyPI's ``sgp4``."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from xml.etree.ElementTree import ParseError
 
 from onorbit_rs.counting import count
 from onorbit_rs.exceptions import ElementSetError
-from onorbit_rs.satellites import the_one
+from onorbit_rs.satellites import select_set
 
 
 def entries(text: str, satellite: str | None = None) -> dict[str, Any]:
-    """Keywords and values of the one message, or of that of ``satellite``, a name or catalogue number.
+    """Return the keywords and values of the only message, or of that of ``satellite`` (name or number).
 
     Raises
     ------
     ElementSetError
-        No such text, or not exactly one such message in it.
+        If the text is no OMM or does not hold exactly one such message.
     """
     messages = _messages(text.lstrip("\ufeff \t\r\n"))
     if satellite is not None:
@@ -28,7 +28,7 @@ def entries(text: str, satellite: str | None = None) -> dict[str, Any]:
             (str(message.get("OBJECT_NAME", "")), str(message.get("NORAD_CAT_ID", "")), message)
             for message in messages
         )
-        return the_one(named, satellite, "the OMM")
+        return select_set(named, satellite, "the OMM")
     if len(messages) != 1:
         found = count(len(messages), "message", "messages")
         raise ElementSetError(f"the text holds {found}: give one, or in a scenario its 'satellite'")
@@ -59,13 +59,13 @@ def _from_json(text: str) -> list[dict[str, Any]]:
 def _from_xml(text: str) -> list[dict[str, Any]]:
     from sgp4 import omm
 
-    if "<!DOCTYPE" in text:  # the entities of one can stand for any amount of text
+    if "<!DOCTYPE" in text:  # its entities can expand to any length
         raise ElementSetError("the OMM has a document type (<!DOCTYPE>), which is refused: remove it")
     try:
         messages = list(omm.parse_xml(io.StringIO(text)))
-    except (ParseError, LookupError, ValueError) as error:  # LookupError: an encoding that there is not
+    except (ParseError, LookupError, ValueError) as error:  # LookupError: unknown encoding
         raise ElementSetError(f"the OMM is no XML: {error}") from None
-    except (AttributeError, TypeError):  # of None, which stands for an element that is not there
+    except (AttributeError, TypeError):  # sgp4 got None for a missing element
         raise ElementSetError(
             "the OMM's XML lacks metadata, meanElements or tleParameters in a segment"
         ) from None

@@ -1,4 +1,4 @@
-"""One satellite of several in a file."""
+"""Selects the element set of one satellite from a file with several."""
 
 from __future__ import annotations
 
@@ -12,15 +12,20 @@ from onorbit_rs.names import did_you_mean
 T = TypeVar("T")
 
 
-def the_one(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -> T:
-    """The set of a satellite by its name, in whatever case, or its catalogue number.
+def select_set(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -> T:
+    """Return the set of a satellite, by its name (case-insensitive) or catalogue number.
 
-    sets : names, catalogue numbers and what belongs to them.
+    Parameters
+    ----------
+    sets : iterable of (name, number, set)
+    satellite : str
+    where : str
+        Name of the source in messages.
 
     Raises
     ------
     ElementSetError
-        None is of that satellite, or several are.
+        If no set or several sets are of that satellite.
     """
     sets = list(sets)
     wanted = _word(satellite)
@@ -38,4 +43,5 @@ def the_one(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -> T
 
 
 def _word(text: str) -> str:
+    """Return a name or number for comparison: without case, outer spaces and leading zeros."""
     return text.strip().casefold().lstrip("0")

@@ -1,4 +1,4 @@
-"""Satellites of PyPI's ``sgp4``, the reference code, which ``propagator="reference"`` runs."""
+"""Makes and reads ``Satrec`` objects of PyPI's ``sgp4``, the code that ``propagator="reference"`` runs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _UNUSED = {
     "CLASSIFICATION_TYPE": "U", "OBJECT_ID": "", "EPHEMERIS_TYPE": 0, "ELEMENT_SET_NO": 0, "REV_AT_EPOCH": 0,
     "MEAN_MOTION_DOT": 0, "MEAN_MOTION_DDOT": 0,
 }  # fmt: skip
-"""Keywords that ``sgp4.omm`` wants and SGP4 does not use."""
+"""Keywords that ``sgp4.omm`` requires and SGP4 does not use."""
 _NUMBERS = (
     "jdsatepoch", "jdsatepochF", "bstar", "ndot", "nddot", "ecco", "argpo", "inclo", "mo", "no_kozai",
     "nodeo",
@@ -28,12 +28,12 @@ _CONSTANTS = ("radiusearthkm", "mu", "xke", "j2", "j3", "j4")
 
 
 def of_lines(line1: str, line2: str, gravity: str) -> Satrec:
-    """Two lines, read by ``sgp4``."""
+    """Return the ``Satrec`` of two lines, read by ``sgp4``."""
     return Satrec.twoline2rv(line1, line2, MODELS[gravity])
 
 
 def of_message(message: Mapping[str, Any], epoch: str, gravity: str) -> Satrec:
-    """A message, read by ``sgp4``; ``epoch`` is its own, in the one form it reads with a Z behind it."""
+    """Return the ``Satrec`` of a message, read by ``sgp4``; ``epoch`` is its epoch in ISO format with a Z."""
     satrec = Satrec()
     given = {key: value for key, value in message.items() if key not in _UNUSED}
     omm.initialize(satrec, _UNUSED | given | {"EPOCH": epoch.rstrip("Z")}, MODELS[gravity])
@@ -41,15 +41,15 @@ def of_message(message: Mapping[str, Any], epoch: str, gravity: str) -> Satrec:
 
 
 def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
-    """Elements and gravity constants of another, which may change later, and the name of its Earth model.
+    """Return copies of the elements and gravity constants of a ``Satrec``, and the name of its Earth model.
 
     Raises
     ------
     InputError
-        It is no ``Satrec``.
+        If it is no ``Satrec``.
     ElementSetError
-        A number is not finite; it has gravity constants of its own, or the AFSPC mode, which the reference
-        code alone has.
+        If a number is not finite, the gravity constants are of no known model, or the mode is AFSPC without
+        ``by_reference``: only the reference code has that mode.
     """
     try:
         names = ("satnum", "operationmode", *_NUMBERS, *_CONSTANTS)
@@ -81,14 +81,14 @@ def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
 
 
 def _known(gravity: str) -> Satrec:
-    """Any satellite with an Earth model."""
+    """Return an arbitrary ``Satrec`` with an Earth model, for its constants."""
     satrec = Satrec()
     satrec.sgp4init(MODELS[gravity], "i", 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0)
     return satrec
 
 
 def of_elements(elements: SimpleNamespace, gravity: str) -> Satrec:
-    """A copy of another, by its elements."""
+    """Return a new ``Satrec`` with the elements that :func:`read` returned."""
     satrec = Satrec()
     satrec.sgp4init(
         MODELS[gravity], elements.operationmode, elements.satnum,

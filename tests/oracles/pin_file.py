@@ -1,4 +1,4 @@
-"""A robot file against Pinocchio: the same masses, equations of motion and poses for the same ``q``."""
+"""Compares a robot file with Pinocchio: masses, equations of motion and poses for the same ``q``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from onorbit_rs.validation.trees import State, deviation, random_state
 
 
 def read(file: Path, root_joint: bool = True) -> Any:
-    """Pinocchio's model; ``root_joint=False`` where a floating joint of the file is the base."""
+    """Return Pinocchio's model; ``root_joint=False`` if the file has the floating joint of the base."""
     if file.suffix == ".xacro":
         return pin_robot.from_urdf(expand(file)[0])
     model = pin.buildModelFromUrdf(str(file), *([pin.JointModelFreeFlyer()] if root_joint else []))
@@ -24,14 +24,14 @@ def read(file: Path, root_joint: bool = True) -> Any:
 
 
 def links(model: Any) -> list[str]:
-    """Of the robot: what hangs on no joint is the world."""
+    """Return the links of the robot; links without a joint above belong to the world."""
     return [
         frame.name for frame in model.frames if frame.type == pin.FrameType.BODY and frame.parentJoint > 0
     ]
 
 
 def deviations(model: oo.Model, theirs: Any, seed: int, states: int = 2) -> dict[str, float]:
-    """How far we are off, over the largest entry of theirs; ``seed`` draws the states."""
+    """Return the worst deviations relative to Pinocchio's largest entry; ``seed`` draws the states."""
     robot = pin_robot.PinRobot(theirs, model.joint_names)
     rng = np.random.default_rng(seed)
     largest = {"mass": deviation(model.mass, pin.computeTotalMass(theirs))}
@@ -61,10 +61,10 @@ def of_state(model: oo.Model, robot: pin_robot.PinRobot, state: State) -> dict[s
 
 
 def moving_alike(model: oo.Model, theirs: Any, child: str, seed: int) -> dict[str, float]:
-    """The same for one joint of several degrees of freedom, between the base and ``child``.
+    """Return the deviations for one joint of several degrees of freedom between the base and ``child``.
 
-    Each engine has coordinates of its own for it. Pinocchio's follow from our poses and velocities of the two
-    links, and what does not depend on coordinates must agree.
+    The coordinates of the engines differ. Those of Pinocchio are computed from the poses and velocities of
+    the two links, and quantities that do not depend on coordinates must agree.
     """
     state = random_state(model, np.random.default_rng(seed), frames=1)
     base, arm = (Moving(model, state, name) for name in (model.body_names[0], child))
@@ -90,7 +90,7 @@ def moving_alike(model: oo.Model, theirs: Any, child: str, seed: int) -> dict[st
 
 
 class Moving:
-    """A link's pose, and its twist in its own axes."""
+    """Pose of a link and its twist in link axes."""
 
     def __init__(self, model: oo.Model, state: State, name: str) -> None:
         self.pose = pin.SE3(model.frame_pose(state.q, name))

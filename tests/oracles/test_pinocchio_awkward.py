@@ -1,4 +1,4 @@
-"""Every awkward file that both read is the same robot to both, base frame included; and who refuses which."""
+"""Awkward files yield the same robot as in Pinocchio, including the base frame, or are refused as listed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import pin_file  # noqa: E402
 GATE = 1e-12  # as in test_pinocchio.py
 HAS_XACRO = importlib.util.find_spec("xacro") is not None
 
-# urdfdom, which Pinocchio reads with, refuses them
+# refused by urdfdom, Pinocchio's reader
 REFUSED_BY_PINOCCHIO = {
     "ball_joint": "URDF has no such joint",
     "duplicate_material": "a material is defined once",
@@ -33,7 +33,7 @@ REFUSED_BY_PINOCCHIO = {
     "tabs_and_newlines_in_vector": "only spaces separate numbers",
     "version_unknown": "there is no version 2.0",
 }
-# read by both, as two robots
+# read by both, with different results
 READ_OTHERWISE = {
     "armature": "Pinocchio takes a rotor inertia from no URDF",
     "axis_without_xyz": "Pinocchio's axis has no length; it is x in URDF",

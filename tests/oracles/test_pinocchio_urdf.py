@@ -1,4 +1,4 @@
-"""Every kernel against Pinocchio where both read the same URDF: random trees, quirky robots, ours."""
+"""Every kernel against Pinocchio for the same URDF: random trees, quirky robots, the bundled robots."""
 
 from __future__ import annotations
 

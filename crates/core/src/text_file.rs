@@ -23,19 +23,19 @@ pub enum TextFileError {
     Unreadable { reason: String },
 }
 
-/// The text of a UTF-8 file of at most `limit` bytes.
+/// Returns the text of a UTF-8 file of at most `limit` bytes.
 ///
 /// # Errors
-/// As [`read_bytes`], or that it is not UTF-8.
+/// As [`read_bytes`], and [`TextFileError::NotUtf8`].
 pub fn read_text(path: &Path, limit: usize) -> Result<String, TextFileError> {
     let text = String::from_utf8(read_bytes(path, limit)?);
     text.map_err(|error| TextFileError::NotUtf8 { at: error.utf8_error().valid_up_to() })
 }
 
-/// The bytes of a file of at most `limit` bytes.
+/// Returns the bytes of a file of at most `limit` bytes.
 ///
 /// # Errors
-/// [`TextFileError`]; a device never ends and a pipe waits for ever, so neither is opened.
+/// [`TextFileError`]. Devices and pipes are refused, since reading them may never end.
 pub fn read_bytes(path: &Path, limit: usize) -> Result<Vec<u8>, TextFileError> {
     let refuse = |error: std::io::Error| match error.kind() {
         ErrorKind::NotFound => TextFileError::NotFound,

@@ -1,4 +1,4 @@
-//! One robot of two, and robots with a link changed: against the same robots built in one go.
+//! Attached robots and robots with a changed link equal the same robots built directly.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
@@ -179,7 +179,7 @@ fn a_change_that_makes_no_robot_is_refused() {
     let point = model.with_link(&heavy("plate", 2.0)).unwrap();
     assert!((point.mass() - model.mass() - 2.0).abs() < 1e-15);
     assert_eq!(point.warnings(), model.warnings());
-    // what is said of an inertia goes with it
+    // the warning about an inertia is kept
     let odd = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 20.0));
     let odd = model.with_link(&LinkChange { inertia: Some(odd), ..change("base") }).unwrap();
     assert_eq!(odd.warnings().len(), 2);

@@ -123,7 +123,7 @@ fn an_inertia_without_mass_needs_a_mass_that_moves_with_it() {
     base.add("base", revolute("j", Vector3::z()), Link::new("l", ball(1.0))).unwrap();
     assert_eq!(base.build().unwrap().mass(), 1.0);
 
-    // nothing slides against it, and alone it floats nowhere
+    // an inertia alone neither resists sliding nor makes a floating base
     let mut sliding = robot();
     let rail = Joint::new("j", JointKind::Prismatic(Vector3::z()), Isometry3::identity());
     sliding.add("base", rail, Link::new("l", flywheel())).unwrap();

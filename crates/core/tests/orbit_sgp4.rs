@@ -259,7 +259,7 @@ fn decay_and_far_times_are_refused() {
     assert!(matches!(orbit.state(f64::INFINITY), Err(OrbitError::NotFinite { .. })));
 }
 
-/// A circle in place of the reference code, which sinks after an hour and fails after two.
+/// A circular orbit in place of the reference code; it decays after one hour and fails after two.
 #[derive(Debug)]
 struct Circle;
 

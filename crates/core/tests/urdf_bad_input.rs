@@ -200,7 +200,7 @@ fn inertials_that_no_body_has() {
     };
     let negative = INERTIAL.replace("value=\"1\"", "value=\"-2\"");
     assert_eq!(model(&negative), ModelError::MassNotPositive { link: "b".into(), mass: -2.0 });
-    // where it slides, an inertia without a mass resists nothing
+    // an inertia without a mass does not resist sliding
     let flywheel = INERTIAL.replace("value=\"1\"", "value=\"0\"");
     let sliding = with_inertial(&flywheel).replace("revolute", "prismatic");
     let massless = ModelError::MasslessSubtree { joint: "j".into(), link: "b".into() };

@@ -1,4 +1,4 @@
-//! What `urdf-rs`' own reading of text makes of careless files: why it is given a tree that is checked.
+//! Faults of `urdf-rs`' own reading of careless files, the reason why it is given a checked tree.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 

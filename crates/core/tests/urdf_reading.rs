@@ -111,7 +111,7 @@ fn a_massless_root_is_the_base_frame_of_what_is_fixed_to_it() {
     assert_eq!(fixed.body_names().collect::<Vec<_>>(), ["world"]);
     assert_eq!(fixed.frame_names().collect::<Vec<_>>(), ["world", "base", "tool"]);
     assert_eq!(position(&fixed, "tool"), [1.0, 0.0, 1.0]);
-    // a floating joint is the one that the base has anyway: what it carries is the base
+    // the base floats anyway: the child of a floating joint becomes the base
     let floating = model("floating");
     assert_eq!(floating.body_names().collect::<Vec<_>>(), ["base"]);
     assert_eq!(floating.frame_names().collect::<Vec<_>>(), ["base", "tool"]);

@@ -26,10 +26,10 @@ pub(crate) fn link_change(
 /// Converts ``{link: {"mass": ..., "com": ..., "inertia": ...}}``.
 pub(crate) fn link_changes(links: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<LinkChange>> {
     let Some(links) = links else { return Ok(Vec::new()) };
-    links.iter().map(|(name, values)| one_of(&name.extract::<String>()?, &values)).collect()
+    links.iter().map(|(name, values)| change_from_dict(&name.extract::<String>()?, &values)).collect()
 }
 
-fn one_of(link: &str, values: &Bound<'_, PyAny>) -> PyResult<LinkChange> {
+fn change_from_dict(link: &str, values: &Bound<'_, PyAny>) -> PyResult<LinkChange> {
     let py = values.py();
     let refuse = |message: &str| Err(raise(py, "ModelError", message, &fields!(py, "link": link)));
     let Ok(values) = values.cast::<PyDict>() else {

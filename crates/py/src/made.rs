@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Made(Py<PyTuple>);
 
 impl Made {
-    /// By keywords alone.
+    /// Records a construction by keywords only.
     pub(crate) fn by(constructor: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
         Self::with(constructor, (), keywords)
     }
 
-    /// By arguments and keywords.
+    /// Records a construction by arguments and keywords.
     pub(crate) fn with<'py, A>(
         constructor: &str,
         arguments: A,

@@ -255,7 +255,7 @@ impl PyModel {
         records::shapes(&self.model, self.model.visuals())
     }
 
-    /// Collision shapes (meshes where the file is there); nothing collides here: they are drawn where a mesh cannot be.
+    /// Collision shapes; meshes only if their file exists. There are no contacts: they are drawn if a visual mesh cannot be.
     #[getter]
     fn collisions(&self) -> Vec<PyVisual> {
         records::shapes(&self.model, self.model.collisions())

@@ -17,7 +17,7 @@ from onorbit_rs.cli.options import (
     in_words,
     of_file,
 )
-from onorbit_rs.cli.pictures import claim_picture
+from onorbit_rs.cli.pictures import claim_picture, save_portrait
 from onorbit_rs.cli.saying import say
 
 
@@ -42,10 +42,7 @@ def info(
     with warnings.catch_warnings(), worded(COMMAND_LINE):
         warnings.simplefilter("ignore")  # they are printed with the rest
         model = robots.load(robot, **given)
-    if picture is not None:
-        from onorbit_rs.figures import portrait, save
-
-        save(portrait(model, model.neutral()), picture)
+    save_portrait(picture, model, model.neutral())
     if as_json:
         print_json(describe(model))
     else:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,13 +17,16 @@ from onorbit_rs.cli.options import (
     in_words,
     of_file,
 )
-from onorbit_rs.cli.pictures import claim_picture
+from onorbit_rs.cli.pictures import claim_picture, save_portrait
 from onorbit_rs.cli.saying import say
 from onorbit_rs.cli.writing import claim
 from onorbit_rs.counting import count
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.files import replacing
 from onorbit_rs.printable import shell_word
+
+if TYPE_CHECKING:
+    from onorbit_rs.drafting import Draft
 
 
 def new(
@@ -33,11 +36,14 @@ def new(
         str | None, typer.Option(metavar="FRAME", help="The frame to move; else what looks most like a tool.")
     ] = None,
     bus: Annotated[
-        str | None, typer.Option(metavar="ROBOT", help="What carries it: a name, a URDF or a xacro file.")
+        str | None,
+        typer.Option(
+            metavar="ROBOT", help="The robot that carries it: a bundled name, a URDF or a xacro file."
+        ),
     ] = None,
-    at: Annotated[str | None, typer.Option(metavar="FRAME", help="Where on the bus.")] = None,
+    at: Annotated[str | None, typer.Option(metavar="FRAME", help="Frame of the bus to attach to.")] = None,
     prefix: Annotated[
-        str, typer.Option(metavar="TEXT", help="Before the names of its links and joints, with --bus.")
+        str, typer.Option(metavar="TEXT", help="Prefix for the names of its links and joints, with --bus.")
     ] = "",
     packages: PackagesOption = None,
     arguments: ArgumentsOption = None,
@@ -48,12 +54,14 @@ def new(
 ) -> None:
     """Write a commented scenario that moves a robot's arm.
 
-    In orbit, tried before it is written; without --out it goes to standard output. With --bus the robot is
-    attached to a spacecraft of another file; --picture draws what comes of it.
+    The scenario is simulated before it is written; without --out it goes to standard output. With --bus the
+    robot is attached to a spacecraft from another file; --picture draws the result.
     """
     given = of_file(robot, packages, arguments, xacro)
     if bus is None and (at is not None or prefix):
-        raise InputError("--at and --prefix say how it sits on a bus: add --bus ROBOT", name="bus", got=None)
+        raise InputError(
+            "--at and --prefix describe the mounting on a bus: add --bus ROBOT", name="bus", got=None
+        )
     claim(out, force=force)
     claim_picture("--picture", picture, force=force)
     from onorbit_rs.drafting import Source, draft
@@ -67,23 +75,21 @@ def new(
     with doing("trying motions", quiet=quiet), worded(COMMAND_LINE):
         source = Source(robot, **given, bus=bus, at=at, prefix=prefix)
         made = draft(source, tool=tool, beside=beside, command=written_by)
-    if picture is not None:
-        from onorbit_rs.figures import portrait, save
-
-        marked = [frame for frame in (at, made.tool) if frame is not None]
-        save(portrait(made.model, made.q, marked), picture)
+    save_portrait(picture, made.model, made.q, [frame for frame in (at, made.tool) if frame is not None])
     if out is None:
         typer.echo(made.text, nl=False)
         return
     with replacing(out) as file:
         file.write_text(made.text, encoding="utf-8")
     if not quiet:
-        moved = (
-            "a body without joints" if made.tool is None else "all joints hold: no motion of the arm passed"
-        )
-        if made.joints:
-            moved = f"{made.tool}, moved by {count(len(made.joints), 'joint', 'joints')}"
-        say(f"scenario: {out} ({moved})")
+        say(f"scenario: {out} ({_motion(made)})")
         if picture is not None:
             say(f"picture: {picture}")
         say(f"next: onorbit check {shell_word(out)}")
+
+
+def _motion(made: Draft) -> str:
+    """Describe what moves in a draft."""
+    if made.joints:
+        return f"{made.tool}, moved by {count(len(made.joints), 'joint', 'joints')}"
+    return "a body without joints" if made.tool is None else "all joints hold: no motion of the arm passed"

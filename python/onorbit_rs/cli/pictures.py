@@ -1,11 +1,19 @@
-"""Names of the files that commands save figures to."""
+"""Files that commands save figures to."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from onorbit_rs.cli.writing import claim
 from onorbit_rs.exceptions import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Model
 
 KINDS = (".png", ".pdf", ".svg")
 
@@ -26,3 +34,19 @@ def claim_picture(option: str, file: Path | None, *, force: bool) -> None:
             name=option.lstrip("-"), got=file.suffix, expected=KINDS,
         )  # fmt: skip
     claim(file, force=force)
+
+
+def save_portrait(
+    file: Path | None, model: Model, q: NDArray[np.float64], frames: Sequence[str] = ()
+) -> None:
+    """Save a figure of a robot, see :func:`onorbit_rs.figures.portrait`; do nothing if ``file`` is None.
+
+    Raises
+    ------
+    OutputFolderError
+        If the file cannot be written.
+    """
+    if file is not None:
+        from onorbit_rs.figures import portrait, save
+
+        save(portrait(model, q, frames), file)

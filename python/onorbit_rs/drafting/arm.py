@@ -14,7 +14,7 @@ ENOUGH = 6
 """Joints from which a tool can be placed and turned at will."""
 
 FINGER_JOINTS = 7
-"""Most joints of a finger: a thumb has five, one with a tendon two for every knuckle."""
+"""Largest number of joints in a finger: a thumb has five, a finger with tendons two per knuckle."""
 FINGER_SHARE = 0.6
 """Largest extent of a finger as a share of the length of the arm that carries it."""
 
@@ -24,7 +24,7 @@ _PART_OF_FINGER = re.compile(r"finger|thumb|knuckle")
 # joints that turn a whole gripper
 _WRIST = re.compile(r"wrist|roll|pitch|yaw")
 
-# what the frame at the end of an arm is called, the surest first; the last two only where the arm ends
+# patterns for names of tool frames, the most reliable first; the last two apply only at the end of an arm
 _NAMES = (
     r"tool|tcp", r"(^|_)eef?(_|$)|end_?effector", r"grasp", r"hand|palm", r"flange", r"gripper", r"wrist",
     r"tip(_|$)",
@@ -40,15 +40,15 @@ class Arm:
 
 
 def find_arm(model: Model, tool: str | None = None) -> Arm | None:
-    """The arm that a tool belongs to; without a tool the one that looks most like an arm.
+    """Return the arm that moves the frame ``tool``; without ``tool``, the arm of the most likely tool.
 
-    That is a frame with six joints or more behind it, then one on the link that carries fingers, then one
-    that is called as tools are, then one with many joints; frames on fingers are left out. None where
-    nothing moves, or where no joint moves the given tool.
+    Frames are preferred in this order: those moved by six joints or more, those on a link that carries
+    fingers, those with a usual name of a tool, those moved by many joints. Frames on fingers are left out.
+    Returns None if nothing moves, or if no joint moves ``tool``.
     """
     chains = _chains(model)
     fingers, palms = find_fingers(model)
-    going_on = {joint.parent for joint in model.joints if joint.child not in fingers}
+    inner = {joint.parent for joint in model.joints if joint.child not in fingers}
     frames = [(frame, chains.get(frame.body, [])) for frame in model.frames]
     found = [(frame, chain) for frame, chain in frames if chain and tool in (None, frame.name)]
     if tool is None:
@@ -61,7 +61,7 @@ def find_arm(model: Model, tool: str | None = None) -> Arm | None:
         return (
             len(chain) < ENOUGH,
             frame.body not in palms,
-            _rank(frame.name, frame.body not in going_on),
+            _rank(frame.name, frame.body not in inner),
             -len(chain),
         )
 
@@ -73,7 +73,7 @@ def find_fingers(model: Model) -> tuple[set[str], set[str]]:
     """Return the bodies that are parts of fingers, and those that carry the fingers (palms).
 
     A finger is a branch of at most ``FINGER_JOINTS`` joints, short beside the arm that carries it. A palm
-    carries two or more, or a single one whose name says what it is (finger, gripper). The base is no palm.
+    carries two or more, or a single one that is named as such (finger, gripper). The base is never a palm.
     """
     chains = _chains(model)
     branches: dict[str, list[Joint]] = {}
@@ -100,7 +100,7 @@ def find_fingers(model: Model) -> tuple[set[str], set[str]]:
 
 
 def _is_called_finger(joint: Joint) -> bool:
-    """Whether names say that a joint moves a finger, and not a whole gripper or the next part of a finger."""
+    """Return True if the names indicate a joint that moves a finger as a whole, and not a gripper."""
     name, parent, child = joint.name.lower(), joint.parent.lower(), joint.child.lower()
     is_finger = bool(_DRIVE.search(name) or _FINGER.search(child))
     return is_finger and not _WRIST.search(name) and not _PART_OF_FINGER.search(parent)

@@ -77,7 +77,7 @@ def _limits(joint: Joint) -> tuple[float, float]:
 
 
 def quickest_damper(model: Model) -> tuple[str, float]:
-    """Return the joint whose damper stops it fastest, and the rate `b (M⁻¹)ii` of that, 1/s; 0 for none."""
+    """Return the joint with the fastest damper and its decay rate `b (M⁻¹)ii`, 1/s; 0 without dampers."""
     inverse = np.linalg.inv(np.asarray(model.mass_matrix(model.neutral())))
     rates = {joint.name: joint.damping * inverse[6 + row, 6 + row] for row, joint in enumerate(model.joints)}
     return max(rates.items(), key=lambda one: one[1], default=("", 0.0))
@@ -108,7 +108,7 @@ def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[li
 
 
 def turns(model: Model, here: dict[str, float], shares: Iterable[float]) -> Iterator[dict[str, float]]:
-    """Where joints go from ``here``: shares of the longer way to a limit, which counts a radian at most."""
+    """Yield joint goals: from ``here`` by each share of the longer way to a limit (at most 1 rad or m)."""
     for share in shares:
         goal = {}
         for joint in model.joints:

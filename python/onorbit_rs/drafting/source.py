@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Source:
-    """A bundled name or a file with its reading options, and optionally the bus that carries it."""
+    """A bundled name or a file with its reading options, optionally attached to a bus."""
 
     robot: str
     package_paths: Sequence[Path] | None = None
@@ -47,10 +47,10 @@ class Source:
         return _core.attach(bus, self._frame(bus), robot, prefix=self.prefix)
 
     def name(self, model: Model) -> str:
-        """Name of the drafted scenario."""
+        """Return the name of the drafted scenario."""
         return f"{Path(self.robot).name.split('.')[0] if robots.is_file(self.robot) else model.name}_first"
 
-    def written(self, beside: Path | None, model: Model) -> dict[str, Any] | str:
+    def entry(self, beside: Path | None, model: Model) -> dict[str, Any] | str:
         """Return the scenario's ``robot`` entry; paths are relative to ``beside``, absolute if None."""
         robot = self._robot(beside)
         if self.bus is None:
@@ -70,7 +70,8 @@ class Source:
         if len(bus.frame_names) == 1:
             return bus.frame_names[0]
         raise FrameError(
-            f"say where on the bus the robot goes: --at FRAME; {self.bus} has: {', '.join(bus.frame_names)}",
+            f"name the frame of the bus to attach to: --at FRAME; {self.bus} has: "
+            f"{', '.join(bus.frame_names)}",
             name=None, kind="frame", known=list(bus.frame_names), suggestion=None,
         )  # fmt: skip
 

@@ -29,9 +29,9 @@ class Plan:
     time_step_s: float = 1e-3
     integrator: str = "rk4"
     exceeding: list[str] = field(default_factory=list)
-    """Joints whose efforts are beyond their limits, however slow the motion is."""
+    """Joints that exceed their effort limits however slow the motion is."""
     failures: list[str] = field(default_factory=list)
-    """Why the joints only hold."""
+    """Reasons why the joints are only held."""
 
 
 def draft_text(plan: Plan, command: str) -> str:
@@ -66,18 +66,18 @@ def _what(plan: Plan) -> str:
 
 
 def _bus(robot: dict[str, Any]) -> str:
-    """A bus with one arm."""
+    """Return the ``robot`` entry of a bus with one arm."""
     (arm,) = robot["arms"]
     said = {
         "bundled": "a name that 'onorbit list' prints",
         "urdf": "a URDF or xacro file, from this file's folder",
-        "package_paths": "where its packages are", "xacro_arguments": "for its xacro",
-        "xacro": "expand it, whatever its name", "at": "a link or frame of the bus",
-        "prefix": "before the names of the arm's links and joints",
+        "package_paths": "folders with ROS packages", "xacro_arguments": "arguments of the xacro file",
+        "xacro": "expand the file as xacro", "at": "a link or frame of the bus",
+        "prefix": "prefix of the arm's links, joints and frames",
     }  # fmt: skip
     lines = "".join(_line(key, value, said[key], 6) for key, value in arm.items())
     return f"""\
-robot:                          # a bus with an arm; the bus is the base of the whole
+robot:                          # a bus with an arm; the base of the robot is that of the bus
 {_line("bus", robot["bus"], "a bundled name, or a URDF or xacro file, from this file's folder", 2)}\
   arms:
     -{lines[5:]}\
@@ -118,7 +118,7 @@ controllers:                    # each drives joints of its own; joints without 
 
 
 def _note(words: str, things: list[str]) -> str:
-    """Lines of comment, none without ``things``."""
+    """Return comment lines with the ``things``; no line if there are none."""
     lines = textwrap.wrap(f"{words}: {', '.join(things)}", 105, break_long_words=False)
     return "".join(f"# {line}\n" for line in lines if things)
 
@@ -157,7 +157,7 @@ def _joint_law(plan: Plan) -> str:
 
 
 def _slowed(plan: Plan, key: str, value: str) -> str:
-    """How long the motion takes."""
+    """Return the entry for the duration of the motion."""
     entry = f"      {key}: {value}"
     return _commented(entry, "so long that joints keep their limits") if plan.is_slowed else f"{entry}\n"
 

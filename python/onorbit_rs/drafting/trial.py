@@ -1,4 +1,4 @@
-"""Runs of a drafted scenario, which say whether it will do."""
+"""Trial runs of drafted scenarios."""
 
 from __future__ import annotations
 
@@ -29,28 +29,28 @@ NEAR_ENOUGH_M = 1e-3
 """Largest distance of the tool from its line in a trial."""
 
 SLOWEST_S = 300.0
-"""Longest motion that is drafted; where limits ask for more, a shorter one is tried."""
+"""Longest motion that is drafted; if limits require a longer one, a shorter displacement is tried."""
 
 _ATTEMPTS = 4
-"""Runs of one motion, each slower than the one before."""
+"""Largest number of runs of one motion, each slower than the previous one."""
 _HELPED = 0.9
-"""Efforts that a slower motion leaves above this share of what they were do not come from inertia."""
+"""Efforts that stay above this share of their previous value in a slower run are not inertial."""
 _QUICK = 500.0
-"""Rate of decay, 1/s, of which a fixed step of a millisecond is half a time constant."""
+"""Decay rate, 1/s, for which a fixed step of 1 ms is half a time constant."""
 _TO_SEE_S, _PATIENCE = 2.0, 1.2
-"""After how much wall clock a run is stopped that at its pace would take so many times what is left."""
+"""After ``_TO_SEE_S`` of wall clock, a run that would need ``_PATIENCE`` times the time left is stopped."""
 _FIXED, _ADAPTIVE = "rk4", "dormand_prince"
 
 
 class Trials:
-    """Runs of the plans for one robot, and what they failed by.
+    """Runs plans for one robot and counts the reasons for failures.
 
-    Once fixed steps have failed, the adaptive integrator is used for all that follows: quick dampers are the
-    robot's, whatever its motion.
+    Once a run with fixed steps has failed, all later runs use the adaptive integrator: fast dampers belong to
+    the robot, whatever its motion.
     """
 
     def __init__(self, model: Model) -> None:
-        """Start with fixed steps, unless dampers are too quick for them."""
+        """Start with fixed steps, unless dampers are too fast for them."""
         self._model = model
         self._damped, self._decay = quickest_damper(model)
         self._integrator = _ADAPTIVE if self._decay > _QUICK else _FIXED
@@ -58,9 +58,9 @@ class Trials:
         self._is_late = False
 
     def gentlest(self, plans: Iterable[Plan], seconds: float) -> Plan | None:
-        """Return the first plan that passes and hardly turns the base, else the gentlest that passes.
+        """Return the first passing plan that hardly turns the base, else the one that turns it least.
 
-        None where none does within ``seconds`` of wall clock.
+        Returns None if no plan passes within ``seconds`` of wall clock.
         """
         ends = perf_counter() + seconds
         found: list[tuple[float, Plan]] = []
@@ -73,17 +73,17 @@ class Trials:
         return min(found, key=lambda one: one[0])[1] if found else None
 
     def failures(self) -> list[str]:
-        """What the runs failed by, the most frequent first."""
+        """Return the reasons for failures, the most frequent first."""
         said = [f"{what} ({count(times, 'run', 'runs')})" for what, times in self._failures.most_common(4)]
         if self._decay > _QUICK:
             said.append(f"the damper of {self._damped} stops it within {1.0 / self._decay:.1g} s")
         return said
 
     def _slow_enough(self, plan: Plan, ends: float) -> tuple[float, Plan] | None:
-        """Return by how much the base turns in a run, rad, and the plan, slowed to the limits of the joints.
+        """Return the rotation of the base in a run, rad, and the plan, slowed until joints keep their limits.
 
-        None where the run will not do, or would have to be slower than ``SLOWEST_S`` for the limits of rate.
-        Efforts beyond their limits that a slower motion does not mend, as against friction, are noted in the
+        Returns None if the run fails, or if rate limits require a motion longer than ``SLOWEST_S``. Joints
+        that exceed their effort limits however slow the motion is, as against friction, are listed in the
         plan.
         """
         done, before = None, math.inf
@@ -109,16 +109,16 @@ class Trials:
         return done
 
     def _run(self, plan: Plan, ends: float) -> Trace | None:
-        """Return the trace of a plan, None where it will not do."""
+        """Return the trace of a plan; None if the run fails."""
         plan = replace(plan, integrator=self._integrator)
         try:
             trace = _trace(plan, ends)
         except _OverTimeError:
-            self._is_late = True  # and the next of its kind would be, too
+            self._is_late = True  # the next plan of this kind would be, too
             self._failures["not simulated in time"] += 1
             return None
         except OnOrbitError as error:
-            # its text names an instant, another one in every run
+            # the message contains a time, which differs from run to run
             failed = ["the integration broke down" if isinstance(error, SimulationError) else str(error)]
         else:
             failed = [name for name, *_, passed in trace.certificate() if not passed]
@@ -131,7 +131,7 @@ class Trials:
         return None
 
     def _is_within(self, trace: Trace, plan: Plan) -> bool:
-        """Whether joints stay within their limits of position, and the tool near its line."""
+        """Return True if joints stay within their position limits and the tool near its line."""
         beyond = trace.joint_limits_exceeded()
         self._failures.update(f"limits of {name}" for name in beyond)
         if plan.displacement is None or beyond:
@@ -142,24 +142,24 @@ class Trials:
 
 
 class _OverTimeError(Exception):
-    """The time for a run is over."""
+    """The wall-clock time for a run is used up."""
 
 
 def _trace(plan: Plan, ends: float) -> Trace:
-    """Run a plan, or as much of it as tells that it will not be done by ``ends``."""
+    """Run a plan; raise ``_OverTimeError`` as soon as the run is foreseen to end after ``ends``."""
     began = perf_counter()
 
-    def look_at_clock(reached_s: float, total_s: float) -> None:
+    def check_clock(reached_s: float, total_s: float) -> None:
         now = perf_counter()
         is_slow = (now - began) * total_s > _PATIENCE * (ends - began) * reached_s
         if now >= ends or (is_slow and now - began > _TO_SEE_S):
             raise _OverTimeError
 
     built = build(load(yaml.safe_load(draft_text(plan, "trial"))))
-    return built.simulation.run(plan.duration_s, progress=look_at_clock)
+    return built.simulation.run(plan.duration_s, progress=check_clock)
 
 
 def _turn(trace: Trace) -> float:
-    """Return by how much the base turns, rad."""
+    """Return the largest rotation of the base from its first attitude, rad."""
     attitude = np.asarray(trace.q)[:, 3:7]
     return float(angle_between(attitude, attitude[0]).max())

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 LONGEST_S = 30.0
-"""For all trials together, of wall clock."""
+"""Wall-clock time for all trials together, s."""
 
 
 @dataclass(frozen=True)
@@ -47,14 +47,14 @@ def draft(
     beside: Path | None = None,
     command: str = "onorbit new",
 ) -> Draft:
-    """A commented scenario in which the robot's arm moves; it has run with its certificate green.
+    """Draft a commented scenario in which the robot's arm moves; it has run with its certificate green.
 
-    Trials take ``LONGEST_S`` at most. Where no motion passes, all joints hold, and a comment says why.
+    Trials take at most ``LONGEST_S``. If no motion passes, all joints hold, and a comment states the reasons.
 
     Parameters
     ----------
     source : Source or str
-        The robot, and a bus that carries it; a bundled name, a URDF or a xacro file alone will do.
+        The robot, optionally with a bus. A string is a bundled name, a URDF or a xacro file.
     tool : str, optional
         The frame to move; the one that looks most like a tool where not given.
     beside : Path, optional
@@ -65,29 +65,29 @@ def draft(
     Raises
     ------
     OnOrbitError
-        The robot cannot be read, has no such frame, or nothing that was tried passes.
+        If the robot cannot be read, has no such frame, or no plan passes.
     """
     source = Source(source) if isinstance(source, str) else source
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # said when the scenario is checked
+        warnings.simplefilter("ignore")  # they are repeated when the scenario is checked
         model = source.model()
         if tool is not None:
-            model.frame_pose(model.neutral(), tool)  # says which frames there are
+            model.frame_pose(model.neutral(), tool)  # raises FrameError with the known frames
         arm = find_arm(model, tool)
         if tool is not None and arm is None:
             raise FrameError(
                 f"no joint moves the frame {tool!r}; name another with --tool",
                 name=tool, kind="frame", known=list(model.frame_names), suggestion=None,
             )  # fmt: skip
-        plan = _settled(model, arm, Plan(source.name(model), source.written(None, model)))
-    text = draft_text(replace(plan, robot=source.written(beside, model)), command)
+        plan = _first_passing(model, arm, Plan(source.name(model), source.entry(None, model)))
+    text = draft_text(replace(plan, robot=source.entry(beside, model)), command)
     return Draft(text, plan.tool, plan.arm, model, configuration(model, plan.home))
 
 
-def _settled(model: Model, arm: Arm | None, plan: Plan) -> Plan:
-    """The plan of the first kind of motion of which one runs as it should.
+def _first_passing(model: Model, arm: Arm | None, plan: Plan) -> Plan:
+    """Return a plan of the first kind of motion that has one that passes.
 
-    A kind that does not get there within half of the time that is left leaves the rest to simpler ones.
+    Each kind may use half of the remaining time, so that simpler kinds are always tried.
     """
     trials, ends = Trials(model), perf_counter() + LONGEST_S
     for plans in _kinds(model, arm, plan):
@@ -95,7 +95,7 @@ def _settled(model: Model, arm: Arm | None, plan: Plan) -> Plan:
         if found is not None:
             return found if found.arm else replace(found, failures=trials.failures() or [_NO_ROOM])
     raise ScenarioError(
-        f"nothing that was tried with {plan.name} passed, not even all joints held for a second: "
+        f"no plan for {plan.name} passed, not even holding all joints for a second: "
         f"{', '.join(trials.failures())}. Look at inertias, dampings and limits in 'onorbit info'; "
         "change the file, or name another frame with --tool",
         file=None, path=None, line=None,
@@ -106,7 +106,7 @@ _NO_ROOM = "the limits of position leave them no room"
 
 
 def _kinds(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Iterable[Plan]]:
-    """Plans of each kind: lines of the tool, turns of its joints, a small turn, joints that hold."""
+    """Yield the plans of each kind: lines of the tool, turns of its joints, a small turn, all joints held."""
     if arm is None:
         yield [replace(plan, duration_s=60.0, time_step_s=1e-2)]
         return
@@ -125,7 +125,7 @@ def _kinds(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Iterable[Plan]
 
 
 def _start(model: Model, arm: Arm) -> dict[str, float]:
-    """Positions of the arm's joints, and of those others that have no room around zero."""
+    """Return the start positions of the arm's joints, and of others that cannot rest at zero."""
     pose = home(model, arm)
     for joint in model.joints:
         if joint.name not in arm.joints and at_rest(joint) != 0.0:

@@ -1,4 +1,4 @@
-"""Meshes with as many triangles as a figure can show."""
+"""Reduces meshes to as many triangles as a figure can show."""
 
 from __future__ import annotations
 
@@ -20,17 +20,18 @@ FINEST = 1.0 / 400.0
 
 
 def coarse(parts: Sequence[Part], size: float, most: int) -> list[tuple[Floats, Floats]]:
-    """Corners (k, 3, 3), m, and colours (k, 3), RGB from 0 to 1, of the triangles of each part.
+    """Return the corners (k, 3, 3), m, and colours (k, 3), RGB from 0 to 1, of the triangles of each part.
 
-    Vertices within one cube of a grid become one at their mean, and triangles that vanish by it are left out.
+    The vertices in one cube of a grid are replaced by their mean; triangles that collapse are left out.
     The cubes grow until all parts together have at most ``most`` triangles.
 
     Parameters
     ----------
     parts : sequence of Part
     size : float
-        Of the robot that they belong to, m.
+        Size of the robot, m.
     most : int
+        Largest number of triangles of all parts.
 
     Source: Rossignac and Borrel, Multi-resolution 3D approximations for rendering complex scenes, 1993.
     """
@@ -42,30 +43,30 @@ def coarse(parts: Sequence[Part], size: float, most: int) -> list[tuple[Floats, 
     while count > most:
         meshes = [mesh.clustered(edge) for mesh in meshes]
         count = sum(len(mesh.faces) for mesh in meshes)
-        edge *= max(1.1, np.sqrt(count / most))  # as many cubes as a surface goes through
+        edge *= max(1.1, np.sqrt(count / most))  # a surface passes through about 1 / edge² cubes
     return [(mesh.points[mesh.faces], mesh.colors) for mesh in meshes]
 
 
 @dataclass(frozen=True)
 class _Triangles:
-    """Points (n, 3), triangles (k, 3) of them and the colours (k, 3) of these."""
+    """Points (n, 3), triangles (k, 3) as indices of points, and colours (k, 3) of the triangles."""
 
     points: Floats
     faces: NDArray[np.intp]
     colors: Floats
 
     def clustered(self, edge: float) -> _Triangles:
-        """With the points in each cube of an edge as one, and without what vanishes by it."""
+        """Return the mesh with the points in each cube merged, without collapsed and repeated triangles."""
         _, cluster = np.unique(_cubes(self.points, edge), return_inverse=True)
         faces = cluster[self.faces]
         a, b, c = faces.T
-        is_left = np.flatnonzero((a != b) & (b != c) & (c != a))
-        kept = is_left[_first_of_each(np.sort(faces[is_left], axis=1))]
+        whole = np.flatnonzero((a != b) & (b != c) & (c != a))
+        kept = whole[_first_of_each(np.sort(faces[whole], axis=1))]
         return _Triangles(_means(self.points, cluster), faces[kept], self.colors[kept])
 
 
 def _first_of_each(rows: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Indices of the rows (k, 3) that no earlier row is equal to, in order."""
+    """Return the indices of the rows (k, 3) that differ from all earlier rows, in order."""
     order = np.lexsort(rows.T)
     is_new = np.ones(len(rows), dtype=bool)
     is_new[1:] = np.diff(rows[order], axis=0).any(axis=1)
@@ -74,7 +75,7 @@ def _first_of_each(rows: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 def _cubes(points: Floats, edge: float) -> NDArray[np.int64]:
-    """Number of the cube that each point is in."""
+    """Return the number of the cube that contains each point."""
     low = points.min(axis=0)
     x, y, z = ((points - low) / edge).astype(np.int64).T
     number: NDArray[np.int64] = (x * (y.max() + 1) + y) * (z.max() + 1) + z
@@ -82,7 +83,7 @@ def _cubes(points: Floats, edge: float) -> NDArray[np.int64]:
 
 
 def _means(points: Floats, cluster: NDArray[np.intp]) -> Floats:
-    """Mean of the points of each cluster."""
+    """Return the mean of the points of each cluster."""
     return (
         np.stack([np.bincount(cluster, weights=axis) for axis in points.T], axis=-1)
         / np.bincount(cluster)[:, None]

@@ -1,4 +1,4 @@
-"""A robot in one configuration: a first look at a robot file."""
+"""Draws a robot in one configuration."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def portrait(model: Model, q: Floats, frames: Sequence[str] = ()) -> Figure:
 
 
 def _draw_frame(axes: Axes3D, name: str, pose: Floats, length: float) -> None:
-    """Coordinate axes and name of a frame, on top of the robot."""
+    """Draw the coordinate axes and the name of a frame on top of the robot."""
     origin = pose[:3, 3]
     for direction, color in zip(pose[:3, :3].T, XYZ_COLORS, strict=True):
         axes.plot(*np.array([origin, origin + length * direction]).T, color=color, linewidth=1.4, zorder=10)

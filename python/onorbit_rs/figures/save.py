@@ -58,12 +58,12 @@ def save_all(
 
 
 def save(figure: Figure, file: Path) -> None:
-    """Save a figure as PNG, PDF or SVG, as the name of the file says; an existing file is replaced.
+    """Save a figure as PNG, PDF or SVG, by the suffix of the file name; an existing file is replaced.
 
     Raises
     ------
     OutputFolderError
-        If it cannot be written.
+        If the file cannot be written.
     """
     with replacing(file) as temporary:
         temporary.write_bytes(as_bytes(figure, file.suffix[1:].lower()))

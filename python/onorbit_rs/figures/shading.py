@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 DARKEST = 0.15
-"""Smallest colour component that is drawn: black surfaces would show no shading, and so no shape."""
+"""Smallest colour component that is drawn: a black surface would show no shading."""
 
 LIGHT = np.array([0.3, -0.7, 0.65])
 """Direction to the light, W."""
 
 
 def add_surfaces(axes: Axes3D, faces: Floats, colors: Floats) -> None:
-    """Draw faces (n, 4, 3) with colours (n, 3), lit from above and the front on the side that is seen.
+    """Draw faces (n, 4, 3) with colours (n, 3); the visible side is lit from above and from the front.
 
-    The edges have the colour of their face, which closes the seams between faces.
+    Edges have the colour of their face, which closes the seams between faces.
     """
     # The diagonals of a face give its normal even where two of its corners coincide, as at a pole.
     normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
@@ -37,7 +37,7 @@ def add_surfaces(axes: Axes3D, faces: Floats, colors: Floats) -> None:
 
 
 def _direction_to_viewer(axes: Axes3D) -> Floats:
-    """Unit vector (3,)."""
+    """Return the unit vector (3,) from the scene to the viewer."""
     elevation, azimuth = np.radians([axes.elev, axes.azim])
     return np.array(
         [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 _AROUND = 20
 """Sides of a round body."""
 
-MOST_TRIANGLES = 8_000
-"""Of all meshes of a robot; a PDF of them takes a second and 200 kB, a PNG a tenth of it."""
+MESH_TRIANGLES = 8_000
+"""Largest number of triangles of all meshes of a robot: 1 s and 200 kB in a PDF, a tenth of that in a PNG."""
 
 
 def robot_polygons(model: Model, q: Floats) -> list[tuple[Floats, Floats]]:
-    """Faces of the robot at some configurations.
+    """Return the faces of the robot in some configurations.
 
     Parameters
     ----------
@@ -37,8 +37,8 @@ def robot_polygons(model: Model, q: Floats) -> list[tuple[Floats, Floats]]:
     Returns
     -------
     list of (faces, colors)
-        Of each configuration: corners (n, 4, 3) of quadrangles, W, m, the last two of a triangle being one,
-        and colours (n, 3), RGB from 0 to 1. Of meshes, :data:`MOST_TRIANGLES` at most.
+        For each configuration: corners (n, 4, 3) of quadrangles, W, m, and colours (n, 3), RGB from 0 to 1.
+        The last two corners of a triangle coincide. Meshes have at most :data:`MESH_TRIANGLES`.
     """
     robot = shapes(model)
     own = [*_primitives(robot), *_meshes(model, robot, q)]
@@ -54,7 +54,7 @@ def robot_polygons(model: Model, q: Floats) -> list[tuple[Floats, Floats]]:
 
 
 def _primitives(robot: list[Shape]) -> Iterator[tuple[Shape, Floats, Floats]]:
-    """Faces and colours of what is no mesh, in its own axes."""
+    """Yield the primitives with their faces and colours, in their own axes."""
     for shape in robot:
         if shape.mesh is None:
             faces = _faces(shape)
@@ -62,18 +62,18 @@ def _primitives(robot: list[Shape]) -> Iterator[tuple[Shape, Floats, Floats]]:
 
 
 def _meshes(model: Model, robot: list[Shape], q: Floats) -> Iterator[tuple[Shape, Floats, Floats]]:
-    """Triangles of the meshes, in their own axes, as quadrangles."""
+    """Yield the parts of meshes with their triangles as quadrangles and colours, in their own axes."""
     parts = [(shape, part) for shape in robot if shape.mesh is not None for part in shape.mesh.parts]
     if not parts:
         return
     _, size = extent(model, robot, q[:1])
-    drawn = coarse([part for _, part in parts], size, MOST_TRIANGLES)
+    drawn = coarse([part for _, part in parts], size, MESH_TRIANGLES)
     for (shape, _), (corners, colors) in zip(parts, drawn, strict=True):
         yield shape, corners[:, [0, 1, 2, 2]], colors
 
 
 def _faces(shape: Shape) -> Floats:
-    """Faces (n, 4, 3) of one primitive, in its own axes."""
+    """Return the faces (n, 4, 3) of a primitive in its own axes."""
     size = shape.size
     if shape.kind == "box":
         return _box(np.asarray(size))

@@ -1,8 +1,9 @@
-"""Mesh files as arrays, for viewer and figures alike.
+"""Reads mesh files into arrays, for the viewer and the figures.
 
 Lengths are in m and in the axes of the file: a Collada file's ``<unit>`` and the poses of nodes are applied.
-Which axis is up is not asked, neither of Collada (``<up_axis>``, which RViz and Gazebo pass over, too) nor of
-glTF (which Drake, and RViz since 2025, turn from y up to z up; robots with glTF on PyPI are made as if not).
+Meshes are not turned to make z point up. Collada's ``<up_axis>`` is ignored, as by RViz and Gazebo. glTF's
+y-up convention is ignored, too (Drake, and RViz since 2025, apply it), since the robots with glTF on PyPI are
+made without it.
 """
 
 from onorbit_rs.meshes.part import Mesh, Part

@@ -1,4 +1,4 @@
-"""Parts of a mesh from what a file has, and no more of them than a picture needs."""
+"""Builds the parts of a mesh from the arrays in a file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 MOST_TRIANGLES = 10_000_000
-"""Of a file, with every use of what it uses more than once."""
+"""Largest number of triangles of a file; each instance of a geometry counts."""
 
 
 def make_part(
@@ -26,16 +26,16 @@ def make_part(
     texture: Any = None,
     uv: ArrayLike | None = None,
 ) -> Part:
-    """A part whose faces are flat where there are no normals.
+    """Return a part; without normals its faces are shaded flat.
 
     Parameters
     ----------
     vertices, normals : (n, 3) arrays
     faces : (k, 3) array
     colors : (4,), (n, 4) or (k, 4) array
-        RGBA from 0 to 255, of all, of the vertices or of the faces.
+        RGBA from 0 to 255: one colour, or one for each vertex or face.
     texture, uv
-        As for :class:`Part`; a texture without ``uv`` is none.
+        As in :class:`Part`; a texture without ``uv`` is ignored.
     """
     index = np.ascontiguousarray(faces, dtype=np.uint32).reshape(-1, 3)
     points = np.asarray(vertices, dtype=np.float32).reshape(-1, 3)
@@ -55,7 +55,7 @@ def make_part(
     else:
         directions = np.asarray(normals, dtype=np.float32).reshape(-1, 3)
     if len(directions) != len(points) or (places is not None and len(places) != len(points)):
-        raise ValueError("its normals or texture coordinates are not as many as its vertices")
+        raise ValueError("it does not have as many normals or texture coordinates as vertices")
     if not np.isfinite(points).all():
         raise ValueError("it has vertices that are no finite numbers")
     tints = np.broadcast_to(tints, (len(points), 4))
@@ -65,7 +65,7 @@ def make_part(
 
 
 def joined(parts: Sequence[Part]) -> tuple[Part, ...]:
-    """Those that share a texture, or have none, as one if they are as opaque: each is drawn in one go."""
+    """Merge parts that share texture and opacity, so that each result can be drawn in one call."""
     groups: dict[tuple[int, int], list[Part]] = {}
     for part in parts:
         groups.setdefault((id(part.texture), int(part.colors[0, 3])), []).append(part)
@@ -89,12 +89,12 @@ def _as_one(parts: list[Part]) -> Part:
 
 @dataclass
 class Budget:
-    """Triangles that a file may still have."""
+    """Number of triangles that a file may still have."""
 
     left: int = MOST_TRIANGLES
 
     def take(self, triangles: int) -> None:
-        """Count some more of them."""
+        """Subtract triangles; raise ValueError if there are too many."""
         self.left -= triangles
         if self.left < 0:
             raise ValueError(f"it has more than {MOST_TRIANGLES} triangles: simplify it")

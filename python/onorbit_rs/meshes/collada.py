@@ -1,4 +1,4 @@
-"""Collada files: triangles, polygons and lists of them, with the poses of their nodes, by pycollada."""
+"""Reads Collada files with pycollada: triangles, polygons and polylists, with the poses of their nodes."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ if TYPE_CHECKING:
     from onorbit_rs.meshes.textures import Companions
 
 MOST_NODES = 100_000
-"""Of a scene: nodes that stand for others can make 2ⁿ of n."""
+"""Largest number of nodes of a scene: n nodes that refer to others twice make 2ⁿ."""
 
 _CHUNK = 65_536
 
 
 def read_collada(content: bytes, companions: Companions) -> list[Part]:
-    """The triangles of the scene; raises ValueError, or whatever pycollada does with what is damaged."""
+    """Return the triangles of the scene.
+
+    Raises ValueError, or any exception of pycollada if the file is damaged.
+    """
     import collada
 
     _check_kind(content)
@@ -50,7 +53,7 @@ def read_collada(content: bytes, companions: Companions) -> list[Part]:
 
 
 def _check_kind(content: bytes) -> None:
-    """Refuse other XML, and document types, whose entities can grow without end or name other files."""
+    """Refuse other XML, and document types, whose entities can expand without bound or name other files."""
 
     def refuse(*_: Any) -> None:
         raise ValueError("it has a document type (<!DOCTYPE>): remove it")
@@ -68,7 +71,7 @@ def _check_kind(content: bytes) -> None:
 
 
 def _without_lost_materials(content: bytes, known: set[str]) -> bytes:
-    """Without uses of materials that could not be read: pycollada would leave out the geometry, too."""
+    """Return the file without uses of unreadable materials: pycollada would leave out the geometry, too."""
     root = ElementTree.fromstring(content)
     for holder in root.iter():
         for use in [child for child in holder if child.tag.endswith("}instance_material")]:
@@ -78,15 +81,15 @@ def _without_lost_materials(content: bytes, known: set[str]) -> bytes:
 
 
 def _count(node: Any, known: dict[int, int]) -> int:
-    """Nodes below one, and itself, as often as they are drawn."""
-    stands_for = getattr(node, "node", node)
-    if id(stands_for) not in known:
-        known[id(stands_for)] = 1 + sum(_count(child, known) for child in getattr(stands_for, "children", ()))
-    return known[id(stands_for)]
+    """Return the number of nodes drawn for a node, itself included; referenced nodes count each time."""
+    target = getattr(node, "node", node)
+    if id(target) not in known:
+        known[id(target)] = 1 + sum(_count(child, known) for child in getattr(target, "children", ()))
+    return known[id(target)]
 
 
 def _part(triangles: Any, meter: float, companions: Companions) -> Part:
-    """One vertex for every corner: normals and texture coordinates have indices of their own."""
+    """Return a part with one vertex per corner: normals and texture coordinates have separate indices."""
     vertices = triangles.vertex[triangles.vertex_index].reshape(-1, 3) * meter
     normals = uv = colors = None
     if triangles.normal is not None and triangles.normal_index is not None:
@@ -114,7 +117,7 @@ def _part(triangles: Any, meter: float, companions: Companions) -> Part:
 
 
 def _material(material: Any, companions: Companions | None) -> tuple[Any, Any]:
-    """RGBA, 0 to 255, and texture of a material; what is black and shines counts by its own light."""
+    """Return RGBA, 0 to 255, and texture of a material; emission replaces a black diffuse colour."""
     import collada
 
     effect = getattr(material, "effect", None)
@@ -129,12 +132,12 @@ def _material(material: Any, companions: Companions | None) -> tuple[Any, Any]:
     ]
     if not known:
         return PLAIN, None
-    seen = next((light for light in known if any(light)), known[0])
-    return _bytes(255.0 * np.array([*seen, _opacity(effect)])), None
+    color = next((light for light in known if any(light)), known[0])
+    return _bytes(255.0 * np.array([*color, _opacity(effect)])), None
 
 
 def _opacity(effect: Any) -> float:
-    """By the two ways of Collada; what would not be seen at all is a fault of its exporter, and is opaque."""
+    """Return the opacity, by either mode of Collada; an invisible material is taken for an export error."""
     import collada
 
     transparent, factor = effect.transparent, effect.transparency

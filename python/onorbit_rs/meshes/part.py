@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Bytes = NDArray[np.uint8]
 
 PLAIN = (184, 186, 191, 255)
-"""RGBA of what has no colour in its file."""
+"""RGBA of surfaces without a colour in their file."""
 
 _WITHIN = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4]]) / [[3], [6], [6], [6]]
 """Barycentric coordinates of points in a triangle, away from its edges."""
@@ -29,7 +29,7 @@ class Part:
 
     ``vertices`` (n, 3), m; ``faces`` (k, 3), indices of vertices, counter-clockwise from outside;
     ``normals`` (n, 3), unit vectors; ``colors`` (n, 4), RGBA; ``texture`` (h, w, 3), RGB, multiplied by the
-    colours, and ``uv`` (n, 2), where in it a vertex is, from its upper left corner.
+    colours, and ``uv`` (n, 2), texture coordinates from the upper left corner.
     """
 
     vertices: Floats
@@ -41,7 +41,7 @@ class Part:
 
     @property
     def face_colors(self) -> NDArray[np.float64]:
-        """(k, 3) RGB from 0 to 1, the mean over each face, as far as a few points of its texture tell."""
+        """Mean colour of each face, (k, 3) RGB from 0 to 1; textures are sampled at a few points per face."""
         colors: NDArray[np.float64] = self.colors[:, :3][self.faces].mean(axis=1) / 255.0
         if self.texture is None or self.uv is None:
             return colors
@@ -54,7 +54,7 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """What is in a mesh file; immutable."""
+    """The content of a mesh file; immutable."""
 
     parts: tuple[Part, ...]
 
@@ -67,13 +67,15 @@ class Mesh:
         )
 
     def scaled(self, scale: Sequence[float]) -> Mesh:
-        """Stretched along each axis; one of an odd number of negative factors is mirrored."""
+        """Return the mesh scaled along each axis; an odd number of negative factors mirrors it."""
         factors = np.asarray(scale, dtype=np.float32)
         if (factors == 1.0).all():
             return self
         x, y, z = factors
         turn = -1 if x * y * z < 0.0 else 1
-        areas = np.array([y * z, z * x, x * y]) * np.float32(turn)  # of faces across each axis
+        areas = np.array([y * z, z * x, x * y]) * np.float32(
+            turn
+        )  # signed area factors of faces normal to each axis
         return Mesh(tuple(
             replace(
                 part,
@@ -85,7 +87,7 @@ class Mesh:
         ))  # fmt: skip
 
     def painted(self, rgba: Sequence[float]) -> Mesh:
-        """In one colour, from 0 to 1, which tints a texture."""
+        """Return the mesh in one colour, RGBA from 0 to 1, which is multiplied with a texture."""
         color = np.clip(np.round(np.array(rgba) * 255.0), 0, 255).astype(np.uint8)
         return Mesh(tuple(
             replace(part, colors=np.broadcast_to(color, part.colors.shape)) for part in self.parts
@@ -93,7 +95,7 @@ class Mesh:
 
 
 def unit(vectors: Floats) -> Floats:
-    """(n, 3) vectors of length 1; zero stays zero."""
+    """Return the vectors (n, 3) scaled to length 1; zero stays zero."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     scaled: Floats = np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
     return scaled

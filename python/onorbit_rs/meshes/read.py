@@ -1,4 +1,4 @@
-"""A mesh file, read once in a process."""
+"""Reads mesh files, each once per process."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ import numpy as np
 from onorbit_rs.exceptions import ReadError
 from onorbit_rs.meshes.assemble import joined
 from onorbit_rs.meshes.collada import read_collada
-from onorbit_rs.meshes.other_kinds import read_other
 from onorbit_rs.meshes.part import Mesh, Part
 from onorbit_rs.meshes.textures import Companions
+from onorbit_rs.meshes.with_trimesh import read_with_trimesh
 from onorbit_rs.reading import LARGEST_MESH, check_regular, read_bytes
 
 ENDINGS = (".dae", ".glb", ".gltf", ".obj", ".ply", ".stl")
 
 _KEPT = 128
-"""Files whose content stays in memory."""
+"""Number of meshes that are kept in memory."""
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
-    """Return what is in a mesh file (Collada, glTF, OBJ, PLY, STL), by its ending.
+    """Return the content of a mesh file: Collada, glTF, OBJ, PLY or STL, by its ending.
 
-    Materials and textures are looked for near the file alone; one that is not there leaves its surface plain.
+    Materials and textures are searched only near the file; a surface without its texture is plain.
 
     Raises
     ------
     NotFoundError, ReadError
-        No such file; none that can be read, with the reason; too large; nothing to see in it.
+        If the file does not exist, is too large, cannot be read (with the reason) or has no surface.
     """
     check_regular(path, "mesh")
     about = Path(path).stat()
@@ -51,24 +51,24 @@ def _read(path: Path, _changed: int, _size: int) -> Mesh | ReadError:
         if not content:
             raise ValueError("it is empty: export it again")
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of the libraries, about what they pass over
+            warnings.simplefilter("ignore")  # of the libraries, about content that they skip
             companions = Companions(path)
             parts = (
                 read_collada(content, companions)
                 if kind == ".dae"
-                else read_other(content, kind[1:], companions)
+                else read_with_trimesh(content, kind[1:], companions)
             )
         return Mesh(joined(_checked(parts)))
     except ReadError as error:
         return error
     except ValueError as error:
         return _failure(path, str(error))
-    except Exception as error:  # of a damaged file the libraries raise whatever comes up
+    except Exception as error:  # the libraries raise many types for damaged files
         return _failure(path, f"it is damaged ({type(error).__name__}: {error})")
 
 
 def _checked(parts: list[Part]) -> list[Part]:
-    """Those with a surface; there must be one."""
+    """Return the parts that have a surface; raise ValueError if none has."""
     seen = [part for part in parts if len(part.faces) and _has_area(part)]
     if not seen:
         raise ValueError("it has no triangles with an area: export it with its surfaces")

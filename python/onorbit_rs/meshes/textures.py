@@ -1,4 +1,4 @@
-"""Pictures and materials that a mesh file names: local files near it, and nothing else."""
+"""Images and materials that a mesh file refers to; only local files near it are read."""
 
 from __future__ import annotations
 
@@ -17,38 +17,38 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LARGEST_COMPANION = 64_000_000
-"""Bytes of a picture or a list of materials."""
+"""Largest size of an image or a material file, bytes."""
 
 MOST_PIXELS = 64_000_000
 SIDE = 1024
-"""Pixels along a side that a texture keeps at most."""
+"""Larger textures are reduced to this number of pixels along a side."""
 
 _FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TGA", "TIFF", "WEBP")
-"""Those that Pillow reads by itself; others it hands to programs such as Ghostscript."""
+"""Formats that Pillow decodes itself; it passes others to programs such as Ghostscript."""
 
 _UP = 4
-"""Folders above a mesh in which its package is looked for."""
+"""Number of folders, from that of the mesh upwards, in which its package is searched."""
 
 
 class Companions:
-    """The files beside a mesh, as trimesh asks for them (``get``).
+    """The files that a mesh refers to, with the methods of a resolver of trimesh.
 
-    Only those below the folder of its package (with ``package.xml`` or ``model.config``), else below the
-    folder above its own, after symbolic links are followed.
+    Only files below the folder of its package (with ``package.xml`` or ``model.config``) are read; without a
+    package, those below the parent of its folder. Symbolic links are resolved first.
     """
 
     def __init__(self, mesh: Path) -> None:
-        """Of the mesh in a file."""
+        """Find the package of a mesh file."""
         self._known: dict[str, NDArray[np.uint8] | None] = {}
         self._folder = mesh.parent.resolve()
         above = [self._folder, *self._folder.parents][:_UP]
         package = (folder for folder in above if _is_package(folder))
         self._root = next(package, self._folder.parent)
-        if self._root == self._root.parent:  # all of the disk
+        if self._root == self._root.parent:  # the whole disk
             self._root = self._folder
 
     def get(self, name: str) -> bytes:
-        """The content of a file; FileNotFoundError where it is not near the mesh."""
+        """Return the content of a file; raise FileNotFoundError if it is not near the mesh."""
         for path in self._places(unquote(name.strip()).removeprefix("file://").replace("\\", "/")):
             try:
                 if path.resolve().is_relative_to(self._root) and path.is_file():
@@ -61,7 +61,7 @@ class Companions:
     __getitem__ = get
 
     def namespaced(self, _: str) -> Companions:
-        """Of a folder in an archive: the same, since there are no archives here."""
+        """Return this object; trimesh asks for folders of archives, which are not read here."""
         return self
 
     def _places(self, name: str) -> Iterator[Path]:
@@ -73,7 +73,7 @@ class Companions:
             yield self._folder / folder / last
 
     def texture(self, name: str) -> NDArray[np.uint8] | None:
-        """(h, w, 3) of a picture file, None where it is not there or no picture; the same for one name."""
+        """Return the pixels (h, w, 3) of an image file, cached by name; None if it cannot be read."""
         if name not in self._known:
             self._known[name] = self._decoded(name)
         return self._known[name]
@@ -88,7 +88,7 @@ class Companions:
 
 
 def pixels(image: Any) -> NDArray[np.uint8] | None:
-    """(h, w, 3) of a Pillow image that has not been decoded yet."""
+    """Return the pixels (h, w, 3) of a Pillow image that has not been decoded yet; None if it is unusable."""
     import numpy as np
 
     if image is None or image.format not in _FORMATS or math.prod(image.size) > MOST_PIXELS:
@@ -101,7 +101,7 @@ def pixels(image: Any) -> NDArray[np.uint8] | None:
 
 
 def as_utf8(content: bytes) -> bytes:
-    """Text in any encoding with ASCII in it: numbers and key words are that, and remarks do not count."""
+    """Return text as UTF-8; other encodings are read as Latin-1, since numbers and keywords are ASCII."""
     try:
         content.decode("utf-8")
     except UnicodeDecodeError:

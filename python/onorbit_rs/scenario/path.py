@@ -54,11 +54,11 @@ class Sgp4Orbit(Part):
     omm_file: FilePath | None = None
     """A CCSDS Orbit Mean-Elements Message: JSON, XML, CSV or KVN."""
     satellite: SatelliteName | None = None
-    """Which of several in ``tle``, ``tle_file`` or ``omm_file``: its name or catalogue number."""
+    """Selects one of several sets in ``tle``, ``tle_file`` or ``omm_file``, by name or catalogue number."""
     gravity: Literal["wgs72", "wgs72old", "wgs84"] = "wgs72"
     check_checksum: bool = True
     propagator: Literal["native", "reference"] = "native"
-    """``reference`` reads and propagates the set by PyPI's ``sgp4`` instead, to check the engine's own."""
+    """``reference`` reads and propagates the set with PyPI's ``sgp4``, to check the engine's SGP4."""
     gravity_mode: GravityMode = "true"
 
     @model_validator(mode="after")

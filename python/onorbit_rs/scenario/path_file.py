@@ -11,7 +11,7 @@ import numpy as np
 
 from onorbit_rs.counting import count
 from onorbit_rs.exceptions import ElementSetError
-from onorbit_rs.satellites import the_one
+from onorbit_rs.satellites import select_set
 from onorbit_rs.scenario.table import read_table
 
 if TYPE_CHECKING:
@@ -28,31 +28,31 @@ GROUPS = {
 
 
 def two_lines(text: str, where: str, satellite: str | None = None) -> tuple[str, str]:
-    """The two lines of a TLE, or of that of ``satellite`` among several, a name or catalogue number.
+    """Return the two lines of the only TLE, or of that of ``satellite`` (name or catalogue number).
 
-    A name may stand before them, comments (#) and blank lines anywhere.
+    A line with a name may precede them; comments (#) and blank lines are skipped.
 
     Raises
     ------
     ElementSetError
-        Not the lines of one TLE, or none of that satellite.
+        If the text does not hold exactly one such TLE.
     """
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     if satellite is not None:
-        return the_one(_sets(lines), satellite, where)
+        return select_set(_sets(lines), satellite, where)
     if len(lines) == 3:
         lines = lines[1:]
     if len(lines) != 2:
         found = count(len(lines), "line", "lines")
         raise ElementSetError(
             f"{where} holds {found}: give the two lines of one TLE, with a name before them or not,"
-            " or say by 'satellite' which of several, its name or catalogue number"
+            " or select one of several by 'satellite': its name or catalogue number"
         )
     return lines[0], lines[1]
 
 
 def _sets(lines: list[str]) -> Iterator[tuple[str, str, tuple[str, str]]]:
-    """Name (empty where there is none), catalogue number and lines of every TLE."""
+    """Yield the name (empty if missing), catalogue number and lines of every TLE."""
     name = ""
     for line, after in pairwise([*lines, ""]):
         if line.startswith("1 ") and after.startswith("2 "):

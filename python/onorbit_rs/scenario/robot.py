@@ -79,7 +79,7 @@ class PlainRobot(Part):
     xacro: bool = False
     """Whether to expand a file that is not named ``.xacro``."""
     links: dict[str, LinkValues] = Field(default_factory=dict)
-    """By name of the link: mass, centre of mass and inertia that replace those of the file."""
+    """Mass, centre of mass and inertia that replace those of the file, by the name of the link."""
 
     sources: ClassVar[tuple[str, ...]] = ("bundled", "urdf", "rigid_body")
 

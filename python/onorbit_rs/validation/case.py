@@ -16,7 +16,7 @@ from onorbit_rs.printable import json_value
 INSTALL = {
     "pinocchio": "pip install pin", "mujoco": "pip install mujoco-core", "SPARTpy": "pip install spartpy",
 }  # fmt: skip
-"""How to get the engines that some cases ask; none is needed to use the package."""
+"""Commands that install the engines some cases compare with; the package needs none of them."""
 
 
 class CannotRunError(Exception):

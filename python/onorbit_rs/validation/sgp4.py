@@ -28,7 +28,7 @@ class ElementSet(NamedTuple):
     rows: list[list[float]]
 
     def orbit(self) -> oo.Sgp4:
-        """Sets that provoke errors have checksums that are wrong."""
+        """Return the orbit. Sets that provoke errors have wrong checksums."""
         is_sound = self.regime != "refused"
         return oo.Sgp4(self.line1, self.line2, gravity=GRAVITY, check_checksum=is_sound)
 

@@ -26,7 +26,7 @@ def notes(summary: dict[str, Any], scenario: Scenario) -> str:
 
 
 def about_meshes(model: Model) -> str:
-    """Which meshes are not drawn; empty where all are."""
+    """Return a note on the meshes that are not drawn; empty if all are."""
     missing = missing_meshes(model)
     if not missing:
         return ""

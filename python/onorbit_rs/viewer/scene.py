@@ -53,7 +53,7 @@ _POSES = {"desired": "reference_pose", "obtained": "tool_pose"}
 
 
 def log_robot(recording: rr.RecordingStream, setting: Setting) -> None:
-    """Its shapes, each in the frame of its link."""
+    """Log the shapes of the robot, each in the frame of its link."""
     for index, shape in enumerate(setting.shapes):
         path = rr.new_entity_path(["world", "robot", shown(shape.link), f"visual_{index}"])
         for entity in log_shape(recording, path, shape):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 import rerun as rr
 
@@ -12,8 +10,8 @@ from onorbit_rs.meshes import Part
 from onorbit_rs.rotations import quaternion_from_matrix
 
 
-def log_shape(recording: rr.RecordingStream, path: str, shape: Shape) -> Iterator[str]:
-    """Log one shape, static, in the axes of its link; yields its entities, which want a frame."""
+def log_shape(recording: rr.RecordingStream, path: str, shape: Shape) -> list[str]:
+    """Log one static shape in the axes of its link; return its entities, each of which needs a frame."""
     pose = shape.pose
     if shape.kind == "capsule":  # rerun's capsule starts at its origin, URDF's is centred
         pose = pose.copy()
@@ -22,10 +20,10 @@ def log_shape(recording: rr.RecordingStream, path: str, shape: Shape) -> Iterato
         translations=[pose[:3, 3]], quaternions=[rr.Quaternion(xyzw=quaternion_from_matrix(pose[:3, :3]))]
     )
     drawn = [_primitive(shape)] if shape.mesh is None else [_mesh(part) for part in shape.mesh.parts]
-    for index, archetype in enumerate(drawn):
-        entity = f"{path}/part_{index}" if index else path
+    entities = [path, *(f"{path}/part_{index}" for index in range(1, len(drawn)))]
+    for entity, archetype in zip(entities, drawn, strict=True):
         recording.log(entity, archetype, placed, static=True, strict=True)
-        yield entity
+    return entities
 
 
 def _primitive(shape: Shape) -> rr.AsComponents:

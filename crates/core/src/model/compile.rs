@@ -66,8 +66,8 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
     Ok(model)
 }
 
-/// A link with an indefinite inertia, or with an inertia but no mass, is accepted only where the inertia of its body
-/// as a whole makes sense.
+/// A link with an indefinite inertia, or with an inertia but no mass, is accepted only if the inertia of its whole
+/// body is valid.
 fn check_parts(model: &Model) -> Result<(), ModelError> {
     for warning in &model.warnings {
         let (ModelWarning::IndefinitePart { link, .. } | ModelWarning::InertiaWithoutMass { link }) = warning

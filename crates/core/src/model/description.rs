@@ -65,7 +65,7 @@ pub struct Link {
     pub inertial: Option<Inertial>,
     /// What it looks like.
     pub visuals: Vec<Visual>,
-    /// What its contacts are computed with elsewhere; meshes where the file is there.
+    /// Collision shapes; meshes only if their file exists. They are drawn if a visual cannot be.
     pub collisions: Vec<Visual>,
 }
 

@@ -151,7 +151,7 @@ impl ModelError {
         }
     }
 
-    /// A name used twice where a robot is attached: what to do about it.
+    /// Converts a duplicate name to the error for attached robots, which suggests a prefix.
     pub(super) fn of_prefix(self, prefix: &str) -> Self {
         match self {
             Self::DuplicateName { what, name } if prefix.is_empty() => Self::NameOfBoth { what, name },
@@ -161,7 +161,7 @@ impl ModelError {
     }
 }
 
-/// `joints`: those between the base and the first mass, where nothing else hangs on them.
+/// Returns advice for a singular base; `joints` are those of the chain between the base and the first mass.
 fn base_advice(joints: &[String]) -> String {
     let names: Vec<String> = joints.iter().map(|joint| format!("'{joint}'")).collect();
     match joints.len() {

@@ -26,7 +26,7 @@ pub(super) enum Sense {
     Rounded([f64; 3]),
     /// None: it could turn with negative energy.
     Indefinite([f64; 3]),
-    /// An inertia without a mass: it makes sense with masses that move with it.
+    /// An inertia without a mass, which is valid as part of a body that has mass.
     Massless,
 }
 

@@ -150,7 +150,7 @@ impl Model {
         &self.visuals
     }
 
-    /// Collision shapes, likewise, with meshes whose file is there: what to draw where a visual cannot be.
+    /// Collision shapes, likewise, with meshes whose file exists. They are drawn if a visual cannot be.
     pub fn collisions(&self) -> &[(usize, Visual)] {
         &self.collisions
     }

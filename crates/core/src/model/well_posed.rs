@@ -37,8 +37,8 @@ pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     }
 }
 
-/// The joints from a base without inertia to the first body that has some, where they are one chain: dummy joints
-/// that let a fixed world carry a robot that moves.
+/// Returns the joints between a base without inertia and the first body with some, if they form one chain, such as
+/// the dummy joints of a mobile robot on a fixed world.
 fn massless_chain(model: &Model) -> Vec<String> {
     let is_empty = |node: &&Node| node.mass == 0.0 && node.about_com.to_nalgebra().amax() == 0.0;
     let count = model.nodes.iter().take_while(is_empty).take_while(|node| !node.is_fork).count();

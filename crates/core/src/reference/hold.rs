@@ -30,7 +30,7 @@ impl Hold {
         Ok(Self { rot_fd: rot_fd.into(), pos_f: pos_f.into() })
     }
 
-    /// The pose.
+    /// Returns the pose as an isometry.
     pub fn isometry(&self) -> Isometry3<f64> {
         let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(
             self.rot_fd.to_nalgebra(),

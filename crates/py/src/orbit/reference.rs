@@ -1,16 +1,16 @@
-//! The reference code of SGP4, PyPI's `sgp4`, as the engine asks it.
+//! Calls the reference code of SGP4, PyPI's `sgp4`, from the engine.
 
 use onorbit_core::orbit::sgp4::Reference;
 use pyo3::prelude::*;
 
-/// A `Satrec` of `sgp4.api`; every state is a call of Python.
+/// A `Satrec` of `sgp4.api`; each state requires a call of Python.
 #[derive(Debug)]
 pub(super) struct Satrec {
     tsince: Py<PyAny>,
 }
 
 impl Satrec {
-    /// What a function of `onorbit_rs.satrec` makes of its arguments.
+    /// Makes a `Satrec` with a function of `onorbit_rs.satrec`.
     pub(super) fn new<'py>(
         py: Python<'py>,
         function: &str,

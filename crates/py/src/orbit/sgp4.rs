@@ -16,12 +16,12 @@ use std::sync::Arc;
 /// and velocity are SGP4's own. A line that is not 69 columns of the right kind, or whose checksum is wrong, raises
 /// ``ElementSetError``, naming line and column; what SGP4 itself refuses raises ``Sgp4Error`` with its ``code``.
 ///
-/// ``Sgp4(satrec)`` takes a ``Satrec`` of PyPI's ``sgp4`` instead of the two lines: its epoch, its elements to the last bit and
-/// its gravity constants. One initialised for another Earth model, or in AFSPC mode, raises ``ElementSetError``;
-/// ``propagator="reference"`` takes that mode too.
+/// ``Sgp4(satrec)`` accepts a ``Satrec`` of PyPI's ``sgp4`` in place of the two lines and copies its epoch, its elements
+/// (bit by bit) and its gravity constants. A ``Satrec`` with other gravity constants, or in AFSPC mode, raises
+/// ``ElementSetError``; ``propagator="reference"`` accepts that mode.
 ///
-/// ``propagator="reference"`` has the set read and propagated by PyPI's ``sgp4`` in place of the engine's own SGP4, as
-/// a check of it: every state is then some calls of Python.
+/// With ``propagator="reference"`` PyPI's ``sgp4`` reads and propagates the set in place of the engine's SGP4, as a check;
+/// each state then requires calls of Python.
 #[pyclass(name = "Sgp4", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(crate) struct PySgp4 {
     sgp4: Arc<Sgp4>,
@@ -37,7 +37,7 @@ fn earth_model(py: Python<'_>, name: &str) -> PyResult<EarthModel> {
     }
 }
 
-/// Whether the reference code propagates.
+/// Returns true if the reference code propagates.
 fn is_reference(py: Python<'_>, propagator: &str) -> PyResult<bool> {
     match propagator {
         "native" => Ok(false),
@@ -63,7 +63,7 @@ fn wrap(
     Ok(PyClassInitializer::from(orbit).add_subclass(PySgp4 { sgp4 }))
 }
 
-/// The mean elements of a `Satrec`; `None` where its epoch is no date.
+/// Returns the mean elements of a `Satrec`; `None` if its epoch is no date.
 fn mean_elements(satrec: &Bound<'_, PyAny>) -> PyResult<Option<MeanElements>> {
     let number = |name: &str| satrec.getattr(name)?.extract::<f64>();
     let Some(epoch) = Epoch::of_julian_date(number("jdsatepoch")?, number("jdsatepochF")?) else {
@@ -82,7 +82,7 @@ fn mean_elements(satrec: &Bound<'_, PyAny>) -> PyResult<Option<MeanElements>> {
     }))
 }
 
-/// From a `Satrec`: its epoch, its elements to the last bit, its gravity constants.
+/// Makes an orbit with the epoch, elements and gravity constants of a `Satrec`.
 fn of_satrec(
     satrec: &Bound<'_, PyAny>,
     propagator: &str,
@@ -136,7 +136,7 @@ impl PySgp4 {
         wrap(sgp4, satrec, ("Sgp4", &arguments, &keywords))
     }
 
-    /// From a CCSDS Orbit Mean-Elements Message: a mapping of its keywords, or its text (JSON, XML, CSV or KVN).
+    /// Make an orbit from a CCSDS Orbit Mean-Elements Message: a mapping of its keywords, or its text (JSON, XML, CSV or KVN).
     #[staticmethod]
     #[pyo3(signature = (message, *, gravity="wgs72", propagator="native"))]
     fn from_omm<'py>(

@@ -1,17 +1,17 @@
-//! An element of the file, with errors that name the link or joint it belongs to.
+//! An element of the file; its errors name the link or joint that it belongs to.
 
 use super::error::{UrdfError, UrdfProblem};
 use roxmltree::Node;
 
-/// Numbers that one attribute holds at most: a colour, a quaternion.
+/// Largest number of values in one attribute, as in a colour or a quaternion.
 pub(super) const MOST_NUMBERS: usize = 4;
 
-/// An element and the link or joint (`link 'hand'`) whose description it is part of.
+/// An element and the link or joint (`link 'hand'`) that it describes.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a> {
     pub(super) node: Node<'a, 'a>,
     pub(super) owner: &'a str,
-    /// Elements and attributes inside that mean nothing for this owner, and are not read.
+    /// Child elements and attributes that do not apply to this owner and are not read.
     pub(super) unread: &'static [&'static str],
 }
 
@@ -28,19 +28,19 @@ impl<'a> Element<'a> {
         self.node.tag_name().name()
     }
 
-    /// Elements of that name directly inside; those with another prefix are others' extensions.
+    /// Returns the child elements of this name and the same prefix; elements with another prefix are extensions.
     pub(super) fn children(self, name: &'static str) -> impl Iterator<Item = Self> {
         let is_ours =
             move |node: &Node<'a, 'a>| node.tag_name().name() == name && prefix(*node) == prefix(self.node);
         self.node.children().filter(Node::is_element).filter(is_ours).map(move |node| Self { node, ..self })
     }
 
-    /// The first element of that name, as urdfdom reads it.
+    /// Returns the first child element of this name, the one that urdfdom reads.
     pub(super) fn child(self, name: &'static str) -> Option<Self> {
         self.children(name).next()
     }
 
-    /// The colour of a material, where it says one.
+    /// Returns the colour element of a material if it has a value.
     pub(super) fn color(self) -> Option<Self> {
         self.child("color").filter(|color| color.text("rgba").is_some())
     }
@@ -53,7 +53,7 @@ impl<'a> Element<'a> {
         self.node.attribute(attribute)
     }
 
-    /// An attribute that must be there.
+    /// Returns the text of a required attribute.
     pub(super) fn required_text(&self, attribute: &'static str) -> Result<&'a str, UrdfError> {
         self.text(attribute).ok_or_else(|| self.lacks_attribute(attribute))
     }
@@ -63,7 +63,7 @@ impl<'a> Element<'a> {
         text.map(|text| self.numbers(attribute, text, 1).map(|[x, ..]| x)).transpose()
     }
 
-    /// The `count` finite numbers between spaces that `text` holds, followed by zeros.
+    /// Parses exactly `count` finite numbers, separated by spaces; the rest of the array is zero.
     pub(super) fn numbers(
         &self,
         attribute: &'static str,
@@ -107,12 +107,12 @@ impl<'a> Element<'a> {
     }
 }
 
-/// Whether a text holds what xacro would replace.
+/// Returns true if a text contains an expression of xacro.
 pub(super) fn has_expression(text: &str) -> bool {
     text.contains("${") || text.contains("$(")
 }
 
-/// The prefix of an element as it stands in the file, whatever namespace that is.
+/// Returns the prefix of an element as written in the file, regardless of its namespace.
 pub(super) fn prefix<'a>(node: Node<'a, 'a>) -> Option<&'a str> {
     node.tag_name().namespace()?; // without one there is no prefix
     let tag = node.document().input_text().get(node.range().start + 1..)?;

@@ -1,7 +1,7 @@
-//! An element as urdf-rs' types: serde asks it for what the schema lists.
+//! Deserializes elements of the parsed tree into the types of urdf-rs, following the schema.
 //!
-//! `urdf_rs::read_from_string` parses its text twice and takes nearly four times as long as the whole of
-//! the loading; its types take what they are given from the tree that is there, checked on the way.
+//! `urdf_rs::read_from_string` parses its text twice and takes nearly four times as long as loading the whole
+//! robot. Here its types are filled from the existing tree, and all values are checked on the way.
 
 use super::element::Element;
 use super::error::UrdfError;
@@ -12,12 +12,12 @@ use serde::de::value::{MapDeserializer, StrDeserializer};
 use serde::de::{self, DeserializeSeed, Deserializer, EnumAccess, IntoDeserializer, VariantAccess, Visitor};
 
 impl<'a> Element<'a> {
-    /// The element as one of urdf-rs' types.
+    /// Converts the element to a type of urdf-rs.
     pub(super) fn read<T: de::Deserialize<'a>>(self) -> Result<T, UrdfError> {
         T::deserialize(Value::Element(self)).map_err(|refusal| refusal.at(&self))
     }
 
-    /// What the element holds by the schema: names with what stands for them.
+    /// Returns the names and values of the fields that the schema lists for the element.
     fn fields(self) -> impl Iterator<Item = (&'static str, Value<'a>)> {
         let is_read = move |name: &str| !self.unread.contains(&name);
         let texts = attributes(self.tag()).iter().filter_map(move |&attribute| {
@@ -35,12 +35,12 @@ impl<'a> Element<'a> {
     }
 }
 
-/// What stands for a field of one of urdf-rs' types.
+/// Value of a field of a type of urdf-rs.
 enum Value<'a> {
     Element(Element<'a>),
-    /// An attribute's text, or what stands for it.
+    /// The text of an attribute, or its default.
     Text(Element<'a>, Attribute, &'a str),
-    /// An element that is not there, of which all numbers are zero.
+    /// A missing element; all its numbers are zero.
     Zeros,
 }
 
@@ -77,7 +77,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
         visitor.visit_some(self)
     }
 
-    /// The joint's type, or the first element of a geometry that is a shape.
+    /// Deserializes the type of a joint, or the first shape in a geometry.
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -116,7 +116,7 @@ impl<'a> IntoDeserializer<'a, Refusal> for Value<'a> {
     }
 }
 
-/// The element of a shape: its name is the variant, its attributes are the fields.
+/// Element of a shape: its name is the variant, its attributes are the fields.
 struct Shape<'a>(Element<'a>);
 
 impl<'a> EnumAccess<'a> for Shape<'a> {
@@ -159,7 +159,7 @@ mod tests {
     use std::fmt::Debug;
     use urdf_rs::{Collision, Inertial, Joint, Mass, Material, Visual};
 
-    /// All that the schema has, as urdf-rs itself reads it too.
+    /// Compares every field of the schema with urdf-rs' own reading of the text.
     const ALL: &str = "<robot name='r'><material name='m'><color rgba='0.1 0.2 0.3 1'/></material>
         <link name='a'>
           <inertial><origin xyz='1 2 3' rpy='0.1 0.2 0.3'/><mass value='4'/>
@@ -187,7 +187,7 @@ mod tests {
         assert_eq!(format!("{ours:?}"), format!("{theirs:?}"), "{tag}");
     }
 
-    /// The names that serde asks for are no promise of urdf-rs: this fails where it changes them.
+    /// urdf-rs does not guarantee the names of its serde fields: this test fails if they change.
     #[test]
     fn the_tree_and_urdf_rs_own_reading_give_the_same() {
         let document = Document::parse(ALL).expect("is XML");

@@ -1,4 +1,4 @@
-//! `<joint>`: how a link hangs on another.
+//! `<joint>`: connects two links.
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
@@ -9,7 +9,7 @@ use crate::number_text::{short, unlike};
 use nalgebra::Vector3;
 use urdf_rs::{JointLimit, JointType};
 
-/// A joint and the links it joins.
+/// A joint and the links that it connects.
 pub(super) struct Hinge<'a> {
     pub(super) element: Element<'a>,
     pub(super) name: &'a str,
@@ -18,15 +18,15 @@ pub(super) struct Hinge<'a> {
     pub(super) child: &'a str,
 }
 
-/// Names alone: enough to see whether the robot is a tree.
+/// Reads only the names, which suffice to check that the robot is a tree.
 pub(super) fn read_hinge<'a>(element: Element<'a>, name: &'a str) -> Result<Hinge<'a>, UrdfError> {
     let link = |end| element.required_child(end)?.required_text("link");
     let (parent, child) = (link("parent")?, link("child")?);
     Ok(Hinge { element, name, kind: element.required_text("type")?, parent, child })
 }
 
-/// The rest of the joint: one, or those of one degree of freedom that make it, in turn; `is_taken` says which names
-/// the file has.
+/// Reads the rest of a joint. A joint of several degrees of freedom becomes a chain of joints of one degree of
+/// freedom. `is_taken` returns true for names that occur in the file.
 pub(super) fn read_joints(
     hinge: &Hinge<'_>,
     is_taken: impl Fn(&str) -> bool,
@@ -51,9 +51,9 @@ pub(super) fn read_joints(
     }
     if let (Some(given), Some(dynamics)) = (read.dynamics, element.child("dynamics")) {
         (joint.damping, joint.friction) = (given.damping, given.friction);
-        // no standard: URDF has one friction
+        // not in the standard: URDF has one friction
         joint.static_friction = dynamics.number("static_friction")?;
-        // no standard either: MuJoCo's name for the rotor inertia seen at the joint, and the plain one
+        // not in the standard: the rotor inertia seen at the joint, by MuJoCo's name or its plain one
         joint.rotor_inertia = match dynamics.number("armature")? {
             Some(armature) => armature,
             None => dynamics.number("rotor_inertia")?.unwrap_or(0.0),
@@ -65,7 +65,7 @@ pub(super) fn read_joints(
     Ok(vec![joint])
 }
 
-/// What means nothing for a joint of that kind, whatever stands there.
+/// Returns the child elements and attributes that do not apply to a kind of joint and are not read.
 fn unread(kind: &str) -> &'static [&'static str] {
     match kind {
         "continuous" => &["lower", "upper"],
@@ -75,13 +75,13 @@ fn unread(kind: &str) -> &'static [&'static str] {
     }
 }
 
-/// A type of joint that there is not.
+/// Returns the error for an unknown type of joint.
 pub(super) fn unknown_kind(element: &Element<'_>, kind: &str) -> UrdfError {
     let joint = element.text("name").unwrap_or_default().to_owned();
     element.fail(UrdfProblem::JointType { joint, kind: kind.to_owned() })
 }
 
-/// What the file wanted, and what it gets.
+/// Returns the warning for a mimic joint.
 fn mimic_note(name: &str, mimic: Element<'_>) -> String {
     let leader = mimic.text("joint").unwrap_or("?");
     let factor = mimic.text("multiplier").unwrap_or("1");
@@ -92,8 +92,8 @@ fn mimic_note(name: &str, mimic: Element<'_>) -> String {
     )
 }
 
-/// Limits as urdf-rs read them, infinite where there is none; `bounds` is the element whose position bounds
-/// hold. One of them alone leaves the other at 0, URDF's default; where neither is given there is none.
+/// Converts limits of urdf-rs, in which infinity means no limit. `bounds` is the element with the position limits,
+/// if these apply. If one of them is missing it is 0, URDF's default; if both are, there is no position limit.
 fn limits(
     name: &str,
     read: &JointLimit,
@@ -102,7 +102,7 @@ fn limits(
 ) -> Limits {
     let is_given = |end| bounds.is_some_and(|limit| limit.text(end).is_some());
     let position = (is_given("lower") || is_given("upper")).then(|| {
-        // a bound that is infinite does not hold, whatever its sign
+        // an infinite bound is no bound, whatever its sign
         let bound = |value: f64, none: f64| if value.is_finite() { value } else { none };
         (bound(read.lower, f64::NEG_INFINITY), bound(read.upper, f64::INFINITY))
     });
@@ -118,7 +118,7 @@ fn limits(
         low <= high && (low > f64::NEG_INFINITY || high < f64::INFINITY)
     });
     let mut largest = |what: &str, value: f64| {
-        // Gazebo writes -1 where a bound does not hold
+        // Gazebo writes -1 for no limit
         if value.is_finite() && value < 0.0 {
             note(format!("its {what} limit is below zero, which is read as none"));
         }

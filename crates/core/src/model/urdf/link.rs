@@ -1,4 +1,4 @@
-//! `<link>`: mass, inertia, looks.
+//! `<link>`: mass, inertia, visual and collision shapes.
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
@@ -8,11 +8,11 @@ use super::pose::pose;
 use crate::model::{Geometry, Inertial, Link, LinkChange, ModelWarning, Visual};
 use nalgebra::Matrix3;
 
-/// What reading a link takes from the rest of the file, and what it leaves to tell.
+/// Data of the rest of the file that links need, and the warnings collected while reading.
 pub(super) struct Surroundings<'a> {
     pub(super) materials: Materials<'a>,
     pub(super) meshes: Meshes<'a>,
-    /// What replaces values of the file.
+    /// Replacements for values of the file.
     pub(super) changes: &'a [LinkChange],
     pub(super) warnings: Vec<ModelWarning>,
 }
@@ -30,7 +30,7 @@ pub(super) fn read_link(
         change.apply(&mut result).map_err(|error| link.fail(UrdfProblem::Model(error)))?;
     }
     for visual in link.children("visual") {
-        // looks are no physics: a shape that cannot be read is left out, and said so
+        // visual shapes do not affect the dynamics: an unreadable one is left out with a warning
         match read_visual(visual, around) {
             Ok(visual) => result.visuals.push(visual),
             Err(error) => {
@@ -39,7 +39,7 @@ pub(super) fn read_link(
             }
         }
     }
-    // those only stand in for a mesh that cannot be drawn: what is odd in them is nobody's business
+    // no warnings here: collision shapes are only drawn as a substitute for a visual mesh
     for collision in link.children("collision") {
         let mesh = collision.child("geometry").and_then(|geometry| geometry.child("mesh"));
         let file = mesh.map(|mesh| mesh.text("filename").unwrap_or_default());
@@ -50,7 +50,7 @@ pub(super) fn read_link(
     Ok(result)
 }
 
-/// Mass and inertia; none where no mass is given, as for urdfdom.
+/// Returns mass and inertia; `None` without a `<mass>`, as in urdfdom.
 fn read_inertial(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<Option<Inertial>, UrdfError> {
     let owner = element.owner;
     let mut note = |text: String| around.warnings.push(ModelWarning::Note(text));
@@ -77,7 +77,7 @@ fn read_inertial(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<
         given.ixy, given.iyy, given.iyz, //
         given.ixz, given.iyz, given.izz,
     );
-    // given in the axes of <origin>; wanted in the link's: I = R I' Rᵀ
+    // from the axes of <origin> to those of the link: I = R I' Rᵀ
     let origin = pose(element, &origin)?;
     let rot = origin.rotation.to_rotation_matrix().into_inner();
     let (com, inertia) = (origin.translation.vector, rotated(&rot, &inertia));

@@ -27,7 +27,7 @@ impl<'a> Materials<'a> {
         Self { named }
     }
 
-    /// Colour of a visual's material: its own, else the one of that name, else none.
+    /// Returns the colour of a visual's material: its own, or the one defined under its name.
     pub(super) fn rgba(&self, material: urdf_rs::Material) -> Result<Option<[f64; 4]>, UrdfError> {
         let named = || self.named.get(material.name.as_str()).map(|color| color.read::<Color>());
         let color = material.color.map(Ok).or_else(named).transpose()?;

@@ -1,4 +1,4 @@
-//! Where mesh files are: `package://`, `file://` and relative names, and those that lie beside the URDF.
+//! Resolves names of mesh files: `package://`, `file://`, relative names, and files near the URDF.
 
 use super::mesh_name::MeshName;
 use super::mesh_near::Near;
@@ -6,18 +6,18 @@ use crate::model::ModelWarning;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Finds meshes, and remembers those it did not find.
+/// Finds mesh files and records those that are missing.
 pub(super) struct Meshes<'a> {
     /// The URDF's folder.
     folder: Option<&'a Path>,
-    /// Folders that hold packages, or are one.
+    /// Folders that contain packages, or are packages.
     packages: &'a [PathBuf],
-    /// What was found for a name. Many links name one file.
+    /// Results by name, since many links refer to the same file.
     known: HashMap<String, Option<Found>>,
-    /// Whether a folder is there: asking for a file in one that is not costs as much as for one that is.
+    /// Existing and missing folders; avoids a system call for each file in a missing one.
     folders: HashMap<PathBuf, bool>,
     near: Near<'a>,
-    /// The package that each file was taken for.
+    /// The package that each file was found for.
     taken: HashMap<String, String>,
     missing: Vec<String>,
     guessed: Vec<(String, String)>,
@@ -26,7 +26,7 @@ pub(super) struct Meshes<'a> {
 #[derive(Clone)]
 struct Found {
     path: String,
-    /// Only the file's own name speaks for it.
+    /// True if only the bare file name matches.
     is_guess: bool,
 }
 
@@ -44,7 +44,7 @@ impl<'a> Meshes<'a> {
         }
     }
 
-    /// The path of a mesh that exists, else the name as it stands in the file, which is remembered as missing.
+    /// Returns the path of a mesh; if it does not exist, returns the name and records it as missing.
     pub(super) fn resolve(&mut self, name: &str) -> String {
         match self.look_up(name) {
             Some(Found { path, is_guess: false }) => path,
@@ -63,12 +63,12 @@ impl<'a> Meshes<'a> {
         }
     }
 
-    /// The path of a mesh that exists.
+    /// Returns the path of a mesh if it exists.
     pub(super) fn find(&mut self, name: &str) -> Option<String> {
         self.look_up(name).map(|found| found.path)
     }
 
-    /// One remark about all meshes that were not found, and one about those whose place was guessed.
+    /// Returns a warning about missing meshes and one about meshes whose location was guessed, if any.
     pub(super) fn warnings(&self) -> impl Iterator<Item = ModelWarning> {
         self.about_missing().into_iter().chain(self.about_guessed()).map(ModelWarning::Note)
     }
@@ -99,13 +99,13 @@ impl<'a> Meshes<'a> {
             return known.clone();
         }
         let found =
-            MeshName::of(name).and_then(|parsed| self.where_told(&parsed).or_else(|| self.near(&parsed)));
+            MeshName::of(name).and_then(|parsed| self.at_its_path(&parsed).or_else(|| self.near(&parsed)));
         self.known.insert(name.to_owned(), found.clone());
         found
     }
 
-    /// Where the name says, and for a package also below every folder given and every parent of the URDF.
-    fn where_told(&mut self, name: &MeshName) -> Option<Found> {
+    /// Looks for a file at the path of its name, see [`Self::in_package`] for names in a package.
+    fn at_its_path(&mut self, name: &MeshName) -> Option<Found> {
         let candidates = match name {
             MeshName::InPackage { package, rest } => self.in_package(package, rest),
             MeshName::File(path) if path.is_absolute() => vec![path.clone()],
@@ -118,8 +118,8 @@ impl<'a> Meshes<'a> {
         Some(Found { path, is_guess: false })
     }
 
-    /// Below every folder given, then below every parent of the URDF: beside the package's own
-    /// folder, or inside it.
+    /// Returns the candidate paths below the given folders, then below each parent of the URDF. Each may be the
+    /// package itself or contain it.
     fn in_package(&self, package: &str, rest: &Path) -> Vec<PathBuf> {
         let parents = self.folder.into_iter().flat_map(Path::ancestors);
         let roots = self.packages.iter().map(PathBuf::as_path).chain(parents);
@@ -143,7 +143,7 @@ impl<'a> Meshes<'a> {
         None
     }
 
-    /// Whether a file was not found for another package already: two of them may have a `meshes/base.stl`.
+    /// Returns true unless the file was found for another package: two packages may have a `meshes/base.stl`.
     fn is_free(&mut self, path: &str, name: &MeshName) -> bool {
         let MeshName::InPackage { package, .. } = name else { return true };
         self.taken.entry(path.to_owned()).or_insert_with(|| package.clone()) == package

@@ -1,21 +1,21 @@
-//! What the `filename` of a mesh says.
+//! Parses the `filename` of a mesh.
 
 use std::path::{Component, Path, PathBuf};
 
-/// Folders and name that an end of a path has at most.
+/// Largest number of components in a tail of a path.
 const LONGEST_TAIL: usize = 5;
 
 /// The `filename` of a mesh.
 #[derive(Debug, PartialEq)]
 pub(super) enum MeshName {
-    /// `package://name/rest`, also with a third slash, or `model://name/rest` as Gazebo writes.
+    /// `package://name/rest`, also with a third slash, or Gazebo's `model://name/rest`.
     InPackage { package: String, rest: PathBuf },
-    /// `file:///absolute`, or `file://relative` to the URDF, or either as it is.
+    /// A path, absolute or relative to the URDF, with or without `file://`.
     File(PathBuf),
 }
 
 impl MeshName {
-    /// Reads a name; `None` where it is none of a local file.
+    /// Parses a name; returns `None` if it does not refer to a local file.
     pub(super) fn of(name: &str) -> Option<Self> {
         if let Some(inside) = name.strip_prefix("package://").or_else(|| name.strip_prefix("model://")) {
             let inside = plain(inside.trim_start_matches('/'));
@@ -32,7 +32,7 @@ impl MeshName {
         (!name.is_empty() && !name.contains("://")).then(|| Self::File(name.replace('\\', "/").into()))
     }
 
-    /// Below the package, or as it is.
+    /// Returns the path below the package, or the whole path.
     pub(super) fn path(&self) -> &Path {
         match self {
             Self::InPackage { rest, .. } => rest,
@@ -41,14 +41,14 @@ impl MeshName {
     }
 }
 
-/// Ends of a path, the longest first, without what is above its folders (`/`, `..`).
+/// Returns the tails of a path, the longest first, without root and `..`.
 pub(super) fn tails(path: &Path) -> Vec<PathBuf> {
     let names: Vec<_> = path.components().filter(|part| matches!(part, Component::Normal(_))).collect();
     let first = names.len().saturating_sub(LONGEST_TAIL);
     (first..names.len()).map(|start| names[start..].iter().collect()).collect()
 }
 
-/// Without the escapes of a URI (`%20`); a `%` that is none stays.
+/// Decodes the escapes of a URI (`%20`); any other `%` stays. Backslashes become slashes.
 fn plain(uri: &str) -> String {
     let hex = |at: usize| uri.get(at..at + 2).and_then(|digits| u8::from_str_radix(digits, 16).ok());
     let (mut bytes, mut at) = (Vec::with_capacity(uri.len()), 0);

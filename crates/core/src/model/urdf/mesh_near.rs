@@ -1,4 +1,4 @@
-//! Meshes that are not where their name says, but near the URDF.
+//! Finds meshes near the URDF that do not exist at their named path.
 
 use super::mesh_name::tails;
 use std::collections::{HashMap, HashSet};
@@ -6,25 +6,25 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Folders above the URDF's in which the end of a name is looked for.
+/// Number of folders above the URDF's in which tails of a name are searched.
 const PARENTS: usize = 3;
 
-/// Finds files by the end of their name; looks into each folder once, since many links have meshes.
+/// Finds files by the tail of their name; lists each folder once, since many links have meshes.
 pub(super) struct Near<'a> {
     /// The URDF's folder.
     folder: Option<&'a Path>,
-    /// Folders that hold packages, or are one.
+    /// Folders that contain packages, or are packages.
     packages: &'a [PathBuf],
-    /// Where a file may be, by the folder in its name.
+    /// Candidate folders of a file, by the folder in its name.
     places: HashMap<PathBuf, Rc<[Place]>>,
-    /// What is in a folder; nothing where it is not there.
+    /// Entries of a folder; empty if it does not exist.
     listings: HashMap<PathBuf, Rc<HashSet<OsString>>>,
 }
 
 struct Place {
     folder: PathBuf,
     names: Rc<HashSet<OsString>>,
-    /// Nothing of the folders in the file's name is in its own.
+    /// True if none of the folders in the file's name matches.
     is_guess: bool,
 }
 
@@ -33,7 +33,7 @@ impl<'a> Near<'a> {
         Self { folder, packages, places: HashMap::new(), listings: HashMap::new() }
     }
 
-    /// What is named as a path ends, the longest end first, and whether only the bare name speaks for it.
+    /// Returns files that match a tail of a path, the longest tail first, and whether only the bare name matches.
     pub(super) fn candidates(&mut self, path: &Path) -> Vec<(PathBuf, bool)> {
         let (Some(folder), Some(file)) = (path.parent(), path.file_name()) else { return Vec::new() };
         let places = self.places(folder);
@@ -41,8 +41,8 @@ impl<'a> Near<'a> {
         holding.map(|place| (place.folder.join(file), place.is_guess)).collect()
     }
 
-    /// Folders that end as one in a name does, below those given, the URDF's and some above it; then,
-    /// for the bare name of a file, the URDF's own and `meshes` in it.
+    /// Returns the folders that match a tail of `folder`, below the given ones, the URDF's and some above it; then,
+    /// for bare file names, the URDF's folder and its subfolder `meshes`.
     fn places(&mut self, folder: &Path) -> Rc<[Place]> {
         if let Some(known) = self.places.get(folder) {
             return known.clone();

@@ -6,8 +6,8 @@ use crate::model::ModelWarning;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
-/// Pose of what `element` describes: as urdf-rs read its origin (`xyz` in m, `rpy` in rad about the
-/// fixed axes x, y, z in turn), or with the `quat_xyzw` of later versions, which urdf-rs does not keep.
+/// Returns the pose of the origin of `element`: `xyz` in m and `rpy` in rad about the fixed axes x, y, z in turn,
+/// as read by urdf-rs, or `quat_xyzw` of later versions, which urdf-rs does not store.
 pub(super) fn pose(element: Element<'_>, read: &urdf_rs::Pose) -> Result<Isometry3<f64>, UrdfError> {
     let [roll, pitch, yaw] = *read.rpy;
     let rotation = match element.child("origin").map(quaternion).transpose()?.flatten() {
@@ -32,12 +32,12 @@ fn quaternion(origin: Element<'_>) -> Result<Option<UnitQuaternion<f64>>, UrdfEr
     unit.ok_or_else(|| origin.fail(zero)).map(Some)
 }
 
-/// Whether the version of the format has quaternions: any after 1.0, which files have that do not say.
+/// Returns true if the version of the format has quaternions: any above 1.0, the default.
 fn knows_quaternions(robot: Node<'_, '_>) -> bool {
     robot.attribute("version").is_some_and(|version| !matches!(version.trim(), "1.0" | "1"))
 }
 
-/// A remark on quaternions that are not read.
+/// Returns a warning if quaternions are ignored.
 pub(super) fn quaternion_warning(robot: Node<'_, '_>) -> Option<ModelWarning> {
     if knows_quaternions(robot) || !robot.document().input_text().contains("quat_xyzw") {
         return None;

@@ -1,4 +1,4 @@
-//! What serde is answered, and the error it becomes.
+//! Error type of the deserializer, and its conversion to a [`UrdfError`].
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
@@ -6,14 +6,14 @@ use super::schema::elements;
 use serde::de;
 use std::fmt;
 
-/// Why urdf-rs' types do not take what they are given.
+/// Reason why a type of urdf-rs cannot be deserialized.
 #[derive(Debug)]
 pub(super) enum Refusal {
-    /// Something must be there, in an element that is not known yet.
+    /// A required field is missing; the element is not known yet.
     Missing(&'static str),
-    /// Another reason, as urdf-rs says it.
+    /// Another reason, as worded by urdf-rs.
     Other(String),
-    /// An error with its place.
+    /// An error with its location.
     Placed(UrdfError),
 }
 

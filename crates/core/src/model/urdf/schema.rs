@@ -1,29 +1,29 @@
-//! What is read of a URDF: elements, what stands inside them, what their attributes hold.
+//! Schema of the URDF elements that are read: their children, their attributes and the kinds of values.
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
 
-/// What an attribute holds.
+/// Kind of value of an attribute.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
-    /// A name of the file's own choice.
+    /// A name that the file defines; any text.
     Name,
-    /// A path, a name that means something.
+    /// A text with a meaning, such as a path or a type; xacro expressions are refused.
     Text,
-    /// As many finite numbers.
+    /// This many finite numbers.
     Numbers(usize),
-    /// As many finite numbers above zero: edges, a radius.
+    /// This many positive, finite numbers: edges, a radius.
     Sizes(usize),
-    /// A finite number, or `inf` where there is no limit.
+    /// A finite number, or `inf` for no limit.
     Limit,
 }
 use Kind::{Limit, Name, Numbers, Sizes, Text};
 
-/// An attribute, what it holds, and what stands for it where the file does not give it. One without
-/// such a text has urdf-rs' default, or must be given.
+/// Name of an attribute, its kind, and the text used if the file does not give it. Without such a text
+/// the default of urdf-rs applies, or the attribute is required.
 pub(super) type Attribute = (&'static str, Kind, Option<&'static str>);
 
-/// The attributes that are read of an element.
+/// Returns the attributes that are read of an element.
 pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
     match tag {
         "joint" => &[("name", Name, None), ("type", Text, None)],
@@ -56,7 +56,7 @@ pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
     }
 }
 
-/// The elements that are read inside an element, the first of each name.
+/// Returns the child elements that are read of an element; the first of each name counts.
 pub(super) fn elements(tag: &str) -> &'static [&'static str] {
     match tag {
         "joint" => &["parent", "child", "origin", "axis", "limit", "dynamics"],
@@ -68,7 +68,7 @@ pub(super) fn elements(tag: &str) -> &'static [&'static str] {
     }
 }
 
-/// Refuses a text that is not what its attribute holds. urdf-rs would read `1,0 0 0 0` as three zeros.
+/// Refuses a text that is not of the kind of its attribute. urdf-rs would read `1,0 0 0 0` as three zeros.
 pub(super) fn check(element: &Element<'_>, attribute: Attribute, text: &str) -> Result<(), UrdfError> {
     let (name, kind, _) = attribute;
     let (count, is_size) = match kind {
@@ -89,7 +89,7 @@ pub(super) fn check(element: &Element<'_>, attribute: Attribute, text: &str) -> 
     }
 }
 
-/// Whether a text says that there is no limit; a number too large to be one does not.
+/// Returns true for `inf` and its variants, but not for digits that overflow to infinity.
 fn is_infinite(text: &str) -> bool {
     text.trim().parse().is_ok_and(f64::is_infinite) && !text.contains(|c: char| c.is_ascii_digit())
 }

@@ -1,29 +1,29 @@
-//! A text cut into tags, comments and what stands between them, none of them checked.
+//! Splits a text into tags, comments and the text between them, without checking any of them.
 //!
 //! One pass without recursion, so that neither a deep document nor an entity bomb reaches code
 //! that could exhaust the stack or the memory.
 
-/// What a piece of text is.
+/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Text,
     Comment,
-    /// `<?…?>`, the XML declaration among them.
+    /// `<?…?>`, including the XML declaration.
     Instruction,
-    /// `<!DOCTYPE …>` and the declarations inside.
+    /// `<!DOCTYPE …>` and the declarations in it.
     Declaration,
     CData,
     Open,
     Close,
-    /// A tag that opens and closes.
+    /// An empty-element tag, `<…/>`.
     Empty,
 }
 
-/// A piece of text.
+/// A piece of the text.
 #[derive(Clone, Copy)]
 pub(super) struct Token<'a> {
     pub(super) kind: Kind,
-    /// Where it starts, in bytes.
+    /// Offset of its first byte.
     pub(super) at: usize,
     pub(super) text: &'a str,
 }
@@ -39,7 +39,7 @@ impl Token<'_> {
 }
 
 impl<'a> Token<'a> {
-    /// The name of a tag, and what stands after it.
+    /// Returns the name of a tag and the text after it.
     pub(super) fn split_name(&self) -> (&'a str, &'a str) {
         let rest = inside(self.text);
         let rest = rest.strip_prefix('/').map_or(rest, str::trim_start);
@@ -48,12 +48,12 @@ impl<'a> Token<'a> {
     }
 }
 
-/// A tag from its first letter on: tinyxml2 takes spaces before.
+/// Returns a tag without `<` and the spaces after it, which tinyxml2 accepts.
 fn inside(tag: &str) -> &str {
     tag.strip_prefix('<').map_or(tag, str::trim_start)
 }
 
-/// All pieces in order: together they are the text.
+/// Returns all tokens in order; concatenated they are the text.
 pub(super) fn tokens(xml: &str) -> impl Iterator<Item = Token<'_>> {
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -65,7 +65,7 @@ pub(super) fn tokens(xml: &str) -> impl Iterator<Item = Token<'_>> {
     })
 }
 
-/// Kind and length of the piece that a text starts with.
+/// Returns the kind and the length, in bytes, of the first token of a text.
 fn first(rest: &str) -> (Kind, usize) {
     if !rest.starts_with('<') {
         return (Kind::Text, rest.find('<').unwrap_or(rest.len()));

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 /// Revolutions per day in one rad/min.
 pub(super) const REV_DAY: f64 = 1440.0 / TAU;
 
-/// Mean elements of one satellite at one epoch, in the units that SGP4 counts in.
+/// Mean elements of one satellite at one epoch, in the units of SGP4.
 ///
 /// They belong to SGP4 alone: no other theory gives their orbit.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,7 +83,7 @@ impl MeanElements {
     /// Itself, if its numbers can be those of an orbit.
     ///
     /// # Errors
-    /// [`ElementSetError::Range`], in the units in which element sets are published.
+    /// [`ElementSetError::Range`], with values in the units of published element sets.
     pub fn checked(self) -> Result<Self, ElementSetError> {
         let within = |name, got: f64, range: std::ops::RangeInclusive<f64>| {
             if range.contains(&got) { Ok(()) } else { Err(ElementSetError::Range { name, got, range }) }

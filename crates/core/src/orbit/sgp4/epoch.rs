@@ -30,7 +30,7 @@ impl Epoch {
         let seconds: f64 =
             second.starts_with(|c: char| c.is_ascii_digit()).then(|| second.parse().ok())??;
         if date.find('-') != Some(4) {
-            return None; // two digits of a year are not one
+            return None; // a year has four digits
         }
         let parts = date.split('-').map(digits).collect::<Option<Vec<i64>>>()?;
         let day = match parts[..] {
@@ -46,8 +46,8 @@ impl Epoch {
         is_time.then(|| Self { day, seconds: (hour * 3600 + minute * 60) as f64 + seconds })
     }
 
-    /// From a Julian date in two parts, such as a midnight and the part of the day since; `None` if these are no
-    /// numbers of this or the next thousands of years.
+    /// Converts a Julian date in two parts, such as a midnight and a fraction of a day. Returns `None` if either is not
+    /// finite or beyond 1e7 days.
     pub fn of_julian_date(whole: f64, part: f64) -> Option<Self> {
         const LONGEST: f64 = 1e7;
         let days = whole - 2_451_544.5;
@@ -103,7 +103,7 @@ fn days_since_2000(year: i64, month: i64, day: i64) -> i64 {
 
 /// Year, month and day of a day counted from 2000-01-01.
 fn civil(days: i64) -> (i64, i64, i64) {
-    // not after it, on either side of 2000
+    // a lower bound of the year, before and after 2000
     let mut year = 2000 + days.div_euclid(if days < 0 { 365 } else { 366 });
     while days_since_2000(year + 1, 1, 1) <= days {
         year += 1;

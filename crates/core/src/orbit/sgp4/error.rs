@@ -146,17 +146,17 @@ pub enum Sgp4Error {
         /// Equatorial radius of the Earth model, m.
         radius: f64,
     },
-    /// What the reference code answers, run in place of this crate's.
+    /// An error of the reference code.
     #[error("SGP4 error {code} at t = {time} s, by the reference code: {}", reason(*.code), time = short(*time))]
     OfReference {
         /// Time since the epoch, s.
         time: f64,
-        /// Its number.
+        /// Its error code.
         code: u8,
     },
 }
 
-/// What a number of the reference code means.
+/// Returns the meaning of an error code of the reference code.
 fn reason(code: u8) -> &'static str {
     match code {
         1 => "the mean eccentricity is out of range",
@@ -192,7 +192,7 @@ impl Sgp4Error {
         }
     }
 
-    /// The offending value, in the unit of its message; NaN where the reference code does not tell it.
+    /// The offending value, in the unit of its message; NaN for errors of the reference code.
     pub fn value(&self) -> f64 {
         match *self {
             Self::MeanEccentricity { eccentricity, .. }

@@ -66,7 +66,7 @@ impl Sgp4 {
         Self { elements, model, propagator, theory: Theory::Own }
     }
 
-    /// The same set, of which the reference code gives all states; far slower.
+    /// Returns the same set, propagated by the reference code; much slower.
     pub fn by_reference(self, code: Arc<dyn Reference>) -> Self {
         Self { theory: Theory::Reference(code), ..self }
     }

@@ -1,16 +1,16 @@
-//! What propagates an element set: this crate's SGP4, or the reference code as a check of it.
+//! Implementation that propagates an element set: this crate's SGP4, or the reference code as a check.
 
 use super::error::Sgp4Error;
 use super::propagate::Propagator;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// The reference code, made ready with an element set by whoever has it.
+/// The reference code, initialized with an element set by the caller.
 pub trait Reference: Send + Sync + std::fmt::Debug {
-    /// Position (km) and velocity (km/s), TEME, `minutes` from the epoch; below the surface too.
+    /// Returns position (km) and velocity (km/s), TEME, `minutes` after the epoch, also below the surface.
     ///
     /// # Errors
-    /// The number of its error, but for 6, which says that the satellite has decayed.
+    /// The error code of the reference code, except 6 (decayed), for which the state is returned.
     fn at(&self, minutes: f64) -> Result<[[f64; 3]; 2], u8>;
 }
 
@@ -20,18 +20,18 @@ pub(super) enum Theory {
     Reference(Arc<dyn Reference>),
 }
 
-/// Where the satellite is, below the surface too.
+/// State of the satellite, TEME, also below the surface.
 pub(super) struct State {
-    /// km.
+    /// Position, km.
     pub(super) position: Vector3<f64>,
-    /// km/s.
+    /// Velocity, km/s.
     pub(super) velocity: Vector3<f64>,
     /// Distance from the Earth's centre, Earth radii.
     pub(super) distance: f64,
 }
 
 impl Theory {
-    /// The state at `time`, s from the epoch; `own` is this crate's SGP4 for the same set.
+    /// Returns the state at `time`, s after the epoch; `own` is this crate's SGP4 for the same set.
     pub(super) fn at(&self, own: &Propagator, time: f64) -> Result<State, Sgp4Error> {
         match self {
             Self::Own => {

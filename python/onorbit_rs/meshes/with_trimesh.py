@@ -1,4 +1,4 @@
-"""STL, OBJ, PLY and glTF files, by trimesh."""
+"""Reads STL, OBJ, PLY and glTF files with trimesh."""
 
 from __future__ import annotations
 
@@ -18,18 +18,21 @@ if TYPE_CHECKING:
 logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it prints tracebacks about damaged files
 
 _STL_HEADER, _STL_TRIANGLE = 84, 50
-"""Bytes of a binary STL file."""
+"""Sizes of the header and of a triangle in a binary STL file, bytes."""
 
 
-def read_other(content: bytes, kind: str, companions: Companions) -> list[Part]:
-    """The triangles of a file; raises ValueError, or whatever trimesh does with what is damaged."""
+def read_with_trimesh(content: bytes, kind: str, companions: Companions) -> list[Part]:
+    """Return the triangles of a file.
+
+    Raises ValueError, or any exception of trimesh if the file is damaged.
+    """
     import trimesh
 
     if kind == "stl":
         content = _stl(content)
     elif kind == "obj":
         content = as_utf8(content)
-    resolver: Any = companions  # by what it does
+    resolver: Any = companions  # has the methods that trimesh calls
     scene = trimesh.load_scene(
         io.BytesIO(content), file_type=kind, resolver=resolver, allow_remote=False, process=False
     )
@@ -44,16 +47,16 @@ def read_other(content: bytes, kind: str, companions: Companions) -> list[Part]:
 
 
 def _stl(content: bytes) -> bytes:
-    """As trimesh takes it: without what exporters leave behind the last triangle, or text."""
-    told = int.from_bytes(content[_STL_HEADER - 4 : _STL_HEADER], "little")
-    length = _STL_HEADER + _STL_TRIANGLE * told
-    if told and length <= len(content):
+    """Return a file that trimesh accepts: bytes that exporters append after the last triangle are removed."""
+    declared = int.from_bytes(content[_STL_HEADER - 4 : _STL_HEADER], "little")
+    length = _STL_HEADER + _STL_TRIANGLE * declared
+    if declared and length <= len(content):
         return content[:length]
     if b"facet" in content[:1000] or content.lstrip()[:5].lower() == b"solid":
         return as_utf8(content)
     there = max(len(content) - _STL_HEADER, 0) // _STL_TRIANGLE
-    if there < told:
-        raise ValueError(f"it is cut short: {there} of its {told} triangles are there")
+    if there < declared:
+        raise ValueError(f"it is cut short: {there} of its {declared} triangles are there")
     return content
 
 
@@ -61,14 +64,16 @@ def _part(mesh: Any, pose: NDArray[np.float64]) -> Part:
     vertices = mesh.vertices @ pose[:3, :3].T + pose[:3, 3]
     faces = mesh.faces[:, ::-1] if np.linalg.det(pose[:3, :3]) < 0.0 else mesh.faces
     normals = None
-    if "vertex_normals" in mesh._cache:  # in the file; otherwise trimesh would round all edges
+    if (
+        "vertex_normals" in mesh._cache
+    ):  # only normals of the file; those that trimesh computes round all edges
         normals = mesh.vertex_normals @ np.linalg.inv(pose[:3, :3])
-    colors, texture, uv = _looks(mesh.visual)
+    colors, texture, uv = _appearance(mesh.visual)
     return make_part(vertices, faces, normals=normals, colors=colors, texture=texture, uv=uv)
 
 
-def _looks(visual: Any) -> tuple[Any, Any, Any]:
-    """Colours, texture and its coordinates."""
+def _appearance(visual: Any) -> tuple[Any, Any, Any]:
+    """Return colours, texture and texture coordinates."""
     if visual.kind == "vertex":
         return visual.vertex_colors, None, None
     if visual.kind == "face":
