@@ -283,7 +283,7 @@ fn prefixes_decide_and_not_namespaces() {
     );
     let model = load(&both);
     assert_eq!(model.mass(), 2.0);
-    assert!(notes(&model)[0].starts_with("<p:x> has a namespace of its own"), "{:?}", notes(&model));
+    assert!(notes(&model)[0].starts_with("<p:x> has a foreign prefix"), "{:?}", notes(&model));
     assert_eq!(notes(&model).len(), 1);
 }
 
@@ -372,7 +372,7 @@ fn what_is_left_of_xacro_is_ignored_and_named_with_its_line() {
     let said = notes(&model);
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(
-        said[0].starts_with("line 2: <xacro:property> is left of xacro and ignored, as is one more"),
+        said[0].starts_with("line 2: <xacro:property> is a leftover xacro tag and ignored, as is one more"),
         "{said:?}"
     );
 }
@@ -383,7 +383,7 @@ fn elements_that_are_not_urdf_are_ignored_and_named() {
     let model = load(&format!("<link name='a'>{INERTIAL}</link>\n{inside}"));
     let said = notes(&model);
     assert_eq!(said.len(), 2, "{said:?}");
-    assert!(said[0].starts_with("<gazebo:x> has a namespace of its own"), "{said:?}");
+    assert!(said[0].starts_with("<gazebo:x> has a foreign prefix"), "{said:?}");
     assert!(said[0].ends_with("ignored (so are '<drake:joint>')"), "{said:?}");
     assert!(said[1].starts_with("<Link> is no element of URDF: ignored"), "{said:?}");
 }

@@ -81,7 +81,7 @@ def expand(
         raise ModelError(f"{file}: {_reason(error)}", path=str(file)) from error
     if not document.getElementsByTagName("link") and b"<xacro:macro" in file.read_bytes():
         raise ModelError(
-            f"{file}: defines macros of xacro but no robot; expand the file that calls them", path=str(file)
+            f"{file}: defines xacro macros but no robot; expand the file that calls them", path=str(file)
         )
     for name in values:
         if name not in used:

@@ -36,7 +36,9 @@ impl Model {
             name.push('_'); // this name is generated, so it must never be the reason for a refusal
         }
         let joint = Joint::new(&name, JointKind::Fixed, on_carrier * mount.pose * in_root.inverse());
-        builder.add_robot(&carrier.name, joint, robot).map_err(|error| error.of_prefix(&mount.prefix))?;
+        builder
+            .add_robot(&carrier.name, joint, robot)
+            .map_err(|error| error.suggest_prefix(&mount.prefix))?;
         builder.build()
     }
 

@@ -40,7 +40,7 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
         } else {
             let (parent, joint) = &description.joints[index - 1];
             let parent = placed[*parent].clone().expect("parents come first in depth-first order");
-            attach(&mut model, &parent, joint)
+            place_link(&mut model, &parent, joint)
         };
         let link = &description.links[index];
         if let Some(inertial) = &link.inertial {
@@ -106,7 +106,7 @@ fn depth_first(children: &[Vec<usize>]) -> Vec<usize> {
 }
 
 /// Hangs a link on `parent`: on the same body by a fixed joint, else as a new body.
-fn attach(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
+fn place_link(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
     let origin = &joint.origin;
     let rot = parent.rot * origin.rotation.to_rotation_matrix().matrix();
     let pos = parent.rot * origin.translation.vector + parent.pos;

@@ -7,13 +7,13 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 #[derive(Clone, Debug, Default)]
 pub struct Description {
     /// Name of the robot.
-    pub name: String,
+    pub(super) name: String,
     /// All links; the root is first, parents precede children.
-    pub links: Vec<Link>,
+    pub(super) links: Vec<Link>,
     /// `joints[i]` connects link `i + 1` to its parent: index of the parent link, joint.
-    pub joints: Vec<(usize, Joint)>,
+    pub(super) joints: Vec<(usize, Joint)>,
     /// Additional frames: name, index of the link, pose in the link's frame.
-    pub frames: Vec<(String, usize, Isometry3<f64>)>,
+    pub(super) frames: Vec<(String, usize, Isometry3<f64>)>,
 }
 
 impl Description {

@@ -152,7 +152,7 @@ impl ModelError {
     }
 
     /// Converts a duplicate name to the error for attached robots, which suggests a prefix.
-    pub(super) fn of_prefix(self, prefix: &str) -> Self {
+    pub(super) fn suggest_prefix(self, prefix: &str) -> Self {
         match self {
             Self::DuplicateName { what, name } if prefix.is_empty() => Self::NameOfBoth { what, name },
             Self::DuplicateName { what, name } => Self::PrefixTaken { what, name, prefix: prefix.to_owned() },

@@ -66,17 +66,17 @@ pub enum UrdfProblem {
     Unreadable { reason: String },
     #[error("the file is empty")]
     Empty,
-    #[error("larger than {limit} bytes: no robot description is")]
+    #[error("larger than {limit} bytes, the limit for robot descriptions")]
     TooLarge { limit: usize },
-    #[error("XML elements nested deeper than {limit}: no robot description is")]
+    #[error("XML elements nested deeper than {limit}, the limit for robot descriptions")]
     TooDeep { limit: usize },
-    #[error("an XML tag of more than {limit} attributes: no robot description has one")]
+    #[error("an XML tag with more than {limit} attributes, the limit for robot descriptions")]
     TooManyAttributes { limit: usize },
     #[error("not UTF-8 text (at byte {at}); save it as UTF-8")]
     NotUtf8 { at: usize },
     #[error("not XML: {reason}")]
     NotXml { reason: String },
-    #[error("'&{name};' is not read: what a document type (<!DOCTYPE>) defines must be written out")]
+    #[error("entity '&{name};' is not supported; replace it by its text in the document type (<!DOCTYPE>)")]
     Entity { name: String },
     #[error("the outermost element is <{found}>, a URDF has <robot>{}", other_format(.found))]
     NotRobot { found: String },
@@ -91,7 +91,7 @@ pub enum UrdfProblem {
     ForeignElement { element: String },
     #[error("the robot has no links")]
     NoLinks,
-    #[error("the file defines macros of xacro but no robot; expand the file that calls them")]
+    #[error("the file defines xacro macros but no robot; expand the file that calls them")]
     OnlyMacros,
     #[error("{owner} has no <{element}>")]
     MissingElement { owner: String, element: &'static str },

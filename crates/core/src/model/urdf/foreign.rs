@@ -67,12 +67,12 @@ impl<'a> Ignored<'a> {
         if let Some(first) = self.xacro.first() {
             let (line, more) = (line(*first), others(self.xacro.len() - 1));
             notes.push(format!(
-                "line {line}: {} is left of xacro and ignored{more}; expand the file with xacro if the robot lacks parts",
+                "line {line}: {} is a leftover xacro tag and ignored{more}; expand the file with xacro if the robot lacks parts",
                 tag(*first)
             ));
         }
         for (nodes, what) in [
-            (&self.prefixed, "has a namespace of its own and is no part of URDF"),
+            (&self.prefixed, "has a foreign prefix and is not part of URDF"),
             (&self.unknown, "is no element of URDF"),
         ] {
             let Some(first) = nodes.first() else { continue };

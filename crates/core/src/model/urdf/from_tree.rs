@@ -5,8 +5,7 @@
 
 use super::element::Element;
 use super::error::UrdfError;
-use super::joint::unknown_kind;
-use super::refusal::Refusal;
+use super::refusal::{Refusal, unknown_kind};
 use super::schema::{Attribute, attributes, check, elements};
 use serde::de::value::{MapDeserializer, StrDeserializer};
 use serde::de::{self, DeserializeSeed, Deserializer, EnumAccess, IntoDeserializer, VariantAccess, Visitor};

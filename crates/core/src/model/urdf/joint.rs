@@ -1,9 +1,9 @@
 //! `<joint>`: connects two links.
 
 use super::element::Element;
-use super::error::{UrdfError, UrdfProblem};
+use super::error::UrdfError;
 use super::pose::pose;
-use super::several::{Several, in_turn};
+use super::several::{Several, split};
 use crate::model::{Joint, JointKind, Limits, ModelWarning};
 use crate::number_text::{short, unlike};
 use nalgebra::Vector3;
@@ -35,7 +35,7 @@ pub(super) fn read_joints(
     let element = Element { unread: unread(hinge.kind), ..hinge.element };
     let read: urdf_rs::Joint = element.read()?;
     let (axis, origin) = (Vector3::from(*read.axis.xyz), pose(element, &read.origin)?);
-    let several = |several, warnings| Ok(in_turn(hinge, several, origin, is_taken, warnings));
+    let several = |several, warnings| Ok(split(hinge, several, origin, is_taken, warnings));
     let kind = match read.joint_type {
         JointType::Revolute | JointType::Continuous => JointKind::Revolute(axis),
         JointType::Prismatic => JointKind::Prismatic(axis),
@@ -73,12 +73,6 @@ fn unread(kind: &str) -> &'static [&'static str] {
         "fixed" | "ball" | "spherical" | "floating" => &["axis", "limit", "dynamics"],
         _ => &[],
     }
-}
-
-/// Returns the error for an unknown type of joint.
-pub(super) fn unknown_kind(element: &Element<'_>, kind: &str) -> UrdfError {
-    let joint = element.text("name").unwrap_or_default().to_owned();
-    element.fail(UrdfProblem::JointType { joint, kind: kind.to_owned() })
 }
 
 /// Returns the warning for a mimic joint.

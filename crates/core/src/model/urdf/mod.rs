@@ -1,13 +1,11 @@
 //! Robots from URDF files.
 //!
-//! roxmltree parses: it knows lines; what it refuses and tinyxml2 takes is rewritten first (`tidy`). urdf-rs says
-//! what the elements of a URDF hold: its types take their fields from that tree by serde (`from_tree`), the first of
-//! each element, numbers checked by one table (`schema`). Its own reading of text skips what is not a number inside a vector (`1,0 0 0 0` reads as
-//! zeros), takes a missing inertial for zero mass and `<drake:joint>` for a joint, refuses files that repeat an
-//! element or lack `velocity`, and its errors name neither link nor line.
+//! roxmltree parses the text and knows its lines; text that it rejects but tinyxml2 accepts is rewritten first
+//! (`tidy`). The types of urdf-rs are filled from that tree by serde (`from_tree`): the first of each element, with
+//! attributes checked by one table (`schema`). `docs/design.md` says why urdf-rs does not read the text itself.
 //!
-//! Collision shapes, transmissions, sensors and the elements of other tools are ignored; elements with a prefix,
-//! elements that no tool is known for and leftovers of xacro are ignored with a warning. A prefix needs no declaration.
+//! Transmissions, sensors and the elements of other tools are ignored. Elements with a prefix, unknown elements and
+//! leftover xacro tags are ignored with a warning. A prefix needs no declaration.
 
 mod assemble;
 mod element;

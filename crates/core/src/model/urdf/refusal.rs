@@ -49,3 +49,9 @@ impl fmt::Display for Refusal {
 }
 
 impl std::error::Error for Refusal {}
+
+/// Returns the error for an unknown type of joint.
+pub(super) fn unknown_kind(element: &Element<'_>, kind: &str) -> UrdfError {
+    let joint = element.text("name").unwrap_or_default().to_owned();
+    element.fail(UrdfProblem::JointType { joint, kind: kind.to_owned() })
+}

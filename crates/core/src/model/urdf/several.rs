@@ -1,25 +1,25 @@
-//! Joints of several degrees of freedom, as joints of one that follow each other.
+//! Replaces joints of several degrees of freedom by chains of joints of one degree of freedom.
 
 use super::joint::Hinge;
 use crate::model::{Joint, JointKind, ModelWarning, rotation_to_axis};
 use nalgebra::{Isometry3, Vector3};
 
-/// What the file asks for.
+/// Joint with several degrees of freedom.
 pub(super) enum Several {
-    /// Slides in the plane with this normal and turns about it.
+    /// Translation in the plane with this normal and rotation about the normal.
     Planar(Vector3<f64>),
-    /// Turns about any axis.
+    /// Rotation about any axis.
     Ball,
-    /// Moves in any way.
+    /// Any motion.
     Floating,
 }
 
-/// The joints in turn from the parent outward; their names are the joint's with an ending, and a number where the
-/// file has such a name already.
+/// Returns the chain of joints from the parent outward. Their names are the joint's name with a suffix, and a number if
+/// the file already contains such a name.
 ///
 /// A plane: along its two axes, then about its normal. A ball: about z, y, x, which are the yaw,
 /// pitch and roll of the child in the parent, as in URDF's own `rpy`. Floating: along x, y, z, then as a ball.
-pub(super) fn in_turn(
+pub(super) fn split(
     hinge: &Hinge<'_>,
     several: Several,
     mut origin: Isometry3<f64>,
@@ -28,7 +28,7 @@ pub(super) fn in_turn(
 ) -> Vec<Joint> {
     let name = hinge.name;
     let about = |axis: Vector3<f64>| JointKind::Revolute(axis);
-    let turning =
+    let revolute =
         [("_yaw", about(Vector3::z())), ("_pitch", about(Vector3::y())), ("_roll", about(Vector3::x()))];
     let (parts, remark) = match several {
         // an axis of length zero is refused where the joint is built
@@ -37,19 +37,18 @@ pub(super) fn in_turn(
             let axes = rotation_to_axis(&normal);
             let along = |k: usize| JointKind::Prismatic(axes.column(k).into_owned());
             let parts = vec![("_x", along(0)), ("_y", along(1)), ("_yaw", about(normal))];
-            (parts, "is planar: two that slide and one that turns stand for it")
+            (parts, "is planar: replaced by two prismatic joints and a revolute one")
         }
         Several::Ball => {
-            let remark = "is a ball joint: three that turn stand for it, singular where the pitch is ±90°";
-            (turning.to_vec(), remark)
+            let remark = "is a ball joint: replaced by three revolute joints, singular at a pitch of ±90°";
+            (revolute.to_vec(), remark)
         }
         Several::Floating => {
             let along = |axis: Vector3<f64>| JointKind::Prismatic(axis);
-            let sliding =
+            let prismatic =
                 [("_x", along(Vector3::x())), ("_y", along(Vector3::y())), ("_z", along(Vector3::z()))];
-            let remark = "is floating: three that slide and three that turn stand for it, singular where the pitch is \
-                          ±90°";
-            ([sliding, turning].concat(), remark)
+            let remark = "is floating: replaced by three prismatic and three revolute joints, singular at a pitch of ±90°";
+            ([prismatic, revolute].concat(), remark)
         }
     };
     let dropped = ["limit", "dynamics", "mimic"].into_iter().filter(|tag| hinge.element.child(tag).is_some());
