@@ -179,6 +179,7 @@ def test_links_mend_a_file_before_it_is_checked(files: Path) -> None:
         ({"hull": {"mas": 1}}, 'links\\["hull"\\] has a key mas: there are mass, com and inertia'),
         ({"hull": 3}, "a dict with mass, com or inertia is needed"),
         ({"hull": {"com": [0, 0, 1]}}, "link 'hull' has no mass; give it one"),
+        ({"hull": {"mass": "3 kg"}}, 'the mass in links\\["hull"\\] is no number'),
     ]:
         with pytest.raises(oo.OnOrbitError, match=message):
             oo.Model.from_urdf(files / "bare.urdf", links=links)  # type: ignore[dict-item]  # some are wrong
@@ -191,6 +192,49 @@ def test_robots_of_robots_pickle(files: Path) -> None:
     (files / "arm.urdf").write_text(robot("arm", arm(tool_mass=2.5)))
     with pytest.raises(oo.exceptions.ModelError, match="was changed since"):
         pickle.loads(pickle.dumps(changed))
+
+
+def test_joints_on_the_base_keep_their_order(files: Path) -> None:
+    """Those attached first stay first, whichever frame of the base the next ones go to."""
+    bus, arm_of_file = oo.robots.load(files / "bus.urdf"), oo.robots.load(files / "arm.urdf")
+    one = oo.attach(bus, "hull", arm_of_file, prefix="a_")
+    two = oo.attach(one, "plate", arm_of_file, prefix="b_")
+    assert two.joint_names == [*one.joint_names, *(f"b_{name}" for name in arm_of_file.joint_names)]
+    # on a link of the first arm they follow the joints beyond it
+    on_link = oo.attach(one, "a_l1", arm_of_file, prefix="b_")
+    assert [name[0] for name in on_link.joint_names] == ["a"] * 4 + ["b"] * 4
+
+
+def test_an_arm_need_not_float_by_itself(files: Path) -> None:
+    """Its base may lack mass: together with the bus it makes one robot."""
+    (files / "light.urdf").write_text(robot("arm", _light(arm())))
+    with pytest.raises(oo.exceptions.ModelError, match="can be moved without resistance"):
+        oo.robots.load(files / "light.urdf")
+    bus = oo.robots.load(files / "bus.urdf")
+    model = oo.attach(bus, "plate", files / "light.urdf", pose=np.eye(4), prefix="x_")
+    whole = oo.Model.from_urdf_string(
+        robot("bus", BUS + mounted("x_", "plate", "0 0 0", "0 0 0").replace(arm("x_"), _light(arm("x_"))))
+    )
+    assert off(model, whole) < 1e-13
+    assert off(pickle.loads(pickle.dumps(model)), model) == 0.0
+    file = scenario(files, bus="bus.urdf", arms=[{"urdf": "light.urdf", "at": "plate", "prefix": "x_"}])
+    assert off(make_robot(load(file)), model) == 0.0
+    done = onorbit("new", "light.urdf", "--bus", "bus.urdf", "--at", "plate", cwd=files)
+    assert done.returncode == 0, done
+    with pytest.raises(oo.exceptions.DtypeError, match="other is of type int"):
+        oo.attach(bus, "plate", 3)  # type: ignore[arg-type]
+    far = np.eye(4)
+    far[0, 3] = 1e13
+    with pytest.raises(oo.exceptions.ModelError, match="farther away than 1e12 m"):
+        oo.attach(bus, "plate", files / "light.urdf", pose=far)
+    with pytest.raises(oo.exceptions.NotFoundError):
+        oo.attach(bus, "plate", files / "none.urdf")
+
+
+def _light(text: str) -> str:
+    """The text of an arm without the inertial of its base."""
+    start, end = text.index("<inertial>"), text.index("</inertial>") + len("</inertial>")
+    return text[:start] + text[end:]
 
 
 def test_what_is_odd_is_told_once(files: Path) -> None:
@@ -224,6 +268,11 @@ def test_what_is_odd_is_told_once(files: Path) -> None:
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf"}]}, "robot.arms[0].at: is missing"),
         ({"bus": "bus.urdf", "arms": []}, "robot.arms: has 0 entries, needs at least 1"),
         ({"bus": "bus.urdf"}, "robot: a 'bus' carries 'arms': list at least one"),
+        ({"bus": "bus.urdf", "arms": None}, "robot: a 'bus' carries 'arms': list at least one"),
+        ({"urdf": "bus.urdf", "bus": None, "arms": [{"urdf": "arm.urdf", "at": "plate"}]},
+         "robot: 'arms' belong to a 'bus'"),
+        ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "prefix": "\ud800"}]},
+         "has characters that no name has"),
         ({"arms": [{"urdf": "arm.urdf", "at": "plate"}]}, "robot: 'arms' belong to a 'bus'"),
         ({"bus": "bus.urdf", "urdf": "arm.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate"}]},
          "give exactly one of 'bundled', 'urdf', 'rigid_body' and 'bus'; given: urdf, bus"),
@@ -257,4 +306,5 @@ def test_from_two_files_to_a_run(files: Path) -> None:
     )
     assert "mine.png is there already" in refusal("info", "arm.urdf", "--picture", "mine.png", cwd=files)
     assert ".jpg is none of .png" in refusal("info", "arm.urdf", "--picture", "mine.jpg", cwd=files)
+    assert "name two files" in refusal("new", "arm.urdf", "--out", "a.png", "--picture", "a.png", cwd=files)
     assert "add --bus ROBOT" in refusal("new", "arm.urdf", "--at", "plate", cwd=files)

@@ -57,6 +57,18 @@ def test_a_satrec_of_elements_is_taken_and_may_change_afterwards() -> None:
     assert taken[0].epoch == "2023-12-03T06:00:00.000000Z"
 
 
+def test_a_catalogue_number_that_no_satrec_has_room_for() -> None:
+    message = {
+        "EPOCH": "2024-03-01T12:00:00", "MEAN_MOTION": 15.5, "ECCENTRICITY": 0.001, "INCLINATION": 51.6,
+        "RA_OF_ASC_NODE": 1, "ARG_OF_PERICENTER": 2, "MEAN_ANOMALY": 3, "BSTAR": 1e-4,
+        "NORAD_CAT_ID": 799501234, "CENTER_NAME": "EARTH", "REF_FRAME": "TEME",
+        "TIME_SYSTEM": "UTC", "MEAN_ELEMENT_THEORY": "SGP4",
+    }  # fmt: skip
+    native, reference = oo.Sgp4.from_omm(message), oo.Sgp4.from_omm(message, propagator="reference")
+    assert native.satellite == reference.satellite == 799501234
+    np.testing.assert_allclose(reference.state(3e3)[0], native.state(3e3)[0], atol=1e-5)
+
+
 def test_what_is_no_such_satrec_is_refused() -> None:
     with pytest.raises(ElementSetError, match=r"AFSPC mode.*propagator='reference'"):
         oo.Sgp4(initialized("a"))

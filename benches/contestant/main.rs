@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [urdf, states, count, set @ ..] = &given[..] else {
         return Err("usage: contestant URDF STATES COUNT [SET]".into());
     };
-    let model = from_file(Path::new(urdf), &[], &[])?;
+    let model = from_file(Path::new(urdf), &Default::default())?;
     let rows = read(states)?;
     if rows.len() != count.parse::<usize>()? * (model.nq() + 2 * model.nv()) {
         return Err(format!("{states} does not hold {count} states of the robot").into());

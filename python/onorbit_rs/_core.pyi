@@ -92,6 +92,7 @@ __all__ = [
     "Plates",
     "RadiationPressure",
     "Reference",
+    "RobotPart",
     "Sampled",
     "Screw",
     "Sgp4",
@@ -1094,10 +1095,23 @@ class Trace:
     def certificate(self) -> list[_CertificateRow]: ...
     def __len__(self) -> int: ...
 
+@final
+class RobotPart:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @staticmethod
+    def from_urdf(
+        path: _Path,
+        *,
+        package_paths: Sequence[_Path] | None = None,
+        xacro_arguments: Mapping[str, object] | None = None,
+        xacro: bool = False,
+        links: Mapping[str, Mapping[str, Any]] | None = None,
+    ) -> RobotPart: ...
+
 def attach(
     model: Model,
     frame: str,
-    other: Model,
+    other: Model | RobotPart | _Path,
     other_frame: str | None = None,
     *,
     pose: ArrayLike | None = None,

@@ -36,7 +36,7 @@ def select_set(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -
     if len(found) > 1:
         sets_found = count(len(found), "set", "sets")
         raise ElementSetError(
-            f"{where} holds {sets_found} of {satellite!r}: give one, or its catalogue number",
+            f"{where} holds {sets_found} of {satellite!r}: keep one, or name it by its catalogue number",
             name="satellite", got=satellite,
         )  # fmt: skip
     return found[0]

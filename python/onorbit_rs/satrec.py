@@ -36,7 +36,9 @@ def of_message(message: Mapping[str, Any], epoch: str, gravity: str) -> Satrec:
     """Return the ``Satrec`` of a message, read by ``sgp4``; ``epoch`` is its epoch in ISO format with a Z."""
     satrec = Satrec()
     given = {key: value for key, value in message.items() if key not in _UNUSED}
-    omm.initialize(satrec, _UNUSED | given | {"EPOCH": epoch.rstrip("Z")}, MODELS[gravity])
+    # SGP4 does not use the catalogue number, and a Satrec has no room for those above 339999
+    fixed = {"EPOCH": epoch.rstrip("Z"), "NORAD_CAT_ID": 0}
+    omm.initialize(satrec, _UNUSED | given | fixed, MODELS[gravity])
     return satrec
 
 

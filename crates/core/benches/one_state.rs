@@ -166,7 +166,8 @@ fn stepped(mut simulation: Simulation) -> Box<dyn FnMut() -> f64> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
-    let robot = arguments.first().map_or_else(|| Ok(torso(1)), |path| from_file(path.as_ref(), &[], &[]));
+    let robot =
+        arguments.first().map_or_else(|| Ok(torso(1)), |path| from_file(path.as_ref(), &Default::default()));
     let model = Arc::new(robot?);
     let rounds = arguments.get(1).map_or(Ok(5), |n| n.parse())?;
     let only = arguments.get(2).map(String::as_str);

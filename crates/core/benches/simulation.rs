@@ -66,7 +66,7 @@ fn controlled(mut simulation: Simulation) -> Simulation {
 /// integrated in the same field.
 fn in_everything() -> Simulation {
     let urdf = concat!(env!("CARGO_MANIFEST_DIR"), "/../../python/onorbit_rs/robots/humanoid_torso.urdf");
-    let model = Arc::new(from_file(urdf.as_ref(), &[], &[]).unwrap());
+    let model = Arc::new(from_file(urdf.as_ref(), &Default::default()).unwrap());
     let mut q = neutral(&model);
     q[7..].copy_from_slice(&[0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]);
     let v = vec![0.0; model.nv()];

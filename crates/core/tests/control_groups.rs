@@ -233,7 +233,7 @@ impl Controller for Deaf {
 #[test]
 fn two_arms_track_at_once_and_not_when_each_ignores_the_other() {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../python/onorbit_rs/robots");
-    let model = Arc::new(from_file(&folder.join("humanoid_dual_arm.urdf"), &[], &[]).unwrap());
+    let model = Arc::new(from_file(&folder.join("humanoid_dual_arm.urdf"), &Default::default()).unwrap());
     let mut q = neutral(&model);
     q[7..14].copy_from_slice(&START); // equal values are mirror images
     q[14..].copy_from_slice(&START);

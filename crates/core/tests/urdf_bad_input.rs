@@ -11,7 +11,7 @@ const INERTIAL: &str =
     r#"<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"#;
 
 fn error(xml: &str) -> UrdfError {
-    from_str(xml, None, &[], &[]).expect_err("must be refused")
+    from_str(xml, None, &Default::default()).expect_err("must be refused")
 }
 
 fn problem(xml: &str) -> UrdfProblem {
@@ -79,7 +79,7 @@ fn many_links_take_no_quadratic_time() {
         xml += &format!("<link name='l{i}'>{INERTIAL}</link>{j}");
     }
     let start = std::time::Instant::now();
-    assert_eq!(from_str(&(xml + "</robot>"), None, &[], &[]).unwrap().joint_count(), 2000); // as many as a robot may have
+    assert_eq!(from_str(&(xml + "</robot>"), None, &Default::default()).unwrap().joint_count(), 2000); // as many as a robot may have
     assert!(start.elapsed().as_secs() < 8, "a dense elimination would take minutes");
 }
 
@@ -87,7 +87,7 @@ fn many_links_take_no_quadratic_time() {
 fn files_that_cannot_be_read() {
     let folder = std::env::temp_dir().join(format!("onorbit_urdf_{}", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
-    let load = |path: &Path| from_file(path, &[], &[]).expect_err("must be refused");
+    let load = |path: &Path| from_file(path, &Default::default()).expect_err("must be refused");
     let write = |name: &str, bytes: &[u8]| -> PathBuf {
         fs::write(folder.join(name), bytes).unwrap();
         folder.join(name)
@@ -243,7 +243,12 @@ fn xacro_is_named_with_the_way_out() {
     assert_eq!(problem(&macros), UrdfProblem::OnlyMacros);
     // declaring the prefix is what every expanded file still does
     assert!(
-        from_str(&format!("<robot {xmlns}><link name='a'>{INERTIAL}</link></robot>"), None, &[], &[]).is_ok()
+        from_str(
+            &format!("<robot {xmlns}><link name='a'>{INERTIAL}</link></robot>"),
+            None,
+            &Default::default()
+        )
+        .is_ok()
     );
 }
 

@@ -14,7 +14,7 @@ fn it_takes_them_without_a_word_or_refuses_them() {
         )
     };
     let ends = "<parent link='a'/><child link='b'/>";
-    let ours = |xml: &str| from_str(xml, None, &[], &[]);
+    let ours = |xml: &str| from_str(xml, None, &Default::default());
 
     let comma = robot(&format!("<joint name='j' type='fixed'>{ends}<origin xyz='1,0 0 0 0'/></joint>"));
     assert_eq!(*urdf_rs::read_from_string(&comma).unwrap().joints[0].origin.xyz, [0.0; 3]);

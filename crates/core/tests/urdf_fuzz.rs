@@ -57,13 +57,13 @@ proptest! {
             let end = (start + length..=text.len()).find(|&i| text.is_char_boundary(i)).unwrap_or(text.len());
             text.replace_range(start..end, PIECES[piece]);
         }
-        if let Err(error) = from_str(&text, None, &[], &[]) {
+        if let Err(error) = from_str(&text, None, &Default::default()) {
             prop_assert!(!error.to_string().is_empty());
         }
     }
 
     #[test]
     fn noise_never_panics(text in "(<|>|/|[a-z]|=|\"| |!|-|\\?|&|;|\\PC){0,200}") {
-        let _ = from_str(&text, None, &[], &[]);
+        let _ = from_str(&text, None, &Default::default());
     }
 }

@@ -13,7 +13,7 @@ const START: [f64; 7] = [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.
 
 fn load(name: &str) -> Model {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../python/onorbit_rs/robots");
-    from_file(&folder.join(name), &[], &[]).unwrap()
+    from_file(&folder.join(name), &Default::default()).unwrap()
 }
 
 fn frame(model: &Model, q: &[f64], name: &str) -> (nalgebra::Matrix3<f64>, Vec3<f64>) {

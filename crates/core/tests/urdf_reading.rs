@@ -11,7 +11,7 @@ const INERTIAL: &str =
     r#"<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"#;
 
 fn load(inside: &str) -> Model {
-    from_str(&format!("<robot name='r' version='1.1'>{inside}</robot>"), None, &[], &[]).unwrap()
+    from_str(&format!("<robot name='r' version='1.1'>{inside}</robot>"), None, &Default::default()).unwrap()
 }
 
 fn pair(kind: &str, inside: &str) -> Model {
@@ -259,7 +259,7 @@ fn a_quaternion_needs_a_version_that_has_it() {
             "<robot {version}>\n<link name='a'>{INERTIAL}</link><link name='b'/>\n<joint name='j' type='fixed'>\
              <parent link='a'/><child link='b'/><origin quat_xyzw='0 0 1 0'/></joint></robot>"
         );
-        let model = from_str(&xml, None, &[], &[]).unwrap();
+        let model = from_str(&xml, None, &Default::default()).unwrap();
         (notes(&model), model.frames()[1].rot_kf.to_nalgebra()[(0, 0)])
     };
     for version in ["version='1.1'", "version='1.2'"] {
@@ -332,7 +332,8 @@ fn an_inertia_negative_by_rounding_is_zero() {
     // by a millionth of 0.5 kg m2 it is no rounding: a radius of gyration of a millimetre
     let wrong = tiny.replace("-5e-20", "-5e-7");
     let refused =
-        from_str(&format!("<robot><link name='a'>{wrong}</link></robot>"), None, &[], &[]).unwrap_err();
+        from_str(&format!("<robot><link name='a'>{wrong}</link></robot>"), None, &Default::default())
+            .unwrap_err();
     assert!(refused.to_string().contains("not positive definite"), "{refused}");
 }
 

@@ -23,6 +23,7 @@ mod propagate;
 mod records;
 mod reference;
 mod relative;
+mod robot_file;
 mod rollout;
 mod simulation;
 mod surfaces;
@@ -69,6 +70,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     m.add("MU_EARTH", onorbit_core::orbit::MU_EARTH)?;
     m.add_class::<model::PyModel>()?;
+    m.add_class::<robot_file::PyRobotPart>()?;
     m.add_function(wrap_pyfunction!(attach::attach, m)?)?;
     m.add_class::<records::PyVisual>()?;
     m.add_class::<records::PyJoint>()?;

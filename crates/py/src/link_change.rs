@@ -44,6 +44,9 @@ fn change_from_dict(link: &str, values: &Bound<'_, PyAny>) -> PyResult<LinkChang
         }
     }
     let value = |key| Ok::<_, PyErr>(values.get_item(key)?.filter(|value| !value.is_none()));
-    let mass = value("mass")?.map(|mass| mass.extract()).transpose()?;
+    let mass = value("mass")?;
+    let Ok(mass) = mass.map(|mass| mass.extract::<f64>()).transpose() else {
+        return refuse(&format!("the mass in links[{link:?}] is no number; a mass in kg is needed"));
+    };
     link_change(link, mass, value("com")?.as_ref(), value("inertia")?.as_ref())
 }

@@ -4,10 +4,10 @@ use crate::arrays::{Threads, array_of, fixed, type_name};
 use crate::derivatives::{PyFreeFloatingDerivatives, free_floating_derivatives, three};
 use crate::errors::{IntoPython, fields, raise};
 use crate::kernels::{PyFreeFloating, evaluate, free_floating};
-use crate::link_change::{link_change, link_changes};
+use crate::link_change::link_change;
 use crate::made::{Made, absolute, copied};
 use crate::records::{self, PyBody, PyFrame, PyJoint, PyVisual};
-use crate::xacro::from_xacro;
+use crate::robot_file::read_file;
 use nalgebra::Matrix3;
 use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel};
@@ -86,20 +86,8 @@ impl PyModel {
         xacro: bool,
         links: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let changes = link_changes(links)?;
-        let packages: Vec<PathBuf> =
-            package_paths.unwrap_or_default().iter().map(|path| absolute(path)).collect();
-        let keywords = fields!(py, "path": absolute(&path), "package_paths": packages.clone());
-        keywords.set_item("xacro_arguments", xacro_arguments.map(|given| given.copy()).transpose()?)?;
-        keywords.set_item("xacro", xacro)?;
-        keywords.set_item("links", copied(links.map(Bound::as_any))?)?;
+        let (model, keywords) = read_file(py, &path, package_paths, xacro_arguments, xacro, links, false)?;
         let made = Some(Made::by("Model.from_urdf", &keywords)?);
-        let is_named_so = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xacro"));
-        let model = if xacro || is_named_so || xacro_arguments.is_some() {
-            from_xacro(py, &path, &packages, xacro_arguments, &changes)?
-        } else {
-            urdf::from_file(&path, &packages, &changes).map_err(|error| error.into_python(py))?
-        };
         Self::wrap(py, model, made, &[])
     }
 
@@ -113,8 +101,9 @@ impl PyModel {
         package_paths: Option<Vec<PathBuf>>,
     ) -> PyResult<Self> {
         let packages = package_paths.unwrap_or_default();
+        let options = urdf::Options { packages: &packages, ..Default::default() };
         let model =
-            urdf::from_str(text, folder.as_deref(), &packages, &[]).map_err(|error| error.into_python(py))?;
+            urdf::from_str(text, folder.as_deref(), &options).map_err(|error| error.into_python(py))?;
         let packages: Vec<PathBuf> = packages.iter().map(|path| absolute(path)).collect();
         let folder = folder.as_deref().map(absolute);
         let keywords = fields!(py, "text": text, "folder": folder, "package_paths": packages);

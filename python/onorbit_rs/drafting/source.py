@@ -37,12 +37,13 @@ class Source:
         OnOrbitError
             If a robot cannot be read, the bus has no such frame, or names collide.
         """
-        robot = robots.load(
-            self.robot, package_paths=self.package_paths, xacro_arguments=self.xacro_arguments,
-            xacro=self.xacro,
-        )  # fmt: skip
+        how: dict[str, Any] = {
+            "package_paths": self.package_paths, "xacro_arguments": self.xacro_arguments, "xacro": self.xacro,
+        }  # fmt: skip
         if self.bus is None:
-            return robot
+            return robots.load(self.robot, **how)
+        file = Path(self.robot) if robots.is_file(self.robot) else robots.path(self.robot)
+        robot = _core.RobotPart.from_urdf(file, **how)
         bus = robots.load(self.bus, package_paths=self._packages_of_bus())
         return _core.attach(bus, self._frame(bus), robot, prefix=self.prefix)
 

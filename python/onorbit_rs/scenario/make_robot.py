@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -38,7 +38,7 @@ def make_robot(scenario: Scenario) -> _core.Model:
     model = _plain(scenario, robot.bus, ("robot", "bus"))
     for index, arm in enumerate(robot.arms or ()):
         at: Place = ("robot", "arms", index)
-        mounted = _plain(scenario, arm, at)
+        mounted = _plain(scenario, arm, at) if arm.rigid_body is not None else _part(scenario, arm, at)
         with located(scenario, *at):
             model = _core.attach(model, arm.at, mounted, arm.frame, pose=_matrix(arm.pose), prefix=arm.prefix)
     for name, values in robot.links.items():
@@ -52,18 +52,32 @@ def _plain(scenario: Scenario, robot: PlainRobot, at: Place) -> _core.Model:
     if robot.rigid_body is not None:
         with located(scenario, *at):
             return _core.Model.rigid_body(robot.rigid_body.mass, np.array(robot.rigid_body.inertia))
-    place = dotted(at)
+    with located(scenario, *at), worded(_wording(at)):
+        return _core.Model.from_urdf(**_file(scenario, robot))
+
+
+def _part(scenario: Scenario, robot: PlainRobot, at: Place) -> _core.RobotPart:
+    """Read a robot that is attached to another, and so need not be able to float by itself."""
+    with located(scenario, *at), worded(_wording(at)):
+        return _core.RobotPart.from_urdf(**_file(scenario, robot))
+
+
+def _file(scenario: Scenario, robot: PlainRobot) -> dict[str, Any]:
+    """Return the arguments that the engine reads the robot's file with."""
     beside = scenario.file.parent if scenario.file else Path()
-    packages = [beside / folder for folder in robot.package_paths]
-    wording = Wording(f"{place}.package_paths", f"{place}.xacro_arguments: {{NAME: ...}}")
-    with located(scenario, *at), worded(wording):
-        return _core.Model.from_urdf(
-            robots.path(robot.bundled) if robot.bundled is not None else beside / str(robot.urdf),
-            package_paths=packages or None,
-            xacro_arguments=robot.xacro_arguments or None,
-            xacro=robot.xacro,
-            links={name: values.given for name, values in robot.links.items()},
-        )
+    return {
+        "path": robots.path(robot.bundled) if robot.bundled is not None else beside / str(robot.urdf),
+        "package_paths": [beside / folder for folder in robot.package_paths] or None,
+        "xacro_arguments": robot.xacro_arguments or None,
+        "xacro": robot.xacro,
+        "links": {name: values.given for name, values in robot.links.items()},
+    }
+
+
+def _wording(at: Place) -> Wording:
+    """Return how messages name the options of the robot at a place of the scenario."""
+    place = dotted(at)
+    return Wording(f"{place}.package_paths", f"{place}.xacro_arguments: {{NAME: ...}}")
 
 
 def _matrix(pose: Pose | None) -> NDArray[np.float64] | None:

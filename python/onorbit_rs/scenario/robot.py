@@ -119,16 +119,25 @@ class PlainRobot(Part):
         return {key: value for key, value in handler(self).items() if value not in ({}, [], "", False)}
 
 
+def _printable(value: Any) -> Any:
+    if isinstance(value, str) and not value.isprintable():
+        raise wrong(f"{shown(value)} has characters that no name has")
+    return value
+
+
+Name = Annotated[str, BeforeValidator(_printable)]
+
+
 class Arm(PlainRobot):
     """A robot attached to a frame of the bus."""
 
-    at: str
+    at: Name
     """Link or frame of the bus to attach to."""
-    frame: str | None = None
+    frame: Name | None = None
     """Mounting frame of the arm, fixed to its base. Defaults to its root link."""
     pose: Pose | None = None
     """Pose of the mounting frame in ``at``."""
-    prefix: str = ""
+    prefix: Name = ""
     """Prefix for the names of the arm's links, joints and frames."""
 
 
@@ -144,8 +153,11 @@ class Robot(PlainRobot):
     @model_validator(mode="before")
     @classmethod
     def _arms_have_a_bus(cls, value: Any) -> Any:
-        if isinstance(value, dict) and "arms" in value and "bus" not in value:
+        if not isinstance(value, dict):
+            return value
+        has_bus, has_arms = value.get("bus") is not None, value.get("arms") is not None
+        if has_arms and not has_bus:
             raise wrong("'arms' belong to a 'bus': name the robot that carries them there")
-        if isinstance(value, dict) and "bus" in value and "arms" not in value:
+        if has_bus and not has_arms:
             raise wrong("a 'bus' carries 'arms': list at least one, each {urdf: FILE, at: FRAME}")
         return value

@@ -143,7 +143,7 @@ fn state(orbit: &dyn Orbit, t: f64, of: &str) -> Outcome {
 }
 
 fn read_urdf(bytes: &[u8]) -> Outcome {
-    let model = urdf::from_str(&text(bytes), None, &[], &[]).map_err(told)?;
+    let model = urdf::from_str(&text(bytes), None, &Default::default()).map_err(told)?;
     if model.nv() < 40 {
         let mut matrix = vec![0.0; model.nv() * model.nv()];
         mass_matrix(&model, &mut Data::<f64>::new(&model), &neutral(&model), &mut matrix);

@@ -4,6 +4,7 @@ use super::builder::ModelBuilder;
 use super::description::{Joint, JointKind};
 use super::error::ModelError;
 use super::tree::Model;
+use crate::spatial::{Mat3, Vec3};
 use nalgebra::{Isometry3, Rotation3};
 
 /// Placement of a robot on a frame of another robot.
@@ -20,10 +21,16 @@ pub struct Mount {
 impl Model {
     /// Returns this robot with `other` fixed to the frame `frame`. The base remains that of this robot.
     ///
+    /// Joints are numbered depth first: those of `other` come after all joints of this robot if `frame` is fixed to the
+    /// base, otherwise after the joints beyond the body of `frame`.
+    ///
     /// # Errors
     /// Unknown frame, a mounting frame that is moved by joints, a name that both robots have, or too many joints.
     pub fn attach(&self, frame: &str, other: &Self, mount: &Mount) -> Result<Self, ModelError> {
-        let (carrier, on_carrier) = self.description.frame(frame)?;
+        let carrier = &self.frames[self.frame(frame)?];
+        // on the body's own link, whose other joints come first: joints of the base keep their order
+        let on_link = isometry(self.pose_in_link(carrier));
+        let link = &self.body_frame(carrier.body).name;
         let in_root = match &mount.frame {
             Some(name) => other.pose_in_root(name)?,
             None => Isometry3::identity(),
@@ -35,10 +42,8 @@ impl Model {
         while builder.has_joint(&name) {
             name.push('_'); // this name is generated, so it must never be the reason for a refusal
         }
-        let joint = Joint::new(&name, JointKind::Fixed, on_carrier * mount.pose * in_root.inverse());
-        builder
-            .add_robot(&carrier.name, joint, robot)
-            .map_err(|error| error.suggest_prefix(&mount.prefix))?;
+        let joint = Joint::new(&name, JointKind::Fixed, on_link * mount.pose * in_root.inverse());
+        builder.add_robot(link, joint, robot).map_err(|error| error.suggest_prefix(&mount.prefix))?;
         builder.build()
     }
 
@@ -50,7 +55,11 @@ impl Model {
             let candidates = on_base.map(|frame| frame.name.clone()).collect();
             return Err(ModelError::FrameMoves { name: name.to_owned(), candidates });
         }
-        let rotation = Rotation3::from_matrix_unchecked(frame.rot_kf.to_nalgebra());
-        Ok(Isometry3::from_parts(frame.pos_kf.to_nalgebra().into(), rotation.into()))
+        Ok(isometry((frame.rot_kf, frame.pos_kf)))
     }
+}
+
+fn isometry((rotation, position): (Mat3<f64>, Vec3<f64>)) -> Isometry3<f64> {
+    let rotation = Rotation3::from_matrix_unchecked(rotation.to_nalgebra());
+    Isometry3::from_parts(position.to_nalgebra().into(), rotation.into())
 }

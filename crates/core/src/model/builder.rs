@@ -1,10 +1,11 @@
 //! Building a robot link by link.
 
-use super::compile::compile;
+use super::compile::{check_parts, compile};
 use super::description::{Description, Inertial, Joint, JointKind, Link};
 use super::error::{ModelError, ModelWarning};
 use super::inertia_check::{LONGEST, Sense, check_inertial};
 use super::tree::Model;
+use super::well_posed::check_well_posed;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
 
@@ -142,6 +143,15 @@ impl ModelBuilder {
     /// # Errors
     /// A robot without mass, or one whose motion something does not resist.
     pub fn build(self) -> Result<Model, ModelError> {
+        let model = self.build_part()?;
+        check_parts(&model)?;
+        check_well_posed(&model)?;
+        Ok(model)
+    }
+
+    /// The robot as a part that is to be attached to another: it need not be able to float by itself, and its dynamics
+    /// must not be evaluated.
+    pub(super) fn build_part(self) -> Result<Model, ModelError> {
         compile(self.description, self.warnings)
     }
 

@@ -6,7 +6,6 @@ use super::error::{ModelError, ModelWarning};
 use super::inertia_check::{is_definite, principal_moments, usable_inertia};
 use super::load_ratio::is_heavy_on_light;
 use super::tree::{Axis, Frame, JointProperties, Model, Node};
-use super::well_posed::check_well_posed;
 use crate::spatial::{Mat3, Sym3, Vec3};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::sync::Arc;
@@ -60,15 +59,13 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
         model.frames.push(named_frame(name, place, pose));
     }
     model.description = Arc::new(description);
-    check_parts(&model)?;
-    check_well_posed(&model)?;
     model.is_heavy_on_light = is_heavy_on_light(&model.nodes);
     Ok(model)
 }
 
 /// A link with an indefinite inertia, or with an inertia but no mass, is accepted only if the inertia of its whole
 /// body is valid.
-fn check_parts(model: &Model) -> Result<(), ModelError> {
+pub(super) fn check_parts(model: &Model) -> Result<(), ModelError> {
     for warning in &model.warnings {
         let (ModelWarning::IndefinitePart { link, .. } | ModelWarning::InertiaWithoutMass { link }) = warning
         else {

@@ -1,6 +1,5 @@
 //! What a robot is described with: links, joints, shapes.
 
-use super::error::ModelError;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
 /// Links, joints and frames that a [`Model`](super::Model) is compiled from.
@@ -17,23 +16,6 @@ pub struct Description {
 }
 
 impl Description {
-    /// Returns the link that a frame is fixed to and the frame's pose in that link.
-    ///
-    /// # Errors
-    /// [`ModelError::UnknownName`] with the nearest name.
-    pub fn frame(&self, name: &str) -> Result<(&Link, Isometry3<f64>), ModelError> {
-        let links = self.links.iter().map(|link| (link.name.as_str(), link, Isometry3::identity()));
-        let others = self.frames.iter().map(|(name, link, pose)| (name.as_str(), &self.links[*link], *pose));
-        let mut frames = links.chain(others);
-        let candidates = frames.clone();
-        let found = frames.find_map(|(other, link, pose)| (other == name).then_some((link, pose)));
-        found.ok_or_else(|| ModelError::UnknownName {
-            what: "frame",
-            name: name.to_owned(),
-            candidates: candidates.map(|(name, ..)| name.to_owned()).collect(),
-        })
-    }
-
     /// Returns the description with `prefix` prepended to the names of all links, joints and frames.
     #[must_use]
     pub fn prefixed(mut self, prefix: &str) -> Self {

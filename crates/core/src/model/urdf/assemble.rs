@@ -4,7 +4,7 @@ use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
 use super::joint::{Hinge, read_joints};
 use super::link::{Surroundings, read_link};
-use crate::model::{Link, Model, ModelBuilder, ModelError};
+use crate::model::{Link, ModelBuilder, ModelError};
 use std::cell::LazyCell;
 use std::collections::{HashMap, HashSet};
 
@@ -17,7 +17,7 @@ pub(super) fn assemble(
     links: &[NamedLink<'_>],
     hinges: &[Hinge<'_>],
     around: &mut Surroundings<'_>,
-) -> Result<Model, UrdfError> {
+) -> Result<ModelBuilder, UrdfError> {
     let tree = Tree::new(links, hinges)?;
     let mut root = tree.root(links, hinges)?;
     let read = |link: usize, around: &mut Surroundings<'_>| {
@@ -61,7 +61,7 @@ pub(super) fn assemble(
     for warning in around.warnings.drain(..).chain(around.meshes.warnings()) {
         builder.warn(warning);
     }
-    builder.build().map_err(|error| UrdfError::new(None, UrdfProblem::Model(error)))
+    Ok(builder)
 }
 
 /// Who hangs on whom, by index.

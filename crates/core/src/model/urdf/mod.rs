@@ -42,18 +42,25 @@ use roxmltree::{Error as XmlError, Node};
 use std::path::{Path, PathBuf};
 use tidy::tidy;
 
-/// Loads a robot; its root link floats.
-///
-/// `packages`: folders that hold ROS packages or are one, searched for `package://` meshes before
-/// the parents of the file. A mesh that is not found keeps its name and leaves a warning. `changes`: values that
-/// replace those of the file before anything is checked.
+/// How a URDF is read.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options<'a> {
+    /// Folders that hold ROS packages or are one, searched for `package://` meshes before the parents of the file.
+    pub packages: &'a [PathBuf],
+    /// Values that replace those of the file before the robot is checked.
+    pub changes: &'a [LinkChange],
+    /// Whether the robot is only to be attached to another: then it need not be able to float by itself.
+    pub is_part: bool,
+}
+
+/// Loads a robot; its root link floats. A mesh that is not found keeps its name and leaves a warning.
 ///
 /// # Errors
 /// [`UrdfError`] with the file, the line and the link or joint.
-pub fn from_file(path: &Path, packages: &[PathBuf], changes: &[LinkChange]) -> Result<Model, UrdfError> {
+pub fn from_file(path: &Path, options: &Options<'_>) -> Result<Model, UrdfError> {
     let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned));
     first_look::read(path)
-        .and_then(|(xml, note)| read(&xml, folder.as_deref(), packages, changes, note))
+        .and_then(|(xml, note)| read(&xml, folder.as_deref(), options, note))
         .map_err(|error| error.in_file(path))
 }
 
@@ -61,20 +68,14 @@ pub fn from_file(path: &Path, packages: &[PathBuf], changes: &[LinkChange]) -> R
 ///
 /// # Errors
 /// [`UrdfError`] with the line and the link or joint.
-pub fn from_str(
-    xml: &str,
-    folder: Option<&Path>,
-    packages: &[PathBuf],
-    changes: &[LinkChange],
-) -> Result<Model, UrdfError> {
-    read(xml, folder, packages, changes, None)
+pub fn from_str(xml: &str, folder: Option<&Path>, options: &Options<'_>) -> Result<Model, UrdfError> {
+    read(xml, folder, options, None)
 }
 
 fn read(
     xml: &str,
     folder: Option<&Path>,
-    packages: &[PathBuf],
-    changes: &[LinkChange],
+    options: &Options<'_>,
     note: Option<ModelWarning>,
 ) -> Result<Model, UrdfError> {
     first_look::check(xml)?;
@@ -92,15 +93,15 @@ fn read(
     let robot = document.root_element();
     check_root(robot)?;
     let ignored = Ignored::new(robot);
-    let meshes = Meshes::new(folder, packages);
+    let meshes = Meshes::new(folder, options.packages);
     notes.extend(ignored.warnings());
-    read_robot(robot, meshes, changes, notes).map_err(|error| ignored.explain(error))
+    read_robot(robot, meshes, options, notes).map_err(|error| ignored.explain(error))
 }
 
 fn read_robot(
     robot: Node<'_, '_>,
     meshes: Meshes<'_>,
-    changes: &[LinkChange],
+    options: &Options<'_>,
     mut warnings: Vec<ModelWarning>,
 ) -> Result<Model, UrdfError> {
     // every error says whose fault it is: the names come first, and outlive the elements
@@ -122,13 +123,16 @@ fn read_robot(
     if links.is_empty() {
         return Err(robot.fail(UrdfProblem::NoLinks));
     }
-    for change in changes {
+    for change in options.changes {
         change
             .check_is_one_of(links.iter().map(|(name, _)| *name))
             .map_err(|error| UrdfError::new(None, UrdfProblem::Model(error)))?;
     }
-    let mut around = Surroundings { materials: Materials::new(robot), meshes, changes, warnings };
-    assemble(robot.text("name").unwrap_or("robot"), &links, &hinges, &mut around)
+    let mut around =
+        Surroundings { materials: Materials::new(robot), meshes, changes: options.changes, warnings };
+    let builder = assemble(robot.text("name").unwrap_or("robot"), &links, &hinges, &mut around)?;
+    let built = if options.is_part { builder.build_part() } else { builder.build() };
+    built.map_err(|error| UrdfError::new(None, UrdfProblem::Model(error)))
 }
 
 /// `link 'hand'` for every link, in order.
