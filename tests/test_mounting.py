@@ -189,6 +189,11 @@ def test_robots_of_robots_pickle(files: Path) -> None:
     bus, arm_of_file = oo.robots.load(files / "bus.urdf"), oo.robots.load(files / "arm.urdf")
     changed = oo.attach(bus, "plate", arm_of_file, pose=np.eye(4), prefix="x_").with_link("x_l3", mass=9.0)
     assert off(pickle.loads(pickle.dumps(changed)), changed) == 0.0
+    looped = bus
+    for step in range(2000):  # no history is kept
+        looped = looped.with_link("hull", mass=300.0 + step)
+    again = pickle.loads(pickle.dumps(looped.with_link("hull", com=[0.0, 0.0, 0.2])))
+    assert again.mass == 2299.0 and list(again.bodies[0].com) == [0.0, 0.0, 0.2]
     (files / "arm.urdf").write_text(robot("arm", arm(tool_mass=2.5)))
     with pytest.raises(oo.exceptions.ModelError, match="was changed since"):
         pickle.loads(pickle.dumps(changed))

@@ -28,6 +28,16 @@ impl Made {
         Ok(Self((constructor, arguments, keywords).into_pyobject(py)?.unbind()))
     }
 
+    /// The arguments and keywords, if `constructor` made the object.
+    pub(crate) fn call_of<'py>(
+        &self,
+        py: Python<'py>,
+        constructor: &str,
+    ) -> PyResult<Option<(Bound<'py, PyTuple>, Bound<'py, PyDict>)>> {
+        let (made_by, arguments, keywords) = self.0.bind(py).extract::<(String, _, _)>()?;
+        Ok((made_by == constructor).then_some((arguments, keywords)))
+    }
+
     /// What `__reduce__` returns.
     pub(crate) fn again<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Py<PyTuple>)> {
         Ok((py.import("onorbit_rs.rebuild")?.getattr("rebuild")?, self.0.clone_ref(py)))

@@ -159,7 +159,7 @@ impl PyModel {
         let old = &slf.get().model;
         let model = old.with_link(&change).map_err(|error| error.into_python(py))?;
         let keywords = fields!(py, "mass": mass, "com": copied(com)?, "inertia": copied(inertia)?);
-        let made = Made::with("Model.with_link", (slf, name), &keywords)?;
+        let made = made_by_with_link(slf, name, keywords)?;
         Self::wrap(py, model, Some(made), old.warnings())
     }
 
@@ -492,6 +492,24 @@ impl PyModel {
             m.mass()
         )
     }
+}
+
+/// How `model.with_link(name, **keywords)` is made again. Successive changes of one link become a single one, so that a loop
+/// that changes it does not keep every model on the way.
+fn made_by_with_link(model: &Bound<'_, PyModel>, name: &str, keywords: Bound<'_, PyDict>) -> PyResult<Made> {
+    let py = model.py();
+    let call = model.get().made.as_ref().map(|made| made.call_of(py, "Model.with_link")).transpose()?;
+    if let Some((arguments, earlier)) = call.flatten() {
+        let (origin, link): (Bound<'_, PyAny>, String) = arguments.extract()?;
+        if link == name {
+            let merged = earlier.copy()?;
+            for (key, value) in keywords.iter().filter(|(_, value)| !value.is_none()) {
+                merged.set_item(key, value)?;
+            }
+            return Made::with("Model.with_link", (origin, name), &merged);
+        }
+    }
+    Made::with("Model.with_link", (model, name), &keywords)
 }
 
 impl PyModel {

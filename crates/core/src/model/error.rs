@@ -117,8 +117,8 @@ impl fmt::Display for ModelWarning {
                 f,
                 "the inertia of link '{link}' breaks the triangle inequality: {} + {} < {} kg m2; no real body has such \
                  principal moments (used as it is)",
-                short(*a),
-                short(*b),
+                short(a.max(0.0)), // a negative moment is rounding here
+                short(b.max(0.0)),
                 unlike(*c, &[a + b])
             ),
             Self::IndefinitePart { link, moments } => write!(
