@@ -1,8 +1,8 @@
 """SHA-256 of every trace column of the bundled scenarios, on the baseline instruction set.
 
 ``python tests/recorded_bits.py`` prints them as JSON; with ``--record`` it replaces the recorded ones.
-Refactoring must not change them. They are recorded again only in a commit of its own, which changes no code
-and says why the results changed.
+Refactoring must not change them. They are recorded again only in a separate commit, which changes no code and
+says why the results changed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ MOST_STEPS = 500
 
 
 def in_baseline() -> dict[str, dict[str, str]]:
-    """Compute the digests in a process of its own, in which only the baseline instruction set is used."""
+    """Compute the digests in a separate process that uses only the baseline instruction set."""
     environment = os.environ | {"ONORBIT_INSTRUCTION_SET": "baseline"}
     done = subprocess.run(
         [sys.executable, __file__], env=environment, capture_output=True, text=True, check=False

@@ -313,3 +313,5 @@ def test_from_two_files_to_a_run(files: Path) -> None:
     assert ".jpg is none of .png" in refusal("info", "arm.urdf", "--picture", "mine.jpg", cwd=files)
     assert "name two files" in refusal("new", "arm.urdf", "--out", "a.png", "--picture", "a.png", cwd=files)
     assert "add --bus ROBOT" in refusal("new", "arm.urdf", "--at", "plate", cwd=files)
+    told = refusal("new", "arm.urdf", "--bus", "b.xacro", "--at", "plate", "--arg", "m=9", cwd=files)
+    assert "robot.bus.xacro_arguments" in told

@@ -57,13 +57,7 @@ def new(
     The scenario is simulated before it is written; without --out it goes to standard output. With --bus the
     robot is attached to a spacecraft from another file; --picture draws the result.
     """
-    if arguments and bus is not None and Path(robot).suffix.lower() != ".xacro" and not xacro:
-        raise InputError(
-            "--arg is for the robot's own xacro file; write the arguments of a xacro bus into the scenario: "
-            "robot.bus.xacro_arguments",
-            name="arg", got=arguments,
-        )  # fmt: skip
-    given = of_file(robot, packages, arguments, xacro)
+    given = of_file(robot, packages, arguments, xacro, bus=bus)
     if out is not None and picture is not None and out.absolute() == picture.absolute():
         raise InputError(f"--out and --picture are both {out}: name two files", name="picture", got=str(out))
     if bus is None and (at is not None or prefix):

@@ -47,18 +47,31 @@ XacroOption = Annotated[bool, typer.Option("--xacro", help="Expand a file that i
 
 
 def of_file(
-    robot: str, packages: list[Path] | None, arguments: list[str] | None, xacro: bool
+    robot: str,
+    packages: list[Path] | None,
+    arguments: list[str] | None,
+    xacro: bool,
+    *,
+    bus: str | None = None,
 ) -> dict[str, Any]:
-    """What says how a robot's file is read, as :func:`onorbit_rs.robots.load` takes it.
+    """Return the keyword arguments with which :func:`onorbit_rs.robots.load` reads a robot's file.
 
     Raises
     ------
     InputError
-        It could have no effect: a bundled robot, a folder that is not there, a file that is no xacro.
+        If an option could have no effect: for a bundled robot, a missing folder, a file that is no xacro.
+        If there is a ``bus``, the message says where the arguments of its xacro go.
     """
     from onorbit_rs import robots
 
     values = as_mapping(arguments)
+    is_xacro = xacro or Path(robot).suffix.lower() == ".xacro"
+    if arguments and bus is not None and not is_xacro:
+        raise InputError(
+            "--arg is for the robot's own xacro file; write the arguments of a xacro bus into the scenario: "
+            "robot.bus.xacro_arguments",
+            name="arg", got=arguments,
+        )  # fmt: skip
     if (packages or arguments or xacro) and not robots.is_file(robot):
         raise InputError(
             f"--package-path, --arg and --xacro are for a robot's file, and {robot!r} is a name, not a path "
@@ -70,7 +83,7 @@ def of_file(
             raise InputError(
                 f"--package-path {folder}: there is no such folder", name="package_path", got=str(folder)
             )
-    if arguments and not xacro and Path(robot).suffix.lower() != ".xacro":
+    if arguments and not is_xacro:
         raise InputError(
             f"--arg is for a xacro, and {robot} is not named so: leave it out, or add --xacro",
             name="arg", got=arguments,

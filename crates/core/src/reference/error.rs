@@ -40,7 +40,7 @@ pub enum ReferenceError {
     #[error("joint {joint} is to move, there are joints 0 to {last}", last = count.saturating_sub(1))]
     NoJoint { joint: usize, count: usize },
     #[error(
-        "the rotation of the pose is none: RᵀR differs from 1 by {error}, at most 1e-6 is accepted",
+        "the rotation part of the pose is not a rotation matrix: RᵀR differs from 1 by {error}, at most 1e-6 is accepted",
         error = short(*error)
     )]
     NotARotation { error: f64 },

@@ -15,7 +15,7 @@ use std::ops::Range;
 /// - comments, instructions and document types go, and characters that XML does not have;
 /// - `&` and `<` are escaped where they stand for themselves;
 /// - attributes have a space between them;
-/// - every prefix is declared, as a namespace of its own.
+/// - every prefix is declared, each with a separate namespace.
 ///
 /// # Errors
 /// [`UrdfProblem::Entity`] where the text uses what a document type defines.
