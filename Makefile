@@ -1,9 +1,9 @@
-# One command per task; each sets up what it needs in .venv and target/.
+# One command per task; each installs its dependencies in .venv and target/.
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# an environment of the caller's must not leak in
+# variables of an active environment must not affect the commands
 unexport VIRTUAL_ENV PYTHONPATH PYTHONHOME CONDA_PREFIX
 MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quiet
 
@@ -11,7 +11,7 @@ RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.l
 
 .PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign fuzz soak notices clean
 
-help: ## this list
+help: ## prints this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
 
 $(BIN)/maturin:
@@ -27,21 +27,21 @@ $(VENV)/.tested: pyproject.toml | $(VENV)/.built
 	$(MATURIN) --extras test,lint
 	@touch $@
 
-notices: ## THIRD_PARTY_NOTICES.txt, from the licences of the crates that the module links
+notices: ## writes THIRD_PARTY_NOTICES.txt from the licences of the crates in the module
 	$(PYTHON) crates/py/notices.py
 
-demo: $(VENV)/.built ## the paper's experiment: builds, runs, leaves out/humanoid_reach
+demo: $(VENV)/.built ## builds, runs the experiment of the paper, writes out/humanoid_reach
 	$(BIN)/onorbit run humanoid_reach --out out/humanoid_reach --force
 
-test: test-rust test-python ## everything that proves it
+test: test-rust test-python ## runs all tests
 
-test-rust: ## the engine alone; needs no Python
+test-rust: ## tests the engine; needs no Python
 	cargo test --workspace --exclude onorbit-py
 
-test-python: $(VENV)/.built $(VENV)/.tested ## the package, against independent engines
+test-python: $(VENV)/.built $(VENV)/.tested ## tests the package, also against independent engines
 	$(BIN)/python -m pytest -n auto --maxprocesses 8 --dist worksteal
 
-lint: $(VENV)/.built $(VENV)/.tested ## formatting, lints as errors, types
+lint: $(VENV)/.built $(VENV)/.tested ## checks formatting, lints and types
 	cargo fmt --all --check
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps -p onorbit-core
@@ -53,49 +53,49 @@ $(VENV)/.documented: pyproject.toml | $(VENV)/.built
 	$(MATURIN) --extras docs
 	@touch $@
 
-docs: $(VENV)/.built $(VENV)/.documented ## the documentation: built with warnings as errors, its links checked
+docs: $(VENV)/.built $(VENV)/.documented ## builds the documentation with warnings as errors and checks its links
 	$(BIN)/python website/build.py
 
 $(VENV)/.benched: pyproject.toml | $(VENV)/.tested
 	$(MATURIN) --extras bench
 	@touch $@
 
-bench: $(VENV)/.built $(VENV)/.benched ## against Pinocchio and MuJoCo, built from PyPI's wheels and alternated; keeps a history
+bench: $(VENV)/.built $(VENV)/.benched ## compares the speed with Pinocchio and MuJoCo, alternated; stores the results
 	$(BIN)/python benches/versus
 
-bench-quick: $(VENV)/.built $(VENV)/.benched ## the same in a minute or two, not kept
+bench-quick: $(VENV)/.built $(VENV)/.benched ## the same in a minute or two, without storing the results
 	$(BIN)/python benches/versus --rounds 3 --seconds 0.05 --no-save
 
-# REV= another revision; ROUNDS= how many; ROWS= only rows whose name contains it; or BUILT='other-tree this-tree'
-bench-against: $(VENV)/.built $(VENV)/.tested ## this tree's speed against REV=revision, alternated; fails if a row is slower
+# REV= other revision; ROUNDS= number of rounds; ROWS= selects rows by name; or BUILT='other-tree this-tree'
+bench-against: $(VENV)/.built $(VENV)/.tested ## compares the speed with REV=revision, alternated; fails if a row is slower
 	$(BIN)/python benches/versus/against.py $(if $(BUILT),--built $(BUILT),$(if $(REV),$(REV),HEAD)) \
 		$(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(ROWS),--rows '$(ROWS)')
 
-bench-rust: $(VENV)/.built $(VENV)/.tested ## criterion for the kernels, pytest-benchmark for the border
+bench-rust: $(VENV)/.built $(VENV)/.tested ## times the kernels (Criterion) and the Python bindings (pytest-benchmark)
 	cargo bench -p onorbit-core
 	$(BIN)/python -m pytest benches -o testpaths=benches --benchmark-only --benchmark-columns=min,median,iqr
 
-bench-orbits: $(VENV)/.built $(VENV)/.tested ## propagation against sgp4, numpy, SciPy and brahe, alternated
+bench-orbits: $(VENV)/.built $(VENV)/.tested ## compares propagation with sgp4, numpy, SciPy and brahe, alternated
 	$(BIN)/python -m pip install --quiet scipy 'brahe==1.8.0'
 	$(BIN)/python benches/compare_orbits.py
 
-bench-everything: $(VENV)/.built ## humanoid_reach with the whole environment on against as it is bundled, alternated
+bench-everything: $(VENV)/.built ## compares humanoid_reach with all effects and as bundled, alternated
 	$(BIN)/python benches/compare_everything.py
 
-bench-spart: $(VENV)/.built $(VENV)/.tested ## forward dynamics against SPART, compiled from PyPI's spartpy, alternated
+bench-spart: $(VENV)/.built $(VENV)/.tested ## compares forward dynamics with SPART from PyPI's spartpy, alternated
 	$(BIN)/python benches/compare_spart.py
 
-certificate-campaign: $(VENV)/.built $(VENV)/.tested ## 10 000 exact runs and 1000 made wrong against their certificates; ARGS="--minutes 10"
+certificate-campaign: $(VENV)/.built $(VENV)/.tested ## evaluates the certificates of 10 000 exact and 1000 defective runs; ARGS="--minutes 10"
 	$(BIN)/python tests/certificate_campaign.py $(ARGS)
 
-# SECONDS= of each parser; COUNT= inputs in all; SEED=; ONLY= parsers whose name contains it
-fuzz: $(VENV)/.built $(VENV)/.tested ## every parser, guided by coverage; findings are kept and fail (docs/reliability.md)
+# SECONDS= per parser; COUNT= total number of inputs; SEED=; ONLY= selects parsers by name
+fuzz: $(VENV)/.built $(VENV)/.tested ## fuzzes every parser, guided by coverage; fails on findings (docs/reliability.md)
 	$(BIN)/python tests/fuzz $(if $(SECONDS),--seconds $(SECONDS)) $(if $(COUNT),--count $(COUNT)) \
 		$(if $(SEED),--seed $(SEED)) $(if $(ONLY),--only $(ONLY))
 
-# SECONDS= in all, an hour where not given; SEED=
-soak: $(VENV)/.built $(VENV)/.tested ## kills, disk faults, leaks and long runs (docs/reliability.md)
+# SECONDS= total duration, default: an hour; SEED=
+soak: $(VENV)/.built $(VENV)/.tested ## tests kills, disk faults, leaks and long runs (docs/reliability.md)
 	$(BIN)/python tests/soak $(if $(SECONDS),--seconds $(SECONDS)) $(if $(SEED),--seed $(SEED))
 
-clean: ## forgets builds and the environment
+clean: ## removes builds and the environment
 	rm -rf target $(VENV) out

@@ -1,6 +1,6 @@
-"""What the whole environment costs the paper's reach: as bundled and with everything switched on, alternated.
+"""Cost of the whole environment: the paper's reach as bundled and with all effects, alternately.
 
-Run it with ``make bench-everything``. The ratio of the real-time factors is what counts.
+Run it with ``make bench-everything``. The result is the ratio of the real-time factors.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ EVERYTHING = [
 
 
 def main() -> None:
-    """Print the real-time factors of each round and the ratio with its spread."""
+    """Prints the real-time factors of each round and the ratio with its spread."""
     plain = load("humanoid_reach")
     full = plain.resolved() | {"epoch": "2026-03-20 12:00:00 UTC", "environment": EVERYTHING}
     full["orbit"] |= {"kind": "numerical"}

@@ -1,8 +1,8 @@
-"""Orbits against their peers on PyPI, alternated in one run.
+"""Times orbit propagation alternately with other packages on PyPI.
 
 ``pip install scipy brahe``, then ``python benches/compare_orbits.py [ROUNDS] [JOB ...]``, jobs ``sgp4``,
-``kepler`` and ``day``. Each round times ours and the peer's one after the other, best of three; printed are
-the median ratio and its spread, with the accuracy beside it. ``sgp4``: 1000 satellites at 1440 epochs against
+``kepler`` and ``day``. Each round times this package and the other one, best of three runs; the output is
+the median ratio with its spread, and the accuracy. ``sgp4``: 1000 satellites at 1440 epochs against
 ``SatrecArray``. ``kepler``: a million pairs of elements and time against the same equations vectorised in
 numpy. ``day``: one LEO day under J2 against SciPy's DOP853 at rtol 1e-12 and brahe's RKN1210 with its
 trajectory off and simple Earth rotation; errors are those against x87 extended precision.
@@ -29,7 +29,7 @@ MU, RADIUS, J2 = 3.986004415e14, 6378136.3, 1.0826355e-3
 
 
 def best(job: Callable[[], Any]) -> float:
-    """Shortest of three runs, s."""
+    """Returns the shortest time of three runs, s."""
     times = []
     for _ in range(3):
         start = time.perf_counter()
@@ -39,7 +39,7 @@ def best(job: Callable[[], Any]) -> float:
 
 
 def compare(title: str, theirs: Callable[[], Any], ours: Callable[[], Any], rounds: int) -> None:
-    """Alternate and print."""
+    """Times both alternately and prints the ratio."""
     pairs = [(best(theirs), best(ours)) for _ in range(rounds)]
     ratios = [a / b for a, b in pairs]
     a, b = (statistics.median(column) * 1e3 for column in zip(*pairs, strict=True))
@@ -48,7 +48,7 @@ def compare(title: str, theirs: Callable[[], Any], ours: Callable[[], Any], roun
 
 
 def element_sets(count: int) -> list[tuple[str, str]]:
-    """Low orbits of all inclinations, drawn with a fixed seed."""
+    """Returns random low orbits of all inclinations."""
     draw = np.random.default_rng(3)
 
     def line(text: str) -> str:
@@ -85,7 +85,7 @@ def sgp4(rounds: int) -> None:
     out = (np.empty(shape), np.empty(shape))
     _, r, _ = array.sgp4(jd, fraction)
     far = np.abs(oo.propagate(ours, 60 * minutes)[0] / 1e3 - r).max()
-    print(f"SGP4 states apart by at most {far:.1e} km (the times' own rounding is worth 3e-7)")
+    print(f"SGP4 states differ by at most {far:.1e} km (rounding of the times causes 3e-7)")
     for threads, name in ((1, "one core"), (None, "all cores")):
 
         def many(threads: int | None = threads) -> None:
@@ -97,7 +97,7 @@ def sgp4(rounds: int) -> None:
 def numpy_kepler(
     a: Any, e: Any, i: Any, node: Any, periapsis: Any, anomaly: Any, t: Any, mu: float
 ) -> tuple[Any, Any]:
-    """The textbook's way: Newton's steps for all at once, then the rotation written out."""
+    """Solves Kepler's equation with vectorised Newton steps, then rotates into inertial axes."""
     n = np.sqrt(mu / a**3)
     m = np.remainder(anomaly + n * t + np.pi, 2 * np.pi) - np.pi
     eccentric = m + e * np.sin(m)
@@ -139,7 +139,7 @@ def kepler(rounds: int) -> None:
         given = dict(zip(names, elements, strict=True))
         r, _ = numpy_kepler(*elements, t, MU)
         far = np.abs(oo.Kepler.states(t, **given, mu=MU)[0] - r).max()
-        print(f"Kepler states apart by at most {far:.1e} m, e below {most}")
+        print(f"Kepler states differ by at most {far:.1e} m, e below {most}")
 
         def peer(elements: Any = elements) -> None:
             numpy_kepler(*elements, t, MU)
@@ -153,7 +153,7 @@ def kepler(rounds: int) -> None:
 
 
 def extended_day(r: Any, v: Any, mu: float, radius: float, j2: float) -> Any:
-    """The day's end in numpy's longdouble, by extrapolation of Stoermer's rule in steps of a minute."""
+    """Returns the final state in numpy's longdouble by extrapolation of Stoermer's rule, 1 min steps."""
     wide = np.longdouble
     mu, radius, j2 = wide(mu), wide(radius), wide(j2)
 
@@ -194,7 +194,7 @@ def day(rounds: int) -> None:
         return float(np.linalg.norm(end - extended_day(r0, v0, *constants).astype(float)))
 
     ours = integral(MU, RADIUS, J2)
-    print(f"ours ends {error(ours(), (MU, RADIUS, J2)):.1e} m off")
+    print(f"error of this package: {error(ours(), (MU, RADIUS, J2)):.1e} m")
 
     from scipy.integrate import solve_ivp
 
@@ -210,7 +210,7 @@ def day(rounds: int) -> None:
     def dop853() -> Any:
         return solve_ivp(slope, (0, DAY), start, method="DOP853", rtol=1e-12, atol=1e-9).y[:3, -1]
 
-    print(f"DOP853 ends {error(dop853(), (MU, RADIUS, J2)):.1e} m off")
+    print(f"error of DOP853: {error(dop853(), (MU, RADIUS, J2)):.1e} m")
     compare("LEO day, SciPy DOP853 at rtol 1e-12", dop853, ours, rounds)
 
     import brahe as bh
@@ -236,7 +236,7 @@ def day(rounds: int) -> None:
 
 
 def main() -> None:
-    """The jobs asked for, all by default."""
+    """Runs the given jobs; default: all."""
     given = sys.argv[1:]
     rounds = int(given.pop(0)) if given and given[0].isdigit() else ROUNDS
     print(f"{oo.build_info()['instruction_set']}, {os.cpu_count()} cores, {rounds} rounds")

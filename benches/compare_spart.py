@@ -1,7 +1,8 @@
-"""Forward dynamics of a free-floating robot against SPART, alternated in one run: ``make bench-spart``.
+"""Times forward dynamics of a free-floating robot alternately with SPART: ``make bench-spart``.
 
-SPART's right-hand side, `space_robot_ode`, is one call of MATLAB Coder's C by way of ctypes; what its C takes
-alone is set beside our whole call from Python, and beside a state of a batch on one thread. Processor time.
+SPART's right-hand side, `space_robot_ode`, is one call through ctypes of C code by MATLAB Coder. The
+processor time of its C code alone is compared with a call from Python and with one state of a batch on one
+thread.
 """
 
 from __future__ import annotations
@@ -12,20 +13,20 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")  # its parallel loops over a dozen links only wait
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # its parallel loops over a dozen links only cost time
 
 import numpy as np
 from SPARTpy import SPARTpy as spartpy
 
 import onorbit_rs as oo
-from onorbit_rs.validation.against_spart import forces, rates, spart
-from onorbit_rs.validation.trees import deviation, random_state
+from onorbit_rs.tools.validation.against_spart import forces, rates, spart
+from onorbit_rs.tools.validation.trees import deviation, random_state
 
 ROUNDS, CALLS, BATCH = 15, 500, 4096
 
 
 class Timed:
-    """SPART's library; notes what its right-hand side takes without the wrapper around it."""
+    """SPART's library; records the time of its right-hand side without the Python wrapper."""
 
     def __init__(self, library: Any) -> None:
         self.library, self.took = library, 0.0
@@ -40,7 +41,7 @@ class Timed:
 
 
 def seconds(job: Callable[[], object], calls: int) -> float:
-    """Of one call."""
+    """Returns the time of one call, s."""
     begun = time.process_time()
     for _ in range(calls):
         job()
@@ -48,7 +49,7 @@ def seconds(job: Callable[[], object], calls: int) -> float:
 
 
 def compare(name: str, library: Timed) -> None:
-    """Print the ratios for one of the bundled robots."""
+    """Prints the ratios for a bundled robot."""
     model, (engine, joints) = oo.robots.load(name), spart(oo.robots.path(name).read_text())
     state = random_state(model, np.random.default_rng(1), frames=1)
     order = [model.joint_names.index(joint) for joint in joints]
@@ -69,14 +70,18 @@ def compare(name: str, library: Timed) -> None:
         one_of_many = seconds(lambda: model.forward_dynamics(*batch, threads=1), 5) / BATCH
         ratios.append((call / ours, alone / ours, alone / one_of_many))
     print(f"{name}, nv {model.nv}, differs by {off:.0e}")
-    titles = ("a call against a call", "its C alone against our call", "its C alone against one of a batch")
+    titles = (
+        "call from Python",
+        "SPART's C alone against a call from Python",
+        "SPART's C alone against a state of a batch",
+    )
     for title, column in zip(titles, zip(*ratios, strict=True), strict=True):
         print(f"  {title}: {statistics.median(column):.1f} ({min(column):.1f} to {max(column):.1f})")
 
 
 def main() -> None:
-    """Both humanoids."""
-    spart(oo.robots.path("humanoid_torso").read_text())  # compiles, if need be
+    """Compares both humanoids."""
+    spart(oo.robots.path("humanoid_torso").read_text())  # compiles SPART on first use
     library = Timed(spartpy._get_spart_lib())
     spartpy._get_spart_lib = lambda: library
     for name in ("humanoid_torso", "humanoid_dual_arm"):

@@ -1,8 +1,8 @@
-"""Cost of calls from Python: pytest-benchmark, run by ``make bench-rust`` and not by ``make test``.
+"""Cost of calls from Python, with pytest-benchmark: run by ``make bench-rust``, not by ``make test``.
 
 Fixed: the bundled humanoid, random states drawn once, arrays of float64. Varied: the kernel, one state or a
-thousand, the way in which columns of a run are read; for loading, the number of links. Kernels themselves are
-timed in Rust; the kernel of group ``call`` does almost nothing, so that the cost of the call remains. Batches
+thousand, the way in which columns of a run are read; for loading, the number of links. The kernels are
+timed in Rust; the kernel of group ``call`` does almost nothing, so its time is that of the call. Batches
 run on one thread.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.validation.trees import random_tree, urdf
+from onorbit_rs.tools.validation.trees import random_tree, urdf
 
 MODEL = oo.robots.load("humanoid_torso")
 RNG = np.random.default_rng(1)
@@ -43,8 +43,8 @@ KERNELS: dict[str, Kernel] = {
 
 
 @pytest.mark.benchmark(group="call")
-def test_call_of_next_to_nothing(benchmark: Any) -> None:
-    # a rigid body's centre of mass: two arrays across the border and a handful of flops
+def test_call_of_a_trivial_kernel(benchmark: Any) -> None:
+    # centre of mass of a rigid body: two arrays and a few operations
     model = oo.Model.rigid_body(1.0, np.eye(3))
     benchmark(model.center_of_mass, model.neutral())
 

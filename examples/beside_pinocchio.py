@@ -1,6 +1,6 @@
-"""Dynamics of a URDF here and in Pinocchio: the same numbers, and the time that each takes.
+"""Compares the forward dynamics of a URDF in onorbit_rs and in Pinocchio: results and computation times.
 
-Needs: pip install pin
+Requires: pip install pin
 
 Run: python examples/beside_pinocchio.py [ROBOT.urdf]
 """
@@ -18,7 +18,7 @@ import onorbit_rs as oo
 
 
 def microseconds(call: Callable[[], object], repeats: int = 2000) -> float:
-    """One call, the best of five rounds."""
+    """Returns the time of one call in microseconds: the best of five rounds."""
     rounds = []
     for _ in range(5):
         began = time.perf_counter()
@@ -30,29 +30,29 @@ def microseconds(call: Callable[[], object], repeats: int = 2000) -> float:
 
 def main(urdf: str = str(oo.robots.path("humanoid_torso"))) -> None:
     model = oo.Model.from_urdf(urdf)
-    theirs = pin.buildModelFromUrdf(urdf, pin.JointModelFreeFlyer())
-    theirs.gravity.setZero()  # dynamics here are those in free fall
-    data = theirs.createData()
+    pin_model = pin.buildModelFromUrdf(urdf, pin.JointModelFreeFlyer())
+    pin_model.gravity.setZero()  # onorbit_rs computes the dynamics in free fall
+    data = pin_model.createData()
 
     rng = np.random.default_rng(1)
     q = model.integrate(model.neutral(), rng.uniform(-1, 1, model.nv))
     v = rng.uniform(-1, 1, model.nv)
-    q_pin, v_pin = oo.layouts.to_pinocchio(model, q, v, theirs)  # joints in their order
-    tau_pin = np.zeros(theirs.nv)
+    q_pin, v_pin = oo.layouts.to_pinocchio(model, q, v, pin_model)  # in Pinocchio's order of joints
+    tau_pin = np.zeros(pin_model.nv)
     tau = np.zeros(model.nv)
 
-    ours = model.forward_dynamics(q, v, tau)
-    a_pin = pin.aba(theirs, data, q_pin, v_pin, tau_pin)
-    _, ours = oo.layouts.to_pinocchio(model, q, ours, theirs)  # in their order; laid out as a velocity
-    print(f"accelerations differ by {abs(ours - a_pin).max() / abs(a_pin).max():.1e} of the largest")
+    a = model.forward_dynamics(q, v, tau)
+    a_pin = pin.aba(pin_model, data, q_pin, v_pin, tau_pin)
+    _, a = oo.layouts.to_pinocchio(model, q, a, pin_model)  # in Pinocchio's order and layout
+    print(f"accelerations differ by {abs(a - a_pin).max() / abs(a_pin).max():.1e} of the largest")
 
     here = microseconds(lambda: model.forward_dynamics(q, v, tau))
-    there = microseconds(lambda: pin.aba(theirs, data, q_pin, v_pin, tau_pin))
-    print(f"one state, from Python: {here:.1f} µs here, {there:.1f} µs there")
+    there = microseconds(lambda: pin.aba(pin_model, data, q_pin, v_pin, tau_pin))
+    print(f"one state, from Python: {here:.1f} µs (onorbit_rs), {there:.1f} µs (Pinocchio)")
     many_q, many_v, many_tau = (np.tile(x, (4096, 1)) for x in (q, v, tau))
     out = np.empty_like(many_v)
     batch = microseconds(lambda: model.forward_dynamics(many_q, many_v, many_tau, out=out), 50) / len(many_q)
-    print(f"a state in a batch of {len(many_q)}: {batch:.2f} µs")
+    print(f"one state in a batch of {len(many_q)}: {batch:.2f} µs")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A thousand satellites for a day: which two come nearest to each other, and how near.
+"""Propagates a thousand satellites for a day and finds the closest approach of any two.
 
 Run: python examples/many_satellites.py [COUNT]
 """
@@ -22,7 +22,7 @@ def main(count: int = 1000) -> None:
             inclination=rng.normal(1.70, 0.02),
             raan=rng.uniform(0.0, 2 * np.pi),
             mean_anomaly=rng.uniform(0.0, 2 * np.pi),
-            secular_j2=True,  # node, periapsis and phase drift as the Earth's flattening makes them
+            secular_j2=True,  # secular drift of node, periapsis and phase due to the Earth's oblateness
         )
         for _ in range(count)
     ]
@@ -49,7 +49,7 @@ def main(count: int = 1000) -> None:
     )
     print(f"at {speed / 1e3:.1f} km/s")
     rho, _ = oo.relative.to_lvlh(orbits[i], float(times[k]), r[j, k], v[j, k])
-    print("seen from the first, radial, along track, across:", np.round(rho / 1e3, 2), "km")
+    print("relative to the first, radial, along track, across:", np.round(rho / 1e3, 2), "km")
 
 
 if __name__ == "__main__":

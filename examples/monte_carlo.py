@@ -1,4 +1,4 @@
-"""A thousand arms with a thousand guesses of where they start, on all cores: how far does the base turn?
+"""Simulates a thousand arms with perturbed initial states on all cores: how far does the base rotate?
 
 Run: python examples/monte_carlo.py [COUNT]
 """
@@ -20,7 +20,7 @@ def main(count: int = 1000, steps: int = 1000, time_step: float = 2e-3) -> None:
     v = np.zeros((count, model.nv))
     nominal = np.array([0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974])
     q[:, 7:] = nominal + rng.normal(0.0, 0.02, (count, nominal.size))  # rad
-    v[:, 3:6] = rng.normal(0.0, 0.01, (count, 3))  # rad/s: the base tumbles a little
+    v[:, 3:6] = rng.normal(0.0, 0.01, (count, 3))  # rad/s: slow tumbling of the base
 
     start = q[0].copy()
     start[7:] = nominal
@@ -36,8 +36,8 @@ def main(count: int = 1000, steps: int = 1000, time_step: float = 2e-3) -> None:
     off = np.linalg.norm(tool - (pose[:3, 3] + [0.3, 0, 0]), axis=1)
     turn = np.degrees(2 * np.arccos(np.clip(abs(end[:, 6]), 0, 1)))
     print(f"{count} arms for {steps * time_step:g} s in {took:.2f} s: {count * steps / took:.2g} steps per s")
-    print(f"tool off its goal: median {1e3 * np.median(off):.2g} mm, worst {1e3 * off.max():.2g} mm")
-    print(f"turn of the base: {turn.mean():.2f} ± {turn.std():.2f} degrees")
+    print(f"tool error at the goal: median {1e3 * np.median(off):.2g} mm, largest {1e3 * off.max():.2g} mm")
+    print(f"rotation of the base: {turn.mean():.2f} ± {turn.std():.2f} degrees")
 
 
 if __name__ == "__main__":

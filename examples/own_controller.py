@@ -1,4 +1,4 @@
-"""A controller of your own: it leads the arm into a posture while nothing holds the base.
+"""A custom controller that moves the arm of a free-floating robot to a posture.
 
 Run: python examples/own_controller.py
 """
@@ -12,15 +12,15 @@ import onorbit_rs as oo
 
 
 class Posture(oo.Controller):
-    """Computed torque on the joints, written out: the reduced model knows the recoil of the base."""
+    """Computed torque in joint space; the reduced model accounts for the recoil of the base."""
 
     def __init__(self, model: oo.Model, goal: NDArray[np.float64], *, frequency: float) -> None:
         self.model, self.goal, self.frequency = model, goal, frequency
 
     def update(self, t: float, state: oo.State) -> NDArray[np.float64]:
         ff = self.model.free_floating(state.q, state.v, "tool")
-        wanted = self.frequency**2 * (self.goal - state.q[7:]) - 2 * self.frequency * state.v[6:]  # critical
-        return ff.inertia @ wanted + ff.bias  # M* q̈ + c*
+        acceleration = self.frequency**2 * (self.goal - state.q[7:]) - 2 * self.frequency * state.v[6:]
+        return ff.inertia @ acceleration + ff.bias  # M* q̈ + c*
 
 
 def main() -> None:
@@ -38,8 +38,8 @@ def main() -> None:
     trace = simulation.run(6.0)
     off = abs(trace.q[-1, 7:] - goal).max()
     turn = 2 * np.arccos(min(1.0, abs(trace.q[-1, 6])))
-    print(f"joints end {off:.1e} rad from the posture, largest torque {abs(trace.tau).max():.2f} N m")
-    print(f"the base ends turned by {np.degrees(turn):.1f} degrees")
+    print(f"final joint error {off:.1e} rad, largest torque {abs(trace.tau).max():.2f} N m")
+    print(f"final rotation of the base: {np.degrees(turn):.1f} degrees")
     for name, value, gate, passed in trace.certificate():
         print(f"  {name:28} {'passed' if passed else 'BROKEN'}: {value:.1e}, gate {gate:.1e}")
     assert off < 1e-5

@@ -1,4 +1,4 @@
-"""What the tests of bad input share: a robot, calls to spoil, and what every refusal owes its reader."""
+"""Helpers for the tests of bad input: a robot, invalid calls, and checks of the errors they raise."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CUBE = np.eye(3)
 
 
 def wrist() -> oo.Model:
-    """z-y-z with massless links between: at zero the first and the last axis are one."""
+    """Returns a z-y-z wrist with massless links between: at zero, the first and last axes coincide."""
     builder = oo.ModelBuilder("wrist", base="base", mass=10.0, inertia=np.eye(3))
     builder.add_link("a", parent="base", joint="j1", axis=[0, 0, 1])
     builder.add_link("b", parent="a", joint="j2", axis=[0, 1, 0])
@@ -69,7 +69,7 @@ def massless_leaf() -> oo.Model:
 
 
 class Bad(NamedTuple):
-    """A call, and what it must raise: class, words of the message, fields."""
+    """An invalid call and the error it must raise: class, words of the message, fields."""
 
     call: Callable[[], Any]
     error: str
@@ -97,7 +97,7 @@ BUILT_IN = {
 
 
 def check(bad: Bad) -> None:
-    """Its class, its built-in, its fields; the value and the way out in one line; and that it pickles."""
+    """Checks class, built-in base class, fields, one-line message with value and fix, and pickling."""
     with pytest.raises(oo.OnOrbitError) as caught:
         bad.call()
     error = caught.value
@@ -109,7 +109,7 @@ def check(bad: Bad) -> None:
     assert "\n" not in message and not message.endswith(".") and "panicked" not in message
     for field, value in bad.fields.items():
         assert getattr(error, field) == value, (field, getattr(error, field))
-    # it crosses processes whole
+    # it is pickled without loss
     copy = pickle.loads(pickle.dumps(error))
     assert type(copy) is type(error) and str(copy) == message
     for field, value in error.__dict__.items():

@@ -1,9 +1,8 @@
-"""Random runs that are exact, which the certificate must pass, and runs made wrong, which it must fail.
+"""Runs random exact cases, which must pass their certificates, and faulty cases, which must fail them.
 
-``python tests/certificate_campaign.py --exact 10000 --wrong 1000`` (``make certificate-campaign``). A run
-that is made wrong counts where it differs from the same run at an eighth of its step by more than ``OFF``,
-and where a start that differs by 1e-9 does not end a thousand times further away: no check of one run can
-see chaos.
+``python tests/certificate_campaign.py --exact 10000 --wrong 1000`` (``make certificate-campaign``). A faulty
+run counts if it differs by more than ``OFF`` from the same run with an eighth of the step, unless the motion
+is chaotic (an initial difference of 1e-9 grows a thousandfold), which no check of a single run can detect.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from certificate_cases import EXACT, OFF, SHARE, WRONG, Run
+from certificate_cases import EXACT, FRACTION, OFF, WRONG, Run
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import SimulationError
@@ -25,7 +24,7 @@ from onorbit_rs.exceptions import SimulationError
 
 @dataclass
 class Tally:
-    """What came of a campaign."""
+    """Results of a campaign."""
 
     runs: Counter[str] = field(default_factory=Counter)
     mistaken: list[str] = field(default_factory=list)
@@ -39,17 +38,17 @@ class Tally:
 
 
 def failures(trace: oo.Trace) -> list[str]:
-    """Names of the checks that a run fails."""
+    """Returns the names of the checks that a run fails."""
     return [name for name, _, _, passed in trace.certificate() if not passed]
 
 
 def nearest(trace: oo.Trace) -> float:
-    """The largest value of the certificate, as a share of its gate."""
+    """Returns the largest ratio of a certificate's value to its gate."""
     return max(value / gate for _, value, gate, _ in trace.certificate() if value is not None)
 
 
 def exact(count: int, seed: int, most_rows: int, until: float = np.inf) -> Tally:
-    """Run exact motions; those that fail are mistaken."""
+    """Runs exact motions and counts those whose certificates fail by mistake."""
     tally = Tally()
     for kind, case, rng in _cases(EXACT, count, seed, until):
         run: Run = case(rng, most_rows)
@@ -62,7 +61,7 @@ def exact(count: int, seed: int, most_rows: int, until: float = np.inf) -> Tally
 
 
 def wrong(count: int, seed: int, until: float = np.inf) -> Tally:
-    """Run ``count`` motions that came out wrong; those that the certificate passes are mistaken."""
+    """Runs ``count`` faulty motions and counts those whose certificates pass by mistake."""
     tally = Tally(nearest=np.inf)
     for kind, case, rng in _cases(WRONG, 1000 * count, seed, until):
         if tally.runs.total() >= count:
@@ -75,7 +74,7 @@ def wrong(count: int, seed: int, until: float = np.inf) -> Tally:
                 continue
             trace = run.start().run(run.duration)
         except SimulationError:
-            continue  # a run that diverges is refused by the engine: nothing is left to certify
+            continue  # a diverged run raises an error and has no certificate
         else:
             tally.runs[kind] += 1
             tally.nearest = min(tally.nearest, nearest(trace))
@@ -87,7 +86,7 @@ def wrong(count: int, seed: int, until: float = np.inf) -> Tally:
 def _cases(
     kinds: dict[str, Callable[..., Run]], count: int, seed: int, until: float
 ) -> Iterator[tuple[str, Callable[..., Run], np.random.Generator]]:
-    """Kinds in turn, each case with a generator of its own, so that any can be repeated alone."""
+    """Yields cases of each kind in turn, each with a separate generator so that it can be repeated alone."""
     for i in range(count):
         if time.monotonic() > until:
             return
@@ -96,21 +95,24 @@ def _cases(
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the campaign; the exit code is 1 where the certificate was mistaken."""
+    """Runs the campaign; the exit code is 1 if a certificate was wrong."""
     parser = argparse.ArgumentParser(
-        description="random exact runs and runs made wrong against their certificates"
+        description="checks the certificates of random exact runs and of faulty runs"
     )
     parser.add_argument("--exact", type=int, default=10_000, help="exact runs (default: %(default)s)")
-    parser.add_argument("--wrong", type=int, default=1000, help="runs made wrong (default: %(default)s)")
+    parser.add_argument("--wrong", type=int, default=1000, help="faulty runs (default: %(default)s)")
     parser.add_argument(
-        "--rows", type=int, default=20_000, help="most steps of an exact run (default: %(default)s)"
+        "--rows",
+        type=int,
+        default=20_000,
+        help="largest number of steps of an exact run (default: %(default)s)",
     )
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument(
         "--minutes", type=float, default=np.inf, help="longest time of each half (default: no limit)"
     )
     given: Any = parser.parse_args(arguments)
-    print(f"seed {given.seed}; made wrong: off by more than {OFF:g} rad and {SHARE:g} of the travel")
+    print(f"seed {given.seed}; faulty: error above {OFF:g} rad and {FRACTION:g} of the travel")
     mistaken = 0
     for name, job in (
         ("exact", lambda until: exact(given.exact, given.seed, given.rows, until)),

@@ -1,4 +1,4 @@
-"""URDF texts of robots that are one chain of joints."""
+"""URDF texts of serial-chain robots."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def arm(
     names: str = "",
     base: tuple[float, float] = (100, 20),
 ) -> str:
-    """A chain of (name, type, axis) joints on a base of 100 kg, links of 0.2 m; ends in ``names``."""
+    """Returns a chain of (name, type, axis) joints on a base of 100 kg, with links of 0.2 m."""
     parts = [f'<link name="base">{INERTIAL.format(mass=base[0], i=base[1])}</link>']
     parent = "base"
     for index, (name, kind, axis) in enumerate(joints):

@@ -1,4 +1,4 @@
-"""The command line, called in this process: what a process of its own would add is a second of imports."""
+"""Calls the command line in this process, which saves the second that a new process needs for imports."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ robot: {rigid_body: {mass: 10, inertia: [1, 2, 3]}}
 initial: {angular_velocity: [0.1, 0.2, 0.3]}
 simulation: {duration: 0.1 s, time_step: 10 ms}
 """
-"""The scenario with the fewest figures: drawing them is what a run with a folder takes long for."""
+"""A scenario with few figures; drawing them takes most of the time of a run with an output folder."""
 
 
 def onorbit(*arguments: str | Path, cwd: Path | None = None) -> CompletedProcess[str]:
-    """Exit code, stdout and stderr of ``onorbit ARGUMENTS``; neither is a terminal."""
+    """Returns exit code, stdout and stderr of ``onorbit ARGUMENTS``; neither stream is a terminal."""
     words = [str(argument) for argument in arguments]
     out, err = io.StringIO(), io.StringIO()
     with (
@@ -28,7 +28,7 @@ def onorbit(*arguments: str | Path, cwd: Path | None = None) -> CompletedProcess
         contextlib.chdir(cwd or Path.cwd()),
         warnings.catch_warnings(),
     ):
-        warnings.resetwarnings()  # a user's Python shows them, ours makes errors of them
+        warnings.resetwarnings()  # users see warnings as text; the test configuration turns them into errors
         warnings.simplefilter("ignore", DeprecationWarning)
         try:
             main(words)
@@ -38,7 +38,7 @@ def onorbit(*arguments: str | Path, cwd: Path | None = None) -> CompletedProcess
 
 
 def refusal(*arguments: str | Path, cwd: Path | None = None) -> str:
-    """The one line that is said where a command cannot go on, and nothing else."""
+    """Returns the single line that a failing command prints; checks that there is no other output."""
     done = onorbit(*arguments, cwd=cwd)
     assert (done.returncode, done.stdout) == (2, ""), done
     (line,) = done.stderr.splitlines()

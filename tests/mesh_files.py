@@ -8,7 +8,7 @@ import zlib
 
 import numpy as np
 
-from onorbit_rs.meshes import Mesh
+from onorbit_rs.visuals.meshes import Mesh
 
 CORNERS = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 2.0) for z in (0.0, 3.0)])
 QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -89,7 +89,7 @@ def collada(
     corners: np.ndarray = CORNERS,
 ) -> str:
     """Return a file with one box per matrix, red or with a texture."""
-    look = "<color>1 0 0 1</color>"
+    appearance = "<color>1 0 0 1</color>"
     images = params = ""
     if texture:
         images = f'<library_images><image id="i"><init_from>{texture}</init_from></image></library_images>'
@@ -97,7 +97,7 @@ def collada(
             '<newparam sid="f"><surface type="2D"><init_from>i</init_from></surface></newparam>'
             '<newparam sid="s"><sampler2D><source>f</source></sampler2D></newparam>'
         )
-        look = '<texture texture="s" texcoord="t"/>'
+        appearance = '<texture texture="s" texcoord="t"/>'
     normals = np.array([[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]])
     uv = np.array([[0.25, 0.75], [0.75, 0.75], [0.75, 0.25], [0.25, 0.25]])  # in each of four pixels
     nodes = "".join(
@@ -111,7 +111,7 @@ def collada(
         '<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">'
         f"<asset>{asset}</asset>{images}<library_effects>"
         f'<effect id="e"><profile_COMMON>{params}<technique sid="c">'
-        f"<lambert><diffuse>{look}</diffuse></lambert>"
+        f"<lambert><diffuse>{appearance}</diffuse></lambert>"
         "</technique></profile_COMMON></effect></library_effects>"
         '<library_materials><material id="shine"><instance_effect url="#e"/></material></library_materials>'
         '<library_geometries><geometry id="box"><mesh>'

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from onorbit_rs.validation.trees import Array
+from onorbit_rs.tools.validation.trees import Array
 
 MOVING = ("revolute", "continuous", "prismatic")
 STYLES = ("link_{}", "Link {}", "/ns/link.{}", "звено_{}", "{}")

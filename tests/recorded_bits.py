@@ -45,7 +45,7 @@ def digests() -> dict[str, dict[str, str]]:
 
 
 def _of_scenario(name: str) -> dict[str, str]:
-    from onorbit_rs.output.travel import arrays_of
+    from onorbit_rs.output.pickling import arrays_of
     from onorbit_rs.scenario import load
     from onorbit_rs.scenario.build import build
 

@@ -1,4 +1,4 @@
-"""What a recording holds, read back with rerun's own reader (``rerun rrd verify`` passes over junk)."""
+"""Reads recordings with rerun's reader (``rerun rrd verify`` ignores invalid content)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rerun.chunk import RrdReader
 
-from onorbit_rs.rotations import matrix_from_quaternion
+from onorbit_rs.common.rotations import matrix_from_quaternion
 
 Floats = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ def chunks(path: Path) -> list[Any]:
 
 
 def rows_by_entity(path: Path) -> tuple[Counter[str], Counter[str]]:
-    """Rows per entity: those over time, and the static ones."""
+    """Returns the number of rows per entity, over time and static."""
     moving, static = Counter[str](), Counter[str]()
     for chunk in chunks(path):
         (static if chunk.is_static else moving)[chunk.entity_path] += chunk.num_rows
@@ -28,7 +28,7 @@ def rows_by_entity(path: Path) -> tuple[Counter[str], Counter[str]]:
 
 
 def column(path: Path, entity: str, component: str, *, static: bool = False) -> list[Any]:
-    """Every row of a component, in order of time."""
+    """Returns the rows of a component in order of time."""
     found: list[tuple[int, Any]] = []
     for chunk in chunks(path):
         batch = chunk.to_record_batch()
@@ -43,7 +43,7 @@ def column(path: Path, entity: str, component: str, *, static: bool = False) -> 
 
 
 class FrameTree:
-    """The named frames of a recording: who stands in whom, and where, at every row."""
+    """The named frames of a recording: the parent of each frame and its pose at every row."""
 
     def __init__(self, path: Path) -> None:
         self.parents: dict[str, str] = {}
@@ -63,7 +63,7 @@ class FrameTree:
             self._poses[name] = np.concatenate([self._poses[name], poses]) if name in self._poses else poses
 
     def pose(self, frame: str, root: str = "W") -> Floats:
-        """(T, 4, 4), or (1, 4, 4) of one that does not move."""
+        """Returns the poses (T, 4, 4) of a frame, or (1, 4, 4) of a static frame."""
         if frame == root:
             return np.eye(4)[None]
         return self.pose(self.parents[frame], root) @ self._poses[frame]

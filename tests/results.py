@@ -1,4 +1,4 @@
-"""Folders of runs, changed on purpose."""
+"""Deliberately changed output folders of runs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from onorbit_rs.output.manifest import FIGURES, MANIFEST, RESULTS, Entry, Manife
 
 
 def listed(folder: Path) -> Path:
-    """The folder, with a manifest that lists its files as they are now, as if a run had written them."""
+    """Writes a manifest of the folder's current files, as if a run had written them; returns the folder."""
     names = [name for name in RESULTS if (folder / name).is_file()]
     names += [f"{FIGURES}/{file.name}" for file in folder.glob(f"{FIGURES}/*.p[nd][gf]")]
     manifest = Manifest({name: Entry.of(folder / name) for name in names})

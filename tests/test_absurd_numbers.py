@@ -1,4 +1,4 @@
-"""Numbers that no robot has are refused with the accepted range; they became NaN or infinity."""
+"""Absurdly large or small numbers are rejected with the accepted range; they once became NaN or infinity."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ ABSURD: dict[str, tuple[Callable[[], object], type[OnOrbitError], tuple[str, ...
     "line": (lambda: oo.Line(pose(), pose(1e308), duration=1.0), ControlError, ("1e60",)),
     "short line": (lambda: oo.Line(pose(), pose(1.0), duration=1e-300), ControlError, ("1e-12",)),
     "joint hold": (lambda: oo.JointHold([1e308]), ControlError, ("q", "1e60")),
-    "time step": (lambda: starting(time_step=1e-300), InputError, ("1e-300 s", "1e-12 s to 1e9 s")),
+    "time step": (lambda: starting(time_step=1e-300), InputError, ("1e-300 s", "between 1e-12 and 1e9 s")),
     "angular velocity": (
         lambda: starting(v=[0, 0, 0, 1e200, 0, 0, 0]),
         InputError,
@@ -108,15 +108,15 @@ ABSURD: dict[str, tuple[Callable[[], object], type[OnOrbitError], tuple[str, ...
 
 
 @pytest.mark.parametrize("name", ABSURD)
-def test_an_absurd_number_is_refused_with_its_range(name: str) -> None:
+def test_an_absurd_number_is_rejected_with_the_accepted_range(name: str) -> None:
     make, error, words = ABSURD[name]
     with pytest.raises(error) as caught:
         make()
     assert all(word in str(caught.value) for word in words), str(caught.value)
 
 
-def test_large_numbers_that_exist_are_accepted() -> None:
-    """Control: the ranges hold asteroids, interstellar flybys and neutron stars' fields."""
+def test_large_realistic_numbers_are_accepted() -> None:
+    """Control: the ranges include asteroids, interstellar flybys and gravity of neutron stars."""
     assert robot(m=10.0, x=1e4, o=1e6, d=1e9, a=1e-3).mass == 11.0
     assert oo.Model.rigid_body(1e16, 1e24 * np.eye(3)).mass == 1e16
     assert np.isfinite(oo.Kepler(semi_latus_rectum=7e6, eccentricity=1e15).state(1.0)[0]).all()
@@ -126,7 +126,7 @@ def test_large_numbers_that_exist_are_accepted() -> None:
 
 
 @pytest.mark.parametrize("gain", ["kp", "kd"])
-def test_a_scenario_with_an_absurd_gain_is_refused_by_name(gain: str) -> None:
+def test_a_scenario_with_an_absurd_gain_is_rejected_by_name(gain: str) -> None:
     from onorbit_rs.scenario import load
     from onorbit_rs.scenario.build import build
 
@@ -145,14 +145,14 @@ def chain(joints: int) -> str:
     return f"<robot>{links}</robot>"
 
 
-def test_a_robot_of_5000_joints_is_refused_before_it_takes_memory() -> None:
+def test_a_robot_with_5000_joints_is_rejected_before_memory_is_allocated() -> None:
     with pytest.raises(ModelError, match="more than 2000 moving joints"):
         oo.Model.from_urdf_string(chain(5000))
     assert len(oo.Model.from_urdf_string(chain(200)).joint_names) == 200
 
 
 @pytest.mark.parametrize("text", ["[" * 100_000, '{"a":' * 100_000, "<a>" * 100_000 + "</a>" * 100_000])
-def test_an_omm_nested_100_000_deep_is_refused(text: str) -> None:
+def test_an_omm_nested_100_000_levels_deep_is_rejected(text: str) -> None:
     with pytest.raises(ElementSetError, match=r"OMM|messages"):
         oo.Sgp4.from_omm(text)
 
@@ -161,8 +161,8 @@ def test_an_omm_nested_100_000_deep_is_refused(text: str) -> None:
     ("line", "other"),
     [("semi_major_axix: 7000", "semi_major_axix: -7000"), ("eccentricity: 0.001", "eccentricity: 1.5")],
 )
-def test_an_orbit_of_onorbitros_that_is_no_ellipse_is_refused(line: str, other: str, tmp_path: Path) -> None:
-    from onorbit_rs.interop.onorbitros import convert
+def test_an_onorbitros_orbit_that_is_not_elliptic_is_rejected(line: str, other: str, tmp_path: Path) -> None:
+    from onorbit_rs.tools.interop.onorbitros import convert
 
     file = tmp_path / "orbit.yaml"
     file.write_text(ORBIT.replace(line, other))

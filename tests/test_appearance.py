@@ -1,4 +1,4 @@
-"""What a robot looks like where the meshes of its links are missing: still like a robot."""
+"""Appearance of robots whose mesh files are missing."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from recordings import column, rows_by_entity
 
 import onorbit_rs as oo
 from onorbit_rs import viewer
-from onorbit_rs.appearance import missing_meshes, shapes
+from onorbit_rs.visuals.shapes import missing_meshes, shapes
 
 LENGTH = 0.5
 
 
 def arm(*, visual: str = "", collision: str = "", joints: int = 3) -> oo.Model:
-    """A chain along x; every link but the base has the same looks."""
+    """Returns a chain along x; all links except the base have the same appearance."""
     inertial = (
         '<inertial><origin xyz="0.25 0 0"/><mass value="2"/>'
         '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
@@ -40,7 +40,7 @@ TUBE = (
 HULL = '<collision><geometry><mesh filename="package://gone/hull.stl"/></geometry></collision>'
 
 
-def test_a_stick_figure_goes_from_joint_to_joint() -> None:
+def test_a_stick_figure_connects_the_joints() -> None:
     with pytest.warns(UserWarning, match="4 mesh files not found"):
         model = arm(visual=MESH, collision=HULL)
     drawn = shapes(model)
@@ -63,7 +63,7 @@ def test_a_stick_figure_goes_from_joint_to_joint() -> None:
     )
 
 
-def test_collision_shapes_stand_in_where_there_are_any() -> None:
+def test_collision_shapes_replace_missing_meshes() -> None:
     with pytest.warns(UserWarning, match="not found"):
         model = arm(visual=MESH, collision=TUBE + HULL)
     tubes = [shape for shape in shapes(model) if shape.size == (0.05, 0.5)]
@@ -72,14 +72,14 @@ def test_collision_shapes_stand_in_where_there_are_any() -> None:
     assert not [shape for shape in shapes(model) if shape.kind == "sphere"]
 
 
-def test_collision_shapes_are_not_drawn_where_the_looks_are_there() -> None:
+def test_collision_shapes_are_not_drawn_if_visual_shapes_exist() -> None:
     ball = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
     model = arm(visual=ball, collision=TUBE)
     assert len(model.collisions) == 3
     assert {shape.kind for shape in shapes(model)} == {"sphere"} and not missing_meshes(model)
 
 
-def test_a_robot_without_looks_is_a_stick_figure_too() -> None:
+def test_a_robot_without_visual_shapes_is_a_stick_figure_too() -> None:
     assert [shape.kind for shape in shapes(arm())].count("sphere") == 3
 
 
@@ -92,4 +92,4 @@ def test_the_notes_name_the_missing_meshes(tmp_path: Path) -> None:
     ((text,),) = column(path, "/notes", "TextDocument:text", static=True)
     assert "package://gone/bus.stl" in text and "package://gone/link_9.stl and 3 more." in text
     drawn = [entity for entity in rows_by_entity(path)[1] if entity.startswith("/world/robot/link_2/visual")]
-    assert len(drawn) == 2  # a ball and a rod
+    assert len(drawn) == 2  # a sphere and a rod

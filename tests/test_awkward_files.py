@@ -1,4 +1,4 @@
-"""Robot files with one oddity each: they load, load with a warning, or are refused with the reason."""
+"""Robot files with one peculiarity each: they load, load with a warning, or are rejected with a reason."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 
 import onorbit_rs as oo
 
-NEEDS_NO_COMMENT = {"utf8_bom", "utf16"}  # their oddity leaves no place for a comment
+NEEDS_NO_COMMENT = {"utf8_bom", "utf16"}  # their peculiarity does not permit a comment
 HAS_XACRO = importlib.util.find_spec("xacro") is not None
 
 
@@ -22,12 +22,12 @@ def load(name: str) -> tuple[oo.Model, list[str]]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         model = oo.Model.from_urdf(file)
-    told = [str(warning.message) for warning in caught]
-    assert told == model.warnings
-    return model, told
+    messages = [str(warning.message) for warning in caught]
+    assert messages == model.warnings
+    return model, messages
 
 
-def test_every_file_is_in_the_table_and_says_what_is_odd() -> None:
+def test_every_file_is_in_the_table_and_explains_its_peculiarity() -> None:
     files = [file for file in awkward.FOLDER.iterdir() if not file.name.startswith(".")]
     assert {file.stem for file in files} == set(awkward.EXPECTED)
     for file in files:
@@ -36,17 +36,17 @@ def test_every_file_is_in_the_table_and_says_what_is_odd() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name, to in awkward.EXPECTED.items() if to.loads])
-def test_it_loads(name: str) -> None:
+def test_the_file_loads(name: str) -> None:
     expected = awkward.EXPECTED[name].text
-    _, told = load(name)
+    _, messages = load(name)
     if expected:
-        assert any(expected in warning for warning in told), told
+        assert any(expected in warning for warning in messages), messages
     else:
-        assert told == []
+        assert messages == []
 
 
 @pytest.mark.parametrize("name", [name for name, to in awkward.EXPECTED.items() if not to.loads])
-def test_it_is_refused_in_one_line(name: str) -> None:
+def test_the_file_is_rejected_in_one_line(name: str) -> None:
     with pytest.raises(oo.exceptions.ModelError) as caught:
         oo.Model.from_urdf(awkward.path(name))
     said = str(caught.value)
@@ -54,7 +54,7 @@ def test_it_is_refused_in_one_line(name: str) -> None:
     assert str(awkward.path(name)) in said and "\n" not in said
 
 
-def test_bytes_are_as_they_were_written() -> None:
+def test_bytes_are_not_normalised() -> None:
     """Version control or an editor might normalize these bytes."""
     first = {name: awkward.path(name).read_bytes() for name in ("crlf", "utf8_bom", "latin1_comment")}
     assert first["crlf"].count(b"\r\n") == first["crlf"].count(b"\n") > 20

@@ -1,4 +1,4 @@
-"""``make bench-against`` measures the revisions that it names, and tells a change of speed from noise."""
+"""``make bench-against`` measures the named revisions and distinguishes changes of speed from noise."""
 
 from __future__ import annotations
 
@@ -20,34 +20,34 @@ VERSUS = Path(__file__).parents[1] / "benches" / "versus"
 def versus(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     before = set(sys.modules)
     monkeypatch.syspath_prepend(str(VERSUS))
-    import duel
+    import build_comparison
     import revisions
 
-    yield SimpleNamespace(duel=duel, revisions=revisions)
+    yield SimpleNamespace(build_comparison=build_comparison, revisions=revisions)
     for name in set(sys.modules) - before:
         if str(getattr(sys.modules[name], "__file__", "")).startswith(str(VERSUS)):
             del sys.modules[name]
 
 
-def test_the_interval_is_the_one_of_the_tables(versus: Any) -> None:
+def test_the_confidence_interval_agrees_with_published_tables(versus: Any) -> None:
     # Conover, Practical Nonparametric Statistics: 14th and 28th of 41, first and last of six, none of five
-    assert versus.duel.interval([float(x) for x in range(1, 42)]) == (14.0, 28.0)
-    assert versus.duel.interval([3.0, 1.0, 2.0, 6.0, 5.0, 4.0]) == (1.0, 6.0)
-    assert versus.duel.interval([1.0] * 5) == (-math.inf, math.inf)
+    assert versus.build_comparison.interval([float(x) for x in range(1, 42)]) == (14.0, 28.0)
+    assert versus.build_comparison.interval([3.0, 1.0, 2.0, 6.0, 5.0, 4.0]) == (1.0, 6.0)
+    assert versus.build_comparison.interval([1.0] * 5) == (-math.inf, math.inf)
 
 
 @pytest.mark.parametrize(
-    ("slower", "told"), [(1.0, "same"), (1.015, "same"), (1.06, "SLOWER"), (0.94, "faster")]
+    ("slower", "expected"), [(1.0, "same"), (1.015, "same"), (1.06, "SLOWER"), (0.94, "faster")]
 )
-def test_a_change_of_speed_is_told_from_noise(versus: Any, slower: float, told: str) -> None:
+def test_a_change_of_speed_is_distinguished_from_noise(versus: Any, slower: float, expected: str) -> None:
     draw = random.Random(7)
-    # neighbours on the machine slow single rounds down by half, either side's
+    # other processes slow down single rounds of either side by half
     times = [[draw.gauss(1.0, 0.01) * draw.choice([1.0, 1.0, 1.0, 1.5]) for _ in range(41)] for _ in range(2)]
     ratios = [other / (slower * here) for other, here in zip(*times, strict=True)]
-    assert versus.duel.verdict(*versus.duel.interval(ratios)) == told
+    assert versus.build_comparison.verdict(*versus.build_comparison.interval(ratios)) == expected
 
 
-def test_the_working_tree_is_measured_with_what_is_not_committed(
+def test_the_working_tree_is_measured_with_uncommitted_changes(
     versus: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     def run(*words: str) -> None:
@@ -67,6 +67,6 @@ def test_the_working_tree_is_measured_with_what_is_not_committed(
     assert versus.revisions.git("status", "--porcelain") == "?? two"  # nothing was staged
 
 
-def test_a_tree_without_binaries_is_refused(versus: Any, tmp_path: Path) -> None:
+def test_a_tree_without_binaries_is_rejected(versus: Any, tmp_path: Path) -> None:
     with pytest.raises(SystemExit, match="is not built: run cargo build"):
         versus.revisions.built(tmp_path)

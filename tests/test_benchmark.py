@@ -1,4 +1,4 @@
-"""What ``make bench`` compares is the same robot on both sides, and what it says can be believed."""
+"""``make bench`` compares the same robot on both sides, and its statistics are correct."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ RESULTS = REPOSITORY / "benches" / "results.json"
 
 @pytest.fixture
 def versus(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """The modules of the benchmark, which stand alone beside the package."""
+    """Returns the modules of the benchmark, which are not part of the package."""
     before = set(sys.modules)
     monkeypatch.syspath_prepend(str(VERSUS))
-    import field
+    import contestants
     import inputs
     import measure
     import page
     import programs
-    import race
     import report
     import robots
     import rows
+    import timing
 
-    modules = (field, inputs, measure, page, programs, race, report, robots, rows)
+    modules = (contestants, inputs, measure, page, programs, report, robots, rows, timing)
     yield SimpleNamespace(**{module.__name__: module for module in modules})
     for name in set(sys.modules) - before:
         if str(getattr(sys.modules[name], "__file__", "")).startswith(str(VERSUS)):
@@ -44,7 +44,7 @@ def versus(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
 
 
 @pytest.mark.parametrize("arms", [1, 2])
-def test_all_contestants_hold_the_same_robot(versus: Any, arms: int, tmp_path: Path) -> None:
+def test_all_programs_have_the_same_robot(versus: Any, arms: int, tmp_path: Path) -> None:
     versus.inputs.write(tmp_path, arms)
     model = oo.Model.from_urdf(tmp_path / "robot.urdf")
     assert model.nv == 6 + 7 * arms
@@ -61,7 +61,7 @@ def test_all_contestants_hold_the_same_robot(versus: Any, arms: int, tmp_path: P
     assert [float(body[0]) for body in bodies] == [body.mass for body in model.bodies[1:]]
     axes = {"RX": "x", "RY": "y", "RZ": "z"}
     kinds = [joint.shortname().removeprefix("JointModel") for joint in theirs.joints[2:]]
-    assert [line[1] for line in table[2:-1]] == [axes[kind] for kind in kinds]  # its fastest types
+    assert [line[1] for line in table[2:-1]] == [axes[kind] for kind in kinds]  # its fastest joint types
     # MuJoCo's
     inside = mujoco.MjModel.from_xml_path(str(tmp_path / "robot.xml"))
     data = mujoco.MjData(inside)
@@ -72,23 +72,23 @@ def test_all_contestants_hold_the_same_robot(versus: Any, arms: int, tmp_path: P
     np.testing.assert_allclose(data.qacc[6:], ours[6:], rtol=0, atol=1e-9 * np.abs(ours).max())
 
 
-def test_contestants_answer_and_agree(versus: Any, tmp_path: Path) -> None:
+def test_programs_respond_and_agree(versus: Any, tmp_path: Path) -> None:
     versus.inputs.write(tmp_path, 1)
     first, second = (
-        versus.race.Contestant([sys.executable, str(VERSUS / name), str(tmp_path)])
+        versus.timing.Contestant([sys.executable, str(VERSUS / name), str(tmp_path)])
         for name in ("ours.py", "pinocchio_calls.py")
     )
     ours, theirs = (who.result("call", tmp_path) for who in (first, second))
-    assert versus.race.difference(ours, theirs, [13]) < 1e-11
-    assert versus.race.difference(ours + 1e-3, theirs, [13]) > 1e-6  # it can tell
-    entries = [versus.race.Entry(who, "call") for who in (first, second)]
-    times = versus.race.alternate(entries, rounds=3, seconds=0.01)
+    assert versus.timing.difference(ours, theirs, [13]) < 1e-11
+    assert versus.timing.difference(ours + 1e-3, theirs, [13]) > 1e-6  # negative control
+    entries = [versus.timing.Entry(who, "call") for who in (first, second)]
+    times = versus.timing.alternate(entries, rounds=3, seconds=0.01)
     assert [len(rounds) for rounds in times] == [3, 3]
     assert all(100 < ns < 1e6 for rounds in times for ns in rounds)
     first.close(), second.close()
 
 
-def test_without_a_compiler_its_rows_are_left_out_with_the_reason(
+def test_without_a_compiler_its_rows_are_omitted_with_a_reason(
     versus: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     known = versus.programs.versions()
@@ -96,19 +96,21 @@ def test_without_a_compiler_its_rows_are_left_out_with_the_reason(
     monkeypatch.setattr(versus.programs, "BUILD", tmp_path)
     programs, missing = versus.programs.peers()
     assert not programs
-    field = versus.field.Field(1, Path("contestant"), programs, missing)
-    told = [versus.measure.measure(row, 13, field, 1, 0.0) for row in versus.rows.ROWS if "C" in row.against]
-    assert set(told) == {"no g++ on this machine"}
-    assert len(told) >= 10
-    assert not field.running, "nobody was started in vain"
+    contestants = versus.contestants.Contestants(1, Path("contestant"), programs, missing)
+    reasons = [
+        versus.measure.measure(row, 13, contestants, 1, 0.0) for row in versus.rows.ROWS if "C" in row.against
+    ]
+    assert set(reasons) == {"no g++ on this machine"}
+    assert len(reasons) >= 10
+    assert not contestants.running, "no program may be started unnecessarily"
 
 
-def test_ratios_are_taken_round_by_round(versus: Any) -> None:
-    # a machine that slows down by half in between changes no ratio
-    assert versus.race.ratios([4.0, 8.0, 8.0], [2.0, 4.0, 4.0]) == {"min": 2.0, "median": 2.0, "max": 2.0}
+def test_ratios_are_computed_per_round(versus: Any) -> None:
+    # a machine that slows down by half between rounds changes no ratio
+    assert versus.timing.ratios([4.0, 8.0, 8.0], [2.0, 4.0, 4.0]) == {"min": 2.0, "median": 2.0, "max": 2.0}
 
 
-def test_a_lost_tenth_is_told(versus: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_loss_of_a_tenth_is_reported(versus: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(versus.report, "RESULTS", tmp_path / "results.json")
 
     def run(ratio: float, machine: str = "this", best: float = 2.9) -> Any:
@@ -120,11 +122,11 @@ def test_a_lost_tenth_is_told(versus: Any, tmp_path: Path, monkeypatch: pytest.M
     assert [one["machine"] for one in versus.report.history()] == ["this", "another"]
     before = versus.report.last_like(run(2.0))
     assert versus.report.regressions(run(2.8), before) == []
-    assert versus.report.regressions(run(2.6, best=3.1), before) == []  # as fast in some rounds: chance
+    assert versus.report.regressions(run(2.6, best=3.1), before) == []  # equally fast in some rounds: chance
     assert versus.report.regressions(run(2.6), before) == ["SLOWER: ABA, nv = 13: 87% of the last ratio"]
 
 
-def test_the_kept_results_are_whole_and_on_the_page(versus: Any) -> None:
+def test_the_saved_results_are_complete_and_on_the_page(versus: Any) -> None:
     runs = json.loads(RESULTS.read_text())["runs"]
     assert runs
     for run in runs:
@@ -132,7 +134,7 @@ def test_the_kept_results_are_whole_and_on_the_page(versus: Any) -> None:
         for row in run["rows"]:
             ratio = row["ratio"]
             assert 0 < ratio["min"] <= ratio["median"] <= ratio["max"], row
-            # of the loops, the peers' Runge-Kutta leaves the manifold by 3e-9
+            # control loops: the other engines' Runge-Kutta methods leave the manifold by 3e-9
             assert row["difference"] < 1e-8, row
     assert versus.page.measured(runs[-1]) in versus.page.PAGE.read_text()
     for row in versus.rows.ROWS:

@@ -1,4 +1,4 @@
-"""Arrays that no kernel can take: lengths, shapes, dtypes, numbers that are none, quaternions."""
+"""Invalid arrays: lengths, shapes, dtypes, non-finite numbers, quaternions."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ BAD: dict[str, Bad] = {
     "a reference by number": Bad(
         lambda: simulation(reference=3), "DtypeError", ("int", "Hold", "LineParabola"), {"name": "reference"}
     ),
-    # numbers that are none
+    # non-finite numbers
     "NaN in q": Bad(
         lambda: MODEL.mass_matrix(with_value(8, NAN)), "InputError", ("q", "NaN", "finite"), {"name": "q"}
     ),
@@ -162,7 +162,7 @@ def test_bad_input(name: str) -> None:
     check(BAD[name])
 
 
-def test_nothing_is_lost_by_a_refusal() -> None:
+def test_a_model_stays_usable_after_an_error() -> None:
     before = MODEL.mass_matrix(Q)
     for bad in BAD.values():
         with pytest.raises(oo.OnOrbitError):
@@ -171,22 +171,22 @@ def test_nothing_is_lost_by_a_refusal() -> None:
 
 
 @pytest.mark.parametrize("off", [5e-7, -5e-7])
-def test_a_quaternion_half_as_far_off_is_normalised(off: float) -> None:
+def test_a_quaternion_with_half_that_error_is_normalised(off: float) -> None:
     pose = MODEL.frame_pose(with_value(6, 1 + off), "tool")
     np.testing.assert_allclose(pose, MODEL.frame_pose(Q, "tool"), atol=1e-15)
 
 
 @pytest.mark.parametrize("dtype", ["f4", "f2", "g", ">f8", "i8", "i4", "u1"])
-def test_every_real_dtype_is_read(dtype: str) -> None:
+def test_every_real_dtype_is_accepted(dtype: str) -> None:
     np.testing.assert_array_equal(MODEL.mass_matrix(Q.astype(dtype)), MODEL.mass_matrix(Q))
 
 
-def test_lists_and_numbers_of_python_are_read() -> None:
+def test_python_lists_and_numbers_are_accepted() -> None:
     np.testing.assert_array_equal(MODEL.bias_forces(Q.tolist(), [0] * 13), MODEL.bias_forces(Q, V))
     np.testing.assert_array_equal(oo.Model.rigid_body(2, [[1, 0, 0], [0, 1, 0], [0, 0, 1]]).mass, 2.0)
 
 
-def test_an_inertia_that_no_body_has_warns_with_the_name() -> None:
+def test_an_impossible_inertia_warns_with_the_name_of_the_link() -> None:
     with pytest.warns(UserWarning, match="'base' breaks the triangle inequality"):
         model = oo.Model.rigid_body(1.0, np.diag([1.0, 1.0, 3.0]))
     assert len(model.warnings) == 1 and "base" in model.warnings[0]

@@ -1,4 +1,4 @@
-"""Batches across the border: a row is a state, any layout and dtype, any number of threads, no GIL."""
+"""Batches through Python: one state per row, any layout and dtype, any number of threads, no GIL."""
 
 from __future__ import annotations
 
@@ -72,12 +72,12 @@ def states(count: int, seed: int = 0) -> tuple[Any, Any, Any]:
 
 @pytest.mark.parametrize("count", [1, 2, 5, 8, 63, 64, 65, 150])
 @pytest.mark.parametrize("name", KERNELS)
-def test_a_batch_is_its_states(name: str, count: int) -> None:
+def test_a_batch_equals_its_single_states(name: str, count: int) -> None:
     q, v, a = states(count)
     together = KERNELS[name](q, v, a)
     alone = np.array([KERNELS[name](*row) for row in zip(q, v, a, strict=True)])
     assert together.shape == alone.shape
-    # lanes do the same operations in the same order; 1e-14 is a rounding or two
+    # SIMD lanes do the same operations in the same order; 1e-14 is one or two roundings
     assert np.abs(together - alone).max() <= 1e-14 * np.abs(alone).max()
 
 
@@ -94,18 +94,18 @@ def test_the_bits_of_a_state_do_not_depend_on_its_neighbours(name: str) -> None:
     q, v, a = states(97)
     whole = KERNELS[name](q, v, a)
     np.testing.assert_array_equal(KERNELS[name](q[40:], v[40:], a[40:]), whole[40:])
-    q[3, 8] = 2e5  # an angle for which sines are taken one by one
+    q[3, 8] = 2e5  # an angle for which sines are computed one by one
     np.testing.assert_array_equal(np.delete(KERNELS[name](q, v, a), 3, axis=0), np.delete(whole, 3, axis=0))
 
 
 @pytest.mark.parametrize("name", KERNELS)
-def test_a_batch_of_none_is_empty(name: str) -> None:
+def test_a_batch_without_states_is_empty(name: str) -> None:
     nothing = KERNELS[name](*states(0))
     one = KERNELS[name](*states(1))
     assert nothing.shape == (0, *one.shape[1:])
 
 
-def test_layouts_and_dtypes_are_read_as_what_they_hold() -> None:
+def test_layouts_and_dtypes_do_not_change_the_values() -> None:
     q, v, _ = states(12)
     expected = MODEL.bias_forces(q, v)
     np.testing.assert_array_equal(MODEL.bias_forces(np.asfortranarray(q), np.asfortranarray(v)), expected)
@@ -120,7 +120,7 @@ def test_layouts_and_dtypes_are_read_as_what_they_hold() -> None:
     q.flags.writeable = False
     np.testing.assert_array_equal(MODEL.bias_forces(q, v), expected)
     single = q.astype("f4")
-    single[:, 3:7] = [0, 0, 0, 1]  # of single precision, unit norm is rarely within 1e-6
+    single[:, 3:7] = [0, 0, 0, 1]  # in single precision the norm is rarely within 1e-6 of one
     np.testing.assert_array_equal(MODEL.bias_forces(single, v), MODEL.bias_forces(single.astype(float), v))
     whole = np.zeros((12, NV), int)
     np.testing.assert_array_equal(MODEL.bias_forces(q, whole), MODEL.bias_forces(q, whole.astype(float)))
@@ -128,7 +128,7 @@ def test_layouts_and_dtypes_are_read_as_what_they_hold() -> None:
 
 def test_inputs_are_never_written() -> None:
     q, v, a = states(70)
-    q[:, 3:7] *= 1 + 5e-7  # to be normalised, elsewhere
+    q[:, 3:7] *= 1 + 5e-7  # normalised in a copy
     before = q.copy(), v.copy(), a.copy()
     for kernel in KERNELS.values():
         kernel(q, v, a)
@@ -136,7 +136,7 @@ def test_inputs_are_never_written() -> None:
         np.testing.assert_array_equal(now, then)
 
 
-def test_results_are_fresh_and_writable() -> None:
+def test_results_are_new_and_writable_arrays() -> None:
     q, v, _ = states(3)
     first, second = MODEL.bias_forces(q, v), MODEL.bias_forces(q, v)
     first[:] = 0.0
@@ -150,7 +150,7 @@ def test_results_are_fresh_and_writable() -> None:
 
 @contextmanager
 def counting() -> Iterator[Callable[[], int]]:
-    """Another Python thread that counts while it may."""
+    """Runs another Python thread that counts."""
     ticks, done = [0], threading.Event()
 
     def count() -> None:
@@ -175,19 +175,19 @@ def progress_during(work: Callable[[], object]) -> tuple[int, float]:
         return ticks() - before, time.perf_counter() - begun
 
 
-def test_other_threads_go_on_during_a_batch() -> None:
+def test_other_threads_continue_during_a_batch() -> None:
     q, v, a = states(40_000)
     ticked, wall = progress_during(lambda: MODEL.forward_dynamics(q, v, a, threads=1))
     assert ticked > 10, f"{ticked} ticks in {wall:.3f} s"
 
 
-def test_other_threads_go_on_during_a_run() -> None:
+def test_other_threads_continue_during_a_run() -> None:
     simulation = oo.Simulation(MODEL, MODEL.neutral(), np.full(NV, 0.1), record_every=1000)
     ticked, wall = progress_during(lambda: simulation.run(20.0))
     assert ticked > 10, f"{ticked} ticks in {wall:.3f} s"
 
 
-def test_other_threads_go_on_during_a_rollout() -> None:
+def test_other_threads_continue_during_a_rollout() -> None:
     q, v, _ = states(64)
     ticked, wall = progress_during(lambda: oo.rollout(MODEL, q, v, steps=2000, time_step=1e-4, threads=1))
     assert ticked > 10, f"{ticked} ticks in {wall:.3f} s"
@@ -220,14 +220,14 @@ v = np.ones((4096, model.nv))
 before = model.bias_forces(q, v)
 child = os.fork()
 if child == 0:
-    signal.alarm(20)  # a child that waits for threads it does not have is ended by this
+    signal.alarm(20)  # ends a child that waits for threads it does not have
     os._exit(0 if np.array_equal(model.bias_forces(q, v), before) else 1)
 raise SystemExit(os.waitpid(child, 0)[1])
 """
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
-def test_a_forked_child_has_threads_of_its_own() -> None:
+def test_a_forked_child_starts_new_threads() -> None:
     subprocess.run([sys.executable, "-c", FORK], check=True, timeout=60)
 
 
@@ -259,7 +259,7 @@ def test_an_older_processor_gets_the_same_numbers(tmp_path: Any) -> None:
     best, baseline = results[""], results["baseline"]
     assert baseline.pop("instruction_set") == "baseline"
     if best.pop("instruction_set") == "baseline":
-        pytest.skip("this processor knows nothing newer")
+        pytest.skip("this processor has no newer instruction set")
     different = 0
     for name, value in baseline.items():
         off = np.abs(value - best[name]).max() / max(np.abs(value).max(), 1e-300)
@@ -269,8 +269,8 @@ def test_an_older_processor_gets_the_same_numbers(tmp_path: Any) -> None:
 
 
 @pytest.mark.parametrize("count", [None, 1, 9])
-def test_numbers_whose_products_overflow_are_told(count: int | None) -> None:
-    """Finite numbers in, NaN out: it would travel."""
+def test_numbers_whose_products_overflow_are_reported(count: int | None) -> None:
+    """Finite inputs must not silently give NaN."""
     model = oo.robots.load("humanoid_torso")
     q, v = model.neutral(), np.full(model.nv, 1e200)
     if count is not None:
@@ -284,5 +284,5 @@ def test_numbers_whose_products_overflow_are_told(count: int | None) -> None:
     ):
         with pytest.raises(ConvergenceError, match="state 0 are so large that their products overflow"):
             kernel()
-    assert np.isfinite(model.momentum(q, v)).all()  # it has no products of large numbers
+    assert np.isfinite(model.momentum(q, v)).all()  # this kernel has no products of large numbers
     assert np.isfinite(model.bias_forces(q, v * 1e-140)).all()

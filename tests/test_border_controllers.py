@@ -1,4 +1,4 @@
-"""Controllers that do not fit the run, and states in which nothing resists a joint."""
+"""Controllers that do not fit the run, and singular states."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import onorbit_rs as oo
 from onorbit_rs.exceptions import ControlError, ConvergenceError, SimulationError
 
 
-def test_a_law_made_for_another_robot_is_refused() -> None:
+def test_a_control_law_of_another_robot_is_rejected() -> None:
     torso, dual = oo.robots.load("humanoid_torso"), oo.robots.load("humanoid_dual_arm")
     law = oo.ComputedTorque(torso, "tool")
     q, v = dual.neutral(), np.zeros(dual.nv)
     hold = oo.Hold(dual.frame_pose(q, "right_tool"))
-    with pytest.raises(ControlError, match="made for robot 'humanoid_torso', not for 'humanoid_dual_arm'"):
+    with pytest.raises(ControlError, match="to robot 'humanoid_torso', but the robot is 'humanoid_dual"):
         oo.Simulation(dual, q, v, controller=law, reference=hold, tool="right_tool")
-    with pytest.raises(ControlError, match="made for robot"):
+    with pytest.raises(ControlError, match="belongs to robot"):
         oo.rollout(dual, q[None], v[None], steps=2, controller=law, reference=hold)
 
 
-def test_a_law_of_the_same_robot_loaded_again_is_taken() -> None:
+def test_a_control_law_of_the_same_robot_loaded_again_is_accepted() -> None:
     one, other = oo.robots.load("humanoid_torso"), oo.robots.load("humanoid_torso")
     q, v = one.neutral(), np.zeros(one.nv)
     hold = oo.Hold(one.frame_pose(q, "tool"))
@@ -29,18 +29,18 @@ def test_a_law_of_the_same_robot_loaded_again_is_taken() -> None:
     assert trace.is_complete
 
 
-def test_the_tool_of_the_run_is_the_frame_of_the_law() -> None:
+def test_the_tool_of_the_run_must_be_the_frame_of_the_control_law() -> None:
     dual = oo.robots.load("humanoid_dual_arm")
     q, v = dual.neutral(), np.zeros(dual.nv)
     hold = oo.Hold(dual.frame_pose(q, "left_tool"))
     law = oo.ComputedTorque(dual, "right_tool")
     with pytest.raises(
-        ControlError, match="tracks frame 'right_tool' but the tool of the run is 'left_tool'"
+        ControlError, match="tracks frame 'right_tool', but the tool of the run is 'left_tool'"
     ):
         oo.Simulation(dual, q, v, controller=law, reference=hold, tool="left_tool")
 
 
-def test_a_singular_state_is_named_and_leaves_no_nan() -> None:
+def test_a_singular_state_is_named_and_gives_no_nan() -> None:
     model = wrist()
     v, q = np.zeros(model.nv), model.neutral()
     with pytest.raises(ConvergenceError, match="state 0 is singular"):
@@ -52,7 +52,7 @@ def test_a_singular_state_is_named_and_leaves_no_nan() -> None:
         model.forward_dynamics(np.stack([bent, q]), np.stack([v, v]), np.ones((2, model.nv)))
 
 
-def test_a_simulation_is_not_run_within_its_own_run() -> None:
+def test_a_simulation_cannot_be_run_within_its_run() -> None:
     model = oo.robots.load("humanoid_torso")
 
     class Again(oo.Controller):
@@ -61,5 +61,5 @@ def test_a_simulation_is_not_run_within_its_own_run() -> None:
             return np.zeros(7)
 
     simulation = oo.Simulation(model, model.neutral(), np.zeros(model.nv), controller=Again())
-    with pytest.raises(SimulationError, match="running already"):
+    with pytest.raises(SimulationError, match="being advanced"):
         simulation.run(0.01)

@@ -1,4 +1,4 @@
-"""Several controllers on one robot, through Python: groups, goals, times, and what is refused."""
+"""Several controllers on one robot through Python: joint groups, goals, times, invalid input."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_both_arms_reach_at_once(dual: oo.Model, q: Any) -> None:
     assert all(passed for *_, passed in trace.certificate())
 
 
-def test_a_goal_out_of_reach_says_which_joint_and_the_arm_holds(dual: oo.Model, q: Any) -> None:
+def test_a_goal_out_of_reach_names_the_joint_and_the_arm_holds_its_posture(dual: oo.Model, q: Any) -> None:
     path = oo.JointWaypoints(np.array([q[7:14], q[7:14] + 0.5]), times=[0.0, 0.2])
     soft = oo.JointPid(p=0.05, d=0.02)
     goal = oo.Goal(tolerance=1e-3, path_tolerance=0.05)
@@ -61,7 +61,7 @@ def test_a_goal_out_of_reach_says_which_joint_and_the_arm_holds(dual: oo.Model, 
     assert 0.0 < result["time"] < 0.2
 
 
-def test_one_after_the_other(dual: oo.Model, q: Any) -> None:
+def test_controls_follow_each_other(dual: oo.Model, q: Any) -> None:
     goal = oo.Goal(tolerance=[1e-3, 1e-2])
     first = reach(dual, q, "right", goal=goal)
     there = oo.JointHold(q[7:14])
@@ -96,11 +96,11 @@ def test_the_interfaces_of_ros_control(dual: oo.Model, q: Any, interface: Any) -
     else:
         desired = reference.sample(trace.time)[1]
         assert np.abs(trace.v[-1, 6:8] - desired[-1]).max() < 0.2 * np.abs(desired[-1]).max()
-    assert not trace.tau[:, 2:].any()  # joints of no control are limp
+    assert not trace.tau[:, 2:].any()  # joints without a control have zero torque
 
 
 @pytest.mark.filterwarnings("ignore:the inertia of link 'link_5'")
-def test_effort_limits_are_those_of_the_robot_unless_told_otherwise() -> None:
+def test_effort_limits_default_to_those_of_the_robot() -> None:
     ets = oo.robots.load("ets_vii")
     far = oo.JointHold(ets.neutral()[7:] + 0.1)
     for limit, expected in ((None, 1000.0), (np.inf, 1e5), (3.0, 3.0)):
@@ -109,7 +109,7 @@ def test_effort_limits_are_those_of_the_robot_unless_told_otherwise() -> None:
         np.testing.assert_allclose(np.abs(trace.tau[0]), expected)
 
 
-def test_a_spring_brings_the_tool_back(dual: oo.Model, q: Any) -> None:
+def test_a_spring_returns_the_tool(dual: oo.Model, q: Any) -> None:
     pose = dual.frame_pose(q, "right_tool")
     pose[0, 3] += 0.02
     law = oo.Compliance(dual, "right_tool", stiffness=[20] * 3 + [0.5] * 3, damping=[1] * 3 + [0.02] * 3)
@@ -119,7 +119,7 @@ def test_a_spring_brings_the_tool_back(dual: oo.Model, q: Any) -> None:
 
 
 class Count(oo.Controller):
-    """Remembers how often it was asked, and pushes by that."""
+    """Counts its updates and applies torques proportional to the count."""
 
     def __init__(self) -> None:
         self.calls = 0
@@ -132,17 +132,17 @@ class Count(oo.Controller):
         return 1e-7 * self.calls * np.ones(len(state.joints))
 
 
-def test_a_python_controller_drives_its_own_joints(dual: oo.Model, q: Any) -> None:
+def test_a_python_controller_drives_its_joint_group(dual: oo.Model, q: Any) -> None:
     seen: list[list[str]] = []
 
-    class Push(oo.Controller):
+    class ConstantTorque(oo.Controller):
         def update(self, t: float, state: oo.State) -> Any:
             seen.append(state.joints)
             return [0.01, -0.01]
 
-    joints = ["left_joint_2", "right_joint_1"]  # in its own order
+    joints = ["left_joint_2", "right_joint_1"]  # in the order of the group
     trace = at_rest(
-        dual, q, [reach(dual, q, "left", end=0.01), oo.Control(Push(), joints=joints, start=0.01)]
+        dual, q, [reach(dual, q, "left", end=0.01), oo.Control(ConstantTorque(), joints=joints, start=0.01)]
     )
     tau = trace.run(0.02).tau
     assert seen[0] == joints
@@ -153,7 +153,7 @@ def test_a_python_controller_drives_its_own_joints(dual: oo.Model, q: Any) -> No
     ("answer", "error"),
     [([1.0], ShapeError), ([np.nan, 0.0], ControlError), (None, DtypeError), ("no", DtypeError)],
 )
-def test_a_python_controller_that_answers_nonsense(dual: oo.Model, q: Any, answer: Any, error: Any) -> None:
+def test_invalid_torques_of_a_python_controller(dual: oo.Model, q: Any, answer: Any, error: Any) -> None:
     class Wrong(oo.Controller):
         def update(self, t: float, state: oo.State) -> Any:
             return answer
@@ -163,7 +163,7 @@ def test_a_python_controller_that_answers_nonsense(dual: oo.Model, q: Any, answe
         at_rest(dual, q, [control]).run(0.01)
 
 
-def test_what_a_controller_raises_comes_out_as_itself(dual: oo.Model, q: Any) -> None:
+def test_an_exception_of_a_controller_is_re_raised_unchanged(dual: oo.Model, q: Any) -> None:
     mine = RuntimeError("mine")
 
     class Raises(oo.Controller):
@@ -175,7 +175,7 @@ def test_what_a_controller_raises_comes_out_as_itself(dual: oo.Model, q: Any) ->
     assert caught.value is mine and caught.value.__traceback__ is not None
 
 
-def test_a_controller_with_memory_goes_through_a_checkpoint(dual: oo.Model, q: Any) -> None:
+def test_a_controller_with_state_is_saved_in_a_checkpoint(dual: oo.Model, q: Any) -> None:
     def run(**options: Any) -> oo.Trace:
         controls = [reach(dual, q, "right"), oo.Control(Count(), joints=group(dual, "left"))]
         return at_rest(dual, q, controls).run(60.0, **options)
@@ -196,27 +196,27 @@ def test_a_controller_with_memory_goes_through_a_checkpoint(dual: oo.Model, q: A
     assert rest.tracking["right"].tobytes() == whole.tracking["right"].tobytes()
 
 
-def test_a_controller_that_cannot_be_saved_keeps_running(dual: oo.Model, q: Any) -> None:
+def test_a_controller_that_cannot_be_saved_continues_to_run(dual: oo.Model, q: Any) -> None:
     class Holds(Count):
         def reset(self) -> None:
             super().reset()
-            self.handle = lambda: None  # does not pickle
+            self.handle = lambda: None  # cannot be pickled
 
     with pytest.warns(UserWarning, match="cannot be saved"):
         trace = at_rest(dual, q, Holds()).run(60.0, checkpoint=lambda c: None, checkpoint_every=0.0)
     assert trace.is_complete
 
 
-def test_what_is_refused(dual: oo.Model, q: Any) -> None:
+def test_invalid_controls(dual: oo.Model, q: Any) -> None:
     right = reach(dual, q, "right")
     hold, everything = oo.JointHold(q[7:]), oo.JointComputedTorque()
     for controls, error, words in (
         ([right, oo.Control(everything, reference=hold, name="all")], ControlError, "both drive joint"),
         ([oo.Control(everything, joints=["right_joint_11"], reference=hold)], FrameError, "did you mean"),
         ([oo.Control(everything, joints=[], reference=hold)], ControlError, "drives no joint"),
-        ([oo.Control(everything)], ControlError, "no reference"),
+        ([oo.Control(everything)], ControlError, "requires a reference"),
         ([oo.Control(everything, reference=oo.Hold(np.eye(4)))], DtypeError, "JointReference"),
-        ([oo.Control(everything, reference=oo.JointHold([0.0]))], ControlError, "has 1 joint, its group"),
+        ([oo.Control(everything, reference=oo.JointHold([0.0]))], ControlError, "has 1 joint, but its group"),
         ([oo.Control(everything, reference=oo.JointHold(q[7:] + 1))], ControlError, "starts 1 rad"),
         ([right, right], ControlError, "two controls are named"),
         ([reach(dual, q, "right", after="x")], ControlError, "starts after 'x'"),
@@ -224,16 +224,18 @@ def test_what_is_refused(dual: oo.Model, q: Any) -> None:
     ):  # fmt: skip
         with pytest.raises(error, match=words):
             at_rest(dual, q, controls)
-    with pytest.raises(ControlError, match="their own references"):
+    with pytest.raises(ControlError, match="has no common reference"):
         at_rest(dual, q, [right], reference=hold)
     with pytest.raises(ControlError, match="'position', 'velocity' and 'effort'"):
         oo.JointPid(interface="positon")  # type: ignore[arg-type]
-    for interface in ("position", "velocity"):  # its limits are no gains
-        with pytest.raises(ControlError, match=f"interface {interface} without gains does nothing: give 'p'"):
+    for interface in ("position", "velocity"):  # effort limits are not gains
+        with pytest.raises(
+            ControlError, match=f"interface '{interface}' and no gains has no effect; give 'p'"
+        ):
             oo.JointPid(interface=interface, effort_limit=3.0)  # type: ignore[arg-type]
     oo.JointPid(interface="effort")
-    oo.JointPid(p=0.0)  # asked for
+    oo.JointPid(p=0.0)  # requested
     with pytest.raises(ControlError, match="negative"):
         oo.JointComputedTorque(kp=-1)
-    with pytest.raises(ShapeError, match="one number of joints"):
+    with pytest.raises(ShapeError, match="one entry per joint"):
         oo.JointPid(p=[1, 2], d=[1, 2, 3])

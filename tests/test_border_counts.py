@@ -1,4 +1,4 @@
-"""Counts across the border: a whole number of any kind, and nothing that merely passes for one."""
+"""Counts through Python: integers of every type are accepted, other values are rejected."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ COUNTS: dict[str, tuple[str, Callable[[Any], Any]]] = {
 
 
 @pytest.mark.parametrize("which", COUNTS)
-def test_what_is_no_whole_number_is_told_by_name(which: str) -> None:
+def test_a_value_that_is_not_an_integer_is_rejected_by_name(which: str) -> None:
     name, call = COUNTS[which]
     for value, got in ((True, "bool"), (np.True_, type(np.True_).__name__), (1.5, "float"), ("2", "str")):
         words = (f"{name} is of type {got}", "whole number")
@@ -41,22 +41,22 @@ def test_what_is_no_whole_number_is_told_by_name(which: str) -> None:
 
 
 @pytest.mark.parametrize("which", COUNTS)
-def test_no_count_is_beyond_all_counts(which: str) -> None:
+def test_very_large_counts_are_rejected(which: str) -> None:
     name, call = COUNTS[which]
     beyond = {"name": name, "expected": 2**63 - 1}
-    for value, told in ((2**70, str(2**70)), (-(2**70), f"-{2**70}"), (10**5000, "thousands of digits")):
-        words = (f"{name} is", told, str(2**63 - 1))
+    for value, text in ((2**70, str(2**70)), (-(2**70), f"-{2**70}"), (10**5000, "thousands of digits")):
+        words = (f"{name} is", text, str(2**63 - 1))
         check(Bad(lambda value=value: call(value), "InputError", words, beyond | {"got": value}))
 
 
-def test_more_threads_than_there_are_do_no_harm() -> None:
+def test_more_threads_than_cores_are_accepted() -> None:
     batch = np.tile(Q, (1000, 1))
     np.testing.assert_array_equal(
         MODEL.mass_matrix(batch, threads=2**62), MODEL.mass_matrix(batch, threads=1)
     )
 
 
-def test_fewer_than_the_least() -> None:
+def test_counts_below_the_minimum_are_rejected() -> None:
     check(Bad(lambda: COUNTS["steps"][1](-1), "InputError", ("steps is -1", "at least 0"), {"name": "steps"}))
     rows = COUNTS["rows of a rollout"][1]
     for value in (0, -1):

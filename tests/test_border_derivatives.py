@@ -1,4 +1,4 @@
-"""Derivatives across the border: shapes, what is differentiated, ``out=``, refusals."""
+"""Derivatives through Python: shapes, definitions, ``out=``, invalid input."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ REDUCED = ("torque_dq", "torque_dv", "acceleration_dq", "acceleration_dv", "velo
 
 
 def along(function: Any) -> Any:
-    """Central differences along ``integrate(Q1, h e_j)`` (0, NV) or at ``V1 + h e_j``."""
+    """Returns central differences along ``integrate(Q1, h e_j)`` (0, NV) or at ``V1 + h e_j``."""
     h = 1e-6  # truncation 1e-11, rounding 1e-9
     return np.array([(function(h * e) - function(-h * e)) / (2 * h) for e in np.eye(NV)]).T
 
 
-def test_forward_dynamics_by_differences_of_its_own() -> None:
+def test_derivatives_of_forward_dynamics_equal_its_differences() -> None:
     dq, dv, dtau = MODEL.forward_dynamics_derivatives(Q1, V1, X1)
     by_q = along(lambda step: MODEL.forward_dynamics(MODEL.integrate(Q1, step), V1, X1))
     by_v = along(lambda step: MODEL.forward_dynamics(Q1, V1 + step, X1))
     for ours, differences in ((dq, by_q), (dv, by_v)):
         assert np.abs(ours - differences).max() < 1e-6 * np.abs(ours).max()
     np.testing.assert_allclose(dtau @ MODEL.mass_matrix(Q1), np.eye(NV), atol=1e-9)
-    # neither the base's pose nor a steady drift of everything matters
+    # neither the base's pose nor a uniform translation matters
     np.testing.assert_array_equal(dq[:, :6], 0.0)
     np.testing.assert_array_equal(dv[6:, :3], 0.0)
 
 
-def test_the_reduced_model_by_differences_of_its_own() -> None:
+def test_derivatives_of_the_reduced_model_equal_its_differences() -> None:
     def outputs(q: Any, v: Any) -> Any:
         ff = MODEL.free_floating(q, v, "tool")
         return np.concatenate(
@@ -56,8 +56,8 @@ def test_the_reduced_model_by_differences_of_its_own() -> None:
     np.testing.assert_allclose(ours_v, by_v, atol=1e-7)
 
 
-def test_neighbours_part_as_the_tangent_says() -> None:
-    # δ̇ = δv - [v_b × δ_b; 0], from configurations a moment later
+def test_neighbouring_states_separate_as_the_tangent_predicts() -> None:
+    # δ̇ = δv - [v_b × δ_b; 0], from configurations a short time later
     def drifted(shift: Any, rate: Any, t: float) -> Any:
         near = MODEL.integrate(MODEL.integrate(Q1, shift), t * (V1 + rate))
         return MODEL.difference(MODEL.integrate(Q1, t * V1), near)
@@ -69,13 +69,13 @@ def test_neighbours_part_as_the_tangent_says() -> None:
     carried[3:6] = np.cross(V1[3:6], angular)
     t = 1e-4
     rates = (drifted(shift, rate, t) - drifted(shift, rate, -t)) / (2 * t)
-    # of second order in the shift, 1e-8
+    # second order in the shift, 1e-8
     np.testing.assert_allclose(rates, rate - carried, atol=5e-8)
     assert np.abs(rates - rate).max() > 1e-5
 
 
-def test_control_turns_in_w_axes_are_another_tangent() -> None:
-    # the same shift of attitude, taken in W axes: columns 3 to 5 differ
+def test_control_rotations_in_w_axes_are_another_tangent() -> None:
+    # the same rotation vector in W axes: columns 3 to 5 differ
     def turned(step: Any) -> Any:
         attitude = MODEL.frame_pose(Q1, MODEL.body_names[0])[:3, :3]
         inside = np.concatenate([attitude.T @ step[:3], attitude.T @ step[3:6], step[6:]])
@@ -101,7 +101,7 @@ def test_out_is_written_and_returned() -> None:
         np.testing.assert_array_equal(getattr(out, name), getattr(fresh, name))
 
 
-def test_a_robot_without_joints_has_those_of_its_base() -> None:
+def test_a_robot_without_joints_has_the_derivatives_of_its_base() -> None:
     body = oo.Model.rigid_body(2.0, np.diag([1.0, 2.0, 3.0]))
     q, v = body.neutral(), np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
     dq, dv, dtau = body.forward_dynamics_derivatives(q, v, np.zeros(6))
@@ -139,7 +139,7 @@ REFUSED = {
     ),
     "one array for three": Bad(
         lambda: MODEL.forward_dynamics_derivatives(Q, V, V, out=np.zeros((NV, NV))),
-        "InputError", ("out", "three arrays (nv, nv)"),
+        "InputError", ("out", "three arrays of shape (nv, nv)"),
     ),
     "an array too small": Bad(
         lambda: MODEL.forward_dynamics_derivatives(
@@ -151,7 +151,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_refused(name: str) -> None:
+def test_invalid_input_is_rejected(name: str) -> None:
     check(REFUSED[name])
 
 
@@ -162,5 +162,5 @@ def test_a_singular_state_is_named() -> None:
     with pytest.raises(ConvergenceError, match="state 1 is singular"):
         model.forward_dynamics_derivatives(q, v, tau)
     assert np.isfinite(model.forward_dynamics_derivatives(q[0], v[0], tau[0])[0]).all()
-    # nothing else divides by what a joint feels
+    # no other derivative divides by the joint's inertia
     assert np.isfinite(model.inverse_dynamics_derivatives(q, v, tau)[0]).all()

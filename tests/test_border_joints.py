@@ -1,4 +1,4 @@
-"""What joints do at rest and at their limits, and how runs are stepped, from Python."""
+"""Joints at rest and at their limits, and integrators, through Python."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from onorbit_rs.exceptions import InputError
 
 
 def slider(friction: float = 0.0) -> oo.Model:
-    """A block of 5 kg on a base of 20 kg, within 0.1 m of the middle."""
+    """Returns a block of 5 kg that slides by up to 0.1 m on a base of 20 kg."""
     builder = oo.ModelBuilder("slider", base="base", mass=20.0, inertia=np.eye(3))
     builder.add_link(
         "block", parent="base", joint="slide", kind="prismatic", axis=np.array([1.0, 0, 0]), mass=5.0,
@@ -22,7 +22,7 @@ def slider(friction: float = 0.0) -> oo.Model:
 V = np.array([0.0, 0, 0, 0, 0, 0, 0.5])
 
 
-def test_limits_are_kept_on_request_and_reported_otherwise() -> None:
+def test_limits_are_enforced_on_request_and_reported_otherwise() -> None:
     model = slider()
     free = oo.Simulation(model, model.neutral(), V).run(1.0)
     assert free.joint_limits_exceeded() == ["slide"]
@@ -34,7 +34,7 @@ def test_limits_are_kept_on_request_and_reported_otherwise() -> None:
     assert all(passed for *_, passed in kept.certificate())
 
 
-def test_a_start_outside_a_limit_names_the_joint() -> None:
+def test_an_initial_position_outside_a_limit_names_the_joint() -> None:
     model = slider()
     q = model.neutral()
     q[7] = 0.2
@@ -53,7 +53,7 @@ def test_settings_out_of_range_are_named(settings: dict[str, float], name: str) 
         oo.Simulation(model, model.neutral(), V, **settings)  # type: ignore[arg-type]
 
 
-def test_integrators_are_listed_and_rollouts_do_not_adapt() -> None:
+def test_integrators_are_listed_and_rollouts_have_fixed_steps() -> None:
     model = slider()
     with pytest.raises(InputError, match="dormand_prince"):
         oo.Simulation(model, model.neutral(), V, integrator="rk5")  # type: ignore[arg-type]
@@ -71,8 +71,8 @@ def test_adaptive_steps_leave_rows_on_the_grid() -> None:
 
 
 @pytest.mark.parametrize("time_step", [0.01, 5.0, 20.0])
-def test_rows_do_not_decide_what_stops_give_back(time_step: float) -> None:
-    """Once 32 bounces within one ``time_step`` made stops inelastic, and the grid of rows is that long."""
+def test_recorded_rows_do_not_affect_restitution(time_step: float) -> None:
+    """Once, stops became inelastic after 32 bounces within a ``time_step``, the interval of rows."""
     simulation = oo.Simulation(
         slider(), slider().neutral(), V, enforce_limits=True, restitution=1.0,
         integrator="dormand_prince", time_step=time_step,
@@ -81,8 +81,8 @@ def test_rows_do_not_decide_what_stops_give_back(time_step: float) -> None:
     assert trace.kinetic_energy[-1] == pytest.approx(trace.kinetic_energy[0], rel=1e-8)
 
 
-def test_bounces_without_end_come_to_an_end() -> None:
-    """Each takes nine tenths of the time of the one before: infinitely many in 0.04 s."""
+def test_infinitely_many_bounces_end() -> None:
+    """Each bounce takes nine tenths of the time of the previous one: infinitely many in 0.04 s."""
     builder = oo.ModelBuilder("pushed", base="base", mass=1e6, inertia=1e6 * np.eye(3))
     builder.add_link(
         "block", parent="base", joint="slide", kind="prismatic", axis=np.array([1.0, 0, 0]), mass=1.0,
@@ -90,18 +90,18 @@ def test_bounces_without_end_come_to_an_end() -> None:
     )  # fmt: skip
     model = builder.build()
 
-    class Push(oo.Controller):
+    class ConstantTorque(oo.Controller):
         def update(self, t: float, state: oo.State) -> np.ndarray:
             return np.array([50.0])
 
     trace = oo.Simulation(
-        model, model.neutral(), np.array([0, 0, 0, 0, 0, 0, 0.1]), controller=Push(), enforce_limits=True,
-        restitution=0.9, time_step=0.01,
+        model, model.neutral(), np.array([0, 0, 0, 0, 0, 0, 0.1]), controller=ConstantTorque(),
+        enforce_limits=True, restitution=0.9, time_step=0.01,
     ).run(2.0)  # fmt: skip
     assert trace.v[-1, 6] == 0.0 and trace.q[-1, 7] == pytest.approx(0.1, abs=1e-12)
 
 
-def test_a_body_that_only_drifts_is_certified() -> None:
+def test_a_body_in_pure_translation_passes_its_certificate() -> None:
     model = oo.Model.rigid_body(50.0, np.diag([3.0, 4.0, 5.0]))
     q = model.neutral()
     q[:3] = [3.0, -2.0, 1.0]

@@ -1,4 +1,4 @@
-"""Large batches: what they take in memory and time, measured in a process of their own."""
+"""Memory and time of large batches, measured in separate processes."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ jobs = {{
     "wasteful": (lambda k: [model.bias_forces(q[k] + 0.0, v[k]) for _ in range(4)], [q, v], [nv]),
 }}
 job, inputs, widths = jobs[sys.argv[1]]
-job(few)  # threads, workspaces, what Python keeps
+job(few)  # threads, workspaces, memory kept by Python
 open("/proc/self/clear_refs", "w").write("5")  # the peak counts from here
 before = peak()
 result = job(slice(None))
@@ -42,7 +42,7 @@ print((sum(x.nbytes for x in inputs) + peak() - before) / given)
 
 
 def share(job: str) -> float:
-    """Peak memory of a call, its inputs included, over the bytes of its inputs and outputs."""
+    """Returns the peak memory of a call including inputs, divided by the bytes of inputs and outputs."""
     program = PROGRAM.format(count=COUNT)
     done = subprocess.run(
         [sys.executable, "-c", program, job], capture_output=True, text=True, timeout=120, check=True
@@ -53,13 +53,13 @@ def share(job: str) -> float:
 
 @pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="needs Linux's count of peak memory")
 @pytest.mark.parametrize("job", ["forward_dynamics", "mass_matrix", "free_floating", "rollout", "recorded"])
-def test_a_batch_takes_little_more_than_its_numbers(job: str) -> None:
-    # asked for is 2; only workspaces of a few kB per thread come on top
+def test_a_batch_needs_little_more_memory_than_its_arrays(job: str) -> None:
+    # the workspaces add only a few kB per thread
     assert share(job) < 1.1
 
 
 @pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="needs Linux's count of peak memory")
-def test_copies_would_be_noticed() -> None:
+def test_copies_would_be_detected() -> None:
     assert share("wasteful") > 2.0
 
 
@@ -87,5 +87,5 @@ def test_time_is_linear_in_the_number_of_states() -> None:
     )
     times = [float(x) for x in done.stdout.split()]
     print("us per state, 1e3 to 1e6:", *(f"{1e6 * x:.3f}" for x in times))
-    # caches end on the way and other processes disturb; a square would be 1000 times
+    # cache sizes and other processes matter; quadratic time would give a factor of 1000
     assert max(times) < 2.0 * min(times), times

@@ -1,4 +1,4 @@
-"""Robots that cannot be: masses, inertias, joints, names, URDF files."""
+"""Invalid robots: masses, inertias, joints, names, URDF files."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ BAD: dict[str, Bad] = {
     "massless leaf": Bad(
         massless_leaf, "ModelError", ("arm", "hinge", "give"), {"link": "arm", "joint": "hinge"}
     ),
-    "inertia without mass": Bad(lambda: link(mass=None), "ModelError", ("without a mass",)),
+    "inertia without mass": Bad(lambda: link(mass=None), "ModelError", ("require a mass",)),
     # joints and names
     "no such frame": Bad(
         lambda: MODEL.frame_pose(Q, "tol"),
@@ -154,7 +154,7 @@ BAD: dict[str, Bad] = {
     "URDF file a folder": Bad(
         lambda: oo.Model.from_urdf(Path(__file__).parent),
         "ReadError",
-        ("tests", "folder"),
+        ("tests", "directory"),
         {"path": str(Path(__file__).parent)},
     ),
     "URDF file this test": Bad(
@@ -168,7 +168,7 @@ def test_bad_input(name: str) -> None:
     check(BAD[name])
 
 
-def test_nothing_is_lost_by_a_refusal() -> None:
+def test_a_builder_stays_usable_after_an_error() -> None:
     before = MODEL.mass_matrix(Q)
     for bad in BAD.values():
         with pytest.raises(oo.OnOrbitError):

@@ -1,4 +1,4 @@
-"""``out=``: results go into the caller's arrays, the same bits; what cannot hold them is refused."""
+"""``out=``: results are written to the caller's arrays with equal bits; unsuitable arrays are rejected."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from test_border_batches import FRAME, KERNELS, MODEL, NQ, NV, states
 
 import onorbit_rs as oo
 
-WHOLE = [name for name in KERNELS if not set(".[") & set(name)]  # others are parts of a result
+WHOLE = [name for name in KERNELS if not set(".[") & set(name)]  # the others are parts of a result
 PARTS = ("inertia", "bias", "external", "jacobian", "drift")
 Q, V, A = states(20)
 
 
 @pytest.mark.parametrize("count", [1, 7, 8, 200])
 @pytest.mark.parametrize("name", WHOLE)
-def test_a_batch_goes_where_it_is_told_to(name: str, count: int) -> None:
+def test_a_batch_is_written_to_out(name: str, count: int) -> None:
     batch = states(count)
     fresh = KERNELS[name](*batch)
     out = np.full_like(fresh, NAN)
     assert KERNELS[name](*batch, out=out) is out
     np.testing.assert_array_equal(out, fresh)
-    KERNELS[name](*(x[::-1] for x in batch), out=out)  # a second time over the first
+    KERNELS[name](*(x[::-1] for x in batch), out=out)  # overwrites the first result
     assert count == 1 or not np.array_equal(out, fresh)
 
 
-def test_one_state_goes_where_it_is_told_to() -> None:
+def test_one_state_is_written_to_out() -> None:
     out = np.empty(NV)
     assert MODEL.forward_dynamics(Q[3], V[3], A[3], out=out) is out
     np.testing.assert_array_equal(out, MODEL.forward_dynamics(Q[3], V[3], A[3]))
@@ -38,7 +38,7 @@ def test_one_state_goes_where_it_is_told_to() -> None:
     assert energy == MODEL.kinetic_energy(Q[3], V[3])
 
 
-def test_a_reduced_model_is_written_anew() -> None:
+def test_a_reduced_model_is_overwritten() -> None:
     ff = MODEL.free_floating(Q, V, FRAME)
     kept = {name: getattr(ff, name) for name in PARTS}
     other = MODEL.free_floating(Q[::-1], V[::-1], FRAME)
@@ -49,7 +49,7 @@ def test_a_reduced_model_is_written_anew() -> None:
 
 
 @pytest.mark.parametrize("record_every", [None, 2])
-def test_a_rollout_goes_where_it_is_told_to(record_every: int | None) -> None:
+def test_a_rollout_is_written_to_out(record_every: int | None) -> None:
     how: dict[str, Any] = {"steps": 5, "record_every": record_every}
     q, v = oo.rollout(MODEL, Q, V, **how)
     out = np.full_like(q, NAN), np.full_like(v, NAN)
@@ -60,7 +60,7 @@ def test_a_rollout_goes_where_it_is_told_to(record_every: int | None) -> None:
     np.testing.assert_array_equal(to_v, v)
 
 
-def test_a_column_of_blocks_is_an_array_like_any_other() -> None:
+def test_a_slice_of_a_three_dimensional_array_is_accepted() -> None:
     blocks = np.full((3, len(Q), NV), NAN)
     MODEL.forward_dynamics(Q, V, A, out=blocks[1])
     np.testing.assert_array_equal(blocks[1], MODEL.forward_dynamics(Q, V, A))
@@ -78,7 +78,7 @@ def locked() -> Any:
 
 
 def twins() -> tuple[Any, Any]:
-    """Two arrays on one memory that know nothing of each other."""
+    """Returns two unrelated array objects on the same memory."""
     memory = bytearray(8 * 20 * NV)
     made = (np.frombuffer(memory, float).reshape(20, NV) for _ in range(2))
     return next(made), next(made)
@@ -94,7 +94,7 @@ def roll(**how: Any) -> Any:
 
 
 def overlapping() -> tuple[Any, Any]:
-    """Room for the end of a rollout, ten numbers too tight."""
+    """Returns overlapping arrays for the end of a rollout, ten numbers too small."""
     room = np.empty(20 * (NQ + NV) - 10)
     return room[: 20 * NQ].reshape(20, NQ), room[-20 * NV :].reshape(20, NV)
 
@@ -121,7 +121,7 @@ BAD: dict[str, Bad] = {
         lambda: MODEL.forward_dynamics(Q[:10], V[:10], A[:10], out=A[5:15]), "InputError", ("in use",), NAME
     ),
     "an input's memory": Bad(lambda: onto(*twins()), "InputError", ("shares memory",), NAME),
-    "a reduced model of others": Bad(
+    "reduced model with arrays of another call": Bad(
         lambda: MODEL.free_floating(Q, V, FRAME, out=reduced(19)), "ShapeError", ("19",), {"name": "out[0]"}
     ),
     "no pair": Bad(
@@ -143,7 +143,7 @@ BAD: dict[str, Bad] = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_what_cannot_hold_the_result_is_refused(what: str) -> None:
+def test_unsuitable_arrays_are_rejected(what: str) -> None:
     before = Q.copy(), V.copy(), A.copy()
     check(BAD[what])
     for now, then in zip((Q, V, A), before, strict=True):
@@ -163,20 +163,20 @@ FORCES = np.random.default_rng(9).uniform(-1.0, 1.0, (20, 6))
 
 
 @pytest.mark.parametrize("name", WITH_WRENCHES)
-def test_every_state_has_its_wrench(name: str) -> None:
+def test_each_state_can_have_a_different_wrench(name: str) -> None:
     kernel = WITH_WRENCHES[name]
     together = kernel(FORCES, slice(None))
     alone = np.array([kernel(FORCES[k], k) for k in range(20)])
-    limit = 1e-14 * np.abs(alone).max()  # a rounding or two
+    limit = 1e-14 * np.abs(alone).max()  # one or two roundings
     assert np.abs(together - alone).max() <= limit
     np.testing.assert_array_equal(
         kernel(FORCES[0], slice(None)), kernel(np.tile(FORCES[0], (20, 1)), slice(None))
     )
-    # it is noticed when each gets its neighbour's
+    # negative control: wrenches shifted by one state
     assert np.abs(kernel(np.roll(FORCES, 1, axis=0), slice(None)) - alone).max() > 1e6 * limit
 
 
-def test_wrenches_for_all_and_for_each_go_together() -> None:
+def test_common_and_individual_wrenches_can_be_combined() -> None:
     both = MODEL.forward_dynamics(Q, V, A, external={FRAME: FORCES, "torso": FORCES[0]})
     each = MODEL.forward_dynamics(Q[7], V[7], A[7], external={FRAME: FORCES[7], "torso": FORCES[0]})
     np.testing.assert_allclose(both[7], each, rtol=1e-12)
@@ -185,14 +185,14 @@ def test_wrenches_for_all_and_for_each_go_together() -> None:
 @pytest.mark.parametrize(
     ("given", "k"), [((19, 6), slice(None)), ((20, 5), slice(None)), ((1, 20, 6), slice(None)), ((20, 6), 3)]
 )
-def test_wrenches_of_another_number_of_states_are_refused(given: Any, k: Any) -> None:
+def test_wrenches_for_another_number_of_states_are_rejected(given: Any, k: Any) -> None:
     call = lambda: WITH_WRENCHES["forward_dynamics"](np.zeros(given), k)  # noqa: E731
     check(
         Bad(call, "ShapeError", ("external wrench", "(6,)"), {"name": "external wrench", "got": list(given)})
     )
 
 
-def test_a_wrench_that_is_no_number_is_named_with_its_state() -> None:
+def test_a_non_finite_wrench_is_reported_with_its_state() -> None:
     forces = FORCES.copy()
     forces[13, 2] = NAN
     call = lambda: WITH_WRENCHES["bias_forces"](forces, slice(None))  # noqa: E731

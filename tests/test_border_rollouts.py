@@ -1,4 +1,4 @@
-"""Many runs at once: each is the run that ``Simulation`` makes of it, for any number of threads."""
+"""Rollouts: each equals the run of ``Simulation``, for any number of threads."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ class Torques(oo.Controller):
 
 @pytest.mark.parametrize("integrator", ["rk4", "semi_implicit_euler"])
 @pytest.mark.parametrize("kind", ["passive", "torques", "law"])
-def test_a_rollout_is_its_runs(kind: str, integrator: Any) -> None:
-    count = 11  # not a whole number of lanes
+def test_a_rollout_equals_its_single_runs(kind: str, integrator: Any) -> None:
+    count = 11  # not a multiple of the number of lanes
     q0, v0 = states(count)
     tau = np.random.default_rng(3).uniform(-1.0, 1.0, (count, STEPS, 7))
     given: dict[str, Any] = {"passive": {}, "torques": {"tau": tau}, "law": law()}[kind]
     q, v = oo.rollout(MODEL, q0, v0, steps=STEPS, time_step=DT, integrator=integrator, **given)
     assert q.shape == (count, MODEL.nq) and v.shape == (count, MODEL.nv)
-    anywhere = [1.0, np.pi]  # the states are strewn about the one the reference starts at
+    anywhere = [1.0, np.pi]  # the states scatter about the initial state of the reference
     for k in range(count):
         known: dict[str, Any] = {"controller": Torques(tau[k])} if kind == "torques" else given
         alone = oo.Simulation(
@@ -67,7 +67,7 @@ def test_a_rollout_is_its_runs(kind: str, integrator: Any) -> None:
 
 
 @pytest.mark.parametrize("kind", ["passive", "law"])
-def test_the_bits_do_not_depend_on_threads_nor_on_neighbours(kind: str) -> None:
+def test_the_bits_depend_neither_on_threads_nor_on_neighbours(kind: str) -> None:
     q0, v0 = states(150)
     given = law() if kind == "law" else {}
     once = oo.rollout(MODEL, q0, v0, steps=10, threads=1, **given)
@@ -88,7 +88,7 @@ def test_rows_are_the_start_and_every_kth_step() -> None:
     np.testing.assert_array_equal(q[:, 2], oo.rollout(MODEL, q0, v0, steps=8)[0])
 
 
-def test_nothing_to_do() -> None:
+def test_rollouts_without_states_or_steps() -> None:
     q0, v0 = states(3)
     for got, given in zip(oo.rollout(MODEL, q0, v0, steps=0), (q0, v0), strict=True):
         np.testing.assert_allclose(got, given, rtol=0, atol=1e-15)
@@ -105,6 +105,6 @@ def test_a_state_that_diverges_is_an_error() -> None:
 
 
 @pytest.mark.parametrize("alone", ["controller", "reference"])
-def test_a_controller_or_a_reference_alone_is_refused(alone: str) -> None:
-    with pytest.raises(ControlError, match="is given but no"):
+def test_a_controller_or_a_reference_alone_is_rejected(alone: str) -> None:
+    with pytest.raises(ControlError, match="is given, but no"):
         oo.rollout(MODEL, *states(2), steps=5, **{alone: law()[alone]})

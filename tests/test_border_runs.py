@@ -1,4 +1,4 @@
-"""Runs across the border: Python controllers, Ctrl-C, divergence, and the views a run leaves behind."""
+"""Runs through Python: Python controllers, Ctrl-C, divergence, and views of the trace."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ JOINTS = 7
 
 
 class Calls(oo.Controller):
-    """Does what it is told at every call."""
+    """A controller that calls a given function at every update."""
 
     def __init__(self, answer: Callable[[float, Any], Any]) -> None:
         self.answer = answer
@@ -47,7 +47,7 @@ def run(answer: Callable[[float, Any], Any], duration: float = 0.1, **known: Any
 # A controller in Python
 
 
-def test_torques_of_python_are_held_and_recorded() -> None:
+def test_torques_of_a_python_controller_are_held_and_recorded() -> None:
     trace = run(lambda t, state: np.full(JOINTS, t), duration=0.01)
     assert trace.is_complete
     np.testing.assert_array_equal(trace.tau, np.repeat(trace.time[:, None], JOINTS, axis=1))
@@ -58,7 +58,7 @@ def test_lists_and_integers_are_torques_too() -> None:
     np.testing.assert_array_equal(run(lambda t, state: [1, 0, 0, 0, 0, 0, 0]).tau[:, 0], 1.0)
 
 
-def test_a_controller_runs_at_its_own_rate_and_is_reset_for_every_run() -> None:
+def test_a_controller_runs_at_its_rate_and_is_reset_for_every_run() -> None:
     controller = Calls(lambda t, state: np.zeros(JOINTS))
     simulation = oo.Simulation(MODEL, Q, V, controller=controller, control_period=0.005)
     first, second = simulation.run(0.02), simulation.run(0.02)
@@ -68,7 +68,7 @@ def test_a_controller_runs_at_its_own_rate_and_is_reset_for_every_run() -> None:
     np.testing.assert_array_equal(first.q, second.q)
 
 
-def test_the_state_is_the_controllers_own_to_keep_and_to_spoil() -> None:
+def test_a_controller_may_keep_and_modify_its_state_arrays() -> None:
     kept: list[Any] = []
 
     def answer(t: float, state: Any) -> Any:
@@ -84,7 +84,7 @@ def test_the_state_is_the_controllers_own_to_keep_and_to_spoil() -> None:
         np.testing.assert_array_equal(array, trace.q[k])
 
 
-def test_the_state_tells_the_reference() -> None:
+def test_the_state_contains_the_reference() -> None:
     seen: list[Any] = []
     pose = MODEL.frame_pose(Q, "tool")
     line = oo.LineParabola(pose, displacement=[0.5, 0, 0], duration=1.0)
@@ -99,7 +99,7 @@ def test_the_state_tells_the_reference() -> None:
 @pytest.mark.parametrize(
     "raised", [ValueError("mine"), SystemExit(3), StopIteration(), oo.OnOrbitError("ours")]
 )
-def test_an_exception_comes_out_as_itself(where: str, raised: BaseException) -> None:
+def test_an_exception_is_re_raised_unchanged(where: str, raised: BaseException) -> None:
     def fail(*_: Any) -> Any:
         raise raised
 
@@ -139,27 +139,29 @@ def test_a_failed_run_leaves_the_simulation_usable() -> None:
 
 
 @pytest.mark.parametrize("answer", [np.zeros(6), np.zeros((7, 1)), np.zeros((1, 7)), 0.0, []])
-def test_torques_of_a_wrong_shape(answer: Any) -> None:
+def test_torques_of_a_wrong_shape_are_rejected(answer: Any) -> None:
     with pytest.raises(ShapeError, match=r"update.*expected \(7,\)") as caught:
         run(lambda t, state: answer)
     assert caught.value.got == list(np.shape(answer)) or np.shape(answer) == ()
 
 
 @pytest.mark.parametrize("answer", [None, "strong", np.zeros(7, complex), [None] * 7])
-def test_torques_that_are_no_numbers(answer: Any) -> None:
+def test_torques_that_are_not_numbers_are_rejected(answer: Any) -> None:
     with pytest.raises(DtypeError, match="update"):
         run(lambda t, state: answer)
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf")])
-def test_torques_that_are_not_finite(value: float) -> None:
-    with pytest.raises(ControlError, match=r"(NaN|inf) for joint 3 at t = 0.05") as caught:
+def test_torques_that_are_not_finite_are_rejected(value: float) -> None:
+    with pytest.raises(
+        ControlError, match=r"returned (NaN|inf) for joint 'arm_joint_4' at t = 0.05"
+    ) as caught:
         run(lambda t, state: np.where((np.arange(7) == 3) & (t > 0.0495), value, 0.0))
     assert isinstance(caught.value, ValueError)
 
 
-def test_a_controller_without_update_says_so() -> None:
-    """When it is made, not in the middle of a run."""
+def test_a_controller_without_update_is_rejected() -> None:
+    """The error is raised at construction, not during a run."""
     nothing = type("Nothing", (oo.Controller,), {})
     with pytest.raises(TypeError, match=r"abstract class Nothing .*update"):
         nothing()
@@ -169,7 +171,7 @@ def test_a_controller_without_update_says_so() -> None:
 
 
 def test_a_diverging_run_names_time_and_state_and_keeps_the_trace() -> None:
-    with pytest.raises(SimulationError, match=r"diverged at t = .*shorten time_step") as caught:
+    with pytest.raises(SimulationError, match=r"diverged at t = .*reduce time_step") as caught:
         run(lambda t, state: np.full(JOINTS, 1e200 if t > 0.0495 else 0.1), duration=1.0)
     error = caught.value
     assert isinstance(error, ArithmeticError) and isinstance(error, oo.OnOrbitError)
@@ -179,11 +181,11 @@ def test_a_diverging_run_names_time_and_state_and_keeps_the_trace() -> None:
     trace = error.trace
     assert not trace.is_complete and len(trace) > 40
     for name in trace.columns():
-        if name != "acceleration":  # that of the last row is what blew up
+        if name != "acceleration":  # the acceleration of the last row is not finite
             assert np.isfinite(getattr(trace, name)).all(), name
     np.testing.assert_array_equal(trace.q[-1], error.q)
-    calm = run(lambda t, state: np.full(JOINTS, 0.1), duration=0.04)
-    np.testing.assert_array_equal(trace.q[:41], calm.q)
+    hide_rounding = run(lambda t, state: np.full(JOINTS, 0.1), duration=0.04)
+    np.testing.assert_array_equal(trace.q[:41], hide_rounding.q)
 
 
 # Ctrl-C
@@ -195,7 +197,7 @@ def interrupt_after(seconds: float) -> threading.Timer:
     return timer
 
 
-LONG = 1e6  # seconds of simulation: hours of work
+LONG = 1e6  # seconds of simulation, hours of computing
 
 
 def check_interrupted(error: RunInterrupted, begun: float) -> None:
@@ -218,7 +220,7 @@ def test_ctrl_c_stops_a_native_run_with_its_trace() -> None:
 
 def test_ctrl_c_stops_a_run_inside_a_python_controller_with_its_trace() -> None:
     def slow(t: float, state: Any) -> Any:
-        time.sleep(1e-3)  # here the signal arrives
+        time.sleep(1e-3)  # the signal arrives here
         return np.zeros(JOINTS)
 
     simulation = oo.Simulation(MODEL, Q, V, controller=Calls(slow), time_step=1e-2, record_every=1000)
@@ -286,7 +288,7 @@ def test_columns_are_read_only_views_whose_base_is_the_trace(trace: oo.Trace, na
     assert column.shape == (51, *SHAPES[name]) and column.dtype == np.float64
     assert column.base is trace
     assert not column.flags.owndata and not column.flags.writeable and column.flags.c_contiguous
-    assert np.shares_memory(column, getattr(trace, name))  # no copy at a second look
+    assert np.shares_memory(column, getattr(trace, name))  # the second access returns the same array
     with pytest.raises(ValueError, match="read-only"):
         column[0] = 0.0
     with pytest.raises(ValueError, match="WRITEABLE"):
@@ -294,7 +296,7 @@ def test_columns_are_read_only_views_whose_base_is_the_trace(trace: oo.Trace, na
     assert name in trace.columns()
 
 
-def test_columns_a_run_did_not_have_are_none() -> None:
+def test_columns_that_do_not_apply_are_none() -> None:
     trace = oo.Simulation(MODEL, Q, V).run(0.01)
     for name in (
         "tool_pose",
@@ -315,7 +317,9 @@ def test_a_view_outlives_its_trace() -> None:
     q, copy = trace.q, trace.q.copy()
     del trace
     gc.collect()
-    junk = [np.random.default_rng(k).normal(size=1000) for k in range(200)]  # takes freed memory, if any is
+    junk = [
+        np.random.default_rng(k).normal(size=1000) for k in range(200)
+    ]  # reuses the memory if it was freed
     np.testing.assert_array_equal(q, copy)
     assert junk and q.base is not None
 
@@ -348,7 +352,7 @@ def test_every_run_starts_from_the_given_state_and_gives_the_same_bits() -> None
     np.testing.assert_array_equal(first.q[0], Q)
 
 
-def test_progress_is_told_at_a_steady_pace() -> None:
+def test_progress_is_reported_at_a_steady_rate() -> None:
     seen: list[tuple[float, float]] = []
     begun = time.perf_counter()
     oo.Simulation(MODEL, Q, V, time_step=1e-3, record_every=10_000).run(

@@ -1,6 +1,6 @@
-"""A run that breaks its certificate says so: on the terminal in red, in its summary, by its exit code.
+"""A failed certificate is reported on the terminal in red, in the summary and by the exit code.
 
-That every bundled scenario passes every check is in ``test_scenario_bundled``.
+``test_scenario_bundled`` checks that every bundled scenario passes.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ BROKEN: dict[str, tuple[str, dict[str, Any], str, str]] = {
 
 @pytest.fixture(autouse=True)
 def in_colour(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As on a terminal."""
+    """Turns on colours as on a terminal."""
     monkeypatch.delenv("NO_COLOR", raising=False)
     monkeypatch.setenv("FORCE_COLOR", "1")
 
@@ -45,7 +45,7 @@ def written(folder: Path, name: str, change: dict[str, Any]) -> Path:
 
 
 @pytest.mark.parametrize("what", BROKEN)
-def test_a_broken_run_is_red_everywhere(what: str, tmp_path: Path) -> None:
+def test_a_failed_certificate_is_reported_everywhere(what: str, tmp_path: Path) -> None:
     name, change, check, way_out = BROKEN[what]
     done = onorbit("run", written(tmp_path, name, change))
     assert done.returncode == 1
@@ -57,7 +57,7 @@ def test_a_broken_run_is_red_everywhere(what: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_results_of_a_broken_run_are_kept_and_say_so_as_well(tmp_path: Path) -> None:
+def test_results_of_a_failed_run_are_kept_with_its_verdict(tmp_path: Path) -> None:
     name, change, check, _ = BROKEN["energy"]
     out = tmp_path / "out"
     assert onorbit("run", written(tmp_path, name, change), "--out", out).returncode == 1
@@ -66,14 +66,14 @@ def test_results_of_a_broken_run_are_kept_and_say_so_as_well(tmp_path: Path) -> 
     assert summary["status"] == "complete" and (out / "trace.npz").is_file()
 
 
-def test_a_quiet_run_fails_as_loudly(tmp_path: Path) -> None:
+def test_a_quiet_run_reports_the_failure_too(tmp_path: Path) -> None:
     name, change, *_ = BROKEN["energy"]
     done = onorbit("run", written(tmp_path, name, change), "--quiet")
     assert (done.returncode, done.stdout) == (1, "")
     assert "the certificate failed" in done.stderr
 
 
-def test_the_same_run_at_its_own_step_is_green(tmp_path: Path) -> None:
+def test_the_same_run_with_its_normal_step_passes(tmp_path: Path) -> None:
     done = onorbit("run", written(tmp_path, "free_tumble", {"duration": 10.0}))
     assert (done.returncode, done.stderr) == (0, "")
     assert f"{GREEN}certificate passed" in done.stdout
@@ -93,8 +93,8 @@ def test_the_summary_names_every_check_that_failed() -> None:
 
 
 @pytest.mark.parametrize("time_step", [1.0, 0.1])
-def test_what_stays_at_rest_is_not_measured_by_its_own_rounding(time_step: float) -> None:
-    """A body that looks alike from all sides feels no gradient: its energy is rounding and nothing else."""
+def test_quantities_at_rest_are_not_judged_by_their_rounding_errors(time_step: float) -> None:
+    """The gravity gradient has no effect on a spherically symmetric body: its energy is rounding only."""
     model = oo.Model.rigid_body(100.0, np.diag([10.0, 10.0, 10.0]))
     orbit = oo.Kepler(semi_major_axis=6778e3, eccentricity=0.0, inclination=0.5)
     at_rest = oo.Simulation(
@@ -116,7 +116,7 @@ SLIDER = """<robot name="slider">
 
 @pytest.mark.parametrize("axis", ["0 1 0", "0 1 1", "1 2 3", "0.3 0.5 0.2"])
 @pytest.mark.parametrize("time_step", [1e-2, 1e-4])
-def test_what_slides_through_the_centre_of_mass_turns_nothing(
+def test_a_slider_through_the_centre_of_mass_rotates_nothing(
     axis: str, time_step: float, tmp_path: Path
 ) -> None:
     file = tmp_path / "slider.urdf"

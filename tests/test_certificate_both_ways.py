@@ -1,4 +1,4 @@
-"""The certificate right both ways: exact runs pass, runs made wrong fail; what was not evaluated is said."""
+"""Exact runs pass their certificates, faulty runs fail them, and checks not evaluated are reported."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from commands import onorbit
 from test_certificate import written
 
 import onorbit_rs as oo
+from onorbit_rs.common.rotations import quaternion_from_matrix
 from onorbit_rs.output.checks import CHECKS, GATE, advice
-from onorbit_rs.rotations import quaternion_from_matrix
-from onorbit_rs.validation import nasa
+from onorbit_rs.tools.validation import nasa
 
 
 def fails(trace: oo.Trace) -> list[str]:
@@ -21,8 +21,8 @@ def fails(trace: oo.Trace) -> list[str]:
 
 
 @pytest.mark.parametrize("time_step", [1.0, 0.25])
-def test_nasas_8b_was_red_though_right(time_step: float) -> None:
-    """A sphere that spins evenly in orbit for 8 h: 0.14 and 0.43 of the commutator, all rounding."""
+def test_nasas_correct_run_8b_passes(time_step: float) -> None:
+    """A sphere spins in orbit for 8 h: 0.14 and 0.43 of the commutator are rounding. It failed once."""
     q = np.concatenate([np.zeros(3), quaternion_from_matrix(nasa.pitched(nasa.TYPICAL, -11.6).T)])
     sphere = oo.Model.rigid_body(1.0, 0.4 * np.eye(3))
     trace = oo.Simulation(
@@ -33,8 +33,8 @@ def test_nasas_8b_was_red_though_right(time_step: float) -> None:
 
 
 @pytest.mark.parametrize("record_every", [1, 10])
-def test_an_earth_pointing_body_was_red_though_right(record_every: int) -> None:
-    """A quarter of an orbit, on its way to 0.35 of the commutator at 1 ms: all of it rounding."""
+def test_a_correct_earth_pointing_body_passes(record_every: int) -> None:
+    """After a quarter of an orbit at 1 ms the rounding approaches 0.35 of the commutator. It failed once."""
     radius, mu = 6778e3, oo.MU_EARTH
     rate = np.sqrt(mu / radius**3)
     orbit = oo.Kepler.from_state([radius, 0, 0], [0, radius * rate, 0])
@@ -47,7 +47,7 @@ def test_an_earth_pointing_body_was_red_though_right(record_every: int) -> None:
 
 
 @pytest.mark.parametrize(("off", "time_step", "duration"), [(0.0, 0.05, 14_400.0), (0.1, 0.01, 1000.0)])
-def test_held_joints_stay_green_for_hours(off: float, time_step: float, duration: float) -> None:
+def test_locked_joints_pass_for_hours(off: float, time_step: float, duration: float) -> None:
     arm = oo.robots.load("station_arm")
     hold = oo.Control(
         oo.JointComputedTorque(kp=25.0, kd=10.0), reference=oo.JointHold(arm.neutral()[7:] + off)
@@ -58,8 +58,8 @@ def test_held_joints_stay_green_for_hours(off: float, time_step: float, duration
 
 
 @pytest.mark.parametrize(("rates", "off"), [((0.5, 5.0, 4.0), 0.01), ((1.2, 4.0, 2.0), 0.5)])
-def test_joints_of_light_links_were_wrong_and_green(rates: tuple[float, ...], off: float) -> None:
-    """Two links of 1e-4 kg on a base of 100 kg at 0.1 s: joints far off, balances in order."""
+def test_wrong_joints_of_light_links_fail(rates: tuple[float, ...], off: float) -> None:
+    """Links of 1e-4 kg on a base of 100 kg at 0.1 s: large joint errors, correct balances. It passed once."""
     builder = oo.ModelBuilder("light", base="base", mass=100.0, inertia=np.diag([10.0, 10.0, 10.0]))
     for name, parent, axis, x in (("a", "base", [0, 1, 0], 0.5), ("b", "a", [0, 0, 1], 0.2)):
         builder.add_link(
@@ -82,7 +82,7 @@ def test_sparse_rows_have_every_check(tmp_path: Path) -> None:
     assert "certificate passed" in done.stdout and "not evaluated" not in done.stdout
 
 
-def test_what_is_not_evaluated_does_not_look_passed(tmp_path: Path) -> None:
+def test_a_check_that_was_not_evaluated_is_not_shown_as_passed(tmp_path: Path) -> None:
     change = {"duration": 2.0, "integrator": "dormand_prince"}
     done = onorbit("run", written(tmp_path, "free_tumble", change))
     assert done.returncode == 0
@@ -90,17 +90,17 @@ def test_what_is_not_evaluated_does_not_look_passed(tmp_path: Path) -> None:
     assert "attitude_consistency" in done.stdout.split("not evaluated: ")[1]
 
 
-def test_a_shorter_step_is_advised_only_where_steps_and_halved_steps_differ() -> None:
+def test_a_shorter_step_is_suggested_only_if_halved_steps_differ() -> None:
     same = {"integrator": "rk4", "time_step_s": 0.1, "certificate_failures": "energy_balance_error_rel"}
     same |= {"attitude_step_doubling_rad": 1e-12, f"{GATE}attitude_step_doubling_rad": 1e-6}
     assert "will not help" in advice(same)
     assert advice(same | {"attitude_step_doubling_rad": 1e-3}) == "try a time_step shorter than 0.1 s"
-    del same["attitude_step_doubling_rad"]  # another engine: nothing was compared
+    del same["attitude_step_doubling_rad"]  # another engine: step doubling was not evaluated
     assert advice(same) == "try a time_step shorter than 0.1 s"
 
 
-def test_a_sample_of_the_campaign_is_judged_right() -> None:
-    """10 000 exact runs and 1000 made wrong: ``make certificate-campaign``."""
+def test_a_sample_of_the_campaign_is_judged_correctly() -> None:
+    """The full campaign of 10 000 exact and 1000 faulty runs is ``make certificate-campaign``."""
     exact = certificate_campaign.exact(60, seed=14, most_rows=3000)
     wrong = certificate_campaign.wrong(12, seed=14)
     print(exact, wrong, sep="\n")
@@ -109,8 +109,8 @@ def test_a_sample_of_the_campaign_is_judged_right() -> None:
 
 
 @pytest.mark.parametrize("law", ["compensated", "uncompensated", "pid"])
-def test_joints_that_friction_holds_beside_one_that_reverses_are_green(law: str) -> None:
-    """Torques that jump moved joints that were stuck, to the certificate alone: red in two runs of three."""
+def test_stuck_joints_beside_a_reversing_joint_pass(law: str) -> None:
+    """After torque steps the certificate once counted stuck joints as moving and failed two runs of three."""
     builder = oo.ModelBuilder("arm", base="base", mass=80.0, com=[0, 0, 0], inertia=8.0 * np.eye(3))
     parent = "base"
     for k, (axis, friction) in enumerate(zip(np.eye(3), (0.16, 0.22, 0.24), strict=True)):

@@ -1,4 +1,4 @@
-"""The command line: an error is one line and exit code 2, and the happy path says where things are."""
+"""The command line: an error is one line and exit code 2, and successful commands name their output."""
 
 from __future__ import annotations
 
@@ -66,16 +66,18 @@ def test_run_writes_the_folder_and_show_reads_it(tmp_path: Path) -> None:
         ("tool: tool ", "tool: toll ", "tool"),
         ("robot: humanoid_torso", "robot: humanoid_torsoo", ":6: robot: no bundled robot"),
         ("robot: humanoid_torso", "robot: missing.urdf", ":6: robot: "),
-        ("[0.5342, -2.341", "[-2.341", "joints has 6 entries, the robot has 7"),
+        ("[0.5342, -2.341", "[-2.341", "joints has 6 entries, but the robot has 7"),
         (
             "joints: [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]",
             "joints: {elbow: 0}",
             "elbow",
         ),
-        ("robot: humanoid_torso", "robot: [", "broken YAML"),
+        ("robot: humanoid_torso", "robot: [", "invalid YAML"),
     ],
 )
-def test_a_wrong_scenario_is_one_line(tmp_path: Path, right: str, wrong: str, says: str) -> None:
+def test_an_invalid_scenario_is_reported_in_one_line(
+    tmp_path: Path, right: str, wrong: str, says: str
+) -> None:
     assert right in SHORT_REACH
     file = tmp_path / "mine.yaml"
     file.write_text(SHORT_REACH.replace(right, wrong))
@@ -94,7 +96,7 @@ def test_a_wrong_scenario_is_one_line(tmp_path: Path, right: str, wrong: str, sa
         ("<robot name='x'/>", "mine.urdf"),
     ],
 )
-def test_a_wrong_urdf_is_one_line(tmp_path: Path, urdf: str, says: str) -> None:
+def test_an_invalid_urdf_is_reported_in_one_line(tmp_path: Path, urdf: str, says: str) -> None:
     (tmp_path / "mine.urdf").write_text(urdf)
     file = tmp_path / "mine.yaml"
     file.write_text(SHORT_REACH.replace("robot: humanoid_torso", "robot: mine.urdf"))
@@ -102,7 +104,7 @@ def test_a_wrong_urdf_is_one_line(tmp_path: Path, urdf: str, says: str) -> None:
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_text_in_brackets_is_no_markup(tmp_path: Path) -> None:
+def test_text_in_brackets_is_not_markup(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(SPIN.replace("name: spin", 'name: "[/oops]"'))
     done = onorbit("run", "mine.yaml", "--out", "o [x]", cwd=tmp_path)
     assert done.returncode == 0, done
@@ -115,13 +117,13 @@ def test_text_in_brackets_is_no_markup(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["x.jpg", "x", "x.png.svg"])
-def test_a_picture_that_would_be_no_png_is_refused(tmp_path: Path, name: str) -> None:
+def test_a_picture_without_the_extension_png_is_rejected(tmp_path: Path, name: str) -> None:
     (tmp_path / "summary.json").write_text('{"simulated_s": 1.0}')
-    assert f"--picture {name} is no .png" in refusal("show", ".", "--picture", name, cwd=tmp_path)
+    assert f"--picture {name} must end in .png" in refusal("show", ".", "--picture", name, cwd=tmp_path)
     assert not (tmp_path / name).exists()
 
 
-def test_kilometres_forgotten_are_refused_by_check_and_leave_no_folder(tmp_path: Path) -> None:
+def test_a_position_in_km_instead_of_m_is_rejected_by_check_without_a_folder(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text("robot: humanoid_torso\norbit: {semi_major_axis: 6778}\nsimulation: {duration: 1 s}\n")
     assert f"{file}:2: orbit: " in refusal("check", file)
@@ -130,7 +132,7 @@ def test_kilometres_forgotten_are_refused_by_check_and_leave_no_folder(tmp_path:
 
 
 def certificate_lines(folder: Path, simulation: str) -> dict[str, list[str]]:
-    """Value, gate, unit and verdict of each check, as ``onorbit run`` prints them."""
+    """Returns value, gate, unit and verdict of each check printed by ``onorbit run``."""
     (folder / "mine.yaml").write_text(SHORT_REACH.replace("time_step: 5 ms", simulation))
     done = onorbit("run", "mine.yaml", cwd=folder)
     assert done.returncode == 0, done
@@ -139,17 +141,17 @@ def certificate_lines(folder: Path, simulation: str) -> dict[str, list[str]]:
     return {name: values.split() for name, values in checks}
 
 
-def test_rows_left_out_leave_no_check_out(tmp_path: Path) -> None:
+def test_omitted_rows_omit_no_check(tmp_path: Path) -> None:
     whole = certificate_lines(tmp_path, "time_step: 5 ms")
     sparse = certificate_lines(tmp_path, "time_step: 5 ms\n  record_every: 2")
     assert list(whole) == list(sparse) and len(whole) == 9
     assert {values[-1] for values in (*whole.values(), *sparse.values())} == {"holds"}
     compared = [name for name in whole if name.endswith("step doubling")]
-    assert len(compared) == 3  # the same steps are halved, whatever is recorded
+    assert len(compared) == 3  # the same steps are halved, independent of recording
     assert [sparse[name] for name in compared] == [whole[name] for name in compared]
 
 
-def test_the_summary_says_which_checks_adaptive_steps_leave_out(tmp_path: Path) -> None:
+def test_the_summary_names_the_checks_omitted_with_adaptive_steps(tmp_path: Path) -> None:
     adaptive = certificate_lines(tmp_path, "integrator: dormand_prince\n  time_step: 5 ms")
     absent = [name for name, values in adaptive.items() if values[-2:] == ["not", "evaluated"]]
     assert {"base rows residual", "attitude consistency"} <= set(absent) < set(adaptive)
@@ -157,7 +159,7 @@ def test_the_summary_says_which_checks_adaptive_steps_leave_out(tmp_path: Path) 
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-def test_a_full_stdout_is_one_line() -> None:
+def test_a_full_device_at_stdout_is_reported_in_one_line() -> None:
     command = [sys.executable, "-m", "onorbit_rs", "list"]
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(
@@ -166,7 +168,7 @@ def test_a_full_stdout_is_one_line() -> None:
     assert (done.returncode, done.stderr) == (2, "onorbit: cannot write: No space left on device\n")
 
 
-def test_wrong_arguments_are_one_line(tmp_path: Path) -> None:
+def test_invalid_arguments_are_reported_in_one_line(tmp_path: Path) -> None:
     assert "NAME_OR_FILE" in refusal("run")
     assert "No such option" in refusal("run", "humanoid_reach", "--bar")
     assert "Commands are: run, resume, list, check, show, info, convert, new, report" in refusal("rum")
@@ -178,19 +180,21 @@ def test_wrong_arguments_are_one_line(tmp_path: Path) -> None:
     assert "is a folder" in refusal("check", tmp_path)
 
 
-def test_binary_scenario_is_one_line(tmp_path: Path) -> None:
+def test_a_binary_scenario_is_reported_in_one_line(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_bytes(bytes(range(256)))
     assert "binary" in refusal("check", file)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")
-def test_ctrl_c_keeps_the_trace_so_far_and_says_so(tmp_path: Path) -> None:
+def test_ctrl_c_keeps_the_partial_trace_and_reports_it(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text(SHORT_REACH.replace("duration: 0.1 s", "duration: 10 h\n  record_every: 1000"))
     command = [sys.executable, "-m", "onorbit_rs", "run", str(file), "--out", str(tmp_path / "out")]
     command += ["--checkpoint-every", "0"]
-    listens = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # a shell's background job does not
+    listens = partial(
+        signal.signal, signal.SIGINT, signal.SIG_DFL
+    )  # background jobs of a shell ignore SIGINT
     with subprocess.Popen(
         command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, preexec_fn=listens
     ) as run:
@@ -208,7 +212,7 @@ def test_ctrl_c_keeps_the_trace_so_far_and_says_so(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_a_warning_is_one_line_and_in_the_summary(tmp_path: Path) -> None:
+def test_a_warning_is_printed_in_one_line_and_in_the_summary(tmp_path: Path) -> None:
     (tmp_path / "w.urdf").write_text(
         '<robot name="x"><link name="a"><inertial><mass value="1"/>'
         '<inertia ixx="1" iyy="1" izz="5" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
@@ -220,13 +224,13 @@ def test_a_warning_is_one_line_and_in_the_summary(tmp_path: Path) -> None:
     assert "triangle inequality" in (tmp_path / "out" / "summary.json").read_text()
 
 
-def test_a_run_that_diverges_on_mujoco_leaves_no_log_behind(tmp_path: Path) -> None:
-    """Neither warnings of MuJoCo's and numpy's on stderr, nor MUJOCO_LOG.TXT in the folder of the user's."""
+def test_a_run_that_diverges_on_mujoco_writes_no_log(tmp_path: Path) -> None:
+    """MuJoCo and numpy print no warnings, and MUJOCO_LOG.TXT is not written to the working directory."""
     mujoco = pytest.importorskip("mujoco", reason="the extra: pip install 'onorbit-rs[mujoco]'")
     loud = mujoco.MjLogConfig.get()
-    assert loud.logto_file  # as MuJoCo is
+    assert loud.logto_file  # like MuJoCo
     (tmp_path / "blow.yaml").write_text(
-        "robot: humanoid_torso\nplant: mujoco\ncontroller: {kind: joint_pid, p: 100000, d: 3000}\n"
+        "robot: humanoid_torso\nengine: mujoco\ncontroller: {kind: joint_pid, p: 100000, d: 3000}\n"
         "reference: {kind: joint_waypoints, points: [[1,1,1,1,1,1,1]], times: [1 s]}\n"
         "simulation: {duration: 5 s, time_step: 10 ms}\n"
     )

@@ -1,4 +1,4 @@
-"""What ``--help`` offers and ``docs/cli.md`` tells are the same."""
+"""``--help`` and ``docs/cli.md`` list the same options."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ PAGE = (Path(__file__).parents[1] / "docs" / "cli.md").read_text()
 
 
 def rows(heading: str) -> list[list[str]]:
-    """Cells of the table below a heading."""
+    """Yields the cells of the table below a heading."""
     section = PAGE.split(f"## {heading}\n")[1].split("\n## ")[0]
     lines = [line for line in section.splitlines() if line.startswith("| ")]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[1:]]
 
 
-def told(command: str) -> set[str]:
-    """Options that the page tells of a command."""
+def documented(command: str) -> set[str]:
+    """Returns the options of a command on the page."""
     return {
         option
         for options, of, _ in rows("Options")
@@ -31,7 +31,7 @@ def told(command: str) -> set[str]:
 
 
 def offered(command: str) -> set[str]:
-    """Options that ``--help`` offers."""
+    """Returns the options of a command in ``--help``."""
     words = [] if command == "onorbit" else [command]
     done = onorbit(*words, "--help")
     assert done.returncode == 0
@@ -43,11 +43,11 @@ def offered(command: str) -> set[str]:
 
 
 @pytest.mark.parametrize("command", ["onorbit", *COMMANDS])
-def test_the_page_tells_every_option_of_every_command_and_no_other(command: str) -> None:
-    assert offered(command) == told(command)
+def test_the_page_lists_exactly_the_options_of_every_command(command: str) -> None:
+    assert offered(command) == documented(command)
 
 
-def test_the_page_tells_every_command_in_the_words_of_its_arguments() -> None:
+def test_the_page_lists_every_command_with_its_arguments() -> None:
     commands = {cells[0].strip("`").split()[1]: cells[0] for cells in first_table()}
     assert set(commands) == set(COMMANDS)
     for name, words in commands.items():
@@ -61,7 +61,7 @@ def first_table() -> list[list[str]]:
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
 
 
-def test_a_command_says_what_it_does_in_a_line_of_the_help() -> None:
+def test_the_help_of_a_command_starts_with_one_line() -> None:
     done = onorbit()
     assert (done.returncode, done.stderr) == (2, "")
     for name in COMMANDS:

@@ -1,4 +1,4 @@
-"""``onorbit new``: what it writes passes ``onorbit check`` and runs with its certificate green."""
+"""``onorbit new``: its scenarios pass ``onorbit check`` and their runs pass their certificates."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from chain_robots import SEVEN, arm
 from commands import onorbit, refusal
 
 import onorbit_rs as oo
-from onorbit_rs.drafting import draft, trial
-from onorbit_rs.drafting.arm import find_arm
-from onorbit_rs.drafting.motion import configuration, home, lines
-from onorbit_rs.drafting.reaction import GENTLE, calmest, turn_per_metre
+from onorbit_rs.common.rotations import angle_between
 from onorbit_rs.exceptions import ScenarioError, SimulationError
-from onorbit_rs.rotations import angle_between
 from onorbit_rs.scenario import load
+from onorbit_rs.tools.new_scenario import draft, trial
+from onorbit_rs.tools.new_scenario.arm import find_arm
+from onorbit_rs.tools.new_scenario.motion import configuration, home, lines
+from onorbit_rs.tools.new_scenario.reaction import GENTLE, rotation_per_metre, smallest_rotation
 
 ROBOTS = Path(__file__).parent / "fixtures" / "robots"
 
@@ -34,7 +34,7 @@ def ran(file: Path) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("robot", oo.robots.names())
-def test_every_bundled_robot_gets_a_scenario_that_certifies(robot: str, tmp_path: Path) -> None:
+def test_every_bundled_robot_gets_a_scenario_that_passes_its_certificate(robot: str, tmp_path: Path) -> None:
     done = onorbit("new", robot, "--out", "mine.yaml", cwd=tmp_path)
     assert done.returncode == 0, done
     assert done.stdout.endswith("next: onorbit check mine.yaml\n")
@@ -54,8 +54,10 @@ def test_every_bundled_robot_gets_a_scenario_that_certifies(robot: str, tmp_path
         ("long_arm_description/urdf/long_arm.urdf.xacro", "latch", 7),
     ],
 )
-def test_robots_on_an_empty_world_get_one_too(robot: str, tool: str, joints: int, tmp_path: Path) -> None:
-    """A hand whose fingers must stay within their limits; 15 m that outweigh their base."""
+def test_robots_on_an_empty_world_link_get_one_too(
+    robot: str, tool: str, joints: int, tmp_path: Path
+) -> None:
+    """A hand whose fingers must stay within their limits; a 15 m arm heavier than its base."""
     file = tmp_path / "mine.yaml"
     drafted = draft(str(ROBOTS / robot), beside=tmp_path)
     assert (drafted.tool, len(drafted.joints)) == (tool, joints)
@@ -66,7 +68,7 @@ def test_robots_on_an_empty_world_get_one_too(robot: str, tool: str, joints: int
 
 
 def fingers(friction: float) -> str:
-    """Seven joints with friction, and two light fingers that slide, shut at zero."""
+    """Returns a robot with seven joints with friction and two light sliding fingers, closed at zero."""
     held = arm(SEVEN, names="tool").replace("<axis", f'<dynamics friction="{friction}" damping="1"/><axis')
     parts = [
         f'<link name="finger_{side}"><inertial><mass value="0.05"/>'
@@ -80,10 +82,8 @@ def fingers(friction: float) -> str:
 
 
 @pytest.mark.parametrize("friction", [0.0, 2.0])
-def test_fingers_stay_within_their_limits_while_friction_holds_the_arm(
-    friction: float, tmp_path: Path
-) -> None:
-    """Held at 25 1/s² from the edge they slid out: the law counts on motions that friction stops."""
+def test_fingers_stay_within_their_limits_while_the_arm_sticks(friction: float, tmp_path: Path) -> None:
+    """With a gain of 25 1/s² at the limit they slid out: the law assumes motions that friction prevents."""
     (tmp_path / "mine.urdf").write_text(fingers(friction))
     file = tmp_path / "mine.yaml"
     file.write_text(draft(str(tmp_path / "mine.urdf"), tool="tool", beside=tmp_path).text)
@@ -92,15 +92,15 @@ def test_fingers_stay_within_their_limits_while_friction_holds_the_arm(
 
 
 @pytest.mark.parametrize(("joints", "key"), [(SEVEN, "duration"), (SEVEN[:3], "times")])
-def test_a_motion_is_as_slow_as_the_rate_limits_need(
+def test_a_motion_is_as_slow_as_the_rate_limits_require(
     joints: list[tuple[str, str, str]], key: str, tmp_path: Path
 ) -> None:
-    """At 0.1 m/s, or in 4 s, joints that may turn by 0.02 rad/s would be too fast."""
+    """At 0.1 m/s, or in 4 s, joints limited to 0.02 rad/s would be too fast."""
     (tmp_path / "mine.urdf").write_text(arm(joints, names="tool").replace('velocity="1"', 'velocity="0.02"'))
     file = tmp_path / "mine.yaml"
     file.write_text(draft(str(tmp_path / "mine.urdf"), beside=tmp_path).text)
     line = next(line for line in file.read_text().splitlines() if line.strip().startswith(f"{key}: "))
-    assert line.endswith("# so long that joints keep their limits")
+    assert line.endswith("# long enough for the limits of the joints")
     summary = ran(file)
     assert summary["joint_rates_exceeded"] == ""
     assert summary["simulated_s"] > 6.0
@@ -110,7 +110,7 @@ def test_a_motion_is_as_slow_as_the_rate_limits_need(
 
 
 def drafted(urdf: str, folder: Path) -> tuple[str, dict[str, Any]]:
-    """The text of a draft and the summary of its run."""
+    """Returns the text of a new scenario and the summary of its run."""
     (folder / "mine.urdf").write_text(urdf)
     text = draft(str(folder / "mine.urdf"), beside=folder).text
     (folder / "mine.yaml").write_text(text)
@@ -121,12 +121,12 @@ def dynamics(urdf: str, values: str) -> str:
     return urdf.replace("<axis", f"<dynamics {values}/><axis")
 
 
-@pytest.mark.parametrize("quick", [trial._QUICK, 1e9])
-def test_quick_dampers_are_left_to_the_adaptive_integrator(
+@pytest.mark.parametrize("quick", [trial._FAST, 1e9])
+def test_stiff_dampers_use_the_adaptive_integrator(
     quick: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Detected before the first run, or when fixed steps fail."""
-    monkeypatch.setattr(trial, "_QUICK", quick)
+    """This is detected before the first run, or after fixed steps fail."""
+    monkeypatch.setattr(trial, "_FAST", quick)
     text, summary = drafted(dynamics(arm(SEVEN[:2], names="tool"), 'damping="200"'), tmp_path)
     assert "\n  integrator: dormand_prince " in text
     assert summary["certificate_passed"]
@@ -135,38 +135,37 @@ def test_quick_dampers_are_left_to_the_adaptive_integrator(
         ran(tmp_path / "mine.yaml")
 
 
-def test_joints_hold_where_no_motion_is_simulated_in_time(
+def test_joints_hold_if_no_motion_can_be_simulated_in_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A damper that stops a joint in 0.1 µs costs millions of steps a second; friction holds it at once."""
-    monkeypatch.setattr("onorbit_rs.drafting.write.LONGEST_S", 2.0)
-    monkeypatch.setattr(trial, "_TO_SEE_S", 0.1)
+    """A damper that stops a joint in 0.1 µs costs millions of steps per second; friction holds it at once."""
+    monkeypatch.setattr("onorbit_rs.tools.new_scenario.write.LONGEST_S", 2.0)
+    monkeypatch.setattr(trial, "_FIRST_ESTIMATE_S", 0.1)
     stiff = dynamics(arm(SEVEN[:4]), 'damping="1e6" friction="5"')
     text, summary = drafted(stiff, tmp_path)
-    assert "all joints hold: not simulated in time (2 runs), the damper" in text
-    assert "  - name: hold                  # all joints stay" in text
+    assert "trial runs of arm motions failed: not simulated in time (2 runs), the damper" in text
+    assert "  - name: hold                  # all joints keep" in text
     assert summary["simulated_s"] == 1.0
     with pytest.raises(ScenarioError, match=r"not simulated in time \(3 runs\), the damper of j"):
         drafted(stiff.replace(' friction="5"', ""), tmp_path)
 
 
-def test_joints_hold_where_limits_leave_them_no_room(tmp_path: Path) -> None:
-    """As some exporters write where they know no limits."""
+def test_joints_hold_if_their_limits_permit_no_motion(tmp_path: Path) -> None:
+    """Some exporters write such limits for unknown values."""
     text, _ = drafted(arm(SEVEN[:2], limits='lower="0" upper="0"'), tmp_path)
-    assert "so all joints hold: the limits of position leave them no room\n" in text
+    assert "trial runs of arm motions failed: position limits leave no range of motion\n" in text
 
 
-def test_a_motion_is_as_slow_as_the_limits_of_effort_need(tmp_path: Path) -> None:
+def test_a_motion_is_as_slow_as_the_effort_limits_require(tmp_path: Path) -> None:
     urdf = arm(SEVEN[:3])
-    assert "so long that" not in drafted(urdf, tmp_path)[0]
+    assert "long enough for" not in drafted(urdf, tmp_path)[0]
     text, summary = drafted(urdf.replace('effort="100"', 'effort="0.1"'), tmp_path)
-    assert "# so long that joints keep their limits" in text
+    assert "# long enough for the limits of the joints" in text
     assert summary["joint_efforts_exceeded"] == ""
     sticky = dynamics(urdf.replace('effort="100"', 'effort="1"'), 'friction="2"')
     text, summary = drafted(sticky, tmp_path)
     assert (
-        "# A slower motion does not bring the efforts of these joints within their limits: j0, j1, j2\n"
-        in text
+        "# The efforts of these joints exceed their limits at any speed of the motion: j0, j1, j2\n" in text
     )
     assert summary["joint_efforts_exceeded"] == "j0, j1, j2"
 
@@ -187,7 +186,7 @@ def test_a_motion_is_as_slow_as_the_limits_of_effort_need(tmp_path: Path) -> Non
             "computed_torque",
             "tool along a line",
         ),
-        (arm([]), None, "turns freely"),
+        (arm([]), None, "rotates freely"),
         (
             arm([("- {a: b}", "revolute", "0 1 0"), ("#true", "revolute", "0 0 1")]),
             "joint_computed_torque",
@@ -195,7 +194,9 @@ def test_a_motion_is_as_slow_as_the_limits_of_effort_need(tmp_path: Path) -> Non
         ),
     ],
 )
-def test_arms_of_every_kind(urdf: str, kind: str | None, moves: str, tmp_path: Path) -> None:
+def test_arms_with_any_number_and_kind_of_joints(
+    urdf: str, kind: str | None, moves: str, tmp_path: Path
+) -> None:
     (tmp_path / "mine.urdf").write_text(urdf)
     file = tmp_path / "mine.yaml"
     file.write_text(draft(str(tmp_path / "mine.urdf"), beside=tmp_path).text)
@@ -206,40 +207,40 @@ def test_arms_of_every_kind(urdf: str, kind: str | None, moves: str, tmp_path: P
     ran(file)
 
 
-def test_an_arm_that_is_heavy_for_its_base_leaves_it_nearly_as_it_is(tmp_path: Path) -> None:
-    """Links of 3 kg on 1 kg: the longest of the lines would turn the base by 54 degrees."""
+def test_a_heavy_arm_hardly_rotates_its_base(tmp_path: Path) -> None:
+    """With links of 3 kg on 1 kg, the longest of the lines would rotate the base by 54 degrees."""
     (tmp_path / "mine.urdf").write_text(arm(SEVEN, names="tool", base=(1, 0.01)))
     file = tmp_path / "mine.yaml"
     file.write_text(draft(str(tmp_path / "mine.urdf"), beside=tmp_path).text)
     assert 0.01 < ran(file)["base_rotation_max_rad"] < 0.4
 
 
-def test_the_line_goes_where_the_base_stays_calm() -> None:
-    """Of all directions the last singular vector turns the base least, and it is tried at full length."""
+def test_the_line_has_the_direction_that_rotates_the_base_least() -> None:
+    """The last singular vector rotates the base least and is tried at full length."""
     model = oo.Model.from_urdf_string(arm(SEVEN, names="tool", base=(1, 0.01)))
     found = find_arm(model)
     assert found is not None
     pose = home(model, found)
-    turns = turn_per_metre(model, found, configuration(model, pose))
-    calm = calmest(turns)
+    turns = rotation_per_metre(model, found, configuration(model, pose))
+    hide_rounding = smallest_rotation(turns)
     rng = np.random.default_rng(3)
     others = rng.normal(size=(200, 3))
     others /= np.linalg.norm(others, axis=1)[:, None]
-    assert np.linalg.norm(turns @ calm) <= np.linalg.norm(others @ turns.T, axis=1).min()
+    assert np.linalg.norm(turns @ hide_rounding) <= np.linalg.norm(others @ turns.T, axis=1).min()
     longest = np.array(next(lines(model, found, pose))[0])
     along_axes = GENTLE / np.linalg.norm(turns, axis=0).min()
-    assert np.linalg.norm(longest) > along_axes  # which the axes alone would have had to stay below
-    assert abs(longest @ calm) == pytest.approx(np.linalg.norm(longest), rel=1e-3)
+    assert np.linalg.norm(longest) > along_axes  # the limit for the coordinate axes
+    assert abs(longest @ hide_rounding) == pytest.approx(np.linalg.norm(longest), rel=1e-3)
 
 
-def test_a_turn_of_the_base_is_foretold() -> None:
-    """A small motion, run: what the Jacobians of the start say, to the first order."""
+def test_the_rotation_of_the_base_is_predicted() -> None:
+    """A small motion agrees to first order with the Jacobians at its start."""
     model = oo.robots.load("humanoid_torso")
     joints = dict(zip(model.joint_names, [0.53, -2.34, -2.0, -2.22, -2.27, -0.13, -0.2], strict=True))
     found = find_arm(model)
     assert found is not None
     q = configuration(model, joints)
-    foretold = np.linalg.norm(turn_per_metre(model, found, q), axis=0)
+    foretold = np.linalg.norm(rotation_per_metre(model, found, q), axis=0)
     for axis in range(3):
         step = np.zeros(3)
         step[axis] = 0.01
@@ -266,7 +267,7 @@ def test_every_section_and_number_has_a_comment() -> None:
     assert all(len(line) <= 110 for line in said)
 
 
-def test_what_stands_in_comments_works_when_it_is_uncommented(tmp_path: Path) -> None:
+def test_commented_sections_work_when_uncommented(tmp_path: Path) -> None:
     text = draft("humanoid_dual_arm").text
     wanted = re.sub(r"(?m)^( +)# ", r"\1", text).replace(
         "\norbit:", "\nepoch: 2026-03-20 12:00:00 UTC\norbit:"
@@ -280,7 +281,7 @@ def test_what_stands_in_comments_works_when_it_is_uncommented(tmp_path: Path) ->
     ran(file)
 
 
-def test_joints_that_cannot_be_at_zero_start_within_their_limits(tmp_path: Path) -> None:
+def test_joints_whose_limits_exclude_zero_start_within_them(tmp_path: Path) -> None:
     urdf = arm(SEVEN, limits='lower="0.3" upper="1.5"', names="tool")
     (tmp_path / "mine.urdf").write_text(urdf)
     data = yaml.safe_load(draft(str(tmp_path / "mine.urdf")).text)
@@ -288,7 +289,7 @@ def test_joints_that_cannot_be_at_zero_start_within_their_limits(tmp_path: Path)
     assert np.all((positions > 0.3) & (positions < 1.5))
 
 
-def test_a_file_that_is_there_stays(tmp_path: Path) -> None:
+def test_an_existing_file_is_not_overwritten(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text("mine")
     assert "--force" in refusal("new", "ets_vii", "--out", file)
@@ -298,12 +299,12 @@ def test_a_file_that_is_there_stays(tmp_path: Path) -> None:
     assert load(file).name == "humanoid_torso_first"
 
 
-def test_without_a_file_the_scenario_is_all_there_is_on_stdout() -> None:
+def test_without_a_file_stdout_contains_only_the_scenario() -> None:
     done = onorbit("new", "humanoid_torso")
     assert done.returncode == 0 and load(yaml.safe_load(done.stdout)).tool == "tool"
 
 
-def test_bad_input_is_one_line(tmp_path: Path) -> None:
+def test_bad_input_is_reported_in_one_line(tmp_path: Path) -> None:
     assert "did you mean 'ets_vii'" in refusal("new", "ets_vi")
     assert "missing.urdf" in refusal("new", tmp_path / "missing.urdf")
     assert "no such folder" in refusal("new", "ets_vii", "--out", tmp_path / "nowhere" / "a.yaml")

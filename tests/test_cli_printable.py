@@ -1,4 +1,4 @@
-"""Names of others' on a terminal: nothing in them steers it, and no encoding is too poor for them."""
+"""Untrusted names are printed without control characters and in every encoding."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from test_cli_terminal import on_terminal
 import onorbit_rs as oo
 from onorbit_rs import robots, scenarios
 from onorbit_rs.cli.list import description
-from onorbit_rs.printable import printable, shell_word
+from onorbit_rs.common.printable import printable, shell_word
 from onorbit_rs.scenario import load
 
 EVIL = "a\x1b[31m\u202eb\nc\x9b\u2028"
@@ -26,19 +26,19 @@ SAFE = "a\\x1b[31m\\u202eb\\nc\\x9b\\u2028"
 
 
 def steers(text: str) -> set[str]:
-    """Characters of control and of direction, but for the ends of lines."""
+    """Returns control and bidirectional characters, except line ends."""
     kinds = ("Cc", "Cf", "Zl", "Zp", "Cs")
     return {char for char in text if unicodedata.category(char) in kinds and char != "\n"}
 
 
-def test_what_steers_a_terminal_is_escaped_and_nothing_else() -> None:
+def test_only_control_characters_are_escaped() -> None:
     assert steers(EVIL) and printable(EVIL) == SAFE
     assert printable("Küche 机器人 µ² ≤") == "Küche 机器人 µ² ≤"
 
 
 @pytest.mark.skipif(os.name != "posix", reason="asks a shell")
 @pytest.mark.parametrize("word", ["plain", "two words", "it's", EVIL, "a\\b\n'", "\udcff\t", "$x `y` \n"])
-def test_a_shell_reads_a_word_back(word: str) -> None:
+def test_a_shell_reads_a_quoted_word_back(word: str) -> None:
     said = shell_word(word)
     assert not steers(said) and "\n" not in said
     done = subprocess.run(["bash", "-c", f"printf %s {said}"], capture_output=True, check=True, timeout=60)
@@ -46,8 +46,8 @@ def test_a_shell_reads_a_word_back(word: str) -> None:
 
 
 @pytest.mark.usefixtures("no_pictures")
-@pytest.mark.skipif(os.name != "posix", reason="a file's name may hold anything there")
-def test_no_command_prints_a_name_that_steers(tmp_path: Path) -> None:
+@pytest.mark.skipif(os.name != "posix", reason="file names may contain any character there")
+def test_no_command_prints_control_characters_of_a_name(tmp_path: Path) -> None:
     (tmp_path / f"{EVIL}.yaml").write_text(SPIN.replace("name: spin", f"name: {json.dumps(EVIL)}"))
     (tmp_path / f"{EVIL}.urdf").write_text(PLAIN.format(name="x\u202ey"))
     (tmp_path / "note.yaml").write_text("Nothing")
@@ -78,13 +78,13 @@ def test_no_command_prints_a_name_that_steers(tmp_path: Path) -> None:
     assert refusal("show", f"no{EVIL}", cwd=tmp_path).startswith("onorbit: no such folder: no")
 
 
-def test_a_comparison_that_is_printed_from_python_does_not_steer_either() -> None:
+def test_a_comparison_printed_from_python_escapes_control_characters() -> None:
     scenario = yaml.safe_load(SPIN) | {"name": EVIL}
     said = str(oo.compare(scenario, scenario))
     assert said.startswith(f"{SAFE} ") and not steers(said)
 
 
-def test_the_bar_of_a_run_shows_no_name_that_steers(tmp_path: Path) -> None:
+def test_the_progress_bar_escapes_control_characters(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(SPIN.replace("name: spin", 'name: "x\\u202ey"'))
     code, written = on_terminal("run", "mine.yaml", cwd=tmp_path)
     assert code == 0 and "x\\u202ey" in written and "\u202e" not in written
@@ -95,14 +95,14 @@ def test_the_bar_of_a_run_shows_no_name_that_steers(tmp_path: Path) -> None:
     [{"PYTHONIOENCODING": "ascii"}, {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}],
     ids=["PYTHONIOENCODING", "LC_ALL"],
 )
-def test_an_encoding_that_lacks_our_letters_gets_others(settings: dict[str, str], tmp_path: Path) -> None:
+def test_characters_missing_from_an_encoding_are_replaced(settings: dict[str, str], tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(SPIN.replace("spin", "Küche"), encoding="utf-8")
     for words, expected in (
         (("info", "ets_vii"), "kg m^2"),
         (("validate", "--list", "--only", "hill"), "<= "),
         (("check", "mine.yaml"), "ok: K\\xfcche: "),
         (("check", "mine.yaml", "--json"), '"scenario": "K\\u00fcche"'),
-        (("check", "Küche.yaml"), "cche.yaml'"),  # its bytes mean nothing in the C locale
+        (("check", "Küche.yaml"), "cche.yaml'"),  # its bytes are invalid in the C locale
     ):
         done = subprocess.run(
             [sys.executable, "-m", "onorbit_rs", *words], capture_output=True, cwd=tmp_path, timeout=60,
@@ -131,21 +131,21 @@ def test_a_narrow_terminal_cuts_neither_names_nor_numbers(words: tuple[str, ...]
     assert "…" not in settled
 
 
-def test_a_list_says_what_the_scenarios_say_of_themselves() -> None:
+def test_the_list_shows_the_descriptions_of_the_scenarios() -> None:
     for name in scenarios.names():
         assert description(name) == load(name).description.strip()
     assert robots.names()
 
 
 @pytest.mark.skipif(os.name != "posix", reason="closes pipes")
-def test_a_reader_that_has_seen_enough_is_no_error(tmp_path: Path) -> None:
+def test_a_closed_pipe_is_not_an_error(tmp_path: Path) -> None:
     coarse = load("free_tumble").resolved()
     coarse["simulation"] |= {"duration": 10.0, "time_step": 0.1}
     (tmp_path / "coarse.yaml").write_text(json.dumps(coarse))
     for words, code in (
         (("list",), 0),
         (("list", "--json"), 0),
-        (("run", "coarse.yaml"), 1),  # its certificate fails, read or not
+        (("run", "coarse.yaml"), 1),  # its certificate fails, whether the output is read or not
     ):
         reader, writer = os.pipe()
         os.close(reader)

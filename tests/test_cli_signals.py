@@ -1,4 +1,4 @@
-"""SIGTERM and SIGHUP end a command as Ctrl-C does; what is whole then is said, and how to go on."""
+"""SIGTERM and SIGHUP end a command like Ctrl-C; it reports which results are complete and how to resume."""
 
 from __future__ import annotations
 
@@ -23,17 +23,20 @@ from commands import SPIN, onorbit
 
 import onorbit_rs as oo
 from onorbit_rs.cli.signals import ending_signals
-from onorbit_rs.progress import Progress
+from onorbit_rs.common.progress import Progress
 from onorbit_rs.scenario import load
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="sends SIGTERM and SIGHUP")
 
 
-TELLS = """
+ANNOUNCES_START = """
 import contextlib, pathlib
-from onorbit_rs import cli, keeping, progress, running
+from onorbit_rs import cli
+from onorbit_rs.simulation import finish
+from onorbit_rs.common import progress
+from onorbit_rs.simulation import run
 
-real = running.progress_bar
+real = run.progress_bar
 
 @contextlib.contextmanager
 def bar(*given, **options):
@@ -44,18 +47,18 @@ def bar(*given, **options):
                 drawn.move(t, duration)
         yield progress.Progress(move, drawn.tell)
 
-running.progress_bar = bar
-keeping.write_pictures = lambda *_, **__: None
+run.progress_bar = bar
+finish.write_pictures = lambda *_, **__: None
 cli.main()
 """
-"""A command without pictures that leaves a file once its simulation loop goes round."""
+"""A command without figures that writes a file once its simulation loop runs."""
 
 
 def run_in_the_background(tmp_path: Path, duration: str, **streams: Any) -> subprocess.Popen[str]:
-    """A run whose checkpoints come too seldom: what it leaves is the last one."""
+    """Starts a run with a long checkpoint interval, so that only the checkpoint at its stop is written."""
     file = tmp_path / "mine.yaml"
     file.write_text(SPIN.replace("duration: 0.1 s", f"duration: {duration}, record_every: 1000"))
-    command = [sys.executable, "-c", TELLS, "run", str(file), "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-c", ANNOUNCES_START, "run", str(file), "--out", str(tmp_path / "out")]
     return subprocess.Popen(
         [*command, "--checkpoint-every", "1000"], stdout=subprocess.PIPE, text=True, cwd=tmp_path, **streams
     )
@@ -70,30 +73,30 @@ def wait_until_it_runs(tmp_path: Path, run: subprocess.Popen[str]) -> None:
 
 @pytest.fixture
 def hangups_are_heard() -> Iterator[None]:
-    """As from a terminal: under ``nohup`` the tests ignore SIGHUP, and so would what they start."""
+    """Restores SIGHUP: under ``nohup`` the tests, and their child processes, would ignore it."""
     before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
     yield
     signal.signal(signal.SIGHUP, before)
 
 
-def test_sigterm_leaves_a_last_checkpoint_and_says_how_to_go_on(tmp_path: Path) -> None:
+def test_sigterm_writes_a_last_checkpoint_and_says_how_to_resume(tmp_path: Path) -> None:
     with run_in_the_background(tmp_path, "100 h", stderr=subprocess.PIPE) as run:
         wait_until_it_runs(tmp_path, run)
         run.send_signal(signal.SIGTERM)
-        run.send_signal(signal.SIGTERM)  # what is written because of the first goes on
+        run.send_signal(signal.SIGTERM)  # the output begun after the first signal continues
         _, stderr = run.communicate(timeout=60)
     out = tmp_path / "out"
     assert run.returncode == 143, stderr
     assert stderr.startswith("onorbit: stopped by SIGTERM at t = ") and len(stderr.splitlines()) == 1
-    assert f"go on with: onorbit resume {out}" in stderr
+    assert f"continue with: onorbit resume {out}" in stderr
     record = json.loads((out / "checkpoint" / "state.json").read_text())
     with np.load(out / "trace.npz") as stored:
-        assert 0 < record["rows"] in (len(stored["time"]) - 1, len(stored["time"]))  # the instant of the stop
+        assert 0 < record["rows"] in (len(stored["time"]) - 1, len(stored["time"]))  # the time of the stop
     assert json.loads((out / "summary.json").read_text())["status"] == "interrupted"
 
 
-def test_a_terminal_that_closes_leaves_a_last_checkpoint(tmp_path: Path, hangups_are_heard: None) -> None:
-    """Its progress bar has nowhere to go, and nothing can be said."""
+def test_a_closed_terminal_leaves_a_last_checkpoint(tmp_path: Path, hangups_are_heard: None) -> None:
+    """Neither the progress bar nor messages can be printed."""
     ours, theirs = pty.openpty()
     run = run_in_the_background(tmp_path, "100 h", stderr=theirs, stdin=theirs, start_new_session=True)
     os.close(theirs)
@@ -104,7 +107,7 @@ def test_a_terminal_that_closes_leaves_a_last_checkpoint(tmp_path: Path, hangups
         wait_until_it_runs(tmp_path, run)
         stopped.set()
         reader.join()
-        os.close(ours)  # from here on whatever is written there fails
+        os.close(ours)  # from here on, all output fails
         run.send_signal(signal.SIGHUP)
         run.communicate(timeout=60)
     assert run.returncode == 129
@@ -112,20 +115,20 @@ def test_a_terminal_that_closes_leaves_a_last_checkpoint(tmp_path: Path, hangups
     assert (tmp_path / "out" / "trace.npz").is_file()
 
 
-def test_handlers_are_those_of_before_and_what_is_ignored_stays_ignored() -> None:
+def test_signal_handlers_are_restored_and_ignored_signals_stay_ignored() -> None:
     before = signal.getsignal(signal.SIGTERM), signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         with ending_signals():
             assert signal.getsignal(signal.SIGHUP) == signal.SIG_IGN  # nohup
             with pytest.raises(KeyboardInterrupt, match="SIGTERM"):
                 signal.raise_signal(signal.SIGTERM)
-            signal.raise_signal(signal.SIGTERM)  # again at once: what is written is not interrupted
+            signal.raise_signal(signal.SIGTERM)  # a second signal at once does not interrupt the output
         assert signal.getsignal(signal.SIGTERM) == before[0]
     finally:
         signal.signal(signal.SIGHUP, before[1])
 
 
-def test_other_threads_leave_signals_alone() -> None:
+def test_other_threads_do_not_change_signal_handlers() -> None:
     seen: list[Any] = []
 
     def elsewhere() -> None:
@@ -143,17 +146,17 @@ def interrupted_while(monkeypatch: pytest.MonkeyPatch, step: str) -> None:
         _thread.interrupt_main()
         time.sleep(1.0)
 
-    monkeypatch.setattr(f"onorbit_rs.keeping.{step}", pressed)
+    monkeypatch.setattr(f"onorbit_rs.simulation.finish.{step}", pressed)
 
 
-def test_ctrl_c_while_figures_are_drawn_says_what_is_whole(
+def test_ctrl_c_while_figures_are_drawn_reports_the_complete_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     interrupted_while(monkeypatch, "write_pictures")
     (tmp_path / "mine.yaml").write_text(SPIN)
     done = onorbit("run", "mine.yaml", "--out", "out", cwd=tmp_path)
     assert done.returncode == 130 and len(done.stderr.splitlines()) == 1
-    assert "trace and summary are whole in out" in done.stderr and "--force" not in done.stderr
+    assert "trace and summary in out are complete" in done.stderr and "--force" not in done.stderr
     command = done.stderr.split("draw the figures with: onorbit ")[1].split()
     with np.load(tmp_path / "out" / "trace.npz") as stored:
         assert len(stored["time"]) == 11
@@ -163,17 +166,17 @@ def test_ctrl_c_while_figures_are_drawn_says_what_is_whole(
     assert list((tmp_path / "out" / "figures").glob("*.pdf"))
 
 
-def test_ctrl_c_while_the_trace_is_written_says_that_it_is_not_whole(
+def test_ctrl_c_while_the_trace_is_written_reports_that_it_is_incomplete(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     interrupted_while(monkeypatch, "write_trace")
     (tmp_path / "mine.yaml").write_text(SPIN)
     done = onorbit("run", "mine.yaml", "--out", "out", cwd=tmp_path)
     assert done.returncode == 130
-    assert "not all of its results are in out: run it again with --force" in done.stderr
+    assert "results in out are incomplete; run it again with --force" in done.stderr
 
 
-def test_a_second_ctrl_c_ends_the_figures_of_an_interrupted_run(
+def test_a_second_ctrl_c_stops_drawing_the_figures_of_an_interrupted_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     interrupted_while(monkeypatch, "write_pictures")
@@ -184,14 +187,16 @@ def test_a_second_ctrl_c_ends_the_figures_of_an_interrupted_run(
     def pressed(*_: Any, **__: Any) -> Iterator[Progress]:
         yield Progress(lambda t, duration: _thread.interrupt_main())
 
-    monkeypatch.setattr("onorbit_rs.running.progress_bar", pressed)
-    with pytest.raises(oo.exceptions.RunInterrupted, match=r"onorbit resume .*onorbit report .* draws them"):
+    monkeypatch.setattr("onorbit_rs.simulation.run.progress_bar", pressed)
+    with pytest.raises(
+        oo.exceptions.RunInterrupted, match=r"onorbit resume .*draw them with: onorbit report"
+    ):
         oo.run(data, tmp_path / "out", quiet=True)
     assert (tmp_path / "out" / "checkpoint" / "state.json").is_file()
 
 
 def read_all(terminal: int, stopped: threading.Event) -> None:
-    """A terminal that nobody reads stops who writes."""
+    """Reads the terminal, since writing blocks if nobody reads."""
     while not stopped.is_set():
         if select.select([terminal], [], [], 0.05)[0]:
             os.read(terminal, 65536)

@@ -1,4 +1,4 @@
-"""What the terminal says of a run: checks beside their gates, controllers by name, a divergence in a line."""
+"""Output of a run on the terminal: checks beside their gates, controllers by name, divergence in one line."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def printed(capsys: pytest.CaptureFixture[str], summary: dict[str, Any]) -> list
     return capsys.readouterr().out.splitlines()
 
 
-def test_every_check_stands_beside_its_gate_and_unit(capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_check_is_printed_beside_its_gate_and_unit(capsys: pytest.CaptureFixture[str]) -> None:
     run = oo.run(short("humanoid_reach"), quiet=True)
     lines = printed(capsys, run.summary)
     rows = run.trace.certificate()
@@ -44,7 +44,7 @@ def test_every_check_stands_beside_its_gate_and_unit(capsys: pytest.CaptureFixtu
         assert line.split()[-4:] == [f"{value:.2g}", f"{gate:.2g}", unit, "holds"] and passed
 
 
-def test_a_check_that_breaks_is_told_apart_from_those_that_hold(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_failed_check_is_distinguished_from_passed_ones(capsys: pytest.CaptureFixture[str]) -> None:
     data = load("free_tumble").resolved()
     data["simulation"] |= {"duration": 10.0, "time_step": 0.1}
     summary = oo.run(data, quiet=True).summary
@@ -56,7 +56,7 @@ def test_a_check_that_breaks_is_told_apart_from_those_that_hold(capsys: pytest.C
     assert broken == failed and 0 < len(broken) < len(CHECKS)
 
 
-def test_a_summary_of_before_gates_were_told_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_summary_of_an_earlier_version_without_gates_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     summary = {"certificate_passed": True, "energy_balance_error_rel": 1e-9}
     assert printed(capsys, summary)[-2].split() == [
         "energy",
@@ -70,7 +70,9 @@ def test_a_summary_of_before_gates_were_told_is_printed(capsys: pytest.CaptureFi
     assert "nothing was checked" in "".join(printed(capsys, {"status": "complete"}))
 
 
-def test_errors_of_several_controllers_are_printed_by_their_names(capsys: pytest.CaptureFixture[str]) -> None:
+def test_errors_of_several_controllers_are_printed_with_their_names(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     summary = oo.run(short("dual_arm_reach"), quiet=True).summary
     lines = printed(capsys, summary)
     for name in ("left", "right"):
@@ -80,14 +82,14 @@ def test_errors_of_several_controllers_are_printed_by_their_names(capsys: pytest
             assert line.split()[-2:] == [f"{value:.4g}", unit]
         (line,) = [line for line in lines if line.startswith(f"{name}: goal")]
         assert line.split()[-1] == summary[f"control_{name}_result"]
-    assert not any(line.startswith("tool ") for line in lines)  # it is the first controller's
+    assert not any(line.startswith("tool ") for line in lines)  # the error of the first controller
     one = printed(capsys, oo.run(short("humanoid_reach"), quiet=True).summary)
     assert [line.split(",")[0] for line in one if line.startswith("tool ")] == [
         "tool position error", "tool attitude error",
     ]  # fmt: skip
 
 
-def test_joint_limits_that_were_exceeded_are_said(capsys: pytest.CaptureFixture[str]) -> None:
+def test_exceeded_joint_limits_are_reported(capsys: pytest.CaptureFixture[str]) -> None:
     assert "joint limits were exceeded: elbow" in printed(capsys, {"joint_limits_exceeded": "elbow"})
     assert not any("limits" in line for line in printed(capsys, {"joint_limits_exceeded": ""}))
 
@@ -99,7 +101,7 @@ BLOWING = (
 )
 
 
-def test_a_run_that_diverged_names_the_worst_joint_and_keeps_the_state_in_the_error(tmp_path: Path) -> None:
+def test_a_diverged_run_names_the_fastest_joint_and_keeps_the_state_in_the_error(tmp_path: Path) -> None:
     (tmp_path / "blow.yaml").write_text(BLOWING)
     with pytest.raises(SimulationError) as caught, pytest.warns(UserWarning, match="errors grow"):
         oo.run(tmp_path / "blow.yaml", quiet=True)
@@ -111,26 +113,26 @@ def test_a_run_that_diverged_names_the_worst_joint_and_keeps_the_state_in_the_er
     assert "controller.p corrects errors at 1.67e+04 1/s" in warned
     assert f"diverged at t = {error.time:.6g} s, in step {round(error.time / 0.01) + 1}:" in said
     assert f"joint '{joint}', {np.abs(error.v).max():.3g} rad/s" in said.replace("-", "")
-    assert "try a time_step shorter than 0.01 s, or softer gains" in said
+    assert "try a time_step shorter than 0.01 s, or lower gains" in said
     assert len(said) < 300 and "[" not in said
     assert len(error.q) == 14 and len(error.v) == 13
     np.testing.assert_array_equal(pickle.loads(pickle.dumps(error)).v, error.v)
 
 
 @pytest.mark.parametrize("value", ["nan", "inf", "-1"])
-def test_a_period_of_checkpoints_that_is_none_is_refused_before_the_run(value: str, tmp_path: Path) -> None:
+def test_an_invalid_checkpoint_interval_is_rejected_before_the_run(value: str, tmp_path: Path) -> None:
     said = refusal("run", "free_tumble", "--out", "out", "--checkpoint-every", value, cwd=tmp_path)
-    assert "checkpoint_every is" in said and "positive" in said
+    assert "checkpoint_every is" in said and "at least zero" in said
     assert not (tmp_path / "out").exists()
     with pytest.raises(InputError, match="checkpoint_every"):
         oo.run("free_tumble", quiet=True, checkpoint_every=float(value))
 
 
-def test_checkpoints_without_a_folder_are_refused_with_the_way_out() -> None:
+def test_checkpoints_without_a_folder_are_rejected_with_a_fix() -> None:
     assert refusal("run", "free_tumble", "--checkpoint-every", "5").endswith("add --out DIR")
 
 
-def test_a_moment_is_looked_at_before_anything_is_printed(tmp_path: Path) -> None:
+def test_an_instant_is_checked_before_anything_is_printed(tmp_path: Path) -> None:
     (tmp_path / "summary.json").write_text('{"simulated_s": 1.0}')
     listed(tmp_path)
     for moment in ("7", "nan", "-1"):
@@ -140,12 +142,12 @@ def test_a_moment_is_looked_at_before_anything_is_printed(tmp_path: Path) -> Non
     assert "replace it with --force" in refusal("show", ".", "--picture", "p.png", cwd=tmp_path)
 
 
-def test_a_figure_of_a_comparison_is_not_replaced_unasked(tmp_path: Path) -> None:
+def test_a_figure_of_a_comparison_is_not_replaced_without_force(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(SPIN)
     figure = tmp_path / "d.svg"
     figure.write_text("mine")
     words = ("compare", "mine.yaml", "mine.yaml", "--out", "d.svg")
-    assert "d.svg is there already; replace it with --force" in refusal(*words, cwd=tmp_path)
+    assert "d.svg already exists; replace it with --force" in refusal(*words, cwd=tmp_path)
     assert figure.read_text() == "mine"
     done = onorbit(*words, "--force", "--json", cwd=tmp_path)
     assert done.returncode == 0 and json.loads(done.stdout)["agrees"] is True
@@ -159,35 +161,37 @@ PLAIN = (
 
 
 @pytest.mark.parametrize("command", ["info", "new"])
-def test_options_of_a_robot_that_would_do_nothing_are_refused(command: str, tmp_path: Path) -> None:
+def test_robot_options_without_effect_are_rejected(command: str, tmp_path: Path) -> None:
     (tmp_path / "plain.urdf").write_text(PLAIN.format(name="x"))
     said = refusal(command, "plain.urdf", "--package-path", "nowhere", cwd=tmp_path)
-    assert said == "onorbit: --package-path nowhere: there is no such folder"
+    assert said == "onorbit: --package-path nowhere: no such folder"
     said = refusal(command, "plain.urdf", "--arg", "a=1", cwd=tmp_path)
     assert (
-        said == "onorbit: --arg is for a xacro, and plain.urdf is not named so: leave it out, or add --xacro"
+        said
+        == "onorbit: --arg applies only to xacro files, but plain.urdf does not end in .xacro; omit --arg or "
+        "add --xacro"
     )
     for option in (("--arg", "a=1"), ("--package-path", ".")):
-        assert "for a robot's file" in refusal(command, "ets_vii", *option, cwd=tmp_path)
+        assert "apply only to robot files" in refusal(command, "ets_vii", *option, cwd=tmp_path)
     assert "name=value" in refusal(command, "plain.urdf", "--arg", "a", cwd=tmp_path)
     done = onorbit(command, "plain.urdf", "--package-path", ".", cwd=tmp_path)
     assert done.returncode == 0, done
 
 
-def test_the_next_command_reads_the_robot_as_this_one_did(tmp_path: Path) -> None:
+def test_the_suggested_command_repeats_the_robot_options(tmp_path: Path) -> None:
     pytest.importorskip("xacro", reason="the extra: pip install 'onorbit-rs[xacro]'")
     text = PLAIN.format(name="$(arg who)").replace(
         "<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" '
     )
     (tmp_path / "r.xacro").write_text(text)
     words = ("r.xacro", "--package-path", ".", "--arg", "who=a b")
-    told = onorbit("info", *words, cwd=tmp_path).stdout.splitlines()[-1]
-    assert told == "next: onorbit new r.xacro --package-path . --arg 'who=a b' --out FILE"
+    last_line = onorbit("info", *words, cwd=tmp_path).stdout.splitlines()[-1]
+    assert last_line == "next: onorbit new r.xacro --package-path . --arg 'who=a b' --out FILE"
     made = onorbit("new", *words, cwd=tmp_path).stdout.splitlines()[0]
     assert made == "# Written by: onorbit new r.xacro --package-path . --arg 'who=a b'"
 
 
-def test_one_joint_is_one_joint(tmp_path: Path) -> None:
+def test_the_number_of_joints_is_singular_for_one(tmp_path: Path) -> None:
     (tmp_path / "one.urdf").write_text(
         '<robot name="one"><link name="a"><inertial><mass value="5"/>'
         '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'

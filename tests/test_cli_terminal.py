@@ -1,4 +1,4 @@
-"""What a person sees on a terminal, and what a program gets from a pipe."""
+"""Output on a terminal and in a pipe."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ import pytest
 from commands import SPIN, onorbit, refusal
 from test_cli import SHORT_REACH
 
-from onorbit_rs import progress, robots, scenarios
+from onorbit_rs import robots, scenarios
+from onorbit_rs.common import progress
 
 COLOR = re.compile(r"\x1b\[[0-9;]*3[0-9][0-9;]*m")
 """A sequence that sets a foreground colour."""
@@ -36,7 +37,7 @@ def spin(tmp_path: Path) -> Path:
 
 
 def on_terminal(*arguments: str | Path, cwd: Path, **environment: str) -> tuple[int, str]:
-    """The exit code and everything written to a terminal of 100 columns."""
+    """Returns the exit code and everything written to a terminal of 100 columns."""
     pty = pytest.importorskip("pty", reason="needs a pseudo-terminal")
     master, slave = pty.openpty()
     settings = {name: value for name, value in os.environ.items() if name not in ("NO_COLOR", "FORCE_COLOR")}
@@ -54,7 +55,7 @@ def _chunks(master: int) -> Iterator[bytes]:
     while True:
         try:
             chunk = os.read(master, 65536)
-        except OSError:  # the other side is closed
+        except OSError:  # the other end is closed
             return
         if not chunk:
             return
@@ -62,7 +63,7 @@ def _chunks(master: int) -> Iterator[bytes]:
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_json_of_a_run_is_the_summary_and_nothing_else(spin: Path) -> None:
+def test_json_output_of_a_run_is_the_summary_only(spin: Path) -> None:
     done = onorbit("run", spin.name, "--out", "out", "--json", cwd=spin.parent)
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(done.stdout) == json.loads((spin.parent / "out" / "summary.json").read_text())
@@ -88,15 +89,15 @@ def test_json_of_list_and_check(reach: Path) -> None:
     assert checked["ok"] is True
     assert (checked["orbit"], checked["environment"]) == ("kepler", ["gravity_gradient"])
     assert checked["duration_s"] == 0.1 and len(checked["joints"]) == 7
-    assert checked["plant"] == "native"
+    assert checked["engine"] == "native"
 
 
-def test_check_says_which_plant_would_run(reach: Path) -> None:
+def test_check_says_which_engine_would_run(reach: Path) -> None:
     assert onorbit("check", reach).stdout.splitlines()[0].endswith("s with rk4")
-    pytest.importorskip("mujoco", reason="the second plant is in the extra: pip install 'onorbit-rs[mujoco]'")
-    reach.write_text(reach.read_text() + "\nplant: mujoco\n")
+    pytest.importorskip("mujoco", reason="pip install 'onorbit-rs[mujoco]'")
+    reach.write_text(reach.read_text() + "\nengine: mujoco\n")
     assert onorbit("check", reach).stdout.splitlines()[0].endswith("s with rk4 on mujoco")
-    assert json.loads(onorbit("check", reach, "--json").stdout)["plant"] == "mujoco"
+    assert json.loads(onorbit("check", reach, "--json").stdout)["engine"] == "mujoco"
 
 
 def test_an_error_leaves_stdout_empty_for_programs(tmp_path: Path) -> None:
@@ -107,7 +108,7 @@ def test_an_error_leaves_stdout_empty_for_programs(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_quiet_says_nothing(spin: Path) -> None:
+def test_quiet_prints_nothing(spin: Path) -> None:
     for arguments in (
         ("check", "mine.yaml"),
         ("run", "mine.yaml", "--out", "out"),
@@ -119,7 +120,7 @@ def test_quiet_says_nothing(spin: Path) -> None:
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_every_command_says_the_next(spin: Path) -> None:
+def test_every_command_suggests_the_next(spin: Path) -> None:
     folder = spin.parent
     assert "next: onorbit run mine.yaml --out DIR" in onorbit("check", "mine.yaml", cwd=folder).stdout
     ran = onorbit("run", "mine.yaml", "--out", "a b", cwd=folder).stdout
@@ -131,7 +132,7 @@ def test_every_command_says_the_next(spin: Path) -> None:
     assert "report.html" in shown
 
 
-def test_lines_in_a_pipe_are_whole() -> None:
+def test_lines_in_a_pipe_are_not_wrapped() -> None:
     lines = onorbit("list").stdout.splitlines()
     for name in scenarios.names():
         (line,) = [line for line in lines if line.split()[:1] == [name]]
@@ -139,7 +140,7 @@ def test_lines_in_a_pipe_are_whole() -> None:
     assert "\x1b" not in "".join(lines)
 
 
-def test_a_terminal_shows_what_is_done_in_colour(spin: Path) -> None:
+def test_a_terminal_shows_progress_in_colour(spin: Path) -> None:
     code, written = on_terminal("run", spin, "--out", spin.parent / "out", cwd=spin.parent)
     assert code == 0, written
     assert COLOR.search(written)
@@ -147,7 +148,7 @@ def test_a_terminal_shows_what_is_done_in_colour(spin: Path) -> None:
     assert "certificate passed" in written
 
 
-def test_no_color_and_dumb_terminals_get_none(reach: Path) -> None:
+def test_no_color_and_dumb_terminals_get_no_colour(reach: Path) -> None:
     for environment, arguments in (
         ({"NO_COLOR": "1"}, ("run", reach)),
         ({"NO_COLOR": "1"}, ("run", "no_such")),
@@ -165,28 +166,28 @@ def test_quiet_on_a_terminal_shows_no_bar(reach: Path) -> None:
 
 
 class Bar:
-    """What rich's bar is told."""
+    """Records the calls of rich's progress bar."""
 
     def __init__(self) -> None:
-        self.told: list[dict[str, Any]] = []
+        self.updates: list[dict[str, Any]] = []
 
-    def reset(self, task: int, **told: Any) -> None:
-        self.told.append(told)
+    def reset(self, task: int, **updates: Any) -> None:
+        self.updates.append(updates)
 
-    def update(self, task: int, **told: Any) -> None:
-        self.told.append(told)
+    def update(self, task: int, **updates: Any) -> None:
+        self.updates.append(updates)
 
 
-def test_a_resumed_run_is_as_fast_as_it_is_now(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_speed_of_a_resumed_run_excludes_earlier_time(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = iter([100.0, 102.0])
     monkeypatch.setattr(progress.time, "perf_counter", lambda: next(clock))
     bar = Bar()
     move = progress._Mover(bar, 0)
     move(5000.0, 6000.0)  # stopped at 5000 s
     move(5010.0, 6000.0)  # 10 s of simulation in 2 s
-    assert bar.told[0] == {"completed": 5000.0, "total": 6000.0, "start": True}
-    assert bar.told[1]["doing"] == "t = 5000 / 6000 s"
-    assert bar.told[-1] == {"completed": 5010.0, "doing": "t = 5010 / 6000 s, 5x real time"}
+    assert bar.updates[0] == {"completed": 5000.0, "total": 6000.0, "start": True}
+    assert bar.updates[1]["doing"] == "t = 5000 / 6000 s"
+    assert bar.updates[-1] == {"completed": 5010.0, "doing": "t = 5010 / 6000 s, 5x real time"}
 
 
 @pytest.mark.parametrize(
@@ -216,7 +217,7 @@ def test_the_shell_completes_names_and_files(
     assert offered <= answers and not answers & not_offered, done
 
 
-def test_bad_arguments_of_report_are_one_line(tmp_path: Path) -> None:
+def test_bad_arguments_of_report_are_reported_in_one_line(tmp_path: Path) -> None:
     assert "no such folder" in refusal("report", tmp_path / "nowhere")
     assert "no run in this folder" in refusal("report", tmp_path)
     assert "DIR" in refusal("report")

@@ -1,4 +1,4 @@
-"""Two runs side by side: what they differ by, where they part, and what is said of the rest."""
+"""Comparison of two runs: differences, the time of divergence, and notes."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from commands import onorbit
 from results import listed
 
 import onorbit_rs as oo
-from onorbit_rs.comparison.measures import _length
-from onorbit_rs.comparison.recorded import Recorded
-from onorbit_rs.comparison.rows import common_rows
 from onorbit_rs.exceptions import CompareError, DtypeError, InputError, NotFoundError, ReadError
 from onorbit_rs.figures import differences
 from onorbit_rs.scenario import load
+from onorbit_rs.tools.comparison.alignment import aligned_rows
+from onorbit_rs.tools.comparison.quantities import _length
+from onorbit_rs.tools.comparison.recorded import Recorded
 
 
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("onorbit_rs.keeping.write_pictures", lambda *_, **__: None)
+    monkeypatch.setattr("onorbit_rs.simulation.finish.write_pictures", lambda *_, **__: None)
 
 
 def scenario(name: str = "humanoid_reach", **simulation: Any) -> dict[str, Any]:
@@ -33,7 +33,7 @@ def scenario(name: str = "humanoid_reach", **simulation: Any) -> dict[str, Any]:
 
 
 def spin(rate: float, duration: float = 10.0, **simulation: Any) -> dict[str, Any]:
-    """A ball that turns about z at that rate and drifts along x at twice that."""
+    """Returns a sphere that rotates about z at this rate and moves along x at twice the rate."""
     return {
         "robot": {"rigid_body": {"mass": 2.0, "inertia": [[3, 0, 0], [0, 3, 0], [0, 0, 3]]}},
         "initial": {"linear_velocity": [2.0 * rate, 0, 0], "angular_velocity": [0, 0, rate]},
@@ -42,7 +42,7 @@ def spin(rate: float, duration: float = 10.0, **simulation: Any) -> dict[str, An
 
 
 def test_differences_are_those_of_the_closed_form() -> None:
-    """Rates of 0.1 and 0.11 rad/s: after 10 s 0.1 rad and 0.2 m apart, parted where 0.01 rad are passed."""
+    """Rates of 0.1 and 0.11 rad/s differ by 0.1 rad and 0.2 m after 10 s and diverge beyond 0.01 rad."""
     compared = oo.compare(spin(0.1), spin(0.11), tolerance=0.0105)
     attitude, position = compared["base attitude"], compared["base position"]
     np.testing.assert_allclose(attitude.values, 0.01 * compared.time, atol=1e-12)
@@ -50,7 +50,7 @@ def test_differences_are_those_of_the_closed_form() -> None:
     assert attitude.largest == attitude.final == pytest.approx(0.1)
     assert attitude.largest_at == 10.0
     assert attitude.parts_at == pytest.approx(1.1)
-    # lengths grow to 2.2 m, and are allowed that share of it
+    # the tolerance is relative to the largest position, 2.2 m
     assert position.allowed == pytest.approx(0.0105 * 2.2)
     assert position.parts_at == pytest.approx(1.2)
     assert compared["linear momentum"].largest == pytest.approx(2.0 * 0.02)
@@ -58,7 +58,7 @@ def test_differences_are_those_of_the_closed_form() -> None:
     # ½ m v² + ½ I w²
     assert compared["kinetic energy"].largest == pytest.approx((4.0 + 1.5) * (0.11**2 - 0.1**2))
     assert not compared.agrees
-    assert compared.parts_at == 0.0  # of the momentum, from the start
+    assert compared.parts_at == 0.0  # the momentum differs from the start
     assert "joints" not in [difference.name for difference in compared.differences]
 
 
@@ -78,7 +78,7 @@ def orbiting(radius: float, **simulation: Any) -> dict[str, Any]:
     return data | {"initial": {"angular_velocity": [0.01, 0.02, 0.0]}}
 
 
-def test_runs_on_other_orbits_part_although_they_are_the_same_in_w() -> None:
+def test_runs_on_different_orbits_diverge_despite_equal_motion_in_w() -> None:
     compared = oo.compare(orbiting(7.0e6), orbiting(9.0e6))
     assert compared["base position"].largest < 1e-3
     assert compared["inertial position"].values[0] == pytest.approx(2.0e6)
@@ -86,18 +86,18 @@ def test_runs_on_other_orbits_part_although_they_are_the_same_in_w() -> None:
     assert "orbit.semi_major_axis differs: 7000000 and 9000000" in compared.notes
 
 
-def test_orbits_two_metres_apart_part_however_large_they_are() -> None:
-    """A millionth of 7000 km is 7 m; the robots are on their references, where 1 µm counts."""
+def test_orbits_two_metres_apart_diverge_regardless_of_their_radius() -> None:
+    """A millionth of 7000 km is 7 m, but the robots are at their references, where 1 µm is relevant."""
     compared = oo.compare(orbiting(7.0e6), orbiting(7.0e6 + 2.0))
     position = compared["inertial position"]
     assert position.values[0] == pytest.approx(2.0)
     assert position.parts_at == 0.0
-    assert position.allowed == pytest.approx(1.1e-6, rel=0.02)  # and the rounding of the orbit
+    assert position.allowed == pytest.approx(1.1e-6, rel=0.02)  # plus the rounding of the orbit
     assert not compared.agrees
 
 
-def test_a_tilt_that_rounds_away_is_no_parting() -> None:
-    """1e-15 rad at 7000 km are 7 nm, eight units in the last place."""
+def test_a_tilt_below_rounding_is_not_a_divergence() -> None:
+    """At 7000 km, 1e-15 rad are 7 nm, eight units in the last place."""
     tilted = orbiting(7.0e6)
     tilted["orbit"]["inclination"] += 1e-15
     compared = oo.compare(orbiting(7.0e6), tilted)
@@ -105,14 +105,14 @@ def test_a_tilt_that_rounds_away_is_no_parting() -> None:
     assert compared.agrees
 
 
-def test_an_orbit_is_interpolated_along_its_bend() -> None:
-    """A chord of 20 s is 400 m off the arc; the cubic is `h⁴ n⁴ r / 384 < 1 cm` off."""
+def test_an_orbit_is_interpolated_with_its_curvature() -> None:
+    """A chord of 20 s deviates by 400 m from the arc, the cubic by `h⁴ n⁴ r / 384 < 1 cm`."""
     compared = oo.compare(orbiting(7.0e6, record_every=7), orbiting(7.0e6, record_every=20))
     assert any("interpolated" in note for note in compared.notes)
     assert 1e-3 < compared["inertial position"].largest < 0.01
-    assert compared["inertial position"].parts_at is None  # what the cubic errs by is no parting
+    assert compared["inertial position"].parts_at is None  # the error of the cubic is not a divergence
     compared = oo.compare(orbiting(7.0e6, record_every=7), orbiting(7.0e6 + 0.1, record_every=20))
-    assert compared["inertial position"].parts_at is not None  # control: 10 cm are more
+    assert compared["inertial position"].parts_at is not None  # negative control: 10 cm are more
 
 
 def test_settings_that_differ_are_noted_and_many_are_counted() -> None:
@@ -130,7 +130,7 @@ def test_settings_that_differ_are_noted_and_many_are_counted() -> None:
     assert "orbit differs: kepler and none" in oo.compare(*settings).notes
 
 
-def test_gains_that_differ_are_seen_in_the_torque_first() -> None:
+def test_different_gains_first_affect_the_torque() -> None:
     other = scenario()
     other["controller"]["kp"] = 99.0
     compared = oo.compare(scenario(), other, tolerance=1e-9)
@@ -139,7 +139,7 @@ def test_gains_that_differ_are_seen_in_the_torque_first() -> None:
 
 
 def test_control_a_finer_step_is_the_same_motion_at_common_instants() -> None:
-    """Every other row of the finer run is compared as it is: nothing is interpolated."""
+    """Every second row of the finer run is compared without interpolation."""
     settings: dict[str, Any] = {"control_period": 0.002}
     compared = oo.compare(scenario(**settings), scenario(**settings, time_step=0.001))
     assert compared.notes == ("time_step differs: 0.002 and 0.001",)
@@ -147,8 +147,8 @@ def test_control_a_finer_step_is_the_same_motion_at_common_instants() -> None:
     assert compared["base attitude"].largest < 1e-10
 
 
-def test_rows_in_between_are_interpolated_and_that_is_told() -> None:
-    """Steps of 0.1 and 0.13 s have an instant in thirteen in common; straight motion interpolates exactly."""
+def test_rows_are_interpolated_with_a_note() -> None:
+    """Steps of 0.1 and 0.13 s share one instant in thirteen; linear motion is interpolated exactly."""
     compared = oo.compare(spin(0.1), spin(0.1, time_step=0.13))
     assert compared.agrees
     assert compared["base attitude"].largest < 1e-12
@@ -164,14 +164,14 @@ def test_torques_are_held_between_rows() -> None:
     assert compared["joint torques"].largest < 1e-6
 
 
-def test_runs_of_different_length_are_compared_while_both_last() -> None:
+def test_runs_of_different_length_are_compared_until_the_shorter_ends() -> None:
     compared = oo.compare(spin(0.1), spin(0.1, duration=4.0))
     assert compared.agrees
     assert compared.time[-1] == 4.0
     assert any("ends at 10 s" in note and "until 4 s" in note for note in compared.notes)
 
 
-def test_a_measure_that_one_run_lacks_is_told() -> None:
+def test_a_quantity_that_one_run_lacks_is_noted() -> None:
     data = load("free_tumble").resolved()
     data["simulation"] |= {"duration": 0.1}
     bare = {name: value for name, value in data.items() if name != "tool"}
@@ -180,19 +180,19 @@ def test_a_measure_that_one_run_lacks_is_told() -> None:
     assert [note.split(":")[0] for note in compared.notes] == ["tool position", "tool attitude"]
 
 
-def test_another_robot_with_as_many_joints_is_told_one_with_others_refused() -> None:
+def test_another_robot_is_noted_and_other_joints_are_rejected() -> None:
     heavy = spin(0.1)
     heavy["robot"] = {"rigid_body": {"mass": 3.0, "inertia": [[3, 0, 0], [0, 3, 0], [0, 0, 3]]}}
     compared = oo.compare(spin(0.1), heavy)
     assert compared["base position"].largest < 1e-15
     assert compared["linear momentum"].parts_at == 0.0
-    assert any("robots are not the same" in note for note in compared.notes)
-    with pytest.raises(CompareError, match=r"0 joints, .* 7"):
+    assert any("robots differ" in note for note in compared.notes)
+    with pytest.raises(CompareError, match=r"0 joints and .* 7"):
         oo.compare(spin(0.1), scenario())
 
 
 def hinged(folder: Path, *joints: str, mass: float = 1.0) -> dict[str, Any]:
-    """A base with links on it, one per joint."""
+    """Returns a scenario of a base with one link per joint."""
     moments = "<inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
     body = f"<inertial><mass value='{mass}'/>{moments}</inertial>"
     links = [f"<link name='{name}'>{body}</link>" for name in ("base", *(f"of_{joint}" for joint in joints))]
@@ -205,33 +205,33 @@ def hinged(folder: Path, *joints: str, mass: float = 1.0) -> dict[str, Any]:
     return spin(0.1, duration=0.5) | {"robot": {"urdf": str(file)}}
 
 
-def test_joints_of_other_names_or_another_order_are_refused(tmp_path: Path) -> None:
+def test_joints_with_other_names_or_another_order_are_rejected(tmp_path: Path) -> None:
     one, other = hinged(tmp_path, "j"), hinged(tmp_path, "k")
-    with pytest.raises(CompareError, match=r"joints j, .* one with k: only runs of one robot") as refused:
+    with pytest.raises(CompareError, match=r"joints j .* k; only runs of the same robot") as refused:
         oo.compare(one, other)
     assert (refused.value.got, refused.value.expected) == (["k"], ["j"])
     oo.run(other, tmp_path / "out")
-    with pytest.raises(CompareError, match=r"joints j, .* with k:"):
+    with pytest.raises(CompareError, match=r"joints j .* k;"):
         oo.compare(one, tmp_path / "out")
-    with pytest.raises(CompareError, match=r"joints j, k, .* with k, j:"):
+    with pytest.raises(CompareError, match=r"joints j, k .* k, j;"):
         oo.compare(hinged(tmp_path, "j", "k"), hinged(tmp_path, "k", "j"))
     heavy = oo.compare(one, hinged(tmp_path, "j", mass=2.0))
-    assert [note.split(":")[0] for note in heavy.notes] == ["the robots are not the same"]
+    assert [note.split(":")[0] for note in heavy.notes] == ["the robots differ"]
 
 
-def test_a_folder_whose_robot_is_gone_compares_with_a_note(tmp_path: Path) -> None:
+def test_a_folder_whose_robot_file_is_missing_is_compared_with_a_note(tmp_path: Path) -> None:
     one, other = hinged(tmp_path, "j"), hinged(tmp_path, "j", mass=2.0)
     oo.run(other, tmp_path / "out")
     Path(other["robot"]["urdf"]).unlink()
     compared = oo.compare(one, tmp_path / "out")
-    assert any("nobody knows whether their joints are the same" in note for note in compared.notes)
+    assert any("cannot check whether their joints are equal" in note for note in compared.notes)
 
 
-def test_an_impact_counts_with_the_row_after_it() -> None:
+def test_the_row_after_an_impact_is_compared() -> None:
     time = np.array([0.0, 1.0, 1.0, 2.0])
     columns = {"time": time, "q": np.eye(4, 7, 3), "tau": np.array([[0.0], [1], [2], [3]])}
     run = Recorded("bounce", columns, load("humanoid_reach"))
-    rows, _, instants, _ = common_rows(run, run)
+    rows, _, instants, _ = aligned_rows(run, run)
     assert instants.tolist() == [0.0, 1.0, 2.0]
     assert rows["tau"].ravel().tolist() == [0.0, 2.0, 3.0]
 
@@ -239,24 +239,26 @@ def test_an_impact_counts_with_the_row_after_it() -> None:
 @pytest.mark.parametrize(
     "tolerance", [0.0, -1.0, float("nan"), float("inf"), True, "1", pytest.param(10**400, id="vast")]
 )
-def test_a_tolerance_that_is_none_is_refused(tolerance: Any) -> None:
+def test_an_invalid_tolerance_is_rejected(tolerance: Any) -> None:
     with pytest.raises(InputError, match="tolerance is"):
         oo.compare(spin(0.1), spin(0.1), tolerance=tolerance)
 
 
 @pytest.mark.parametrize("one", [np.int64(1), np.float32(1.0), Fraction(1)])
-def test_any_number_is_a_tolerance_and_a_period_of_checkpoints(one: Any) -> None:
+def test_every_number_type_is_accepted_for_tolerance_and_checkpoint_interval(one: Any) -> None:
     run = oo.run(spin(0.1), quiet=True, checkpoint_every=one)
     compared = oo.compare(run, run, tolerance=one)
     assert json.loads(json.dumps(compared.as_dict()))["tolerance"] == 1.0
 
 
-def test_an_unknown_measure_is_answered_with_those_there_are() -> None:
-    with pytest.raises(CompareError, match="'attitude'; there are: base position, base attitude"):
+def test_an_unknown_quantity_is_reported_with_the_available_ones() -> None:
+    with pytest.raises(
+        CompareError, match="'attitude' is not a compared quantity; available: base position, base"
+    ):
         oo.compare(spin(0.1), spin(0.1))["attitude"]
 
 
-def test_a_diverged_run_parts_and_is_plain_data(tmp_path: Path) -> None:
+def test_a_diverged_run_differs_and_converts_to_plain_data(tmp_path: Path) -> None:
     run = oo.run(spin(0.1), tmp_path / "out")
     broken = dict(np.load(tmp_path / "out" / "trace.npz"))
     broken["q"] = np.where(np.arange(101)[:, None] < 50, broken["q"], np.nan)
@@ -282,7 +284,7 @@ def test_a_diverged_run_parts_and_is_plain_data(tmp_path: Path) -> None:
 def test_runs_that_overflowed_do_not_agree(
     ours: float, theirs: float, parts_at: float | None, tmp_path: Path
 ) -> None:
-    """Their lengths are infinite, and so was what was allowed."""
+    """Their lengths are infinite, and the tolerance once was, too."""
     for name, value in (("a", ours), ("b", theirs)):
         oo.run(spin(0.1), tmp_path / name)
         broken = dict(np.load(tmp_path / name / "trace.npz"))
@@ -308,23 +310,23 @@ def test_lengths_are_those_of_numpy_and_do_not_overflow() -> None:
     assert not np.isfinite(_length(np.array([[np.inf, 0, 0], [0, np.nan, 0]]))).any()
 
 
-def test_what_is_no_run_is_refused_by_its_kind() -> None:
+def test_an_argument_that_is_not_a_run_is_rejected_with_its_type() -> None:
     trace = oo.run(spin(0.1)).trace
     for kind, source in (("Trace", trace), ("int", 3), ("list", [])):
-        with pytest.raises(DtypeError, match=f"a {kind} cannot be compared; give a folder of a run"):
+        with pytest.raises(DtypeError, match=f"a {kind} cannot be compared; give the folder of a run"):
             oo.compare(source)  # type: ignore[arg-type]
 
 
-def test_a_comparison_prints_as_the_command_does() -> None:
+def test_a_comparison_prints_the_text_of_the_command() -> None:
     lines = str(oo.compare(spin(0.1), spin(0.11), tolerance=0.0105)).splitlines()
     assert lines[0] == "scenario (native) against scenario (native)"
     assert lines[1].split("  ")[-1] == "unit"
     assert lines[2].split() == ["base", "position", "2.0e-01", "10", "2.0e-01", "2.3e-02", "1.2", "m"]
-    assert lines[-1] == "they part at t = 0 s by more than 0.0105; 101 rows from 0 to 10 s"
-    assert "they agree within 1e-06 over 101 rows" in str(oo.compare(spin(0.1), spin(0.1)))
+    assert lines[-1] == "the runs diverge at t = 0 s by more than 0.0105; 101 rows from 0 to 10 s"
+    assert "the runs agree within 1e-06 over 101 rows" in str(oo.compare(spin(0.1), spin(0.1)))
 
 
-def test_folders_without_a_run_are_refused(tmp_path: Path) -> None:
+def test_folders_without_a_run_are_rejected(tmp_path: Path) -> None:
     with pytest.raises(NotFoundError, match="no trace in this folder"):
         oo.compare(tmp_path, tmp_path)
     oo.run(spin(0.1), tmp_path / "out")
@@ -335,7 +337,7 @@ def test_folders_without_a_run_are_refused(tmp_path: Path) -> None:
             oo.compare(tmp_path / "out", tmp_path / "out")
 
 
-def test_the_figure_has_a_panel_per_measure_and_marks_where_they_part() -> None:
+def test_the_figure_has_a_panel_per_quantity_and_marks_the_divergence() -> None:
     compared = oo.compare(spin(0.1), spin(0.11), tolerance=0.0105)
     panels = [axes for axes in differences(compared).axes if axes.get_visible()]
     assert [axes.get_title(loc="left") for axes in panels] == [one.name for one in compared.differences]
@@ -345,7 +347,7 @@ def test_the_figure_has_a_panel_per_measure_and_marks_where_they_part() -> None:
     assert not any(line.get_marker() == "o" for axes in same.axes for line in axes.lines)
 
 
-def test_the_command_says_whether_and_where_they_part(tmp_path: Path) -> None:
+def test_the_command_reports_whether_and_when_runs_diverge(tmp_path: Path) -> None:
     files = []
     for rate in (0.1, 0.11):
         files.append(tmp_path / f"{rate}.yaml")
@@ -353,12 +355,12 @@ def test_the_command_says_whether_and_where_they_part(tmp_path: Path) -> None:
     picture = tmp_path / "apart.png"
     done = onorbit("compare", files[0], files[1], "--out", picture)
     assert done.returncode == 1, done.stderr
-    assert "they part at t = 0 s by more than 1e-06" in done.stdout
+    assert "the runs diverge at t = 0 s by more than 1e-06" in done.stdout
     assert "base attitude" in done.stdout
     assert picture.read_bytes()[:4] == b"\x89PNG"
     same = onorbit("compare", files[0], files[0], "--tolerance", "1e-12")
     assert same.returncode == 0
-    assert "they agree within 1e-12 over 101 rows from 0 to 10 s" in same.stdout
+    assert "the runs agree within 1e-12 over 101 rows from 0 to 10 s" in same.stdout
     as_json = onorbit("compare", files[0], files[1], "--json")
     assert as_json.returncode == 1
     data = json.loads(as_json.stdout)
@@ -367,7 +369,7 @@ def test_the_command_says_whether_and_where_they_part(tmp_path: Path) -> None:
     assert data["differences"][1]["largest"] == pytest.approx(0.1)
 
 
-def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
+def test_the_command_reports_errors_in_one_line(tmp_path: Path) -> None:
     file = tmp_path / "ball.yaml"
     file.write_text(json.dumps(spin(0.1)))
     for arguments in (
@@ -384,8 +386,8 @@ def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
         assert "Traceback" not in done.stderr
 
 
-def test_without_a_second_run_it_is_the_other_plant(tmp_path: Path) -> None:
-    pytest.importorskip("mujoco", reason="the second plant is in the extra: pip install 'onorbit-rs[mujoco]'")
+def test_without_a_second_run_the_other_engine_is_compared(tmp_path: Path) -> None:
+    pytest.importorskip("mujoco", reason="pip install 'onorbit-rs[mujoco]'")
     file = tmp_path / "reach.yaml"
     file.write_text(json.dumps(scenario()))
     done = onorbit("compare", file, "--tolerance", "1e-10")

@@ -1,4 +1,4 @@
-"""Checkpoints keep plain data of Python controllers: the same values come back, and no code."""
+"""Checkpoints store plain data of Python controllers without loss, and never code."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import CheckpointError, ControlError, RunInterrupted
-from onorbit_rs.plain_data import decode, encode
+from onorbit_rs.simulation.controller_state import decode, encode
 
 VALUES: dict[str, Any] = {
     "none": None,
@@ -36,14 +36,14 @@ ARRAYS = [
 
 
 @pytest.mark.parametrize("name", VALUES)
-def test_plain_data_comes_back_as_it_was(name: str) -> None:
+def test_plain_data_is_restored_unchanged(name: str) -> None:
     again = decode(encode(VALUES[name]))
     assert again == VALUES[name]
     assert repr(again) == repr(VALUES[name])  # types and signs of zero too
 
 
 @pytest.mark.parametrize("index", range(len(ARRAYS)))
-def test_arrays_come_back_to_the_bit_and_can_be_written(index: int) -> None:
+def test_arrays_are_restored_bit_by_bit_and_writable(index: int) -> None:
     array = ARRAYS[index]
     again = decode(encode({"x": array}))["x"]
     assert (again.dtype, again.shape) == (array.dtype, array.shape)
@@ -52,13 +52,13 @@ def test_arrays_come_back_to_the_bit_and_can_be_written(index: int) -> None:
     assert again.flags.writeable
 
 
-def test_what_is_not_finite_is_kept() -> None:
+def test_non_finite_values_are_kept() -> None:
     inf, minus, nan = decode(encode([math.inf, -math.inf, math.nan]))
     assert (inf, minus) == (math.inf, -math.inf)
     assert math.isnan(nan)
 
 
-def test_one_object_under_two_names_stays_one() -> None:
+def test_one_object_under_two_names_remains_one() -> None:
     shared = np.zeros(3)
     history: list[Any] = [shared]
     history.append(history)
@@ -69,7 +69,7 @@ def test_one_object_under_two_names_stays_one() -> None:
 
 
 class Number(float):
-    """A float with a life of its own."""
+    """A subclass of float with additional state."""
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ class Number(float):
         (lambda: 0, "function"),
     ],
 )
-def test_anything_else_is_refused_with_its_type_and_place(value: object, kind: str) -> None:
+def test_other_values_are_rejected_with_their_type_and_place(value: object, kind: str) -> None:
     with pytest.raises(ControlError) as caught:
         encode({"gains": [1.0, value]})
     assert kind in str(caught.value)
@@ -98,7 +98,7 @@ def test_anything_else_is_refused_with_its_type_and_place(value: object, kind: s
         encode({frozenset(): 1})
 
 
-def test_state_nested_too_deep_is_refused() -> None:
+def test_state_nested_too_deeply_is_rejected() -> None:
     deep: list[Any] = []
     for _ in range(100_000):
         deep = [deep]
@@ -125,13 +125,13 @@ def state_text(state: Any) -> bytes:
         state_text({"dict": [[[], 1]]}), state_text({"dict": 7}), state_text({"float": "x"}),
     ],
 )  # fmt: skip
-def test_a_broken_state_is_refused(text: bytes) -> None:
-    with pytest.raises(CheckpointError, match=r"is broken.*run the scenario again"):
+def test_a_damaged_state_is_rejected(text: bytes) -> None:
+    with pytest.raises(CheckpointError, match=r"is invalid.*run the scenario again"):
         decode(text)
 
 
 class Payload:
-    """Leaves a file when it is unpickled."""
+    """Creates a file when it is unpickled."""
 
     def __init__(self, file: Path) -> None:
         self.file = file
@@ -142,7 +142,7 @@ class Payload:
 
 class Integral(oo.Controller):
     def __init__(self, model: oo.Model) -> None:
-        self.model = model  # is made again by the constructor
+        self.model = model  # is created again by the constructor
         self.sum, self.calls = np.zeros(7), 0
 
     def reset(self) -> None:
@@ -155,7 +155,7 @@ class Integral(oo.Controller):
 
 
 def stopped(controller: oo.Controller) -> tuple[oo.Simulation, list[oo.Checkpoint]]:
-    """A run that Ctrl-C ended after its first checkpoint."""
+    """Returns the folder of a run that Ctrl-C ended after its first checkpoint."""
     model = oo.robots.load("humanoid_torso")
     v = np.full(model.nv, 0.02)
     simulation = oo.Simulation(model, model.neutral(), v, time_step=1e-3, controller=controller)
@@ -180,8 +180,10 @@ def test_a_python_controller_continues_to_the_same_bits() -> None:
     rest = simulation.run(30.0, resume=put_together(kept, kept[-1].state))
     whole = simulation.run(30.0)
     assert rest.q.tobytes() == whole.q.tobytes()
-    forgetful = json.loads(kept[-1].state)  # control: what the controller remembers matters
-    forgetful["controls"]["users"] = [list(encode({"sum": np.ones(7), "calls": 0}))]
+    forgetful = json.loads(kept[-1].state)  # negative control: the controller's state matters
+    forgetful["controllers"]["systems"][0]["controls"][0]["user"] = list(
+        encode({"sum": np.ones(7), "calls": 0})
+    )
     other = simulation.run(30.0, resume=put_together(kept, json.dumps(forgetful)))
     assert other.q.tobytes() != whole.q.tobytes()
 
@@ -191,15 +193,15 @@ def test_a_checkpoint_with_a_pickle_runs_no_code(tmp_path: Path) -> None:
     evil = pickle.dumps(Payload(file))
     simulation, kept = stopped(Integral(oo.robots.load("humanoid_torso")))
     record = json.loads(kept[-1].state)
-    record["controls"]["users"] = [list(evil)]
-    with pytest.raises(CheckpointError, match=r"pickle.*refused: run the scenario again"):
+    record["controllers"]["systems"][0]["controls"][0]["user"] = list(evil)
+    with pytest.raises(CheckpointError, match=r"pickle.*not read; run the scenario again"):
         simulation.run(30.0, resume=put_together(kept, json.dumps(record)))
     assert not file.exists()
-    pickle.loads(evil)  # control: the payload works
+    pickle.loads(evil)  # negative control: the payload works
     assert file.exists()
 
 
-def test_a_controller_that_keeps_anything_else_is_told_and_runs_on() -> None:
+def test_a_controller_with_other_state_causes_a_warning_and_continues() -> None:
     class Odd(Integral):
         def get_state(self) -> Any:
             return {"file": Path("x")}
@@ -207,13 +209,13 @@ def test_a_controller_that_keeps_anything_else_is_told_and_runs_on() -> None:
     model = oo.robots.load("humanoid_torso")
     simulation = oo.Simulation(model, model.neutral(), np.zeros(model.nv), controller=Odd(model))
     with pytest.warns(
-        UserWarning, match=r"no checkpoints.*state\['file'\] is of type pathlib.*numeric NumPy"
+        UserWarning, match=r"checkpoints are disabled.*state\['file'\] is of type pathlib.*numeric NumPy"
     ):
         assert simulation.run(10.0, checkpoint=lambda _: None, checkpoint_every=0.0).time[-1] == 10.0
 
 
-def test_nothing_of_the_package_unpickles_or_evaluates_text() -> None:
-    """Multiprocessing may pickle what the user sends; reading a file never does."""
+def test_the_package_never_unpickles_or_evaluates_text() -> None:
+    """Multiprocessing may pickle data of the user; reading a file never unpickles."""
     package = Path(oo.__file__).parent
     banned = re.compile(r"\bpickle\.load|import pickle|allow_pickle=True|unsafe_load|(?<![\w.])(eval|exec)\(")
     found = [

@@ -1,4 +1,4 @@
-"""Files of OnOrbitROS become scenarios: what became of each line, and what is refused."""
+"""Conversion of OnOrbitROS files to scenarios: the result of each line, and invalid input."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from border import Bad, check
 from commands import onorbit
 
 import onorbit_rs as oo
-from onorbit_rs.expressions import Evaluator
-from onorbit_rs.interop import expressions as arithmetic
-from onorbit_rs.interop.expressions import evaluate
-from onorbit_rs.interop.onorbitros import Conversion, convert
+from onorbit_rs.common.evaluator import Evaluator
 from onorbit_rs.robots import expressions as of_robots
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
+from onorbit_rs.tools.interop import expressions as arithmetic
+from onorbit_rs.tools.interop.expressions import evaluate
+from onorbit_rs.tools.interop.onorbitros import Conversion, convert
 
-# written as OnOrbitROS writes its own, with its two misspelt keys
+# in the format of OnOrbitROS, with its two misspelt keys
 ORBIT = """\
 publish_rate: 10
 eccentricity: 0.001
@@ -78,7 +78,7 @@ def verdicts(done: Conversion) -> dict[str, str]:
 def test_an_orbit(tmp_path: Path) -> None:
     done = convert(write(tmp_path, orbit=ORBIT))
     orbit = done.scenario["orbit"]
-    # its node starts n (start - perigee) after the mean anomaly of the file
+    # its node starts n (start - perigee) after the file's mean anomaly
     shift = math.sqrt(oo.MU_EARTH / 7e6**3) * 90.0
     assert orbit == {
         "kind": "kepler",
@@ -91,14 +91,14 @@ def test_an_orbit(tmp_path: Path) -> None:
     }
     built = build(load(done.scenario))
     assert built.orbit is not None and built.orbit.semi_major_axis == pytest.approx(7e6)
-    # the control: without the two dates the spacecraft is 90 s behind
+    # negative control: without the two dates the spacecraft is 90 s behind
     early = convert(write(tmp_path, early="\n".join(ORBIT.splitlines()[:9])))
     before = oo.Kepler(**{key: value for key, value in early.scenario["orbit"].items() if key != "kind"})
     np.testing.assert_allclose(before.state(90.0)[0], built.orbit.state(0.0)[0], rtol=1e-9)
     assert np.linalg.norm(before.state(0.0)[0] - built.orbit.state(0.0)[0]) > 6e5
 
 
-def test_every_line_of_an_orbit_is_answered(tmp_path: Path) -> None:
+def test_every_line_of_an_orbit_has_a_verdict(tmp_path: Path) -> None:
     done = convert(write(tmp_path, orbit=ORBIT))
     assert verdicts(done) == {
         "publish_rate": "no meaning",
@@ -115,12 +115,12 @@ def test_every_line_of_an_orbit_is_answered(tmp_path: Path) -> None:
         "angular_velocity": "no meaning",
     }
     assert [note.line for note in done.notes] == list(range(1, 13))
-    told = {note.key: note.text for note in done.notes}
-    assert "takes 12000 km" in told["semi_major_axix"]  # its node passes over the misspelt key
-    assert "0.00107801" in told["angular_velocity"]  # sqrt(398600.4418 / 7000³) rad/s, by hand
+    texts = {note.key: note.text for note in done.notes}
+    assert "uses 12000 km" in texts["semi_major_axix"]  # OnOrbitROS ignores the misspelt key
+    assert "0.00107801" in texts["angular_velocity"]  # sqrt(398600.4418 / 7000³) rad/s, by hand
 
 
-def test_what_is_missing_has_onorbitros_default(tmp_path: Path) -> None:
+def test_missing_keys_have_the_defaults_of_onorbitros(tmp_path: Path) -> None:
     done = convert(write(tmp_path, orbit="semi_major_axis: 7000\n"))
     assert done.scenario["orbit"]["inclination"] == math.radians(51.6427)
     assert verdicts(done)["inclination"] == "corrected"
@@ -152,7 +152,7 @@ def test_a_fixed_pose(tmp_path: Path) -> None:
     assert built.orbit is not None
     np.testing.assert_allclose(built.orbit.state(5.0)[0], orbit["position"])
     at_center = convert(write(tmp_path, center="pos_x: 0.0\norientation_w: 1.0\n"))
-    assert "mu" not in at_center.scenario["orbit"]  # nothing pulls there
+    assert "mu" not in at_center.scenario["orbit"]  # there is no gravity there
     build(load(at_center.scenario))
 
 
@@ -165,8 +165,8 @@ def test_a_controller_with_its_robot(tmp_path: Path) -> None:
     )
     assert scenario["reference"]["duration"] == scenario["simulation"]["duration"] == 15.0
     assert build(load(scenario)).model.joint_names[0] == "arm_joint_1"
-    told = verdicts(done)
-    assert told["left_arm_controller"] == told["joints"] == told["goal_tolerance"] == "no meaning"
+    texts = verdicts(done)
+    assert texts["left_arm_controller"] == texts["joints"] == texts["goal_tolerance"] == "no meaning"
     other = convert([*write(tmp_path, control=CONTROL), ROBOT], controller="left_arm_controller")
     assert (other.scenario["tool"], other.scenario["controller"]["kp"]) == ("torso", 10.0)
     assert "kd" not in other.scenario["controller"] and verdicts(other)["kv_value"] == "corrected"
@@ -230,7 +230,7 @@ def test_expressions(text: Any, value: float) -> None:
         "-" * 190 + "1",
     ],
 )
-def test_what_is_no_arithmetic_is_refused(text: Any) -> None:
+def test_expressions_other_than_arithmetic_are_rejected(text: Any) -> None:
     if text in ("(" * 90 + "1" + ")" * 90, "-" * 190 + "1"):
         assert abs(evaluate(text)) == 1.0  # long, but arithmetic
         return
@@ -238,8 +238,8 @@ def test_what_is_no_arithmetic_is_refused(text: Any) -> None:
         evaluate(text)
 
 
-def test_both_kinds_of_files_have_one_evaluator() -> None:
-    """Both evaluated the syntax tree separately, so one could refuse what the other accepted."""
+def test_both_kinds_of_files_use_one_evaluator() -> None:
+    """Two separate evaluators once accepted different expressions."""
     for kind in (arithmetic._Arithmetic, of_robots._Evaluation):
         assert issubclass(kind, Evaluator) and kind.generic_visit is Evaluator.generic_visit
         known = {name for name in dir(kind) if name.startswith("visit_")}
@@ -267,7 +267,11 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "degrees": ("inclination: 51.6", "ScenarioError", ("51.6 rad", "(51.6*pi)/180.0")),
     "no number": ("eccentricity: round", "ScenarioError", ("eccentricity", "'round'")),
     "code": ("eccentricity: __import__('os')", "ScenarioError", ("eccentricity",)),
-    "both spellings": ("semi_major_axis: 7000\nsemi_major_axix: 7000", "ScenarioError", (":2:", "keep one")),
+    "both spellings": (
+        "semi_major_axis: 7000\nsemi_major_axix: 7000",
+        "ScenarioError",
+        (":2:", "remove one"),
+    ),
     "date": (
         "eccentricity: 0\ntime_start: {sec: x, min: 0, hour: 0, mday: 1, mon: 0, year: 2000}",
         "ScenarioError",
@@ -309,7 +313,7 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     ),
     "empty": ("", "ScenarioError", ("no parameters",)),
     "a list": ("- 1", "ScenarioError", ("no parameters",)),
-    "no YAML": ("a: [", "ScenarioError", ("broken YAML",)),
+    "no YAML": ("a: [", "ScenarioError", ("invalid YAML",)),
 }
 
 
@@ -321,9 +325,9 @@ def test_bad_input(name: str, tmp_path: Path) -> None:
     check(bad)
 
 
-def test_files_that_do_not_fit_together(tmp_path: Path) -> None:
+def test_files_that_do_not_fit_together_are_rejected(tmp_path: Path) -> None:
     orbit, pose, control = write(tmp_path, orbit=ORBIT, pose=POSE, control=CONTROL)
-    for files, word in (([orbit, pose], "two files"), ([control], "needs its robot")):
+    for files, word in (([orbit, pose], "two files"), ([control], "requires a robot")):
         with pytest.raises(oo.exceptions.ScenarioError, match=word):
             convert(files)
     with pytest.raises(oo.exceptions.InputError, match="two robots"):
@@ -336,7 +340,7 @@ def test_files_that_do_not_fit_together(tmp_path: Path) -> None:
         convert([control, ROBOT], controller="left_arm_controler")
 
 
-def test_unknown_keys_can_be_passed_over(tmp_path: Path) -> None:
+def test_unknown_keys_can_be_ignored(tmp_path: Path) -> None:
     done = convert(write(tmp_path, orbit=ORBIT + "colour: red\n"), keep_going=True)
     assert verdicts(done)["colour"] == "no meaning"
 

@@ -1,4 +1,4 @@
-"""Several controllers of OnOrbitROS and ROS Control become those of one scenario."""
+"""Conversion of several OnOrbitROS and ROS Control controllers to one scenario."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import pytest
 from test_convert import ROBOT, onorbit, verdicts, write
 
 import onorbit_rs as oo
-from onorbit_rs.interop.onorbitros import convert
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
+from onorbit_rs.tools.interop.onorbitros import convert
 
-# as robot_torso has them: an arm each, and the head by ROS Control
+# as in robot_torso: one controller per arm, and the head by ROS Control
 SIDES = "".join(
     f"""\
   {side}_arm_controller:
@@ -38,8 +38,10 @@ HEAD = """\
 DUAL = oo.robots.path("humanoid_dual_arm")
 
 
-@pytest.mark.filterwarnings("ignore:.*errors grow:UserWarning")  # these gains want a shorter control period
-def test_controllers_of_joints_of_their_own_run_at_once(tmp_path: Path) -> None:
+@pytest.mark.filterwarnings(
+    "ignore:.*errors grow:UserWarning"
+)  # these gains require a shorter control period
+def test_controllers_of_disjoint_joints_run_simultaneously(tmp_path: Path) -> None:
     done = convert([*write(tmp_path, control="talos:\n" + SIDES + HEAD), DUAL])
     scenario = load(done.scenario)
     assert [(law.name, law.kind) for law in scenario.laws] == [
@@ -52,16 +54,18 @@ def test_controllers_of_joints_of_their_own_run_at_once(tmp_path: Path) -> None:
     assert left["joints"] == [f"left_joint_{index}" for index in range(1, 7)]
     assert left["reference"]["duration"] == scenario.simulation.duration == 4.0
     assert (wrist["joints"], wrist["p"], wrist["d"], "i" in wrist) == (["left_joint_7"], [50.0], [1.0], False)
-    told = verdicts(done)
-    assert told["joint_state_controller"] == "no meaning" and told["left_arm_controller"] == "understood"
-    assert any("integral is held at zero" in note.text for note in done.notes)
+    texts = verdicts(done)
+    assert texts["joint_state_controller"] == "no meaning" and texts["left_arm_controller"] == "understood"
+    assert any("i without i_clamp has no effect" in note.text for note in done.notes)
     build(scenario).simulation.run(0.05)
-    # one of them, as before
+    # a single controller
     one = convert([*write(tmp_path, control="talos:\n" + SIDES), DUAL], controller="left_arm_controller")
     assert one.scenario["tool"] == "left_tool" and "controllers" not in one.scenario
 
 
-@pytest.mark.filterwarnings("ignore:.*errors grow:UserWarning")  # these gains want a shorter control period
+@pytest.mark.filterwarnings(
+    "ignore:.*errors grow:UserWarning"
+)  # these gains require a shorter control period
 def test_gains_of_ros_control_become_those_of_a_pid(tmp_path: Path) -> None:
     joints = oo.robots.load("humanoid_torso").joint_names
     gains = "".join(
@@ -74,12 +78,12 @@ def test_gains_of_ros_control_become_those_of_a_pid(tmp_path: Path) -> None:
     build(load(done.scenario)).simulation.run(0.01)
 
 
-def test_controllers_that_share_joints_are_one_at_a_time(tmp_path: Path) -> None:
+def test_controllers_that_share_joints_are_alternatives(tmp_path: Path) -> None:
     shared = SIDES.replace("left_joint_6", "right_joint_1")
     done = convert([*write(tmp_path, control="talos:\n" + shared), DUAL])
     assert done.scenario["tool"] == "right_tool" and "controllers" not in done.scenario
-    (told,) = (note.text for note in done.notes if note.key == "left_arm_controller")
-    assert "drives joints that another drives" in told and "--controller" in told
+    (texts,) = (note.text for note in done.notes if note.key == "left_arm_controller")
+    assert "drives joints of another controller" in texts and "--controller" in texts
 
 
 def test_a_list_of_controllers_is_written_with_its_lines(tmp_path: Path) -> None:
@@ -89,5 +93,5 @@ def test_a_list_of_controllers_is_written_with_its_lines(tmp_path: Path) -> None
     text = (tmp_path / "mine.yaml").read_text()
     assert '\n  - name: "right_arm_controller"\n    tool: "right_tool"' in text
     assert re.search(r"\n    kp: 100.0 +# control.yaml:7: kp_value: 100.0\n", text), text
-    assert re.search(r"\n    reference: .*# the target came over a ROS topic", text), text
+    assert re.search(r"\n    reference: .*# the target was sent over a ROS topic", text), text
     assert onorbit("check", "mine.yaml", cwd=tmp_path).returncode == 0

@@ -1,4 +1,4 @@
-"""What is written is true: examples run, every public thing says what it is, arrays say shape and unit."""
+"""Documentation: examples run, public objects have docstrings, and arrays state shape and unit."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ PAGES = [
 
 
 def unbalanced(text: str) -> int | None:
-    """Line of the first fence that opens within another one or is never closed."""
+    """Returns the line of the first code fence that is nested or never closed, or None."""
     opened = None
     for number, line in enumerate(text.splitlines(), 1):
         if not line.lstrip().startswith("```"):
@@ -72,7 +72,7 @@ def unbalanced(text: str) -> int | None:
 
 
 @pytest.mark.parametrize("file", PAGES, ids=lambda file: file.name)
-def test_code_in_the_documents_ends(file: Path) -> None:
+def test_code_fences_in_the_documents_are_closed(file: Path) -> None:
     text = file.read_text()
     assert unbalanced(text) is None, f"{file.name}:{unbalanced(text)}: this fence is not closed"
     # negative control: the same page with one closing fence lost
@@ -88,13 +88,13 @@ CORE_CLASSES = [kind for kind in vars(_core).values() if inspect.isclass(kind)]
 
 
 @pytest.mark.parametrize("kind", CORE_CLASSES, ids=lambda kind: kind.__name__)
-def test_everything_public_in_the_engine_says_what_it_is(kind: type) -> None:
+def test_public_objects_of_the_engine_have_docstrings(kind: type) -> None:
     assert inspect.getdoc(kind), kind
     for name in public(kind):
         assert (getattr(kind, name).__doc__ or "").strip(), f"{kind.__name__}.{name}"
 
 
-# methods and properties that give arrays say shape and unit, or that they have none
+# methods and properties that return arrays state shape and unit, or that they are dimensionless
 WITH_SHAPE = re.compile(r"\([^()]*\b(\d|nq|nv|n|T|B|K)\b[^()]*\)")
 ARRAYS = [
     *((oo.Model, name) for name in (
@@ -119,7 +119,7 @@ ARRAYS = [
 
 
 @pytest.mark.parametrize(("kind", "name"), ARRAYS, ids=lambda x: getattr(x, "__name__", x))
-def test_arrays_say_their_shape(kind: type, name: str) -> None:
+def test_arrays_state_their_shape(kind: type, name: str) -> None:
     text = getattr(kind, name).__doc__
     assert WITH_SHAPE.search(text), f"{kind.__name__}.{name}: {text}"
 
@@ -137,5 +137,5 @@ def test_public_functions_and_modules_have_docstrings(file: Path) -> None:
             assert ast.get_docstring(node), f"{file.name}: {node.name}"
 
 
-def test_the_module_is_the_one_beside_the_stub() -> None:
+def test_the_imported_module_belongs_to_the_stub() -> None:
     assert isinstance(_core, ModuleType) and Path(_core.__file__ or "").parent == Path(oo.__file__).parent

@@ -1,6 +1,6 @@
-"""Drag through the public ``Simulation``: the energy that the air takes, surfaces, refusals.
+"""Drag through the public ``Simulation``: dissipated energy, surfaces, invalid input.
 
-NASA's run 6A and a decaying circle are in ``onorbit_rs.validation``.
+NASA's run 6A and a decaying circle are in ``onorbit_rs.tools.validation``.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.exceptions import EarthError, EffectError, FrameError, NotFoundError, ShapeError
-from onorbit_rs.rotations import matrix_from_quaternion
-from onorbit_rs.validation.nasa import ELLIPTICAL, MU, simulate, sphere
+from onorbit_rs.tools.validation.nasa import ELLIPTICAL, MU, simulate, sphere
 
 # NASA/TM-2015-218675, run 6A at 28 800 s (JEOD's SIM_dyncomp): acceleration of the air
 DRAG = np.array([-4.459432204135286e-07, 3.04449896012702e-07, 5.455748606342244e-07])
@@ -23,17 +23,17 @@ BALL = oo.Cannonball(1.0, drag_coefficient=0.02)
 AIR = oo.ConstantAtmosphere(1.4e-12)
 
 
-def test_the_air_of_6a_pushes_as_nasas_does() -> None:
+def test_the_drag_of_run_6a_agrees_with_nasa() -> None:
     trace = simulate("6A")
     q, v, r = np.array(trace.q[-1]), np.array(trace.acceleration[-1]), np.array(trace.position_eci[-1])
     origin = r - q[:3]
     gravity = -MU * r / np.linalg.norm(r) ** 3 + MU * origin / np.linalg.norm(origin) ** 3
     in_w = matrix_from_quaternion(q[3:7]) @ (v[:3] + np.cross(trace.v[-1, 3:], trace.v[-1, :3]))
-    assert np.abs(in_w - gravity - DRAG).max() < 1e-11  # half of that is where the end is off by
+    assert np.abs(in_w - gravity - DRAG).max() < 1e-11  # half of the error of the final position
 
 
-def test_the_energy_that_goes_is_what_the_air_took() -> None:
-    # a box that tumbles: ∫ (F·v + T·ω) dt from the formula, summed here, against the orbit's and the
+def test_the_energy_lost_equals_the_work_of_drag() -> None:
+    # a tumbling box: ∫ (F·v + T·ω) dt from the formula, integrated here, against the orbit's and the
     # spin's energy
     model = oo.Model.rigid_body(2.0, np.diag([0.3, 0.4, 0.5]))
     areas = [0.5, 0.5, 0.2, 0.2]
@@ -86,8 +86,8 @@ def test_default_surfaces_are_the_faces_of_the_robot() -> None:
     trace = sim.run(0.01)
     momentum = np.array(trace.momentum[-1])
     assert 0.0 < np.linalg.norm(momentum[:3]) < 1e-3
-    assert np.linalg.norm(momentum[3:]) > 0.0  # no symmetric robot: the air turns it
-    # one link alone feels less
+    assert np.linalg.norm(momentum[3:]) > 0.0  # the robot is not symmetric: drag rotates it
+    # one link has less drag
     part = oo.Drag(oo.ExponentialAtmosphere(), surfaces={robot.body_names[1]: oo.Faces()})
     sim = oo.Simulation(
         robot, robot.neutral(), np.zeros(robot.nv), orbit=orbit, earth=earth, environment=[part]
@@ -95,7 +95,7 @@ def test_default_surfaces_are_the_faces_of_the_robot() -> None:
     assert np.linalg.norm(sim.run(0.01).momentum[-1][:3]) < 0.5 * np.linalg.norm(momentum[:3])
 
 
-def test_what_cannot_be_is_refused_with_the_way_out() -> None:
+def test_invalid_settings_are_rejected_with_a_fix() -> None:
     orbit = oo.Kepler.from_state(*ELLIPTICAL, mu=MU)
     robot = oo.robots.load("humanoid_torso")
 
@@ -121,22 +121,22 @@ def test_what_cannot_be_is_refused_with_the_way_out() -> None:
         oo.ConstantAtmosphere(-1.0)
     with pytest.raises(EffectError, match="flux is -1"):
         oo.RadiationPressure(flux=-1.0)
-    with pytest.raises(EffectError, match="needs to know how the Earth turns"):
+    with pytest.raises(EffectError, match="requires the rotation of the Earth"):
         simulate(oo.Drag(AIR, surfaces=BALL))
     with pytest.raises(EarthError, match="epoch"):
         simulate(oo.RadiationPressure(surfaces=BALL), still)
     with pytest.raises(EffectError, match="no visual geometry"):
         simulate(oo.Drag(AIR), still)
-    with pytest.raises(EffectError, match="say which one"):
+    with pytest.raises(EffectError, match="name the one with this surface"):
         simulate(oo.Drag(AIR, surfaces=BALL), still, robot)
     with pytest.raises(FrameError, match="arm"):
         simulate(oo.Drag(AIR, surfaces={"arm": BALL}), still, robot)
-    low = oo.Kepler.from_state((6.37e6, 0, 0), (0, 7900.0, 0), mu=MU)  # above the ground of the poles alone
+    low = oo.Kepler.from_state((6.37e6, 0, 0), (0, 7900.0, 0), mu=MU)  # above the ground at the poles only
     with pytest.raises(EffectError, match="below the surface"):
         simulate(oo.Drag(AIR, surfaces=BALL), still, orbit=low)
 
 
-def test_the_air_can_be_asked_directly() -> None:
+def test_the_atmosphere_can_be_evaluated_directly() -> None:
     air = oo.ExponentialAtmosphere()
     assert air.density(500e3) == 6.967e-13
     assert np.array_equal(air.density([500e3, 600e3]), [6.967e-13, 1.454e-13])
@@ -146,7 +146,7 @@ def test_the_air_can_be_asked_directly() -> None:
     earth = oo.Earth("2024-03-01T12:00:00 UTC")
     r = np.array([[6.9e6, 0.0, 0.0], [0.0, 0.0, 6.9e6]])
     low, high = air.density_at(r, 10.0, earth=earth)
-    assert high < low  # the pole is 21 km nearer to the centre
+    assert high < low  # the pole is 21 km closer to the centre
     latitude, longitude, altitude = earth.geodetic(10.0, r[0])
     assert air.density_at(r[0], 10.0, earth=earth) == pytest.approx(
         air.density(altitude, latitude, longitude)
@@ -154,15 +154,15 @@ def test_the_air_can_be_asked_directly() -> None:
     with pytest.raises(EffectError, match="below the surface") as caught:
         air.density(-1.0)
     assert caught.value.got == -1.0
-    with pytest.raises(EffectError, match="exponential atmosphere or NRLMSISE-00 goes on"):
+    with pytest.raises(EffectError, match="use an exponential atmosphere or NRLMSISE-00"):
         oo.HarrisPriester().density(1001e3, earth=earth)
-    with pytest.raises(EarthError, match="needs an epoch"):
+    with pytest.raises(EarthError, match="requires an epoch"):
         oo.HarrisPriester().density(400e3)
     with pytest.raises(ShapeError, match="broadcast"):
         air.density([1.0, 2.0], [1.0, 2.0, 3.0])
 
 
-def test_nrlmsise_wants_its_space_weather(tmp_path: Any) -> None:
+def test_nrlmsise_requires_space_weather(tmp_path: Any) -> None:
     earth = oo.Earth("2024-03-01T07:00:00 UTC")
     air = oo.Nrlmsise00(f107=150.0, f107a=140.0, ap=12.0)
     history = oo.Nrlmsise00(f107=150.0, f107a=140.0, ap=[12.0] * 7)
@@ -179,12 +179,12 @@ def test_nrlmsise_wants_its_space_weather(tmp_path: Any) -> None:
     table.write_text("DATE,AP_AVG,F10.7_OBS,F10.7_OBS_CENTER81\n2024-02-29,12,150,139\n2024-03-01,12,,140\n")
     read = oo.Nrlmsise00(table=table)
     assert read.density(400e3, earth=earth) == air.density(400e3, earth=earth)
-    with pytest.raises(EffectError, match="outside of the table") as caught:
+    with pytest.raises(EffectError, match="outside the table") as caught:
         read.density(400e3, t=86_400.0, earth=earth)
     assert caught.value.expected == ("2024-02-29", "2024-03-01")
 
 
-def test_the_trace_says_what_air_and_light_did() -> None:
+def test_the_trace_records_drag_and_radiation_pressure() -> None:
     orbit = oo.Kepler.from_state(*ELLIPTICAL, mu=MU)
     earth = oo.Earth("2024-03-01T12:00:00 UTC")
     effects = [oo.Drag(AIR, surfaces=BALL), oo.RadiationPressure(surfaces=BALL, shadow=False)]

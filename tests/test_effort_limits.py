@@ -1,4 +1,4 @@
-"""Whose limits of effort hold, and that a run names the joints that reached them."""
+"""Effort limits: which ones apply, and the report of joints that reached them."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.cli.summary import print_summary
-from onorbit_rs.output.joints import efforts_at_limit, largest_shares
+from onorbit_rs.output.joints import efforts_at_limit, largest_fractions
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
 
 @pytest.fixture
 def robot(tmp_path: Path) -> str:
-    """Two hinges whose file allows 0.5 and 50 N m."""
+    """Returns a robot of two hinges with effort limits of 0.5 and 50 N m in its file."""
     body = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>"
     links = "".join(f"<link name='{name}'>{body}</link>" for name in ("base", "of_weak", "of_strong"))
     hinges = "".join(
@@ -31,7 +31,7 @@ def robot(tmp_path: Path) -> str:
 
 
 def led(robot: str, **law: Any) -> dict[str, Any]:
-    """Both hinges a radian from where they are to be: a gain of 5 wants 5 N m at once."""
+    """Runs both hinges with an error of 1 rad, for which a gain of 5 requires 5 N m."""
     reference = {"kind": "joint_waypoints", "points": [[1.0, 1.0]], "times": [0.001]}
     return {
         "robot": {"urdf": robot}, "controller": {"kind": "joint_pid", "p": 5.0, "d": 5.0} | law,
@@ -42,13 +42,13 @@ def led(robot: str, **law: Any) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("law", "largest", "limited"),
     [
-        ({}, (0.5, 5.0), "weak"),  # those of the file
+        ({}, (0.5, 5.0), "weak"),  # the limits of the file
         ({"effort_limit": 2.0}, (2.0, 2.0), "weak, strong"),
         ({"effort_limit": [1e9, 1.5]}, (5.0, 1.5), "strong"),
         ({"effort_limit": 1e9}, (5.0, 5.0), ""),
     ],
 )
-def test_a_pid_keeps_the_limits_of_the_file_unless_told(
+def test_a_pid_has_the_limits_of_the_file_by_default(
     robot: str, law: dict[str, Any], largest: tuple[float, float], limited: str
 ) -> None:
     run = oo.run(led(robot, **law), quiet=True)
@@ -64,7 +64,7 @@ def test_the_joints_of_one_of_several_controllers_are_named(robot: str) -> None:
     assert run.summary["joint_efforts_at_limit"] == "weak"
 
 
-def test_computed_torque_gives_what_it_needs_and_says_nothing_of_limits(robot: str) -> None:
+def test_computed_torque_is_not_limited_and_reports_no_limits(robot: str) -> None:
     law = {"kind": "joint_computed_torque", "kp": 25.0, "kd": 10.0}
     run = oo.run(led(robot) | {"controller": law}, quiet=True)
     assert np.abs(run.trace.tau)[:, 0].max() > 0.5
@@ -73,7 +73,7 @@ def test_computed_torque_gives_what_it_needs_and_says_nothing_of_limits(robot: s
     assert "joint_efforts_at_limit" not in run.summary
 
 
-def test_the_terminal_says_so(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_joints_at_their_limits_are_printed(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
     print_summary(oo.run(led(robot), quiet=True).summary, None)
     assert "joint efforts were at their limits: weak\n" in capsys.readouterr().out
     print_summary(oo.run(led(robot, effort_limit=1e9), quiet=True).summary, None)
@@ -81,8 +81,8 @@ def test_the_terminal_says_so(robot: str, capsys: pytest.CaptureFixture[str]) ->
 
 
 @pytest.mark.parametrize("kind", ["joint_computed_torque", "joint_pid", "controllers", "none"])
-def test_rates_and_efforts_beyond_the_limits_are_named_under_every_law(robot: str, kind: str) -> None:
-    """The weak hinge needs 3 N m, of 0.5; the strong one turns at 10 rad/s, of 9, from the start."""
+def test_exceeded_rates_and_efforts_are_named_under_every_control_law(robot: str, kind: str) -> None:
+    """The weak hinge needs 3 N m (limit 0.5); the strong one starts at 10 rad/s (limit 9)."""
     data = led(robot, effort_limit=1e9)
     data["initial"] = {"joint_rates": {"strong": 10.0}}
     law = {"kind": "joint_computed_torque", "kp": 25.0, "kd": 10.0}
@@ -100,12 +100,12 @@ def test_rates_and_efforts_beyond_the_limits_are_named_under_every_law(robot: st
     assert ("weak" in summary["joint_efforts_exceeded"]) == (kind != "none")
 
 
-def test_a_joint_at_its_limit_is_not_beyond_it_and_zero_is_no_limit() -> None:
+def test_a_joint_at_its_limit_does_not_exceed_it_and_zero_is_no_limit() -> None:
     values = np.array([[0.5, -3.0, 1.0, 7.0], [-0.5, 2.0, 1.0, 1.0]])
-    np.testing.assert_array_equal(largest_shares(values, [0.5, 2.0, 0.0, None]), [1.0, 1.5, 0.0, 0.0])
+    np.testing.assert_array_equal(largest_fractions(values, [0.5, 2.0, 0.0, None]), [1.0, 1.5, 0.0, 0.0])
 
 
-def test_what_was_exceeded_is_said(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_exceeded_limits_are_printed(robot: str, capsys: pytest.CaptureFixture[str]) -> None:
     run = oo.run(led(robot, effort_limit=1e9), quiet=True)
     print_summary(run.summary, None)
     assert "effort limits of joints were exceeded: weak" in capsys.readouterr().out

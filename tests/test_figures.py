@@ -1,4 +1,4 @@
-"""The figures: drawn from the trace's own numbers, with units, without touching matplotlib's global state."""
+"""Figures show the numbers of the trace with units and do not change matplotlib's global state."""
 
 from __future__ import annotations
 
@@ -19,12 +19,11 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 import onorbit_rs as oo
 from onorbit_rs import figures
+from onorbit_rs.common.display_units import with_prefix
 from onorbit_rs.figures.solids import robot_polygons
 from onorbit_rs.figures.style import MOST_POINTS, thin
 from onorbit_rs.output.read import SavedTrace
 from onorbit_rs.scenario import Scenario, load
-from onorbit_rs.scenario.make_orbit import make_orbit
-from onorbit_rs.units import with_prefix
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +43,7 @@ def tumble() -> oo.Run:
 
 
 def subject(run: oo.Run, scenario: Scenario | None = None) -> figures.Subject:
-    orbit = None if run.scenario.orbit is None else make_orbit(run.scenario.orbit, Path())
+    orbit = None if run.scenario.orbit is None else run.scenario.orbit.build(Path())
     return figures.subject_of(run.trace, scenario or run.scenario, run.model, orbit, None)
 
 
@@ -52,7 +51,7 @@ def labels(figure: Figure) -> list[str]:
     return [text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel()) if text]
 
 
-def test_torques_are_those_of_the_trace(reach: oo.Run) -> None:
+def test_torques_equal_those_of_the_trace(reach: oo.Run) -> None:
     figure = figures.joint_torques(reach.trace, reach.model)
     (axes,) = figure.axes
     lines = [line for line in axes.lines if line.get_label() in reach.model.joint_names]
@@ -62,7 +61,7 @@ def test_torques_are_those_of_the_trace(reach: oo.Run) -> None:
     assert labels(figure) == ["time [s]", "torque [N m]"]
 
 
-def test_errors_are_those_of_the_trace_in_the_unit_of_the_label(reach: oo.Run) -> None:
+def test_errors_equal_those_of_the_trace_in_the_unit_of_the_label(reach: oo.Run) -> None:
     figure = figures.tracking_errors(reach.trace)
     factors = {"µm": 1e6, "mm": 1e3, "nm": 1e9, "m": 1.0, "µrad": 1e6, "mrad": 1e3, "nrad": 1e9, "rad": 1.0}
     for axes, error in zip(
@@ -90,22 +89,24 @@ def test_every_axis_of_every_figure_has_a_unit(reach: oo.Run) -> None:
         assert labels(figure) and all("[" in label for label in labels(figure)), labels(figure)
 
 
-def test_saving_writes_pictures_of_some_content(reach: oo.Run, tmp_path: Path) -> None:
-    told: list[str] = []
-    files = figures.save_all(subject(reach), tmp_path / "figures", formats=("png", "pdf"), tell=told.append)
-    assert [file.name for file in files[::2]] == [f"{name}.png" for name in told]
-    assert len(told) == 8
+def test_saved_pictures_are_not_empty(reach: oo.Run, tmp_path: Path) -> None:
+    names: list[str] = []
+    files = figures.save_all(subject(reach), tmp_path / "figures", formats=("png", "pdf"), tell=names.append)
+    assert [file.name for file in files[::2]] == [f"{name}.png" for name in names]
+    assert len(names) == 8
     for png, pdf in zip(files[::2], files[1::2], strict=True):
         assert png.read_bytes().startswith(b"\x89PNG") and png.stat().st_size > 10_000
         content = pdf.read_bytes()
-        assert content.startswith(b"%PDF") and b"/Type3" not in content  # which publishers refuse
+        assert (
+            content.startswith(b"%PDF") and b"/Type3" not in content
+        )  # Type 3 fonts, which publishers reject
 
 
-def test_only_the_papers_run_carries_the_papers_numbers(reach: oo.Run) -> None:
+def test_only_the_papers_run_shows_the_papers_numbers(reach: oo.Run) -> None:
     names = {drawing.name for drawing in figures.drawings(subject(reach))}
     assert {"fig4_desired_trajectory", "fig7_joint_torques"} <= names
     data = reach.scenario.resolved() | {"description": "mine"}
-    assert subject(reach, load(data)).is_the_papers  # words and steps change no experiment
+    assert subject(reach, load(data)).is_the_papers  # descriptions and steps do not change the experiment
     data["reference"]["displacement"] = [0.4, 0.0, 0.0]
     mine = list(figures.drawings(subject(reach, load(data))))
     assert {"desired_trajectory", "joint_torques"} <= {drawing.name for drawing in mine}
@@ -128,7 +129,7 @@ def test_figures_have_the_size_of_a_column_or_a_page(reach: oo.Run) -> None:
             assert all(text.get_fontsize() >= 7 for text in texts), drawing.name
 
 
-def test_manipulability_is_the_root_of_the_determinant(reach: oo.Run) -> None:
+def test_manipulability_is_the_square_root_of_the_determinant(reach: oo.Run) -> None:
     figure = figures.manipulability(reach.trace, reach.model, "tool")
     pose, position = figure.axes
     q, v = reach.trace.q[0], reach.trace.v[0]
@@ -141,12 +142,12 @@ def test_manipulability_is_the_root_of_the_determinant(reach: oo.Run) -> None:
             )
 
 
-def test_the_ledger_shows_what_nothing_explains(reach: oo.Run) -> None:
+def test_the_balance_figure_shows_unexplained_changes(reach: oo.Run) -> None:
     trace = reach.trace
     columns = {name: np.array(getattr(trace, name)) for name in trace.columns()}
     assert unexplained(SavedTrace(columns)) == pytest.approx(unexplained(trace))
     assert max(unexplained(trace)) < 1e-10  # N s, N m s, J: RK4 at 5 ms
-    columns["momentum"][600:, 4] += 1e-3  # must be seen
+    columns["momentum"][600:, 4] += 1e-3  # must be visible
     columns["kinetic_energy"][600:] += 2e-3
     linear, angular, energy = unexplained(SavedTrace(columns))
     assert linear < 1e-11
@@ -154,11 +155,11 @@ def test_the_ledger_shows_what_nothing_explains(reach: oo.Run) -> None:
 
 
 def unexplained(trace: Any) -> list[float]:
-    """The largest value of each panel on the right."""
+    """Returns the largest value of each panel on the right."""
     return [float(np.max(axes.lines[0].get_ydata())) for axes in figures.ledger(trace).axes[1::2]]
 
 
-def test_the_reaction_is_the_angle_turned_by(reach: oo.Run) -> None:
+def test_the_base_reaction_is_the_angle_of_rotation(reach: oo.Run) -> None:
     turned, rate = figures.base_reaction(reach.trace).axes
     assert turned.get_ylabel() == "turned by [deg]"
     angle = turned.lines[0].get_ydata()
@@ -167,7 +168,7 @@ def test_the_reaction_is_the_angle_turned_by(reach: oo.Run) -> None:
     np.testing.assert_allclose(np.radians(drawn), reach.trace.v[:, 3:6], rtol=1e-12)
 
 
-def test_forces_are_those_of_the_wrenches(tumble: oo.Run) -> None:
+def test_forces_equal_those_of_the_wrenches(tumble: oo.Run) -> None:
     figure = figures.environment_forces(tumble.trace, tumble.model.body_names)
     effects = list(tumble.trace.wrenches)
     assert len(figure.axes) == 2 * len(effects)
@@ -180,20 +181,22 @@ def test_forces_are_those_of_the_wrenches(tumble: oo.Run) -> None:
     assert "drag\nforce [N]" in labels(figure) and "torque [N m]" in labels(figure)
 
 
-def test_what_carrying_takes_away_is_said(tumble: oo.Run) -> None:
-    def about(told: figures.Subject) -> str:
-        (drawing,) = [one for one in figures.drawings(told) if one.name == "environment_forces"]
+def test_the_acceleration_removed_in_carried_mode_is_stated(tumble: oo.Run) -> None:
+    def about(subject_of_run: figures.Subject) -> str:
+        (drawing,) = [one for one in figures.drawings(subject_of_run) if one.name == "environment_forces"]
         return drawing.caption
 
     assert "carried" not in about(subject(tumble))
-    assert "share that moves all bodies alike is removed" in about(replace(subject(tumble), is_carried=True))
+    assert "common acceleration due to drag and light is removed" in about(
+        replace(subject(tumble), is_carried=True)
+    )
     sgp4 = load("sgp4_orbit")
-    orbit = make_orbit(sgp4.orbit, Path())
-    told = figures.subject_of(tumble.trace, sgp4, tumble.model, orbit, None)
-    assert told.is_carried
+    orbit = sgp4.orbit.build(Path())
+    subject_of_run = figures.subject_of(tumble.trace, sgp4, tumble.model, orbit, None)
+    assert subject_of_run.is_carried
 
 
-def test_the_ground_track_is_where_the_earth_says(tumble: oo.Run) -> None:
+def test_the_ground_track_agrees_with_the_orientation_of_the_earth(tumble: oo.Run) -> None:
     earth = oo.Earth(tumble.scenario.epoch)
     world, profile = figures.ground_track(tumble.trace, earth).axes
     latitude, longitude, height = earth.geodetic(tumble.trace.time[0], tumble.trace.position_eci[0])
@@ -203,7 +206,7 @@ def test_the_ground_track_is_where_the_earth_says(tumble: oo.Run) -> None:
     assert np.nanmax(np.abs(lat)) < 36.0  # the orbit's inclination is 35 degrees, geodetic a little more
 
 
-def test_a_month_of_ground_track_is_dots_and_says_so() -> None:
+def test_a_month_of_ground_track_is_drawn_as_labelled_dots() -> None:
     earth = oo.Earth("2026-03-20 12:00:00 UTC")
     orbit = oo.Kepler(semi_major_axis=6878e3, inclination=0.9)
 
@@ -220,15 +223,15 @@ def test_a_month_of_ground_track_is_dots_and_says_so() -> None:
         styles = [axes.lines[0].get_linestyle() for axes in (world, profile)]
         return styles, [text.get_text() for text in legend.get_texts()]
 
-    styles, told = drawn(30.0, 50_000)
-    assert styles == ["None", "None"] and told == ["a dot every 14.4 min", "start", "end"]
-    styles, told = drawn(4.0, 50_000)  # 50 points for each of 61 revolutions
-    assert styles == ["-", "-"] and told == ["start", "end"]
-    styles, told = drawn(0.5, 9)  # whatever left the rows so far apart
-    assert styles == ["None", "None"] and told[0] == "a dot every 90 min"
+    styles, labels = drawn(30.0, 50_000)
+    assert styles == ["None", "None"] and labels == ["a dot every 14.4 min", "start", "end"]
+    styles, labels = drawn(4.0, 50_000)  # 50 points for each of 61 revolutions
+    assert styles == ["-", "-"] and labels == ["start", "end"]
+    styles, labels = drawn(0.5, 9)  # independent of the reason for sparse rows
+    assert styles == ["None", "None"] and labels[0] == "a dot every 90 min"
 
 
-def test_a_robot_of_meshes_is_drawn_where_its_links_are(reach: oo.Run, tmp_path: Path) -> None:
+def test_a_robot_with_meshes_is_drawn_at_the_poses_of_its_links(reach: oo.Run, tmp_path: Path) -> None:
     urdf = oo.robots.path("humanoid_torso").read_text()
     urdf = re.sub(
         r"<(box|sphere|cylinder|capsule)\b[^>]*/>", '<mesh filename="box.stl" scale="0.1 0.1 -0.1"/>', urdf
@@ -246,18 +249,18 @@ def test_a_robot_of_meshes_is_drawn_where_its_links_are(reach: oo.Run, tmp_path:
         corners = (CORNERS * [0.1, 0.1, -0.1]) @ pose[:3, :3].T + pose[:3, 3]
         for corner in corners:
             assert np.linalg.norm(faces.reshape(-1, 3) - corner, axis=1).min() < 1e-6
-    assert np.abs(first[0] - last[0]).max() > 0.01  # it moves
+    assert np.abs(first[0] - last[0]).max() > 0.01  # the robot moves
     figure = figures.desired_trajectory(reach.trace, model)
     assert all(any(isinstance(item, Poly3DCollection) for item in axes.collections) for axes in figure.axes)
 
 
-def test_errors_of_several_controllers_are_those_of_the_trace() -> None:
+def test_errors_of_several_controllers_equal_those_of_the_trace() -> None:
     data = load("dual_arm_reach").resolved()
     data["simulation"] |= {"duration": 0.5, "time_step": 5e-3}
     run = oo.run(data, quiet=True)
     names = {drawing.name for drawing in figures.drawings(subject(run))}
     assert {"tracking_errors_left", "tracking_errors_right", "manipulability_left"} <= names
-    assert "tracking_errors" not in names  # which would be those of the right arm again
+    assert "tracking_errors" not in names  # instead of those of the right arm
     position, _ = figures.control_errors(run.trace, "left", []).axes
     drawn = np.column_stack([line.get_ydata() for line in position.lines])[:, :3]
     error = np.asarray(run.trace.tracking["left"])[:, :3]
@@ -265,7 +268,7 @@ def test_errors_of_several_controllers_are_those_of_the_trace() -> None:
     np.testing.assert_allclose(drawn, ratio * error, rtol=1e-9, atol=1e-12)
 
 
-def test_names_in_the_users_words_are_no_formulas_and_are_not_left_out(reach: oo.Run) -> None:
+def test_names_with_special_characters_are_neither_formulas_nor_omitted(reach: oo.Run) -> None:
     names = ["$x^{", "_hidden", "<script>", "a & b", "関節", "$a$", "x" * 80]
     urdf = oo.robots.path("humanoid_torso").read_text()
     for number, name in enumerate(names, start=1):
@@ -280,7 +283,7 @@ def test_names_in_the_users_words_are_no_formulas_and_are_not_left_out(reach: oo
     assert shown == [*names[:-1], "x" * 16 + "…" + "x" * 16]
 
 
-def test_an_orbit_flown_is_drawn(tmp_path: Path) -> None:
+def test_the_path_along_the_orbit_is_drawn(tmp_path: Path) -> None:
     data = load("kepler_orbit").resolved()
     data["simulation"] = {"duration": 600.0, "time_step": 2.0}
     result = oo.run(data, quiet=True)
@@ -288,7 +291,7 @@ def test_an_orbit_flown_is_drawn(tmp_path: Path) -> None:
     assert names == {"base_motion", "base_reaction", "ledger", "orbit"}
 
 
-def test_nothing_global_is_touched() -> None:
+def test_global_state_is_not_changed() -> None:
     program = (
         "import matplotlib, sys; before = matplotlib.rcParams.copy(); import onorbit_rs.figures; "
         "assert matplotlib.rcParams.copy() == before; assert 'matplotlib.pyplot' not in sys.modules"
@@ -311,7 +314,7 @@ def test_prefixes(peak: float, factor: float, unit: str) -> None:
     assert with_prefix(peak, "m") == (pytest.approx(factor), unit)
 
 
-def test_thinning_keeps_a_spike() -> None:
+def test_decimation_keeps_a_spike() -> None:
     time = np.linspace(0.0, 1.0, 10 * MOST_POINTS)
     values = np.zeros_like(time)
     values[12_345] = -7.0
@@ -320,7 +323,7 @@ def test_thinning_keeps_a_spike() -> None:
     assert y.min() == -7.0 and x[y.argmin()] == time[12_345]
 
 
-def test_a_portrait_shows_the_axes_of_the_frames_where_they_are() -> None:
+def test_a_portrait_shows_the_axes_of_the_frames_at_their_poses() -> None:
     model = oo.robots.load("humanoid_torso")
     q = model.integrate(model.neutral(), np.linspace(-0.5, 0.5, model.nv))
     figure = figures.portrait(model, q, ["tool"])

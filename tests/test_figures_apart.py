@@ -1,4 +1,4 @@
-"""What figures leave out and set apart: rounding, small joints, joints that slide, zeros, an empty map."""
+"""Special cases of figures: rounding, small joints, prismatic joints, zeros, an empty map."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def labels(figure: Figure) -> list[str]:
     return [text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel()) if text]
 
 
-def test_rounding_is_drawn_as_none() -> None:
-    """A cannonball's radiation torque of 1e-23 N m filled its panel."""
+def test_rounding_errors_are_not_drawn() -> None:
+    """A cannonball's radiation torque of 1e-23 N m once filled its panel."""
     force = np.full((3, 2, 6), [2e-6, 0.0, 0.0, 7e-23, 0.0, 0.0])
     gradient = np.full((3, 2, 6), [0.0, 0.0, 0.0, 0.0, 4e-6, 0.0])
-    lever = np.full((3, 2, 6), [2e-6, 0.0, 0.0, 3e-13, 0.0, 0.0])  # 0.15 µm off: small, and real
+    lever = np.full((3, 2, 6), [2e-6, 0.0, 0.0, 3e-13, 0.0, 0.0])  # 0.15 µm: small, but not rounding
 
     def said(**wrenches: Any) -> list[list[str]]:
         trace: Any = SavedTrace({"time": np.arange(3.0)} | {f"wrench_{n}": w for n, w in wrenches.items()})
@@ -33,12 +33,12 @@ def test_rounding_is_drawn_as_none() -> None:
 
     assert said(light=force, gradient=gradient) == [[], ["none above rounding"], ["none"], []]
     assert said(light=force) == [[], ["none above rounding"]]
-    carried = np.full((3, 2, 6), [4e-20, 0.0, 0.0, 0.0, 0.0, 0.0])  # of 1e-5 N, all taken away
+    carried = np.full((3, 2, 6), [4e-20, 0.0, 0.0, 0.0, 0.0, 0.0])  # of 1e-5 N, removed completely
     assert said(drag=carried) == [["none above rounding"], ["none"]]
     assert said(light=lever, gradient=gradient) == [[], [], ["none"], []]
 
 
-def test_an_error_that_is_rounding_is_flat() -> None:
+def test_a_tracking_error_below_rounding_is_flat() -> None:
     class Trace:
         time = np.arange(3.0)
 
@@ -52,7 +52,7 @@ def test_an_error_that_is_rounding_is_flat() -> None:
     assert top(3e-16) == 1.0 and 3.0 < top(3e-12) < 4.0  # pm
 
 
-def test_an_attitude_that_is_rounding_is_flat() -> None:
+def test_an_attitude_below_rounding_is_flat() -> None:
     body = {"rigid_body": {"mass": 100.0, "inertia": [10.0, 12.0, 8.0]}}
     data = {"robot": body, "orbit": {"kind": "kepler", "semi_major_axis": 7e6, "inclination": 1.7},
             "initial": {"frame": "lvlh"}, "simulation": {"duration": 3000.0, "time_step": 5.0}}  # fmt: skip
@@ -69,8 +69,8 @@ def test_an_attitude_that_is_rounding_is_flat() -> None:
     assert unit == "[µdeg]" and 100.0 < drawn < top < 1.2 * drawn
 
 
-def test_a_track_that_stays_in_place_fills_its_map() -> None:
-    """The start lay under the end, in the middle of an empty world."""
+def test_a_stationary_ground_track_fills_its_map() -> None:
+    """The start was once hidden by the end, in the middle of an empty map."""
     earth = oo.Earth("2026-03-20 12:00:00 UTC")
     orbit = oo.Kepler(semi_major_axis=42164.17e3, inclination=0.002)
 
@@ -86,7 +86,7 @@ def test_a_track_that_stays_in_place_fills_its_map() -> None:
     assert start.get_markersize() > 2.0 * end.get_markersize() and start.get_markerfacecolor() == "none"
 
 
-def test_a_difference_of_one_row_is_seen_and_every_column_has_its_time() -> None:
+def test_a_difference_of_one_row_is_visible_at_its_time_in_every_column() -> None:
     spin = {"robot": {"rigid_body": {"mass": 10.0, "inertia": [1.0, 2.0, 3.0]}},
             "simulation": {"duration": 1.0, "time_step": 0.1}}  # fmt: skip
     compared = oo.compare(spin, spin)
@@ -104,7 +104,7 @@ def test_a_difference_of_one_row_is_seen_and_every_column_has_its_time() -> None
         assert low < 7e-12 < high and drawn[4, 1] < axes.transData.transform((0.0, low))[1]
 
 
-def test_errors_of_joints_that_slide_are_in_metres() -> None:
+def test_errors_of_prismatic_joints_are_in_metres() -> None:
     urdf = oo.robots.path("humanoid_torso").read_text()
     turning = oo.Model.from_urdf_string(urdf)
     names = list(turning.joint_names)
@@ -135,7 +135,7 @@ def test_errors_of_joints_that_slide_are_in_metres() -> None:
     np.testing.assert_allclose(figure.axes[1].lines[0].get_ydata(), 1e3 * errors[:, 0], rtol=1e-12)
 
 
-def test_of_many_joints_few_have_a_colour_and_no_two_the_same() -> None:
+def test_of_many_joints_few_have_different_colours() -> None:
     names = [f"joint_{n}" for n in range(20)]
 
     class Trace:
@@ -146,7 +146,7 @@ def test_of_many_joints_few_have_a_colour_and_no_two_the_same() -> None:
     (axes,) = figures.control_errors(trace, "hold", names).axes
     legend = axes.get_legend()
     assert legend is not None
-    told = [text.get_text() for text in legend.get_texts()]
-    assert sorted(told) == sorted(["13 others, smaller", *names[13:]])
+    names_in_legend = [text.get_text() for text in legend.get_texts()]
+    assert sorted(names_in_legend) == sorted(["13 others, smaller", *names[13:]])
     colours = {line.get_color() for line in axes.lines if line.get_label() in names}
     assert len(colours) == 7

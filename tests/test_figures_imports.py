@@ -1,4 +1,4 @@
-"""The house: rerun is imported in ``viewer/`` alone, matplotlib in ``figures/`` alone."""
+"""Only ``viewer/`` imports rerun, and only ``figures/`` imports matplotlib."""
 
 from __future__ import annotations
 
@@ -27,7 +27,9 @@ def test_a_drawing_library_stays_in_its_folder(owner: str, roots: set[str]) -> N
     assert importers == {owner}
 
 
-@pytest.mark.parametrize("module", ["onorbit_rs.report", "onorbit_rs.report.numbers", "onorbit_rs.units"])
+@pytest.mark.parametrize(
+    "module", ["onorbit_rs.report", "onorbit_rs.report.numbers", "onorbit_rs.common.display_units"]
+)
 def test_a_report_loads_no_drawing_library_before_it_draws(module: str) -> None:
     program = f"import sys, {module}; assert not {{'matplotlib', 'rerun'}} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", program], check=True)

@@ -1,4 +1,4 @@
-"""Every reader of a user's file: devices, pipes, what is too large, not text, nested or damaged."""
+"""Readers of user files: devices, pipes, and files that are too large, binary, nested or damaged."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from commands import refusal
 from test_earth import kernel, series
 
 import onorbit_rs as oo
-from onorbit_rs import files, reading
+from onorbit_rs.common import files, input_files
 from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError
-from onorbit_rs.interop import onorbitros
 from onorbit_rs.robots.expand import expand
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 from onorbit_rs.scenario.control import PythonController
-from onorbit_rs.scenario.python_controller import python_controller
-from onorbit_rs.scenario.python_source import inspect_source
-from onorbit_rs.scenario.table import read_table
+from onorbit_rs.scenario.control.python_object import create_controller
+from onorbit_rs.scenario.control.python_source import inspect_source
+from onorbit_rs.scenario.csv_table import read_table
 from onorbit_rs.scenario.yaml_lines import read_yaml
+from onorbit_rs.tools.interop import onorbitros
 
 MINE: Any = {"class": "Mine"}
 EPOCH = "2024-01-10T00:00:00 TT"
@@ -50,7 +50,7 @@ READERS: dict[str, Callable[[Path], Any]] = {
     "controller": lambda path: inspect_source(
         PythonController(kind="python", file=str(path), **MINE), Path()
     ),
-    "controller to run": lambda path: python_controller(
+    "controller to run": lambda path: create_controller(
         PythonController(kind="python", file=str(path), **MINE), Path()
     ),
     "gravity field": lambda path: oo.GravityField.from_gfc(path),
@@ -71,7 +71,7 @@ def needs(name: str) -> None:
 @pytest.mark.timeout(30)
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes in folders here")
 @pytest.mark.parametrize("name", READERS)
-def test_devices_and_pipes_are_refused_unread(tmp_path: Path, name: str) -> None:
+def test_devices_and_pipes_are_rejected_without_reading(tmp_path: Path, name: str) -> None:
     needs(name)
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
@@ -93,7 +93,7 @@ def test_missing_folders_and_binary_files_are_named(tmp_path: Path, name: str) -
         READERS[name](binary)
 
 
-def test_check_of_a_pipe_ends(tmp_path: Path) -> None:
+def test_check_of_a_pipe_terminates(tmp_path: Path) -> None:
     if not hasattr(os, "mkfifo"):
         pytest.skip("there are no pipes in folders here")
     os.mkfifo(tmp_path / "mine.yaml")
@@ -103,17 +103,17 @@ def test_check_of_a_pipe_ends(tmp_path: Path) -> None:
 def test_no_file_is_read_beyond_its_limit(tmp_path: Path) -> None:
     file = tmp_path / "mine.txt"
     file.write_text("1234")
-    assert reading.read_text(file, 4) == "1234"
+    assert input_files.read_text(file, 4) == "1234"
     with pytest.raises(ReadError, match="larger than 3 bytes"):
-        reading.read_text(file, 3)
+        input_files.read_text(file, 3)
     with file.open("wb") as stream:
-        stream.truncate(100_000_001)  # takes no room on the disk
+        stream.truncate(100_000_001)  # a sparse file
     for name in ("scenario", "TLE", "OMM", "URDF", "Earth orientation", "space weather", "OnOrbitROS"):
         with pytest.raises(OnOrbitError, match=r"larger than|more than \d+"):
             READERS[name](file)
 
 
-def test_a_file_that_grows_while_it_is_read_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_grows_while_it_is_read_is_rejected(tmp_path: Path) -> None:
     (tmp_path / "small").write_bytes(b"x")
 
     class Grown(io.BytesIO):
@@ -127,13 +127,11 @@ def test_a_file_that_grows_while_it_is_read_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="fifos are of POSIX")
-def test_a_pipe_that_takes_the_place_of_a_file_is_not_waited_for(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_pipe_that_replaces_a_file_does_not_block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     os.mkfifo(tmp_path / "pipe")
-    monkeypatch.setattr(reading, "check_regular", lambda *_: None)  # it was a file at that instant
-    with pytest.raises(ReadError, match="not a regular file"):
-        reading.read_bytes(tmp_path / "pipe", 10)
+    monkeypatch.setattr(input_files, "check_regular", lambda *_: None)  # still a file at this instant
+    with pytest.raises(ReadError, match="must be a regular file"):
+        input_files.read_bytes(tmp_path / "pipe", 10)
 
 
 @pytest.mark.timeout(60)
@@ -148,14 +146,14 @@ def test_a_pipe_that_takes_the_place_of_a_file_is_not_waited_for(
     ],
     ids=["lists", "mappings", "items", "alias bomb", "alias of itself"],
 )
-def test_nested_yaml_is_refused_by_type(tmp_path: Path, text: str) -> None:
+def test_deeply_nested_yaml_raises_a_typed_error(tmp_path: Path, text: str) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text(text)
-    with pytest.raises(OnOrbitError, match=r"nested too deeply|aliases counted"):
+    with pytest.raises(OnOrbitError, match=r"nested too deeply|including those of aliases"):
         read_yaml(file)
 
 
-def test_a_mapping_nested_in_python_is_refused_by_type() -> None:
+def test_a_deeply_nested_mapping_raises_a_typed_error() -> None:
     deep: Any = 1.0
     for _ in range(100_000):
         deep = {"a": deep}
@@ -173,14 +171,14 @@ def small_kernel(path: Path) -> bytes:
 
 
 @pytest.mark.timeout(60)
-def test_damaged_spice_kernels_are_refused_by_type(tmp_path: Path) -> None:
+def test_damaged_spice_kernels_raise_typed_errors(tmp_path: Path) -> None:
     needs("SPICE kernel")
     whole = small_kernel(tmp_path / "whole.bsp")
     oo.Earth(EPOCH, ephemeris=tmp_path / "whole.bsp")
     damaged, rng, refused = tmp_path / "damaged.bsp", random.Random(14), 0
     cases = [whole[:size] for size in range(0, len(whole), 397)]
     in_circle = bytearray(whole)
-    in_circle[1024:1032] = np.array(2.0).tobytes()  # the record of segments follows itself
+    in_circle[1024:1032] = np.array(2.0).tobytes()  # the summary record points to itself
     cases.append(bytes(in_circle))
     for _ in range(150):
         one = bytearray(whole)

@@ -1,4 +1,4 @@
-"""Python that a scenario brings: check reads it and runs nothing; whoever runs it names it first."""
+"""Python code of a scenario: ``check`` parses it without running it; other commands name it first."""
 
 from __future__ import annotations
 
@@ -51,17 +51,17 @@ def test_check_runs_no_code_of_a_scenario(tmp_path: Path) -> None:
     file = scenario(tmp_path)
     done = onorbit("check", file)
     assert done.returncode == 0, done.stderr
-    assert f"not run: {tmp_path / 'brake.py'}" in done.stdout
+    assert f"not executed: {tmp_path / 'brake.py'}" in done.stdout
     assert not (tmp_path / IMPORTED).exists()
     trusted = onorbit("check", file, "--trust", "--json")
     assert trusted.returncode == 0, trusted.stderr
-    assert f"executes Python of this scenario: {tmp_path / 'brake.py'}" in trusted.stderr
+    assert f"executing Python code of this scenario: {tmp_path / 'brake.py'}" in trusted.stderr
     assert json.loads(trusted.stdout)["code_not_run"] == []
-    assert (tmp_path / MADE).exists()  # control: there was something to run
+    assert (tmp_path / MADE).exists()  # negative control: there was code to run
 
 
 def test_run_and_compare_name_the_code_before_they_execute_it(tmp_path: Path) -> None:
-    named = f"onorbit: executes Python of this scenario: {tmp_path / 'brake.py'}"
+    named = f"onorbit: executing Python code of this scenario: {tmp_path / 'brake.py'}"
     file = scenario(tmp_path, "import sys\nprint('now', file=sys.stderr)\n" + SOURCE)
     for words in (("run", file, "--quiet"), ("compare", file, file)):
         done = onorbit(*words)
@@ -71,7 +71,7 @@ def test_run_and_compare_name_the_code_before_they_execute_it(tmp_path: Path) ->
     assert "executes" not in onorbit("check", "python_controller", "--trust").stderr  # of this package
 
 
-def test_an_example_of_this_package_is_not_announced(tmp_path: Path) -> None:
+def test_code_of_bundled_examples_is_not_announced(tmp_path: Path) -> None:
     done = onorbit("check", "python_controller", "--json")
     assert json.loads(done.stdout)["code_not_run"] == []
 
@@ -83,23 +83,33 @@ WRONG: dict[str, tuple[str, dict[str, Any], type[OnOrbitError], str]] = {
     "zeros": ("\0", {}, ControlError, "cannot be read as Python"),
     "deep": ("(" * 5000, {}, ControlError, "cannot be read as Python"),
     "no class": (CLASS, {"class": "Brakes"}, ControlError, "did you mean 'Brake'"),
-    "no update": ("class Brake:\n    pass", {}, ControlError, "has no update"),
+    "no update": ("class Brake:\n    pass", {}, ControlError, "has no method update"),
     "abstract": (
         "import onorbit_rs as oo\nclass Brake(oo.Controller):\n    pass",
         {},
         ControlError,
-        "has no update",
+        "has no method update",
     ),
     "missing": (SOURCE, {"arguments": {}}, ControlError, "missing a required argument: 'gain'"),
     "unknown": (SOURCE, {"arguments": {"gian": 1}}, ControlError, "argument"),
     "too many": (CLASS, {"arguments": {"gain": 1}}, ControlError, "unexpected keyword argument 'gain'"),
-    "no module": (CLASS, {"file": None, "module": "json.none"}, NotFoundError, "no module 'json.none'"),
-    "nowhere": (CLASS, {"file": None, "module": "no_such_x"}, NotFoundError, "no module 'no_such_x'"),
+    "no module": (
+        CLASS,
+        {"file": None, "module": "json.none"},
+        NotFoundError,
+        "'json.none' cannot be imported",
+    ),
+    "nowhere": (
+        CLASS,
+        {"file": None, "module": "no_such_x"},
+        NotFoundError,
+        "'no_such_x' cannot be imported",
+    ),
 }
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_check_finds_what_reading_can_find(name: str, tmp_path: Path) -> None:
+def test_check_finds_errors_without_running_the_code(name: str, tmp_path: Path) -> None:
     source, changes, error, words = WRONG[name]
     with pytest.raises(error, match=words):
         build(load(scenario(tmp_path, source, **changes)), runs_code=False)
@@ -120,6 +130,6 @@ FINE: dict[str, tuple[str, dict[str, Any]]] = {
 
 
 @pytest.mark.parametrize("name", FINE)
-def test_what_only_running_could_tell_is_not_refused(name: str, tmp_path: Path) -> None:
+def test_errors_that_need_execution_are_not_reported_by_check(name: str, tmp_path: Path) -> None:
     source, changes = FINE[name]
     build(load(scenario(tmp_path, source, **changes)), runs_code=False)

@@ -1,4 +1,4 @@
-"""Friction of joints at rest: what breaks them away, what holds them, and what is refused."""
+"""Friction of joints at rest: breakaway, sticking, and invalid input."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ GOAL = 0.05  # rad
 
 
 def hinge(**friction: Any) -> oo.Model:
-    """A link of 0.03 kg m² about its joint on a base of 50 kg."""
+    """Returns a link of 0.03 kg m² about its joint on a base of 50 kg."""
     builder = oo.ModelBuilder("hinge", base="base", mass=50.0, com=[0, 0, 0], inertia=5.0 * np.eye(3))
     builder.add_link(
         "link", parent="base", joint="joint", mass=1.0, com=[0.1, 0, 0], inertia=0.02 * np.eye(3), **friction
@@ -43,15 +43,17 @@ class Rows:
 
 
 def shared_rows(free: oo.Trace, rough: oo.Trace) -> Rows:
-    rows = np.isin(rough.time, free.time)  # reversals are rows as well
+    rows = np.isin(rough.time, free.time)  # reversals are recorded as rows, too
     assert rows.sum() == len(free.time)
     return Rows(free.q[:, 7], rough.q[rows, 7])
 
 
 @pytest.mark.parametrize("kd", [20.0, 2.0])
 @pytest.mark.parametrize("friction", [{"friction": 0.2}, {"friction": 0.2, "static_friction": 0.35}])
-def test_a_joint_that_friction_would_hold_moves_as_without(kd: float, friction: dict[str, float]) -> None:
-    """0.2 N m and a goal 0.05 rad away: it never moved."""
+def test_friction_compensation_makes_a_stuck_joint_move_as_without_friction(
+    kd: float, friction: dict[str, float]
+) -> None:
+    """With 0.2 N m and a goal 0.05 rad away the joint once never moved."""
     trace = moved(hinge(**friction), kd=kd)
     rows = shared_rows(moved(hinge(), kd=kd), trace)
     assert np.abs(rows.free - rows.rough).max() < 1e-6
@@ -59,17 +61,17 @@ def test_a_joint_that_friction_would_hold_moves_as_without(kd: float, friction: 
     compensation = trace.friction_compensation
     assert compensation is not None
     signs = np.sign(compensation[compensation != 0.0])
-    assert np.count_nonzero(np.diff(signs)) == (0 if kd == 20.0 else 9)  # a swing every 0.63 s, no chatter
+    assert np.count_nonzero(np.diff(signs)) == (0 if kd == 20.0 else 9)  # one swing every 0.63 s, no chatter
     # negative control
     assert not np.any(moved(hinge(**friction), kd=kd, compensate_friction=False).q[:, 7])
 
 
-def test_a_run_without_friction_has_no_compensation_to_record() -> None:
+def test_a_run_without_friction_records_no_compensation() -> None:
     trace = moved(hinge(), duration=0.01)
     assert trace.friction_compensation is None and "friction_compensation" not in trace.columns()
 
 
-def test_static_friction_is_the_kinetic_one_unless_it_is_given() -> None:
+def test_static_friction_defaults_to_kinetic_friction() -> None:
     frictions = [
         {"friction": 0.2},
         {"friction": 0.2, "static_friction": 0.2},
@@ -94,7 +96,7 @@ def test_static_friction_is_read_from_a_urdf() -> None:
     assert (joint.friction, joint.static_friction) == (0.2, 0.25)
 
 
-def test_a_static_friction_below_the_kinetic_one_is_refused() -> None:
+def test_a_static_friction_below_the_kinetic_one_is_rejected() -> None:
     with pytest.raises(
         oo.exceptions.ModelError, match=r"static friction 0\.1 is below its kinetic friction 0\.2"
     ) as error:
@@ -102,19 +104,19 @@ def test_a_static_friction_below_the_kinetic_one_is_refused() -> None:
     assert error.value.joint == "joint"
 
 
-def test_mujoco_moves_a_joint_that_friction_would_hold_and_refuses_two_frictions() -> None:
+def test_mujoco_moves_a_stuck_joint_and_rejects_different_static_friction() -> None:
     pytest.importorskip("mujoco")
-    from onorbit_rs.plants import Mujoco
+    from onorbit_rs.engines import Mujoco
 
     model = hinge(friction=0.2)
-    trace = moved(model, plant=Mujoco(model))
-    assert abs(trace.q[-1, 7] - GOAL) < 2e-4  # its friction creeps; it stayed where it was
+    trace = moved(model, engine=Mujoco(model))
+    assert abs(trace.q[-1, 7] - GOAL) < 2e-4  # its friction creeps; the joint once did not move
     with pytest.raises(oo.exceptions.ModelError, match="one friction for both"):
         Mujoco(hinge(friction=0.2, static_friction=0.3))
 
 
 def two_hinges() -> oo.Model:
-    """Two links in a row, friction of 0.2 N m at both joints."""
+    """Returns two links in series with friction of 0.2 N m at both joints."""
     builder = oo.ModelBuilder("hinges", base="base", mass=50.0, com=[0, 0, 0], inertia=5.0 * np.eye(3))
     link: dict[str, Any] = {"mass": 1.0, "com": [0.1, 0, 0], "inertia": 0.02 * np.eye(3), "friction": 0.2}
     builder.add_link("first", parent="base", joint="joint1", **link)
@@ -123,9 +125,9 @@ def two_hinges() -> oo.Model:
 
 
 def test_a_joint_without_a_law_does_not_disturb_the_others_on_an_engine_whose_friction_creeps() -> None:
-    """The sign of its rate is chance there: with it in full the driven joint ended 1.2e-2 rad off."""
-    plants = pytest.importorskip(
-        "onorbit_rs.plants", reason="MuJoCo is in the test extra: pip install mujoco-core"
+    """The sign of its rate is random; full compensation caused an error of 1.2e-2 rad at the driven joint."""
+    engines = pytest.importorskip(
+        "onorbit_rs.engines", reason="MuJoCo is in the test extra: pip install mujoco-core"
     )
     pytest.importorskip("mujoco", reason="the engine is in the test extra: pip install mujoco-core")
     model = two_hinges()
@@ -133,15 +135,15 @@ def test_a_joint_without_a_law_does_not_disturb_the_others_on_an_engine_whose_fr
         oo.JointComputedTorque(kp=100.0, kd=20.0), joints=["joint1"], reference=oo.JointHold([GOAL])
     )
     trace = oo.Simulation(
-        model, model.neutral(), np.zeros(8), controller=[hold], plant=plants.Mujoco(model)
+        model, model.neutral(), np.zeros(8), controller=[hold], engine=engines.Mujoco(model)
     ).run(3.0)
-    assert abs(trace.q[-1, 7] - GOAL) < 2e-4  # creep of the soft friction; 1.0e-4 seen
+    assert abs(trace.q[-1, 7] - GOAL) < 2e-4  # creep of the soft friction; 1.0e-4 observed
     assert np.abs(np.diff(trace.tau[-200:], axis=0)).max() < 1e-5
 
 
 @pytest.mark.parametrize("stiff", [6, 3])
-def test_a_tool_held_in_position_alone_comes_to_rest(stiff: int) -> None:
-    """Without stiffness in attitude the compensation changed sign 4 to 8 times per joint at the end."""
+def test_a_tool_controlled_in_position_only_comes_to_rest(stiff: int) -> None:
+    """Without stiffness in attitude the compensation once changed sign 4 to 8 times per joint."""
     text = (Path(oo.__file__).parent / "robots" / "humanoid_torso.urdf").read_text()
     rough = oo.Model.from_urdf_string(text.replace("<axis", '<dynamics friction="0.05"/><axis'))
     q = rough.neutral()

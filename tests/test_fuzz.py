@@ -1,4 +1,4 @@
-"""What ``make fuzz`` does at length: corpus and mutations are read or refused, findings are kept."""
+"""A short version of ``make fuzz``: corpus and mutations are parsed or rejected, findings are kept."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ NAMES = (
 
 @pytest.fixture(scope="module")
 def fuzz() -> Iterator[Any]:
-    """The modules of the campaign, which stand alone beside the tests."""
+    """Returns the modules of the campaign, which are separate from the tests."""
     with pytest.MonkeyPatch.context() as patch:
-        from onorbit_rs import keeping
+        from onorbit_rs.simulation import finish
 
-        patch.setattr(keeping, "write_pictures", keeping.write_pictures)  # put back at the end
+        patch.setattr(finish, "write_pictures", finish.write_pictures)  # restored at the end
         patch.syspath_prepend(str(HERE))
         import rounds
         import targets
@@ -45,21 +45,21 @@ def corpus(fuzz: Any, name: str, room: Any) -> list[bytes]:
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.filterwarnings("ignore")
-def test_a_parser_reads_its_corpus_and_reads_or_refuses_mutations(
+def test_a_parser_reads_its_corpus_and_reads_or_rejects_mutations(
     fuzz: Any, name: str, tmp_path: Path
 ) -> None:
     trial = fuzz.tried.Trial(name, tmp_path, SEED)
     try:
         inputs = corpus(fuzz, name, trial.room)
         for data in inputs:
-            trial.target(data, trial.room)  # a corpus that is refused reaches nothing
+            trial.target(data, trial.room)  # a rejected corpus would cover nothing
         assert fuzz.tried.blind(trial, inputs, MUTATIONS) == len(inputs) + MUTATIONS
     finally:
         trial.room.close()
     assert not trial.places, [file.read_text() for file in tmp_path.glob("*.txt")]
 
 
-def test_no_target_is_left_out(fuzz: Any) -> None:
+def test_every_target_has_a_corpus_or_seeds(fuzz: Any) -> None:
     assert set(fuzz.targets.TARGETS) == set(NAMES)
 
 
@@ -90,7 +90,7 @@ def test_an_error_of_another_class_is_a_finding_and_keeps_its_input(
     assert all("seed 77" in file.read_text() for file in tmp_path.glob("*.txt"))
 
 
-def test_inputs_that_slow_parsers_leave_undone_go_to_fast_ones(fuzz: Any) -> None:
+def test_inputs_that_slow_parsers_cannot_process_go_to_fast_ones(fuzz: Any) -> None:
     rates = {"fast": 50_000.0, "fair": 5_000.0, "slow": 10.0, "broken": 50_000.0}
     calls: dict[str, list[tuple[int, int]]] = {name: [] for name in rates}
 
@@ -107,7 +107,7 @@ def test_inputs_that_slow_parsers_leave_undone_go_to_fast_ones(fuzz: Any) -> Non
     assert calls == {
         "fast": [(0, 200_000), (1, 49_700)],
         "fair": [(0, 200_000), (1, 49_700)],
-        "slow": [(0, 600)],  # its time is over
+        "slow": [(0, 600)],  # its time limit is reached
         "broken": [(0, 100_000)],
     }
     hasty = fuzz.rounds.in_rounds(weights, 10**9, 10.0, run)  # time for fewer than these

@@ -1,8 +1,8 @@
-"""The field of a run against a potential written down here and differentiated by a complex step.
+"""The gravity field of a run against an independent potential, differentiated by a complex step.
 
-Nothing of the engine's field is in the reference: Legendre polynomials are differentiated as polynomials, and
-the motion is integrated by Picard's iteration on Chebyshev nodes. How the Earth turns is shared; that is held
-against pyerfa elsewhere.
+The reference shares no code with the engine's field: Legendre polynomials are differentiated symbolically,
+and the motion is integrated by Picard's iteration on Chebyshev nodes. The Earth's rotation is shared; it is
+tested against pyerfa elsewhere.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ import pytest
 from numpy.polynomial import chebyshev, legendre, polynomial
 
 import onorbit_rs as oo
-from onorbit_rs.validation import nasa
-from onorbit_rs.validation.case import table
-from onorbit_rs.validation.fields import MU, RADIUS
-from onorbit_rs.validation.fields import field as of_table
-from onorbit_rs.validation.nasa import TYPICAL
+from onorbit_rs.tools.validation import nasa
+from onorbit_rs.tools.validation.case import table
+from onorbit_rs.tools.validation.fields import MU, RADIUS
+from onorbit_rs.tools.validation.fields import field as of_table
+from onorbit_rs.tools.validation.nasa import TYPICAL
 
 # GGM02C (Center for Space Research, University of Texas, 2004), fully normalised, zero-tide: n, m, C, S
 GGM02C = [(int(row["n"]), int(row["m"]), float(row["C"]), float(row["S"])) for row in table("ggm02c")]
@@ -30,13 +30,13 @@ HOURS_8 = 28_800.0
 
 @cache
 def legendre_slope(n: int, m: int) -> Any:
-    """`dᵐPn/duᵐ` as a polynomial in u, normalised."""
+    """Returns `dᵐPn/duᵐ` as a normalised polynomial in u."""
     norm = np.sqrt((2 - (m == 0)) * (2 * n + 1) * factorial(n - m) / factorial(n + m))
     return norm * polynomial.polyder(legendre.leg2poly([0] * n + [1]), m)
 
 
 def potential(r: Any, degree: int) -> Any:
-    """`(μ/r) [1 + Σ (R/r)ⁿ P̄nm(z/r) (C̄nm cos mλ + S̄nm sin mλ)]`, r (3, K) complex, axes of the planet."""
+    """Returns `(μ/r) [1 + Σ (R/r)ⁿ P̄nm(z/r) (C̄nm cos mλ + S̄nm sin mλ)]`, r (3, K) complex, planet axes."""
     x, y, z = r
     d = np.sqrt(x * x + y * y + z * z)
     total, u = np.ones_like(d), z / d
@@ -54,14 +54,14 @@ def potential(r: Any, degree: int) -> Any:
 
 
 def gravity(r: Any, degree: int) -> Any:
-    """Gradient of the potential at r (K, 3), by an imaginary step of 1e-30 m: no differences."""
+    """Returns the gradient of the potential at r (K, 3) by an imaginary step of 1e-30 m."""
     steps = 1e-30j * np.eye(3)
     return np.stack([potential((r + step).T, degree).imag / 1e-30 for step in steps], axis=1)
 
 
 @cache
 def integrate(degree: int, segment: float = 600.0, nodes: int = 25) -> tuple[Any, Any]:
-    """State (3,), (3,) after 8 h: `v = v₀ + ∫ g dt`, `r = r₀ + ∫ v dt`, repeated until it stands."""
+    """Returns the state (3,), (3,) after 8 h: iterates `v = v₀ + ∫ g dt`, `r = r₀ + ∫ v dt`."""
     x = -np.cos(np.pi * np.arange(nodes) / (nodes - 1))
     rising = chebyshev.chebint(np.linalg.inv(chebyshev.chebvander(x, nodes - 1)), lbnd=-1)
     integral = chebyshev.chebvander(x, nodes) @ rising * segment / 2
@@ -78,7 +78,7 @@ def integrate(degree: int, segment: float = 600.0, nodes: int = 25) -> tuple[Any
             if np.abs(r - before).max() < 2e-8:
                 break
         else:
-            raise AssertionError("it does not settle")
+            raise AssertionError("it does not converge")
         r0, v0 = r[-1], v[-1]
     return r0, v0
 
@@ -89,7 +89,7 @@ def field(degree: int) -> oo.GravityField:
 
 @cache
 def simulated(degree: int) -> tuple[Any, Any]:
-    """NASA's station about its Kepler reference, 8 h at 1 s."""
+    """Runs NASA's station about its Kepler reference, 8 h at 1 s."""
     station = nasa.iss()
     trace = oo.Simulation(
         station, station.neutral(), np.zeros(6), orbit=oo.Kepler.from_state(*TYPICAL, mu=MU), earth=EARTH,
@@ -104,23 +104,23 @@ def test_the_field_is_the_gradient_of_the_potential() -> None:
     point_mass = -MU * r / np.linalg.norm(r, axis=1)[:, None] ** 3
     for degree in (2, 4, 8):
         off = point_mass + field(degree).acceleration(r) - gravity(r, degree)
-        assert np.abs(off).max() < 1e-14  # m/s² of 9: roundings
+        assert np.abs(off).max() < 1e-14  # m/s² relative to 9: rounding
     assert np.abs(point_mass + field(8).acceleration(r) - gravity(r, 7)).max() > 1e-7
 
 
-def test_the_8x8_sibling_of_nasa_3a() -> None:
-    """No table of NASA's has it: 8 h under 8 x 8 as 3A flies 4 x 4, which the same integration lands on."""
+def test_nasa_3a_with_an_8x8_field() -> None:
+    """NASA has no such table; the independent integration used here reproduces 3A, which is 4 x 4."""
     ours, independent = simulated(8), integrate(8)
     dr, dv = (np.linalg.norm(a - b) for a, b in zip(ours, independent, strict=True))
     print(f"8 x 8: {dr:.2e} m, {dv:.2e} m/s from an integration that shares no field")
     assert dr < 1e-3
     assert dv < 1e-6
-    # negative control: four degrees more are seen
+    # negative control: four additional degrees matter
     assert np.linalg.norm(simulated(4)[0] - ours[0]) > 10.0
 
 
-def test_the_independent_integration_lands_on_nasa_3a() -> None:
-    """NASA/TM-2015-218675, 3A (JEOD), to the 1.5 m by which NASA's simulators differ."""
+def test_the_independent_integration_reproduces_nasa_3a() -> None:
+    """It agrees with 3A (JEOD) of NASA/TM-2015-218675 to 1.5 m, the difference of NASA's simulators."""
     position, _ = integrate(4)
     off = np.linalg.norm(position - nasa.rows("3A")[-1].position)
     print(f"4 x 4: {off:.3f} m from NASA's 3A")
@@ -129,8 +129,8 @@ def test_the_independent_integration_lands_on_nasa_3a() -> None:
 
 
 @pytest.mark.parametrize("name", ["humanoid_torso", "station_arm"])
-def test_what_the_bodies_of_a_jointed_robot_feel_adds_up(name: str) -> None:
-    """To the composite body's torque, `T_i = -ε_ijk (I G)_jk`, up to 20 L/r; without their forces not."""
+def test_gravity_torques_of_a_robots_bodies_sum_to_the_composite_torque(name: str) -> None:
+    """`T_i = -ε_ijk (I G)_jk` holds up to 20 L/r, but not if the forces on the bodies are omitted."""
     model = oo.robots.load(name)
     q = model.neutral()
     q[3:7] = np.array([0.3, -0.2, 0.5, 0.7]) / np.linalg.norm([0.3, -0.2, 0.5, 0.7])
@@ -145,8 +145,8 @@ def test_what_the_bodies_of_a_jointed_robot_feel_adds_up(name: str) -> None:
         [pose[:3, :3] @ body.com + pose[:3, 3] for pose, body in zip(poses, model.bodies, strict=True)]
     )
     center = trace.center_of_mass[0]
-    felt = trace.wrenches["gravity"][0] + trace.wrenches["gravity_gradient"][0]
-    sums = np.cross(arms - center, felt[:, :3]).sum(axis=0) + felt[:, 3:].sum(axis=0)
+    wrench = trace.wrenches["gravity"][0] + trace.wrenches["gravity_gradient"][0]
+    sums = np.cross(arms - center, wrench[:, :3]).sum(axis=0) + wrench[:, 3:].sum(axis=0)
 
     # inertia about the centre of mass from the mass matrix, and G by differences of the potential's gradient
     rot_wb = poses[0][:3, :3]
@@ -164,15 +164,15 @@ def test_what_the_bodies_of_a_jointed_robot_feel_adds_up(name: str) -> None:
     bound = 20.0 * size / np.linalg.norm(place)
     off, alone = (
         np.linalg.norm(torque - expected) / np.linalg.norm(expected)
-        for torque in (sums, felt[:, 3:].sum(axis=0))
+        for torque in (sums, wrench[:, 3:].sum(axis=0))
     )
     print(f"{name}: {off:.1e}, {off * np.linalg.norm(place) / size:.1e} L/r; torques alone {alone:.1e}")
     assert off < bound
-    assert alone > 10.0 * bound  # the arm of 1.1 t beside 420 t; a free arm's robot misses more
+    assert alone > 10.0 * bound  # an arm of 1.1 t beside 420 t; the error is larger with a free arm
 
 
-def test_secular_rates_turn_the_ellipse() -> None:
-    """Curtis 12.2: the periapsis by 0.282 deg/h, the node by -0.172; the mean anomaly as Kaula's rate says.
+def test_secular_rates_of_an_ellipse() -> None:
+    """Curtis 12.2: periapsis 0.282 deg/h, node -0.172 deg/h; the mean anomaly has Kaula's rate.
 
     `Ṁ - n = (3/4) n J₂ (R/p)² √(1 - e²) (3 cos² i - 1)`, from periapsis to periapsis: there `r·v = 0`.
     """
@@ -190,7 +190,7 @@ def test_secular_rates_turn_the_ellipse() -> None:
         return 0.5 * (low + high)
 
     def angles(t: float) -> Any:
-        """Node and argument of periapsis, where the satellite is there."""
+        """Returns node and argument of periapsis at a passage of the periapsis."""
         x, v = orbit.state(t)
         u = np.arcsin(x[2] / np.linalg.norm(x) / np.sin(i))
         u = u if v[2] > 0 else np.pi - u

@@ -1,4 +1,4 @@
-"""Gravity on references that do not fall freely: the robot falls away from them, or is carried along.
+"""Gravity modes on references that are not in free fall: the robot departs from them, or is carried.
 
 The path is a circle flown 2 % too fast, so that `g - r̈_ref` is known in closed form.
 """
@@ -19,7 +19,7 @@ MODEL = oo.Model.rigid_body(10.0, np.diag([1.0, 2.0, 2.5]))
 
 
 def circle(t: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Position, velocity and acceleration, (T, 3)."""
+    """Returns position, velocity and acceleration, (T, 3)."""
     up = np.stack([np.cos(RATE * t), np.sin(RATE * t), 0.0 * t], axis=-1)
     along = np.stack([-np.sin(RATE * t), np.cos(RATE * t), 0.0 * t], axis=-1)
     return RADIUS * up, RADIUS * RATE * along, -RADIUS * RATE**2 * up
@@ -32,7 +32,7 @@ def too_fast(mu: float | None = oo.MU_EARTH) -> oo.CustomPath:
 
 
 def released(mode: Any, offset: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> oo.Trace:
-    """A robot let go at rest in W."""
+    """Runs a robot released at rest in W."""
     q = MODEL.neutral()
     q[:3] = offset
     simulation = oo.Simulation(MODEL, q, np.zeros(6), orbit=too_fast(), gravity_mode=mode, time_step=1.0)
@@ -40,13 +40,13 @@ def released(mode: Any, offset: tuple[float, float, float] = (0.0, 0.0, 0.0)) ->
 
 
 def off_free_fall(trace: oo.Trace) -> float:
-    """Distance at the end from two-body motion of the same first absolute state, m."""
+    """Returns the final distance from two-body motion with the same initial absolute state, m."""
     fall = oo.Kepler.from_state(trace.position_eci[0], trace.velocity_eci[0])
     return float(np.linalg.norm(fall.state(DURATION)[0] - trace.position_eci[-1]))
 
 
 def off_tides(trace: oo.Trace) -> float:
-    """Distance at the end from `ẍ = g(R + x) - g(R)` on the exact circle, integrated here, m."""
+    """Returns the final distance from `ẍ = g(R + x) - g(R)` on the exact circle, integrated here, m."""
 
     def rate(t: float, x: np.ndarray) -> np.ndarray:
         r = circle(np.array(t))[0]
@@ -62,16 +62,14 @@ def off_tides(trace: oo.Trace) -> float:
     return float(np.linalg.norm(x[:3] - trace.q[-1, :3]))
 
 
-def test_in_true_mode_the_robot_falls_as_kepler_says() -> None:
+def test_in_true_mode_the_robot_moves_on_a_kepler_orbit() -> None:
     trace = released("true", (10.0, -5.0, 3.0))
-    assert np.linalg.norm(trace.q[-1, :3]) > 10e3  # ½ · 0.33 m/s² · (600 s)²: it did fall away
-    assert (
-        off_free_fall(trace) < 1e-4
-    )  # of 59 km; the pieces of the path have kinks in their third derivative
+    assert np.linalg.norm(trace.q[-1, :3]) > 10e3  # ½ · 0.33 m/s² · (600 s)²: the robot did depart
+    assert off_free_fall(trace) < 1e-4  # relative to 59 km; the path's third derivative is discontinuous
     assert trace.reference_residual is None
 
 
-def test_in_carried_mode_only_tides_move_it() -> None:
+def test_in_carried_mode_only_tides_move_the_robot() -> None:
     at_reference = released("carried")
     assert np.abs(at_reference.q[:, :3]).max() == 0.0
     trace = released("carried", (10.0, -5.0, 3.0))
@@ -81,12 +79,12 @@ def test_in_carried_mode_only_tides_move_it() -> None:
     np.testing.assert_allclose(residual, RATE**2 * RADIUS - oo.MU_EARTH / RADIUS**2, rtol=1e-6)
 
 
-def test_modes_swapped_fail_both_ways() -> None:
+def test_each_mode_fails_the_test_of_the_other() -> None:
     assert off_free_fall(released("carried", (10.0, -5.0, 3.0))) > 1e3
     assert off_tides(released("true", (10.0, -5.0, 3.0))) > 1e3
 
 
-def test_on_a_kepler_orbit_both_modes_are_one() -> None:
+def test_both_modes_agree_on_a_kepler_orbit() -> None:
     q = MODEL.neutral()
     q[:3] = 10.0, 0.0, 0.0
     orbit = oo.Kepler(semi_major_axis=7.2e6, eccentricity=0.1)
@@ -99,7 +97,7 @@ def test_on_a_kepler_orbit_both_modes_are_one() -> None:
     assert not np.any(traces[1].reference_residual)
 
 
-def test_on_sgp4_the_residual_is_what_flattening_does() -> None:
+def test_the_residual_on_sgp4_is_the_acceleration_by_j2() -> None:
     line1 = "1 28057U 03049A   06177.78615833  .00000060  00000-0  35940-4 0  1836"
     line2 = "2 28057  98.4283 247.6961 0000884  88.1964 271.9322 14.35478080140550"
     orbit = oo.Sgp4(line1, line2)
@@ -117,11 +115,11 @@ def test_on_sgp4_the_residual_is_what_flattening_does() -> None:
     assert np.linalg.norm(flattening, axis=1).max() > 1e-2
 
 
-def test_wrong_modes_and_missing_planets_are_refused() -> None:
+def test_wrong_modes_and_missing_planets_are_rejected() -> None:
     bad: Any = "free"
-    with pytest.raises(OnOrbitError, match="there are 'true' and 'carried'"):
+    with pytest.raises(OnOrbitError, match="it must be 'true' or 'carried'"):
         oo.Simulation(MODEL, MODEL.neutral(), np.zeros(6), gravity_mode=bad)
-    with pytest.raises(OrbitError, match="give the path its mu"):
+    with pytest.raises(OrbitError, match="or mu of a custom path"):
         oo.Simulation(
             MODEL, MODEL.neutral(), np.zeros(6), orbit=too_fast(None), environment=[oo.GravityGradient()]
         )
@@ -130,17 +128,17 @@ def test_wrong_modes_and_missing_planets_are_refused() -> None:
         oo.Simulation(MODEL, MODEL.neutral(), np.zeros(6), orbit=inside).run(1.0)
 
 
-def test_a_run_past_the_end_of_its_path_says_so() -> None:
+def test_a_run_beyond_the_end_of_its_path_is_rejected() -> None:
     simulation = oo.Simulation(MODEL, MODEL.neutral(), np.zeros(6), orbit=too_fast(), time_step=1.0)
-    with pytest.raises(OrbitError, match="it goes from 0 s to 600 s") as caught:
+    with pytest.raises(OrbitError, match="the path covers 0 s to 600 s") as caught:
         simulation.run(DURATION + 5.0)
     assert caught.value.end == DURATION
     assert caught.value.trace is not None
 
 
 @pytest.mark.parametrize(("tolerance", "gate"), [(1e-5, 1e-4), (1e-7, 1e-6), (1e-9, 1e-7)])
-def test_adaptive_steps_see_the_kinks_of_a_path(tolerance: float, gate: float) -> None:
-    """Falling from wiggling cubics, against two-body motion; steps over their points missed it by mm."""
+def test_adaptive_steps_resolve_the_knots_of_a_path(tolerance: float, gate: float) -> None:
+    """Free fall from cubic splines against two-body motion; steps across knots once caused errors of mm."""
     start = oo.Kepler(semi_major_axis=RADIUS, eccentricity=0.01, inclination=0.5)
     times = np.arange(0.0, 62.0, 2.0)
     r, _ = start.state(times)

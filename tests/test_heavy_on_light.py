@@ -1,6 +1,6 @@
-"""Heavy bodies on a light one: accelerations come from the mass matrix, as reliably as for any other robot.
+"""Heavy bodies on a light one: accelerations are as accurate as for other robots.
 
-Digits against 40-digit arithmetic: ``oracles/test_digits.py``.
+``oracles/test_digits.py`` compares them with 40-digit arithmetic.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ FRICTION = 2.0  # N m
 
 
 def robot(base: float, friction: float = FRICTION) -> oo.Model:
-    """A base of the given mass under two links of 10 t and 1 t, 10 m and 4 m long."""
+    """Returns a base of the given mass with links of 10 t and 1 t, 10 m and 4 m long."""
     builder = oo.ModelBuilder("heavy", base="base", mass=base, inertia=np.diag([0.02, 0.02, 0.02]) * base)
     parent, at = "base", (0.0, 0.0, 0.2)
     for k, (mass, length) in enumerate([(1e4, 10.0), (1e3, 4.0)]):
@@ -49,7 +49,7 @@ def start(model: oo.Model) -> tuple[np.ndarray, np.ndarray]:
     return q, v
 
 
-def test_joints_that_friction_holds_stay_exactly_where_they_are() -> None:
+def test_stuck_joints_do_not_move_at_all() -> None:
     model = robot(1.0)
     q, v = start(model)
     trace = oo.Simulation(model, q, v, controller=Torque([1.8, -1.6]), time_step=0.01).run(2.0)
@@ -57,7 +57,7 @@ def test_joints_that_friction_holds_stay_exactly_where_they_are() -> None:
     assert fails(trace) == []
 
 
-def test_joints_that_slip_are_driven_by_what_friction_leaves() -> None:
+def test_slipping_joints_are_driven_by_the_torque_beyond_friction() -> None:
     model = robot(1.0)
     q, v = start(model)
     v[:] = 0.0
@@ -68,7 +68,7 @@ def test_joints_that_slip_are_driven_by_what_friction_leaves() -> None:
     np.testing.assert_allclose(trace.acceleration[0, 6:], expected, rtol=1e-6)
 
 
-def test_momentum_and_energy_are_kept() -> None:
+def test_momentum_and_energy_are_conserved() -> None:
     model = robot(1.0, friction=0.0)
     q, v = start(model)
     v[6:] = [0.05, -0.2]
@@ -77,16 +77,14 @@ def test_momentum_and_energy_are_kept() -> None:
 
 
 @pytest.mark.parametrize("base", [1.0, 1e4])
-def test_a_batch_of_one_has_the_bits_of_a_batch(base: float) -> None:
+def test_a_batch_of_one_has_the_bits_of_a_larger_batch(base: float) -> None:
     model = robot(base)
     rng = np.random.default_rng(3)
     q = np.tile(model.neutral(), (9, 1))
     q[:, 7:] = rng.uniform(-2, 2, (9, 2))
     v, tau = rng.normal(size=(9, model.nv)), rng.normal(size=(9, model.nv))
     together = model.forward_dynamics(q, v, tau)
-    one_by_one = np.vstack(
-        [model.forward_dynamics(*(x[k : k + 1] for x in (q, v, tau))) for k in range(len(q))]
-    )
-    np.testing.assert_array_equal(together, one_by_one)
+    single = np.vstack([model.forward_dynamics(*(x[k : k + 1] for x in (q, v, tau))) for k in range(len(q))])
+    np.testing.assert_array_equal(together, single)
     moments = np.abs(model.bias_forces(q, v)).max()
     np.testing.assert_allclose(model.inverse_dynamics(q, v, together), tau, rtol=0, atol=1e-12 * moments)

@@ -1,4 +1,4 @@
-"""One wheel for every processor: the same physics on each instruction set, and none where it is unknown."""
+"""One wheel for all processors: equal results on each instruction set; unknown sets are rejected."""
 
 from __future__ import annotations
 
@@ -39,16 +39,16 @@ INFO = "import onorbit_rs as oo; print(oo.build_info()['instruction_set'])"
 
 @pytest.mark.skipif(BEST not in LEVELS, reason=f"not x86-64: {BEST}")
 @pytest.mark.parametrize("level", LEVELS)
-def test_a_lower_set_is_taken_when_asked(level: str) -> None:
-    # more than the processor has is what it has
+def test_a_lower_instruction_set_can_be_selected(level: str) -> None:
+    # a higher set than available selects the best one
     expected = LEVELS[min(LEVELS.index(level), LEVELS.index(BEST))]
     assert python(level, "-c", INFO).stdout.strip() == expected
 
 
-def test_an_unknown_set_is_refused() -> None:
-    told = python("sse9", "-c", INFO)
-    assert told.returncode != 0
-    assert 'ONORBIT_INSTRUCTION_SET is "sse9", it must be one of baseline, ' in told.stderr
+def test_an_unknown_instruction_set_is_rejected() -> None:
+    done = python("sse9", "-c", INFO)
+    assert done.returncode != 0
+    assert 'ONORBIT_INSTRUCTION_SET is "sse9"; it must be one of baseline, ' in done.stderr
 
 
 @pytest.mark.skipif(BEST not in LEVELS, reason=f"not x86-64: {BEST}")
@@ -56,14 +56,14 @@ def test_an_unknown_set_is_refused() -> None:
 def test_kernels_pass_their_tests_on(level: str) -> None:
     if LEVELS.index(level) >= LEVELS.index(BEST):
         pytest.skip(f"{BEST} is this processor's best: every other test runs on it")
-    told = python(level, "-m", "pytest", "-q", *(f"tests/{name}" for name in KERNELS))
-    assert told.returncode == 0, told.stdout
-    passed = re.search(r"(\d+) passed", told.stdout)
+    done = python(level, "-m", "pytest", "-q", *(f"tests/{name}" for name in KERNELS))
+    assert done.returncode == 0, done.stdout
+    passed = re.search(r"(\d+) passed", done.stdout)
     assert passed
     assert int(passed[1]) > 250
 
 
-def test_nothing_is_built_for_the_machine_it_is_built_on() -> None:
+def test_the_build_does_not_depend_on_the_processor() -> None:
     recipes = [*REPOSITORY.glob("crates/*/Cargo.toml")]
     recipes += [REPOSITORY / name for name in ("Cargo.toml", "pyproject.toml", "Makefile")]
     recipes += [file for folder in (".cargo", ".ci") for file in (REPOSITORY / folder).glob("*")]
@@ -84,7 +84,7 @@ def test_a_processor_of_2008_runs_the_wheel() -> None:
     emulator = shutil.which("qemu-x86_64-static") or shutil.which("qemu-x86_64")
     if emulator is None:
         pytest.skip("no qemu-user on this machine (Debian: apt install qemu-user-static)")
-    # without AVX, the oldest that numpy's own wheel runs on
+    # without AVX, the oldest processor that numpy's wheel supports
     path = os.pathsep.join(sys.path)
     old = subprocess.run(
         [emulator, "-cpu", "Nehalem", str(Path(sys.executable).resolve()), "-c", OLD],

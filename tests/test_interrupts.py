@@ -1,4 +1,4 @@
-"""Ctrl-C is heard during every long call, and what ends at the same instant keeps its own error."""
+"""Ctrl-C interrupts every long call; a call that fails at the same time keeps its own error."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ DEEP_SPACE = (
 Call = Callable[[], Any]
 
 HEARD_WITHIN_S = 5.0
-"""Wall clock on a busy machine; Ctrl-C had been heard at the end of the call, after 45 s."""
+"""Wall-clock limit on a busy machine; Ctrl-C once had an effect only at the end, after 45 s."""
 
 
 def numerical(degree: int = 70, t0: float = 0.0) -> oo.Numerical:
@@ -85,8 +85,8 @@ def long_start() -> Call:
         long_start,
     ],
 )
-def test_ctrl_c_is_heard_during_long_calls(prepared: Callable[[], Call]) -> None:
-    call = prepared()  # its arguments, which NumPy takes a while to build
+def test_ctrl_c_interrupts_long_calls(prepared: Callable[[], Call]) -> None:
+    call = prepared()  # building the arguments with NumPy takes a while
     sent: list[float] = []
 
     def press() -> None:
@@ -104,7 +104,7 @@ def test_ctrl_c_is_heard_during_long_calls(prepared: Callable[[], Call]) -> None
         timer.join()
 
 
-def test_an_orbit_that_was_interrupted_goes_on_with_the_same_bits() -> None:
+def test_an_interrupted_orbit_continues_with_the_same_bits() -> None:
     whole, parts = numerical(8), numerical(8)
     for t in np.linspace(0.0, 20_000.0, 40):
         parts.state(t)
@@ -112,13 +112,13 @@ def test_an_orbit_that_was_interrupted_goes_on_with_the_same_bits() -> None:
 
 
 def with_ctrl_c_pending(call: Callable[[], Any], returned: list[Any] | None = None) -> None:
-    """Call with a Ctrl-C that Python has not handled: nothing of Python runs between the two."""
+    """Makes a call while a Ctrl-C is pending that Python has not handled."""
     returned = [] if returned is None else returned
     returned.extend(map(operator.call, [ctypes.pythonapi.PyErr_SetInterrupt, call]))
 
 
-def test_ctrl_c_is_heard_within_a_certificate_and_a_batch() -> None:
-    """Each takes at least twice the pace at which signals are checked."""
+def test_ctrl_c_interrupts_a_certificate_and_a_batch() -> None:
+    """Each call takes at least twice the interval at which signals are checked."""
     model = oo.robots.load("humanoid_torso")
     v = np.full(model.nv, 0.01)
     trace = oo.Simulation(model, model.neutral(), v, time_step=1e-3, record_every=1).run(50.0)
@@ -131,7 +131,7 @@ def test_ctrl_c_is_heard_within_a_certificate_and_a_batch() -> None:
     assert all(passed for *_, passed in trace.certificate())
 
 
-def test_a_refusal_with_ctrl_c_pending_is_no_bare_runtime_error() -> None:
+def test_an_error_with_ctrl_c_pending_keeps_its_type() -> None:
     with pytest.raises(KeyboardInterrupt) as stop:
         with_ctrl_c_pending(partial(oo.Kepler, semi_major_axis=-7e6, true_anomaly=0.0))
     assert isinstance(stop.value.__context__, oo.exceptions.OrbitError)

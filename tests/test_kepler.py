@@ -1,6 +1,6 @@
 """Two-body motion from Python: scalars and arrays, and the local orbital frame.
 
-Textbooks and GMAT are in ``onorbit_rs.validation.kepler``.
+Textbooks and GMAT are in ``onorbit_rs.tools.validation.kepler``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ ORBITS = {
 
 
 @pytest.mark.parametrize("name", ORBITS)
-def test_arrays_are_their_scalars(name: str) -> None:
+def test_arrays_equal_their_scalars(name: str) -> None:
     orbit, times = ORBITS[name], np.linspace(-5000.0, 5000.0, 41)
     (r, v), (rot, rate) = orbit.state(times), orbit.lvlh(times)
     assert [x.shape for x in (r, v, rot, rate)] == [(41, 3), (41, 3), (41, 3, 3), (41, 3)]
@@ -45,7 +45,7 @@ def test_arrays_are_their_scalars(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ORBITS)
-def test_it_moves_by_newtons_law(name: str) -> None:
+def test_the_motion_satisfies_newtons_law(name: str) -> None:
     orbit, h = ORBITS[name], 0.5
     t = np.linspace(-3000.0, 3000.0, 25)
     (r, v), (_, before), (_, after) = orbit.state(t), orbit.state(t - h), orbit.state(t + h)
@@ -57,7 +57,7 @@ def test_it_moves_by_newtons_law(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ORBITS)
-def test_the_local_orbital_frame_by_differencing(name: str) -> None:
+def test_the_local_orbital_frame_by_differences(name: str) -> None:
     orbit, h = ORBITS[name], 0.1
     for t in (-2000.0, 0.0, 1234.5):
         r, v = orbit.state(t)
@@ -72,18 +72,18 @@ def test_the_local_orbital_frame_by_differencing(name: str) -> None:
         spin = rot.T @ (orbit.lvlh(t + h)[0] - orbit.lvlh(t - h)[0]) / (2 * h)
         differenced = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
         np.testing.assert_allclose(rate, differenced, rtol=0, atol=1e-6 * np.abs(rate).max() + 1e-14)
-        assert rate[1] == 0.0 and abs(rate[0]) < 1e-15 * rate[2]  # two bodies keep their plane
+        assert rate[1] == 0.0 and abs(rate[0]) < 1e-15 * rate[2]  # two-body motion stays in its plane
 
 
 def test_control_a_frame_that_points_down_is_rejected() -> None:
     orbit = ORBITS["ellipse"]
     r, _ = orbit.state(0.0)
-    assert orbit.lvlh(0.0)[0][:, 2] @ r == pytest.approx(0.0, abs=1e-6)  # not NASA's z down
+    assert orbit.lvlh(0.0)[0][:, 2] @ r == pytest.approx(0.0, abs=1e-6)  # unlike NASA's frame with z down
     assert orbit.lvlh(0.0)[0][:, 0] @ r > 0
 
 
 @pytest.mark.parametrize("name", ORBITS)
-def test_elements_come_back_from_a_state(name: str) -> None:
+def test_elements_are_recovered_from_a_state(name: str) -> None:
     orbit = ORBITS[name]
     again = oo.Kepler.from_state(*orbit.state(0.0))
     assert again.semi_latus_rectum == pytest.approx(orbit.semi_latus_rectum, rel=1e-12)
@@ -93,7 +93,7 @@ def test_elements_come_back_from_a_state(name: str) -> None:
         np.testing.assert_allclose(x, y, rtol=0, atol=1e-11 * np.abs(y).max())
 
 
-def test_a_period_later_it_is_where_it_was() -> None:
+def test_the_state_repeats_after_one_period() -> None:
     orbit = ORBITS["ellipse"]
     assert orbit.period == pytest.approx(2 * np.pi * np.sqrt(26.6e6**3 / oo.MU_EARTH), rel=1e-15)
     assert orbit.period is not None
@@ -101,7 +101,7 @@ def test_a_period_later_it_is_where_it_was() -> None:
     np.testing.assert_allclose(later[0], now[0], rtol=0, atol=1e-6)
 
 
-def test_phases_are_one_orbit() -> None:
+def test_all_kinds_of_anomaly_define_the_same_orbit() -> None:
     by_mean: dict[str, Any] = {"semi_major_axis": 1e7, "eccentricity": 0.3, "mean_anomaly": 0.7}
     orbit = oo.Kepler(**by_mean)
     assert orbit.period is not None

@@ -1,4 +1,4 @@
-"""Converters of layouts: round trips on batches, closed forms, refusals. The engines stand in `oracles/`."""
+"""Layout converters: round trips of batches, closed forms, invalid input. `oracles/` tests the engines."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ def back(engine: str, *arguments: Any, **known: Any) -> Any:
 
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("names", [None, NAMES], ids=["our order", "shuffled"])
-def test_there_and_back(engine: str, names: list[str] | None) -> None:
+def test_round_trips_restore_the_state(engine: str, names: list[str] | None) -> None:
     q, v = back(engine, *there(engine, Q, V, names), names)
     sign = np.sign(
         np.sum(q[:, 3:7] * Q[:, 3:7], axis=1, keepdims=True)
-    )  # a matrix knows no sign of a quaternion
+    )  # a matrix does not determine the quaternion's sign
     q[:, 3:7] *= sign
     np.testing.assert_allclose(q, Q, atol=1e-14)
     np.testing.assert_allclose(v, V, atol=1e-14)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_batch_is_its_states(engine: str) -> None:
+def test_a_batch_equals_its_single_states(engine: str) -> None:
     def flat(result: Any) -> list[Any]:
         return [array for part in result for array in (part if isinstance(part, tuple) else (part,))]
 
@@ -54,10 +54,10 @@ def test_a_batch_is_its_states(engine: str) -> None:
 
 
 def test_closed_form() -> None:
-    """A quarter turn about z at p: what stands where, by hand."""
+    """A quarter turn about z at p, with expected values computed by hand."""
     body = oo.Model.rigid_body(2.0, np.eye(3))
     half = np.sqrt(0.5)
-    q, v = [1, 2, 3, 0, 0, half, half], [1, 0, 0, 0, 0.5, 0]  # ahead along its x, which is W's y
+    q, v = [1, 2, 3, 0, 0, half, half], [1, 0, 0, 0, 0.5, 0]  # forward along body x, which is W's y
     expected = {
         "pinocchio": ([1, 2, 3, 0, 0, half, half], [1, 0, 0, 0, 0.5, 0]),
         "mujoco": ([1, 2, 3, half, 0, 0, half], [0, 1, 0, 0, 0.5, 0]),
@@ -68,7 +68,7 @@ def test_closed_form() -> None:
         got_q, got_v = getattr(layouts, f"to_{engine}")(body, q, v)
         np.testing.assert_allclose(got_q, theirs_q, atol=1e-15, err_msg=engine)
         np.testing.assert_allclose(got_v, theirs_v, atol=1e-15, err_msg=engine)
-    # SPART: a centre of mass 0.2 m along body x goes round with w: v_W + R (w × c)
+    # SPART: a centre of mass 0.2 m along body x moves with v_W + R (w × c)
     (r0_matrix, r0, _), (u0, _) = layouts.to_spart(body, q, v, base_com=[0.2, 0, 0])
     np.testing.assert_allclose(r0_matrix, [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
     np.testing.assert_allclose(r0, [1, 2.2, 3], atol=1e-15)
@@ -97,13 +97,15 @@ BAD: dict[str, Bad] = {
     "q too short": Bad(lambda: there("mujoco", Q[0][:-1], V[0]), "ShapeError", ("q", "21")),
     "v too long": Bad(lambda: there("drake", Q[0], np.append(V[0], 0)), "ShapeError", ("v", "20")),
     "three axes": Bad(lambda: there("rbdl", Q[None], V[None]), "ShapeError", ("q", "batch")),
-    "batches differ": Bad(lambda: there("rbdl", Q, V[:3]), "ShapeError", ("batches differ", "5", "3")),
+    "batches differ": Bad(lambda: there("rbdl", Q, V[:3]), "ShapeError", ("batch sizes differ", "5", "3")),
     "a batch and one": Bad(lambda: there("rbdl", Q, V[0]), "ShapeError", ("single",)),
     "NaN": Bad(lambda: there("spart", Q[0] * np.nan, V[0]), "InputError", ("q", "NaN")),
     "text": Bad(lambda: there("spart", "q", V[0]), "DtypeError", ("q", "numbers")),
-    "no unit quaternion": Bad(lambda: there("mujoco", TURNED, V[0]), "InputError", ("norm", "off 1")),
-    "no unit quaternion of theirs": Bad(
-        lambda: back("mujoco", np.ones(MODEL.nq), V[0]), "InputError", ("qpos", "norm 2", "off 1")
+    "no unit quaternion": Bad(
+        lambda: there("mujoco", TURNED, V[0]), "InputError", ("norm", "differs from 1")
+    ),
+    "quaternion of the other layout without unit length": Bad(
+        lambda: back("mujoco", np.ones(MODEL.nq), V[0]), "InputError", ("qpos", "norm 2", "differs from 1")
     ),
     "no rotation": Bad(
         lambda: back("spart", (2 * np.eye(3), np.zeros(3), Q[0][7:]), (V[0][:6], V[0][6:])),
@@ -121,10 +123,12 @@ BAD: dict[str, Bad] = {
         ("left_joint_11", "did you mean"),
         {"kind": "joint"},
     ),
-    "a joint missing": Bad(lambda: there("rbdl", Q[0], V[0], NAMES[1:]), "InputError", ("lacks", NAMES[0])),
+    "a joint missing": Bad(
+        lambda: there("rbdl", Q[0], V[0], NAMES[1:]), "InputError", ("does not contain", NAMES[0])
+    ),
     "a joint twice": Bad(lambda: there("rbdl", Q[0], V[0], [*NAMES, NAMES[0]]), "InputError", ("twice",)),
     "names as text": Bad(lambda: there("rbdl", Q[0], V[0], "joint"), "DtypeError", ("list",)),
-    "unbounded that is none": Bad(
+    "unbounded names an unknown joint": Bad(
         lambda: there("pinocchio", Q[0], V[0], unbounded=["x"]), "InputError", ("unbounded", "'x'")
     ),
     "their base is fixed": Bad(

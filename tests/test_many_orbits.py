@@ -1,4 +1,4 @@
-"""Many orbits at once: against PyPI's SGP4, against one at a time, and what is refused."""
+"""Batches of orbits: against PyPI's SGP4, against single orbits, and invalid input."""
 
 from __future__ import annotations
 
@@ -46,25 +46,25 @@ def test_agrees_with_pypis_sgp4() -> None:
         jd = np.full_like(fraction, peer.jdsatepoch)
         _, r, v = SatrecArray([peer]).sgp4(jd, peer.jdsatepochF + fraction)
         r_ours, v_ours = oo.propagate([ours], 86400 * fraction)
-        # a Julian date's fraction is good to 1e-11 s, times 10 km/s: far below the 2e-7 km of published rows
+        # a Julian date is exact to 1e-11 s, times 10 km/s: far below the 2e-7 km of published rows
         assert np.abs(r_ours / 1e3 - r).max() < 2e-7
         assert np.abs(v_ours / 1e3 - v).max() < 2e-9
 
 
 @pytest.mark.parametrize("threads", [None, 1, 2])
-def test_every_kind_is_its_own_state(threads: int | None) -> None:
+def test_a_mixed_batch_equals_single_states(threads: int | None) -> None:
     orbits, times = mixed(), np.linspace(0.0, 8e4, 37)
     r, v = oo.propagate(orbits, times, threads=threads)
     assert r.shape == v.shape == (len(orbits), 37, 3)
     for orbit, rows, speeds in zip(orbits, r, v, strict=True):
         singly = [orbit.state(t) for t in times]
-        assert np.allclose(rows, [s[0] for s in singly], rtol=0, atol=3e-7)  # roundings of the phase
+        assert np.allclose(rows, [s[0] for s in singly], rtol=0, atol=3e-7)  # rounding of the phase
         assert np.allclose(speeds, [s[1] for s in singly], rtol=0, atol=3e-10)
     each = np.tile(times, (len(orbits), 1))
     assert np.array_equal(oo.propagate(orbits, each)[0], r)
 
 
-def test_writes_where_it_is_told_to() -> None:
+def test_results_are_written_to_out() -> None:
     orbits, times = mixed(), np.linspace(0.0, 100.0, 5)
     out = (np.empty((len(orbits), 5, 3)), np.empty((len(orbits), 5, 3)))
     r, v = oo.propagate(orbits, times, out=out)
@@ -83,7 +83,7 @@ def test_writes_where_it_is_told_to() -> None:
         oo.propagate(orbits, times, out=(out[1], out[1]))
 
 
-def test_an_orbit_that_is_refused_is_named() -> None:
+def test_an_orbit_with_an_error_is_named() -> None:
     orbits = [oo.Sgp4(*LOW), oo.Sgp4(*SHORT_LIVED), oo.Sgp4(*SHORT_LIVED)]
     with pytest.raises(Sgp4Error, match=r"^orbit 1: SGP4 error 1 at t = ") as caught:
         oo.propagate(orbits, np.arange(0.0, 1e5, 600.0))

@@ -1,4 +1,4 @@
-"""Mesh files of every format yield the same box, and unusable ones are refused with a reason."""
+"""Mesh files of every format yield the same box, and unusable ones are rejected with a reason."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from mesh_files import (
 )
 
 import onorbit_rs as oo
-from onorbit_rs.appearance import missing_meshes, shapes
 from onorbit_rs.figures.coarse import coarse
-from onorbit_rs.meshes import Mesh, read_mesh
-from onorbit_rs.meshes.assemble import MOST_TRIANGLES
+from onorbit_rs.visuals.meshes import Mesh, read_mesh
+from onorbit_rs.visuals.meshes.assemble import MOST_TRIANGLES
+from onorbit_rs.visuals.shapes import missing_meshes, shapes
 
-FLOAT = 1e-6  # vertices are 32 bits
+FLOAT = 1e-6  # vertices have 32 bits
 
 
 def read(folder: Path, name: str, content: str | bytes) -> Mesh:
@@ -71,7 +71,7 @@ def test_the_box_is_the_same_in_every_format(name: str, tmp_path: Path) -> None:
     np.testing.assert_allclose(part.normals[part.faces[:, 0]], across, atol=FLOAT)  # flat, outwards
 
 
-def test_a_box_with_a_face_turned_inwards_is_another(tmp_path: Path) -> None:
+def test_a_box_with_an_inverted_face_is_detected(tmp_path: Path) -> None:
     turned = [*TRIANGLES[:2], TRIANGLES[2][::-1], *TRIANGLES[3:]]
     assert volume(read(tmp_path, "turned.obj", obj(turned))) != pytest.approx(6.0, rel=0.01)
 
@@ -84,15 +84,13 @@ def test_a_box_with_a_face_turned_inwards_is_another(tmp_path: Path) -> None:
         ("<up_axis>X_UP</up_axis>", 1.0),
     ],
 )
-def test_the_unit_of_collada_counts_and_its_up_axis_does_not(
-    asset: str, meter: float, tmp_path: Path
-) -> None:
+def test_the_unit_of_collada_is_applied_but_not_its_up_axis(asset: str, meter: float, tmp_path: Path) -> None:
     mesh = read(tmp_path, "box.dae", collada(asset=asset))
     np.testing.assert_allclose(mesh.bounds, np.array([[0, 0, 0], [1, 2, 3]]) * meter, rtol=FLOAT)
 
 
-def test_the_poses_of_colladas_nodes_count(tmp_path: Path) -> None:
-    turned = "0 -1 0 10 1 0 0 0 0 0 1 0 0 0 0 1"  # a quarter about z, then 10 along x
+def test_the_poses_of_colladas_nodes_are_applied(tmp_path: Path) -> None:
+    turned = "0 -1 0 10 1 0 0 0 0 0 1 0 0 0 0 1"  # a quarter turn about z, then 10 along x
     mesh = read(tmp_path, "box.dae", collada(matrices=("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", turned)))
     np.testing.assert_allclose(mesh.bounds, [[0, 0, 0], [10, 2, 3]], atol=FLOAT)
     assert volume(mesh) == pytest.approx(12.0, rel=FLOAT)
@@ -101,7 +99,7 @@ def test_the_poses_of_colladas_nodes_count(tmp_path: Path) -> None:
 def test_scale_stretches_and_mirrors(tmp_path: Path) -> None:
     mesh = read(tmp_path, "box.stl", stl_binary()).scaled([-2.0, 1.0, 0.5])
     np.testing.assert_allclose(mesh.bounds, [[-2, 0, 0], [0, 2, 1.5]], atol=FLOAT)
-    assert volume(mesh) == pytest.approx(6.0, rel=FLOAT)  # positive: still seen from outside
+    assert volume(mesh) == pytest.approx(6.0, rel=FLOAT)  # positive: the faces still point outwards
     sloped = read(tmp_path, "slope.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n").scaled([1.0, 1.0, 2.0])
     np.testing.assert_allclose(sloped.parts[0].normals[0], np.array([0, -2, 1]) / np.sqrt(5.0), atol=FLOAT)
 
@@ -159,14 +157,14 @@ def test_textures_are_local_files_near_the_mesh(lies: str, tmp_path: Path) -> No
         (meshes.parent / "textures" / name).write_bytes(content)
     elif lies == "link":
         (meshes / name).symlink_to(tmp_path / "secret.png")
-    elif lies == "postscript":  # which Pillow gives to Ghostscript
+    elif lies == "postscript":  # which Pillow passes to Ghostscript
         (meshes / name).write_bytes(b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 2 2\nshowpage\n")
     (part,) = read(meshes, "box.dae", collada(texture=name)).parts
     assert (part.texture is not None) == (lies in ("beside", "in textures"))
 
 
-def test_a_lost_material_does_not_take_its_surface_along(tmp_path: Path) -> None:
-    """pycollada drops geometry with a missing material; ANYmal's foot was not drawn for lack of a texture."""
+def test_a_surface_with_a_missing_material_is_kept(tmp_path: Path) -> None:
+    """pycollada drops geometry with a missing material; ANYmal's foot was once not drawn."""
     mesh = read(tmp_path, "box.dae", collada(material="gone"))
     assert volume(mesh) == pytest.approx(6.0, rel=FLOAT)
     assert mesh.parts[0].colors[0].tolist() == [184, 186, 191, 255]
@@ -191,9 +189,9 @@ ENDLESS = np.where(CORNERS == 3.0, np.inf, CORNERS)
 
 BAD: dict[str, tuple[str | bytes, str]] = {
     "empty.stl": (b"", "it is empty"),
-    "header.stl": (stl_binary()[:84], "cut short: 0 of its 12 triangles"),
-    "short.stl": (stl_binary()[:400], "cut short: 6 of its 12 triangles"),
-    "nothing.stl": ("solid\nendsolid\n", "no triangles with an area"),
+    "header.stl": (stl_binary()[:84], "it contains 0 of its 12 triangles"),
+    "short.stl": (stl_binary()[:400], "it contains 6 of its 12 triangles"),
+    "nothing.stl": ("solid\nendsolid\n", "no triangles of nonzero area"),
     "words.stl": ("solid\nfacet\nvertex a b c\nendsolid\n", "cannot be read"),
     "document.dae": (collada().replace("<COLLADA", f"{LAUGHS}<COLLADA"), "document type"),
     "document16.dae": (
@@ -201,18 +199,18 @@ BAD: dict[str, tuple[str | bytes, str]] = {
         "document type",
     ),
     "scene.dae": ("<COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema'/>", "no <visual_scene>"),
-    "bare.dae": (collada(matrices=()), "no triangles with an area"),
-    "page.dae": ("<html><body>404</body></html>", "no Collada file: its root is <html>"),
+    "bare.dae": (collada(matrices=()), "no triangles of nonzero area"),
+    "page.dae": ("<html><body>404</body></html>", "not a Collada file: its root is <html>"),
     "torn.dae": (collada()[:2000], "cannot be read"),
-    "number.dae": (collada(corners=ENDLESS), "no finite numbers"),
+    "number.dae": (collada(corners=ENDLESS), "not finite"),
     "many.dae": (nodes_of_nodes(60), "more than 100000 nodes"),
-    "number.obj": (obj(QUADS).replace("3.0", "nan"), "no finite numbers"),
+    "number.obj": (obj(QUADS).replace("3.0", "nan"), "not finite"),
     "far.obj": ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n", "cannot be read"),
     "points.ply": (ply().replace("element face 12", "element face 0").split("3 0 1 3")[0], "no triangles"),
     "torn.stl": (stl_text()[:500] + "?" + stl_text()[500:], "cannot be read"),
     "torn.glb": (glb()[:100], "cannot be read"),
-    "line.obj": ("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "no triangles with an area"),
-    "craft.3ds": (b"?", r"its ending is none of \.dae, \.glb"),
+    "line.obj": ("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "no triangles of nonzero area"),
+    "craft.3ds": (b"?", r"its format is not supported; convert it to one of \.dae, \.glb"),
 }
 
 
@@ -226,7 +224,7 @@ def test_a_file_without_a_mesh_is_an_error_that_names_it(
     assert capfd.readouterr() == ("", "")  # trimesh printed a traceback
 
 
-def test_folders_pipes_and_nothing_are_no_meshes(tmp_path: Path) -> None:
+def test_folders_pipes_and_missing_files_are_not_meshes(tmp_path: Path) -> None:
     (tmp_path / "folder.stl").mkdir()
     os.mkfifo(tmp_path / "pipe.stl")
     for name, reason in (("folder", "is a folder"), ("pipe", "a pipe or a device")):
@@ -243,7 +241,7 @@ def test_a_file_is_read_once_and_again_when_it_changed(tmp_path: Path) -> None:
 
 
 def robot(folder: Path, *visuals: str, collision: str = "") -> oo.Model:
-    """One link for every mesh."""
+    """Returns a robot with one link per mesh."""
     links = "".join(
         f'<link name="link_{k}"><inertial><mass value="1"/>'
         '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
@@ -259,7 +257,7 @@ def robot(folder: Path, *visuals: str, collision: str = "") -> oo.Model:
     return oo.Model.from_urdf(folder / "craft.urdf")
 
 
-def test_what_cannot_be_drawn_is_warned_of_once_and_has_a_stand_in(tmp_path: Path) -> None:
+def test_an_unusable_mesh_is_warned_about_once_and_replaced(tmp_path: Path) -> None:
     (tmp_path / "short.stl").write_bytes(stl_binary()[:400])
     (tmp_path / "box.stl").write_bytes(stl_binary())
     (tmp_path / "hull.stl").write_bytes(stl_binary())
@@ -267,19 +265,21 @@ def test_what_cannot_be_drawn_is_warned_of_once_and_has_a_stand_in(tmp_path: Pat
     model = robot(
         tmp_path, 'filename="box.stl"', 'filename="short.stl"', 'filename="short.stl"', collision=hull
     )
-    with pytest.warns(UserWarning, match="the mesh of link 'link_1' is not drawn: .*cut short") as told:
+    with pytest.warns(UserWarning, match="the mesh of link 'link_1' is not drawn: .*truncated") as caught:
         drawn = shapes(model)
-    assert len(told) == 1
+    assert len(caught) == 1
     shapes(model)  # a warning would fail the test
     assert [(shape.link, shape.kind) for shape in drawn] == [(f"link_{k}", "mesh") for k in range(3)]
     np.testing.assert_allclose(drawn[1].mesh.bounds[1], [2, 4, 6], rtol=FLOAT)  # type: ignore[union-attr]
     assert [Path(name).name for name in missing_meshes(model)] == ["short.stl"]
 
 
-def test_a_collision_mesh_stands_in_for_one_that_is_missing(tmp_path: Path) -> None:
+def test_a_collision_mesh_replaces_a_missing_visual_mesh(tmp_path: Path) -> None:
     (tmp_path / "hull.stl").write_bytes(stl_binary())
     hull = '<collision><geometry><mesh filename="{}.stl"/></geometry></collision>'
-    with pytest.warns(UserWarning, match=r"^1 mesh file not found, the first is 'package://gone/arm\.stl'"):
+    with pytest.warns(
+        UserWarning, match=r"^1 mesh file not found, of which the first is 'package://gone/arm\.stl'"
+    ):
         model = robot(
             tmp_path, 'filename="hull.stl"', 'filename="package://gone/arm.stl"',
             collision=hull.format("hull") + hull.format("gone"),
@@ -291,7 +291,7 @@ def test_a_collision_mesh_stands_in_for_one_that_is_missing(tmp_path: Path) -> N
 def test_a_mesh_of_an_absurd_size_is_not_drawn(scale: str, tmp_path: Path) -> None:
     (tmp_path / "box.stl").write_bytes(stl_binary())
     model = robot(tmp_path, f'filename="box.stl" scale="{scale}"')
-    with pytest.warns(UserWarning, match=r"is not drawn: .* m large .*correct that or the file's unit"):
+    with pytest.warns(UserWarning, match=r"is not drawn: .* m large .*correct the scale or the unit"):
         assert next(shape.kind for shape in shapes(model)) == "box"
 
 
@@ -309,13 +309,13 @@ def test_figures_have_fewer_triangles_of_the_same_shape(tmp_path: Path) -> None:
     assert 500 < len(corners) <= 2000 and len(colors) == len(corners)
     a, b, c = corners.swapaxes(0, 1)
     found = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0
-    assert found == pytest.approx(2.0 * np.pi, rel=0.1)  # the rims lose half a cube each
+    assert found == pytest.approx(2.0 * np.pi, rel=0.1)  # half a cube is lost at each edge
     ((whole, _),) = coarse(mesh.parts, 2.0, MOST_TRIANGLES)
     assert len(whole) == 2 * 49 * 200
     np.testing.assert_array_equal(corners, coarse(mesh.parts, 2.0, 2000)[0][0])
 
 
-def test_no_library_of_meshes_is_loaded_before_there_is_a_mesh(tmp_path: Path) -> None:
+def test_mesh_libraries_are_loaded_only_for_meshes(tmp_path: Path) -> None:
     program = "import sys, onorbit_rs.viewer.solids; print({'trimesh', 'collada', 'PIL'} & set(sys.modules))"
-    told: Any = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert "trimesh" not in told.stdout and "collada" not in told.stdout
+    done: Any = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "trimesh" not in done.stdout and "collada" not in done.stdout

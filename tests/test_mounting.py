@@ -14,7 +14,6 @@ from commands import onorbit, refusal
 
 import onorbit_rs as oo
 from onorbit_rs.scenario import load
-from onorbit_rs.scenario.make_robot import make_robot
 
 INERTIAL = (
     '<inertial><origin xyz="{com}" rpy="0.1 0.2 0.3"/><mass value="{mass}"/>'
@@ -26,6 +25,12 @@ BUS = (
     '<origin xyz="0.6 0 0.2" rpy="0 1.2 0.4"/></joint>'
 )
 PLACED = {"position": [0.1, -0.2, 0.05], "attitude": {"roll_pitch_yaw": [0.3, -0.4, 0.5]}}
+
+
+def _robot(source: object) -> oo.Model:
+    """Returns the robot of a scenario."""
+    scenario = load(source)  # type: ignore[arg-type]
+    return scenario.robot.build(scenario)
 
 
 def arm(prefix: str = "", *, tool_mass: float = 2.0) -> str:
@@ -113,10 +118,10 @@ def test_two_arms_on_a_bus_are_the_robot_of_one_file(files: Path) -> None:
     assert both.name == "bus" and set(both.frame_names) == set(whole.frame_names)
     assert off(both, whole) < 1e-13
     misplaced = oo.attach(one_arm, "plate", arm_of_file, prefix="right_")
-    assert off(misplaced, whole) > 1e-3  # the comparison can tell
+    assert off(misplaced, whole) > 1e-3  # negative control
 
 
-def test_pinocchio_appends_the_same(files: Path) -> None:
+def test_pinocchio_appends_the_same_model(files: Path) -> None:
     pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
     bus = pin.buildModelFromXML(robot("bus", BUS), pin.JointModelFreeFlyer())
     arm_alone = pin.buildModelFromXML(robot("arm", arm()))
@@ -149,43 +154,46 @@ def test_a_scenario_mounts_and_changes(files: Path) -> None:
         ],
         links={"hull": {"mass": "0.2 t", "com": [0, "10 cm", 0], "inertia": [30, 40, 50]}},
     )  # fmt: skip
-    model = make_robot(load(file))
+    model = _robot(file)
     expected = oo.Model.from_urdf_string(WHOLE).with_link("right_l3", mass=5.0)
     expected = expected.with_link("hull", mass=200.0, com=[0, 0.1, 0], inertia=np.diag([30.0, 40.0, 50.0]))
     assert off(model, expected) < 1e-13
     assert model.mass == pytest.approx(200 + 2 * (4 + 4 * 2) + 3, rel=1e-15)
-    # what is written out with every default makes the same robot
-    again = make_robot(load(load(file).resolved(files)))
+    # the resolved scenario builds the same robot
+    again = _robot(load(file).resolved(files))
     assert off(again, model) == 0.0
     done = onorbit("run", file, "--out", files / "out", cwd=files)
     assert done.returncode == 0 and "certificate passed" in done.stdout, done
     assert onorbit("report", files / "out").returncode == 0
 
 
-def test_links_mend_a_file_before_it_is_checked(files: Path) -> None:
+def test_links_are_changed_before_a_file_is_checked(files: Path) -> None:
     bare = robot("bus", '<link name="hull"/>')
     (files / "bare.urdf").write_text(bare)
-    with pytest.raises(oo.exceptions.ModelError, match=r"bare\.urdf: the robot has no mass.*by 'links'"):
+    with pytest.raises(oo.exceptions.ModelError, match=r"bare\.urdf: the robot has no mass.*with 'links'"):
         oo.Model.from_urdf(files / "bare.urdf")
     given = {"mass": 10.0, "inertia": np.diag([1.0, 2.0, 2.5])}
     model = oo.Model.from_urdf(files / "bare.urdf", links={"hull": given})
-    given["inertia"][0, 0] = 7.0  # its own from here on
+    given["inertia"][0, 0] = 7.0  # modified from here on
     assert model.mass == 10.0 and pickle.loads(pickle.dumps(model)).bodies[0].inertia[0][0] == 1.0
     file = scenario(files, bus={"urdf": "bare.urdf", "links": {"hull": {"mass": 10, "inertia": [1, 2, 2.5]}}},
                     arms=[{"urdf": "arm.urdf", "at": "hull"}])  # fmt: skip
-    assert make_robot(load(file)).mass == 10.0 + 12.0
+    assert _robot(file).mass == 10.0 + 12.0
     for links, message in [
         ({"hul": {"mass": 1}}, "did you mean 'hull'"),
-        ({"hull": {"mas": 1}}, 'links\\["hull"\\] has a key mas: there are mass, com and inertia'),
-        ({"hull": 3}, "a dict with mass, com or inertia is needed"),
+        (
+            {"hull": {"mas": 1}},
+            'links\\["hull"\\] has the unknown key mas; the keys are mass, com and inertia',
+        ),
+        ({"hull": 3}, "expected a dict with mass, com or inertia"),
         ({"hull": {"com": [0, 0, 1]}}, "link 'hull' has no mass; give it one"),
-        ({"hull": {"mass": "3 kg"}}, 'the mass in links\\["hull"\\] is no number'),
+        ({"hull": {"mass": "3 kg"}}, 'the mass in links\\["hull"\\] is not a number'),
     ]:
         with pytest.raises(oo.OnOrbitError, match=message):
             oo.Model.from_urdf(files / "bare.urdf", links=links)  # type: ignore[dict-item]  # some are wrong
 
 
-def test_robots_of_robots_pickle(files: Path) -> None:
+def test_combined_robots_can_be_pickled(files: Path) -> None:
     bus, arm_of_file = oo.robots.load(files / "bus.urdf"), oo.robots.load(files / "arm.urdf")
     changed = oo.attach(bus, "plate", arm_of_file, pose=np.eye(4), prefix="x_").with_link("x_l3", mass=9.0)
     assert off(pickle.loads(pickle.dumps(changed)), changed) == 0.0
@@ -200,20 +208,20 @@ def test_robots_of_robots_pickle(files: Path) -> None:
 
 
 def test_joints_on_the_base_keep_their_order(files: Path) -> None:
-    """Those attached first stay first, whichever frame of the base the next ones go to."""
+    """Robots attached first stay first, independent of the base frame of later ones."""
     bus, arm_of_file = oo.robots.load(files / "bus.urdf"), oo.robots.load(files / "arm.urdf")
     one = oo.attach(bus, "hull", arm_of_file, prefix="a_")
     two = oo.attach(one, "plate", arm_of_file, prefix="b_")
     assert two.joint_names == [*one.joint_names, *(f"b_{name}" for name in arm_of_file.joint_names)]
-    # on a link of the first arm they follow the joints beyond it
+    # robots on a link of the first arm follow the joints beyond it
     on_link = oo.attach(one, "a_l1", arm_of_file, prefix="b_")
     assert [name[0] for name in on_link.joint_names] == ["a"] * 4 + ["b"] * 4
 
 
-def test_an_arm_need_not_float_by_itself(files: Path) -> None:
-    """Its base may lack mass: together with the bus it makes one robot."""
+def test_an_arm_need_not_be_a_valid_free_floating_robot(files: Path) -> None:
+    """Its base may lack mass, because it is combined with the bus."""
     (files / "light.urdf").write_text(robot("arm", _light(arm())))
-    with pytest.raises(oo.exceptions.ModelError, match="can be moved without resistance"):
+    with pytest.raises(oo.exceptions.ModelError, match="nothing resists the motion of the base"):
         oo.robots.load(files / "light.urdf")
     bus = oo.robots.load(files / "bus.urdf")
     model = oo.attach(bus, "plate", files / "light.urdf", pose=np.eye(4), prefix="x_")
@@ -223,26 +231,26 @@ def test_an_arm_need_not_float_by_itself(files: Path) -> None:
     assert off(model, whole) < 1e-13
     assert off(pickle.loads(pickle.dumps(model)), model) == 0.0
     file = scenario(files, bus="bus.urdf", arms=[{"urdf": "light.urdf", "at": "plate", "prefix": "x_"}])
-    assert off(make_robot(load(file)), model) == 0.0
+    assert off(_robot(file), model) == 0.0
     done = onorbit("new", "light.urdf", "--bus", "bus.urdf", "--at", "plate", cwd=files)
     assert done.returncode == 0, done
     with pytest.raises(oo.exceptions.DtypeError, match="other is of type int"):
         oo.attach(bus, "plate", 3)  # type: ignore[arg-type]
     far = np.eye(4)
     far[0, 3] = 1e13
-    with pytest.raises(oo.exceptions.ModelError, match="farther away than 1e12 m"):
+    with pytest.raises(oo.exceptions.ModelError, match="exceeds 1e12 m"):
         oo.attach(bus, "plate", files / "light.urdf", pose=far)
     with pytest.raises(oo.exceptions.NotFoundError):
         oo.attach(bus, "plate", files / "none.urdf")
 
 
 def _light(text: str) -> str:
-    """The text of an arm without the inertial of its base."""
+    """Returns the URDF text of an arm whose base has no inertial element."""
     start, end = text.index("<inertial>"), text.index("</inertial>") + len("</inertial>")
     return text[:start] + text[end:]
 
 
-def test_what_is_odd_is_told_once(files: Path) -> None:
+def test_warnings_are_issued_once(files: Path) -> None:
     odd = robot("arm", arm().replace('ixx="0.05"', 'ixx="5"', 1))
     with pytest.warns(UserWarning, match="'l0' breaks the triangle"):
         arm_of_text = oo.Model.from_urdf_string(odd)
@@ -262,34 +270,34 @@ def test_what_is_odd_is_told_once(files: Path) -> None:
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plte"}]},
          "robot.arms[0]: there is no frame 'plte'; did you mean 'plate'?"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate"}] * 2},
-         "robot.arms[1]: both robots have a link or frame 'base': give the one that is attached a prefix"),
+         "robot.arms[1]: both robots have a link or frame 'base'; give the attached one a prefix"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "prefix": "a_"}] * 2},
-         "robot.arms[1]: with the prefix 'a_' the robot that is attached has a link or frame 'a_base'"),
+         "robot.arms[1]: with the prefix 'a_' the attached robot has a link or frame 'a_base'"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "frame": "tool"}]},
-         "robot.arms[0]: joints move the frame 'tool': a robot is attached by a frame that is fixed to its "
+         "robot.arms[0]: the frame 'tool' moves with joints; attach a robot by a frame that is fixed to its "
          "base: base"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "amr.urdf", "at": "plate"}]},
          "amr.urdf: there is no such file"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf"}]}, "robot.arms[0].at: is missing"),
-        ({"bus": "bus.urdf", "arms": []}, "robot.arms: has 0 entries, needs at least 1"),
-        ({"bus": "bus.urdf"}, "robot: a 'bus' carries 'arms': list at least one"),
-        ({"bus": "bus.urdf", "arms": None}, "robot: a 'bus' carries 'arms': list at least one"),
+        ({"bus": "bus.urdf", "arms": []}, "robot.arms: has 0 entries, expected at least 1"),
+        ({"bus": "bus.urdf"}, "robot: 'bus' requires 'arms'; list at least one"),
+        ({"bus": "bus.urdf", "arms": None}, "robot: 'bus' requires 'arms'; list at least one"),
         ({"urdf": "bus.urdf", "bus": None, "arms": [{"urdf": "arm.urdf", "at": "plate"}]},
-         "robot: 'arms' belong to a 'bus'"),
+         "robot: 'arms' requires a 'bus'"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "prefix": "\ud800"}]},
-         "has characters that no name has"),
-        ({"arms": [{"urdf": "arm.urdf", "at": "plate"}]}, "robot: 'arms' belong to a 'bus'"),
+         "contains characters that are not allowed in names"),
+        ({"arms": [{"urdf": "arm.urdf", "at": "plate"}]}, "robot: 'arms' requires a 'bus'"),
         ({"bus": "bus.urdf", "urdf": "arm.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate"}]},
          "give exactly one of 'bundled', 'urdf', 'rigid_body' and 'bus'; given: urdf, bus"),
         ({"urdf": "arm.urdf", "links": {"l8": {"mass": 1}}}, "there is no link 'l8'; did you mean 'l0'?"),
         ({"urdf": "arm.urdf", "links": {"l1": {"mass": "1 m"}}}, "'1 m' is not a mass"),
         ({"rigid_body": {"mass": 1, "inertia": [1, 1, 1]}, "links": {"base": {"mass": 1}}},
-         "'links' change the robot of a file"),
+         "'links' applies only to robots from files"),
     ],
 )  # fmt: skip
-def test_refusals_in_a_scenario(robot: dict[str, Any], message: str, files: Path) -> None:
-    told = refusal("check", scenario(files, **robot), cwd=files)
-    assert message in told and "mine.yaml:" in told, told
+def test_invalid_mounts_in_a_scenario_are_rejected(robot: dict[str, Any], message: str, files: Path) -> None:
+    message_text = refusal("check", scenario(files, **robot), cwd=files)
+    assert message in message_text and "mine.yaml:" in message_text, message_text
 
 
 def test_from_two_files_to_a_run(files: Path) -> None:
@@ -302,16 +310,20 @@ def test_from_two_files_to_a_run(files: Path) -> None:
         warnings.simplefilter("ignore")
         run = oo.run(files / "mine.yaml", quiet=True)
     assert run.summary["certificate_passed"] and run.summary["joint_limits_exceeded"] == ""
-    assert make_robot(load(files / "mine.yaml")).mass == 312.0
-    assert "--at FRAME; bus.urdf has: hull, plate" in refusal(
+    assert _robot(files / "mine.yaml").mass == 312.0
+    assert "with --at FRAME; the frames of bus.urdf are hull, plate" in refusal(
         "new", "arm.urdf", "--bus", "bus.urdf", cwd=files
     )
     assert "did you mean 'plate'" in refusal(
         "new", "arm.urdf", "--bus", "bus.urdf", "--at", "plat", cwd=files
     )
-    assert "mine.png is there already" in refusal("info", "arm.urdf", "--picture", "mine.png", cwd=files)
-    assert ".jpg is none of .png" in refusal("info", "arm.urdf", "--picture", "mine.jpg", cwd=files)
-    assert "name two files" in refusal("new", "arm.urdf", "--out", "a.png", "--picture", "a.png", cwd=files)
+    assert "mine.png already exists" in refusal("info", "arm.urdf", "--picture", "mine.png", cwd=files)
+    assert "mine.jpg must end in one of .png" in refusal(
+        "info", "arm.urdf", "--picture", "mine.jpg", cwd=files
+    )
+    assert "give two different files" in refusal(
+        "new", "arm.urdf", "--out", "a.png", "--picture", "a.png", cwd=files
+    )
     assert "add --bus ROBOT" in refusal("new", "arm.urdf", "--at", "plate", cwd=files)
-    told = refusal("new", "arm.urdf", "--bus", "b.xacro", "--at", "plate", "--arg", "m=9", cwd=files)
-    assert "robot.bus.xacro_arguments" in told
+    message_text = refusal("new", "arm.urdf", "--bus", "b.xacro", "--at", "plate", "--arg", "m=9", cwd=files)
+    assert "robot.bus.xacro_arguments" in message_text

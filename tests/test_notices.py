@@ -1,4 +1,4 @@
-"""The notices of third parties in the wheel are those of the crates that the module links."""
+"""The third-party notices in the wheel cover exactly the crates that the module links."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def script() -> Any:
 @pytest.fixture(scope="module")
 def crates() -> list[dict[str, Any]]:
     if shutil.which("cargo") is None:
-        pytest.skip("cargo is not there, and it alone says which crates are linked")
+        pytest.skip("cargo, which lists the linked crates, is not installed")
     try:
         found: list[dict[str, Any]] = script().linked_crates()
     except subprocess.CalledProcessError as error:
@@ -35,26 +35,26 @@ def crates() -> list[dict[str, Any]]:
     return found
 
 
-def test_the_notices_are_those_of_the_crates_linked(crates: list[dict[str, Any]]) -> None:
+def test_the_notices_cover_the_linked_crates(crates: list[dict[str, Any]]) -> None:
     written = script().NOTICES.read_text(encoding="utf-8")
     assert written == script().notices(), "Cargo.lock changed: make notices"
     for crate in crates:
         assert f"\n{crate['name']} {crate['version']}\n  {crate['license']}; text" in written
 
 
-def test_macros_and_builds_are_no_part_of_the_module(crates: list[dict[str, Any]]) -> None:
+def test_macros_and_build_dependencies_are_not_linked(crates: list[dict[str, Any]]) -> None:
     names = {crate["name"] for crate in crates}
     assert {"pyo3", "numpy", "nalgebra", "rayon", "hifitime"} <= names
     assert not {"syn", "quote", "pyo3-macros", "pyo3-build-config", "criterion"} & names
 
 
-def test_licences_that_ask_for_it_come_with_text_and_source() -> None:
+def test_licences_that_require_it_include_text_and_source() -> None:
     written = script().NOTICES.read_text(encoding="utf-8")
     assert "MPL-2.0" in written and "Mozilla Public License Version 2.0" in written
     assert "BSD-2-Clause" in written and "Redistributions in binary form must reproduce" in written
     assert "https://crates.io/crates/NAME/VERSION" in written
 
 
-def test_the_wheel_takes_the_notices_along() -> None:
+def test_the_wheel_contains_the_notices() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     assert {"LICENSE", script().NOTICES.name} <= set(project["license-files"])

@@ -1,4 +1,4 @@
-"""The integrated orbit at the border: fields, other orbits, scenarios, pickles."""
+"""Numerically integrated orbits through Python: fields, other orbits, scenarios, pickling."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import OrbitError, ScenarioError
-from onorbit_rs.planet import is_earth
+from onorbit_rs.visuals.earth_shape import is_earth
 
 # Lobatto collocation with 16 nodes in numpy's longdouble, 160 steps a day; start: GMAT's case leo_1day
 R0, V0 = np.array([-2436450.0, -2436450.0, 6891037.0]), np.array([5088.611, -5088.611, 0.0])
@@ -25,11 +25,11 @@ def test_a_day_under_j2_agrees_with_extended_precision() -> None:
     orbit = oo.Numerical(R0, V0, environment=[flattened()])
     assert np.linalg.norm(orbit.state(86400.0)[0] - END) < 3e-6
     assert orbit.mu == MU
-    # negative control: the point mass alone is hundreds of kilometres away
+    # negative control: without J2 the error is hundreds of kilometres
     assert np.linalg.norm(oo.Numerical(R0, V0, mu=MU).state(86400.0)[0] - END) > 1e5
 
 
-def test_it_leaves_from_any_orbit() -> None:
+def test_an_integrated_orbit_can_start_from_any_orbit() -> None:
     kepler = oo.Kepler.from_state(R0, V0, mu=MU)
     orbit = oo.Numerical.from_orbit(kepler)
     assert np.allclose(orbit.state(5e4)[0], kepler.state(5e4)[0], rtol=0, atol=1e-5)
@@ -42,14 +42,14 @@ def test_it_leaves_from_any_orbit() -> None:
     assert oo.Numerical.from_orbit(oo.Sgp4(line1, line2)).axes == "TEME"
 
 
-def test_it_pickles() -> None:
+def test_an_integrated_orbit_can_be_pickled() -> None:
     orbit = oo.Numerical(R0, V0, t0=3.0, environment=[flattened()], axes="TEME")
     back = pickle.loads(pickle.dumps(orbit))
     assert np.array_equal(back.state(1000.0)[0], orbit.state(1000.0)[0])
     assert back.axes == "TEME"
 
 
-def test_what_falls_into_the_earth_is_told_with_its_time() -> None:
+def test_an_orbit_that_meets_the_earth_is_reported_with_its_time() -> None:
     orbit = oo.Numerical([7e6, 0.0, 0.0], [0.0, 3e3, 0.0])
     with pytest.raises(OrbitError, match="inside the planet at t = ") as caught:
         orbit.state(86400.0)
@@ -65,7 +65,7 @@ SCENARIO = {
 }
 
 
-def test_a_scenario_coasts_on_it() -> None:
+def test_a_scenario_uses_an_integrated_orbit() -> None:
     from onorbit_rs.scenario.build import build
 
     orbit = {"kind": "numerical", "position": [*R0], "velocity": [*V0]}
@@ -73,15 +73,15 @@ def test_a_scenario_coasts_on_it() -> None:
     assert isinstance(built.orbit, oo.Numerical)
     trace = built.simulation.run(1200.0)
     free = oo.Kepler.from_state(R0, V0).state(trace.time)[0]
-    # the robot falls with its reference: nothing but rounding between them
+    # the robot falls with its reference: they differ by rounding only
     assert np.allclose(trace.position_eci, free, rtol=0, atol=1e-5)
     with pytest.raises(ScenarioError, match="secular_j2"):
         oo.Scenario(**SCENARIO, orbit=orbit | {"secular_j2": True})
 
 
 @pytest.mark.parametrize("share", [0.9899, 0.9901, 0.999, 4e14 / oo.MU_EARTH, 1.0, 1.0099, 1.0101])
-def test_pictures_and_engine_know_one_earth(share: float) -> None:
-    """6000 km from its centre the Earth is ground; of other planets nobody knows."""
+def test_figures_and_engine_use_the_same_earth_radius(share: float) -> None:
+    """At 6000 km from the centre of the Earth is ground; other planets have no known radius."""
     mu = share * oo.MU_EARTH
     is_ground = False
     try:

@@ -1,4 +1,4 @@
-"""A run that was killed or interrupted goes on from its folder, to the same bits."""
+"""A killed or interrupted run is resumed from its folder with the same bits."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from onorbit_rs.scenario import load
 
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Figures of this process say nothing about bits; runs of the command line draw theirs."""
-    monkeypatch.setattr("onorbit_rs.keeping.write_pictures", lambda *_, **__: None)
+    """Turns off figures in this process; runs on the command line still draw them."""
+    monkeypatch.setattr("onorbit_rs.simulation.finish.write_pictures", lambda *_, **__: None)
 
 
 def long_reach(duration: float = 8.0, **simulation: Any) -> dict[str, Any]:
@@ -45,7 +45,7 @@ def wait_for(path: Path, process: subprocess.Popen[bytes]) -> None:
 
 
 def stopped_run(tmp_path: Path, data: dict[str, Any], how: signal.Signals) -> Path:
-    """The folder of a run that a signal ended after its first checkpoint."""
+    """Returns the folder of a run that a signal ended after its first checkpoint."""
     out = tmp_path / "out"
     command = [
         sys.executable,
@@ -72,7 +72,7 @@ def assert_same_trace(out: Path, whole: oo.Run) -> None:
 
 
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
-def test_a_stopped_run_goes_on_to_the_same_bits(tmp_path: Path, how: signal.Signals) -> None:
+def test_a_resumed_run_has_the_same_bits(tmp_path: Path, how: signal.Signals) -> None:
     data = long_reach(record_every=3)
     whole = oo.run(data, quiet=True)
     out = stopped_run(tmp_path, data, how)
@@ -86,10 +86,10 @@ def test_a_stopped_run_goes_on_to_the_same_bits(tmp_path: Path, how: signal.Sign
     assert json.loads((out / "summary.json").read_text())["rows"] == len(whole.trace)
 
 
-def test_killed_twice_and_while_rows_were_written(tmp_path: Path) -> None:
+def test_a_run_killed_twice_and_while_rows_were_written_has_the_same_bits(tmp_path: Path) -> None:
     data = long_reach()
     out = stopped_run(tmp_path, data, signal.SIGKILL)
-    with (out / "checkpoint" / "q.f64").open("ab") as stream:  # rows the state does not count
+    with (out / "checkpoint" / "q.f64").open("ab") as stream:  # rows not included in the state's count
         stream.write(b"\x7f" * 1001)
     first = json.loads((out / "checkpoint" / "state.json").read_text())["rows"]
     command = [sys.executable, "-m", "onorbit_rs", "resume", str(out), "--checkpoint-every", "0"]
@@ -104,7 +104,7 @@ def test_killed_twice_and_while_rows_were_written(tmp_path: Path) -> None:
 
 
 def test_checkpoints_in_python() -> None:
-    """Without a folder: hand them from one run to the next."""
+    """Without a folder, checkpoints are passed from one run to the next."""
     model = oo.robots.load("humanoid_torso")
     v = np.full(model.nv, 0.02)
     simulation = oo.Simulation(model, model.neutral(), v, time_step=1e-4)
@@ -141,17 +141,19 @@ def state_of(out: Path) -> dict[str, Any]:
             (out / "scenario.yaml").read_text().replace("kp: 100", "kp: 101")), "another scenario"),
         (lambda out, record: record["engine"].update(version="0.0.1"), "version 0.0.1"),
         (lambda out, record: record["engine"].update(instruction_set="sse9"), "ONORBIT_INSTRUCTION_SET=sse9"),
-        (lambda out, record: record.pop("rows"), "broken"),
-        (lambda out, record: record["engine"]["state"].pop("q"), "broken"),
+        (lambda out, record: record.pop("rows"), "damaged"),
+        (lambda out, record: record["engine"]["progress"]["state"]["systems"][0].pop("q"), "damaged"),
         (lambda out, record: record["widths"].update(q=13), "checksum"),
-        (lambda out, record: record["digests"].clear(), "broken"),
-        (lambda out, record: record.update(rows=10**17), "broken.*are needed"),
+        (lambda out, record: record["digests"].clear(), "damaged"),
+        (lambda out, record: record.update(rows=10**17), "damaged.*expected"),
         (lambda out, record: record.update(widths={"../../out/checkpoint/v": 3}), "No such file"),
         (lambda out, record: (out / "checkpoint" / "v.f64").write_bytes(b"short"), "v.f64"),
-        (lambda out, record: (out / "checkpoint" / "v.f64").unlink(), "broken"),
+        (lambda out, record: (out / "checkpoint" / "v.f64").unlink(), "damaged"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_continued_is_refused(killed: Path, tmp_path: Path, change: Any, words: str) -> None:
+def test_runs_that_cannot_be_resumed_are_rejected(
+    killed: Path, tmp_path: Path, change: Any, words: str
+) -> None:
     out = tmp_path / "copy"
     subprocess.run(["cp", "-r", str(killed), str(out)], check=True)
     record = state_of(out)
@@ -160,11 +162,11 @@ def test_what_cannot_be_continued_is_refused(killed: Path, tmp_path: Path, chang
     with pytest.raises(CheckpointError, match=words) as caught:
         oo.resume(out, quiet=True)
     assert isinstance(caught.value, ValueError)
-    assert (out / "checkpoint" / "state.json").exists()  # nothing is lost
+    assert (out / "checkpoint" / "state.json").exists()  # the checkpoint is kept
 
 
 def test_folders_without_a_checkpoint(tmp_path: Path) -> None:
-    with pytest.raises(NotFoundError, match="this is a file, not the folder of a run"):
+    with pytest.raises(NotFoundError, match="it is a file, but the output folder of a run is required"):
         oo.resume(__file__)
     with pytest.raises(NotFoundError, match="no such folder"):
         oo.resume(tmp_path / "none")
@@ -176,7 +178,7 @@ def test_folders_without_a_checkpoint(tmp_path: Path) -> None:
         oo.resume(out)
 
 
-def test_a_run_in_its_place_forgets_the_checkpoint(killed: Path, tmp_path: Path) -> None:
+def test_a_new_run_in_the_folder_removes_the_checkpoint(killed: Path, tmp_path: Path) -> None:
     out = tmp_path / "copy"
     subprocess.run(["cp", "-r", str(killed), str(out)], check=True)
     oo.run(long_reach(0.01), out=out, force=True, quiet=True)

@@ -1,4 +1,4 @@
-"""Faults of the disk while a folder is written: full, read-only, and kills at any instant."""
+"""Disk faults while a folder is written: full or read-only disks, and kills at any instant."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ import onorbit_rs as oo
 from onorbit_rs.exceptions import OutputFolderError, OutputNotWritableError
 from onorbit_rs.output import checkpoint as checkpoints
 from onorbit_rs.output.folder import OutputFolder
-from onorbit_rs.output.relay import Relay
 from onorbit_rs.scenario import load
+from onorbit_rs.simulation.live import _Saver
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 
@@ -34,7 +34,7 @@ def tumbling(duration: float = 4.0) -> dict[str, Any]:
 
 @pytest.fixture
 def small_disk(tmp_path: Path) -> Any:
-    """A disk of 256 KiB."""
+    """Mounts a disk of 256 KiB."""
     disk = tmp_path / "disk"
     disk.mkdir()
     mounted = os.geteuid() == 0 and sys.platform == "linux" and subprocess.run(
@@ -46,10 +46,10 @@ def small_disk(tmp_path: Path) -> Any:
     subprocess.run(["umount", "-l", str(disk)], check=True)
 
 
-def test_a_checkpoint_that_cannot_be_written_warns_once_and_the_run_goes_on(
+def test_a_checkpoint_that_cannot_be_written_warns_once_and_the_run_continues(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It had ended the whole run. What failed is written with the next."""
+    """It once ended the whole run. The missing rows are written with the next checkpoint."""
     calls = {"failed": 0, "written": 0}
     append = checkpoints._append
 
@@ -72,12 +72,12 @@ def test_a_checkpoint_that_cannot_be_written_warns_once_and_the_run_goes_on(
 
     monkeypatch.setattr(OutputFolder, "discard_checkpoint", keep)
     data = tumbling()
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         whole = oo.run(data, tmp_path / "out", quiet=True, checkpoint_every=0.0)
     assert calls["failed"] == 1 and calls["written"] > 1 and len(kept) == 1
-    (said,) = {str(warning.message) for warning in told if "checkpoint" in str(warning.message)}
-    assert "No space left on device; the run goes on and tries again next time" in said
+    (said,) = {str(warning.message) for warning in caught if "checkpoint" in str(warning.message)}
+    assert "No space left on device; the run continues and retries at the next checkpoint" in said
     monkeypatch.setattr(OutputFolder, "discard_checkpoint", discard)
     again = oo.resume(kept[0], quiet=True)
     for name in whole.trace.columns():
@@ -87,7 +87,7 @@ def test_a_checkpoint_that_cannot_be_written_warns_once_and_the_run_goes_on(
         )
 
 
-def test_a_full_disk_leaves_no_half_written_file_and_says_so(small_disk: Path) -> None:
+def test_a_full_disk_leaves_no_partial_file_and_is_reported(small_disk: Path) -> None:
     (small_disk / "mine.yaml").write_text(SPIN.replace("duration: 0.1 s", "duration: 20 s"))
     done = onorbit("run", "mine.yaml", "--out", "out", "-q", cwd=small_disk)
     assert done.returncode == 2 and "No space left on device" in done.stderr, done
@@ -98,20 +98,20 @@ def test_a_full_disk_leaves_no_half_written_file_and_says_so(small_disk: Path) -
     assert oo.compare(small_disk / "out", small_disk / "out").agrees
 
 
-def test_a_full_disk_costs_checkpoints_and_not_the_run(small_disk: Path) -> None:
+def test_a_full_disk_loses_checkpoints_but_not_the_run(small_disk: Path) -> None:
     with OutputFolder.claim(small_disk / "out") as folder:
         writer = checkpoints.CheckpointWriter(folder, "digest")
         rows = np.random.default_rng(14).normal(size=(4000, 3))
         engine = json.dumps({"version": "any"})
-        with warnings.catch_warnings(record=True) as told:
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             kept = [writer(oo.Checkpoint(engine, {"q": rows})) for _ in range(4)]
-        assert kept == [True, True, False, False] and len(told) == 1
+        assert kept == [True, True, False, False] and len(caught) == 1
         found = checkpoints.read_checkpoint(folder.path, "digest")
         assert found.rows == 8000 and np.array_equal(found.checkpoint.columns["q"], np.vstack([rows, rows]))
 
 
-def test_a_read_only_folder_is_refused_and_can_still_be_read(tmp_path: Path) -> None:
+def test_a_read_only_folder_is_rejected_for_writing_but_readable(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(SPIN)
     out = tmp_path / "out"
     oo.run(tmp_path / "mine.yaml", out, quiet=True)
@@ -149,10 +149,10 @@ SPIN_DATA = {
 }
 
 
-def test_a_reader_never_sees_a_mixture(tmp_path: Path) -> None:
-    """While one process replaces the run of a folder again and again, another reads it."""
+def test_a_reader_never_sees_a_mixture_of_two_runs(tmp_path: Path) -> None:
+    """One process repeatedly replaces the run of a folder while another reads it."""
     program = """
-import sys, onorbit_rs as oo, onorbit_rs.keeping as keeping
+import sys, onorbit_rs as oo, onorbit_rs.simulation.finish as keeping
 keeping.write_pictures = lambda *_, **__: None
 body = {"mass": 1.0, "inertia": [1.0, 1.0, 1.0]}
 for number in range(30):
@@ -184,8 +184,8 @@ for number in range(30):
     assert len(seen) > 3, f"{refused} refused"
 
 
-def test_kills_at_random_instants_leave_folders_that_go_on_to_the_same_bits(tmp_path: Path) -> None:
-    """A few of what ``make soak`` does by the hundred."""
+def test_runs_killed_at_random_instants_resume_with_the_same_bits(tmp_path: Path) -> None:
+    """A short version of the kills of ``make soak``."""
     found = kill_campaign(tmp_path, kills=2, seed=14, duration=1.0)
     assert found.kills == 2 and found.wrong == [], found
     assert found.same_bits >= 1
@@ -202,11 +202,15 @@ def test_a_limit_of_file_sizes_is_an_error_of_the_folder(tmp_path: Path) -> None
     assert not list(tmp_path.iterdir())
 
 
-def test_rows_that_a_watched_run_could_not_write_come_again() -> None:
-    """The viewer takes every checkpoint, the writer some: none of its rows are lost where it fails."""
+def test_rows_that_a_watched_run_could_not_write_are_written_later() -> None:
+    """The viewer receives every row once; rows are not lost if the writer fails."""
 
-    class Live:
-        def take(self, columns: Any) -> None: ...
+    class Stepper:
+        rows = 0
+
+        def checkpoint(self, since: int) -> oo.Checkpoint:
+            self.rows += 1
+            return oo.Checkpoint("{}", {"time": np.arange(float(since), self.rows)[:, None]})
 
     written: list[list[float]] = []
     answers = iter([False, False, True, True])
@@ -215,25 +219,24 @@ def test_rows_that_a_watched_run_could_not_write_come_again() -> None:
         written.append(checkpoint.columns["time"].ravel().tolist())
         return next(answers)
 
-    relay = Relay(Live(), writer, 0.0)  # type: ignore[arg-type]
-    for row in range(4):
-        relay(oo.Checkpoint("{}", {"time": np.full((1, 1), float(row))}))
-    relay.hand_on()
+    saver, stepper = _Saver(writer, 0.0, 0), Stepper()  # type: ignore[arg-type]
+    for _ in range(4):
+        saver.save_if_due(stepper)  # type: ignore[arg-type]
     assert written == [[0.0], [0.0, 1.0], [0.0, 1.0, 2.0], [3.0]]
 
 
-@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="names of open files are told by Linux alone")
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="only Linux lists the names of open files")
 def test_results_are_on_the_disk_before_the_checkpoint_is_removed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     events: list[str] = []
     fsync = os.fsync
 
-    def told(descriptor: int) -> None:
+    def observed_fsync(descriptor: int) -> None:
         events.append(Path(f"/proc/self/fd/{descriptor}").readlink().name.rpartition("-")[2])
         fsync(descriptor)
 
-    monkeypatch.setattr(os, "fsync", told)
+    monkeypatch.setattr(os, "fsync", observed_fsync)
     monkeypatch.setattr(OutputFolder, "discard_checkpoint", lambda folder: events.append("removed"))
     oo.run(tumbling(0.1), tmp_path / "out", quiet=True)
     results = events[events.index("trace.npz") :]

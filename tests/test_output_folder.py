@@ -1,4 +1,4 @@
-"""The output folder: refused before the run where it is foreign or closed, never half-written."""
+"""The output folder: rejected before the run if unsuitable or not writable, never partially written."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from onorbit_rs.exceptions import (
 from onorbit_rs.output.folder import OutputFolder
 
 
-def test_a_missing_folder_is_made(tmp_path: Path) -> None:
+def test_a_missing_folder_is_created(tmp_path: Path) -> None:
     with OutputFolder.claim(tmp_path / "a" / "b") as folder:
         assert folder.path.is_dir()
     assert not list(folder.path.iterdir())
 
 
-def test_a_folder_with_files_asks_for_force(tmp_path: Path) -> None:
+def test_a_folder_with_files_requires_force(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("precious")
     with pytest.raises(OutputNotEmptyError, match="--force") as caught:
         OutputFolder.claim(tmp_path)
@@ -33,7 +33,7 @@ def test_a_folder_with_files_asks_for_force(tmp_path: Path) -> None:
     assert caught.value.path == str(tmp_path)
 
 
-def test_force_replaces_a_run_and_nothing_else(tmp_path: Path) -> None:
+def test_force_replaces_only_a_run(tmp_path: Path) -> None:
     (tmp_path / "figures").mkdir()
     for name in ("summary.json", "run.rrd", "figures/old.png"):
         (tmp_path / name).write_text("old")
@@ -45,7 +45,7 @@ def test_force_replaces_a_run_and_nothing_else(tmp_path: Path) -> None:
     assert left == {"mine.txt", "figures/mine.txt", "figures/mine.png"}
 
 
-def test_a_file_in_place_of_the_folder(tmp_path: Path) -> None:
+def test_a_file_in_place_of_the_folder_is_rejected(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_text("")
     with pytest.raises(OutputNotWritableError, match="is a file") as caught:
@@ -56,7 +56,7 @@ def test_a_file_in_place_of_the_folder(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root writes everywhere")
-def test_a_closed_folder_is_refused(tmp_path: Path) -> None:
+def test_a_folder_without_permission_is_rejected(tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     try:
         with pytest.raises(OutputNotWritableError, match="cannot be written"):
@@ -65,7 +65,7 @@ def test_a_closed_folder_is_refused(tmp_path: Path) -> None:
         tmp_path.chmod(0o700)
 
 
-def test_a_read_only_file_system_is_refused() -> None:
+def test_a_read_only_file_system_is_rejected() -> None:
     with pytest.raises(OutputNotWritableError, match="cannot be written"):
         OutputFolder.claim("/proc/onorbit")
 
@@ -83,14 +83,14 @@ def test_a_failed_write_leaves_the_old_file_and_no_partial_one(tmp_path: Path) -
 
 @pytest.mark.skipif(os.name != "posix", reason="limits the size of a file")
 def test_a_full_disk_ends_the_run_with_one_line(tmp_path: Path) -> None:
-    # 400 blocks of 1 KiB: the trace and the figures fit, the recording does not; rerun's file sink hung here
+    # 400 blocks of 1 KiB: the recording does not fit; rerun's file sink once hung here
     command = f"ulimit -f 400; exec {sys.executable} -m onorbit_rs run kepler_orbit -q -o {tmp_path / 'out'}"
     done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=100, check=False)
     assert done.returncode == 2, done
     assert done.stderr.startswith("onorbit: cannot write ") and len(done.stderr.splitlines()) == 1
 
 
-def test_a_name_too_long_and_figures_that_are_a_file_are_refused(tmp_path: Path) -> None:
+def test_a_name_too_long_and_a_file_named_figures_are_rejected(tmp_path: Path) -> None:
     with pytest.raises(OutputNotWritableError, match="too long"):
         OutputFolder.claim(tmp_path / ("x" * 300))
     (tmp_path / "summary.json").write_text("{}")

@@ -1,4 +1,4 @@
-"""``--force`` removes nothing that no run wrote, and nothing is written through a link."""
+"""``--force`` removes only files written by a run, and nothing is written through symbolic links."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def _spin(where: Path, *more: str) -> Path:
     (where / "mine.yaml").write_text(SPIN)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("onorbit_rs.keeping.write_pictures", _write_a_figure)
+        patch.setattr("onorbit_rs.simulation.finish.write_pictures", _write_a_figure)
         done = onorbit("run", "mine.yaml", "--out", "out", *more, cwd=where)
     assert done.returncode == 0, done.stderr
     return where / "out"
@@ -49,7 +49,7 @@ def copy(run_folder: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(run_folder, tmp_path / "out"))
 
 
-def test_force_removes_no_picture_of_a_folder_that_never_held_a_run(tmp_path: Path) -> None:
+def test_force_removes_no_picture_from_a_folder_without_a_run(tmp_path: Path) -> None:
     pictures = tmp_path / "out" / "figures"
     pictures.mkdir(parents=True)
     (pictures / "holiday.png").write_text(PRECIOUS)
@@ -60,7 +60,7 @@ def test_force_removes_no_picture_of_a_folder_that_never_held_a_run(tmp_path: Pa
 
 
 @pytest.mark.parametrize("name", RESULTS)
-def test_force_replaces_no_file_that_no_run_wrote(tmp_path: Path, name: str) -> None:
+def test_force_replaces_only_files_written_by_a_run(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_text(PRECIOUS)
     with pytest.raises(OutputNotEmptyError, match=f"{name}: it is there, and manifest.json does not list it"):
         OutputFolder.claim(tmp_path, force=True)
@@ -68,7 +68,7 @@ def test_force_replaces_no_file_that_no_run_wrote(tmp_path: Path, name: str) -> 
 
 
 @pytest.mark.parametrize("name", ["figures", "checkpoint"])
-def test_force_follows_no_link_of_a_folder(copy: Path, tmp_path: Path, name: str) -> None:
+def test_force_follows_no_symbolic_link_to_a_folder(copy: Path, tmp_path: Path, name: str) -> None:
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     for file in ("ledger.png", "state.json", "q.f64"):
@@ -78,7 +78,7 @@ def test_force_follows_no_link_of_a_folder(copy: Path, tmp_path: Path, name: str
     said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
     assert f"{name}: it is a symbolic link, which no run makes" in said
     assert {file.read_text() for file in elsewhere.iterdir()} == {PRECIOUS}
-    assert (copy / "summary.json").is_file(), "nothing is removed where something is refused"
+    assert (copy / "summary.json").is_file(), "nothing may be removed after a rejection"
 
 
 @pytest.mark.parametrize("name", ["trace.npz", "summary.json", "report.html"])
@@ -94,7 +94,7 @@ def test_force_neither_follows_nor_removes_a_link_in_place_of_a_file(
     assert precious.read_text() == PRECIOUS and (copy / name).is_symlink()
 
 
-def test_a_planted_partial_file_is_not_written_through(tmp_path: Path) -> None:
+def test_an_existing_temporary_file_is_not_written_through(tmp_path: Path) -> None:
     precious, out = tmp_path / "precious", tmp_path / "out"
     precious.write_text(PRECIOUS)
     out.mkdir()
@@ -106,7 +106,7 @@ def test_a_planted_partial_file_is_not_written_through(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_links_planted_during_a_run_are_refused_at_its_end(tmp_path: Path) -> None:
+def test_links_created_during_a_run_are_rejected_at_its_end(tmp_path: Path) -> None:
     precious, out = tmp_path / "precious", tmp_path / "out"
     precious.write_text(PRECIOUS)
     with OutputFolder.claim(out) as folder:
@@ -115,14 +115,14 @@ def test_links_planted_during_a_run_are_refused_at_its_end(tmp_path: Path) -> No
         for name in ("trace.npz", "figures/precious.png"):
             with pytest.raises(OutputFolderError), folder.writing(name) as path:
                 path.write_text("new")
-        with pytest.raises(OSError, match="not a folder itself"):
+        with pytest.raises(OSError, match="must be a folder"):
             (out / "checkpoint").symlink_to(tmp_path)
             folder.expect_checkpoint(("state.json",))
     assert precious.read_text() == PRECIOUS
     assert {file.name for file in tmp_path.iterdir()} == {"precious", "out"}
 
 
-def test_a_report_replaces_no_file_that_no_run_wrote(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_report_replaces_only_files_written_by_a_run(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drawing = SimpleNamespace(name="ledger", caption="nothing", draw=Figure)
     monkeypatch.setattr(figures, "drawings", lambda subject: [drawing])
     for name in ("report.html", "figures/ledger.pdf"):
@@ -132,12 +132,12 @@ def test_a_report_replaces_no_file_that_no_run_wrote(copy: Path, monkeypatch: py
         assert (copy / name).read_text() == PRECIOUS and not list(copy.glob(".*"))
         (copy / name).unlink()
     for pdf in (True, False):
-        write_report(copy, pdf=pdf)  # its own it replaces
+        write_report(copy, pdf=pdf)  # an earlier report is replaced
     assert (copy / "figures" / "ledger.pdf").is_file()
     assert oo.compare(copy, copy).agrees
 
 
-def test_a_manifest_of_a_stranger_names_nothing_outside_the_folder(copy: Path, tmp_path: Path) -> None:
+def test_an_untrusted_manifest_cannot_name_files_outside_the_folder(copy: Path, tmp_path: Path) -> None:
     precious = tmp_path / "precious.png"
     precious.write_text(PRECIOUS)
     record: dict[str, Any] = unsealed((copy / MANIFEST).read_bytes())
@@ -150,11 +150,11 @@ def test_a_manifest_of_a_stranger_names_nothing_outside_the_folder(copy: Path, t
         "figures/a\0.png",
     ):
         (copy / MANIFEST).write_bytes(sealed(record | {"files": {name: entry}}))
-        with pytest.raises(ReadError, match="no run writes"):
+        with pytest.raises(ReadError, match="not a file of a run"):
             OutputFolder.claim(copy, force=True)
     for name in ("../state.json", "x/../../y.f64", 3):
         (copy / MANIFEST).write_bytes(sealed(record | {"checkpoint": [name]}))
-        with pytest.raises(ReadError, match="no checkpoint has"):
+        with pytest.raises(ReadError, match="not part of a checkpoint"):
             OutputFolder.claim(copy, force=True)
     assert precious.read_text() == PRECIOUS and (copy / "trace.npz").is_file()
 
@@ -165,7 +165,7 @@ def test_a_pipe_in_place_of_a_file_does_not_hang(tmp_path: Path) -> None:
         out = tmp_path / name
         out.mkdir()
         os.mkfifo(out / name)
-        with pytest.raises(ReadError, match="it is a pipe or a device, not a regular file"):
+        with pytest.raises(ReadError, match="it is a pipe or a device, but must be a regular file"):
             read_summary(out)
     with pytest.raises(
         OutputNotEmptyError, match=r"summary\.json: it is a pipe or a device, which no run makes"
@@ -173,16 +173,16 @@ def test_a_pipe_in_place_of_a_file_does_not_hang(tmp_path: Path) -> None:
         OutputFolder.claim(tmp_path / "summary.json", force=True)
 
 
-def test_a_summary_that_is_a_link_to_nowhere_is_not_a_missing_one(copy: Path) -> None:
-    """A folder with a broken link was said to hold no run."""
+def test_a_summary_that_is_a_broken_link_is_not_reported_as_missing(copy: Path) -> None:
+    """A folder with a broken link was once reported to hold no run."""
     (copy / "summary.json").unlink()
     (copy / "summary.json").symlink_to("nowhere")
     for read in (read_summary, oo.compare):
-        with pytest.raises(ReadError, match=r"summary\.json: it is a symbolic link to nowhere"):
+        with pytest.raises(ReadError, match=r"summary\.json: it is a symbolic link without a target"):
             read(copy)
 
 
-def test_a_foreign_file_in_the_checkpoint_is_named(copy: Path) -> None:
+def test_an_unknown_file_in_the_checkpoint_is_named(copy: Path) -> None:
     (copy / "checkpoint").mkdir()
     (copy / "checkpoint" / "mine.txt").write_text(PRECIOUS)
     with pytest.raises(
@@ -192,20 +192,20 @@ def test_a_foreign_file_in_the_checkpoint_is_named(copy: Path) -> None:
 
 
 @pytest.mark.usefixtures("no_pictures")
-def test_files_of_a_run_that_were_edited_are_still_a_runs_to_force(copy: Path, tmp_path: Path) -> None:
+def test_force_replaces_edited_files_of_a_run(copy: Path, tmp_path: Path) -> None:
     (copy / "trace.npz").write_bytes(b"edited")
     oo.run(tmp_path / "mine.yaml", copy, force=True, quiet=True)
     assert oo.compare(copy, copy).agrees
 
 
-def test_a_figure_that_its_user_edited_is_not_replaced(copy: Path, tmp_path: Path) -> None:
-    """``--force`` removed it, although the manifest tells that the file is another."""
+def test_a_figure_edited_by_the_user_is_not_replaced(copy: Path, tmp_path: Path) -> None:
+    """``--force`` once removed it, although its checksum differs from the manifest."""
     figure = copy / "figures" / "ledger.png"
     figure.write_bytes(b"a figure with arrows")
     said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
     assert "ledger.png: it was changed since it was drawn; move it out of the folder to keep it" in said
     assert figure.read_bytes() == b"a figure with arrows"
-    assert oo.compare(copy, copy).agrees, "nothing is removed where something is refused"
+    assert oo.compare(copy, copy).agrees, "nothing may be removed after a rejection"
     with (
         OutputFolder(copy) as folder,
         pytest.raises(OutputNotEmptyError, match="was changed"),
@@ -217,14 +217,14 @@ def test_a_figure_that_its_user_edited_is_not_replaced(copy: Path, tmp_path: Pat
     assert figure.read_bytes() == b"a figure"
 
 
-def test_a_resumed_run_refuses_an_edited_figure_before_it_goes_on(copy: Path) -> None:
+def test_resuming_rejects_an_edited_figure_before_it_continues(copy: Path) -> None:
     (copy / "figures" / "ledger.png").write_bytes(b"a figure with arrows")
     with pytest.raises(OutputNotEmptyError, match=r"ledger\.png: it was changed"):
         oo.resume(copy, quiet=True)
 
 
-def test_a_figure_that_a_kill_left_beside_its_manifest_was_edited_by_nobody(copy: Path) -> None:
-    """Killed between the manifest and the new names, whose temporary files are still there."""
+def test_a_figure_left_by_a_kill_does_not_count_as_edited(copy: Path) -> None:
+    """The run was killed between writing the manifest and renaming its temporary files."""
     folder = OutputFolder(copy)
     with folder.replacing() as files:
         with files.writing("figures/ledger.png") as path:

@@ -1,4 +1,4 @@
-"""Flipped bits: 76 of 150 in a checkpoint had resumed to another trace with "certificate passed"."""
+"""Flipped bits in output files are detected; once, 76 of 150 in a checkpoint changed a certified trace."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import MANIFEST
 from onorbit_rs.output.read import SavedRun, read_summary, read_trace
 from onorbit_rs.report import write_report
-from onorbit_rs.running import read_checkpoint
 from onorbit_rs.scenario import load
+from onorbit_rs.simulation.run import read_checkpoint
 
 SEED, FLIPS = 14, 150
 
 
 def flipped(content: bytes, draw: random.Random) -> bytes:
-    """One bit is another."""
+    """Flips one bit."""
     place = draw.randrange(8 * len(content))
     changed = bytearray(content)
     changed[place // 8] ^= 1 << place % 8
@@ -41,7 +41,7 @@ def tumbling() -> dict[str, Any]:
 
 
 class _StopsAt:
-    """A progress callback that is Ctrl-C after some checkpoints."""
+    """A progress callback that raises Ctrl-C after some checkpoints."""
 
     def __init__(self, folder: Path) -> None:
         self.state = folder / "checkpoint" / "state.json"
@@ -53,14 +53,14 @@ class _StopsAt:
 
 @pytest.fixture(scope="module")
 def stopped(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a run that was stopped, with its checkpoint."""
+    """Returns the folder of a stopped run with its checkpoint."""
     out = tmp_path_factory.mktemp("flips") / "out"
     data = tumbling()
     data["simulation"]["duration"] = 40.0
     patch = pytest.MonkeyPatch()
-    patch.setattr("onorbit_rs.keeping.write_pictures", lambda *_, **__: None)
-    patch.setattr("onorbit_rs.running.progress_bar", _progress(_StopsAt(out)))
-    with pytest.raises(RunInterrupted, match="go on with: onorbit resume"):
+    patch.setattr("onorbit_rs.simulation.finish.write_pictures", lambda *_, **__: None)
+    patch.setattr("onorbit_rs.simulation.run.progress_bar", _progress(_StopsAt(out)))
+    with pytest.raises(RunInterrupted, match="continue with: onorbit resume"):
         oo.run(data, out, quiet=True, checkpoint_every=0.0)
     patch.undo()
     return out
@@ -69,7 +69,7 @@ def stopped(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def _progress(move: Any) -> Any:
     from contextlib import contextmanager
 
-    from onorbit_rs.progress import Progress
+    from onorbit_rs.common.progress import Progress
 
     @contextmanager
     def bar(*_: Any, **__: Any) -> Any:
@@ -78,8 +78,8 @@ def _progress(move: Any) -> Any:
     return bar
 
 
-def test_a_checkpoint_with_any_bit_flipped_is_refused_or_the_same(stopped: Path, tmp_path: Path) -> None:
-    from onorbit_rs.running import _digest
+def test_a_checkpoint_with_a_flipped_bit_is_rejected_or_equivalent(stopped: Path, tmp_path: Path) -> None:
+    from onorbit_rs.simulation.run import _digest
 
     out = Path(shutil.copytree(stopped, tmp_path / "out"))
     digest = _digest(load(out / "scenario.yaml"))
@@ -96,7 +96,7 @@ def test_a_checkpoint_with_any_bit_flipped_is_refused_or_the_same(stopped: Path,
         except CheckpointError as error:
             assert file.name in str(error)
             refused += 1
-        else:  # as 1e-5 for 1E-5: the same numbers
+        else:  # such as 1e-5 for 1E-5: equal numbers
             assert json.loads(read.checkpoint.state) == json.loads(whole.checkpoint.state)
             assert read.checkpoint.wall_s == whole.checkpoint.wall_s and read.rows == whole.rows
             for name, rows in whole.checkpoint.columns.items():
@@ -111,7 +111,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("recorded")
     (folder / "mine.yaml").write_text(SPIN)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("onorbit_rs.keeping.write_pictures", _write_a_recording)
+        patch.setattr("onorbit_rs.simulation.finish.write_pictures", _write_a_recording)
         assert onorbit("run", "mine.yaml", "--out", "out", cwd=folder).returncode == 0
     return folder / "out"
 
@@ -129,7 +129,7 @@ def _read_all(folder: Path) -> tuple[Any, ...]:
     return saved.summary(), saved.scenario_text(), rows, (folder / "run.rrd").read_bytes()
 
 
-def test_a_result_with_any_bit_flipped_is_refused_or_the_same(recorded: Path, tmp_path: Path) -> None:
+def test_a_result_with_a_flipped_bit_is_rejected_or_equivalent(recorded: Path, tmp_path: Path) -> None:
     out = Path(shutil.copytree(recorded, tmp_path / "out"))
     whole = _read_all(out)
     names = ("trace.npz", "summary.json", "scenario.yaml", "run.rrd", MANIFEST)
@@ -149,9 +149,7 @@ def test_a_result_with_any_bit_flipped_is_refused_or_the_same(recorded: Path, tm
 
 
 @pytest.mark.parametrize("name", ["trace.npz", "summary.json", "scenario.yaml"])
-def test_a_file_that_its_user_edited_is_named_with_the_way_out(
-    recorded: Path, tmp_path: Path, name: str
-) -> None:
+def test_a_file_edited_by_the_user_is_named_with_a_fix(recorded: Path, tmp_path: Path, name: str) -> None:
     out = Path(shutil.copytree(recorded, tmp_path / "out"))
     file = out / name
     for content, why in (
@@ -172,7 +170,7 @@ def test_a_file_that_its_user_edited_is_named_with_the_way_out(
         read_trace(out) if name == "trace.npz" else SavedRun(out).check(name)
 
 
-def test_a_recording_that_was_changed_is_not_opened(recorded: Path, tmp_path: Path) -> None:
+def test_a_changed_recording_is_not_opened(recorded: Path, tmp_path: Path) -> None:
     out = Path(shutil.copytree(recorded, tmp_path / "out"))
     (out / "run.rrd").write_bytes(b"another")
     assert onorbit("show", out, "--no-viewer").returncode == 0
@@ -185,7 +183,7 @@ def test_a_folder_of_an_earlier_version_is_read_with_a_warning(
 ) -> None:
     out = Path(shutil.copytree(recorded, tmp_path / "out"))
     (out / MANIFEST).unlink()
-    with pytest.warns(UserWarning, match="has no manifest.json, as folders of earlier versions"):
+    with pytest.warns(UserWarning, match="has no manifest.json, because it was written by an earlier"):
         assert read_summary(out) == read_summary(recorded)
     done = onorbit("show", out, "--no-viewer")
     assert done.returncode == 0 and len(done.stderr.splitlines()) == 1
@@ -197,7 +195,7 @@ def test_a_folder_of_an_earlier_version_is_read_with_a_warning(
     assert "manifest.json does not list it" in refusal("run", out / "scenario.yaml", "--out", out, "--force")
 
 
-def test_a_checkpoint_of_an_earlier_version_is_refused(stopped: Path, tmp_path: Path) -> None:
+def test_a_checkpoint_of_an_earlier_version_is_rejected(stopped: Path, tmp_path: Path) -> None:
     out = Path(shutil.copytree(stopped, tmp_path / "out"))
     file = out / "checkpoint" / "state.json"
     record = json.loads(file.read_text())

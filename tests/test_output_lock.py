@@ -1,4 +1,4 @@
-"""One writer per folder: two at once left the scenario of one with the numbers of the other."""
+"""Locks permit one writer per folder; two writers once mixed the files of two runs."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ import pytest
 from commands import SPIN, refusal
 
 import onorbit_rs as oo
+from onorbit_rs.common.files import exists
 from onorbit_rs.exceptions import NotFoundError, OutputFolderError, OutputInUseError
-from onorbit_rs.files import exists
 from onorbit_rs.output import CheckpointWriter, lock
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.lock import LOCK, FolderLock, owner_of
@@ -37,7 +37,7 @@ time.sleep(60)
 
 WAITS = """
 import pathlib, sys, time
-from onorbit_rs import keeping
+from onorbit_rs.simulation import finish
 from onorbit_rs.cli import main
 
 def wait(*_, **__):
@@ -45,15 +45,15 @@ def wait(*_, **__):
     while not pathlib.Path("go").exists() and time.monotonic() < deadline:
         time.sleep(0.02)
 
-keeping.write_pictures = wait
+finish.write_pictures = wait
 main(sys.argv[1:])
 """
-"""A command that holds its folder, with the numbers in it, until a file is there."""
+"""A command that keeps its folder locked, after writing the trace, until a file exists."""
 
 
 @pytest.fixture
 def holder(tmp_path: Path) -> Any:
-    """Another process that writes the folder."""
+    """Starts another process that writes the folder."""
     process = subprocess.Popen(
         [sys.executable, "-c", HOLDS, str(tmp_path / "out")], stdout=subprocess.PIPE, text=True
     )
@@ -63,20 +63,18 @@ def holder(tmp_path: Path) -> Any:
     process.communicate()
 
 
-def test_a_second_command_is_told_who_writes_until_that_process_is_killed(
-    tmp_path: Path, holder: Any
-) -> None:
+def test_a_second_command_names_the_writing_process_until_it_is_killed(tmp_path: Path, holder: Any) -> None:
     (tmp_path / "mine.yaml").write_text(SPIN)
     for force in ((), ("--force",)):
         said = refusal("run", tmp_path / "mine.yaml", "--out", tmp_path / "out", *force)
-        assert f"out is in use: process {holder.pid} on " in said and "(-c " in said and "since 20" in said
+        assert f"out is in use by process {holder.pid} on " in said and "(-c " in said and "since 20" in said
     with pytest.raises(OutputInUseError) as caught:
         OutputFolder.claim(tmp_path / "out")
     assert isinstance(caught.value, BlockingIOError) and caught.value.pid == holder.pid
     assert caught.value.command.startswith("-c ") and caught.value.since.startswith("20")
     with pytest.raises(NotFoundError, match=rf"process {holder.pid} on .* is writing it"):
         oo.compare(tmp_path / "out")
-    out = tmp_path / "out"  # the lock ends with its process, and its half-written files go
+    out = tmp_path / "out"  # the lock ends with its process, and partial files are removed
     assert owner_of(out) is not None and list(out.glob(".partial-*"))
     holder.kill()
     holder.wait()
@@ -86,8 +84,8 @@ def test_a_second_command_is_told_who_writes_until_that_process_is_killed(
     assert not list(out.iterdir())
 
 
-def test_two_runs_at_once_leave_the_first_one_whole(tmp_path: Path) -> None:
-    """With the numbers of one in the folder of the other, both had ended with exit code 0."""
+def test_two_simultaneous_runs_leave_the_first_one_complete(tmp_path: Path) -> None:
+    """Once both ended with exit code 0, with the numbers of one in the folder of the other."""
     for name, rate in (("a", 0.1), ("b", 0.7)):
         text = SPIN.replace("0.1, 0.2, 0.3", f"0, 0, {rate}")
         (tmp_path / f"{name}.yaml").write_text(text)
@@ -103,7 +101,7 @@ def test_two_runs_at_once_leave_the_first_one_whole(tmp_path: Path) -> None:
             time.sleep(0.05)
         with started("b", "--force") as second:
             said = second.communicate(timeout=60)[1]
-        assert second.returncode == 2 and f"out is in use: process {first.pid} on " in said
+        assert second.returncode == 2 and f"out is in use by process {first.pid} on " in said
         (tmp_path / "go").touch()
         said = first.communicate(timeout=60)[1]
     assert (first.returncode, said) == (0, "")
@@ -111,7 +109,7 @@ def test_two_runs_at_once_leave_the_first_one_whole(tmp_path: Path) -> None:
     assert oo.compare(tmp_path / "out", again, tolerance=1e-300).agrees
 
 
-def test_two_threads_exclude_each_other_as_two_processes_do(tmp_path: Path) -> None:
+def test_two_threads_exclude_each_other_like_two_processes(tmp_path: Path) -> None:
     results: list[str] = []
     with OutputFolder.claim(tmp_path):
 
@@ -130,11 +128,11 @@ def test_two_threads_exclude_each_other_as_two_processes_do(tmp_path: Path) -> N
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
 def test_a_forked_child_does_not_keep_the_lock(tmp_path: Path) -> None:
-    """A pool of workers that outlives its parent held the folder."""
+    """A pool of workers that outlived its parent once kept the lock."""
     held = FolderLock(tmp_path)
     child = os.fork()
     if child == 0:
-        held.release()  # what it inherited is not its own
+        held.release()  # it does not own the inherited lock
         time.sleep(30)
         os._exit(0)
     try:
@@ -161,7 +159,7 @@ def _race(folder: str, counter: Any, wins: Any) -> None:
         taken.release()
 
 
-def test_a_lock_whose_file_is_removed_and_made_anew_has_one_owner(tmp_path: Path) -> None:
+def test_a_lock_whose_file_is_removed_and_recreated_has_one_owner(tmp_path: Path) -> None:
     context = multiprocessing.get_context("spawn")
     counter, wins = context.Value("i", 0), context.Value("i", 0)
     workers = [context.Process(target=_race, args=(str(tmp_path), counter, wins)) for _ in range(2)]
@@ -170,11 +168,11 @@ def test_a_lock_whose_file_is_removed_and_made_anew_has_one_owner(tmp_path: Path
     for worker in workers:
         worker.join(60)
         assert worker.exitcode == 0
-    assert counter.value == 0 and wins.value >= 15, "each time a lock was taken, nobody else had one"
+    assert counter.value == 0 and wins.value >= 15, "two owners held the lock at the same time"
     assert not list(tmp_path.iterdir())
 
 
-def test_a_planted_lock_is_not_written_through(tmp_path: Path) -> None:
+def test_a_lock_that_is_a_symbolic_link_is_not_written_through(tmp_path: Path) -> None:
     precious = tmp_path / "precious.txt"
     precious.write_text("precious")
     for plant in ("symlink_to", "hardlink_to"):
@@ -186,7 +184,7 @@ def test_a_planted_lock_is_not_written_through(tmp_path: Path) -> None:
         assert precious.read_text() == "precious"
 
 
-def test_what_a_lock_says_is_escaped_and_need_not_be_ours(tmp_path: Path) -> None:
+def test_the_text_of_an_unknown_lock_is_escaped(tmp_path: Path) -> None:
     for said in ("", "nonsense", "[" * 10_000, json.dumps({"pid": "x"})):
         (tmp_path / LOCK).write_text(said)
         OutputFolder.claim(tmp_path).close()
@@ -206,8 +204,8 @@ def test_a_folder_that_cannot_be_locked_is_written_with_a_warning(
         OutputFolder.claim(tmp_path).close()
 
 
-def test_a_lock_whose_file_was_removed_by_hand_is_made_anew(tmp_path: Path) -> None:
-    """A second command could start, and both wrote the folder."""
+def test_a_lock_whose_file_was_removed_by_hand_is_recreated(tmp_path: Path) -> None:
+    """A second command could once start, and both wrote the folder."""
     with OutputFolder.claim(tmp_path) as folder:
         (tmp_path / LOCK).unlink()
         with (
@@ -223,7 +221,7 @@ def test_a_lock_whose_file_was_removed_by_hand_is_made_anew(tmp_path: Path) -> N
     assert not (tmp_path / LOCK).exists()
 
 
-def test_who_lost_the_folder_to_another_process_writes_nothing_there(tmp_path: Path) -> None:
+def test_a_process_that_lost_the_lock_writes_nothing(tmp_path: Path) -> None:
     with OutputFolder.claim(tmp_path) as first:
         with first.writing("scenario.yaml") as path:
             path.write_text("first")
@@ -231,9 +229,9 @@ def test_who_lost_the_folder_to_another_process_writes_nothing_there(tmp_path: P
         with OutputFolder.claim(tmp_path, force=True) as second:
             with second.writing("scenario.yaml") as path:
                 path.write_text("the second")
-            _writes_nothing(first, "is in use: process")
+            _writes_nothing(first, "is in use by process")
         assert not (tmp_path / LOCK).exists()
-        _writes_nothing(first, "holds files of another run now")
+        _writes_nothing(first, "now contains files of another run")
     assert (tmp_path / "scenario.yaml").read_text() == "the second"
     assert {file.name for file in tmp_path.iterdir()} == {"scenario.yaml", "manifest.json"}
 
@@ -250,10 +248,10 @@ def _writes_nothing(folder: OutputFolder, why: str) -> None:
     folder.discard_checkpoint()
 
 
-def test_a_run_that_lost_its_folder_stops_at_the_next_checkpoint(
+def test_a_run_that_lost_the_lock_stops_at_the_next_checkpoint(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It would have computed to its end what it cannot keep."""
+    """It could not save its results at the end."""
     others: list[OutputFolder] = []
     write = CheckpointWriter._write
 
@@ -269,7 +267,7 @@ def test_a_run_that_lost_its_folder_stops_at_the_next_checkpoint(
         "robot": {"rigid_body": body},
         "simulation": {"duration": 1e5, "time_step": 1e-3, "record_every": 10**6},
     }
-    with pytest.raises(OutputInUseError, match="is in use: process"):
+    with pytest.raises(OutputInUseError, match="is in use by process"):
         oo.run(spin, tmp_path, quiet=True, checkpoint_every=0.0)
     others[0].close()
     assert not list(tmp_path.iterdir())

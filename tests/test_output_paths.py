@@ -1,4 +1,4 @@
-"""Every file of a scenario is named with its whole path in what a run leaves behind."""
+"""The resolved scenario of a run contains the absolute paths of all files."""
 
 from __future__ import annotations
 
@@ -53,14 +53,14 @@ def folder(tmp_path: Path) -> Path:
     return here
 
 
-def test_a_resolved_scenario_with_tables_runs_from_elsewhere(folder: Path, tmp_path: Path) -> None:
+def test_a_resolved_scenario_with_tables_runs_from_another_folder(folder: Path, tmp_path: Path) -> None:
     first = oo.run(folder / "mine.yaml", out=tmp_path / "out", quiet=True)
     again = oo.run(tmp_path / "out" / "scenario.yaml", quiet=True)
     assert again.trace.v.tobytes() == first.trace.v.tobytes()
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_a_change_of_any_file_is_a_change_of_the_scenario(folder: Path, name: str) -> None:
+def test_a_changed_file_changes_the_digest_of_the_scenario(folder: Path, name: str) -> None:
     def digest() -> str:
         return scenario_digest(with_absolute_paths(load(folder / "mine.yaml")))
 
@@ -70,7 +70,7 @@ def test_a_change_of_any_file_is_a_change_of_the_scenario(folder: Path, name: st
     assert digest() != before
 
 
-def test_what_is_no_file_stays_and_what_is_one_becomes_whole(folder: Path) -> None:
+def test_only_file_names_become_absolute_paths(folder: Path) -> None:
     data = json.loads((folder / "mine.yaml").read_text())
     data["environment"][0]["model"] = "egm2008"
     data["earth"] = {"ephemeris": "de440.bsp"}

@@ -7,14 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import onorbit_rs as oo
-from onorbit_rs.rotations import (
+from onorbit_rs.common.rotations import (
     angle_between,
     has_local_frame,
     local_orbital_axes,
     matrix_from_quaternion,
     quaternion_from_matrix,
     quaternion_from_roll_pitch_yaw,
-    reference_motion_of,
     roll_pitch_yaw,
 )
 from onorbit_rs.scenario import Scenario, load
@@ -27,7 +26,7 @@ quaternions = (
     .map(lambda quat: quat / np.linalg.norm(quat))
 )
 ROUNDING = 1e-14
-"""A few dozen operations on numbers of order one."""
+"""Rounding of a few dozen operations on numbers of order one."""
 
 
 def test_quarter_turn_about_z_takes_x_to_y() -> None:
@@ -35,7 +34,7 @@ def test_quarter_turn_about_z_takes_x_to_y() -> None:
     np.testing.assert_allclose(matrix_from_quaternion(quat) @ [1, 0, 0], [0, 1, 0], atol=ROUNDING)
 
 
-def test_roll_pitch_yaw_turn_about_fixed_axes_in_that_order() -> None:
+def test_roll_pitch_yaw_rotate_about_fixed_axes_in_this_order() -> None:
     roll, pitch, yaw = (
         matrix_from_quaternion(quaternion_from_roll_pitch_yaw(angles)) for angles in 0.3 * np.eye(3)
     )
@@ -44,7 +43,7 @@ def test_roll_pitch_yaw_turn_about_fixed_axes_in_that_order() -> None:
 
 
 @given(quaternions)
-def test_matrix_and_quaternion_undo_each_other(quat: np.ndarray) -> None:
+def test_matrix_and_quaternion_are_inverse_conversions(quat: np.ndarray) -> None:
     rotation = matrix_from_quaternion(quat)
     np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=ROUNDING)
     np.testing.assert_allclose(
@@ -68,20 +67,25 @@ def test_angle_between_is_exact_even_when_small(angle: float, axis: np.ndarray) 
     assert abs(angle_between(-turned, identity) - angle) <= 4e-16 * max(angle, 1.0) * 4
 
 
-def test_the_reference_is_the_orbit_whatever_it_is_integrated_about() -> None:
+def test_the_recorded_reference_is_the_orbit_after_rereferencing() -> None:
     data = load("hill_relative").resolved() | {"controller": None, "reference": None}
     data["initial"] |= {"linear_velocity": [0.0, 40.0, 0.0]}
     data["simulation"] |= {"duration": 200.0, "rereference_beyond": 2000.0}
     built = build(Scenario(**data))
     trace = built.simulation.run(200.0)
     assert len(trace.rereferenced) == 1 and built.orbit is not None
-    r, v = reference_motion_of(trace)
     position, velocity = built.orbit.state(trace.time)
-    np.testing.assert_allclose(r, position, rtol=0, atol=4e-9)  # four units in the last place of 7000 km
-    np.testing.assert_allclose(v, velocity, rtol=0, atol=4e-12)
+    np.testing.assert_array_equal(trace.reference_position_eci, position)
+    np.testing.assert_array_equal(trace.reference_velocity_eci, velocity)
+    # r = r_W + p,  ṙ = ṙ_W + R v_B
+    rot_wb = matrix_from_quaternion(trace.q[:, 3:7])
+    np.testing.assert_allclose(trace.position_eci, position + trace.q[:, :3], rtol=0, atol=4e-9)
+    np.testing.assert_allclose(
+        trace.velocity_eci, velocity + np.einsum("tij,tj->ti", rot_wb, trace.v[:, :3]), rtol=0, atol=4e-12
+    )
 
 
-def test_a_reference_that_stands_has_no_local_frame() -> None:
+def test_a_reference_at_rest_has_no_local_frame() -> None:
     model = oo.Model.rigid_body(10.0, np.eye(3))
     orbit = oo.FixedFrame(position=[7e6, 0.0, 0.0])
     q = model.neutral()

@@ -1,4 +1,4 @@
-"""A whole run: what it returns, what it writes, and that what it wrote runs again."""
+"""A whole run: its return value, its files, and running its resolved scenario again."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs import keeping
 from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError, RunInterrupted, SimulationError
 from onorbit_rs.output.summary import summarize
 from onorbit_rs.scenario import load
+from onorbit_rs.simulation import finish
 
 
 def short_reach(**simulation: Any) -> dict[str, Any]:
@@ -30,7 +30,7 @@ def reach(tmp_path_factory: pytest.TempPathFactory) -> oo.Run:
     return oo.run(short_reach(), out=tmp_path_factory.mktemp("run") / "out", quiet=True)
 
 
-def test_the_folder_holds_what_the_design_names(reach: oo.Run) -> None:
+def test_the_folder_holds_the_documented_files(reach: oo.Run) -> None:
     assert reach.out is not None
     names = {str(file.relative_to(reach.out)) for file in reach.out.rglob("*") if file.is_file()}
     assert {"summary.json", "trace.npz", "run.rrd", "scenario.yaml"} <= names
@@ -42,13 +42,13 @@ def test_the_folder_holds_what_the_design_names(reach: oo.Run) -> None:
 
 
 def test_every_status_that_is_written_is_documented() -> None:
-    written = set(re.findall(r'"(\w+)"', "".join(re.findall(r"_write_rows\(.*", inspect.getsource(keeping)))))
+    written = set(re.findall(r'"(\w+)"', "".join(re.findall(r"_write_rows\(.*", inspect.getsource(finish)))))
     assert written >= {"failed", "diverged", "interrupted"}
     for status in written | {"complete"}:
         assert f"``{status}``" in str(summarize.__doc__), status
 
 
-def test_the_trace_file_is_the_trace(reach: oo.Run) -> None:
+def test_the_trace_file_equals_the_trace(reach: oo.Run) -> None:
     assert reach.out is not None
     with np.load(reach.out / "trace.npz") as stored:
         assert set(stored.files) == set(reach.trace.columns())
@@ -56,7 +56,7 @@ def test_the_trace_file_is_the_trace(reach: oo.Run) -> None:
             np.testing.assert_array_equal(stored[name], getattr(reach.trace, name))
 
 
-def test_the_summary_is_flat_and_says_what_the_design_names(reach: oo.Run) -> None:
+def test_the_summary_is_flat_and_has_the_documented_entries(reach: oo.Run) -> None:
     assert reach.out is not None
     summary = json.loads((reach.out / "summary.json").read_text())
     assert summary == reach.summary
@@ -74,14 +74,14 @@ def test_the_summary_is_flat_and_says_what_the_design_names(reach: oo.Run) -> No
     assert summary["tracking_position_error_max_m"] == error
 
 
-def test_the_resolved_scenario_runs_again_to_the_same_bits(reach: oo.Run) -> None:
+def test_the_resolved_scenario_gives_the_same_bits(reach: oo.Run) -> None:
     assert reach.out is not None
     again = oo.run(reach.out / "scenario.yaml", quiet=True)
     np.testing.assert_array_equal(again.trace.q, reach.trace.q)
     np.testing.assert_array_equal(again.trace.tau, reach.trace.tau)
 
 
-def test_a_robot_beside_the_yaml_runs_and_its_resolved_scenario_runs_from_elsewhere(tmp_path: Path) -> None:
+def test_a_robot_file_beside_the_yaml_is_found_from_its_resolved_scenario(tmp_path: Path) -> None:
     (tmp_path / "here").mkdir()
     urdf = Path(oo.robots.path("humanoid_torso")).read_text()
     (tmp_path / "here" / "mine.urdf").write_text(urdf)
@@ -99,13 +99,15 @@ def test_without_out_nothing_is_written(tmp_path: Path, monkeypatch: pytest.Monk
     assert result.out is None and not list(tmp_path.iterdir())
 
 
-def test_a_folder_in_use_is_refused_before_the_run(tmp_path: Path) -> None:
+def test_a_folder_in_use_is_rejected_before_the_run(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("precious")
     with pytest.raises(OutputNotEmptyError):
-        oo.run(short_reach(duration=1e5, record_every=1000), out=tmp_path, quiet=True)  # would take minutes
+        oo.run(
+            short_reach(duration=1e5, record_every=1000), out=tmp_path, quiet=True
+        )  # the run would take minutes
 
 
-def test_a_wrong_scenario_makes_no_folder(tmp_path: Path) -> None:
+def test_an_invalid_scenario_creates_no_folder(tmp_path: Path) -> None:
     data = short_reach() | {"tool": "toll"}
     with pytest.raises(oo.exceptions.FrameError, match="tool"):
         oo.run(data, out=tmp_path / "out", quiet=True)
@@ -113,7 +115,7 @@ def test_a_wrong_scenario_makes_no_folder(tmp_path: Path) -> None:
 
 
 def diverging() -> dict[str, Any]:
-    """A wrench that no body survives: the state leaves the range of floats within a few steps."""
+    """Returns a scenario with an extreme wrench that makes the state overflow within a few steps."""
     data = load("free_tumble").resolved()
     data["environment"] = [
         {"kind": "body_wrench", "body": "torso", "force": [0, 0, 0], "torque": [1e9, 1e9, 0]}
@@ -147,7 +149,7 @@ def test_an_interrupted_run_keeps_its_trace(tmp_path: Path) -> None:
 
 
 def raising(tmp_path: Path, what: str, when: str = "t > 0.005") -> dict[str, Any]:
-    """A scenario whose controller raises at some time."""
+    """Returns a scenario whose controller raises at a given time."""
     (tmp_path / "mine.py").write_text(f"""
 import pathlib
 import numpy as np
@@ -162,8 +164,8 @@ class Raises(onorbit_rs.Controller):
     return short_reach() | {"controller": control}
 
 
-def test_an_error_before_the_first_row_is_itself(tmp_path: Path) -> None:
-    """Of the run alone: the step that is tried before the folder is made goes well."""
+def test_an_error_before_the_first_row_is_re_raised_unchanged(tmp_path: Path) -> None:
+    """The error occurs in the run, not in the trial step before the folder is created."""
     begun = f"pathlib.Path({str(tmp_path / 'out')!r}).exists()"
     with pytest.raises(RuntimeError, match="mine"):
         oo.run(raising(tmp_path, "RuntimeError('mine')", begun), out=tmp_path / "out", quiet=True)
@@ -171,13 +173,13 @@ def test_an_error_before_the_first_row_is_itself(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("end", ["RuntimeError", "RunInterrupted", "SimulationError"])
-def test_a_full_disk_takes_the_place_of_no_other_error(
+def test_a_full_disk_does_not_hide_another_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end: str
 ) -> None:
     def full(files: Any, trace: Any) -> None:
         raise OutputFolderError("cannot write trace.npz: No space left on device")
 
-    monkeypatch.setattr(keeping, "write_trace", full)
+    monkeypatch.setattr(finish, "write_trace", full)
     what = {"RuntimeError": "RuntimeError('mine')", "RunInterrupted": "KeyboardInterrupt"}.get(end)
     scenario = diverging() if what is None else raising(tmp_path, what)
     with pytest.raises(BaseException) as caught:
@@ -185,5 +187,5 @@ def test_a_full_disk_takes_the_place_of_no_other_error(
     own = caught.value
     assert type(own).__name__ == end
     notes = getattr(own, "__notes__", [])
-    assert "be written: cannot write trace.npz: No space left" in "; ".join([str(own), *notes])
+    assert "cannot write trace.npz: No space left" in "; ".join([str(own), *notes])
     assert "rows so far are in" not in str(notes) and "so far is in" not in str(own)

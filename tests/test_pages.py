@@ -1,4 +1,4 @@
-"""What the documentation shows works: files, Python, commands, scenarios, scripts, names, ways."""
+"""Examples in the documentation work: files, Python, commands, scenarios, scripts, names, links."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ import yaml
 
 import onorbit_rs as oo
 from onorbit_rs import _core, cli, figures
+from onorbit_rs.scenario.control.control import Control
 from onorbit_rs.scenario.part import Part
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -31,7 +32,7 @@ pages = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relativ
 
 
 def command(line: str) -> None:
-    """``onorbit …`` as a reader types it; it must not fail."""
+    """Runs ``onorbit …`` as typed by a reader; it must not fail."""
     with pytest.raises(SystemExit) as stop:
         cli.main(shlex.split(line, comments=True)[1:])
     assert stop.value.code in (0, None), line
@@ -39,7 +40,7 @@ def command(line: str) -> None:
 
 @pages
 def test_a_page_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """From top to bottom in one folder: a block with a title is a file, Python goes on where it stopped."""
+    """Runs a page from top to bottom in one folder; titled blocks are files, Python blocks continue."""
     pytest.importorskip(NEEDS.get(page.name, "numpy"), reason="the oracle is in the test extra")
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
@@ -53,14 +54,14 @@ def test_a_page_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
                 command(line)
 
 
-def test_a_command_that_fails_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failing_command_is_detected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(AssertionError):
         command("onorbit check nowhere.yaml")
 
 
 @pages
-def test_pieces_of_scenarios_fit(page: Path) -> None:
+def test_scenario_fragments_are_valid(page: Path) -> None:
     whole = {"robot": "humanoid_dual_arm", "orbit": {"kind": "kepler", "semi_major_axis": 7e6}}
     for language, title, body in FENCE.findall(page.read_text()):
         if language == "yaml" and not title:
@@ -96,15 +97,15 @@ ROOTS: dict[str, Any] = {
 
 
 def missing(text: str, roots: dict[str, Any]) -> list[str]:
-    """Dotted names in code that begin with one of the roots and do not exist."""
+    """Returns dotted names in code that begin with one of the roots and do not exist."""
     code = " ".join(re.findall(r"`([^`\n]+)`", text))
     return sorted({name for name in re.findall(r"[\w.]+\w", code) if not exists(name, roots)})
 
 
 def exists(name: str, roots: dict[str, Any]) -> bool:
-    """Whether it begins otherwise, is a file, or leads to something."""
+    """Returns true if a name exists, is a file or has another root."""
     root, *parts = name.split(".")
-    if root not in roots or parts[-1:] in (["npz"], ["gfc"]):
+    if root not in roots or parts[-1:] in (["npz"], ["gfc"], ["rs"]):
         return True
     thing = roots[root]
     for part in parts:
@@ -115,13 +116,13 @@ def exists(name: str, roots: dict[str, Any]) -> bool:
 
 
 def in_text(page: Path) -> str:
-    """Without blocks, which run."""
+    """Returns a page without its code blocks, which are run."""
     return re.sub(r"^```.*?^```", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
 
 
 @pages
 def test_names_in_the_text_exist(page: Path) -> None:
-    theirs = r"`model\.(createData\(\)|gravity\.setZero\(\)|armature)`"  # Pinocchio's own
+    theirs = r"`model\.(createData\(\)|gravity\.setZero\(\)|armature)`"  # of Pinocchio
     assert missing(re.sub(theirs, "", in_text(page)), ROOTS) == []
 
 
@@ -137,14 +138,14 @@ def test_names_of_mujoco_exist() -> None:
     assert missing(in_text(DOCS / "coming_from" / "mujoco.md"), roots) == []
 
 
-def test_a_name_that_does_not_exist_is_seen() -> None:
+def test_a_name_that_does_not_exist_is_detected() -> None:
     assert missing("`oo.Kepler.elements()` and `model.nv`, `oo.layouts.to_mujoco`", ROOTS) == [
         "oo.Kepler.elements"
     ]
 
 
 def listed(entry: Any) -> list[str]:
-    """Pages of a part of the navigation."""
+    """Yields the pages of a section of the navigation."""
     if isinstance(entry, str):
         return [entry]
     return [page for part in (entry.values() if isinstance(entry, dict) else entry) for page in listed(part)]
@@ -155,7 +156,7 @@ def test_every_page_is_in_the_navigation() -> None:
     assert sorted(listed(nav)) == sorted(str(page.relative_to(DOCS)) for page in DOCS.rglob("*.md"))
 
 
-def test_every_public_name_has_its_place_in_the_api() -> None:
+def test_every_public_name_is_in_the_api_pages() -> None:
     text = "\n".join(page.read_text() for page in (DOCS / "api").glob("*.md"))
     shown = set(re.findall(r"^::: onorbit_rs\.(?!figures)([\w.]+)$", text, re.MULTILINE))
     relative = {f"_core.{name}" for name in oo.relative.__all__}
@@ -165,7 +166,7 @@ def test_every_public_name_has_its_place_in_the_api() -> None:
     assert shown == wanted
 
 
-def test_every_figure_has_its_place_in_the_api() -> None:
+def test_every_figure_is_in_the_api_pages() -> None:
     shown = set(
         re.findall(r"^::: onorbit_rs\.figures.*?(\w+)$", (DOCS / "api" / "figures.md").read_text(), re.M)
     )
@@ -175,34 +176,97 @@ def test_every_figure_has_its_place_in_the_api() -> None:
 
 
 def kinds(part: type[Part]) -> set[type[Part]]:
-    """Classes of a scenario that a ``kind`` chooses."""
+    """Yields the classes of a scenario that a ``kind`` selects."""
     below = {kind for child in part.__subclasses__() for kind in kinds(child)}
     return below | ({part} if "kind" in part.model_fields else set())
 
 
-def test_every_kind_of_a_scenario_has_its_keys_told() -> None:
-    told = re.findall(r"^::keys ([\w.]+)$", (DOCS / "scenario.md").read_text(), re.MULTILINE)
-    for path in told:
+def test_the_keys_of_every_kind_of_a_scenario_are_documented() -> None:
+    documented = re.findall(r"^::keys ([\w.]+)$", (DOCS / "scenario.md").read_text(), re.MULTILINE)
+    for path in documented:
         module, name = path.rsplit(".", 1)
         assert hasattr(importlib.import_module(module), name), path
     wanted = {f"{kind.__module__}.{kind.__name__}" for kind in kinds(Part)}
-    combined = {
-        name for name in wanted if name.startswith("onorbit_rs.scenario.controls.")
-    }  # a law and a group
+    # an entry of 'controllers' has the keys of its law and those of TaskControl or JointControl
+    combined = {f"{kind.__module__}.{kind.__name__}" for kind in kinds(Control)}
     assert len(wanted - combined) > 20
-    assert wanted - combined <= set(told)
+    assert wanted - combined <= set(documented)
 
 
 @pages
-def test_links_to_files_lead_somewhere(page: Path) -> None:
+def test_links_to_files_are_valid(page: Path) -> None:
     for target in re.findall(r"\]\((?!https?:)([^)#\s]+)", in_text(page)):
         assert (page.parent / target).exists(), target
 
 
+def tracked() -> list[str]:
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
+    return listed.stdout.splitlines()
+
+
+def files_not_found(text: str, files: list[str]) -> list[str]:
+    """Returns the source files named in a page, by their name or the end of their path, that do not exist."""
+    names = re.findall(r"`((?:[\w.-]+/)*[\w-]+\.(?:rs|pyi?))`", text)
+    return [name for name in names if not any(f"/{file}".endswith(f"/{name}") for file in files)]
+
+
+@pages
+def test_source_files_named_in_the_text_exist(page: Path) -> None:
+    examples = set(re.findall(r'title="(.+?)"', page.read_text()))
+    assert set(files_not_found(in_text(page), tracked())) <= examples
+
+
+def test_a_source_file_that_does_not_exist_is_detected() -> None:
+    text = "`model/mod.rs`, `crates/py/src/model.rs` and `lib.rs`"
+    assert files_not_found(text, ["crates/py/src/model/mod.rs", "lib.rs"]) == ["crates/py/src/model.rs"]
+
+
+def folders_of_table(text: str, responsibility: str) -> set[str]:
+    """Returns the folders in the table of the design page that has this entry in its second column."""
+    (table,) = [table for table in re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE) if responsibility in table]
+    return {name for line in table.splitlines()[2:] for name in re.findall(r"`([\w/]+)`", line.split("|")[1])}
+
+
+@pytest.mark.parametrize(
+    ("entry", "folder"),
+    [
+        ("vectors, rotations, spatial inertias", "crates/core/src"),
+        ("reads and validates YAML", "python/onorbit_rs"),
+    ],
+)
+def test_the_design_page_lists_the_folders(entry: str, folder: str) -> None:
+    found = {path.name for path in (ROOT / folder).iterdir() if path.is_dir() and path.name != "__pycache__"}
+    assert folders_of_table((DOCS / "design.md").read_text(), entry) == found
+
+
+def test_the_folders_of_the_bindings_are_those_of_the_engine() -> None:
+    found = {path.name for path in (ROOT / "crates" / "py" / "src").iterdir() if path.is_dir()}
+    engine = {path.name for path in (ROOT / "crates" / "core" / "src").iterdir() if path.is_dir()}
+    assert found - engine == {"errors"}
+
+
+def test_the_links_of_the_glossary_are_the_files_that_they_name() -> None:
+    links = re.findall(r"\[`([\w/]+\.rs)`\]\((.+?)\)", (DOCS / "glossary.md").read_text())
+    assert len(links) > 40
+    for name, target in links:
+        assert target == f"../crates/core/src/{name}"
+
+
 def test_the_api_shows_no_helpers_of_scenarios() -> None:
-    """What a page lists of a class by name is there; a new key of a scenario is listed too."""
+    """Members that a page lists exist, and all keys of scenarios are listed."""
     text = (DOCS / "api" / "scenarios.md").read_text()
     listed = re.findall(r"^::: onorbit_rs\.(\w+)\n    options:\n      members: \[(.*)\]$", text, re.MULTILINE)
     members = {name: set(found.split(", ")) for name, found in listed}
     assert members["Scenario"] == {*oo.Scenario.model_fields, "file", "resolved"}
-    assert members["plants"] == {"Mujoco"}
+    assert members["engines"] == {"Mujoco"}
+
+
+def test_the_tests_named_on_the_verification_page_exist() -> None:
+    text = (DOCS / "verification.md").read_text()
+    (table,) = re.findall(r"^\| case \|.*\| test \|\n\|[-|]+\|\n((?:\|.*\n)+)", text, re.MULTILINE)
+    cells = [line.rsplit("|", 2)[1] for line in table.splitlines()]
+    names = {name for cell in cells for name in re.findall(r"`([\w/]+)`", cell)} - {"validate"}
+    assert len(names) > 10
+    for name in names:
+        files = (ROOT / "tests" / f"{name}.py", ROOT / "crates" / "core" / "tests" / f"{name}.rs")
+        assert any(file.is_file() for file in files), name

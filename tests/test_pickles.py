@@ -1,4 +1,4 @@
-"""Robots, effects, air and surfaces come back from a pickle: multiprocessing hands them to its workers."""
+"""Pickling of robots, effects, atmospheres and surfaces, as required by multiprocessing."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def back(thing: Any) -> Any:
 
 
 @pytest.mark.parametrize("name", EFFECTS)
-def test_an_effect_acts_as_before(name: str) -> None:
+def test_a_pickled_effect_acts_as_before(name: str) -> None:
     robot = oo.Model.rigid_body(10.0, np.diag([1.0, 2.0, 2.5]))
     orbit = oo.Kepler(semi_major_axis=6.7e6, inclination=0.9, mu=3.986004415e14)
     v = np.array([0, 0, 0, 0.01, 0.02, 0.03])
@@ -65,18 +65,18 @@ def test_an_effect_acts_as_before(name: str) -> None:
         AIR,
     ],
 )
-def test_air_is_as_dense_as_before(air: oo.Atmosphere) -> None:
+def test_a_pickled_atmosphere_has_the_same_density(air: oo.Atmosphere) -> None:
     density = air.density(4.2e5, 0.3, 0.4, 100.0, earth=EARTH)
     assert back(air).density(4.2e5, 0.3, 0.4, 100.0, earth=EARTH) == density > 0
 
 
-def test_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pickled_robots_are_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = """<robot name="one"><link name="base"><inertial><mass value="3"/>
     <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"""
     (tmp_path / "one.urdf").write_text(text)
     monkeypatch.chdir(tmp_path)
     file = oo.Model.from_urdf("one.urdf")
-    monkeypatch.chdir("/")  # a worker may run elsewhere
+    monkeypatch.chdir("/")  # a worker may have another working directory
     torso = oo.robots.load("humanoid_torso")
     for model in (file, oo.Model.from_urdf_string(text), torso, oo.Model.rigid_body(2.0, np.eye(3))):
         again = back(model)
@@ -87,22 +87,22 @@ def test_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         pickle.dumps(built)
 
 
-def test_a_robot_does_not_come_back_as_another(tmp_path: Path) -> None:
+def test_a_robot_whose_file_changed_is_not_unpickled(tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     file.write_text(oo.robots.path("humanoid_torso").read_text())
     model = oo.Model.from_urdf(file)
     sent = pickle.dumps(model)
-    file.write_text(file.read_text().replace('rgba="0.', 'rgba="0.1'))  # colours are no other robot
+    file.write_text(file.read_text().replace('rgba="0.', 'rgba="0.1'))  # colours do not change the robot
     pickle.loads(sent)
     file.write_text(file.read_text().replace('<mass value="', '<mass value="1'))
-    with pytest.raises(ModelError, match=r"arm\.urdf .* was changed since; put it back, or load") as caught:
+    with pytest.raises(ModelError, match=r"arm\.urdf .* was changed since; restore it, or load") as caught:
         pickle.loads(sent)
     assert back(caught.value).path == str(file)
     with pytest.raises(ModelError, match="was changed since"):
-        pickle.dumps(model)  # nor is it sent: a worker of a pool that fails to read it would end in silence
+        pickle.dumps(model)  # nor is it pickled: a pool worker that fails to read it would end silently
 
 
-def test_a_robot_is_odd_once() -> None:
+def test_warnings_about_a_robot_are_issued_once() -> None:
     with pytest.warns(UserWarning, match="triangle"):
         odd = oo.Model.rigid_body(1.0, np.diag([5.0, 1.0, 1.0]))
     with warnings.catch_warnings():
@@ -110,7 +110,7 @@ def test_a_robot_is_odd_once() -> None:
         assert back(odd).warnings == odd.warnings != []
 
 
-def test_surfaces_are_kept_as_they_were_given() -> None:
+def test_surfaces_are_pickled_as_given() -> None:
     spread: dict[str, oo.Surface] = {"base": BALL}
     drag = oo.Drag(oo.ConstantAtmosphere(1e-12), surfaces=spread)
     spread["no such link"] = BALL

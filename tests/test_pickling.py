@@ -1,4 +1,4 @@
-"""What travels between processes: scenarios there, runs and traces back."""
+"""Pickling of scenarios, runs and traces between processes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def short(name: str, duration: float = 0.1, **simulation: Any) -> oo.Scenario:
 
 
 def same(a: Any, b: Any) -> None:
-    """Every column to the bit, and what a trace says of itself."""
+    """Checks that two traces have the same bits and metadata."""
     assert a.columns() == b.columns()
     for name in a.columns():
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name), err_msg=name)
@@ -43,8 +43,8 @@ def same(a: Any, b: Any) -> None:
 
 
 @pytest.mark.parametrize("copied", ["pickle.loads(pickle.dumps(trace))", "copy.deepcopy(trace)"])
-def test_a_trace_needs_nothing_but_the_engine_to_be_copied(copied: str) -> None:
-    """It said "cannot pickle" where nothing had loaded the folder of outputs before."""
+def test_a_trace_can_be_copied_with_the_engine_alone(copied: str) -> None:
+    """It once raised "cannot pickle" unless ``onorbit_rs.output`` had been imported before."""
     program = f"""
 import copy, pickle, sys
 import onorbit_rs as oo
@@ -60,7 +60,7 @@ assert ({copied}.q == trace.q).all()
 @pytest.mark.parametrize(
     ("name", "settings"), [("dual_arm_reach", {}), ("humanoid_reach", {"record_wrenches": True})]
 )
-def test_a_trace_comes_back_with_all_it_had(name: str, settings: dict[str, Any]) -> None:
+def test_a_pickled_trace_is_complete(name: str, settings: dict[str, Any]) -> None:
     run = oo.run(short(name, **settings), quiet=True)
     assert run.trace.tracking or run.trace.wrenches
     there = pickle.loads(pickle.dumps(run.trace))
@@ -74,7 +74,7 @@ def test_a_trace_comes_back_with_all_it_had(name: str, settings: dict[str, Any])
         _ = there.colour
 
 
-def test_a_column_that_a_run_has_nothing_for_is_none_wherever_it_is_read(tmp_path: Path) -> None:
+def test_a_column_that_does_not_apply_is_none_in_every_reader(tmp_path: Path) -> None:
     scenario = {"robot": "humanoid_torso", "simulation": {"duration": 0.01}}
     here = oo.run(scenario, tmp_path / "out", quiet=True).trace
     missing = [name for name in dir(oo.Trace) if getattr(here, name) is None and not name.startswith("_")]
@@ -83,8 +83,8 @@ def test_a_column_that_a_run_has_nothing_for_is_none_wherever_it_is_read(tmp_pat
         assert [getattr(there, name) for name in missing] == [None] * len(missing)
 
 
-def test_runs_come_back_from_processes() -> None:
-    """Of a fresh interpreter, as on every system: what a sweep on all cores does."""
+def test_runs_are_returned_from_processes() -> None:
+    """Spawned interpreters, available on every system, as in a parameter sweep on all cores."""
     scenarios = [short("humanoid_reach", duration) for duration in (0.05, 0.1)]
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         found = list(pool.map(oo.run, scenarios))
@@ -95,7 +95,7 @@ def test_runs_come_back_from_processes() -> None:
         assert there.summary["certificate_passed"] and there.scenario.resolved() == scenario.resolved()
 
 
-def test_an_error_brings_the_rows_so_far_along() -> None:
+def test_a_pickled_error_contains_the_partial_trace() -> None:
     data = load("free_tumble").resolved()
     data["environment"] = [
         {"kind": "body_wrench", "body": "torso", "force": [0, 0, 0], "torque": [1e9, 1e9, 0]}
@@ -115,7 +115,7 @@ class Fails(oo.Controller):
         raise ArithmeticError("mine")
 
 
-def test_an_error_before_the_first_row_travels_too() -> None:
+def test_an_error_before_the_first_row_can_be_pickled() -> None:
     model = robots.load("humanoid_torso")
     simulation = oo.Simulation(model, model.neutral(), np.zeros(model.nv), controller=Fails())
     with pytest.raises(ArithmeticError, match="mine") as caught:
@@ -133,7 +133,7 @@ def of_arm(urdf: Path, text: str = TORSO) -> oo.Run:
     return oo.run({"robot": str(urdf), "simulation": {"duration": 0.01}}, quiet=True)
 
 
-def test_a_run_does_not_show_another_robot(tmp_path: Path) -> None:
+def test_an_unpickled_run_does_not_load_a_changed_robot(tmp_path: Path) -> None:
     urdf = tmp_path / "arm.urdf"
     run = of_arm(urdf)
     sent = pickle.dumps(run)
@@ -150,8 +150,8 @@ def without_its_robot(urdf: Path) -> oo.Run:
     return run
 
 
-def test_a_run_whose_robot_is_gone_comes_out_of_a_pool(tmp_path: Path) -> None:
-    """The thread that takes a pool's results dies of what raises while it is unpickled: get() hung."""
+def test_a_run_whose_robot_file_is_missing_is_returned_from_a_pool(tmp_path: Path) -> None:
+    """An exception while unpickling ends the pool's result thread; get() once hung."""
     with get_context("spawn").Pool(1) as pool:
         run = pool.apply_async(without_its_robot, (tmp_path / "arm.urdf",)).get(timeout=60)
     assert run.trace.is_complete and run.summary["certificate_passed"]

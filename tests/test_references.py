@@ -1,4 +1,4 @@
-"""References from Python and from scenarios: what they give, in which frame, and how they refuse."""
+"""References from Python and from scenarios: values, frames, and invalid input."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs import exceptions
-from onorbit_rs.rotations import matrix_from_quaternion, quaternion_from_matrix
+from onorbit_rs.common.rotations import matrix_from_quaternion, quaternion_from_matrix
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
@@ -37,7 +37,7 @@ KINDS: dict[str, Callable[..., oo.Reference]] = {
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_many_instants_are_rows_and_rates_are_derivatives(kind: str) -> None:
+def test_instants_give_rows_and_rates_are_derivatives(kind: str) -> None:
     reference = KINDS[kind]()
     assert isinstance(reference, oo.Reference)
     h, t = 1e-5, np.linspace(0.1, max(reference.duration, 1.0) - 0.1, 7) + 1e-3
@@ -54,7 +54,7 @@ def test_many_instants_are_rows_and_rates_are_derivatives(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_frame_of_the_orbit_turns_the_path(kind: str) -> None:
+def test_a_path_relative_to_the_orbital_frame_rotates_with_it(kind: str) -> None:
     inside, reference = KINDS[kind](), KINDS[kind](frame="lvlh")
     t = 0.7
     rot, rate = ORBIT.lvlh(t)
@@ -67,10 +67,10 @@ def test_the_frame_of_the_orbit_turns_the_path(kind: str) -> None:
     np.testing.assert_array_equal(reference.sample(t)[0], own_pose)
 
 
-def test_a_reference_rides_on_a_target() -> None:
+def test_a_reference_moves_with_a_target() -> None:
     target = oo.Target(END, velocity=[0.1, 0, 0], spin=[0, 0, 0.5])
     pose, velocity, acceleration = oo.Hold(END, frame=target).in_world(np.pi)
-    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])  # half of pi about z
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])  # pi/2 about z
     arm = turn @ END[:3, :3] @ END[:3, 3]
     np.testing.assert_allclose(pose[:3, :3], turn @ END[:3, :3] @ END[:3, :3], atol=1e-15)
     np.testing.assert_allclose(pose[:3, 3], END[:3, 3] + [0.1 * np.pi, 0, 0] + arm, atol=1e-15)
@@ -107,7 +107,7 @@ def test_joints_follow_waypoints_samples_and_one_another() -> None:
 BAD: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "no time": (lambda: oo.Line(START, END), exceptions.ControlError, "limit"),
     "both": (lambda: oo.Line(START, END, duration=1.0, speed=1.0), exceptions.ControlError, "give one"),
-    "zero duration": (lambda: oo.Line(START, END, duration=0.0), exceptions.ControlError, "positive"),
+    "zero duration": (lambda: oo.Line(START, END, duration=0.0), exceptions.ControlError, "at least"),
     "a negative limit": (lambda: oo.Line(START, END, speed=-1.0), exceptions.ControlError, "-1"),
     "nan": (lambda: oo.Hold(START * np.nan), exceptions.InputError, "finite"),
     "no rotation": (lambda: oo.Hold(np.diag([2.0, 1, 1, 1])), exceptions.ControlError, "rotation"),
@@ -133,21 +133,21 @@ BAD: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "limits of three joints": (
         lambda: oo.JointWaypoints([[0, 0], [1, 1]], speed=[1, 1, 1]), exceptions.ShapeError, "(2,)"
     ),
-    "a joint that is none": (
+    "unknown joint": (
         lambda: oo.JointWaypoints.one_by_one([0.0], [(3, 1.0)], speed=1.0), exceptions.ControlError, "joint 3"
     ),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("case", BAD)
-def test_bad_references_are_refused(case: str) -> None:
+def test_invalid_references_are_rejected(case: str) -> None:
     make, error, words = BAD[case]
-    with pytest.raises(error) as told:
+    with pytest.raises(error) as caught:
         make()
-    assert words in str(told.value) and isinstance(told.value, oo.OnOrbitError)
+    assert words in str(caught.value) and isinstance(caught.value, oo.OnOrbitError)
 
 
-def test_a_reference_that_starts_away_says_how_far() -> None:
+def test_a_reference_with_a_distant_start_reports_the_distance() -> None:
     model = oo.robots.load("humanoid_torso")
     q, v = model.neutral(), np.zeros(model.nv)
     q[7:] = [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]
@@ -156,10 +156,10 @@ def test_a_reference_that_starts_away_says_how_far() -> None:
     law = oo.ComputedTorque(model, "tool")
     with pytest.raises(
         exceptions.ControlError,
-        match=r"starts 0\.2 m and 0 rad from the tool, at most 0\.05 m and 0\.1 rad .*_tolerance",
-    ) as told:
+        match=r"starts 0\.2 m and 0 rad from the tool; it must start within 0\.05 m and .*_tolerance",
+    ) as caught:
         oo.Simulation(model, q, v, controller=law, reference=oo.Hold(pose))
-    assert told.value.got[0] == pytest.approx(0.2)
+    assert caught.value.got[0] == pytest.approx(0.2)
     oo.Simulation(
         model, q, v, controller=law, reference=oo.Hold(pose), reference_start_tolerance=[0.3, 0.1]
     ).run(0.01)
@@ -214,47 +214,47 @@ def test_scenarios_start_every_kind_at_the_tool(tmp_path: Path, reference: str) 
     assert again.reference == built.scenario.reference
 
 
-def test_a_csv_gives_the_motion_back(tmp_path: Path) -> None:
+def test_a_csv_reproduces_the_motion(tmp_path: Path) -> None:
     write_csv(tmp_path / "motion.csv")
     text = "{kind: sampled, file: motion.csv}"
     with pytest.raises(exceptions.ControlError, match=r"mine.yaml.*starts .* m and .* rad from the tool"):
         build(load(scenario(tmp_path, text)))
-    from onorbit_rs.scenario.reference import Start, reference_of
-    from onorbit_rs.scenario.reference_parts import SampledReference
+    from onorbit_rs.scenario.reference import SampledReference
+    from onorbit_rs.scenario.reference.start import Start
 
     model = oo.robots.load("humanoid_torso")
-    at = Start(model, model.neutral(), np.eye(4), None, tmp_path)
-    got = reference_of(SampledReference(file="motion.csv"), at).sample(0.777)[0]
+    at = Start(model, model.neutral(), None, tmp_path, tool="tool")
+    got = SampledReference(file="motion.csv").build(at).sample(0.777)[0]
     line = oo.Line(START, END, duration=2.0).sample(0.777)[0]
     np.testing.assert_allclose(got, line, atol=1e-6)  # fourth order of 0.05 s
 
 
 def test_joint_references_of_scenarios(tmp_path: Path) -> None:
-    from onorbit_rs.scenario import reference_parts as parts
-    from onorbit_rs.scenario.reference import Start, reference_of
+    from onorbit_rs.scenario import reference as parts
+    from onorbit_rs.scenario.reference.start import Start
 
     model = oo.robots.load("humanoid_torso")
     names, q = list(model.joint_names), model.neutral()
     q[7:] = 0.1 * np.arange(7)
-    at = Start(model, q, None, None, tmp_path)
-    end = lambda part, at=at: reference_of(part, at).sample(1e3)[0]  # noqa: E731
+    at = Start(model, q, None, tmp_path)
+    end = lambda part, at=at: part.build(at).sample(1e3)[0]  # noqa: E731
     np.testing.assert_array_equal(end(parts.JointHoldReference()), q[7:])
     points = parts.JointWaypointsReference(points=[{names[2]: "30 deg"}], speed="5 deg/s")
     expected = q[7:].copy()
     expected[2] = np.deg2rad(30)
     np.testing.assert_allclose(end(points), expected, atol=1e-15)
-    assert reference_of(points, at).duration == pytest.approx(1.875 * abs(expected[2] - q[9]) / np.deg2rad(5))
+    assert points.build(at).duration == pytest.approx(1.875 * abs(expected[2] - q[9]) / np.deg2rad(5))
     ramps = parts.JointRampsReference(moves=[{"joint": names[1], "to": "1 rad"}], speed=0.1)
-    group = Start(model, q, None, None, tmp_path, joints=(names[1], names[4]))
+    group = Start(model, q, None, tmp_path, joints=(names[1], names[4]))
     np.testing.assert_allclose(end(ramps, group), [1.0, q[11]], atol=1e-15)
     (tmp_path / "joints.csv").write_text(f"time,{names[3]}\n0,0.3\n1,0.5\n2,0.9\n")
     sampled = parts.JointSampledReference(file="joints.csv")
-    assert end(sampled)[3] == 0.9 and reference_of(sampled, at).sample(1.0)[0][3] == 0.5
+    assert end(sampled)[3] == 0.9 and sampled.build(at).sample(1.0)[0][3] == 0.5
     (tmp_path / "joints.csv").write_text("time,elbow\n0,0.3\n")
     with pytest.raises(exceptions.ReadError, match="elbow"):
-        reference_of(sampled, at)
-    with pytest.raises(exceptions.FrameError, match="no joint is named"):
-        reference_of(parts.JointRampsReference(moves=[{"joint": "elbow", "to": 1}], speed=0.1), at)
+        sampled.build(at)
+    with pytest.raises(exceptions.FrameError, match="no joint of the group is named"):
+        parts.JointRampsReference(moves=[{"joint": "elbow", "to": 1}], speed=0.1).build(at)
 
 
 @pytest.mark.parametrize(
@@ -266,7 +266,7 @@ def test_joint_references_of_scenarios(tmp_path: Path) -> None:
         ("time,x,y,z,qx,qy,qz,qw,vx\n", "vy"),
     ],
 )
-def test_a_broken_csv_is_told(tmp_path: Path, text: str, words: str) -> None:
+def test_an_invalid_csv_is_reported(tmp_path: Path, text: str, words: str) -> None:
     (tmp_path / "motion.csv").write_text(text)
     with pytest.raises(exceptions.ReadError, match=words):
         build(load(scenario(tmp_path, "{kind: sampled, file: motion.csv}")))
@@ -274,13 +274,13 @@ def test_a_broken_csv_is_told(tmp_path: Path, text: str, words: str) -> None:
         build(load(scenario(tmp_path, "{kind: sampled, file: nowhere.csv}")))
 
 
-def test_quaternions_of_the_csv_are_the_rotations() -> None:
+def test_quaternions_of_the_csv_are_the_attitudes() -> None:
     quat = quaternion_from_matrix(END[:3, :3])
     np.testing.assert_allclose(matrix_from_quaternion(quat), END[:3, :3], atol=1e-15)
 
 
 @pytest.mark.parametrize("ramp", [0.5, 0.01, 5e-4, 1e-4])
-def test_short_ramps_keep_the_limits(ramp: float) -> None:
+def test_short_ramps_respect_the_limits(ramp: float) -> None:
     pose = np.eye(4)
     pose[0, 3] = 1.0
     circle = oo.Circle(
@@ -295,8 +295,8 @@ def test_short_ramps_keep_the_limits(ramp: float) -> None:
 
 
 @pytest.mark.parametrize("span", [3.0, 1.5, 0.6])
-def test_the_local_frame_turns_as_it_says_on_a_short_path_too(span: float) -> None:
-    """Its plane turns with the jerk of the path; differences once reached beyond its ends."""
+def test_the_rate_of_the_local_frame_is_correct_on_a_short_path(span: float) -> None:
+    """Its plane rotates with the jerk of the path; difference quotients once exceeded its ends."""
     times = np.linspace(0.0, span, 31)
     r, v = oo.Kepler(semi_major_axis=6.8e6).state(times)
     a = -oo.MU_EARTH * r / np.linalg.norm(r, axis=1)[:, None] ** 3

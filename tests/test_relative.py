@@ -1,4 +1,4 @@
-"""Relative motion at the border; its physics is tested in Rust."""
+"""Relative motion through Python; its physics is tested in Rust."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ DEPUTY = oo.Kepler(
 )
 
 
-def test_transitions_come_in_arrays() -> None:
-    # Vallado's numbers are in onorbit_rs.validation.relative
+def test_transition_matrices_accept_arrays_of_times() -> None:
+    # for Vallado's numbers see onorbit_rs.tools.validation.relative
     n = 1e-3
     both = relative.hill_transition(n, [0.0, 300.0])
     assert both.shape == (2, 6, 6)
@@ -27,7 +27,7 @@ def test_transitions_come_in_arrays() -> None:
 
 
 @pytest.mark.parametrize("frame", ["lvlh", "nadir"])
-def test_local_coordinates_come_back(frame: str) -> None:
+def test_local_coordinates_are_inverted(frame: str) -> None:
     t = np.linspace(0.0, 6000.0, 11)
     r, v = DEPUTY.state(t)
     local = relative.to_lvlh(CHIEF, t, r, v, frame=frame)
@@ -36,19 +36,19 @@ def test_local_coordinates_come_back(frame: str) -> None:
     assert np.allclose(back[1], v, rtol=1e-12, atol=1e-8)
     one = relative.to_lvlh(CHIEF, t[3], r[3], v[3], frame=frame)
     assert np.array_equal(one[0], local[0][3])
-    # the frame of the orbit itself
+    # the frame of the orbit
     rotation, _ = CHIEF.lvlh(t[3])
     across = 2 if frame == "lvlh" else 1
     expected = rotation.T @ (r[3] - CHIEF.state(t[3])[0])
     assert abs(one[0][across]) == pytest.approx(abs(expected[2]))
 
 
-def test_relative_elements_come_back() -> None:
+def test_relative_elements_are_inverted() -> None:
     t = np.linspace(0.0, 6000.0, 11)
     chief, deputy = CHIEF.state(t), DEPUTY.state(t)
     elements = relative.relative_elements(*chief, *deputy)
     assert elements.shape == (11, 6)
-    # they stay on two Kepler orbits of one period
+    # both remain on Kepler orbits of the same period
     assert np.ptp(elements, axis=0).max() < 1e-12
     r, v = relative.deputy_state(*chief, elements)
     assert np.allclose(r, deputy[0], rtol=0, atol=1e-5)
@@ -56,7 +56,7 @@ def test_relative_elements_come_back() -> None:
     assert relative.relative_elements(chief[0][0], chief[1][0], deputy[0][0], deputy[1][0]).shape == (6,)
 
 
-def test_what_makes_no_sense_is_refused() -> None:
+def test_invalid_input_is_rejected() -> None:
     with pytest.raises(InputError, match="'lvlh' and 'nadir'"):
         relative.to_lvlh(CHIEF, 0.0, [0, 0, 0], [0, 0, 0], frame="rsw")
     with pytest.raises(ShapeError, match="r has shape"):

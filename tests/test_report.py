@@ -1,4 +1,4 @@
-"""The report page: whole in itself, its numbers those of the summary, and text of the user's is text."""
+"""The report page: self-contained, with the numbers of the summary, and with user text escaped."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ VOID = {"meta", "img", "br", "hr", "link", "input"}
 
 
 class Page(HTMLParser):
-    """Every tag with its attributes, the text of each ``<data>``, and whether all tags close."""
+    """Parses all tags with attributes and the text of each ``<data>``, and checks that all tags close."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -80,17 +80,17 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def told() -> list[tuple[str, float]]:
-    """What was told while the page was written."""
+def messages() -> list[tuple[str, float]]:
+    """Collects the progress messages while the page is written."""
     return []
 
 
 @pytest.fixture(scope="module")
-def page(folder: Path, told: list[tuple[str, float]]) -> Page:
-    return Page(write_report(folder, pdf=True, tell=lambda *what: told.append(what)).read_text())
+def page(folder: Path, messages: list[tuple[str, float]]) -> Page:
+    return Page(write_report(folder, pdf=True, tell=lambda *what: messages.append(what)).read_text())
 
 
-def test_nothing_refers_outside(page: Page, folder: Path) -> None:
+def test_the_page_has_no_external_references(page: Page, folder: Path) -> None:
     text = (folder / "report.html").read_text()
     assert not {tag for tag, _ in page.tags} & {"script", "link", "iframe", "object", "embed", "base", "a"}
     assert all(source.startswith("data:image/") for source in page.having("src"))
@@ -102,7 +102,7 @@ def test_nothing_refers_outside(page: Page, folder: Path) -> None:
     assert len(text) < 3_000_000
 
 
-def test_every_figure_is_there_and_none_reaches_outside(page: Page, folder: Path) -> None:
+def test_every_figure_is_included_without_external_references(page: Page, folder: Path) -> None:
     drawn = {file.stem for file in (folder / "figures").glob("*.png")}
     assert {f"figure-{name}" for name in drawn} == {i for i in page.having("id") if i.startswith("figure-")}
     assert drawn == {file.stem for file in (folder / "figures").glob("*.pdf")}
@@ -118,7 +118,7 @@ def test_every_figure_is_there_and_none_reaches_outside(page: Page, folder: Path
             assert b"<script" not in picture
 
 
-def test_every_number_is_the_summarys(page: Page, folder: Path) -> None:
+def test_every_number_equals_that_of_the_summary(page: Page, folder: Path) -> None:
     summary = json.loads((folder / "summary.json").read_text())
     silent = ("scenario", "status", "warnings", "rereferenced", "joint_dissipation_j")  # the last two are 0
     assert set(page.data) == {
@@ -128,7 +128,7 @@ def test_every_number_is_the_summarys(page: Page, folder: Path) -> None:
         assert value == str(summary[key]), key
 
 
-def test_every_check_stands_beside_its_gate(page: Page, folder: Path) -> None:
+def test_every_check_is_shown_beside_its_gate(page: Page, folder: Path) -> None:
     summary = json.loads((folder / "summary.json").read_text())
     text = re.sub(r"<[^>]+>", " ", (folder / "report.html").read_text().split('class="checks"')[1])
     for key in CHECKS:
@@ -138,15 +138,15 @@ def test_every_check_stands_beside_its_gate(page: Page, folder: Path) -> None:
         assert cells == (f"{summary[key]:.2g}", f"{summary[GATE + key]:.2g}", unit, "holds")
 
 
-def test_what_happened_is_said_and_what_did_not_is_not(page: Page) -> None:
+def test_only_events_that_happened_are_mentioned(page: Page) -> None:
     named = {row.name for _, rows in groups({"rereferenced": 2, "joint_dissipation_j": 0.5}) for row in rows}
-    assert named == {"new reference orbits taken, having drifted too far off", "joint dissipation"}
+    assert named == {"changes of reference orbit due to drift", "joint dissipation"}
     assert groups({"rereferenced": 0, "joint_dissipation_j": 0.0}) == []
     assert "reference orbits" not in page.text
 
 
-def test_progress_is_told_part_by_part(page: Page, told: list[tuple[str, float]], folder: Path) -> None:
-    parts, shares = [part for part, _ in told], [done for _, done in told]
+def test_each_part_is_reported(page: Page, messages: list[tuple[str, float]], folder: Path) -> None:
+    parts, shares = [part for part, _ in messages], [done for _, done in messages]
     drawn = [part for part in parts if part.startswith("drawing ")]
     assert len(drawn) == len(list((folder / "figures").glob("*.png")))
     assert [part.split(", ")[1] for part in drawn] == [f"{n + 1} of {len(drawn)}" for n in range(len(drawn))]
@@ -154,7 +154,7 @@ def test_progress_is_told_part_by_part(page: Page, told: list[tuple[str, float]]
     assert shares == sorted(shares) and (shares[0], shares[-1]) == (0.0, 1.0)
 
 
-def test_hostile_words_are_inert_and_shown_as_they_are(page: Page, folder: Path) -> None:
+def test_hostile_text_is_escaped_and_shown_literally(page: Page, folder: Path) -> None:
     assert HOSTILE in page.text
     assert "<script" not in (folder / "report.html").read_text()
     assert page.having("onerror") == []
@@ -176,7 +176,7 @@ def test_the_certificate_is_green_or_red(page: Page, folder: Path) -> None:
     assert "Try" not in page_of(broken | {"status": "interrupted"}).text
 
 
-def test_a_check_that_is_not_evaluated_is_called_so(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unevaluated_check_is_labelled_so(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     summary = json.loads((folder / "summary.json").read_text())
     for key in (value := "center_of_mass_error_rel", GATE + value):
         del summary[key]
@@ -214,7 +214,7 @@ def test_a_run_without_a_certificate_has_not_failed(left: dict[str, None], folde
 
 
 def page_of(summary: dict[str, Any]) -> Page:
-    """The page of a run without figures."""
+    """Returns the page of a run without figures."""
     words = {"description": "", "scenario": "", "again": "", "version": ""}
     return Page(as_page(summary, pictures=[], remarks=[], **words))
 
@@ -224,7 +224,7 @@ def verdict_of(page: Page) -> tuple[str | None, str]:
     return kind, next(words for words in page.words if words.startswith("Certificate "))
 
 
-def test_a_robot_that_is_gone_costs_only_its_figures(folder: Path, tmp_path: Path) -> None:
+def test_a_missing_robot_file_only_omits_its_figures(folder: Path, tmp_path: Path) -> None:
     shutil.copytree(folder, tmp_path / "out")
     scenario = tmp_path / "out" / "scenario.yaml"
     text = scenario.read_text()
@@ -236,7 +236,7 @@ def test_a_robot_that_is_gone_costs_only_its_figures(folder: Path, tmp_path: Pat
     assert "obtained_trajectory" in shown and "desired_trajectory" not in shown
 
 
-def test_a_run_that_diverged_has_a_page_without_pictures(tmp_path: Path) -> None:
+def test_a_diverged_run_has_a_page_without_figures(tmp_path: Path) -> None:
     data = load("free_tumble").resolved()
     data["simulation"] |= {"duration": 200.0, "time_step": 2.0}
     data["initial"]["angular_velocity"] = [3.0, 20.0, 5.0]
@@ -268,7 +268,7 @@ def test_warnings_of_the_robot_are_on_the_page(tmp_path: Path) -> None:
     assert {"figure-environment_forces", "figure-ground_track", "figure-orbit"} <= set(page.having("id"))
 
 
-def test_what_is_no_run_is_refused(tmp_path: Path, folder: Path) -> None:
+def test_folders_without_a_run_are_rejected(tmp_path: Path, folder: Path) -> None:
     with pytest.raises(NotFoundError, match="no such folder"):
         write_report(tmp_path / "nowhere")
     with pytest.raises(NotFoundError, match="no run in this folder"):
@@ -292,7 +292,7 @@ def test_what_is_no_run_is_refused(tmp_path: Path, folder: Path) -> None:
         write_report(tmp_path)
 
 
-def test_a_page_that_cannot_be_written_is_said(folder: Path, tmp_path: Path) -> None:
+def test_a_page_that_cannot_be_written_is_reported(folder: Path, tmp_path: Path) -> None:
     for name in ("scenario.yaml", "summary.json"):
         shutil.copy(folder / name, tmp_path)
     with np.load(folder / "trace.npz") as stored:  # one row: nothing to draw
@@ -303,7 +303,7 @@ def test_a_page_that_cannot_be_written_is_said(folder: Path, tmp_path: Path) -> 
         write_report(tmp_path)
 
 
-def test_a_saved_trace_is_the_trace(folder: Path) -> None:
+def test_a_saved_trace_equals_the_trace(folder: Path) -> None:
     trace = read_trace(folder)
     with np.load(folder / "trace.npz") as stored:
         assert set(trace.columns()) == set(stored.files)
@@ -312,14 +312,14 @@ def test_a_saved_trace_is_the_trace(folder: Path) -> None:
         _ = trace.nothing  # type: ignore[attr-defined]
 
 
-def test_a_run_that_was_killed_is_to_be_resumed(folder: Path, tmp_path: Path) -> None:
-    """What kill -9 leaves: the scenario and a checkpoint."""
+def test_the_page_of_a_killed_run_suggests_resuming_it(folder: Path, tmp_path: Path) -> None:
+    """A killed run leaves the scenario and a checkpoint."""
     killed = tmp_path / "my run"
     (killed / "checkpoint").mkdir(parents=True)
     (killed / "checkpoint" / "state.json").write_text("{}")
     shutil.copy(folder / "scenario.yaml", killed)
     for ask in (write_report, read_summary, oo.compare):
-        with pytest.raises(NotFoundError, match=r"go on with: onorbit resume '.*/my run'"):
+        with pytest.raises(NotFoundError, match=r"continue with: onorbit resume '.*/my run'"):
             ask(killed)
 
 
@@ -336,14 +336,14 @@ def test_a_run_that_was_killed_is_to_be_resumed(folder: Path, tmp_path: Path) ->
         ("time", lambda t: t[:5]),
     ],
 )
-def test_a_column_that_was_cut_is_named_with_its_shape(
+def test_a_truncated_column_is_named_with_its_shape(
     folder: Path, tmp_path: Path, name: str, cut: Any
 ) -> None:
     shutil.copytree(folder, tmp_path / "cut")
     columns = dict(np.load(folder / "trace.npz"))
     np.savez(tmp_path / "cut" / "trace.npz", **(columns | {name: cut(columns[name])}))
     listed(tmp_path / "cut")
-    said = r"column '\w+' has shape \(.*\), expected \("
+    said = r"column '\w+' has shape \(.*\); expected \("
     with pytest.raises(ReadError, match=said):
         write_report(tmp_path / "cut")
     with pytest.raises(ReadError, match=said):
@@ -370,7 +370,7 @@ def test_a_column_that_was_cut_is_named_with_its_shape(
         ("real_time_factor", 3.4283672e8, "3.428e+08", ""),
     ],
 )
-def test_numbers_read_well(key: str, value: Any, shown: str, unit: str) -> None:
+def test_labels_of_numbers_are_readable(key: str, value: Any, shown: str, unit: str) -> None:
     found = row(key, value)
     assert (found.shown, found.unit, found.value) == (shown, unit, value)
 
@@ -382,19 +382,19 @@ def test_numbers_read_well(key: str, value: Any, shown: str, unit: str) -> None:
         ("tracking_attitude_error_final_rad", "tool attitude error, at the end"),
         ("tracking_left_arm_position_error_max_m", "left_arm: position error, largest"),
         ("tracking_arm_joint_error_max_rad", "arm: joint error, largest"),
-        ("tracking_joint_error_max_m", "error of a sliding joint, largest"),
-        ("tracking_joint_joint_error_max_m", "joint: error of a sliding joint, largest"),
+        ("tracking_joint_error_max_m", "prismatic joint error, largest"),
+        ("tracking_joint_joint_error_max_m", "joint: prismatic joint error, largest"),
         ("control_left_arm_result", "left_arm: goal"),
         ("joint_rate_final_max_rad_s", "joint rate at the end, largest"),
-        ("joint_rate_final_max_m_s", "rate of a sliding joint at the end, largest"),
-        ("joint_force_max_n", "force of a sliding joint, largest"),
+        ("joint_rate_final_max_m_s", "rate of a prismatic joint at the end, largest"),
+        ("joint_force_max_n", "force of a prismatic joint, largest"),
         ("base_rotation_max_rad", "base rotation in W, largest"),
     ],
 )
-def test_names_read_well(key: str, name: str) -> None:
+def test_names_are_readable(key: str, name: str) -> None:
     assert row(key, 1.0).name == name
 
 
-def test_outcomes_are_words_and_names_of_joints_stay() -> None:
+def test_outcomes_are_words_and_joint_names_are_unchanged() -> None:
     assert row("control_arm_result", "goal_tolerance_violated").shown == "goal tolerance violated"
     assert row("joint_limits_exceeded", "arm_joint_3").shown == "arm_joint_3"

@@ -1,4 +1,4 @@
-"""A robot whose file is changed under a recorded run is noticed by whoever reads the run."""
+"""A change of the robot's file after a run is detected by all readers of the run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ARM = robots.path("humanoid_torso").read_text()
 
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("onorbit_rs.keeping.write_pictures", lambda *_, **__: None)
+    monkeypatch.setattr("onorbit_rs.simulation.finish.write_pictures", lambda *_, **__: None)
     monkeypatch.setattr("onorbit_rs.report.write._pictures", lambda *_: [])
 
 
@@ -46,7 +46,7 @@ def model(text: str) -> oo.Model:
     return oo.Model.from_urdf_string(text)
 
 
-def test_a_fingerprint_follows_the_content_and_not_the_file(urdf: Path) -> None:
+def test_a_fingerprint_depends_on_the_content_and_not_the_file(urdf: Path) -> None:
     own = fingerprint(oo.robots.load("humanoid_torso"))
     assert own == fingerprint(oo.robots.load(urdf)) == fingerprint(model(ARM.replace("\n", "\n\n")))
     assert len(own) == 16
@@ -64,7 +64,7 @@ def test_a_fingerprint_follows_the_content_and_not_the_file(urdf: Path) -> None:
     ("tag", "attribute"),
     [("mass", "value"), ("inertia", "ixx"), ("axis", "xyz"), ("box", "size"), ("joint", "name")],
 )
-def test_every_change_of_a_robot_is_another_fingerprint(tag: str, attribute: str) -> None:
+def test_every_change_of_a_robot_changes_its_fingerprint(tag: str, attribute: str) -> None:
     found = re.search(rf'<{tag}\b[^>]*\b{attribute}="([^"]*)"', ARM)
     assert found is not None, tag
     old = found[1]
@@ -75,8 +75,8 @@ def test_every_change_of_a_robot_is_another_fingerprint(tag: str, attribute: str
     assert fingerprint(model(changed)) != fingerprint(model(ARM))
 
 
-def test_rounding_and_colours_are_no_other_robot() -> None:
-    """A folded inertia may come out a digit otherwise on another processor."""
+def test_rounding_and_colours_do_not_change_the_fingerprint() -> None:
+    """A combined inertia may differ in the last digit on another processor."""
     assert 'rgba="' in ARM
     recoloured = ARM.replace('rgba="0.', 'rgba="0.1')
     assert recoloured != ARM
@@ -92,7 +92,7 @@ def heavier(text: str) -> str:
     return heavy
 
 
-def test_a_robot_edited_after_its_run_is_told(urdf: Path, tmp_path: Path) -> None:
+def test_a_robot_edited_after_its_run_is_reported(urdf: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     run = oo.run(scenario(urdf), out)
     assert run.summary["robot_fingerprint"] == fingerprint(run.model)
@@ -105,14 +105,14 @@ def test_a_robot_edited_after_its_run_is_told(urdf: Path, tmp_path: Path) -> Non
     assert shown.exit_code == 0
     assert f"note: {CHANGED}" in shown.output
     page = write_report(out).read_text()
-    assert "robot&#x27;s file was changed since the run" in page and "are left out" in page
+    assert "robot&#x27;s file was changed since the run" in page and "are omitted" in page
 
     urdf.unlink()
     shown = CliRunner().invoke(app, ["show", str(out), "--no-viewer"])
     assert "cannot be read again" in shown.output
 
 
-def test_compare_knows_robots_by_what_they_are(urdf: Path, tmp_path: Path) -> None:
+def test_compare_identifies_robots_by_their_content(urdf: Path, tmp_path: Path) -> None:
     before = oo.run(scenario(urdf), tmp_path / "before")
     elsewhere = tmp_path / "elsewhere" / "copy.urdf"
     elsewhere.parent.mkdir()
@@ -123,12 +123,12 @@ def test_compare_knows_robots_by_what_they_are(urdf: Path, tmp_path: Path) -> No
     note = oo.compare(str(tmp_path / "before"), scenario(urdf)).notes[0]
     assert "was changed between the two runs" in note and fingerprint(before.model) in note
     unknown = oo.compare(str(tmp_path / "before"), scenario(urdf)).notes[1]
-    assert "nobody knows whether their joints are the same" in unknown and "was changed since" in unknown
-    # both in memory: the joints are known to be the same
+    assert "cannot check whether their joints are equal" in unknown and "was changed since" in unknown
+    # both in memory: the joints can be compared
     assert len(oo.compare(before, oo.run(scenario(urdf))).notes) == 1
 
 
-def test_runs_of_earlier_versions_are_read_as_they_were(urdf: Path, tmp_path: Path) -> None:
+def test_runs_of_earlier_versions_can_be_read(urdf: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     run = oo.run(scenario(urdf), out)
     summary = json.loads((out / "summary.json").read_text())

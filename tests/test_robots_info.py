@@ -1,4 +1,4 @@
-"""What a robot is made of: records, and ``onorbit info``."""
+"""Records of a robot's bodies, joints and frames, and ``onorbit info``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from commands import onorbit
 from rich.console import Console
 
 import onorbit_rs as oo
-from onorbit_rs.cli.robot import print_info
+from onorbit_rs.cli.robot_info import print_info
 from onorbit_rs.robots.describe import describe
 
 MODEL = oo.robots.load("humanoid_dual_arm")
@@ -27,7 +27,7 @@ def text_of(model: oo.Model) -> str:
 
 
 def test_records_give_the_mass_matrix_s_base_block() -> None:
-    """Masses, centres and inertias of the records, moved by the engine's poses, sum to the robot's own."""
+    """Masses, centres and inertias of the records, moved by the link poses, sum to those of the robot."""
     q = MODEL.neutral()
     total, about_base = 0.0, np.zeros((3, 3))
     for body in MODEL.bodies:
@@ -39,7 +39,7 @@ def test_records_give_the_mass_matrix_s_base_block() -> None:
     np.testing.assert_allclose(about_base, MODEL.mass_matrix(q)[3:6, 3:6], atol=1e-12)
 
 
-def test_joints_and_frames_place_what_they_carry() -> None:
+def test_records_of_joints_and_frames_give_the_poses_of_links() -> None:
     q = MODEL.neutral()
     for record in MODEL.joints:
         parent, child = MODEL.frame_pose(q, record.parent), MODEL.frame_pose(q, record.child)
@@ -47,13 +47,13 @@ def test_joints_and_frames_place_what_they_carry() -> None:
     for frame in MODEL.frames:
         pose = MODEL.frame_pose(q, frame.body) @ frame.pose
         np.testing.assert_allclose(pose, MODEL.frame_pose(q, frame.name), atol=1e-14)
-    # the axis is the one that the Jacobian has
+    # the axis equals that of the Jacobian
     first = MODEL.joints[0]
     column = MODEL.frame_jacobian(q, first.child)[3:, 6]
     np.testing.assert_allclose(MODEL.frame_pose(q, first.child)[:3, :3] @ first.axis, column, atol=1e-14)
 
 
-def test_limits_friction_and_rotors_are_told() -> None:
+def test_limits_friction_and_rotors_are_listed() -> None:
     builder = oo.ModelBuilder("r", base="b", mass=1.0, inertia=np.eye(3))
     builder.add_link(
         "l",
@@ -75,7 +75,7 @@ def test_limits_friction_and_rotors_are_told() -> None:
     assert (record.lower, record.upper, record.velocity, record.effort) == (-1.0, None, 2.0, None)
     assert (record.damping, record.friction, record.rotor_inertia) == (0.1, 0.2, 0.3)
     text = text_of(builder.build())
-    assert "slides" in text and "-y" in text and "rotor inertia" in text
+    assert "prismatic" in text and "-y" in text and "rotor inertia" in text
 
 
 @pytest.mark.parametrize("name", oo.robots.names())
@@ -83,11 +83,9 @@ def test_info_fits_a_terminal_of_80_columns(name: str) -> None:
     done = onorbit("info", name)
     assert done.returncode == 0, done
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a robot that is odd on purpose
+        warnings.simplefilter("ignore")  # for a robot with deliberate warnings
         model = oo.robots.load(name)
-    lines = [
-        line for line in done.stdout.splitlines() if not line.startswith("  - ")
-    ]  # what was odd, in words
+    lines = [line for line in done.stdout.splitlines() if not line.startswith("  - ")]  # the warnings as text
     assert all(len(line) <= 80 for line in lines)
     for word in (*model.body_names, *model.joint_names, *model.frame_names, f"mass {model.mass:.6g} kg"):
         assert word in done.stdout, word
@@ -102,17 +100,17 @@ def test_info_as_data() -> None:
     assert moments == sorted(moments)
 
 
-def test_what_was_odd_stands_at_the_end(tmp_path: Path) -> None:
+def test_warnings_are_printed_at_the_end(tmp_path: Path) -> None:
     file = tmp_path / "odd.urdf"
     ball = massive("a") + massive("b") + joint("j", "a", "b", "ball")
     file.write_text(f'<robot name="odd [bold]">{ball}</robot>')
     done = onorbit("info", file)
     assert (done.returncode, done.stderr) == (0, "")
-    assert "odd [bold]: 4 bodies, 3 joints" in done.stdout  # no markup in a user's text
-    assert "odd (1):" in done.stdout and "'j' is a ball joint" in " ".join(done.stdout.split())
+    assert "odd [bold]: 4 bodies, 3 joints" in done.stdout  # user text is not markup
+    assert "warnings (1):" in done.stdout and "'j' is a ball joint" in " ".join(done.stdout.split())
 
 
-def test_a_chain_of_500_links_is_printed_whole() -> None:
+def test_a_chain_of_500_links_is_printed_completely() -> None:
     body = massive("l0") + "".join(
         massive(f"l{i}") + joint(f"j{i}", f"l{i - 1}", f"l{i}") for i in range(1, 500)
     )
@@ -129,7 +127,7 @@ def test_a_chain_of_500_links_is_printed_whole() -> None:
         (["humanoid_torso", "--arg", "side"], ("name=value",)),
     ],
 )
-def test_a_refusal_is_one_line(arguments: list[str], words: tuple[str, ...]) -> None:
+def test_an_error_is_reported_in_one_line(arguments: list[str], words: tuple[str, ...]) -> None:
     done = onorbit("info", *arguments)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1

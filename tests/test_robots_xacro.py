@@ -1,4 +1,4 @@
-"""Xacro files through PyPI's xacro, without ROS: packages, arguments, what is left out, what is refused."""
+"""Xacro files through PyPI's xacro, without ROS: packages, arguments, omitted elements, invalid input."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def packages(robot: Path) -> Path:
 def test_packages_and_arguments(robot: Path) -> None:
     model = oo.Model.from_urdf(robot, package_paths=[packages(robot)])
     assert (model.joint_names, model.mass) == (["left_joint"], 16.0)
-    itself = packages(robot) / "arm_description"  # the package's own folder will do
+    itself = packages(robot) / "arm_description"  # the folder of the package is accepted, too
     right = oo.Model.from_urdf(robot, package_paths=[itself], xacro_arguments={"side": "right"})
     assert right.joint_names == ["right_joint"]
     by_name = oo.robots.load(robot, package_paths=[packages(robot)], xacro_arguments={"side": 1})
@@ -75,20 +75,20 @@ def test_a_package_above_the_file_is_found(robot: Path) -> None:
 
 
 @needs_xacro
-def test_a_urdf_that_holds_xacro_is_expanded_on_request_only(tmp_path: Path) -> None:
+def test_a_urdf_with_xacro_is_expanded_on_request_only(tmp_path: Path) -> None:
     file = tmp_path / "robot.urdf"
     file.write_text(HEAD + '<xacro:property name="m" value="2"/>' + LINK.format("base", "${m}") + "</robot>")
-    with pytest.raises(oo.exceptions.ModelError, match="xacro=True, on the command line with --xacro"):
+    with pytest.raises(oo.exceptions.ModelError, match="xacro=True; the command line has --xacro"):
         oo.Model.from_urdf(file)
     assert oo.Model.from_urdf(file, xacro=True).mass == 2.0
     assert oo.Model.from_urdf(file, xacro_arguments={}).mass == 2.0
     assert pickle.loads(pickle.dumps(oo.Model.from_urdf(file, xacro=True))).mass == 2.0
-    file.write_text(HEAD + LINK.format("base", "3") + "</robot>")  # only declares the name space
+    file.write_text(HEAD + LINK.format("base", "3") + "</robot>")  # only declares the namespace
     assert oo.Model.from_urdf(file).mass == 3.0
 
 
 @needs_xacro
-def test_a_scenario_and_the_command_line_ask_for_xacro(tmp_path: Path) -> None:
+def test_xacro_can_be_requested_in_a_scenario_and_on_the_command_line(tmp_path: Path) -> None:
     file = tmp_path / "robot.urdf"
     file.write_text(HEAD + '<xacro:property name="m" value="2"/>' + LINK.format("base", "${m}") + "</robot>")
     command = [sys.executable, "-m", "onorbit_rs", "info", str(file)]
@@ -98,10 +98,9 @@ def test_a_scenario_and_the_command_line_ask_for_xacro(tmp_path: Path) -> None:
     done = subprocess.run([*command, "--json", "--xacro"], capture_output=True, text=True, check=True)
     assert json.loads(done.stdout)["mass_kg"] == 2.0
     from onorbit_rs.scenario import load
-    from onorbit_rs.scenario.make_robot import make_robot
 
     scenario = load({"robot": {"urdf": str(file), "xacro": True}, "simulation": {"duration": 0.01}})
-    assert make_robot(scenario).mass == 2.0
+    assert scenario.robot.build(scenario).mass == 2.0
     assert scenario.resolved()["robot"]["xacro"] is True
 
 
@@ -121,25 +120,25 @@ def test_a_scenario_gives_packages_and_arguments(robot: Path) -> None:
 
 
 @needs_xacro
-def test_extras_of_simulators_are_left_out_and_told(tmp_path: Path) -> None:
+def test_extensions_of_simulators_are_omitted_with_a_warning(tmp_path: Path) -> None:
     file = tmp_path / "a.xacro"
     extras = '<xacro:include filename="$(find x)/a.gazebo.xacro"/><xacro:a_gazebo/>'
     file.write_text(HEAD + extras + LINK.format("base", 1) + "</robot>")
-    with pytest.warns(UserWarning) as told:
+    with pytest.warns(UserWarning) as caught:
         model = oo.Model.from_urdf(file)
     assert model.frame_names == ["base"]
-    assert sum("left out, as an extra of a simulator" in str(warning.message) for warning in told) == 2
-    assert model.warnings == [str(warning.message) for warning in told]
+    assert sum("skipped, since it is for simulators only" in str(warning.message) for warning in caught) == 2
+    assert model.warnings == [str(warning.message) for warning in caught]
 
 
 @needs_xacro
-def test_an_argument_that_nothing_asks_for_is_told(robot: Path) -> None:
-    with pytest.warns(UserWarning, match="does not ask for the argument 'sides', did you mean 'side'"):
+def test_an_unused_argument_is_reported(robot: Path) -> None:
+    with pytest.warns(UserWarning, match="does not use the argument 'sides', did you mean 'side'"):
         oo.Model.from_urdf(robot, package_paths=[packages(robot)], xacro_arguments={"sides": "right"})
 
 
 @needs_xacro
-def test_xacro_is_as_it_was_afterwards(robot: Path) -> None:
+def test_the_state_of_xacro_is_restored(robot: Path) -> None:
     import xacro
     from xacro import substitution_args
 
@@ -157,11 +156,11 @@ BODIES = {
     "unknown macro": ("<xacro:foo/>" + LINK.format("a", 1), ("xacro:foo",)),
     "missing package": (
         '<xacro:include filename="$(find arm_description)/arm.xacro"/>',
-        ("package 'arm_description' is not there", "package_paths="),
+        ("package 'arm_description' was not found", "package_paths="),
     ),
     "missing file of a package": (
         '<xacro:arg name="a" default="big"/><xacro:include filename="$(dirname)/$(arg a)/arm.xacro"/>',
-        ("/big/arm.xacro', which is not there",),
+        ("/big/arm.xacro', which does not exist",),
     ),
     "empty argument": (
         '<xacro:arg name="model" default=""/><xacro:include filename="$(find arm)/$(arg model)/a.xacro"/>',
@@ -173,18 +172,18 @@ BODIES = {
     ),
     "data of a missing package": (
         "<a b=\"${xacro.load_yaml('$(find arm_description)/a.yaml')}\"/>",
-        ("whose package 'arm_description' is not there", "package_paths="),
+        ("whose package 'arm_description' was not found", "package_paths="),
     ),
-    "missing file": ('<xacro:include filename="other.xacro"/>', ("'other.xacro'", "not there")),
-    "endless macro": ('<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/>', ("nested too deep",)),
-    "a file in itself": ('<xacro:include filename="$(dirname)/bad.xacro"/>', ("nested too deep",)),
-    "deep": ("<a>" * 3000 + "</a>" * 3000, ("nested too deep",)),
+    "missing file": ('<xacro:include filename="other.xacro"/>', ("'other.xacro'", "does not exist")),
+    "endless macro": ('<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/>', ("nested too deeply",)),
+    "a file in itself": ('<xacro:include filename="$(dirname)/bad.xacro"/>', ("nested too deeply",)),
+    "deep": ("<a>" * 3000 + "</a>" * 3000, ("nested too deeply",)),
     "no link": ("", ("no links",)),
     "macros alone": (
-        '<xacro:macro name="m"><link name="a"/></xacro:macro>', ("macros", "expand the file that calls them")
+        '<xacro:macro name="m"><link name="a"/></xacro:macro>', ("macros", "give the file that calls them")
     ),
     "python's own names": (LINK.format("${__import__('os').getcwd()}", 1), ("__import__",)),
-    "a joint that is none": (
+    "unknown kind of joint": (
         LINK.format("a", 1) + LINK.format("b", 1)
         + '<joint name="j" type="screw"><parent link="a"/><child link="b"/></joint>',
         ("'screw'", "prismatic and a revolute"),
@@ -194,7 +193,7 @@ BODIES = {
 
 @needs_xacro
 @pytest.mark.parametrize("name", BODIES)
-def test_what_does_not_expand_names_the_file(name: str, tmp_path: Path) -> None:
+def test_expansion_errors_name_the_file(name: str, tmp_path: Path) -> None:
     body, words = BODIES[name]
     file = tmp_path / "bad.xacro"
     file.write_text(HEAD + body + "</robot>")
@@ -202,8 +201,8 @@ def test_what_does_not_expand_names_the_file(name: str, tmp_path: Path) -> None:
 
 
 @needs_xacro
-def test_advice_names_what_the_caller_can_type(tmp_path: Path) -> None:
-    """The parameters of Python, the options of the command line, the keys of a scenario."""
+def test_fixes_are_suggested_in_the_callers_terms(tmp_path: Path) -> None:
+    """These are parameters of Python, options of the command line or keys of a scenario."""
     robot, scenario = tmp_path / "bad.xacro", tmp_path / "bad.yaml"
     scenario.write_text("name: a\nrobot: bad.xacro\nsimulation: {duration: 1, time_step: 0.1}\n")
     package, argument = '<xacro:include filename="$(find arm)/a"/>', '<a b="$(arg zz)"/>'
@@ -232,13 +231,13 @@ def test_advice_names_what_the_caller_can_type(tmp_path: Path) -> None:
         (b"<robot", "not XML"),
     ],
 )
-def test_files_that_are_no_xacro(content: bytes, word: str, tmp_path: Path) -> None:
+def test_files_that_are_not_xacro(content: bytes, word: str, tmp_path: Path) -> None:
     file = tmp_path / "bad.xacro"
     file.write_bytes(content)
     check(Bad(lambda: oo.Model.from_urdf(file), "ModelError", (str(file), word)))
 
 
-def test_files_that_are_not_there(tmp_path: Path) -> None:
+def test_missing_files_are_reported(tmp_path: Path) -> None:
     check(
         Bad(lambda: oo.Model.from_urdf(tmp_path / "no.xacro"), "NotFoundError", ("no.xacro", "no such file"))
     )
@@ -265,7 +264,7 @@ def test_a_package_with_macros_arguments_and_includes() -> None:
 
     def load(**arguments: object) -> oo.Model:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # they are looked at below
+            warnings.simplefilter("ignore")  # they are checked below
             return oo.Model.from_urdf(file, xacro_arguments=arguments)
 
     model = load()
@@ -280,8 +279,7 @@ def test_a_package_with_macros_arguments_and_includes() -> None:
         (np.linalg.inv(stage) @ latch)[:3, 3], [0, 0, 0.9 + 4 * 0.45 + 2 * 7], atol=1e-14
     )
     assert model.joints[0].upper == pytest.approx(np.radians(270), rel=1e-15)
-    told = model.warnings
-    assert any("long_arm.gazebo.xacro' is not there" in warning for warning in told)
-    assert any("<xacro:long_arm_gazebo>" in warning for warning in told)
-    assert any("8 mesh files not found" in warning for warning in told)
+    assert any("long_arm.gazebo.xacro' does not exist" in warning for warning in model.warnings)
+    assert any("<xacro:long_arm_gazebo>" in warning for warning in model.warnings)
+    assert any("8 mesh files not found" in warning for warning in model.warnings)
     assert len(load(simulated="false").warnings) == 1  # the meshes

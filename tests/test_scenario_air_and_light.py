@@ -1,4 +1,4 @@
-"""Drag and radiation pressure in YAML: one line each, and all that they can be told."""
+"""Drag and radiation pressure in YAML: one-line forms and all settings."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def scenario(*environment: Any, robot: Any = "humanoid_torso", **parts: Any) -> 
 
 
 def impulse(*environment: Any, **parts: Any) -> Any:
-    """Momentum after 10 ms beyond what gravity gives."""
+    """Returns the momentum after 10 ms without the contribution of gravity."""
     run = build(load(scenario(*environment, **parts))).simulation.run(0.01)
     without = build(load(scenario(**parts))).simulation.run(0.01)
     return np.array(run.momentum[-1]) - np.array(without.momentum[-1])
 
 
-def test_one_word_is_enough() -> None:
+def test_the_kind_alone_is_sufficient() -> None:
     drag, light = impulse("drag"), impulse("radiation_pressure")
     # a few tenths of a square metre, 4e-12 kg/m³, 7.2 km/s; 4.6 uPa
     assert 2e-7 < np.linalg.norm(drag[:3]) < 1e-5
@@ -48,7 +48,7 @@ def test_one_word_is_enough() -> None:
     assert np.linalg.norm(drag[3:]) > 1e-9
 
 
-def test_what_is_written_is_what_python_makes() -> None:
+def test_yaml_and_python_give_the_same_effects() -> None:
     plate = {"area": 0.1, "normal": [0, 0, 2], "centroid": ["10 cm", 0, 0]}
     yaml = {
         "kind": "drag", "atmosphere": {"kind": "nrlmsise00", "f107": 150, "f107a": 140, "ap": 12},
@@ -94,7 +94,7 @@ def test_every_atmosphere_slows_the_robot(atmosphere: Any) -> None:
     assert push @ velocity < -0.9 * np.linalg.norm(push) * np.linalg.norm(velocity)
 
 
-def test_light_takes_its_numbers() -> None:
+def test_radiation_pressure_uses_its_settings() -> None:
     body = {"rigid_body": {"mass": 10.0, "inertia": [1.0, 2.0, 2.5]}}
     ball = {"kind": "cannonball", "area": "2 m^2", "reflectivity": 1.5}
     one = impulse({"kind": "radiation_pressure", "surfaces": ball, "shadow": False}, robot=body)
@@ -105,7 +105,7 @@ def test_light_takes_its_numbers() -> None:
     assert np.linalg.norm(impulse(huge, robot=body)) <= np.linalg.norm(one)
 
 
-def test_a_table_of_space_weather_lies_beside_the_scenario(tmp_path: Path) -> None:
+def test_a_space_weather_table_is_found_beside_the_scenario(tmp_path: Path) -> None:
     (tmp_path / "sw.csv").write_text(
         "DATE,AP_AVG,F10.7_OBS,F10.7_OBS_CENTER81\n2024-02-29,12,150,139\n2024-03-01,12,151,140\n"
     )
@@ -133,15 +133,15 @@ def test_a_table_of_space_weather_lies_beside_the_scenario(tmp_path: Path) -> No
         (air(kind="constant", density=-1), {}, ScenarioError, "negative"),
         (air(kind="constant", density="1 kg"), {}, ScenarioError, "density"),
         ({"kind": "drag", "surfaces": {"kind": "cannonball", "area": -2}}, {}, ScenarioError, "negative"),
-        ({"kind": "drag", "surfaces": {"kind": "cannonball", "area": 2}}, {}, EffectError, "say which one"),
-        ({"kind": "drag", "surfaces": "faces", "bodies": {"torso": "faces"}}, {}, ScenarioError, "not both"),
+        ({"kind": "drag", "surfaces": {"kind": "cannonball", "area": 2}}, {}, EffectError, "name the one"),
+        ({"kind": "drag", "surfaces": "faces", "bodies": {"torso": "faces"}}, {}, ScenarioError, "both"),
         ({"kind": "drag", "bodies": {"torsso": "faces"}}, {}, OnOrbitError, "torso"),
         ({"kind": "radiation_pressure", "surfaces": SHINY}, {}, EffectError, "more than 1"),
         ("radiation_pressure", {"epoch": None}, EffectError, "epoch"),
-        ("drag", {"epoch": None}, EffectError, "how the Earth turns"),
+        ("drag", {"epoch": None}, EffectError, "rotation of the Earth"),
     ],
 )  # fmt: skip
-def test_refusals_say_where_and_what_to_do(environment: Any, parts: Any, error: Any, message: str) -> None:
+def test_errors_state_the_place_and_a_fix(environment: Any, parts: Any, error: Any, message: str) -> None:
     with pytest.raises(error, match=message) as caught:
         build(load(scenario(environment, **parts)))
     assert isinstance(caught.value, OnOrbitError)

@@ -1,4 +1,4 @@
-"""From a checked scenario to the engine: numbers arrive where they should, refusals keep their class."""
+"""Building the engine's objects from a scenario: values in SI, and errors of the engine."""
 
 from __future__ import annotations
 
@@ -59,21 +59,21 @@ def test_elements_reach_the_orbit_in_si() -> None:
         {"semi_major_axis": "-7200 km", "eccentricity": 2.1},
     ],
 )
-def test_every_form_of_elements_builds(size: dict[str, Any], phase: str) -> None:
+def test_every_form_of_elements_can_be_built(size: dict[str, Any], phase: str) -> None:
     position, velocity = orbit(**size, **ANGLES, **{phase: 0.2}).state(0.0)
     assert np.all(np.isfinite(position)) and np.all(np.isfinite(velocity))
     again = orbit(position=list(position), velocity=list(velocity))
     for got, want in zip(again.state(60.0), orbit(**size, **ANGLES, **{phase: 0.2}).state(60.0), strict=True):
-        np.testing.assert_allclose(got, want, rtol=1e-10)  # through the elements and back
+        np.testing.assert_allclose(got, want, rtol=1e-10)  # rounding of the conversion to elements and back
 
 
-def test_a_parabola_builds_from_its_semi_latus_rectum() -> None:
+def test_a_parabola_is_built_from_its_semi_latus_rectum() -> None:
     position, velocity = orbit(semi_latus_rectum="14000 km", eccentricity=1, periapsis_time=0).state(0.0)
     escape = np.sqrt(2.0 * oo.MU_EARTH / np.linalg.norm(position))
     assert np.linalg.norm(velocity) == pytest.approx(escape, rel=1e-12)
 
 
-def test_at_rest_in_the_local_orbital_frame_means_turning_with_it() -> None:
+def test_a_base_at_rest_in_the_local_orbital_frame_rotates_with_it() -> None:
     made = built(
         orbit={"kind": "kepler", "semi_major_axis": "7000 km", **ANGLES},
         initial={"frame": "lvlh", "position": [0, 2, 0], "attitude": {"roll_pitch_yaw": [0, 0, "90 deg"]}},
@@ -81,12 +81,12 @@ def test_at_rest_in_the_local_orbital_frame_means_turning_with_it() -> None:
     assert made.orbit is not None
     rot_il, rate = made.orbit.lvlh(0.0)
     np.testing.assert_allclose(made.q[:3], rot_il @ [0, 2, 0], atol=1e-14)
-    np.testing.assert_allclose(made.v[3:6], rate, atol=1e-18)  # the yaw turns about the axis of the rate
-    # A point 2 m along track of a frame that turns at n about z moves at -2 n along x: y in the yawed body.
+    np.testing.assert_allclose(made.v[3:6], rate, atol=1e-18)  # the yaw axis is the axis of the rate
+    # A point 2 m along track in a frame rotating at n about z moves at -2 n along x: body y after the yaw.
     np.testing.assert_allclose(made.v[:3], [0.0, 2.0 * rate[2], 0.0], atol=1e-17)
 
 
-def test_joints_by_name_are_joints_in_order() -> None:
+def test_joints_by_name_equal_joints_in_order() -> None:
     by_list = load("humanoid_reach")
     names = oo.robots.load("humanoid_torso").joint_names
     data = by_list.resolved()
@@ -103,7 +103,7 @@ def test_a_timed_wrench_gives_its_impulse() -> None:
     np.testing.assert_allclose(trace.momentum[-1, :3], [1.0, 0.0, 0.0], atol=1e-12)
 
 
-def test_gains_as_number_six_or_matrix_are_the_same_law() -> None:
+def test_gains_as_number_list_or_matrix_are_equivalent() -> None:
     data = load("humanoid_reach").resolved()
     data["simulation"] |= {"duration": 0.05}
     traces = []
@@ -129,7 +129,7 @@ def test_gains_as_number_six_or_matrix_are_the_same_law() -> None:
         ("- kind: gravity_gradient", "- {kind: body_wrench, body: nose}", FrameError, "environment[0]"),
     ],
 )
-def test_what_the_engine_refuses_keeps_its_class_and_gains_its_place(
+def test_errors_of_the_engine_keep_their_class_and_gain_a_place(
     tmp_path: Path, right: str, wrong: str, error: type[OnOrbitError], place: str
 ) -> None:
     (tmp_path / "folder.urdf").mkdir()
@@ -152,7 +152,7 @@ def test_what_the_engine_refuses_keeps_its_class_and_gains_its_place(
         ({"robot": 3}, "must be a bundled name"),
     ],
 )
-def test_a_scenario_made_in_python_complains_like_one_read(change: dict[str, Any], says: str) -> None:
+def test_a_scenario_made_in_python_has_the_same_errors(change: dict[str, Any], says: str) -> None:
     data: dict[str, Any] = {"robot": "humanoid_torso", "simulation": {"duration": "1 s"}} | change
     with pytest.raises(ScenarioError, match=says):
         oo.Scenario(**data)
@@ -160,7 +160,7 @@ def test_a_scenario_made_in_python_complains_like_one_read(change: dict[str, Any
         load(data)
 
 
-def test_the_resolved_scenario_holds_every_default() -> None:
+def test_the_resolved_scenario_contains_all_defaults() -> None:
     data = oo.Scenario(
         robot="humanoid_torso", tool="tool", orbit={"semi_major_axis": "6778 km"},
         controller="computed_torque", simulation={"duration": "1 s"},
@@ -172,7 +172,7 @@ def test_the_resolved_scenario_holds_every_default() -> None:
     assert data["reference"] == {"kind": "hold", "frame": "world"}
 
 
-def test_metres_on_a_joint_that_turns_are_refused() -> None:
+def test_metres_on_a_revolute_joint_are_rejected() -> None:
     data: dict[str, Any] = {"robot": "humanoid_torso", "simulation": {"duration": "1 s"}}
     joint = oo.robots.load("humanoid_torso").joint_names[0]
     for wrong in (
@@ -180,7 +180,7 @@ def test_metres_on_a_joint_that_turns_are_refused() -> None:
         {"joint_rates": {joint: "1 m/s"}},
         {"joints": ["30 m", *[0] * 6]},
     ):
-        with pytest.raises(OnOrbitError, match=f"{joint} turns, so"):
+        with pytest.raises(OnOrbitError, match=f"{joint} is revolute, so"):
             build(load(data | {"initial": wrong}))
     built = build(load(data | {"initial": {"joints": {joint: "30 deg"}}}))
     assert built.q[7] == pytest.approx(np.pi / 6)

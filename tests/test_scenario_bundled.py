@@ -1,4 +1,4 @@
-"""The bundled scenarios, whole: each certified by every check, the paper's experiment in its numbers."""
+"""Complete runs of the bundled scenarios: all certificates pass, and the paper's results are reproduced."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs.common.rotations import attitude_in_orbit
 from onorbit_rs.figures import subject_of
-from onorbit_rs.rotations import attitude_in_orbit
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 
@@ -40,19 +40,19 @@ def test_every_check_of_the_certificate_applies_and_passes(bundled: oo.Run) -> N
     assert bundled.summary["certificate_passed"], bundled.summary["certificate_failures"]
 
 
-def test_the_papers_reach_stays_within_its_numbers() -> None:
+def test_the_papers_reach_has_the_published_values() -> None:
     result = oo.run("humanoid_reach", quiet=True)
     summary, trace = result.summary, result.trace
     assert summary["tracking_position_error_max_m"] < 2e-5  # 1.3e-5 m: the torque is held over each step
     assert summary["tracking_attitude_error_max_rad"] < 1e-4  # 8.4e-5 rad, likewise
-    assert 0.95 < summary["joint_torque_max_nm"] <= 1.0  # fills the paper's range and does not leave it
+    assert 0.95 < summary["joint_torque_max_nm"] <= 1.0  # reaches the paper's range without exceeding it
     moved = trace.tool_pose[-1, :3, 3] - trace.tool_pose[0, :3, 3]
     np.testing.assert_allclose(moved, [0.5, 0.0, 0.0], atol=1e-9)
     assert summary["joint_rate_final_max_rad_s"] < 1e-4  # the null-space damping brings the arm to rest
     assert abs(trace.time[-1] - 6.0) < 1e-12
 
 
-def test_two_arms_reach_at_once() -> None:
+def test_two_arms_reach_simultaneously() -> None:
     result = oo.run("dual_arm_reach", quiet=True)
     for side in ("right", "left"):
         assert result.summary[f"tracking_{side}_position_error_max_m"] < 1e-5  # 4.0e-6 m and 1.1e-6 m
@@ -62,30 +62,30 @@ def test_two_arms_reach_at_once() -> None:
     moved = [result.model.frame_pose(q, f"{side}_tool")[[0, -1], :3, 3] for side in ("right", "left")]
     np.testing.assert_allclose(moved[0][1] - moved[0][0], [0.4, 0.0, 0.0], atol=1e-6)
     np.testing.assert_allclose(moved[1][1] - moved[1][0], [0.3, 0.1, 0.1], atol=1e-6)
-    assert result.summary["base_rotation_max_rad"] > 0.05  # and the torso does give way
-    # without its controller the left arm is limp
+    assert result.summary["base_rotation_max_rad"] > 0.05  # the torso does react
+    # without its controller the left arm has no torque
     data = load("dual_arm_reach").resolved()
     data["controllers"] = data["controllers"][:1]
     limp = oo.run(data, quiet=True).trace.q
     assert np.linalg.norm(limp[-1, 14:] - q[-1, 14:]) > 0.1
 
 
-def test_the_tool_meets_a_satellite_that_drifts_and_turns() -> None:
+def test_the_tool_meets_a_drifting_and_rotating_satellite() -> None:
     result = oo.run("approach_target", quiet=True)
     trace, t = result.trace, result.trace.time
     assert (
         result.summary["tracking_position_error_max_m"] < 1e-3
-    )  # 6e-4 m: it begins at rest beside what moves
+    )  # 6e-4 m: it starts at rest beside a moving target
     assert result.summary["tracking_position_error_final_m"] < 1e-8
     turn = np.radians(20.0 + 2.0 * t)  # of the satellite, about z
     normal = np.stack([-np.cos(turn), -np.sin(turn), np.zeros_like(t)], axis=1)
     place = np.array([0.54, -0.05, 0.5]) + np.outer(t, [0.0, 0.008, 0.0]) + 0.2 * normal
     off = np.linalg.norm(trace.tool_pose[:, :3, 3] - place, axis=1)
     assert off[0] > 0.4 and off[t >= 7.0].max() < 1e-6
-    assert np.linalg.norm(place[-1] - place[t >= 7.0][0]) > 0.02  # which moves meanwhile
+    assert np.linalg.norm(place[-1] - place[t >= 7.0][0]) > 0.02  # which moves during the run
 
 
-def test_a_controller_in_python_brings_the_arm_into_its_posture() -> None:
+def test_a_python_controller_moves_the_arm_to_its_posture() -> None:
     assert Path(oo.scenarios.path("python_controller")).with_suffix(".py").is_file()
     result = oo.run("python_controller", quiet=True)
     controller = result.scenario.resolved()["controller"]
@@ -94,7 +94,7 @@ def test_a_controller_in_python_brings_the_arm_into_its_posture() -> None:
     assert result.summary["joint_rate_final_max_rad_s"] < 1e-3
 
 
-def test_a_long_arm_inspects_a_station_and_leaves_its_attitude_alone() -> None:
+def test_a_long_arm_inspects_a_station_without_disturbing_its_attitude() -> None:
     result = oo.run("iss_like_inspection", quiet=True)
     trace, model = result.trace, result.model
     assert result.summary["tracking_position_error_max_m"] < 1e-4  # 7.6e-6 m
@@ -108,17 +108,17 @@ def test_a_long_arm_inspects_a_station_and_leaves_its_attitude_alone() -> None:
     assert least > 0.5  # never near a singularity
 
 
-def test_the_spacecraft_swings_about_the_local_vertical_and_comes_round_once() -> None:
+def test_the_spacecraft_librates_about_the_local_vertical() -> None:
     trace = oo.run("kepler_orbit", quiet=True).trace
     assert trace.position_eci is not None and trace.velocity_eci is not None
     angles = np.degrees(attitude_in_orbit(trace.q[:, 3:7], trace.position_eci, trace.velocity_eci))
     assert np.abs(angles).max() < 15.0  # stable: the long axis up, the largest moment across the orbit
-    assert angles[:, 2].max() > 5.0 and angles[:, 2].min() < -5.0  # and it does swing in the plane
+    assert angles[:, 2].max() > 5.0 and angles[:, 2].min() < -5.0  # it does librate in the plane
     apart = np.linalg.norm(trace.position_eci[-1] - trace.position_eci[0])
     assert apart < 10e3  # a second of flight: the period is 5553.6 s
 
 
-def test_the_limp_arm_swings_while_the_torso_tumbles() -> None:
+def test_the_unactuated_arm_swings_while_the_torso_tumbles() -> None:
     trace = oo.run("free_tumble", quiet=True).trace
     assert not np.any(trace.tau) and not np.any(trace.impulse)
     assert np.ptp(trace.q[:, 7:], axis=0).max() > 1.0
@@ -127,7 +127,7 @@ def test_the_limp_arm_swings_while_the_torso_tumbles() -> None:
     )
 
 
-def test_a_step_too_long_for_the_motion_is_not_certified() -> None:
+def test_a_step_too_long_for_the_motion_fails_the_certificate() -> None:
     data = load("free_tumble").resolved()
     data["simulation"] = {"duration": 10.0, "time_step": 0.1}
     summary = oo.run(data, quiet=True).summary
@@ -135,8 +135,8 @@ def test_a_step_too_long_for_the_motion_is_not_certified() -> None:
     assert "energy_balance_error_rel" in summary["certificate_failures"]
 
 
-def test_the_papers_reach_is_the_same_to_the_bit_without_its_epoch() -> None:
-    """It turns the Earth in pictures; neither the gravity gradient nor a point mass asks for it."""
+def test_the_papers_reach_has_the_same_bits_without_its_epoch() -> None:
+    """The epoch rotates the Earth in pictures; gravity gradient and point mass do not depend on it."""
     data = load("humanoid_reach").resolved()
     data["simulation"] |= {"duration": 0.2}
     with_epoch = build(load(data))
@@ -147,5 +147,5 @@ def test_the_papers_reach_is_the_same_to_the_bit_without_its_epoch() -> None:
     first, second = (built.simulation.run(0.2) for built in (with_epoch, without))
     for name in first.columns():
         np.testing.assert_array_equal(getattr(first, name), getattr(second, name), err_msg=name)
-    # runs of earlier versions, which had none, are still the paper's
+    # runs of earlier versions without an epoch still count as the paper's
     assert subject_of(second, without.scenario, without.model, without.orbit, None).is_the_papers

@@ -1,4 +1,4 @@
-"""Controllers from YAML: every kind, groups, times, goals, Python, and what does not fit."""
+"""Controllers in YAML: all kinds, joint groups, times, goals, Python, invalid input."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from onorbit_rs.exceptions import (
 )
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
-from onorbit_rs.scenario.make_control import group
+from onorbit_rs.scenario.control.selection import joint_group
 
 REST = [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]
 TASK_GAINS = {"kp": 100, "kd": 20, "null_space_damping": 2}
@@ -46,7 +46,7 @@ def two(*controls: dict[str, Any], **parts: Any) -> dict[str, Any]:
 
 
 def arm(side: str, **parts: Any) -> dict[str, Any]:
-    """A joint-space control that moves the first joint of an arm."""
+    """Returns a joint-space control that moves the first joint of an arm."""
     path = {"kind": "joint_waypoints", "points": [{f"{side}_joint_1": 0.6}], "times": [0.2]}
     return {"name": side, "joints": f"{side}_*", "reference": path} | JOINT | parts
 
@@ -69,7 +69,7 @@ def test_joint_computed_torque_follows_ramps_in_joint_space() -> None:
     np.testing.assert_allclose(result.trace.q[-1, 7:][others], np.array(REST)[others], atol=1e-5)
 
 
-def test_a_pid_holds_against_a_spin_and_respects_its_limit() -> None:
+def test_a_pid_resists_a_spin_within_its_limit() -> None:
     pid = {"kind": "joint_pid", "p": 5, "d": [1, 1, 1, 1, 0.1, 0.1, 0.05], "effort_limit": "100 mNm"}
     spin = {"joints": REST, "angular_velocity": [0, 0, "20 deg/s"]}
     result = run(one(controller=pid, initial=spin))
@@ -77,7 +77,7 @@ def test_a_pid_holds_against_a_spin_and_respects_its_limit() -> None:
     assert np.abs(result.trace.q[-1, 7:] - REST).max() < 0.1
 
 
-def test_efforts_are_commanded_as_they_are(tmp_path: Path) -> None:
+def test_efforts_are_applied_as_commanded(tmp_path: Path) -> None:
     names = oo.robots.load("humanoid_torso").joint_names
     header, zeros = ",".join(["time", *names]), ",".join(["0"] * (len(names) - 1))
     (tmp_path / "efforts.csv").write_text(f"{header}\n0,0.02,{zeros}\n0.25,0.02,{zeros}\n0.5,0.02,{zeros}\n")
@@ -88,7 +88,7 @@ def test_efforts_are_commanded_as_they_are(tmp_path: Path) -> None:
     np.testing.assert_allclose(tau[1:], np.broadcast_to([0.02, *[0.0] * 6], tau[1:].shape), atol=1e-15)
 
 
-def test_compliance_keeps_a_tool_where_it_is() -> None:
+def test_compliance_keeps_a_tool_at_its_pose() -> None:
     soft = {
         "kind": "compliance",
         "stiffness": ["200 N/m", "200 N/m", "0.2 N/mm", "5 N m/rad", 5, 5],
@@ -110,7 +110,7 @@ def test_compliance_keeps_a_tool_where_it_is() -> None:
     assert held.summary["tracking_position_error_final_m"] == pytest.approx(moved[0], rel=1e-6)
 
 
-def test_groups_move_side_by_side_and_apart_in_the_summary(tmp_path: Path) -> None:
+def test_groups_move_simultaneously_with_separate_summaries(tmp_path: Path) -> None:
     result = run(
         two(arm("right"), arm("left", goal={"tolerance": "0.1 deg", "time": 1})), out=tmp_path / "run"
     )
@@ -144,7 +144,7 @@ def crane(folder: Path, **parts: Any) -> dict[str, Any]:
     return one(**start, robot=str(folder / "crane.urdf"), **parts)
 
 
-def test_what_slides_is_in_metres_and_newtons_what_turns_in_radians(tmp_path: Path) -> None:
+def test_prismatic_joints_have_metres_and_newtons_revolute_joints_radians(tmp_path: Path) -> None:
     path = {"kind": "joint_waypoints", "points": [{"slide": 0.3}], "times": [0.3]}
     control = {"name": "arm", "joints": ["slide", "turn"], "reference": path} | JOINT
     result = run(crane(tmp_path, controllers=[control]))
@@ -158,7 +158,7 @@ def test_what_slides_is_in_metres_and_newtons_what_turns_in_radians(tmp_path: Pa
 
 
 @pytest.mark.parametrize("has_reference", [True, False])
-def test_a_single_controller_of_joints_tells_their_errors_as_in_a_list(
+def test_a_single_joint_controller_reports_errors_like_one_in_a_list(
     tmp_path: Path, has_reference: bool, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = {"kind": "joint_waypoints", "points": [{"slide": 0.3, "turn": 0.3}], "times": [0.3]}
@@ -170,20 +170,20 @@ def test_a_single_controller_of_joints_tells_their_errors_as_in_a_list(
     several = run(crane(tmp_path, controllers=[listed], environment=push)).summary
     print_summary(alone, None)
     printed = capsys.readouterr().out
-    assert "\njoint error, largest" in printed and "\nerror of a sliding joint, largest" in printed
+    assert "\njoint error, largest" in printed and "\nprismatic joint error, largest" in printed
     for unit in ("rad", "m"):
         assert alone[f"tracking_joint_error_max_{unit}"] > 1e-4
         assert alone[f"tracking_joint_error_max_{unit}"] == several[f"tracking_arm_joint_error_max_{unit}"]
 
 
-def test_a_name_in_brackets_is_a_name_before_it_is_a_pattern() -> None:
+def test_a_joint_name_with_brackets_is_matched_before_patterns() -> None:
     joints = ["a[x]", "ax", "b*", "bc"]
-    assert group(["a[x]"], joints) == ["a[x]"]
-    assert group(["b*"], joints) == ["b*"]
-    assert group(["a[xy]", "?c"], joints) == ["ax", "bc"]
+    assert joint_group(["a[x]"], joints) == ["a[x]"]
+    assert joint_group(["b*"], joints) == ["b*"]
+    assert joint_group(["a[xy]", "?c"], joints) == ["ax", "bc"]
 
 
-def test_joints_that_no_controller_drives_are_free() -> None:
+def test_joints_without_a_controller_are_free() -> None:
     result = run(two(arm("right", joints=["right_joint_1", "right_joint_[2-7]"])))
     left = [i for i, name in enumerate(result.model.joint_names) if name.startswith("left")]
     assert not result.trace.tau[:, left].any() and np.ptp(result.trace.q[:, 7:][:, left]) > 0.0
@@ -209,10 +209,10 @@ def test_controllers_follow_each_other_by_time_and_by_goal() -> None:
     driven = result.trace.time[np.abs(result.trace.tau[:, left]).max(axis=1) > 0.0]
     assert driven[0] >= 0.1 - 1e-9 and driven[-1] <= 0.2 + 1e-3 + 1e-9
     later = result.trace.time > 0.5
-    assert np.ptp(joint(result, "right_joint_1")[later]) < 1e-3  # held where the reach left it
+    assert np.ptp(joint(result, "right_joint_1")[later]) < 1e-3  # held at the end of the reach
 
 
-def test_a_path_tolerance_that_is_left_is_in_the_results() -> None:
+def test_a_violated_path_tolerance_is_in_the_results() -> None:
     strict = {"tolerance": 1, "path_tolerance": 1e-9}
     result = run(
         two(
@@ -256,13 +256,13 @@ def python(folder: Path, text: str = PYTHON, **controller: Any) -> Path:
     return file
 
 
-def test_a_controller_in_python_is_fresh_and_given_its_arguments(tmp_path: Path) -> None:
+def test_a_python_controller_is_constructed_for_each_run_with_its_arguments(tmp_path: Path) -> None:
     result = oo.run(python(tmp_path, arguments={"gain": 0.5}), quiet=True)
     np.testing.assert_allclose(result.trace.tau[:-1], -0.5 * result.trace.v[:-1, 6:], atol=1e-15)
     assert result.trace.kinetic_energy[-1] < result.trace.kinetic_energy[0]
 
 
-def test_a_module_that_can_be_imported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_controller_from_an_installed_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "a_module_of_mine.py").write_text(PYTHON)
     monkeypatch.syspath_prepend(tmp_path)
     result = run(one(controller={"kind": "python", "module": "a_module_of_mine", "class": "Damp"}))
@@ -278,7 +278,7 @@ class Push:
 """
 
 
-def test_a_controller_in_python_drives_its_group_beside_another(tmp_path: Path) -> None:
+def test_a_python_controller_drives_its_group_beside_another(tmp_path: Path) -> None:
     law = {
         "kind": "python",
         "file": str(tmp_path / "push.py"),
@@ -304,7 +304,7 @@ def test_a_controller_in_python_drives_its_group_beside_another(tmp_path: Path) 
         one(controller={"kind": "joint_pid", "p": 5, "d": 0.1, "interface": "position"}),
     ],
 )
-def test_a_resolved_scenario_says_the_same_again(data: dict[str, Any], tmp_path: Path) -> None:
+def test_a_resolved_scenario_resolves_to_itself(data: dict[str, Any], tmp_path: Path) -> None:
     first = run(data, out=tmp_path / "first")
     again = oo.run(tmp_path / "first" / "scenario.yaml", quiet=True)
     assert np.array_equal(first.trace.q, again.trace.q)
@@ -323,8 +323,8 @@ def test_a_resolved_scenario_finds_its_python_file_from_anywhere(tmp_path: Path)
     [
         ({"file": "none.py"}, PYTHON, NotFoundError, ("no such file", "none.py")),
         ({"class": "Dmap"}, PYTHON, ControlError, ("no class 'Dmap'", "did you mean 'Damp'")),
-        ({"class": "NoUpdate"}, PYTHON, ControlError, ("no update(t, state)",)),
-        ({"class": "Inherits"}, PYTHON, ControlError, ("no update(t, state)",)),
+        ({"class": "NoUpdate"}, PYTHON, ControlError, ("no method update(t, state)",)),
+        ({"class": "Inherits"}, PYTHON, ControlError, ("no method update(t, state)",)),
         ({"arguments": {"gain": -1}}, PYTHON, ControlError, ("raised ValueError: gain -1 is negative",)),
         ({"arguments": {"gian": 1}}, PYTHON, ControlError, ("Damp(...) of", "gian")),
         ({}, "import nothing_of_that_name", ControlError, ("mine.py", "ModuleNotFoundError")),
@@ -337,7 +337,7 @@ def test_a_resolved_scenario_finds_its_python_file_from_anywhere(tmp_path: Path)
         ),
     ],
 )
-def test_what_is_wrong_with_a_controller_in_python_is_said(
+def test_errors_of_a_python_controller_are_reported(
     controller: dict[str, Any], text: str, kind: type[OnOrbitError], words: tuple[str, ...], tmp_path: Path
 ) -> None:
     with pytest.raises(OnOrbitError) as caught:
@@ -348,7 +348,7 @@ def test_what_is_wrong_with_a_controller_in_python_is_said(
     assert "\n" not in message
 
 
-def test_what_update_raises_comes_out_as_itself(tmp_path: Path) -> None:
+def test_an_exception_of_update_is_re_raised_unchanged(tmp_path: Path) -> None:
     text = "class Damp:\n    def update(self, t, state):\n        raise KeyError('mine')\n"
     with pytest.raises(KeyError, match="mine"):
         oo.run(python(tmp_path, text), quiet=True)
@@ -376,7 +376,7 @@ class Ramp(oo.Controller):
 """
 
 
-def test_a_killed_run_of_several_goes_on_to_the_same_bits(tmp_path: Path) -> None:
+def test_a_killed_run_with_several_controllers_resumes_with_the_same_bits(tmp_path: Path) -> None:
     (tmp_path / "ramp.py").write_text(RAMP)
     ramp = {"name": "ramp", "joints": "left_*", "kind": "python", "file": "ramp.py", "class": "Ramp"}
     pid = {"name": "right", "joints": "right_*", "kind": "joint_pid", "p": 0.5, "i": 0.5, "d": 0.002}
@@ -384,6 +384,6 @@ def test_a_killed_run_of_several_goes_on_to_the_same_bits(tmp_path: Path) -> Non
     file = scenario_file(tmp_path, two(ramp, pid, simulation=settings))
     out = stopped_run(tmp_path, json.loads(file.read_text()), signal.SIGKILL)
     whole, again = oo.run(file, quiet=True).trace, oo.resume(out, quiet=True).trace
-    assert whole.tau[-1].max() > 3e-3  # the controller of ours counted on
+    assert whole.tau[-1].max() > 3e-3  # the Python controller continued to count
     assert np.array_equal(again.q, whole.q) and np.array_equal(again.tau, whole.tau)
     assert np.array_equal(again.tracking["right"], whole.tracking["right"])

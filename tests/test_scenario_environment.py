@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.rotations import attitude_in_orbit, matrix_from_quaternion
+from onorbit_rs.common.rotations import attitude_in_orbit, matrix_from_quaternion
 from onorbit_rs.scenario import Scenario, load
 
 # ETS-VII's numbers are as published
@@ -24,14 +24,14 @@ def run(name: str, change: Any = None, **simulation: Any) -> oo.Run:
 
 
 def center_of_mass(result: oo.Run) -> tuple[Any, Any]:
-    """Position and velocity of the centre of mass from the planet's centre, (T, 3) each."""
+    """Returns position and velocity of the centre of mass from the planet's centre, (T, 3) each."""
     trace = result.trace
     base = matrix_from_quaternion(trace.q[:, 3:7]) @ trace.v[:, :3, None]
     origin = trace.position_eci - trace.q[:, :3], trace.velocity_eci - base[..., 0]
     return origin[0] + trace.center_of_mass, origin[1] + trace.momentum[:, :3] / result.model.mass
 
 
-def test_hill_relative_flies_the_closed_form() -> None:
+def test_hill_relative_agrees_with_the_closed_form() -> None:
     result = run("hill_relative", record_every=20)
     t = result.trace.time
     chief = oo.Kepler(semi_major_axis=6778.137e3, inclination=np.radians(51.6))
@@ -44,31 +44,33 @@ def test_hill_relative_flies_the_closed_form() -> None:
 
     n = 2.0 * np.pi / chief.period
     print(f"hill: {off(n):.3f} m from the closed form")
-    assert off(n) < 0.05  # of second order in the distance: 0.02 m of 400
+    assert off(n) < 0.05  # second order in the distance: 0.02 m of 400
     assert off(1.01 * n) > 5.0  # negative control
-    # twice as long as high, and across the orbit as far as it began
+    # twice as long as high, and constant amplitude across the orbit
     high, wide, across = np.ptp(position, axis=0)
     assert wide / high == pytest.approx(2.0, rel=0.02)
     assert across == pytest.approx(2.0 * start[2], rel=0.02)
 
 
-SIDES = np.array([[2.0, 2.0, 2.0], [1.8, 4.8, 0.04], [1.8, 4.8, 0.04]])  # of body and wings, the same axes, m
+SIDES = np.array(
+    [[2.0, 2.0, 2.0], [1.8, 4.8, 0.04], [1.8, 4.8, 0.04]]
+)  # offsets of body and wings, common axes, m
 
 
 def test_geo_radiation_is_dark_for_an_hour_a_day() -> None:
     result = run("geo_radiation", record_every=6)
     trace = result.trace
-    felt = np.linalg.norm(trace.wrenches["radiation_pressure"][:, :, :3].sum(axis=1), axis=1)
-    dark = felt == 0.0
+    force = np.linalg.norm(trace.wrenches["radiation_pressure"][:, :, :3].sum(axis=1), axis=1)
+    dark = force == 0.0
     edges = np.flatnonzero(np.diff(dark.astype(int)))
     assert len(edges) == 4 and not dark[0], "one umbra a day"
     begins, ends = trace.time[edges[::2]], trace.time[edges[1::2]]
     print("geo:", (ends - begins) / 60.0, "min")
-    # through the middle: the disc of the Earth, 17.4 degrees, less the Sun's, 0.53, at 4 min a degree: 67 min
+    # central: disc of the Earth, 17.4 degrees, minus that of the Sun, 0.53, at 4 min per degree: 67 min
     assert np.all((ends - begins > 60.0 * 60.0) & (ends - begins < 70.0 * 60.0))
-    assert begins[1] - begins[0] == pytest.approx(86_164.0 + 236.0, abs=300.0)  # a day of the Sun
+    assert begins[1] - begins[0] == pytest.approx(86_164.0 + 236.0, abs=300.0)  # a solar day
 
-    # more than P A of base and wings, less than with all that is sent back: up to 1.4 of it, and the arm
+    # more than P A of base and wings, less than with full reflection (1.4 P A) and the arm
     earth = oo.Earth("2026-03-20T00:00:00 UTC")
     to_sun = earth.sun(trace.time) - trace.position_eci
     distance = np.linalg.norm(to_sun, axis=1)
@@ -76,13 +78,13 @@ def test_geo_radiation_is_dark_for_an_hour_a_day() -> None:
     in_body = np.einsum("tji,tj->ti", matrix_from_quaternion(trace.q[:, 3:7]), to_sun / distance[:, None])
     faces = SIDES[:, [1, 2, 0]] * SIDES[:, [2, 0, 1]]
     seen = np.abs(in_body) @ faces.sum(axis=0)
-    share = felt / (pressure * seen)
+    share = force / (pressure * seen)
     lit = ~dark & ~np.roll(dark, 20) & ~np.roll(dark, -20)  # away from the penumbra
     print("geo:", share[lit].min(), share[lit].max(), "P A")
     assert np.all((share[lit] > 1.0) & (share[lit] < 1.6))
 
 
-def test_leo_drag_tumble_loses_what_the_air_takes() -> None:
+def test_leo_drag_tumble_loses_the_work_of_drag() -> None:
     def without_air(data: Any) -> None:
         data["environment"] = [effect for effect in data["environment"] if effect["kind"] != "drag"]
 
@@ -90,7 +92,7 @@ def test_leo_drag_tumble_loses_what_the_air_takes() -> None:
     free = run("leo_drag_tumble", without_air, duration=1800.0)
 
     def energy(result: oo.Run) -> Any:
-        """Of the orbit, J: Kepler's and that of J₂, the same numbers for both."""
+        """Returns the orbital energy with J₂, J."""
         r, v = center_of_mass(result)
         d = np.linalg.norm(r, axis=1)
         j2 = 1.0826e-3 * (6378137.0 / d) ** 2 * (1.5 * (r[:, 2] / d) ** 2 - 0.5)
@@ -107,17 +109,19 @@ def test_leo_drag_tumble_loses_what_the_air_takes() -> None:
     assert taken[-1] < -1e5
     for row in (len(t) // 3, len(t) // 2, -1):
         assert lost[row] == pytest.approx(taken[row], rel=1e-4)
-    # it tumbles: wings meet the air edge on and face on
+    # while tumbling, the wings are edge on and face on to the air
     assert power.min() / power.max() > 2.0
 
 
-def test_iss_gravity_gradient_librates_in_its_period() -> None:
+def test_iss_gravity_gradient_librates_with_the_period_of_linear_theory() -> None:
     result = run("iss_gravity_gradient", record_every=10)
     trace, model = result.trace, result.model
     angles = attitude_in_orbit(trace.q[:, 3:7], trace.position_eci, trace.velocity_eci)
     assert np.degrees(np.abs(angles - [0.0, 0.0, np.pi / 2])).max() < 15.0
     torque = trace.wrenches["gravity_gradient"][:, :, 3:].sum(axis=1)
-    assert 0.1 < np.linalg.norm(torque, axis=1).max() < 1e3  # N m; 3 n² of 1e8 kg m² by degrees is some 20
+    assert (
+        0.1 < np.linalg.norm(torque, axis=1).max() < 1e3
+    )  # N m; 3 n² times 1e8 kg m² at angles of degrees is about 20
 
     # linear theory about the orbit's normal z, of the whole robot, x up: ω² = 3 n² (I_y - I_x)/I_z
     q = trace.q[0]
@@ -129,7 +133,7 @@ def test_iss_gravity_gradient_librates_in_its_period() -> None:
     expected = 2.0 * np.pi / (n * np.sqrt(3.0 * (y - x) / z))
 
     def left_over(period: float) -> float:
-        """What of the swing in the plane a sine of this period does not explain."""
+        """Returns the in-plane residual after fitting a sine of this period."""
         phase = 2.0 * np.pi / period * trace.time
         terms = np.stack([np.ones_like(phase), np.cos(phase), np.sin(phase)], axis=1)
         return float(np.linalg.lstsq(terms, angles[:, 2], rcond=None)[1][0])

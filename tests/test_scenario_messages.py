@@ -1,4 +1,4 @@
-"""What a user reads of a wrong scenario: the line, what was found, what is accepted, the way out."""
+"""Error messages of invalid scenarios: line, value found, accepted values, suggested fix."""
 
 from __future__ import annotations
 
@@ -8,12 +8,11 @@ from pathlib import Path
 import pytest
 
 from onorbit_rs import Model, robots, run, scenarios
+from onorbit_rs.common.suggestions import nearest
 from onorbit_rs.exceptions import ControlError, DtypeError, InputError, NotFoundError, OnOrbitError
-from onorbit_rs.names import nearest
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
-from onorbit_rs.scenario.control import ComputedTorqueController
-from onorbit_rs.scenario.make_control import law_of
+from onorbit_rs.scenario.control.computed_torque import ComputedTorqueController
 
 ROBOT = "robot: humanoid_torso\n"
 RUN = "simulation: {duration: 1 s}\n"
@@ -23,7 +22,7 @@ TARGET = LAW + "reference:\n  kind: hold\n  frame:\n    target:\n      velocity:
 LINE = LAW + "reference: {kind: line, duration: 1, goal: {displacement: [0.1, 0, 0]}"
 JOINTS = ROBOT + RUN
 
-# name: text, the line and place it is told with, words of the message
+# name: text, line and place in the message, words of the message
 WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "target, other word": (
         TARGET + "      angular_velocity: [0, 0, 0.1]\n",
@@ -53,25 +52,25 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "frame, misspelt": (
         LAW + "reference: {kind: hold, frame: wrold}\n",
         "5: reference.frame",
-        ("'wrold'", "did you mean 'world'?", "world, lvlh, base and {target: {position"),
+        ("'wrold'", "did you mean 'world'?", "world, lvlh, base, or {target: {position"),
     ),
     "frame, a list": (
         LAW + "reference: {kind: hold, frame: [1, 0, 0]}\n",
         "5: reference.frame",
-        ("[1, 0, 0] is no frame", "{target: {position"),
+        ("[1, 0, 0] is not a frame", "{target: {position"),
     ),
     "attitude, other word": (
         LAW + "initial: {attitude: {rpy: [0, 0, 0]}}\n",
         "5: initial.attitude.rpy",
         ("did you mean 'roll_pitch_yaw'?",),
     ),
-    "attitude, a list": (LAW + "initial: {attitude: [0, 0, 0, 1]}\n", "5: initial.attitude", ("say which",)),
+    "attitude, a list": (LAW + "initial: {attitude: [0, 0, 0, 1]}\n", "5: initial.attitude", ("write",)),
     "initial, other word": (
         LAW + "initial: {spin: [0, 0, 1]}\n",
         "5: initial.spin",
         ("did you mean 'angular_velocity'?",),
     ),
-    "a key that is there already": (
+    "a key that already exists": (
         LAW + "initial: {joint_rates: [1], joint_rate: [1]}\n",
         "5: initial.joint_rate",
         ("did you mean 'joints'?", "known are: frame"),
@@ -84,17 +83,17 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "kind of a reference, missing": (
         LAW + "reference: {duration: 1}\n",
         "5: reference",
-        ("needs a 'kind': hold, line_parabola, line,",),
+        ("requires a 'kind': hold, line_parabola, line,",),
     ),
     "kind of an effect, missing": (
         ORBIT + "environment:\n  - {body: base}\n",
         "7: environment[0]",
-        ("needs a 'kind': gravity_field,", "body_wrench"),
+        ("requires a 'kind': gravity_field,", "body_wrench"),
     ),
     "kind of a controller, missing": (
         JOINTS + "controllers: [{name: a}]\n",
         "3: controllers[0]",
-        ("needs a 'kind': computed_torque,",),
+        ("requires a 'kind': computed_torque,",),
     ),
     "kind, misspelt": (LAW + "orbit: {kind: keplr}\n", "5: orbit.kind", ("did you mean 'kepler'?",)),
     "kind, a number": (JOINTS + "controller: 5\n", "3: controller", ("'kind' (computed_torque", "not 5")),
@@ -116,10 +115,10 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "key of the orbit beside it": (
         ORBIT + "gravity_mode: carried\n",
         "6: gravity_mode",
-        ("unknown key; it belongs into 'orbit'",),
+        ("unknown key; it belongs in 'orbit'",),
     ),
-    "key of the simulation beside it": (ORBIT + "duration: 3 s\n", "6: duration", ("into 'simulation'",)),
-    "key of two parts beside them": (ORBIT + "attitude: 3\n", "6: attitude", ("into 'orbit' or 'initial'",)),
+    "key of the simulation beside it": (ORBIT + "duration: 3 s\n", "6: duration", ("in 'simulation'",)),
+    "key of two parts beside them": (ORBIT + "attitude: 3\n", "6: attitude", ("in 'orbit' or 'initial'",)),
     "kind beside all parts": (ORBIT + "kind: kepler\n", "6: kind", ("unknown key",)),
     "gain by its other name": (
         JOINTS + "controller: {kind: joint_pid, kp: 5}\n",
@@ -134,7 +133,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "two lines as a list": (
         LAW + "orbit:\n  kind: sgp4\n  tle:\n    - 1 25544U\n    - 2 25544\n",
         "7: orbit.tle",
-        ("must be one text: write 'tle: |'", "'line1' and 'line2'"),
+        ("must be a single text; write 'tle: |'", "'line1' and 'line2'"),
     ),
     "air, misspelt": (
         ORBIT + "environment: [{kind: drag, atmosphere: exponantial}]\n",
@@ -149,7 +148,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "index, too few": (
         ORBIT + "environment: [{kind: drag, atmosphere: {kind: nrlmsise00, ap: [1, 2]}}]\n",
         "6: environment[0].atmosphere.ap",
-        ("one number or seven, not 2",),
+        ("ap is a list of length 2; give one number (not in a list) or a list of seven",),
     ),
     "index, a word": (
         ORBIT + "environment: [{kind: drag, atmosphere: {kind: nrlmsise00, ap: high}}]\n",
@@ -159,7 +158,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "effects, no list": (
         ORBIT + "environment: gravity_gradient\n",
         "6: environment",
-        ("must be a list", "begin with '- '"),
+        ("must be a list", "start with '- '"),
     ),
     "effects, nothing": (ORBIT + "environment:\n", "6: environment", ("must be a list", "not nothing")),
     "force, no list": (
@@ -183,12 +182,12 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "rows, too few": (
         ROBOT + "simulation: {duration: 1, record_every: 5000}\n",
         "2: simulation.record_every",
-        ("5000 is more than the 1000 steps", "at most 1000"),
+        ("5000 exceeds the 1000 steps", "at most 1000"),
     ),
     "rows, a switch": (
         ROBOT + "simulation: {duration: 1, record_every: true}\n",
         "2: simulation.record_every",
-        ("a whole number is needed",),
+        ("give an integer",),
     ),
     "elements by their letters": (
         LAW + "orbit: {a: 7000 km}\n",
@@ -198,9 +197,9 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "light without an orbit": (
         LAW + "environment: [radiation_pressure]\n",
         "5: environment[0]",
-        ("radiation pressure needs an 'orbit'",),
+        ("radiation pressure requires an orbit",),
     ),
-    "a unit that is none": (
+    "unknown unit": (
         ROBOT + "simulation: {duration: 5 sec}\n",
         "2: simulation.duration",
         ("unknown unit 'sec';", "s, ms, us, min"),
@@ -208,10 +207,10 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no points": (
         LAW + "reference: {kind: waypoints, points: [], speed: 1}\n",
         "5: reference.points",
-        ("has 0 entries, needs at least 1",),
+        ("has 0 entries, expected at least 1",),
     ),
-    "a quote left open": ("robot: 'humanoid\n" + RUN, "3", ("broken YAML", "is a quote left open?")),
-    "a sign of YAML's": ("robot: @torso\n" + RUN, "1", ("'@'", "wants quotes")),
+    "a quote left open": ("robot: 'humanoid\n" + RUN, "3", ("invalid YAML", "is a quote not closed?")),
+    "a sign of YAML's": ("robot: @torso\n" + RUN, "1", ("'@'", "in quotes")),
     "integrator": (
         ROBOT + "simulation: {duration: 1, integrator: euler}\n",
         "2: simulation.integrator",
@@ -220,7 +219,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "tolerance, too large": (
         ROBOT + "simulation: {duration: 1, tolerance: 1}\n",
         "2: simulation.tolerance",
-        ("above 0.1, the most",),
+        ("above the maximum, 0.1",),
     ),
     "tolerance, a word": (
         ROBOT + "simulation: {duration: 1, tolerance: tight}\n",
@@ -246,24 +245,24 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "times of points": (
         LAW + "reference: {kind: waypoints, times: [1, 2], points: [{displacement: [0, 0, 0]}]}\n",
         "5: reference",
-        ("times has 2 entries for 1 point:",),
+        ("times has 2 entries for 1 point;",),
     ),
     "times of moves": (
         JOINTS
         + "controller: joint_computed_torque\nreference:\n  kind: joint_ramps\n  times: [1, 2]\n"
         + "  moves: [{joint: arm_joint_1, to: 1}]\n",
         "4: reference",
-        ("times has 2 entries for 1 move:",),
+        ("times has 2 entries for 1 move;",),
     ),
     "one entry": (
         JOINTS + "initial: {position: [1]}\n",
         "3: initial.position",
-        ("has 1 entry, needs 3",),
+        ("has 1 entry, expected 3",),
     ),
     "a step of no time": (
         ROBOT + "simulation: {duration: 1e-298, time_step: 1e-300}\n",
         "2: simulation",
-        ("time_step is 1e-300 s, steps of 1e-12 s to 1e9 s are accepted",),
+        ("time_step is 1e-300 s; it must be between 1e-12 and 1e9 s",),
     ),
     "a spin beyond all": (
         JOINTS + "initial: {angular_velocity: [1e200, 0, 0]}\n",
@@ -283,7 +282,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no gains": (
         JOINTS + "controller: joint_pid\n",
         "3: controller",
-        ("without gains does nothing", "'p', 'i' or 'd'"),
+        ("has no gains", "'p', 'i' or 'd'"),
     ),
     "name of a controller": (
         JOINTS + "controllers: [{kind: joint_pid, p: 1, name: a b}]\n",
@@ -294,23 +293,23 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "keys merged": (
         ROBOT + "simulation:\n  <<: {duration: 1}\n",
         "3",
-        ("'<<'", "write it out"),
+        ("'<<'", "write the keys"),
     ),
-    "a tab": (ROBOT + "simulation:\n\tduration: 5\n", "3", ("broken YAML", "with spaces, not with tabs")),
-    "a colon left out": ("robot humanoid_torso\n" + RUN, "2", ("broken YAML", "is a ':' missing above")),
-    "two scenarios": (JOINTS + "---\n" + JOINTS, "3", ("broken YAML", "a file holds one scenario")),
-    "an alias of nothing": (ROBOT + "simulation: *run\n", "2", ("'run'", "its '&' must stand above it")),
-    "a tag": ("robot: !robot x\n" + RUN, "1", ("'!robot'", "values are plain")),
+    "a tab": (ROBOT + "simulation:\n\tduration: 5\n", "3", ("invalid YAML", "with spaces instead of tabs")),
+    "a colon left out": ("robot humanoid_torso\n" + RUN, "2", ("invalid YAML", "is a ':' missing above")),
+    "two scenarios": (JOINTS + "---\n" + JOINTS, "3", ("invalid YAML", "a file contains one scenario")),
+    "an alias of nothing": (ROBOT + "simulation: *run\n", "2", ("'run'", "define it with '&' above")),
+    "a tag": ("robot: !robot x\n" + RUN, "1", ("'!robot'", "tags ('!') are not supported")),
     "a bracket left open": (
         ROBOT + "initial: {joints: [1, 2\n" + RUN,
         "3",
-        ("broken YAML", "bracket or brace left open"),
+        ("invalid YAML", "bracket or brace not closed"),
     ),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_a_wrong_scenario_is_told_with_its_line_and_the_way_out(tmp_path: Path, name: str) -> None:
+def test_an_invalid_scenario_is_reported_with_line_and_fix(tmp_path: Path, name: str) -> None:
     text, place, words = WRONG[name]
     file = tmp_path / "mine.yaml"
     file.write_text(text)
@@ -323,7 +322,7 @@ def test_a_wrong_scenario_is_told_with_its_line_and_the_way_out(tmp_path: Path, 
     assert "more)" not in message and "\n" not in message and "pydantic" not in message.lower(), message
 
 
-def test_a_tool_on_few_joints_is_told_which_laws_do_without() -> None:
+def test_a_tool_on_few_joints_is_reported_with_suitable_control_laws() -> None:
     hinge = (
         "<robot name='r'>"
         + "".join(
@@ -334,45 +333,48 @@ def test_a_tool_on_few_joints_is_told_which_laws_do_without() -> None:
         + "<joint name='j' type='continuous'><parent link='base'/><child link='hand'/></joint></robot>"
     )
     model = Model.from_urdf_string(hinge)
-    with pytest.raises(ControlError, match=r"moved by 1 joint.*take joint_computed_torque.*or compliance"):
-        law_of(ComputedTorqueController(), "hand", model, Path())
-    with pytest.raises(ControlError) as caught:  # control: a wrong gain is another matter
-        law_of(ComputedTorqueController(kp=-1.0), "tool", robots.load("humanoid_torso"), Path())
+    with pytest.raises(ControlError, match=r"moved by 1 joint.*use joint_computed_torque.*or compliance"):
+        ComputedTorqueController().build_law(model, "hand", Path())
+    with pytest.raises(ControlError) as caught:  # negative control: a wrong gain has another message
+        ComputedTorqueController(kp=-1.0).build_law(robots.load("humanoid_torso"), "tool", Path())
     assert "compliance" not in str(caught.value)
 
 
-def test_an_empty_scenario_tells_how_to_begin(tmp_path: Path) -> None:
+def test_an_empty_scenario_suggests_how_to_start(tmp_path: Path) -> None:
     (tmp_path / "empty.yaml").write_text("# nothing yet\n")
-    with pytest.raises(OnOrbitError, match="this is empty; onorbit new writes one"):
+    with pytest.raises(
+        OnOrbitError,
+        match=r"this is empty; a scenario must be a mapping of keys to values \(onorbit new writes",
+    ):
         load(tmp_path / "empty.yaml")
 
 
 @pytest.mark.parametrize(
     "extra", ["controller: {kind: joint_pid, p: 0}\n", "controller: {kind: joint_pid, i: 1}\n"]
 )
-def test_gains_that_are_given_are_taken(tmp_path: Path, extra: str) -> None:
-    """Also zero: a sweep of gains may begin there, and what a run writes out is read back."""
+def test_given_gains_are_accepted(tmp_path: Path, extra: str) -> None:
+    """Zero is accepted, too: a sweep of gains may start there, and resolved scenarios contain it."""
     (tmp_path / "mine.yaml").write_text(JOINTS + extra)
     scenario = load(tmp_path / "mine.yaml")
     assert load(scenario.resolved()).resolved() == scenario.resolved()
 
 
 @pytest.mark.parametrize("source", [5, None, ["humanoid_reach"]])
-def test_what_is_no_scenario_at_all_is_told(source: object) -> None:
+def test_arguments_that_are_not_scenarios_are_reported(source: object) -> None:
     with pytest.raises(
-        DtypeError, match=r"\((int|NoneType|list)\) is no scenario: give a bundled name"
+        DtypeError, match=r"\((int|NoneType|list)\) is not a scenario; give a bundled name"
     ) as caught:
         run(source, quiet=True)  # type: ignore[arg-type]  # that is what is tested
     assert isinstance(caught.value, TypeError)
 
 
-def test_a_bundled_scenario_of_no_such_name_suggests_the_nearest() -> None:
+def test_an_unknown_bundled_scenario_suggests_the_nearest_name() -> None:
     with pytest.raises(NotFoundError, match="did you mean 'humanoid_reach'"):
         scenarios.path("humanoid_rech")
     assert scenarios.path("humanoid_reach").is_file()
 
 
-def test_a_part_of_one_name_is_near_it() -> None:
+def test_a_part_of_a_name_suggests_it() -> None:
     integrators = ("rk4", "semi_implicit_euler", "dormand_prince")
     assert nearest("euler", integrators) == "semi_implicit_euler"
     assert nearest("prince", integrators) == "dormand_prince"
@@ -383,6 +385,6 @@ def test_a_part_of_one_name_is_near_it() -> None:
 @pytest.mark.parametrize(
     "every", ["5", None, True, -1.0, float("nan"), float("inf"), pytest.param(10**400, id="vast")]
 )
-def test_a_period_of_checkpoints_that_is_none_is_told(every: object) -> None:
-    with pytest.raises(InputError, match=r"checkpoint_every is .* it must be finite, zero or positive"):
+def test_an_invalid_checkpoint_interval_is_reported(every: object) -> None:
+    with pytest.raises(InputError, match=r"checkpoint_every is .* it must be finite and at least zero"):
         run("free_tumble", quiet=True, checkpoint_every=every)  # type: ignore[arg-type]  # that is what is tested

@@ -1,4 +1,4 @@
-"""Orbits of every kind in a scenario: read, refused with file and line, written so that they run again."""
+"""All kinds of orbits in a scenario: reading, errors with file and line, resolved scenarios."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_one_of_several_sets_is_chosen_by_name_or_number(satellite: Any, tmp_pat
     for other, says in [("VANGARD", "did you mean 'VANGUARD 1'"), (None, "by 'satellite'")]:
         with pytest.raises(ElementSetError, match=says):
             orbit_of(written(tmp_path, {"kind": "sgp4", "tle_file": "all.tle", "satellite": other}))
-    with pytest.raises(ElementSetError, match="holds 2 sets"):
+    with pytest.raises(ElementSetError, match="contains 2 sets"):
         orbit_of(scenario({"kind": "sgp4", "tle": text * 2, "satellite": satellite}))
 
 
@@ -85,13 +85,15 @@ def test_one_of_several_messages_is_chosen_by_name(tmp_path: Path) -> None:
     orbit = {"kind": "sgp4", "omm_file": "all.csv", "satellite": "vanguard 1", "propagator": "reference"}
     made = orbit_of(written(tmp_path, orbit))
     np.testing.assert_allclose(made.state(60.0)[0], oo.Sgp4(LINE1, LINE2).state(60.0)[0], rtol=1e-13)
-    with pytest.raises(ElementSetError, match="2 messages: give one, or in a scenario its 'satellite'"):
+    with pytest.raises(
+        ElementSetError, match="2 messages; give one, or select one in a scenario with 'satellite'"
+    ):
         orbit_of(written(tmp_path, {"kind": "sgp4", "omm_file": "all.csv"}))
 
 
-def test_points_come_with_units_or_from_a_file_beside_the_scenario(tmp_path: Path) -> None:
+def test_points_have_units_or_come_from_a_file_beside_the_scenario(tmp_path: Path) -> None:
     (tmp_path / "path.csv").write_text(CSV)
-    carried = {"gravity_mode": "carried"}  # straight on: no gravity flies that
+    carried = {"gravity_mode": "carried"}  # a straight line is inconsistent with gravity
     from_file = orbit_of(
         written(tmp_path, {"kind": "custom_path", "file": "path.csv", "mu": oo.MU_EARTH} | carried)
     )
@@ -114,16 +116,20 @@ def test_points_come_with_units_or_from_a_file_beside_the_scenario(tmp_path: Pat
     ("text", "error", "says"),
     [
         (CSV.replace("vx", "ux"), ReadError, "path.csv:1: unknown column 'ux'"),
-        (CSV.replace("vx", "x"), ReadError, "path.csv:1: the column 'x' is named twice"),
-        (CSV.replace(",vz", ""), ReadError, "path.csv:1: velocities: no column vz"),
+        (CSV.replace("vx", "x"), ReadError, "path.csv:1: column 'x' occurs more than once"),
+        (CSV.replace(",vz", ""), ReadError, "path.csv:1: velocities: missing vz"),
         (CSV.replace("75000,0,0", "75000,zero,0"), ReadError, "path.csv:4: could not convert"),
-        (CSV.replace("10,7e6,75000,0,0,7500,0", "10,7e6"), ReadError, "path.csv:4: 2 cells under 7 columns"),
-        ("", ReadError, "path.csv:1: times: no column t"),
+        (
+            CSV.replace("10,7e6,75000,0,0,7500,0", "10,7e6"),
+            ReadError,
+            "path.csv:4: the row has 2 cells, expected 7",
+        ),
+        ("", ReadError, "path.csv:1: times: missing t"),
         ("t,x,y,z\n", PathError, "at least 2"),
         (CSV.replace("20,7e6", "5,7e6"), PathError, "times must increase"),
     ],
 )
-def test_a_broken_file_of_points_says_its_line(
+def test_an_invalid_point_file_is_reported_with_its_line(
     text: str, error: type[OnOrbitError], says: str, tmp_path: Path
 ) -> None:
     (tmp_path / "path.csv").write_text(text)
@@ -137,7 +143,7 @@ def test_a_broken_file_of_points_says_its_line(
     [
         ({"kind": "sgp4", "line1": LINE1}, ScenarioError, "both 'line1' and 'line2'"),
         ({"kind": "sgp4"}, ScenarioError, "give one element set"),
-        ({"kind": "sgp4", "tle": LINE1}, ElementSetError, "holds 1 line:"),
+        ({"kind": "sgp4", "tle": LINE1}, ElementSetError, "contains 1 line;"),
         ({"kind": "sgp4", "tle_file": "none.txt"}, NotFoundError, "none.txt"),
         ({"kind": "sgp4", "line1": LINE1, "line2": LINE2 + "7"}, ElementSetError, "70 columns"),
         ({"kind": "sgp4", "line1": LINE1, "line2": LINE2, "gravity": "wgs27"}, ScenarioError, "'wgs72'"),
@@ -149,10 +155,10 @@ def test_a_broken_file_of_points_says_its_line(
         ({"kind": "custom_path", "times": [0, 0], "positions": [[0, 0, 0]] * 2}, PathError, "increase"),
         ({"kind": "custom_path", "times": [0, "1 m"], "positions": [[0, 0, 0]] * 2}, ScenarioError, "a time"),
         ({"kind": "fixed_frame", "gravity_mode": "free"}, ScenarioError, "'carried'"),
-        ({"kind": "fixed_frame", "mu": -1}, ScenarioError, "not above zero"),
+        ({"kind": "fixed_frame", "mu": -1}, ScenarioError, "it must be above zero"),
     ],
 )
-def test_orbits_without_sense_say_where_they_stand(
+def test_invalid_orbits_are_reported_with_their_place(
     orbit: Any, error: type[OnOrbitError], says: str, tmp_path: Path
 ) -> None:
     with pytest.raises(error, match=says) as caught:
@@ -160,14 +166,14 @@ def test_orbits_without_sense_say_where_they_stand(
     assert "mine.yaml:" in str(caught.value)
 
 
-def test_a_path_too_short_for_the_run_is_told_before_it_runs(tmp_path: Path) -> None:
+def test_a_path_too_short_for_the_run_is_reported_before_the_run(tmp_path: Path) -> None:
     orbit = {"kind": "custom_path", "times": [0.05, 9.0], "positions": [[0, 0, 0], [1, 0, 0]]}
     with pytest.raises(PathError, match=r"mine\.yaml:.*give times that cover the run"):
         orbit_of(written(tmp_path, orbit))
 
 
 @pytest.mark.parametrize("kind", ["custom_path", "fixed_frame", "sgp4", "standing"])
-def test_the_folder_of_a_run_runs_again_and_says_what_it_flew(kind: str, tmp_path: Path) -> None:
+def test_the_resolved_scenario_of_a_run_contains_its_orbit(kind: str, tmp_path: Path) -> None:
     (tmp_path / "path.csv").write_text(CSV)
     (tmp_path / "set.txt").write_text(f"{LINE1}\n{LINE2}\n")
     orbits: dict[str, Any] = {
@@ -187,7 +193,7 @@ def test_the_folder_of_a_run_runs_again_and_says_what_it_flew(kind: str, tmp_pat
     assert (tmp_path / "out" / "run.rrd").stat().st_size > 1000
 
 
-def test_a_start_relative_to_the_path_turns_with_it() -> None:
+def test_an_initial_state_relative_to_the_path_rotates_with_it() -> None:
     orbit = {
         "kind": "custom_path", "times": [0, 1, 2], "positions": [[0, 0, 0], [1, 0, 0], [2, 0, 0]],
         "attitudes": [[0, 0, np.sin(t / 4), np.cos(t / 4)] for t in (0, 1, 2)],

@@ -1,4 +1,4 @@
-"""Bad scenario files: each is one clear line with file, line and place, and none runs."""
+"""Invalid scenario files: each error is one line with file, line and place."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ def _line_of(text: str, part: str) -> int:
         ("kind: kepler", "kind: keplr", "orbit.kind", "'kepler'"),
         ("kind: computed_torque", "kind: magic", "controller.kind", "computed_torque"),
         ("51.6 deg", "51.6 km", "orbit.inclination", "is not an angle"),
-        ("duration: 6 s", "duration: 0 s", "simulation.duration", "not above zero"),
-        ("time_step: 1 ms", "time_step: -1 ms", "simulation.time_step", "not above zero"),
-        ("time_step: 1 ms", "time_step: 0", "simulation.time_step", "not above zero"),
+        ("duration: 6 s", "duration: 0 s", "simulation.duration", "it must be above zero"),
+        ("time_step: 1 ms", "time_step: -1 ms", "simulation.time_step", "it must be above zero"),
+        ("time_step: 1 ms", "time_step: 0", "simulation.time_step", "it must be above zero"),
         ("kp: 100", "kp: [100, 100]", "controller.kp", "6 x 6"),
         ("kp: 100", "kp: .nan", "controller.kp", "not a finite number"),
         ("kp: 100", "kp: true", "controller.kp", "is not"),
@@ -59,7 +59,7 @@ def _line_of(text: str, part: str) -> int:
             "displacement: [0.5, 0, 0]",
             "displacement: [0.5, 0]",
             "reference.displacement",
-            "has 2 entries, needs 3",
+            "has 2 entries, expected 3",
         ),
         ("eccentricity: 0.0005", "eccentricity: -0.1", "orbit.eccentricity", "negative"),
         ("joints: [0.5342", "joints: ['0.5 s'", "initial.joints", "not an angle or a length"),
@@ -86,27 +86,31 @@ def test_a_wrong_entry_is_named_with_its_line(
         ("  semi_major_axis: 6778 km", "", "exactly one of 'semi_major_axis'"),
         ("  mean_anomaly: 0 deg", "  velocity: [0, 1, 0]", "both 'position' and 'velocity'"),
         ("orbit:   ", "no: 1\norbit: ", "unknown key"),
-        ("tool: tool ", "", "name it with 'tool'"),
+        ("tool: tool ", "", "'tool' is missing"),
         ("robot: humanoid_torso", "robot: {}", "exactly one of 'bundled'"),
-        ("robot: humanoid_torso", "robot: {rigid_body: {mass: -1, inertia: [1, 1, 1]}}", "not above zero"),
+        (
+            "robot: humanoid_torso",
+            "robot: {rigid_body: {mass: -1, inertia: [1, 1, 1]}}",
+            "it must be above zero",
+        ),
         ("robot: humanoid_torso", "robot: {rigid_body: {mass: 1, inertia: [1, 1]}}", "three numbers"),
         ("  duration: 6 s", "  duration: 6 s\n  duration: 7 s", "given twice"),
-        ("  time_step: 1 ms", "  time_step: 7 s", "longer than the duration"),
+        ("  time_step: 1 ms", "  time_step: 7 s", "exceeds the duration"),
         ("  time_step: 1 ms", "  time_step: 1e-15", "steps"),
         ("  time_step: 1 ms", "  time_step: 1e-8", "record_every"),
-        ("  time_step: 1 ms", "  record_every: 0", "0 is below 1"),
-        ("initial: ", "initial: {attitude: {quaternion_xyzw: [0, 0, 0, 1.1]}} #", "broken YAML"),
+        ("  time_step: 1 ms", "  record_every: 0", "0 is below the minimum, 1"),
+        ("initial: ", "initial: {attitude: {quaternion_xyzw: [0, 0, 0, 1.1]}} #", "invalid YAML"),
     ],
 )
-def test_what_makes_no_sense_is_refused(tmp_path: Path, right: str, wrong: str, says: str) -> None:
+def test_contradicting_scenarios_are_rejected(tmp_path: Path, right: str, wrong: str, says: str) -> None:
     assert right in REACH
     assert says in str(_refusal(tmp_path, REACH.replace(right, wrong)))
 
 
-def test_quaternion_off_unit_norm_is_refused() -> None:
+def test_a_quaternion_without_unit_norm_is_rejected() -> None:
     data = load("free_tumble").resolved()
     data["initial"]["attitude"] = {"quaternion_xyzw": [0.0, 0.0, 0.0, 1.0 + 2e-6]}
-    with pytest.raises(ScenarioError, match="off 1 by more than 1e-6"):
+    with pytest.raises(ScenarioError, match="it must be 1 within 1e-6"):
         load(data)
     data["initial"]["attitude"] = {"quaternion_xyzw": [0.0, 0.0, 0.0, 1.0 + 5e-7]}
     assert load(data).initial.attitude is not None
@@ -115,28 +119,28 @@ def test_quaternion_off_unit_norm_is_refused() -> None:
 @pytest.mark.parametrize(
     ("raw", "says"),
     [
-        (b"\x89PNG\r\n\x1a\n\xff", "binary"),
+        (b"\x89PNG\r\n\x1a\n\xff", "not UTF-8 text"),
         (b"a\0b", "binary"),
         (b"", "this is empty"),
         (b"- 1\n- 2\n", "this is a list"),
         (b"42", "this is a int"),
-        (b"orbit: [kepler", "broken YAML"),
-        (b"tab:\n\t- x: 1", "broken YAML"),
+        (b"orbit: [kepler", "invalid YAML"),
+        (b"tab:\n\t- x: 1", "invalid YAML"),
         (b"robot: *nope", "undefined alias"),
-        (b"a: !!python/object:os.system x", "broken YAML"),
+        (b"a: !!python/object:os.system x", "invalid YAML"),
         (b"1: 2", "a key must be text"),
         (b"[" * 5000, "nested too deeply"),
         (b"a: &a [*a]", "nested too deeply"),
-        (ALIAS_BOMB, "aliases counted"),
+        (ALIAS_BOMB, "including those of aliases"),
         (b"#" * 4_000_001, "larger than"),
         (b"a: " + b"9" * 5000, "digits"),
     ],
 )  # fmt: skip
-def test_what_is_no_yaml_is_refused(tmp_path: Path, raw: bytes, says: str) -> None:
+def test_invalid_yaml_is_rejected(tmp_path: Path, raw: bytes, says: str) -> None:
     assert says in str(_refusal(tmp_path, raw))
 
 
-def test_several_complaints_make_one_line(tmp_path: Path) -> None:
+def test_several_errors_are_reported_in_one_line(tmp_path: Path) -> None:
     error = _refusal(tmp_path, REACH.replace("51.6 deg", "51.6 m").replace("kd: 20", "kd: twenty"))
     assert error.path == "orbit.inclination"
     assert str(error).endswith("(and 1 more)")
@@ -185,3 +189,17 @@ def test_a_kind_alone_is_its_mapping() -> None:
     data = load("humanoid_reach").resolved()
     data["environment"] = ["gravity_gradient"]
     assert load(data).resolved()["environment"] == [{"kind": "gravity_gradient"}]
+
+
+def test_the_former_key_plant_means_engine(tmp_path: Path) -> None:
+    file = tmp_path / "former.yaml"
+    file.write_text("robot: humanoid_torso\nplant: native\nsimulation: {duration: 1 s}\n")
+    former = load(file)
+    assert former.engine == "native" and "plant" not in former.resolved()
+    assert Scenario(robot="humanoid_torso", simulation={"duration": 1.0}, plant="native").engine == "native"
+    file.write_text("robot: humanoid_torso\nplant: bullet\nsimulation: {duration: 1 s}\n")
+    with pytest.raises(ScenarioError, match=r"former.yaml:2: engine: 'bullet' is not one of"):
+        load(file)
+    file.write_text("robot: humanoid_torso\nengine: native\nsimulation: {duration: 1 s}\nplant: native\n")
+    with pytest.raises(ScenarioError, match=r"former.yaml:4: plant: .*former name of 'engine'"):
+        load(file)

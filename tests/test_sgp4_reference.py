@@ -16,7 +16,7 @@ import onorbit_rs as oo
 from onorbit_rs.exceptions import ElementSetError, InputError, Sgp4Error
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
-from onorbit_rs.validation.sgp4 import sets
+from onorbit_rs.tools.validation.sgp4 import sets
 
 SOUND = [elements for elements in sets() if elements.rows]
 LOW = next(elements for elements in SOUND if elements.regime == "near Earth")
@@ -24,18 +24,18 @@ LINES = (LOW.line1, LOW.line2)
 MODELS: dict[Any, Any] = {"wgs72old": WGS72OLD, "wgs72": WGS72, "wgs84": WGS84}
 
 
-def test_a_satrec_has_the_elements_of_its_lines_to_the_last_bit() -> None:
+def test_a_satrec_has_the_elements_of_its_lines_bit_by_bit() -> None:
     for elements in SOUND:
         taken = oo.Sgp4(Satrec.twoline2rv(elements.line1, elements.line2))
         read = elements.orbit()
         assert (taken.satellite, taken.epoch, taken.period) == (read.satellite, read.epoch, read.period)
         for got, want in zip(taken.state([0.0, 600.0]), read.state([0.0, 600.0]), strict=True):
-            # the epoch, which deep space depends on, is the day of the year's to 1e-8 days in both
+            # both hold the epoch, which matters in deep space, as day of the year to 1e-8 days
             np.testing.assert_allclose(got, want, rtol=1e-12 if float(taken.period) > 13500 else 0.0)
 
 
 @pytest.mark.parametrize("gravity", MODELS)
-def test_a_satrec_says_its_earth_model(gravity: Any) -> None:
+def test_a_satrec_states_its_earth_model(gravity: Any) -> None:
     taken = oo.Sgp4(Satrec.twoline2rv(*LINES, MODELS[gravity]))
     np.testing.assert_array_equal(taken.state(9e3)[0], oo.Sgp4(*LINES, gravity=gravity).state(9e3)[0])
 
@@ -47,7 +47,7 @@ def initialized(mode: str = "i", **changes: float) -> Satrec:
     return satrec
 
 
-def test_a_satrec_of_elements_is_taken_and_may_change_afterwards() -> None:
+def test_a_satrec_of_elements_is_copied() -> None:
     satrec = initialized()
     taken = oo.Sgp4(satrec), oo.Sgp4(satrec, propagator="reference")
     _, r, _ = satrec.sgp4_tsince(50.0)
@@ -57,7 +57,7 @@ def test_a_satrec_of_elements_is_taken_and_may_change_afterwards() -> None:
     assert taken[0].epoch == "2023-12-03T06:00:00.000000Z"
 
 
-def test_a_catalogue_number_that_no_satrec_has_room_for() -> None:
+def test_a_catalogue_number_too_large_for_a_satrec() -> None:
     message = {
         "EPOCH": "2024-03-01T12:00:00", "MEAN_MOTION": 15.5, "ECCENTRICITY": 0.001, "INCLINATION": 51.6,
         "RA_OF_ASC_NODE": 1, "ARG_OF_PERICENTER": 2, "MEAN_ANOMALY": 3, "BSTAR": 1e-4,
@@ -69,7 +69,7 @@ def test_a_catalogue_number_that_no_satrec_has_room_for() -> None:
     np.testing.assert_allclose(reference.state(3e3)[0], native.state(3e3)[0], atol=1e-5)
 
 
-def test_what_is_no_such_satrec_is_refused() -> None:
+def test_an_invalid_satrec_is_rejected() -> None:
     with pytest.raises(ElementSetError, match=r"AFSPC mode.*propagator='reference'"):
         oo.Sgp4(initialized("a"))
     assert np.isfinite(oo.Sgp4(initialized("a"), propagator="reference").state(0.0)[0]).all()
@@ -79,26 +79,26 @@ def test_what_is_no_such_satrec_is_refused() -> None:
         oo.Sgp4(initialized(inclo=4.0))
     with pytest.raises(ElementSetError, match="argpo of the Satrec is nan"):
         oo.Sgp4(initialized(argpo=np.nan))
-    with pytest.raises(InputError, match="a Satrec of PyPI's sgp4 is needed, got int"):
+    with pytest.raises(InputError, match="a Satrec of PyPI's sgp4 is required, got int"):
         oo.Sgp4(5)
-    with pytest.raises(InputError, match="give the two lines of an element set, or a Satrec alone"):
+    with pytest.raises(InputError, match="give the two lines of an element set, or only a Satrec"):
         oo.Sgp4(initialized(), gravity="wgs72")  # type: ignore[call-overload]  # it has its own
-    with pytest.raises(InputError, match="give the two lines of an element set, or a Satrec alone"):
+    with pytest.raises(InputError, match="give the two lines of an element set, or only a Satrec"):
         oo.Sgp4("1 00005U")
     wrong: Any = "own"
     with pytest.raises(InputError, match="'native' and 'reference'"):
         oo.Sgp4(*LINES, propagator=wrong)
 
 
-def test_the_reference_gives_its_own_states() -> None:
+def test_the_reference_code_computes_the_states() -> None:
     peer = Satrec.twoline2rv(*LINES)
     orbit = oo.Sgp4(*LINES, propagator="reference")
     times = np.linspace(-8e3, 8e3, 7)
     r, v = orbit.state(times)
-    told = [peer.sgp4_tsince(t / 60.0)[1:] for t in times]
-    np.testing.assert_array_equal(r, [1e3 * np.array(position) for position, _ in told])
-    np.testing.assert_array_equal(v, [1e3 * np.array(velocity) for _, velocity in told])
-    assert "by the reference code" in orbit.velocity_source
+    expected = [peer.sgp4_tsince(t / 60.0)[1:] for t in times]
+    np.testing.assert_array_equal(r, [1e3 * np.array(position) for position, _ in expected])
+    np.testing.assert_array_equal(v, [1e3 * np.array(velocity) for _, velocity in expected])
+    assert "from the reference implementation" in orbit.velocity_source
 
 
 def test_both_propagators_agree_on_every_set_and_another_earth_model_does_not() -> None:
@@ -109,14 +109,14 @@ def test_both_propagators_agree_on_every_set_and_another_earth_model_does_not() 
                 oo.Sgp4(*lines, propagator=it).state(times)[0] for it in ("native", "reference")
             )
         except Sgp4Error:
-            continue  # decays on the way: below
-        # two builds of one text: 1.4e-7 m where they were compared, another libm may round otherwise
+            continue  # decays meanwhile: see below
+        # two builds of the same code: 1.4e-7 m observed; another libm may round differently
         assert np.abs(native - reference).max() < 1e-5, elements.line1
         other = oo.Sgp4(*lines, gravity="wgs84").state(times)[0]
         assert np.abs(other - reference).max() > 1.0
 
 
-def test_what_the_reference_refuses_keeps_its_code() -> None:
+def test_errors_of_the_reference_code_keep_their_number() -> None:
     decaying = next(elements for elements in SOUND if elements.line1.startswith("1 28872"))
     orbit = oo.Sgp4(decaying.line1, decaying.line2, propagator="reference")
     with pytest.raises(Sgp4Error, match="decayed") as caught:
@@ -128,7 +128,7 @@ def test_what_the_reference_refuses_keeps_its_code() -> None:
         check_checksum=False, propagator="reference",
     )  # fmt: skip
     with pytest.raises(
-        Sgp4Error, match="error 4 at t = 0 s, by the reference code: the semi-latus"
+        Sgp4Error, match="error 4 of the reference implementation at t = 0 s: the semi-latus"
     ) as caught:
         refused.state(0.0)
     assert caught.value.code == 4
@@ -142,15 +142,15 @@ def run(**orbit: Any) -> Any:
     return build(scenario).simulation.run(600.0)
 
 
-def test_a_run_by_either_propagator_ends_at_one_place() -> None:
+def test_a_run_with_either_propagator_ends_at_the_same_position() -> None:
     native, reference, other = run(), run(propagator="reference"), run(gravity="wgs84")
     apart = np.abs(native.position_eci - reference.position_eci).max()
-    assert 0.0 < apart < 1e-5  # m: they are two codes
+    assert 0.0 < apart < 1e-5  # m: the codes differ
     assert np.abs(other.position_eci - reference.position_eci).max() > 1.0
 
 
-def test_what_sgp4_makes_of_corrupted_lines() -> None:
-    """The engine reads lines itself, since the reference silently accepts each of these faults."""
+def test_corrupted_lines_are_rejected() -> None:
+    """The engine parses the lines, since the reference code silently accepts each of these faults."""
     line1, line2 = LINES
     assert compute_checksum(line2) == int(line2[68])
     wrong_sum = line2[:68] + str((int(line2[68]) + 1) % 10)
@@ -162,7 +162,7 @@ def test_what_sgp4_makes_of_corrupted_lines() -> None:
     assert [Satrec.twoline2rv(line1, line).no_kozai for line in (comma, letter)] == [0.0, 0.0]
 
 
-def test_the_package_loads_the_reference_where_it_is_asked_for_alone() -> None:
+def test_the_package_loads_the_reference_code_only_on_request() -> None:
     code = (
         "import sys, onorbit_rs as oo\n"
         f"oo.Sgp4({LINES[0]!r}, {LINES[1]!r}).state(0.0)\n"

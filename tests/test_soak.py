@@ -1,4 +1,4 @@
-"""What ``make soak`` does for an hour, for a moment: it holds, and each part notices what it is there for."""
+"""A short version of ``make soak``; each part also detects the fault that it looks for."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def soak() -> Iterator[Any]:
-    """The modules of the campaign, which stand alone beside the tests."""
+    """Returns the modules of the campaign, which are separate from the tests."""
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(HERE))
         import exact_motions
@@ -35,26 +35,26 @@ def soak() -> Iterator[Any]:
         del sys.modules[name]
 
 
-def test_exact_motions_are_green_and_right(soak: Any) -> None:
+def test_exact_motions_pass_their_certificates_with_small_errors(soak: Any) -> None:
     motions = soak.exact_motions
     for found in (motions.spins(3, count=5, rows=3000), motions.earth_pointing(0.02, 1e-3)):
         assert found["wrong"] == [] and found["error"] < 1e-11
     assert motions.station(0.01, 5e-3)["wrong"] == []
 
 
-def test_a_long_spin_is_exact_and_its_certificate_green(soak: Any) -> None:
+def test_a_long_spin_is_exact_and_passes_its_certificate(soak: Any) -> None:
     found = soak.long_runs.spin(20_000, record_every=100)
     assert found["wrong"] == []
-    assert found["attitude_error"] < 1e-12  # 20 rad; it rounds to 1e-14
+    assert found["attitude_error"] < 1e-12  # 20 rad; rounding is 1e-14
 
 
-def test_loops_leave_nothing_behind(soak: Any, tmp_path: Path) -> None:
+def test_loops_leak_nothing(soak: Any, tmp_path: Path) -> None:
     jobs = soak.leaks.loops(tmp_path)
     for name in ("run", "controller in Python", "model", "refused models", "rollout"):
         assert soak.leaks.leaks(*soak.leaks.grown(jobs[name], seconds=5.0, most=30)) == [], name
 
 
-def test_what_loops_leave_behind_is_found(soak: Any) -> None:
+def test_leaks_of_loops_are_detected(soak: Any) -> None:
     kept: list[Any] = []
     wait = threading.Event()
 
@@ -63,14 +63,14 @@ def test_what_loops_leave_behind_is_found(soak: Any) -> None:
         kept[-1].start()
 
     def leaks_memory() -> None:
-        kept.append(mmap.mmap(-1, 4_000_000))  # new pages: an array may take memory that others gave back
+        kept.append(mmap.mmap(-1, 4_000_000))  # new pages: an array may reuse freed memory
         kept[-1].write(b"\x01" * len(kept[-1]))
 
     def leaks_file() -> None:
         kept.append(os.fdopen(os.open(os.devnull, os.O_RDONLY)))
 
     try:
-        told = [
+        reports = [
             soak.leaks.leaks(*soak.leaks.grown(job, seconds=5.0, most=20))
             for job in (leaks_thread, leaks_memory, leaks_file)
         ]
@@ -81,14 +81,12 @@ def test_what_loops_leave_behind_is_found(soak: Any) -> None:
                 one.join()
             else:
                 one.close()
-    assert told[0][0] == "14 threads"
-    assert len(told[1]) == 1 and told[1][0].endswith(" MB")
-    assert told[2] == ["14 open files"]
+    assert reports[0][0] == "14 threads"
+    assert len(reports[1]) == 1 and reports[1][0].endswith(" MB")
+    assert reports[2] == ["14 open files"]
 
 
-def test_a_run_on_a_full_disk_is_refused_and_has_the_same_bits_once_there_is_room(
-    soak: Any, tmp_path: Path
-) -> None:
+def test_a_run_on_a_full_disk_is_rejected_and_later_has_the_same_bits(soak: Any, tmp_path: Path) -> None:
     found = soak.faults.fault_campaign(tmp_path, seed=3, seconds=60.0, most=1, duration=0.5)
     assert found["wrong"] == []
     assert found["runs"] == 1

@@ -1,4 +1,4 @@
-"""The stub says what the module is: signatures, defaults, properties, nothing missing and nothing more."""
+"""The stub agrees with the module: signatures, defaults and properties."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ def stubtest(*arguments: str, cwd: Path, path: Path | None = None) -> subprocess
     )  # fmt: skip
 
 
-def test_stub_and_module_say_the_same(tmp_path: Path) -> None:
+def test_stub_and_module_agree(tmp_path: Path) -> None:
     result = stubtest(cwd=tmp_path)
     assert result.returncode == 0, f"\n{result.stdout}{result.stderr}"
 
 
-def test_a_stub_with_a_missing_argument_is_noticed(tmp_path: Path) -> None:
+def test_a_stub_with_a_missing_argument_is_detected(tmp_path: Path) -> None:
     import onorbit_rs
 
-    # a package of stubs alone, one of them wrong, shadows the real one
+    # a stub-only package with an error takes precedence over the real one
     wrong = tmp_path / "onorbit_rs"
     wrong.mkdir()
     stub = (Path(onorbit_rs.__file__).parent / "_core.pyi").read_text()

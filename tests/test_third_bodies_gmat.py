@@ -1,13 +1,13 @@
-"""What GMAT's two days with Sun and Moon must see; the case is in ``onorbit_rs.validation.gravity``."""
+"""Negative control for GMAT's case with Sun and Moon in ``onorbit_rs.tools.validation.gravity``."""
 
 from __future__ import annotations
 
 import pytest
 
-from onorbit_rs.validation.gravity import sun_and_moon
+from onorbit_rs.tools.validation.gravity import sun_and_moon
 
 
 @pytest.mark.parametrize("left", ["sun", "moon"])
-def test_leaving_one_out_is_noticed(left: str) -> None:
+def test_an_omitted_body_is_detected(left: str) -> None:
     others = tuple(body for body in ("sun", "moon") if body != left)
     assert sun_and_moon(others)[0] > 2.0

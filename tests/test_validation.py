@@ -1,4 +1,4 @@
-"""``onorbit validate``: every case passes, each family can fail, and what the command says about it."""
+"""``onorbit validate``: all cases pass, each family can fail, and the command's output."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.cli import main
+from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.exceptions import InputError
-from onorbit_rs.rotations import matrix_from_quaternion
-from onorbit_rs.validation import (
+from onorbit_rs.tools.validation import (
     CASES,
     Case,
     against_mujoco,
@@ -46,7 +46,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:the inertia of link 'link_5'")
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.family}: {case.name} ({case.source})")
-def test_a_case(case: Case) -> None:
+def test_a_case_passes(case: Case) -> None:
     verdict = case.judge()
     if verdict.passed is None:
         pytest.skip(verdict.note)
@@ -55,7 +55,7 @@ def test_a_case(case: Case) -> None:
     assert verdict.passed, verdict
 
 
-def test_there_are_enough_cases_each_with_a_name_a_source_and_a_gate() -> None:
+def test_every_case_has_a_name_a_source_and_gates() -> None:
     assert len(CASES) >= 40
     assert len({(case.family, case.name, case.source) for case in CASES}) == len(CASES)
     for case in CASES:
@@ -63,7 +63,7 @@ def test_there_are_enough_cases_each_with_a_name_a_source_and_a_gate() -> None:
         assert all(gate.limit >= 0.0 and gate.quantity for gate in case.gates), case
 
 
-# Negative controls: one constant or method wrong, which case must be red.
+# Negative controls: with a wrong constant or method, the named case must fail.
 
 J_SIGNS = [[1.02e8, 6.96e6, 5.48e6], [6.96e6, 0.91e8, -5.9e5], [5.48e6, -5.9e5, 1.64e8]]
 
@@ -94,29 +94,29 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("kepler", "a low orbit, one day", kepler, "FLIGHTS", of_wgs84("a low orbit, one day")),
     ("kepler", "a hyperbola by its elements", kepler, "HYPERBOLA_MU", oo.MU_EARTH),
     ("sgp4", "5 sets near the Earth, three rows each", sgp4, "GRAVITY", "wgs84"),
-    ("nasa", "run 2: the station turns freely", nasa, "MU", oo.MU_EARTH),
-    ("nasa", "run 2: the station turns freely", nasa, "ISS_INERTIA", J_SIGNS),
+    ("nasa", "run 2: the station rotates freely", nasa, "MU", oo.MU_EARTH),
+    ("nasa", "run 2: the station rotates freely", nasa, "ISS_INERTIA", J_SIGNS),
     ("nasa", "run 6A: drag on a sphere", nasa, "EARTH_RATE", 0.0),
-    ("rotation", "a brick that tumbles, 30 s", rotation, "BRICK", [0.0019, 0.0062, 0.0072]),
+    ("rotation", "a tumbling brick, 30 s", rotation, "BRICK", [0.0019, 0.0062, 0.0072]),
     ("rotation", "small libration in the plane of the orbit", rotation, "CYLINDER", (500, 12250, 12200)),
     ("earth", "celestial to terrestrial axes, 2007-04-05", earth, "UT1_MINUS_UTC", 0.0),
     ("gravity", "J2 about the pole of J2000, one day", gravity, "MONTE_C20", -0.00048412),
     ("gravity", "EGM96 of degree 2, Sun and Moon, two days", gravity, "EGM96_C2", [-0.48416e-3, 0.0, 0.0]),
     ("gravity", "node and periapsis under J2, 48 h", secular, "CURTIS_J2", 1.05e-3),
-    ("gravity", "what J3 adds in ten days, inclination 90 deg", secular, "QI_J3", -2.0e-6),
+    ("gravity", "effect of J3 in ten days, inclination 90 deg", secular, "QI_J3", -2.0e-6),
     ("light", "high circle, 24 days", air_and_light, "REFLECTIVITY", 1.81),
     ("light", "low circle with 356 eclipses, along track, 24 days", air_and_light, "RADIUS", 6.44e6),
     ("light", "the node of a balloon, the first 200 of 600 days", air_and_light, "BALLOON_PRESSURE", 4.3e-6),
     ("air", "decay of a circle at 250 km in 1e5 s", air_and_light, "AIR_RATE", nasa.EARTH_RATE),
     ("relative", "300 s of free flight", relative, "MU", oo.MU_EARTH),
-    ("bodies", "two links on a held base", bodies, "GRAVITY", 9.80665),
+    ("bodies", "two links on a fixed base", bodies, "GRAVITY", 9.80665),
     ("bodies", "points of a floating body", bodies, "POINT", [-1.9, -1.8, 1e-12]),
     ("bodies", "the flange of an iiwa 14", bodies, "IIWA_DEGREES", [60, 30, 60, 30, 60, 30, 60.0001]),
     ("robots", "the paper's reach in 10 s", robots, "KP", 10.0),
     ("certificates", "free_tumble", oo, "run", with_long_steps),
     ("conservation", "100 s of free motion of the humanoid", conservation, "STEP", 0.02),
     ("conservation", "the humanoid on a circular orbit, 300 s", oo, "MU_EARTH", 1.01 * oo.MU_EARTH),
-    ("order", "a tree of eight links by RK4, half the step", order, "end", by_euler),
+    ("order", "a tree of eight links by RK4, step halved", order, "end", by_euler),
     ("engines", "humanoid_torso, 4 states", against_pinocchio, "GRAVITY", np.array([0.0, 0.0, -9.81])),
     ("engines", "8 random trees with rotors, 4 states each", against_mujoco, "build", without_rotors),
     ("engines", "8 random pairs of arms, 2 humanoids, 4 states each", against_spart, "forces", at_origin),
@@ -128,7 +128,7 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("family", "name", "module", "constant", "wrong"), CONTROLS,
     ids=[f"{family}: {constant}" for family, _, _, constant, _ in CONTROLS],
 )  # fmt: skip
-def test_a_wrong_constant_is_red(
+def test_a_wrong_constant_or_method_fails(
     family: str, name: str, module: Any, constant: str, wrong: Any,
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
@@ -149,12 +149,12 @@ def test_every_family_has_a_control() -> None:
 
 
 def processor_time_of_children() -> float:
-    """User and system, s, of those that have ended: the machine is shared, what others do is not ours."""
+    """Returns user and system time of ended child processes, s, which excludes other processes."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
-def test_the_whole_of_it_is_green_in_a_minute_of_processor_time_and_json_is_all_there_is() -> None:
+def test_all_cases_pass_within_a_minute_of_processor_time_with_json_output_only() -> None:
     command = [sys.executable, "-m", "onorbit_rs", "validate", "--json"]
     before = processor_time_of_children()
     done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
@@ -169,7 +169,7 @@ def test_the_whole_of_it_is_green_in_a_minute_of_processor_time_and_json_is_all_
         else:
             assert verdict["passed"] is True and verdict["error"] <= verdict["gate"]
     print(f"{took:.1f} s of processor time")
-    assert 0.0 < took < 60.0  # seen: 7
+    assert 0.0 < took < 60.0  # observed: 7
 
 
 KEPLER = next(case for case in CASES if case.family == "kepler")
@@ -184,7 +184,7 @@ KEPLER = next(case for case in CASES if case.family == "kepler")
         (lambda: oo.Kepler(semi_major_axis=-1.0).state(0.0), "OrbitError"),
     ],
 )
-def test_what_breaks_has_failed(measure: Any, note: str) -> None:
+def test_a_case_that_raises_has_failed(measure: Any, note: str) -> None:
     verdict = replace(KEPLER, measure=measure).judge()
     assert verdict.passed is False and note in verdict.note
     assert verdict.as_dict()["passed"] is False and verdict.as_dict()["error"] is None
@@ -197,7 +197,7 @@ def onorbit(*arguments: str) -> int:
     return int(done.value.code or 0)
 
 
-def test_an_engine_that_is_not_there_is_skipped_not_passed(
+def test_a_missing_engine_is_skipped_and_not_passed(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     import importlib.util
@@ -214,7 +214,7 @@ def test_an_engine_that_is_not_there_is_skipped_not_passed(
     assert "0 passed, 0 failed, 1 skipped" in out
 
 
-def test_the_table_says_what_failed_and_how_many(
+def test_the_table_shows_failures_and_their_number(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert onorbit("--only", "run 2", "--only", "run 8A") == 0
@@ -224,7 +224,7 @@ def test_the_table_says_what_failed_and_how_many(
     monkeypatch.setattr(nasa, "ISS_INERTIA", J_SIGNS)
     assert onorbit("--only", "run 2", "--only", "run 8A") == 1
     out = capsys.readouterr().out
-    assert out.count("FAIL") == 2  # rate and attitude; position and velocity are as they were
+    assert out.count("FAIL") == 2  # rate and attitude fail; position and velocity pass
     assert out.splitlines()[-1].startswith("1 passed, 1 failed, 0 skipped in ")
     assert onorbit("--only", "run 8A", "--all") == 0
     assert capsys.readouterr().out.count("pass ") == len(nasa.CASES[0].gates)
@@ -241,7 +241,9 @@ def test_the_list_runs_nothing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.C
     assert len(listed) == len(CASES) and all(one["passed"] is None for one in listed)
 
 
-def test_ctrl_c_stops_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_ctrl_c_stops_the_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     begun: list[str] = []
 
     def interrupted(case: Case) -> None:
@@ -254,12 +256,12 @@ def test_ctrl_c_stops_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
     assert onorbit() == 130
     said = capsys.readouterr()
     assert (said.out, said.err) == ("", "onorbit: stopped by Ctrl-C\n")
-    assert len(begun) < len(CASES) / 2  # what had not begun did not begin
+    assert len(begun) < len(CASES) / 2  # waiting cases are not started
 
 
-def test_a_word_that_no_case_has_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_word_without_a_matching_case_is_rejected(capsys: pytest.CaptureFixture[str]) -> None:
     assert {case.family for case in select(["nasa"])} >= {"nasa"}
-    with pytest.raises(InputError, match="families are kepler, sgp4, nasa"):
+    with pytest.raises(InputError, match="the families are kepler, sgp4, nasa"):
         select(["nasty"])
     assert onorbit("--only", "nasty") == 2
-    assert "no case is called 'nasty'" in capsys.readouterr().err
+    assert "no case matches 'nasty'" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""A measure that is NaN, broken or of nothing is red wherever validation takes the largest of several."""
+"""Validation fails on NaN, missing or empty results wherever it takes the largest of several errors."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.validation import (
+from onorbit_rs.tools.validation import (
     CASES,
     Verdict,
     against_mujoco,
@@ -22,8 +22,8 @@ from onorbit_rs.validation import (
     robots,
     sgp4,
 )  # fmt: skip
-from onorbit_rs.validation.case import worst
-from onorbit_rs.validation.trees import deviation
+from onorbit_rs.tools.validation.case import worst
+from onorbit_rs.tools.validation.trees import deviation
 
 NAN = float("nan")
 
@@ -36,7 +36,7 @@ def judged(family: str, name: str) -> Verdict:
 
 
 def now_and_then(call: Callable[..., Any], spoilt: Callable[[Any], Any]) -> Callable[..., Any]:
-    """Every other result is spoilt, the first is not."""
+    """Spoils every second result, but not the first."""
     calls: list[None] = []
 
     def called(*given: Any, **settings: Any) -> Any:
@@ -55,11 +55,11 @@ def test_the_worst_of_numbers_and_of_rows() -> None:
         assert np.isnan(worst(numbers))
     assert np.isnan(worst([(1.0, NAN), (2.0, 4.0)])).tolist() == [False, True]
     for nothing in ([], np.zeros((0, 2))):
-        with pytest.raises(ValueError, match="nothing to compare"):
+        with pytest.raises(ValueError, match="no errors to compare"):
             worst(nothing)
 
 
-def test_a_deviation_from_zeros_is_none_or_without_bound() -> None:
+def test_a_deviation_from_zeros_is_zero_or_infinite() -> None:
     assert deviation([0.0, 0.0], [0.0, 0.0]) == 0.0
     assert deviation([0.0, 1e-300], [0.0, 0.0]) == float("inf")
     assert np.isnan(deviation([0.0, NAN], [0.0, 0.0]))
@@ -67,9 +67,7 @@ def test_a_deviation_from_zeros_is_none_or_without_bound() -> None:
 
 
 @pytest.mark.parametrize(("module", "source"), [(against_mujoco, "MuJoCo"), (against_pinocchio, "Pinocchio")])
-def test_a_deviation_that_is_no_number_is_red(
-    module: Any, source: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_deviation_of_nan_fails(module: Any, source: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "deviation", now_and_then(module.deviation, lambda _: NAN))
     for case in CASES:
         if case.source == source:
@@ -78,7 +76,7 @@ def test_a_deviation_that_is_no_number_is_red(
             assert verdict.passed is False and verdict.note == "", verdict
 
 
-def test_a_state_of_sgp4_that_is_no_number_is_red(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_sgp4_state_of_nan_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     made = sgp4.ElementSet.orbit
 
     def spoilt(elements: sgp4.ElementSet) -> Any:
@@ -92,9 +90,7 @@ def test_a_state_of_sgp4_that_is_no_number_is_red(monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.parametrize("spoilt", [NAN, 1e-3, None, 3.0])
-def test_a_line_of_the_certificate_that_is_broken_is_red(
-    spoilt: float | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_failed_check_of_a_certificate_fails(spoilt: float | None, monkeypatch: pytest.MonkeyPatch) -> None:
     def run(*_: Any, **__: Any) -> Any:
         lines = [("a", 0.1, 1.0, True), ("b", spoilt, 1.0, False), ("c", 0.2, 1.0, True)]
         return SimpleNamespace(trace=SimpleNamespace(certificate=lambda: lines))
@@ -105,7 +101,7 @@ def test_a_line_of_the_certificate_that_is_broken_is_red(
 
 
 @pytest.mark.parametrize("lost", [None, NAN])
-def test_a_drift_that_the_certificate_does_not_have_is_red(
+def test_a_missing_drift_in_the_certificate_fails(
     lost: float | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     simulation = oo.Simulation
@@ -122,7 +118,7 @@ def test_a_drift_that_the_certificate_does_not_have_is_red(
     assert [check.passed for check in verdict.checks] == [False, False, True, True], verdict
 
 
-def test_an_attitude_at_one_tolerance_that_is_no_number_is_red(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_attitude_of_nan_at_one_tolerance_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     spoilt = now_and_then(oo.Model.difference, lambda off: off * NAN)
     monkeypatch.setattr(order.oo.Model, "difference", lambda *given: spoilt(*given), raising=True)
     verdict = judged("order", "Dormand and Prince's pair, tolerances 1e-4 to 1e-9")
@@ -136,17 +132,17 @@ def test_an_attitude_at_one_tolerance_that_is_no_number_is_red(monkeypatch: pyte
         (lambda: sgp4.of_regime("dip space"), ""),
         (against_sgp4.every_row, "sgp4_states"),
         (against_sgp4.all_sets, "sgp4_states"),
-        (lambda: nasa.off("8A"), "nasa_states"),
+        (lambda: nasa.errors("8A"), "nasa_states"),
     ],
 )
-def test_a_table_without_rows_is_no_agreement(
+def test_a_table_without_rows_is_rejected(
     measure: Callable[[], Any], table: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = sgp4.table
     for module in (sgp4, nasa):
         monkeypatch.setattr(module, "table", lambda name: [] if name == table else whole(name))
     monkeypatch.setattr(against_sgp4, "published", lambda: [("", np.zeros((1, 7)))] * len(sgp4.sets()))
-    with pytest.raises(ValueError, match="nothing to compare"):
+    with pytest.raises(ValueError, match="no errors to compare"):
         measure()
 
 

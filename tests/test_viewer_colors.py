@@ -1,4 +1,4 @@
-"""Colours of arrows are told apart at a glance, within one legend and from what else is drawn."""
+"""Colours of arrows are distinguishable, within one legend and from other objects."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from onorbit_rs.scenario.build import build
 from onorbit_rs.viewer.colors import MOMENTUM, Color, hues
 
 APART = 25.0
-"""Ten times what is just noticeable (2.3; Mahy, Van Eycken and Oosterlinck, Color Research 19, 1994)."""
+"""Ten times the just noticeable difference (2.3; Mahy, Van Eycken, Oosterlinck, Color Research 19, 1994)."""
 
 LEGENDS = (
     ("gravity", "gravity_gradient", "drag", "radiation_pressure", "body_wrench", "body_wrench_2"),
@@ -36,7 +36,7 @@ OLD = {
 
 
 def lab(color: Color) -> NDArray[np.float64]:
-    """CIE 1976 L*a*b*, D65 (ISO/CIE 11664-4; IEC 61966-2-1 for sRGB)."""
+    """Converts sRGB to CIE 1976 L*a*b*, D65 (ISO/CIE 11664-4; IEC 61966-2-1 for sRGB)."""
     share = np.array(color) / 255.0
     linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
     to_xyz = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
@@ -54,13 +54,13 @@ def legend(effects: Iterable[str]) -> Iterator[Color]:
         yield from hue
 
 
-def test_lab_is_that_of_the_standard() -> None:
+def test_lab_agrees_with_the_standard() -> None:
     np.testing.assert_allclose(lab((255, 255, 255)), [100, 0, 0], atol=0.02)
     np.testing.assert_allclose(lab((255, 0, 0)), [53.24, 80.09, 67.20], atol=0.05)  # published conversions
     np.testing.assert_allclose(lab((0, 0, 255)), [32.30, 79.19, -107.86], atol=0.05)
 
 
-def test_any_two_colours_of_a_legend_are_far_apart() -> None:
+def test_all_colours_of_a_legend_are_distinguishable() -> None:
     for effects in LEGENDS:
         colors = list(legend(effects))
         assert len(colors) == 2 * len(effects) + 2
@@ -68,12 +68,12 @@ def test_any_two_colours_of_a_legend_are_far_apart() -> None:
         assert least_distance(colors) > APART
 
 
-def test_the_colours_of_before_were_not() -> None:
+def test_earlier_colours_were_not_distinguishable() -> None:
     assert least_distance(OLD.values()) < 20.0  # momentum and radiation pressure: 18.9
     assert least_distance([*OLD.values(), OLD["drag"]]) == 0.0  # force and torque of one effect
 
 
-def test_a_colour_stays_with_its_effect_and_more_than_there_are_come_again() -> None:
+def test_colours_belong_to_effects_and_repeat_if_there_are_too_many() -> None:
     assert hues(["drag"])["drag"] == hues(["wind", "drag", "gravity"])["drag"]
     many = hues(["drag", *(f"body_wrench_{index}" for index in range(9))])
     assert len(many) == 10 and many["drag"] not in [hue for name, hue in many.items() if name != "drag"]
@@ -81,7 +81,7 @@ def test_a_colour_stays_with_its_effect_and_more_than_there_are_come_again() -> 
 
 # ETS-VII's numbers are as published
 @pytest.mark.filterwarnings("ignore:the inertia of link 'link_5'")
-def test_torques_are_thinner_and_the_legend_says_so(tmp_path: Path) -> None:
+def test_torques_are_thinner_as_stated_in_the_legend(tmp_path: Path) -> None:
     data = load("leo_drag_tumble").resolved()
     data["simulation"] |= {"duration": 4.0}
     built = build(Scenario(**data))

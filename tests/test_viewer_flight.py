@@ -1,4 +1,4 @@
-"""The flight relative to the reference orbit has a view of its own where there is one to see."""
+"""The motion relative to the reference orbit has a separate view if it is visible."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_hills_ellipse_is_drawn_in_the_axes_of_the_reference(hill: tuple[Path, B
     rot_wl, _ = built.orbit.lvlh(trace.time)
     np.testing.assert_allclose(points, np.einsum("tji,tj->ti", rot_wl, trace.q[:, :3]), atol=1e-4)  # 32 bits
     high, wide, _ = np.ptp(points, axis=0)
-    assert wide / high == pytest.approx(2.0, rel=0.03)  # Hill's ellipse: in W it would be no such thing
+    assert wide / high == pytest.approx(2.0, rel=0.03)  # Hill's ellipse, which would look different in W
     in_w = np.ptp(trace.q[:, :3], axis=0)
     assert abs(in_w[1] / in_w[0] - 2.0) > 0.3
     pieces = [strips[0] for strips in column(path, "/world/flight/base/trail", "LineStrips3D:strips")]
@@ -45,20 +45,20 @@ def test_hills_ellipse_is_drawn_in_the_axes_of_the_reference(hill: tuple[Path, B
     np.testing.assert_allclose(pieces[-1][1], points[-1], atol=1e-4)
 
 
-def test_the_mark_of_the_base_rides_on_it(hill: tuple[Path, Built, Any]) -> None:
+def test_the_marker_of_the_base_moves_along_the_path(hill: tuple[Path, Built, Any]) -> None:
     path, _, trace = hill
     assert column(path, "/world/flight/base", "CoordinateFrame:frame", static=True) == [["follow"]]
     np.testing.assert_allclose(FrameTree(path).pose("follow")[:, :3, 3], trace.q[:, :3], atol=1e-3)
     assert column(path, "/world/flight/base", "Points3D:labels", static=True) == [["humanoid_torso"]]
 
 
-def test_who_stays_with_the_reference_has_no_such_view(tmp_path: Path) -> None:
+def test_a_robot_that_stays_at_the_reference_has_no_such_view(tmp_path: Path) -> None:
     path, _, _ = recorded(tmp_path, "humanoid_reach", duration=0.1)
     moving, static = rows_by_entity(path)
     assert not [entity for entity in {*moving, *static} if entity.startswith("/world/flight")]
 
 
-def test_a_target_far_off_is_in_the_view(tmp_path: Path) -> None:
+def test_a_distant_target_is_in_the_view(tmp_path: Path) -> None:
     def far(data: dict[str, Any]) -> None:
         motion = data["reference"]["frame"]["target"]
         motion |= {"position": [50.0, 0.0, 0.0], "velocity": [-1.0, 0.0, 0.0]}
@@ -74,7 +74,7 @@ def test_a_target_far_off_is_in_the_view(tmp_path: Path) -> None:
     np.testing.assert_allclose(strip, np.einsum("tji,tj->ti", rot_wl, place), atol=1e-5)
 
 
-def test_the_bundled_target_is_a_box_before_the_tool(tmp_path: Path) -> None:
+def test_the_bundled_target_is_a_box_in_front_of_the_tool(tmp_path: Path) -> None:
     path, _, trace = recorded(tmp_path, "approach_target", time_step=0.01)
     half = np.array(column(path, "/world/target/0", "Boxes3D:half_sizes", static=True)[0][0])
     np.testing.assert_allclose(half, [0.15, 0.2, 0.15])

@@ -1,4 +1,4 @@
-"""Watching a run: every row comes to the viewer or is thinned, and nothing there stops or changes the run."""
+"""Live view of a run: rows are shown or decimated, and the viewer neither stops nor changes the run."""
 
 from __future__ import annotations
 
@@ -14,14 +14,13 @@ from recordings import FrameTree, column, rows_by_entity
 
 import onorbit_rs as oo
 from onorbit_rs import viewer
-from onorbit_rs.output.relay import Relay
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
+from onorbit_rs.simulation.live import watched
 from onorbit_rs.viewer import live, screen
 from onorbit_rs.viewer.live import LiveView
-from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.series import ANGLES, Series
-from onorbit_rs.watching import watched
+from onorbit_rs.viewer.trace_rows import TraceRows
 
 
 def built_reach(**simulation: Any) -> Built:
@@ -31,7 +30,7 @@ def built_reach(**simulation: Any) -> Built:
 
 
 class Watched:
-    """A run under a live view whose viewer is a file."""
+    """A run with a live view that writes to a file."""
 
     def __init__(self, folder: Path, built: Built, every_s: float = 0.05) -> None:
         self.path, self.columns = folder / "live.rrd", []
@@ -47,7 +46,7 @@ class Watched:
         self._live.take(checkpoint.columns)
 
 
-def test_a_short_run_is_seen_whole_at_its_end(tmp_path: Path) -> None:
+def test_a_short_run_is_shown_completely_at_its_end(tmp_path: Path) -> None:
     built = built_reach(duration=0.3)
     watched = Watched(tmp_path, built, every_s=1e3)
     assert not watched.columns
@@ -59,11 +58,11 @@ def test_a_short_run_is_seen_whole_at_its_end(tmp_path: Path) -> None:
     np.testing.assert_allclose(poses, watched.trace.tool_pose, atol=1e-6)
 
 
-def test_a_long_run_comes_in_parts_that_join(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_run_is_sent_in_adjacent_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(live, "MOST_ROWS", 40)
     watched = Watched(tmp_path, built_reach(duration=40.0, time_step=5e-4))
     looks = len(watched.columns)
-    assert looks >= 2, "the run was over before a second look"
+    assert looks >= 2, "the run ended before a second update"
     moving, _ = rows_by_entity(watched.path)
     rows = moving["/frames/robot/torso"]
     assert rows == moving["/plots/joint_torque"] <= 40 * (looks + 1)
@@ -72,10 +71,10 @@ def test_a_long_run_comes_in_parts_that_join(tmp_path: Path, monkeypatch: pytest
     np.testing.assert_array_equal(times[-1], watched.trace.tau[-1])
     strips = [strip[0] for strip in column(watched.path, "/world/tool/obtained/trail", "LineStrips3D:strips")]
     for before, after in itertools.pairwise(strips):
-        assert before[1] == after[0]  # no gap between two looks
+        assert before[1] == after[0]  # no gap between two updates
 
 
-def test_the_flight_beside_the_reference_is_seen_live(tmp_path: Path) -> None:
+def test_the_motion_relative_to_the_reference_is_shown_live(tmp_path: Path) -> None:
     built = build(load("hill_relative"))
     watched = Watched(tmp_path, built)
     moving, static = rows_by_entity(watched.path)
@@ -83,24 +82,24 @@ def test_the_flight_beside_the_reference_is_seen_live(tmp_path: Path) -> None:
     strips = [strip[0] for strip in column(watched.path, "/world/flight/base/trail", "LineStrips3D:strips")]
     for before, after in itertools.pairwise(strips):
         assert before[1] == after[0]
-    assert "/world/flight/base/whole" not in static  # which nobody knows yet
+    assert "/world/flight/base/whole" not in static  # which is not known yet
 
 
-def test_the_columns_of_checkpoints_are_those_of_the_trace(tmp_path: Path) -> None:
+def test_the_columns_of_checkpoints_equal_those_of_the_trace(tmp_path: Path) -> None:
     watched = Watched(tmp_path, built_reach(duration=20.0))
-    whole = Rows.of_trace(watched.trace)
+    whole = TraceRows.of_trace(watched.trace)
     assert watched.columns
-    part = Rows.of_checkpoint(watched.columns[0])
+    part = TraceRows.of_checkpoint(watched.columns[0])
     assert set(part.columns) == set(whole.columns)
     for name, values in part.columns.items():
         np.testing.assert_array_equal(values, whole[name][: len(part)])
 
 
-def test_angles_go_on_across_looks() -> None:
+def test_angles_are_continuous_across_updates() -> None:
     model = oo.Model.rigid_body(10.0, np.eye(3))
     view = LiveView(rr.RecordingStream("onorbit"), viewer.Setting(model), 1.0)
     sent = []
-    for first in (170.0, 350.0, 530.0):  # degrees; each look knows them within a turn alone
+    for first in (170.0, 350.0, 530.0):  # degrees; a single update knows them only modulo a turn
         values = np.array([[first, 0.0, 0.0], [first + 90.0, 0.0, 0.0]])
         values[:, 0] -= 360.0 * np.round(first / 360.0)
         series = Series("Base", "plots/base_attitude", "Base attitude", "deg", ANGLES, values)
@@ -108,102 +107,110 @@ def test_angles_go_on_across_looks() -> None:
     assert sent == [170.0, 260.0, 350.0, 440.0, 530.0, 620.0]
 
 
-def test_trouble_in_the_viewer_is_a_warning_and_the_run_goes_on(
+def test_an_error_of_the_viewer_is_a_warning_and_the_run_continues(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object) -> None:
         raise RuntimeError("gone")
 
     monkeypatch.setattr(live, "send_rows", refuse)
-    with pytest.warns(UserWarning, match="the viewer is gone, the run goes on without it: gone") as told:
+    with pytest.warns(
+        UserWarning, match="the viewer was closed; the run continues without it: gone"
+    ) as caught:
         watched = Watched(tmp_path, built_reach(duration=20.0))
-    assert len(told) == 1 and watched.trace.is_complete
+    assert len(caught) == 1 and watched.trace.is_complete
 
 
 @pytest.mark.parametrize("error", [KeyError("q"), ZeroDivisionError(), OverflowError(), StopIteration()])
-def test_no_kind_of_trouble_in_the_viewer_stops_the_run(
+def test_no_exception_of_the_viewer_stops_the_run(
     error: Exception, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object) -> None:
         raise error
 
     monkeypatch.setattr(live, "send_rows", refuse)
-    with pytest.warns(UserWarning, match="the viewer is gone"):
+    with pytest.warns(UserWarning, match="the viewer was closed"):
         watched = Watched(tmp_path, built_reach(duration=0.1), every_s=0.0)
     assert watched.trace.is_complete
 
 
-def test_rows_that_the_viewer_cannot_read_are_a_warning() -> None:
+def test_rows_that_the_viewer_cannot_read_cause_a_warning() -> None:
     model = oo.Model.rigid_body(10.0, np.eye(3))
     view = LiveView(rr.RecordingStream("onorbit"), viewer.Setting(model), 1.0)
-    with pytest.warns(UserWarning, match="the viewer is gone"):
+    with pytest.warns(UserWarning, match="the viewer was closed"):
         view.take({"time": np.zeros((2, 1)), "tool_pose": np.zeros((2, 7))})
     view.take({})  # and no second one
 
 
-def test_the_error_of_the_run_is_told_where_its_last_rows_cannot_be_written(
+class Eye:
+    """A view that counts the rows it is given."""
+
+    def __init__(self) -> None:
+        self.seen, self.ended = 0, []
+
+    def take(self, columns: Any) -> None:
+        self.seen += len(columns["time"])
+
+    def finish(self, trace: object) -> None:
+        self.ended.append(trace)
+
+
+def test_a_watched_run_that_is_interrupted_reports_a_checkpoint_that_cannot_be_written(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    ended = []
+    class Interrupted:
+        time = 0.0
 
-    class Eye:
-        def take(self, columns: Any) -> None:
-            pass
+        def advance_to(self, _: float, *, wall_s: float) -> None:
+            raise oo.exceptions.RunInterrupted("stopped")
 
-        def finish(self, trace: object) -> None:
-            ended.append(trace)
+        def checkpoint(self, _: int) -> None:
+            return None
 
     class Simulation:
-        def run(self, _duration: float, *, checkpoint: Any, **_: object) -> None:
-            checkpoint(given[0])
-            raise oo.exceptions.SimulationError("diverged")
+        def start(self, **_: object) -> Interrupted:
+            return Interrupted()
 
     def full(_: oo.Checkpoint) -> None:
         raise OSError("disk full")
 
-    given: list[oo.Checkpoint] = []
-    built = built_reach(duration=20.0)
-    built.simulation.run(20.0, checkpoint=given.append, checkpoint_every=0.01)
-    assert given, "the run was over before a look"
-    monkeypatch.setattr(live, "open_live", lambda *_: Eye())
-    failing = replace(built, simulation=Simulation())  # type: ignore[arg-type]  # all that is asked of it
-    with pytest.raises(oo.exceptions.SimulationError, match="diverged") as told:
+    eye = Eye()
+    monkeypatch.setattr(live, "open_live", lambda *_: eye)
+    failing = replace(built_reach(), simulation=Simulation())  # type: ignore[arg-type]  # all that is used of it
+    with pytest.raises(oo.exceptions.RunInterrupted, match="stopped") as caught:
         watched(failing, None, full, checkpoint_every=1e3)  # type: ignore[arg-type]  # any writer
-    assert any("disk full" in note for note in told.value.__notes__)
-    assert ended == [None]
+    assert any("disk full" in note for note in caught.value.__notes__)
+    assert eye.ended == [None]
 
 
-def test_the_writer_of_checkpoints_gets_every_row_and_state() -> None:
-    given: list[oo.Checkpoint] = []
-    trace = built_reach(duration=80.0).simulation.run(80.0, checkpoint=given.append, checkpoint_every=0.05)
-    assert len(given) > 2, "the run was over before a third look"
+@pytest.mark.parametrize("accepts", [True, False])
+def test_a_watched_run_writes_every_row_and_state(accepts: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    eye, given = Eye(), []
 
-    class Eye:
-        seen = 0
+    def writer(checkpoint: oo.Checkpoint) -> bool:
+        given.append(checkpoint)
+        return accepts
 
-        def take(self, columns: Any) -> None:
-            self.seen += len(columns["time"])
-
-    for every_s, expected in ((0.0, len(given)), (1e3, 1)):
-        eye, taken = Eye(), []
-        relay = Relay(eye, taken.append, every_s)  # type: ignore[arg-type]  # all that it needs of a view
-        for checkpoint in given:
-            relay(checkpoint)
-        relay.hand_on()
-        assert len(taken) == expected
-        columns = {name: np.concatenate([part.columns[name] for part in taken]) for name in taken[0].columns}
-        assert eye.seen == len(columns["time"])
-        stopped = oo.Checkpoint(taken[-1].state, columns, wall_s=taken[-1].wall_s)
-        again = built_reach(duration=80.0).simulation.run(80.0, resume=stopped)
-        np.testing.assert_array_equal(again.q, trace.q)
+    monkeypatch.setattr(live, "open_live", lambda *_: eye)
+    monkeypatch.setattr(live, "UPDATE_EVERY_S", 0.05)
+    trace = watched(built_reach(duration=80.0), None, writer, checkpoint_every=0.0)  # type: ignore[arg-type]
+    assert len(given) > 2, "the run ended before a third update"
+    assert 0 < eye.seen < len(trace) and eye.ended == [trace]
+    parts = given if accepts else given[-1:]
+    columns = {name: np.concatenate([part.columns[name] for part in parts]) for name in parts[0].columns}
+    stopped = oo.Checkpoint(parts[-1].state, columns, wall_s=parts[-1].wall_s)
+    again = built_reach(duration=80.0).simulation.run(80.0, resume=stopped)
+    np.testing.assert_array_equal(again.q, trace.q)
 
 
-def test_without_a_screen_it_is_said_and_the_run_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_screen_a_message_is_printed_and_the_run_is_unchanged(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     monkeypatch.setattr(screen.sys, "platform", "linux")
     data = load("humanoid_reach").resolved()
     data["simulation"] |= {"duration": 0.1}
-    with pytest.warns(UserWarning, match="no screen here: the run goes on without the viewer"):
+    with pytest.warns(UserWarning, match="no display is available; the run continues without the viewer"):
         watched = oo.run(data, quiet=True, view=True)
     np.testing.assert_array_equal(watched.trace.q, oo.run(data, quiet=True).trace.q)

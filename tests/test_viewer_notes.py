@@ -1,4 +1,4 @@
-"""Names of the user's are text in the notes of a recording, whatever they hold."""
+"""User names in the notes of a recording are shown as plain text."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from onorbit_rs.viewer.notes import escaped
         ("\u2028\x07\u200b", r"\\u2028\\x07\\u200b"),
     ],
 )
-def test_markup_in_a_name_is_text(name: str, expected: str) -> None:
+def test_markup_in_a_name_is_shown_as_text(name: str, expected: str) -> None:
     assert escaped(name) == expected
     assert len(escaped(name).splitlines()) == 1
 
 
-def test_the_table_of_the_notes_has_two_cells_in_every_line(tmp_path: Path) -> None:
+def test_the_table_of_the_notes_has_two_cells_per_line(tmp_path: Path) -> None:
     data = load("humanoid_reach").resolved() | {
         "name": "a|b\n<i>\u202ec",
         "description": "# not a\ntitle | x",

@@ -1,4 +1,4 @@
-"""The recording, read back: every entity is there with every step."""
+"""Recordings contain every entity with every step."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from rerun.chunk import RrdReader
 
 import onorbit_rs as oo
 from onorbit_rs import viewer
-from onorbit_rs.appearance import shapes
 from onorbit_rs.exceptions import ViewerError
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import Built, build
 from onorbit_rs.viewer.encoded import Encoded
-from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.series import series_of
+from onorbit_rs.viewer.trace_rows import TraceRows
+from onorbit_rs.visuals.shapes import shapes
 
 STEPS = 51
 SINGLE = 1e-6
-"""A robot of two metres in 32 bits: 2e-7 m at each of ten frames."""
+"""Rounding in 32 bits of a robot of two metres: 2e-7 m at each of ten frames."""
 
 
 def built_reach(record_every: int = 20) -> Built:
     data = load("humanoid_reach").resolved()
-    del data["epoch"]  # a turning Earth has rows of its own, which test_viewer_scene.py looks at
+    del data["epoch"]  # a rotating Earth has separate rows, tested in test_viewer_scene.py
     data["simulation"] |= {"time_step": 2e-3, "record_every": record_every}
     return build(Scenario(**data))
 
@@ -73,7 +73,7 @@ def test_every_entity_has_every_step(reach: tuple[Built, oo.Trace], recording: P
     } <= set(static)  # fmt: skip
 
 
-def test_the_frames_put_every_link_where_the_engine_has_it(
+def test_the_frames_give_every_link_the_pose_of_the_engine(
     reach: tuple[Built, oo.Trace], recording: Path
 ) -> None:
     built, trace = reach
@@ -88,13 +88,13 @@ def test_the_frames_put_every_link_where_the_engine_has_it(
         np.testing.assert_allclose(tree.pose(f"robot/{link}"), truth, atol=SINGLE)
     np.testing.assert_allclose(tree.pose("robot/tool"), trace.tool_pose, atol=SINGLE)
     np.testing.assert_allclose(tree.pose("desired"), trace.reference_pose, atol=SINGLE)
-    # the eye rides on the base, in the axes of L
+    # the eye moves with the base, in the axes of L
     follow = tree.pose("follow")
     np.testing.assert_allclose(follow[:, :3, 3], trace.q[:, :3], atol=SINGLE)
     np.testing.assert_allclose(follow[:, :3, 0], unit(trace.position_eci), atol=SINGLE)
     inertial = tree.pose("compass")[:, :3, :3]
     np.testing.assert_allclose(inertial, np.tile(np.eye(3), (STEPS, 1, 1)), atol=SINGLE)
-    # the frames of two links side by side are not those of one in the other
+    # frames of sibling links are not nested
     assert np.abs(tree.pose("robot/arm_link_2") - tree.pose("robot/arm_link_1")).max() > 0.1
 
 
@@ -102,7 +102,7 @@ def unit(vectors: Any) -> Any:
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 
-def test_sliding_joints_slide(tmp_path: Path) -> None:
+def test_prismatic_joints_move_along_their_axes(tmp_path: Path) -> None:
     links = "".join(
         f'<link name="{name}"><inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" '
         'iyz="0"/></inertial></link>'
@@ -118,7 +118,7 @@ def test_sliding_joints_slide(tmp_path: Path) -> None:
     model = oo.Model.from_urdf_string(text)
     rates = np.array([0, 0, 0, 0.1, 0.2, 0.3, 0.4, 0.5])
     trace = oo.Simulation(model, model.neutral(), rates, time_step=0.1).run(1.0)
-    plots = {plot.path: plot.unit for plot in series_of(Rows.of_trace(trace), viewer.Setting(model))}
+    plots = {plot.path: plot.unit for plot in series_of(TraceRows.of_trace(trace), viewer.Setting(model))}
     units = [plots[f"plots/joint_{name}"] for name in ("torque", "position", "rate")]
     assert units == ["N m", "rad", "rad/s"]
     units = [plots[f"plots/slide_{name}"] for name in ("force", "position", "rate")]
@@ -139,8 +139,8 @@ def test_the_recording_holds_the_numbers_of_the_trace(reach: tuple[Built, oo.Tra
     assert trail == 2
 
 
-def test_plots_show_the_least_and_the_most_of_what_falls_on_a_pixel(recording: Path) -> None:
-    """The mean of a torque that chatters between ±100 N m is next to nothing."""
+def test_plots_show_minimum_and_maximum_of_the_values_at_a_pixel(recording: Path) -> None:
+    """The mean of a torque that chatters between ±100 N m would be almost zero."""
     (policy,) = column(recording, "/plots/joint_torque", "SeriesLines:aggregation_policy", static=True)
     assert policy == [rr.components.AggregationPolicy.MinMax.value]
 
@@ -152,7 +152,7 @@ def test_no_wall_clock_and_a_blueprint(recording: Path) -> None:
     assert len(reader.recordings()) == len(reader.blueprints()) == 1
 
 
-def test_a_hundred_thousand_steps_are_all_there(tmp_path: Path) -> None:
+def test_a_hundred_thousand_steps_are_recorded(tmp_path: Path) -> None:
     built = built_reach(1)
     trace = built.simulation.run(200.0)
     assert len(trace) == 100_001
@@ -162,7 +162,7 @@ def test_a_hundred_thousand_steps_are_all_there(tmp_path: Path) -> None:
     assert set(moving.values()) == {100_001}
 
 
-on_linux = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="files in memory are Linux's")
+on_linux = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="only Linux has files in memory")
 
 
 @on_linux
@@ -177,7 +177,7 @@ def test_without_files_in_memory_the_recording_is_the_same(
 
 
 @on_linux
-def test_a_recording_that_was_cut_short_is_not_passed_on(
+def test_a_truncated_recording_is_an_error(
     reach: tuple[Built, oo.Trace], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     flush = rr.RecordingStream.flush
@@ -190,12 +190,12 @@ def test_a_recording_that_was_cut_short_is_not_passed_on(
                 os.truncate(entry, 1000)
 
     monkeypatch.setattr(rr.RecordingStream, "flush", flush_and_cut)
-    with pytest.raises(ViewerError, match="did not encode the recording: it stops before its end"):
+    with pytest.raises(ViewerError, match="did not encode the recording: it is truncated"):
         viewer.write_recording(tmp_path / "run.rrd", reach[1], viewer.Setting.of(reach[0]))
 
 
 @on_linux
-def test_an_encoder_that_does_not_answer_is_the_viewers_error_and_keeps_no_memory(
+def test_an_encoder_that_does_not_answer_raises_a_viewer_error_without_a_leak(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def silent(self: rr.RecordingStream, **options: float) -> None:
@@ -206,14 +206,14 @@ def test_an_encoder_that_does_not_answer_is_the_viewers_error_and_keeps_no_memor
 
     recording = rr.RecordingStream("onorbit", send_properties=False)
     encoded = Encoded(recording)
-    both = in_memory()  # ours and rerun's
+    both = in_memory()  # the package's and rerun's
     monkeypatch.setattr(rr.RecordingStream, "flush", silent)
     with pytest.raises(ViewerError, match="did not encode the recording: no answer"):
         encoded.write_to(tmp_path / "run.rrd")
     assert in_memory() < both
 
 
-def test_longer_traces_are_thinned_to_their_last_row_and_it_is_said(
+def test_long_traces_are_decimated_including_the_last_row_with_a_note(
     reach: tuple[Built, oo.Trace], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for count in (1, 2, 500_000, 500_001, 1_234_567):

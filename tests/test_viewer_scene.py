@@ -1,4 +1,4 @@
-"""What is drawn: arrows on the scale they state, the Earth as it stands, meshes, targets."""
+"""Scene of the viewer: arrows with their scale, the Earth's orientation, meshes, targets."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from recordings import FrameTree, column, rows_by_entity
 
 import onorbit_rs as oo
 from onorbit_rs import viewer
-from onorbit_rs.planet import is_earth
-from onorbit_rs.rotations import local_orbital_axes
+from onorbit_rs.common.display_units import amount, round_up
+from onorbit_rs.common.rotations import local_orbital_axes
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
-from onorbit_rs.units import amount, round_up
 from onorbit_rs.viewer.land import land, world_map
 from onorbit_rs.viewer.planet import to_eye
-from onorbit_rs.viewer.rows import Rows
+from onorbit_rs.viewer.trace_rows import TraceRows
+from onorbit_rs.visuals.earth_shape import is_earth
 
 EPOCH = "2026-03-20 12:00:00 UTC"
 ORBIT = {"semi_major_axis": "6878 km", "inclination": "97 deg"}
@@ -33,7 +33,7 @@ def record(folder: Path, **parts: Any) -> tuple[Path, oo.Trace]:
     return viewer.write_recording(folder / "run.rrd", trace, viewer.Setting.of(built)), trace
 
 
-def test_arrows_times_their_scale_are_the_wrenches(tmp_path: Path) -> None:
+def test_arrows_times_their_scale_equal_the_wrenches(tmp_path: Path) -> None:
     push = {"kind": "body_wrench", "body": "base", "force": [0, 3, 0], "torque": [0, 0, 0.02], "start": 1.0}
     path, trace = record(
         tmp_path,
@@ -54,7 +54,7 @@ def test_arrows_times_their_scale_are_the_wrenches(tmp_path: Path) -> None:
         arrows = np.array(column(path, f"{effect}/{part}", "Arrows3D:vectors"))[:, 0]
         np.testing.assert_allclose(arrows * scale, trace.wrenches["body_wrench"][:, 0, columns], rtol=1e-6)
         origins = np.array(column(path, f"{effect}/{part}", "Arrows3D:origins"))[:, 0]
-        aside = origins - trace.center_of_mass  # where it would not hide in the box
+        aside = origins - trace.center_of_mass  # outside of the box, where it is visible
         np.testing.assert_allclose(np.cross(aside, arrows), 0.0, atol=1e-6)
         acts = np.einsum("ti,ti->t", aside, arrows) > 0.0
         np.testing.assert_array_equal(acts, trace.time >= 1.0)
@@ -69,7 +69,7 @@ def test_arrows_times_their_scale_are_the_wrenches(tmp_path: Path) -> None:
     np.testing.assert_allclose(arrows * scale, trace.momentum[:, 3:], rtol=1e-6, atol=1e-12)
 
 
-def test_the_torque_plotted_is_the_one_the_arrow_shows(tmp_path: Path) -> None:
+def test_the_plotted_torque_equals_that_of_the_arrow(tmp_path: Path) -> None:
     push = {"kind": "body_wrench", "body": "arm_link_7", "force": [0, 3, 0], "torque": [0, 0, 0.02]}
     path, trace = record(
         tmp_path,
@@ -85,10 +85,10 @@ def test_the_torque_plotted_is_the_one_the_arrow_shows(tmp_path: Path) -> None:
     plotted = np.array(column(path, "/plots/body_wrench/torque", "Scalars:scalars"))
     np.testing.assert_allclose(plotted, shown, rtol=1e-6, atol=1e-6)
     alone = trace.wrenches["body_wrench"][:, :, 3:].sum(axis=1)
-    assert np.abs(plotted - alone).max() > 0.1  # the lever is most of it
+    assert np.abs(plotted - alone).max() > 0.1  # the lever arm contributes most
 
 
-def test_no_arrows_for_momenta_that_nothing_has_given(tmp_path: Path) -> None:
+def test_momenta_of_rounding_size_have_no_arrows(tmp_path: Path) -> None:
     model = oo.robots.load("humanoid_torso")
     q, v = model.neutral(), np.zeros(model.nv)
     swing = [
@@ -101,9 +101,9 @@ def test_no_arrows_for_momenta_that_nothing_has_given(tmp_path: Path) -> None:
     assert not [entity for entity in rows_by_entity(path)[0] if entity.startswith("/world/arrows")]
 
 
-def test_amounts_are_told_with_prefixes() -> None:
-    told = [amount(value, "N") for value in (2e-6, 5e-4, 0.01, 1.0, 2e4, 5e-12, 10.0 * 1e-7)]
-    assert told == ["2 µN", "500 µN", "10 mN", "1 N", "20 kN", "5 pN", "1 µN"]
+def test_amounts_are_printed_with_prefixes() -> None:
+    texts = [amount(value, "N") for value in (2e-6, 5e-4, 0.01, 1.0, 2e4, 5e-12, 10.0 * 1e-7)]
+    assert texts == ["2 µN", "500 µN", "10 mN", "1 N", "20 kN", "5 pN", "1 µN"]
 
 
 def test_every_number_has_a_scale() -> None:
@@ -112,10 +112,10 @@ def test_every_number_has_a_scale() -> None:
     assert np.isnan(round_up(np.nan))
 
 
-def test_the_map_has_land_where_there_is_land() -> None:
+def test_the_map_has_land_at_the_right_places() -> None:
     area = np.cos(np.radians(89.0 - 2.0 * np.arange(90)))
     share = (land().mean(axis=1) * area).sum() / area.sum()
-    assert abs(share - 0.291) < 0.01  # of the Earth's surface (CIA World Factbook: 29.1 %)
+    assert abs(share - 0.291) < 0.01  # fraction of the Earth's surface (CIA World Factbook: 29.1 %)
     places = {(52, 21): True, (0, 25): True, (-25, 135): True, (40, -100): True, (-85, 0): True}
     places |= {(0, -30): False, (0, -150): False, (-40, 90): False, (40, 170): False}
     for (latitude, longitude), expected in places.items():
@@ -129,7 +129,7 @@ def test_the_map_has_land_where_there_is_land() -> None:
     assert warsaw[1] > warsaw[2] and pacific[2] > pacific[1]  # green, blue
 
 
-def test_the_earth_turns_and_night_is_away_from_the_sun(tmp_path: Path) -> None:
+def test_the_earth_rotates_and_night_is_opposite_to_the_sun(tmp_path: Path) -> None:
     path, trace = record(
         tmp_path,
         robot={"rigid_body": {"mass": 50, "inertia": [4, 5, 6]}},
@@ -144,16 +144,16 @@ def test_the_earth_turns_and_night_is_away_from_the_sun(tmp_path: Path) -> None:
     to_sun = sun / np.linalg.norm(sun, axis=1, keepdims=True)
     np.testing.assert_allclose(tree.pose("sun", "I")[:, :3, 0], to_sun, atol=1e-6)
     np.testing.assert_allclose(tree.pose("sun_arrow", "I")[:, :3, 0], to_sun, atol=1e-6)
-    # the Sun's arrow is seen above all that flies: farther from the line of sight than it
+    # the Sun's arrow is visible: farther from the line of sight than all moving objects
     built = build(Scenario(robot={"rigid_body": {"mass": 50, "inertia": [4, 5, 6]}}, epoch=EPOCH, orbit=ORBIT,
                            simulation={"duration": 3600.0, "time_step": 60.0}))  # fmt: skip
-    eye = to_eye(Rows.of_trace(trace), viewer.Setting.of(built))
+    eye = to_eye(TraceRows.of_trace(trace), viewer.Setting.of(built))
     aside = tree.pose("sun_arrow", "I")[0, :3, 3]
     assert (
         np.linalg.norm(aside - (aside @ eye) * eye)
         > 1.3 * np.linalg.norm(trace.position_eci, axis=1).max() / 1e3
     )
-    # noon in Greenwich: the Sun stands over longitude zero within the equation of time (4 degrees)
+    # noon in Greenwich: the Sun is above longitude zero within the equation of time (4 degrees)
     noon = tree.pose("earth", "I")[0, :3, :3].T @ to_sun[0]
     assert abs(np.degrees(np.arctan2(noon[1], noon[0]))) < 4.0
     for layer in range(3):
@@ -163,7 +163,7 @@ def test_the_earth_turns_and_night_is_away_from_the_sun(tmp_path: Path) -> None:
     np.testing.assert_allclose(place, trace.position_eci / 1e3, rtol=1e-6)
 
 
-def test_the_earth_beneath_an_element_set_is_in_its_axes(tmp_path: Path) -> None:
+def test_the_earth_below_an_element_set_is_in_its_axes(tmp_path: Path) -> None:
     data = load("sgp4_orbit").resolved() | {"simulation": {"duration": 600.0, "time_step": 30.0}}
     path, trace = record(tmp_path, **data)
     earth = build(Scenario(**data)).earth
@@ -172,13 +172,13 @@ def test_the_earth_beneath_an_element_set_is_in_its_axes(tmp_path: Path) -> None
     tree = FrameTree(path)
     earth_axes = np.swapaxes(teme.rotation(trace.time), 1, 2)
     np.testing.assert_allclose(tree.pose("earth", "I")[:, :3, :3], earth_axes, atol=1e-6)
-    assert np.abs(np.swapaxes(gcrf.rotation(trace.time), 1, 2) - earth_axes).max() > 1e-3  # can fail
+    assert np.abs(np.swapaxes(gcrf.rotation(trace.time), 1, 2) - earth_axes).max() > 1e-3  # negative control
     sun = teme.sun(trace.time)
     to_sun = sun / np.linalg.norm(sun, axis=1, keepdims=True)
     np.testing.assert_allclose(tree.pose("sun", "I")[:, :3, 0], to_sun, atol=1e-6)
 
 
-def test_a_path_in_l_far_from_the_origin_stands_still_in_l(tmp_path: Path) -> None:
+def test_a_path_in_l_far_from_the_origin_is_static_in_l(tmp_path: Path) -> None:
     data: dict[str, Any] = {
         "robot": "humanoid_torso",
         "tool": "tool",
@@ -202,18 +202,18 @@ def test_a_path_in_l_far_from_the_origin_stands_still_in_l(tmp_path: Path) -> No
     np.testing.assert_allclose(np.array(strip[0]), np.tile(held[0], (len(held), 1)), atol=2e-3)  # 32 bits
     of_base = local_orbital_axes(trace.position_eci, trace.velocity_eci)
     off = np.einsum("tji,tj->ti", of_base, trace.reference_pose[:, :3, 3]) - held
-    assert np.linalg.norm(off, axis=1).min() > 5.0  # the L of the base puts it elsewhere
+    assert np.linalg.norm(off, axis=1).min() > 5.0  # with the base's L it would be elsewhere
 
 
 @pytest.mark.parametrize(
     ("mu", "expected"),
     [(3.986e14, True), (4e14, True), (oo.MU_EARTH, True), (3.2486e14, False), (None, False)],
 )
-def test_the_earth_is_told_from_other_planets(mu: float | None, expected: bool) -> None:
+def test_the_earth_is_distinguished_from_other_planets(mu: float | None, expected: bool) -> None:
     assert is_earth(mu) == expected
 
 
-def test_without_an_epoch_the_earth_is_plain(tmp_path: Path) -> None:
+def test_without_an_epoch_the_earth_has_no_map(tmp_path: Path) -> None:
     path, _ = record(tmp_path, robot={"rigid_body": {"mass": 50, "inertia": [4, 5, 6]}}, orbit=ORBIT)
     _, static = rows_by_entity(path)
     assert "/orbit/planet" in static
@@ -251,7 +251,7 @@ def test_meshes_are_in_the_recording_with_their_unit_and_the_colour_of_the_robot
     model = robot_with_meshes(tmp_path, "a.stl", "b.obj", "c.DAE", "d.3ds")
     trace = oo.Simulation(model, model.neutral(), np.zeros(6), time_step=0.1).run(0.1)
     with pytest.warns(
-        UserWarning, match=r"link 'bus' is not drawn: .*d\.3ds cannot be read: its ending is none of"
+        UserWarning, match=r"link 'bus' is not drawn: .*d\.3ds cannot be read: its format is not supported"
     ):
         path = viewer.write_recording(tmp_path / "run.rrd", trace, viewer.Setting(model))
     for index, size in enumerate((2.0, 2.0, 2e-3)):
@@ -266,7 +266,7 @@ def test_meshes_are_in_the_recording_with_their_unit_and_the_colour_of_the_robot
     assert "/world/robot/bus/visual_3" not in rows_by_entity(path)[1]
 
 
-def test_parts_of_a_mesh_stay_on_their_link(tmp_path: Path) -> None:
+def test_parts_of_a_mesh_move_with_their_link(tmp_path: Path) -> None:
     """A part with a texture is a separate entity; without a frame it would stay at the origin."""
     (tmp_path / "craft").mkdir()
     (tmp_path / "craft" / "picture.png").write_bytes(picture(*4 * [(255, 128, 0)]))
@@ -284,7 +284,7 @@ def test_parts_of_a_mesh_stay_on_their_link(tmp_path: Path) -> None:
     assert frames[0] == frames[1] == [["robot/bus"]]
 
 
-def test_a_mesh_that_is_not_there_is_a_warning_and_a_box(tmp_path: Path) -> None:
+def test_a_missing_mesh_causes_a_warning_and_a_box(tmp_path: Path) -> None:
     with pytest.warns(UserWarning, match="not found"):
         model = robot_with_meshes(tmp_path, "gone.stl")
     (box,) = viewer.Setting(model).shapes
@@ -313,6 +313,6 @@ def test_a_target_drifts_and_spins(tmp_path: Path) -> None:
     turned = np.arctan2(pose[:, 1, 0], pose[:, 0, 0])
     np.testing.assert_allclose(turned, 0.5 * trace.time, atol=1e-6)
     assert column(path, "/world/target/0", "Boxes3D:half_sizes", static=True) == [[[0.5, 1.0, 1.5]]]
-    # what is held in the target's frame moves with it
+    # objects in the target's frame move with it
     held = np.linalg.inv(pose) @ trace.reference_pose
     np.testing.assert_allclose(held, np.tile(held[0], (len(held), 1, 1)), atol=1e-6)

@@ -1,4 +1,4 @@
-"""The viewer's own process: it listens to this machine alone, and where it does not start it is told why."""
+"""The viewer's process: it listens only on this machine, and its start failures are explained."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from onorbit_rs.exceptions import ViewerError
 from onorbit_rs.scenario import load
 from onorbit_rs.viewer import screen
 
-on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="a broken DISPLAY is Linux's")
+on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux has DISPLAY")
 HELP = "save a picture with: onorbit show"
 
 
 @pytest.fixture
 def broken_display(monkeypatch: pytest.MonkeyPatch) -> None:
-    """There is a screen as far as the environment says, and nobody answers there."""
+    """Sets a DISPLAY at which no server answers."""
     monkeypatch.setenv("DISPLAY", ":7777")
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Of a run, with a recording that no viewer comes to read."""
+    """Returns the folder of a run with a recording that is not opened."""
     out = tmp_path_factory.mktemp("show")
     (out / "summary.json").write_text(json.dumps(oo.run(short(), quiet=True).summary))
     (out / "run.rrd").touch()
@@ -51,17 +51,17 @@ def onorbit(*arguments: str, **environment: str) -> subprocess.CompletedProcess[
 
 @on_linux
 @pytest.mark.usefixtures("broken_display")
-def test_a_display_that_does_not_work_is_an_error_that_says_why(folder: Path) -> None:
-    with pytest.raises(ViewerError, match="the viewer did not start: ") as told:
+def test_a_broken_display_raises_an_error_with_the_reason(folder: Path) -> None:
+    with pytest.raises(ViewerError, match="the viewer did not start: ") as caught:
         screen.open_recording(folder / "run.rrd")
-    assert told.value.reason and "/" not in told.value.reason  # no place in the viewer's code
-    assert isinstance(told.value, RuntimeError)
+    assert caught.value.reason and "/" not in caught.value.reason  # no location in the viewer's code
+    assert isinstance(caught.value, RuntimeError)
     with pytest.raises(ViewerError):
         screen.open_viewer()
 
 
 @on_linux
-def test_show_says_it_on_one_line_with_the_way_out(folder: Path) -> None:
+def test_show_reports_it_in_one_line_with_a_fix(folder: Path) -> None:
     done = onorbit("show", str(folder), DISPLAY=":7777")
     assert done.returncode == 2
     (line,) = done.stderr.splitlines()
@@ -69,20 +69,20 @@ def test_show_says_it_on_one_line_with_the_way_out(folder: Path) -> None:
 
 
 @on_linux
-def test_show_without_a_screen_says_the_way_out(folder: Path) -> None:
+def test_show_without_a_screen_suggests_a_fix(folder: Path) -> None:
     done = onorbit("show", str(folder))
     assert done.returncode == 0 and not done.stderr
-    assert "no screen here; " in done.stdout and HELP in done.stdout
+    assert "no display is available; " in done.stdout and HELP in done.stdout
 
 
 @on_linux
 @pytest.mark.usefixtures("broken_display")
-def test_a_run_goes_on_without_a_viewer_that_does_not_start() -> None:
-    with pytest.warns(UserWarning, match="the viewer did not start: .*: the run goes on without it"):
+def test_a_run_continues_without_a_viewer_that_does_not_start() -> None:
+    with pytest.warns(UserWarning, match="the viewer did not start: .*; the run continues without it"):
         assert oo.run(short(), quiet=True, view=True).trace.is_complete
 
 
-def test_the_viewer_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_viewer_listens_only_on_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
     commands = []
 
     class Process:
@@ -99,7 +99,7 @@ def test_the_viewer_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(screen.subprocess, "Popen", popen)
     for start in (screen.open_viewer, lambda: screen.open_recording(Path("run.rrd"))):
-        with pytest.raises(ViewerError, match="did not start: it printed nothing"):  # it ended at once
+        with pytest.raises(ViewerError, match="did not start: it printed nothing"):  # it exited at once
             start()
     assert len(commands) == 2
     for command in commands:
@@ -109,7 +109,7 @@ def test_the_viewer_listens_to_this_machine_alone(monkeypatch: pytest.MonkeyPatc
 
 
 def viewer_that_hangs(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
-    """A program in its place that answers nobody; the list is where it is put when it is started."""
+    """Replaces the viewer by a program that does not respond; the list receives its process."""
     started = []
     popen = subprocess.Popen
 
@@ -121,15 +121,15 @@ def viewer_that_hangs(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[
     return started
 
 
-def test_a_viewer_that_hangs_is_not_waited_for_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_waiting_for_a_viewer_that_hangs_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     started = viewer_that_hangs(monkeypatch)
     monkeypatch.setattr(screen, "START_PATIENCE_S", 0.2)
-    with pytest.raises(ViewerError, match=r"did not start: it does not answer within 0\.2 s"):
+    with pytest.raises(ViewerError, match=r"did not start: it did not respond within 0\.2 s"):
         screen.open_viewer()
-    assert started[0].returncode is not None  # ended, and no zombie
+    assert started[0].returncode is not None  # terminated, and not a zombie
 
 
-def test_ctrl_c_leaves_no_viewer_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_terminates_the_viewer(monkeypatch: pytest.MonkeyPatch) -> None:
     started = viewer_that_hangs(monkeypatch)
 
     def ctrl_c(port: int) -> bool:
@@ -165,7 +165,7 @@ os._exit(0)  # to disconnect would be to wait for nobody
 """
 
 
-def test_rerun_prints_no_log_of_its_own() -> None:
+def test_rerun_prints_no_log() -> None:
     quiet, loud = (
         subprocess.run(
             [sys.executable, "-c", GONE],
@@ -175,4 +175,4 @@ def test_rerun_prints_no_log_of_its_own() -> None:
         for log in ({}, {"RUST_LOG": "error"})
     )  # fmt: skip
     assert quiet.stdout == "said\n" and quiet.stderr == ""
-    assert "ERROR" in loud.stderr  # who asks for it gets it
+    assert "ERROR" in loud.stderr  # it can be turned on

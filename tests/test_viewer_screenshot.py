@@ -1,4 +1,4 @@
-"""A picture without a screen: who is to blame where there is none."""
+"""Screenshots without a screen: errors name the cause."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def viewer_is(monkeypatch: pytest.MonkeyPatch, program: str, refusals: int = 0, image: Any = None) -> None:
-    """A program in the viewer's place, whose client refuses to connect so many times."""
+    """Replaces the viewer by a program whose client fails to connect a number of times."""
     refused = iter(range(refusals))
 
     class Client:
@@ -50,36 +50,36 @@ def viewer_is(monkeypatch: pytest.MonkeyPatch, program: str, refusals: int = 0, 
     monkeypatch.setattr(screenshot, "ViewerClient", Client)
 
 
-def test_no_recording_no_picture(tmp_path: Path) -> None:
+def test_a_folder_without_a_recording_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(NotFoundError, match="no such recording"):
         viewer.take_screenshot(tmp_path / "run.rrd", tmp_path / "run.png")
 
 
-def test_a_viewer_that_says_much_before_it_ends_is_heard(
+def test_a_viewer_with_much_output_before_it_exits_is_read(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its stderr was a pipe that nobody read: it stopped there, and was told to have printed nothing."""
+    """Its stderr was once an unread pipe: it blocked, and the error said that it had printed nothing."""
     viewer_is(monkeypatch, LOUD, refusals=10**9)
     with pytest.raises(ViewerError, match="did not start: no such device; it needs a Vulkan driver"):
         viewer.take_screenshot(folder / "run.rrd", folder / "run.png")
 
 
-def test_a_viewer_that_ends_is_not_a_picture_that_cannot_be_written(
+def test_a_crashed_viewer_is_distinguished_from_an_unwritable_picture(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     viewer_is(monkeypatch, PANICS)
-    with pytest.raises(ViewerError, match=r'show the recording: No glyph for "x"$'):
+    with pytest.raises(ViewerError, match=r'display the recording: No glyph for "x"$'):
         save_picture(folder, folder / "run.png", 0.0)
     assert not (folder / "run.png").exists()
 
 
-def test_a_viewer_that_cannot_be_started_says_so(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_viewer_that_cannot_be_started_is_reported(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(screenshot, "command_of", lambda port: [str(folder / "none")])
     with pytest.raises(ViewerError, match=r"did not start: .*No such file"):
         viewer.take_screenshot(folder / "run.rrd", folder / "run.png")
 
 
-def test_a_viewer_that_answers_later_is_waited_for(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_slow_viewer_is_waited_for(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     viewer_is(monkeypatch, LASTS.format(60), refusals=3, image=b"PNG")
     assert viewer.take_screenshot(folder / "run.rrd", folder / "run.png").read_bytes() == b"PNG"
     with pytest.raises(OutputFolderError, match=r"cannot write .*none/run\.png: No such file"):

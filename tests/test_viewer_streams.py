@@ -1,4 +1,4 @@
-"""Recordings release what rerun keeps for them: each had left four threads and 4.5 MB behind."""
+"""Recordings release rerun's threads and memory; each once leaked four threads and 4.5 MB."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="threads and mem
 
 
 def rerun_threads() -> int:
-    """Threads of this process that rerun started for its streams."""
+    """Returns the threads that rerun started for its streams in this process."""
     names = [(task / "comm").read_text().strip() for task in Path("/proc/self/task").iterdir()]
     return sum(name.startswith(("RecordingStream", "ChunkBatcher")) for name in names)
 
@@ -34,7 +34,7 @@ def humanoid(duration: float = 0.5) -> Built:
     return build(Scenario(**data))
 
 
-def test_ten_recordings_leave_no_thread_and_no_memory(tmp_path: Path) -> None:
+def test_ten_recordings_leak_neither_threads_nor_memory(tmp_path: Path) -> None:
     built = humanoid()
     trace, setting = built.simulation.run(0.5), viewer.Setting.of(built)
     before = rerun_threads()
@@ -43,7 +43,7 @@ def test_ten_recordings_leave_no_thread_and_no_memory(tmp_path: Path) -> None:
         viewer.write_recording(tmp_path / "run.rrd", trace, setting)
         assert rerun_threads() <= before
         resident.append(resident_mb())
-    grown = min(resident[-4:]) - max(resident[:4])  # ten recordings apart; they grew by 45 MB
+    grown = min(resident[-4:]) - max(resident[:4])  # after ten recordings, which once leaked 45 MB
     assert grown < 10.0, resident
 
 
@@ -60,7 +60,7 @@ def test_a_stream_in_use_is_not_released_by_another_recording(tmp_path: Path) ->
     assert b"before" in text and b"after" in text
 
 
-def test_a_live_view_leaves_no_thread(tmp_path: Path) -> None:
+def test_a_live_view_leaks_no_thread(tmp_path: Path) -> None:
     built = humanoid()
     before = rerun_threads()
     for k in range(3):

@@ -1,4 +1,4 @@
-"""The check of the built site sees what is wrong with one."""
+"""The check of the built site finds errors."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ def site(folder: Path, body: str) -> tuple[list[str], set[str]]:
     (folder / "sub").mkdir()
     (folder / "sub" / "other.html").write_text('<h1 id="here">other</h1><a href="../index.html#top">back</a>')
     (folder / "index.html").write_text(f'<h1 id="top">first</h1>{body}')
-    found: tuple[list[str], set[str]] = links.complaints(folder)
+    found: tuple[list[str], set[str]] = links.problems(folder)
     return found
 
 
-def test_a_site_that_hangs_together(tmp_path: Path) -> None:
+def test_a_consistent_site_has_no_errors(tmp_path: Path) -> None:
     inside = '<a href="sub/other.html#here">a</a> <a href="#top">b</a> <a href=".">c</a>'
     assert site(tmp_path, inside + '<a href="https://rerun.io">d</a>') == ([], {"https://rerun.io"})
 
 
-def test_what_is_wrong_is_seen(tmp_path: Path) -> None:
+def test_errors_of_a_site_are_found(tmp_path: Path) -> None:
     wrong = {
-        '<a href="sub/others.html">': "index.html: sub/others.html is not there",
-        '<a href="sub/other.html#there">': "index.html: sub/other.html#there has no such place",
-        '<img src="picture.png">': "index.html: picture.png is not there",
+        '<a href="sub/others.html">': "index.html: sub/others.html does not exist",
+        '<a href="sub/other.html#there">': "index.html: sub/other.html#there has no such anchor",
+        '<img src="picture.png">': "index.html: picture.png does not exist",
         '<script src="https://unpkg.com/x"></script>': "index.html: loads https://unpkg.com/x",
         '<link rel="stylesheet" href="https://fonts.example/x">': "index.html: loads https://fonts.example/x",
-        "<p>$$ M </p>": "index.html: an equation was not read",
+        "<p>$$ M </p>": "index.html: an equation was not converted",
     }
     found, _ = site(tmp_path, " ".join(wrong))
     assert sorted(found) == sorted(wrong.values())

@@ -1,4 +1,4 @@
-"""Wrenches per body and effect, on request, in the trace and in ``trace.npz``."""
+"""Wrenches per body and effect, recorded on request in the trace and in ``trace.npz``."""
 
 from __future__ import annotations
 
@@ -34,27 +34,27 @@ def test_the_trace_has_one_array_per_effect(reach: Scenario) -> None:
     assert not push[:, 1:].any()
 
 
-def test_the_wrenches_are_what_changes_the_momentum(reach: Scenario) -> None:
+def test_the_wrenches_explain_the_change_of_momentum(reach: Scenario) -> None:
     trace = oo.run(reach).trace
     force = sum(rows[:, :, :3].sum(axis=1) for rows in trace.wrenches.values())
 
     def missed(force: Any) -> Any:
-        """What two steps change less Simpson's rule, away from the switch."""
+        """Returns the change over two steps minus Simpson's rule, away from the switching time."""
         gained = trace.momentum[2:, :3] - trace.momentum[:-2, :3]
         h = 1e-3
         pushed = h / 3 * (force[:-2] + 4 * force[1:-1] + force[2:])
         return np.abs((gained - pushed)[np.abs(trace.time[1:-1] - 0.2) > 0.003]).max()
 
     assert missed(force) < 1e-13
-    assert missed(force - trace.wrenches["gravity"][:, :, :3].sum(axis=1)) > 1e-10, "tides must be seen"
+    assert missed(force - trace.wrenches["gravity"][:, :, :3].sum(axis=1)) > 1e-10, "tides must be visible"
 
 
-def test_a_run_that_is_not_asked_has_none() -> None:
+def test_a_run_without_the_option_records_no_wrenches() -> None:
     trace = oo.run(Scenario(robot="humanoid_torso", simulation={"duration": 0.01})).trace
     assert trace.wrenches == {}
 
 
-def test_the_file_and_a_continued_run_hold_them(reach: Scenario, tmp_path: Path) -> None:
+def test_the_file_and_a_resumed_run_contain_them(reach: Scenario, tmp_path: Path) -> None:
     run = oo.run(reach, out=tmp_path / "out")
     with np.load(tmp_path / "out" / "trace.npz") as file:
         np.testing.assert_array_equal(file["wrench_gravity"], run.trace.wrenches["gravity"])

@@ -1,4 +1,4 @@
-"""Docstrings of the engine's module for the pages of the API: its stub has types, the module itself words."""
+"""Combines the types of the stub with the docstrings of the compiled module for the API pages."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ TYPE = re.compile(r"^\w[\w, ]* : .*$", re.MULTILINE)
 
 
 class EngineDocstrings(griffe.Extension):
-    """Puts docstrings where the stub has none, and writes in Markdown what Sphinx writes another way."""
+    """Adds docstrings to the stub and converts Sphinx syntax to Markdown."""
 
     def on_package(self, *, pkg: griffe.Module, **_: Any) -> None:
-        """Once everything is read."""
+        """Processes the package after it was loaded."""
         engine = pkg["_core"]
         fill(engine, importlib.import_module("onorbit_rs._core"))
         own = {name: it for name, it in engine.members.items() if not it.is_alias and it.is_attribute}
@@ -29,7 +29,7 @@ class EngineDocstrings(griffe.Extension):
 
 
 def fill(stub: griffe.Module | griffe.Class, live: Any) -> None:
-    """Docstrings of ``live`` and its members go to ``stub``."""
+    """Copies the docstrings of ``live`` and its members to ``stub``."""
     for name, signatures in stub.overloads.items():
         if name not in stub.members:
             signatures[-1].overloads = list(signatures)
@@ -41,12 +41,12 @@ def fill(stub: griffe.Module | griffe.Class, live: Any) -> None:
         member.docstring = griffe.Docstring(inspect.getdoc(there) or "", parent=member, parser="numpy")
         if member.is_class:
             fill(member, there)
-            if "__new__" in member.members:  # how the class is called stands beside its name
+            if "__new__" in member.members:  # the signature is shown with the class
                 member.set_member("__init__", called(member.members.pop("__new__")))
 
 
 def unfold(thing: Any, aliases: dict[str, str]) -> None:
-    """Types by what they stand for: names that begin with an underscore are the stub's own."""
+    """Replaces the private type aliases of the stub by their definitions."""
 
     def unfolded(annotation: Any) -> Any:
         text = str(annotation)
@@ -69,13 +69,13 @@ def unfold(thing: Any, aliases: dict[str, str]) -> None:
 
 
 def called(new: Any) -> Any:
-    """A constructor under the name that a class is documented with; its words are those of the class."""
+    """Returns ``__new__`` as ``__init__`` without a docstring: the signature is shown with the class."""
     new.name, new.docstring = "__init__", None
     return new
 
 
 def table(ruler: str, head: str, body: str) -> str:
-    """A table of reStructuredText in Markdown; the ruler says where columns begin."""
+    """Returns a table of reStructuredText in Markdown; the ruler defines the columns."""
     starts = [found.start() for found in re.finditer("=+", ruler)]
     ends = [*starts[1:], None]
     lines = [head, ruler.replace("=", "-"), *body.split("\n")]
@@ -84,7 +84,7 @@ def table(ruler: str, head: str, body: str) -> str:
 
 
 def tidy(thing: griffe.Object) -> None:
-    """Markdown has no roles, and sessions and tables look otherwise."""
+    """Converts roles, sessions and tables of reStructuredText to Markdown."""
     if thing.docstring:
         text = ROLE.sub(r"`\1`", thing.docstring.value)
         if "\nExamples\n---" not in text:

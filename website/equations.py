@@ -1,6 +1,6 @@
-"""Equations as MathML, written when the site is built: a browser needs neither a script nor the network.
+"""Converts equations to MathML when the site is built: a browser needs neither a script nor the network.
 
-``$…$`` in a line, ``$$ … $$`` on lines of its own; TeX inside, as GitHub reads it too.
+The syntax is that of GitHub: ``$…$`` within a line, and ``$$`` on separate lines around a displayed equation.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ INLINE = r"(?<![\\$\w])\$(?!\s)([^$\n]+?)(?<!\s)\$(?![$\w])"
 
 
 class Blocks(Preprocessor):
-    """Displayed equations; what is inside of them is kept from the rest of Markdown."""
+    """Converts displayed equations before other Markdown syntax is processed."""
 
     def run(self, lines: list[str]) -> list[str]:
-        """The same lines with a placeholder for each equation."""
+        """Returns the lines with a placeholder for each equation."""
 
         def stash(found: re.Match[str]) -> str:
             equation = self.md.htmlStash.store(f'<div class="equation">{mathml(found[1], "block")}</div>')
@@ -33,40 +33,40 @@ class Blocks(Preprocessor):
 
 
 class Inline(InlineProcessor):
-    """Equations within a line."""
+    """Converts equations within a line."""
 
     def handleMatch(self, m: re.Match[str], data: str) -> tuple[Element | str, int, int]:  # type: ignore[override]
-        """The placeholder, and what it stands for."""
+        """Returns the placeholder of an equation and its extent."""
         return self.md.htmlStash.store(mathml(m[1], "inline")), m.start(0), m.end(0)
 
 
 class Number(InlineProcessor):
-    """``1e-7`` stays on one line."""
+    """Prevents a line break within numbers such as ``1e-7``."""
 
     def handleMatch(self, m: re.Match[str], data: str) -> tuple[Element | str, int, int]:  # type: ignore[override]
-        """In a span of its own."""
+        """Returns a span with the number and its extent."""
         span = Element("span", {"class": "number"})
         span.text = m[1]
         return span, m.start(0), m.end(0)
 
 
 def mathml(tex: str, display: str) -> str:
-    """One equation; TeX that is not understood would come out as its own name and is refused."""
+    """Returns an equation as MathML; raises ValueError for unknown TeX."""
     if unknown := re.findall(r"<m[io]>(\\\w+)</m[io]>", converted := convert(tex.strip(), display=display)):
-        raise ValueError(f"{unknown[0]} in {tex!r} is not understood: write it another way")
+        raise ValueError(f"{unknown[0]} in {tex!r} is not supported: write it another way")
     return converted
 
 
 class Equations(Extension):
-    """Registers them."""
+    """Registers the processors of equations."""
 
     def extendMarkdown(self, md: Markdown) -> None:
-        """After fenced code was taken away (25), before paragraphs; in a line after code in ticks (190)."""
+        """Registers blocks after fenced code (priority 25), inline equations after inline code (190)."""
         md.preprocessors.register(Blocks(md), "equations", 24)
         md.inlinePatterns.register(Inline(INLINE, md), "equation", 185)
         md.inlinePatterns.register(Number(NUMBER, md), "number", 5)
 
 
 def makeExtension(**options: Any) -> Equations:
-    """What Markdown calls."""
+    """Returns the extension; Markdown calls this function."""
     return Equations(**options)

@@ -1,4 +1,4 @@
-"""Tables of a scenario's keys, from the classes that read it: ``::keys onorbit_rs.scenario.robot.Robot``."""
+"""Generated tables: keys of a part of a scenario (``::keys CLASS``), columns of a trace (``::columns``)."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from markdown.preprocessors import Preprocessor
 from pydantic import BaseModel
 
 MARK = re.compile(r"^::keys (?P<path>[\w.]+)$", re.MULTILINE)
+COLUMNS = re.compile(r"^::columns$", re.MULTILINE)
 ROLE = re.compile(r":\w+:`([^`]*)`")
 WORDS = {
     "float": "number",
@@ -26,20 +27,22 @@ WORDS = {
     "GravityMode": "`true` or `carried`",
     "Robot": "[robot](#robot)",
     "RigidBody": "[rigid body](#rigid_body)",
+    "PlainRobot": "[robot](#robot)",
+    "Arm": "[arm](#arms)",
     "EarthPart": "[earth](#earth)",
     "Orbit": "[orbit](#orbits)",
-    "Frame": "`world`, `lvlh`, `base` or [target](#a-target-that-moves)",
+    "Frame": "`world`, `lvlh`, `base` or [target](#a-moving-target)",
     "GeomagneticIndex": "number or 7 × number",
     "Effect": "[effects](#environment)",
     "Controller": "[controller](#controllers)",
     "AnyControl": "[controllers](#in-a-list-of-controllers)",
     "Reference": "[reference](#references)",
-    "InitialState": "[start](#start)",
+    "InitialState": "[initial state](#initial-state)",
     "SimulationSettings": "[simulation](#simulation)",
     "Attitude": "[attitude](#attitude)",
     "Air": "[atmosphere](#atmospheres)",
     "AnySurface": "[surface](#surfaces)",
-    "TargetFrame": "[target](#a-target-that-moves)",
+    "TargetFrame": "[target](#a-moving-target)",
     "Goal": "[goal](#line)",
     "TaskGoal": "[goal](#in-a-list-of-controllers)",
 }
@@ -47,7 +50,7 @@ WORDS = {
 
 @cache
 def package() -> griffe.Module:
-    """The package as it is written: annotations by their names, words below attributes."""
+    """Returns the package as parsed from its source, with annotations as written."""
     python = Path(__file__).parents[1] / "python"
     loaded = griffe.load("onorbit_rs", search_paths=[python], allow_inspection=False)
     assert isinstance(loaded, griffe.Module)
@@ -55,7 +58,7 @@ def package() -> griffe.Module:
 
 
 def table(path: str) -> str:
-    """Markdown of one class: what it says of itself, then key, value, default, meaning."""
+    """Returns the docstring of a class and a table of its keys in Markdown."""
     module, name = path.rsplit(".", 1)
     live: type[BaseModel] = getattr(importlib.import_module(module), name)
     written = package()[path.removeprefix("onorbit_rs.")]
@@ -65,21 +68,41 @@ def table(path: str) -> str:
     return "\n".join([words(written), *head, *rows])
 
 
+def columns() -> str:
+    """Returns a table of the columns of a trace."""
+    from onorbit_rs import COLUMNS
+
+    rows = ["| column | shape | unit | axes | meaning | recorded | in `trace.npz` |", "|-|-|-|-|-|-|-|"]
+    for name, column in COLUMNS.items():
+        shape = ", ".join(map(str, column.shape)) + ("," if len(column.shape) == 1 else "")
+        cells = (
+            f"`{name}`",
+            f"({shape})",
+            column.unit,
+            column.frame,
+            column.meaning,
+            column.condition,
+            f"`{column.path}`",
+        )
+        rows.append(f"| {' | '.join(cells)} |")
+    return "\n".join(rows)
+
+
 def words(thing: Any) -> str:
-    """A docstring in Markdown."""
+    """Returns a docstring in Markdown."""
     text = thing.docstring.value if thing.docstring else ""
     return ROLE.sub(r"`\1`", text).replace("``", "`")
 
 
 def row(key: str, field: Any, written: Any) -> str:
-    """One key."""
+    """Returns the table row of one key."""
     default = "**required**" if field.is_required() else in_yaml(field.get_default(call_default_factory=True))
     meaning = " ".join(words(written).split())
     return f"| `{field.alias or key}` | {value_of(str(written.annotation))} | {default} | {meaning} |"
 
 
 def in_yaml(default: Any) -> str:
-    """A default as a scenario would write it."""
+    """Returns a default value as written in YAML."""
     if isinstance(default, bool):
         return f"`{str(default).lower()}`"
     if isinstance(default, float):
@@ -90,7 +113,7 @@ def in_yaml(default: Any) -> str:
 
 
 def value_of(annotation: str) -> str:
-    """In words: ``Annotated[Length, Positive] | None`` is a length."""
+    """Returns an annotation in words: ``Annotated[Length, Positive] | None`` is ``length``."""
     inner = r"(?:[^\[\]]|\[[^\[\]]*\])*"
     text = re.sub(rf"Annotated\[([\w.]+(?:\[[^\[\]]*\])?), {inner}\]", r"\1", " ".join(annotation.split()))
     parts = [part.strip(" ()") for part in re.split(r" \| (?![^\[]*\])", text)]
@@ -98,7 +121,7 @@ def value_of(annotation: str) -> str:
 
 
 def in_words(part: str) -> str:
-    """One of several kinds of value."""
+    """Returns one member of a union in words."""
     name = part.split(".")[-1]
     if literal := re.fullmatch(r"Literal\[(.*)\]", part):
         return ", ".join("`{}`".format(word.strip(" '\"")) for word in literal[1].split(","))
@@ -112,21 +135,22 @@ def in_words(part: str) -> str:
 
 
 class Keys(Preprocessor):
-    """Each mark becomes the text and the table of its class."""
+    """Replaces each directive by its table."""
 
     def run(self, lines: list[str]) -> list[str]:
-        """The page with its tables."""
-        return MARK.sub(lambda found: table(found["path"]), "\n".join(lines)).split("\n")
+        """Returns the lines of the page with its tables."""
+        text = MARK.sub(lambda found: table(found["path"]), "\n".join(lines))
+        return COLUMNS.sub(lambda _: columns(), text).split("\n")
 
 
 class KeysExtension(Extension):
-    """Registers it."""
+    """Registers the preprocessor."""
 
     def extendMarkdown(self, md: Markdown) -> None:
-        """Before anything else reads the lines."""
+        """Registers it before all other preprocessors."""
         md.preprocessors.register(Keys(md), "keys", 40)
 
 
 def makeExtension(**options: Any) -> KeysExtension:
-    """What Markdown calls."""
+    """Returns the extension; Markdown calls this function."""
     return KeysExtension(**options)

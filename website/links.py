@@ -1,4 +1,4 @@
-"""Reads the built site: every link within it leads somewhere, and nothing of it comes from elsewhere."""
+"""Checks the built site: every internal link has a target, and no page loads anything from elsewhere."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ LOADED = {("script", "src"), ("img", "src"), ("iframe", "src")}
 
 
 class Page(HTMLParser):
-    """What one page links to, what it loads, and where it can be linked to."""
+    """The links of one page, the files that it loads, and its anchors."""
 
     def __init__(self, text: str) -> None:
-        """Read it."""
+        """Parses the page."""
         super().__init__()
         self.links: set[str] = set()
         self.loads: set[str] = set()
@@ -22,7 +22,7 @@ class Page(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Collect."""
+        """Collects anchors, links and loaded files."""
         given = {name: value for name, value in attrs if value}
         self.anchors.update(given[name] for name in ("id", "name") if name in given)
         for name in given.keys() & {"href", "src"}:
@@ -32,18 +32,18 @@ class Page(HTMLParser):
             (self.loads if is_loaded else self.links).add(given[name])
 
     def handle_data(self, data: str) -> None:
-        """Words."""
+        """Collects the text."""
         self.text += data
 
 
-def complaints(site: Path) -> tuple[list[str], set[str]]:
-    """What is wrong with the site, and the links that lead out of it."""
+def problems(site: Path) -> tuple[list[str], set[str]]:
+    """Returns the problems of the site, one line each, and its external links."""
     pages = {file.resolve(): Page(file.read_text()) for file in sorted(site.rglob("*.html"))}
     wrong, outside = [], set()
     for file, page in pages.items():
         name = file.relative_to(site.resolve())
         if "$$" in page.text:
-            wrong.append(f"{name}: an equation was not read")
+            wrong.append(f"{name}: an equation was not converted")
         for link in sorted(page.links | page.loads):
             parts = urlsplit(link)
             if parts.scheme or parts.netloc:
@@ -51,19 +51,18 @@ def complaints(site: Path) -> tuple[list[str], set[str]]:
                 if link in page.loads and parts.scheme != "data":
                     wrong.append(f"{name}: loads {link}")
                 continue
-            start = (
-                site if parts.path.startswith("/") else file.parent
-            )  # the page of a wrong address has the site's root
+            # the error page uses links relative to the root of the site
+            start = site if parts.path.startswith("/") else file.parent
             target = (
                 (start / unquote(parts.path).lstrip("/")).resolve() if parts.path not in ("", ".") else file
             )
             target = target / "index.html" if target.is_dir() else target
             if not target.exists():
-                wrong.append(f"{name}: {link} is not there")
+                wrong.append(f"{name}: {link} does not exist")
             elif parts.fragment and target in pages and not _is_in(unquote(parts.fragment), pages[target]):
-                wrong.append(f"{name}: {link} has no such place")
+                wrong.append(f"{name}: {link} has no such anchor")
     return wrong, outside
 
 
 def _is_in(anchor: str, page: Page) -> bool:
-    return anchor in page.anchors or anchor.startswith("__")  # what begins so is the theme's
+    return anchor in page.anchors or anchor.startswith("__")  # anchors of the theme

@@ -1,4 +1,4 @@
-//! The kernels by name, each with its states and its results.
+//! The kernels by name, with their states and results.
 
 use onorbit_core::dynamics::{
     Data, FreeFloating, forward_dynamics, frame_drift, frame_jacobian, free_floating, inverse_dynamics,
@@ -7,7 +7,7 @@ use onorbit_core::dynamics::{
 use onorbit_core::model::Model;
 use onorbit_core::spatial::Real;
 
-/// What can be asked for: forward dynamics, mass matrix, inverse dynamics, the Jacobian and drift of the
+/// Names of the kernels: forward dynamics, mass matrix, inverse dynamics, Jacobian and drift of the
 /// tool, and `M*, c*, Jg, d` of it.
 pub(crate) const KERNELS: [&str; 5] = ["aba", "crba", "rnea", "jacobian", "reduced"];
 
@@ -18,7 +18,7 @@ struct State<S> {
     x: Vec<S>,
 }
 
-/// Kernels, states and room for results.
+/// Kernels, states and result buffers.
 pub(crate) struct Kernels<'a, S> {
     model: &'a Model,
     tool: usize,
@@ -57,7 +57,7 @@ impl<'a, S: Real> Kernels<'a, S> {
         self.states.len()
     }
 
-    /// Computes state `k`; a number of the result, so that nothing of it can be left out.
+    /// Computes state `k` and returns a number of the result, so that the compiler cannot omit the work.
     #[inline(always)]
     pub(crate) fn run(&mut self, kernel: usize, k: usize) -> S {
         let Self { model, tool, states, data, reduced, out, matrix, jacobian, drift } = self;

@@ -1,24 +1,24 @@
-//! Our kernels for one state as `make bench` times them, without Python in the way.
+//! Kernels for one state, timed by `make bench` without Python.
 //!
 //! `contestant URDF STATES COUNT [SET]`: the robot; `COUNT` rows of `q, v, x` as raw `f64`, `x` being torques or
 //! accelerations; the highest instruction set to use. Then, line by line from standard input:
 //!
 //! - `time KERNEL SECONDS` → `{"ns": …}`, nanoseconds per state: the median over passes through all states;
 //! - `result KERNEL FILE` → writes the results of all states to `FILE` as raw `f64`;
-//! - `flops KERNEL` → what one state costs in operations, by kind;
-//! - `peak SET SECONDS` → `{"gflops": …}`, what one core does with that instruction set at best.
+//! - `flops KERNEL` → number of operations per state, by kind;
+//! - `peak SET SECONDS` → `{"gflops": …}`, peak throughput of one core with that instruction set.
 //!
-//! Each of the C++ peers beside it (`benches/peers`) answers the same lines.
-#![allow(clippy::print_stdout)] // answers go there
+//! The C++ programs in `benches/peers` have the same protocol.
+#![allow(clippy::print_stdout)] // answers are printed
 
-mod counted;
 mod kernels;
-mod peak;
+mod operation_count;
+mod peak_flops;
 
-use counted::Counted;
 use kernels::{KERNELS, Kernels};
 use onorbit_core::model::{Model, urdf::from_file};
 use onorbit_core::spatial::{Fused, InstructionSet, Real};
+use operation_count::CountedF64;
 use std::error::Error;
 use std::hint::black_box;
 use std::io::{BufRead, stdin};
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(set) = set.first() {
         InstructionSet::limit(InstructionSet::named(set).ok_or("no such instruction set")?);
     }
-    // one state is never wider than this
+    // kernels of one state have at most four lanes
     match InstructionSet::current() {
         InstructionSet::Baseline => serve::<f64>(&model, &rows),
         InstructionSet::Fused | InstructionSet::Wide => serve::<Fused>(&model, &rows),
@@ -66,7 +66,7 @@ fn serve<S: Real>(model: &Model, rows: &[f64]) -> Result<(), Box<dyn Error>> {
             ["time", name, seconds] => time(&mut kernels, name, seconds),
             ["result", name, file] => result(&mut kernels, name, file),
             ["flops", name] => flops(model, rows, name),
-            ["peak", set, seconds] => peak::answer(set, seconds.parse()?),
+            ["peak", set, seconds] => peak_flops::answer(set, seconds.parse()?),
             _ => Err(format!("what is {line}?").into()),
         };
         println!("{}", answer?);
@@ -103,6 +103,6 @@ fn result<S: Real>(kernels: &mut Kernels<'_, S>, name: &str, file: &str) -> Answ
 }
 
 fn flops(model: &Model, rows: &[f64], name: &str) -> Answer {
-    let (kernel, mut kernels) = (index(name)?, Kernels::<Counted>::new(model, model.frame(TOOL)?, rows));
-    Ok(counted::during(|| _ = kernels.run(kernel, 0)))
+    let (kernel, mut kernels) = (index(name)?, Kernels::<CountedF64>::new(model, model.frame(TOOL)?, rows));
+    Ok(operation_count::during(|| _ = kernels.run(kernel, 0)))
 }

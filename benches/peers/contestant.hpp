@@ -1,9 +1,9 @@
-// A contestant of `make bench`: jobs by name, asked for line by line on standard input.
+// A program timed by `make bench`: runs jobs by name, requested line by line on standard input.
 //
 //   time JOB SECONDS  -> {"ns": ...}  nanoseconds of processor time per unit of work: the median over passes
 //   result JOB FILE   -> {}           writes what the job computes to FILE, as raw doubles
 //
-// A pass is all states once, so that inputs vary as they do in use; ours answers the same lines
+// A pass computes all states once, so that inputs vary as in practice. The Rust program has the same protocol
 // (benches/contestant).
 #pragma once
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 using Numbers = std::vector<double>;
 
-// keeps the compiler from leaving out what made `p`
+// prevents the compiler from omitting the computation of `p`
 inline void use(const void* p) { asm volatile("" : : "r"(p) : "memory"); }
 
 inline Numbers read_numbers(const std::string& file) {
@@ -34,7 +34,7 @@ inline Numbers read_numbers(const std::string& file) {
   return out;
 }
 
-// What this process has taken of the processor, ns: what others take in between does not count.
+// Processor time of this process, ns, which excludes other processes.
 inline double processor_time() {
   timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);

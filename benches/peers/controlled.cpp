@@ -1,5 +1,5 @@
-// An arm under computed torque, as a careful C++ programmer writes it with Pinocchio and Eigen: the law once per
-// step, the torque held, Runge-Kutta of fourth order. Neither orbit nor wrenches nor recording.
+// An arm under computed torque in optimised C++ with Pinocchio and Eigen: the control law is evaluated once per
+// step, the torque is held, with fourth-order Runge-Kutta. There is no orbit, no wrench and no recording.
 // usage: controlled ROBOT STATES TASK
 #include "reduced.hpp"
 #include <pinocchio/algorithm/aba.hpp>

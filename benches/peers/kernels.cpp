@@ -16,7 +16,7 @@ int contest(const Robot& robot, const std::string& file) {
   auto &J = reduced.J, &dJ = reduced.dJ;
   Vector6 drift;
 
-  // a job that does `run` to every state and appends what `result` says of each
+  // a job that calls `run` for every state and appends the `result` of each
   auto each = [&](auto run, auto result) {
     auto pass = [&states, run] { for (const State& s : states) run(s); };
     auto all = [&states, run, result](Numbers& out) { for (const State& s : states) run(s), result(out); };

@@ -1,4 +1,4 @@
-// MuJoCo's Runge-Kutta step in C, with all that this robot does not need switched off.
+// MuJoCo's Runge-Kutta step in C, with all features off that this robot does not need.
 // usage: mujoco MODEL.xml STATES RUNS STEPS, from the first RUNS states
 #include "contestant.hpp"
 #include <mujoco/mujoco.h>

@@ -1,4 +1,4 @@
-// The reduced model of an arm on a free base, `M* qdd + c* = tau` and `xdd = Jg qdd + d`, made of Pinocchio's
+// The reduced model of an arm on a free base, `M* qdd + c* = tau` and `xdd = Jg qdd + d`, from Pinocchio's
 // algorithms and Eigen's fixed-size matrices. N: joints.
 #pragma once
 #include "robot.hpp"
@@ -24,7 +24,7 @@ struct Reduced {
 
   explicit Reduced(long nv) : J(6, nv), dJ(6, nv) { J.setZero(), dJ.setZero(); }
 
-  // As the documentation suggests it: Jdot from its own algorithm, for all joints.
+  // As in Pinocchio's documentation: Jdot of all joints from its algorithm.
   void by_jacobian_rate(const Robot& robot, pinocchio::Data& data, const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
     using namespace pinocchio;
     crba(robot.model, data, q, Convention::WORLD);
@@ -37,8 +37,8 @@ struct Reduced {
     reduce(data, v);
   }
 
-  // As little as possible: CRBA in world axes leaves placements and Jacobians behind, and the accelerations
-  // that the bias forces need are those whose classical value at the tool is Jdot v.
+  // With the fewest operations: CRBA in world axes computes placements and Jacobians, and the accelerations
+  // of the bias forces have the classical value Jdot v at the tool.
   void by_acceleration(const Robot& robot, pinocchio::Data& data, const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
     using namespace pinocchio;
     crba(robot.model, data, q, Convention::WORLD);

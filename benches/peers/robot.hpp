@@ -1,10 +1,10 @@
-// The robot and its states in Pinocchio's terms, from the tables that benches/versus/robots.py writes.
+// Pinocchio's model and states, read from the tables that benches/versus/robots.py writes.
 #pragma once
 #include "contestant.hpp"
 #include <pinocchio/multibody.hpp>
 #include <pinocchio/spatial.hpp>
 
-// A body as it stands in the table: mass, centre of mass, inertia about it (xx xy xz yy yz zz).
+// A body of the table: mass, centre of mass, inertia about it (xx xy xz yy yz zz).
 inline pinocchio::Inertia read_body(std::istream& in) {
   double mass, xx, xy, xz, yy, yz, zz;
   Eigen::Vector3d com;
@@ -24,7 +24,7 @@ struct Robot {
   pinocchio::Model model;
   pinocchio::FrameIndex tool = 0;
 
-  // joints turn about x, y or z, for which Pinocchio has types of their own: its fastest
+  // all joints rotate about x, y or z, for which Pinocchio has its fastest joint types
   explicit Robot(const std::string& file) {
     using namespace pinocchio;
     std::ifstream in(file);

@@ -1,4 +1,4 @@
-"""``make bench``: every kernel and every run against its best-known peer, on this machine, in this run."""
+"""``make bench``: times every kernel and run against other engines on this machine."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 import page
 import programs
 import report
-from field import Field
+from contestants import Contestants
 from measure import ceiling, measure
 from rows import ROWS
 
@@ -25,10 +25,10 @@ def commit() -> str:
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python benches/versus", description=__doc__)
     parser.add_argument("--rounds", type=int, default=15)
-    parser.add_argument("--seconds", type=float, default=0.1, help="of each contestant in a round")
+    parser.add_argument("--seconds", type=float, default=0.1, help="time of each program in a round")
     parser.add_argument("--only", default="", help="rows whose name contains this; nothing is saved")
     parser.add_argument(
-        "--no-save", action="store_true", help="leave benches/results.json and the page alone"
+        "--no-save", action="store_true", help="do not update benches/results.json and the page"
     )
     return parser.parse_args()
 
@@ -41,22 +41,22 @@ def main() -> None:
     run: dict[str, Any] = {"date": now.strftime("%Y-%m-%d %H:%M UTC"), "commit": commit()}
     before, skipped = None, []
     for arms in (1, 2):
-        field, nv = Field(arms, ours, peers, missing), 6 + 7 * arms
+        contestants, nv = Contestants(arms, ours, peers, missing), 6 + 7 * arms
         if arms == 1:
-            level = field["ours"].about["ready"]
+            level = contestants["ours"].about["ready"]
             run["machine"] = f"{programs.processor()}, {os.cpu_count()} cores, {level}"
             run |= {"versions": programs.versions(), "rounds": given.rounds, "ceiling": [], "rows": []}
             before = report.last_like(run)
             print(f"{run['machine']}; commit {run['commit']}\n{report.head()}")
         for row in (row for row in ROWS if given.only in row.what):
-            measured = measure(row, nv, field, given.rounds, given.seconds)
+            measured = measure(row, nv, contestants, given.rounds, given.seconds)
             if isinstance(measured, str):
                 skipped.append(f"not measured: {row.what}, nv = {nv}: {measured}")
             else:
                 run["rows"].append(measured)
                 print(report.line(measured, before), flush=True)
-        run["ceiling"].append(ceiling(nv, field))
-        field.close()
+        run["ceiling"].append(ceiling(nv, contestants))
+        contestants.close()
     print(*skipped, *report.regressions(run, before), sep="\n")
     if not given.only and not given.no_save:
         report.append(run)

@@ -1,8 +1,8 @@
-"""``make bench-against REV=…``: the speed of this tree as a multiple of another revision's, row by row.
+"""``make bench-against REV=…``: the speed of this tree relative to another revision, row by row.
 
-Both are built at one path with one set of flags, so that equal sources give equal machine code. In every
-round both start anew and are timed in short blocks in turns on one core. A ratio above 1 means that this tree
-is faster.
+Both are built at the same path with the same flags, so that equal sources give equal machine code. In every
+round both are restarted and timed alternately in short blocks on one core. A ratio above 1 means that this
+tree is faster.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 import inputs
 import programs
 import revisions
-from duel import Duel, Row, interval, verdict
+from build_comparison import BuildComparison, Row, interval, verdict
 from report import columns
 from rows import ROWS
 
@@ -31,10 +31,10 @@ def arguments() -> argparse.Namespace:
         nargs=2,
         type=Path,
         metavar=("OTHER", "HERE"),
-        help="two trees that are already built, with the contestant in target/release/examples",
+        help="two trees that are built, with the program contestant in target/release/examples",
     )
     parser.add_argument("--rounds", type=int, default=41)
-    parser.add_argument("--seconds", type=float, default=0.01, help="of a block at least")
+    parser.add_argument("--seconds", type=float, default=0.01, help="shortest time of a block")
     parser.add_argument("--rows", default="", help="only rows whose name contains this")
     parser.add_argument("--nv", type=int, choices=(13, 20), help="only the robot with one arm or with two")
     given = parser.parse_args()
@@ -43,8 +43,8 @@ def arguments() -> argparse.Namespace:
     return given
 
 
-def asked(given: argparse.Namespace) -> list[Row]:
-    """The rows of ``make bench`` that run on one thread, for each robot."""
+def selected_rows(given: argparse.Namespace) -> list[Row]:
+    """Returns the rows of ``make bench`` that run on one thread, for each robot."""
     robots = (13, 20) if given.nv is None else (given.nv,)
     rows = [row for row in ROWS if given.rows in row.what and row.ours[0] != "ours_all"]
     if not rows:
@@ -58,21 +58,32 @@ def main() -> int:
     same = other.machine_code() == here.machine_code()
     print(f"{here.name} against {other.name} on {programs.processor()}, {given.rounds} rounds")
     print(f"machine code: {'the same bytes' if same else 'different'}\n{HEAD}", flush=True)
-    rows, slower = asked(given), 0
+    rows, slower = selected_rows(given), 0
     for nv in dict.fromkeys(row.nv for row in rows):
         folder = programs.BUILD / f"against{nv}"
         inputs.write(folder, 1 if nv == 13 else 2)
-        duel = Duel(other, here, folder, [row for row in rows if row.nv == nv])
+        comparison = BuildComparison(other, here, folder, [row for row in rows if row.nv == nv])
         for _ in range(given.rounds):
-            duel.round(given.seconds)
-        for row, ratios in duel.ratios.items():
+            comparison.round(given.seconds)
+        for row, ratios in comparison.ratios.items():
             low, high = interval(ratios)
-            told = verdict(low, high)
-            slower += told == "SLOWER"
+            result = verdict(low, high)
+            slower += result == "SLOWER"
             middle, bounds = statistics.median(ratios), f"{low:.3f} to {high:.3f}"
-            time = f"{statistics.median(duel.times[row]) / 1e3:.2f} µs"
+            time = f"{statistics.median(comparison.times[row]) / 1e3:.2f} µs"
             print(
-                columns(row.what, str(nv), time, f"{middle:.3f}", bounds, "", "", duel.change(row), "", told),
+                columns(
+                    row.what,
+                    str(nv),
+                    time,
+                    f"{middle:.3f}",
+                    bounds,
+                    "",
+                    "",
+                    comparison.change(row),
+                    "",
+                    result,
+                ),
                 flush=True,
             )
     print(f"{slower} rows slower: their intervals lie below 0.98" if slower else "no row is slower")

@@ -1,50 +1,50 @@
-"""One row measured; and the ceiling above all of them."""
+"""Measures a row of the table, and the peak throughput of the processor."""
 
 from __future__ import annotations
 
 import statistics
 from typing import Any
 
-from field import Field
-from race import Entry, alternate, difference, ratios
+from contestants import Contestants
 from rows import Row
+from timing import Entry, alternate, difference, ratios
 
 KERNELS = ("aba", "crba", "rnea", "jacobian", "reduced")
 LANES = {"avx512": ("avx2+fma", "avx512"), "avx2+fma": ("avx2+fma",), "fma": ("fma",)}
 
 
-def measure(row: Row, nv: int, field: Field, rounds: int, seconds: float) -> dict[str, Any] | str:
-    """What a row says; or why it says nothing."""
+def measure(row: Row, nv: int, contestants: Contestants, rounds: int, seconds: float) -> dict[str, Any] | str:
+    """Measures a row; returns its entry in the results, or the reason why it cannot be measured."""
     who, job = row.ours
-    if row.peer in field.missing:
-        return field.missing[row.peer]
-    level = field["ours"].about["ready"]
+    if row.peer in contestants.missing:
+        return contestants.missing[row.peer]
+    level = contestants["ours"].about["ready"]
     if who == "ours_avx2" and level != "avx512":
-        return f"this processor's best is {level}: the row above"
-    if job not in field[who].about.get("jobs", [job]):
-        return "ours does not have it"
-    off = difference(field.result(who, job), field.result(row.peer, row.jobs[0]), row.widths(nv))
-    entries = [Entry(field[who], job), *(Entry(field[row.peer], name) for name in row.jobs)]
-    mine, *others = alternate(entries, rounds, seconds)
+        return f"this processor's best instruction set is {level}: see the row above"
+    if job not in contestants[who].about.get("jobs", [job]):
+        return "this package does not have it"
+    off = difference(contestants.result(who, job), contestants.result(row.peer, row.jobs[0]), row.widths(nv))
+    entries = [Entry(contestants[who], job), *(Entry(contestants[row.peer], name) for name in row.jobs)]
+    ours, *others = alternate(entries, rounds, seconds)
     fastest = min(others, key=statistics.median)
     return {
         "what": row.what,
         "nv": nv,
-        "ratio": {name: round(x, 3) for name, x in ratios(fastest, mine).items()},
-        "asked": row.minimum(nv, field[who].about["ready"]),
+        "ratio": {name: round(x, 3) for name, x in ratios(fastest, ours).items()},
+        "asked": row.minimum(nv, contestants[who].about["ready"]),
         "difference": float(f"{off:.2g}"),
-        "ours_ns": round(statistics.median(mine), 1),
+        "ours_ns": round(statistics.median(ours), 1),
         "against": row.against,
         "variants": {
-            name: round(ratios(other, mine)["median"], 3)
+            name: round(ratios(other, ours)["median"], 3)
             for name, other in zip(row.jobs, others, strict=True)
         },
     }
 
 
-def ceiling(nv: int, field: Field) -> dict[str, Any]:
-    """Operations per state of each kernel; and the most that a core does, in 1e9 of them per second."""
-    rust, level = field["rust"], field["ours"].about["ready"]
+def ceiling(nv: int, contestants: Contestants) -> dict[str, Any]:
+    """Returns the operations per state of each kernel and the peak of a core in 1e9 operations per second."""
+    rust, level = contestants["rust"], contestants["ours"].about["ready"]
     return {
         "nv": nv,
         "operations": {name: rust.ask("flops", name) for name in KERNELS},

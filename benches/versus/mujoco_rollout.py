@@ -1,4 +1,4 @@
-"""MuJoCo's own rollouts, as its wheel comes. ``mujoco_rollout.py FOLDER``."""
+"""Times the rollouts of MuJoCo's wheel. ``mujoco_rollout.py FOLDER``."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def job(threads: int) -> Job:
 
     def ends() -> Any:
         run()
-        last = state[:, -1, 1:]  # time comes first
+        last = state[:, -1, 1:]  # the first column is time
         return oo.layouts.from_mujoco(ours, last[:, : model.nq], last[:, model.nq : model.nq + model.nv])
 
     return Job(len(qpos) * inputs.ROLLOUT_STEPS, run, ends, threads)

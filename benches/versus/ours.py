@@ -1,4 +1,4 @@
-"""Ours, from Python. ``ours.py FOLDER``; ``ONORBIT_INSTRUCTION_SET`` forces a lower instruction set."""
+"""Times this package from Python: ``ours.py FOLDER``. ``ONORBIT_INSTRUCTION_SET`` selects a lower set."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ path = oo.LineParabola(
 )
 
 
-def room(kernel: Any, *given: Any) -> dict[str, Any]:
-    """``out=``, filled by one call, where the kernel takes it."""
+def output(kernel: Any, *given: Any) -> dict[str, Any]:
+    """Returns ``out=`` with arrays for the results, if the kernel supports it."""
     result = kernel(*given, threads=1)
     try:
         kernel(*given, threads=1, out=result)
@@ -38,7 +38,7 @@ def room(kernel: Any, *given: Any) -> dict[str, Any]:
 
 
 def batch_of(kernel: Any, *given: Any) -> Job:
-    out = room(kernel, *given)
+    out = output(kernel, *given)
 
     def first() -> Any:
         result = kernel(*given, threads=1)
@@ -84,7 +84,7 @@ def controlled_rollout() -> Job:
 
 
 def reach(**environment: Any) -> Job:
-    """The scenario ``humanoid_reach``: every step recorded."""
+    """Returns the job of the scenario ``humanoid_reach`` with every step recorded."""
     control = {"controller": law, "reference": path, "tool": "tool", "time_step": inputs.TIME_STEP}
     run = oo.Simulation(model, arms_q[0], arms_v[0], **control, **environment)
     duration = inputs.REACH_STEPS * inputs.TIME_STEP

@@ -1,4 +1,4 @@
-"""The measured part of ``docs/performance.md``, written anew by every run that is kept."""
+"""Writes the measured part of ``docs/performance.md`` after every saved run."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Run = dict[str, Any]
 
 
 def flops(operations: dict[str, int]) -> int:
-    """A fused multiply-add is two, a division or root one, sine and cosine what their polynomials take."""
+    """Counts a fused multiply-add as two, a division or root as one, sine and cosine as their polynomials."""
     once = sum(operations[name] for name in ("add", "mul", "div", "sqrt"))
     return once + 2 * operations["mul_add"] + SINE_AND_COSINE * operations["sin_cos"]
 
@@ -31,19 +31,19 @@ def head(*columns: str) -> list[str]:
 
 
 def ratios(run: Run) -> list[str]:
-    lines = head("what", "nv", "against", "ratio", "rounds", "asked", "differ by")
+    lines = head("task", "nv", "compared with", "ratio", "rounds", "required", "differ by")
     for row in run["rows"]:
-        ratio, asked = row["ratio"], row["asked"]
+        ratio, goal = row["ratio"], row["asked"]
         lines.append(
             f"| {row['what']} | {row['nv']} | {row['against']} | **{ratio['median']:.2f}** | "
-            f"{ratio['min']:.1f} to {ratio['max']:.1f} | {'' if asked is None else f'{asked:g}'} | "
+            f"{ratio['min']:.1f} to {ratio['max']:.1f} | {'' if goal is None else f'{goal:g}'} | "
             f"{row['difference']:.0e} |"
         )
     return lines
 
 
 def limits(run: Run) -> list[str]:
-    """Operations beside time: of one state, and of the batch on lanes."""
+    """Returns the table of operations and times, for one state and for a batch with SIMD."""
     kinds = ("ns, one state", "of a lane's peak", "ns, in a batch", "of the lanes' peak")
     lines = head("kernel", "nv", "operations", *kinds)
     times = {(row["what"], row["nv"]): row["ours_ns"] for row in run["rows"]}
@@ -69,7 +69,7 @@ def measured(run: Run) -> str:
         "",
         *ratios(run),
         "",
-        f"Most that one core does, operations per second: {peaks}.",
+        f"Peak throughput of one core, operations per second: {peaks}.",
         "",
         *limits(run),
     ]

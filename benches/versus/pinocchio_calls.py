@@ -1,4 +1,4 @@
-"""Pinocchio from Python, as its wheel comes. ``pinocchio_calls.py FOLDER``."""
+"""Times Pinocchio's wheel from Python. ``pinocchio_calls.py FOLDER``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compiles the contestants that are not Python: ours by cargo, the peers by g++ from PyPI's wheels."""
+"""Compiles the Rust program with cargo and the programs of other engines with g++ and PyPI's wheels."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ SITE = Path(sysconfig.get_paths()["purelib"])
 WHEELS = ("pin", "libpinocchio", "cmeel-boost", "cmeel-eigen", "mujoco-core")
 
 FLAGS = ["-std=c++17", "-O3", "-DNDEBUG", "-march=native", "-w"]
-# what Pinocchio's joint variant needs of Boost
+# limits of Boost that Pinocchio's joint variant requires
 BOOST = ["MPL_LIMIT_LIST_SIZE=30", "MPL_LIMIT_VECTOR_SIZE=30", "FUSION_INVOKE_MAX_ARITY=12"]
 BOOST = [f"-DBOOST_{limit}" for limit in [*BOOST, "MPL_CFG_NO_PREPROCESSED_HEADERS"]]
 
 
 def versions() -> dict[str, str]:
-    """Of wheels and compilers; empty where there is none."""
+    """Returns the versions of wheels and compilers; empty for missing ones."""
     found = {}
     for wheel in (*WHEELS, "numpy"):
         try:
@@ -40,17 +40,17 @@ def versions() -> dict[str, str]:
 
 
 def ours() -> Path:
-    """The Rust program, with the flags of a release: no ``target-cpu``."""
+    """Builds the Rust program with the flags of a release, without ``target-cpu``."""
     command = ["cargo", "build", "--release", "-p", "onorbit-core", "--example", "contestant"]
-    told = subprocess.run(
+    output = subprocess.run(
         [*command, "--message-format=json"], cwd=HERE.parents[1], check=True, capture_output=True, text=True
     )
-    built = [json.loads(line) for line in told.stdout.splitlines()]
+    built = [json.loads(line) for line in output.stdout.splitlines()]
     return next(Path(made["executable"]) for made in built if made.get("executable"))
 
 
 def peers() -> tuple[dict[str, Path], dict[str, str]]:
-    """The C++ programs by name, and why others are missing; compiled when what they are made of changes."""
+    """Compiles the C++ programs if their sources changed; returns them, and why others are missing."""
     known = versions()
     if not known["g++"]:
         return {}, dict.fromkeys(("kernels", "controlled", "mujoco"), "no g++ on this machine")
@@ -88,9 +88,9 @@ def peers() -> tuple[dict[str, Path], dict[str, str]]:
     if running:
         print(f"compiling {', '.join(running)} (once; Pinocchio's templates take minutes) ...", flush=True)
     for name, compiler in running.items():
-        complaint = compiler.communicate()[1]
+        errors = compiler.communicate()[1]
         if compiler.returncode:
-            missing[name] = f"g++ failed: {(complaint.splitlines() or ['killed'])[0]}"
+            missing[name] = f"g++ failed: {(errors.splitlines() or ['killed'])[0]}"
             del programs[name]
         else:
             Path(str(programs[name]) + ".new").rename(programs[name])
@@ -98,7 +98,7 @@ def peers() -> tuple[dict[str, Path], dict[str, str]]:
 
 
 def processor() -> str:
-    """Its name, as far as the machine tells."""
+    """Returns the name of the processor, if known."""
     file = Path("/proc/cpuinfo")
     lines = file.read_text().splitlines() if file.exists() else []
     return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), "unknown")

@@ -14,27 +14,27 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 AGAINST = ROOT / "target" / "against"
 SOURCE, TARGET = AGAINST / "source", AGAINST / "target"
-# what a build depends on
+# files on which a build depends
 PARTS = ("Cargo.toml", "Cargo.lock", "crates", "python", "benches/contestant")
 PARTS = (*PARTS, "README.md", "pyproject.toml")
 
 
 @dataclass(frozen=True)
 class Build:
-    """A revision's name, its contestant and the folder that holds its Python package."""
+    """A revision's name, its Rust program and the folder of its Python package."""
 
     name: str
     contestant: Path
     python: Path
 
     def machine_code(self) -> str:
-        """A digest of the contestant and of the compiled module."""
+        """Returns a digest of the Rust program and of the compiled module."""
         files = [self.contestant, *sorted((self.python / "onorbit_rs").glob("_core*.so"))]
         return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
 def built(*trees: Path) -> list[Build]:
-    """Trees that were built where they are."""
+    """Returns the builds of trees that were built in place."""
     builds = []
     for tree in trees:
         contestant, python = tree / "target/release/examples/contestant", tree / "python"
@@ -48,22 +48,22 @@ def built(*trees: Path) -> list[Build]:
 
 
 def compared(revision: str) -> list[Build]:
-    """The revision and the working tree, with whatever is changed in it, both built at the same path."""
+    """Builds the revision and the working tree, including uncommitted changes, at the same path."""
     other = git("rev-parse", "--verify", f"{revision}^{{tree}}")
     return [build(revision, other), build("the working tree", working_tree())]
 
 
 def git(*words: str, **environment: str) -> str:
-    told = subprocess.run(
+    done = subprocess.run(
         ["git", *words], cwd=ROOT, env=os.environ | environment, capture_output=True, text=True
     )
-    if told.returncode:
-        sys.exit(f"git {' '.join(words)}: {told.stderr.strip()}")
-    return told.stdout.strip()
+    if done.returncode:
+        sys.exit(f"git {' '.join(words)}: {done.stderr.strip()}")
+    return done.stdout.strip()
 
 
 def working_tree() -> str:
-    """The tree object of all files that are not ignored, by an index of its own."""
+    """Writes a tree object of all files that are not ignored, with a temporary index."""
     with tempfile.TemporaryDirectory() as folder:
         index = str(Path(folder) / "index")
         git("read-tree", "HEAD", GIT_INDEX_FILE=index)
@@ -72,7 +72,7 @@ def working_tree() -> str:
 
 
 def build(name: str, tree: str) -> Build:
-    """Build a tree object, unless its like was built before."""
+    """Builds a tree object, unless an equal one was built before."""
     content = git("ls-tree", tree, *PARTS)
     folder = AGAINST / hashlib.sha256(content.encode()).hexdigest()[:12]
     if not folder.exists():
@@ -92,16 +92,16 @@ def build(name: str, tree: str) -> Build:
 
 
 def export(tree: str) -> None:
-    """Write the files of a tree object to the one path that everything is built at."""
+    """Writes the files of a tree object to the common path of all builds."""
     shutil.rmtree(SOURCE, ignore_errors=True)
     SOURCE.mkdir(parents=True)
     with subprocess.Popen(["git", "archive", tree], cwd=ROOT, stdout=subprocess.PIPE) as archive:
-        # files are new to cargo, whatever their age
+        # current time stamps make cargo rebuild the files
         subprocess.run(["tar", "--extract", "--touch"], cwd=SOURCE, stdin=archive.stdout, check=True)
 
 
 def seed() -> None:
-    """Take what the working tree has compiled of the dependencies, as hard links."""
+    """Reuses the dependencies compiled in the working tree, as hard links."""
     if TARGET.exists():
         return
     for part in (".fingerprint", "build", "deps"):

@@ -1,4 +1,4 @@
-"""One robot for all contestants: the bundled humanoid with its arm once (nv = 13) or twice (nv = 20).
+"""The common robot of all programs: the bundled humanoid with one arm (nv = 13) or two (nv = 20).
 
 Every number comes from the bundled URDF (Table 1 of the OnOrbitROS paper). The second arm is the first one
 mounted on the other side, so that all joints turn about x, y or z: Pinocchio's fastest joint types.
@@ -35,7 +35,7 @@ class Body:
 
 @dataclass
 class Joint:
-    """A revolute joint about a positive axis of its parent's, and the body that it carries."""
+    """A revolute joint about a positive axis of its parent, and its child body."""
 
     parent: int
     axis: str
@@ -45,7 +45,7 @@ class Joint:
 
 @dataclass
 class Robot:
-    """The tree: bodies by index, the base being 0; the tool rides on one of them."""
+    """The tree: bodies by index, with base 0, and a tool on one of them."""
 
     base: Body
     joints: list[Joint] = field(default_factory=list)
@@ -63,7 +63,7 @@ def floats(element: xml.Element | None, name: str) -> list[float]:
 
 
 def humanoid(arms: int) -> Robot:
-    """The robot read from the bundled file, its arm `arms` times."""
+    """Reads the robot from the bundled file and returns it with `arms` arms."""
     root = xml.parse(BUNDLED).getroot()
     bodies = {
         link.attrib["name"]: read_body(link)
@@ -134,14 +134,14 @@ def urdf(robot: Robot) -> str:
 
 
 def table(robot: Robot) -> str:
-    """What ``benches/peers/robot.hpp`` reads."""
+    """Returns the text that ``benches/peers/robot.hpp`` reads."""
     lines = [str(len(robot.joints)), text(robot.base.numbers())]
     lines += [f"{j.parent} {j.axis} {text(j.xyz)} {text(j.body.numbers())}" for j in robot.joints]
     return "\n".join([*lines, f"{robot.tool} {text(robot.tool_xyz)}\n"])
 
 
 def mjcf(robot: Robot) -> str:
-    """MuJoCo's file: a free base and hinges, nothing that collides; inertias as xx yy zz xy xz yz."""
+    """Returns MJCF with a free base and hinges, without collision; inertias are xx yy zz xy xz yz."""
 
     def body(k: int, xyz: list[float], mass: Body, joint: str) -> str:
         order = [mass.inertia[i] for i in (0, 3, 5, 1, 2, 4)]

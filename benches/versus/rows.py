@@ -1,4 +1,4 @@
-"""What is compared: a row per line of the table, for each robot."""
+"""The rows of the table, each a job that is compared for each robot."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Row:
-    """A job of ours against jobs of one peer, of which the fastest counts.
+    """A job of this package against jobs of one other engine, of which the fastest counts.
 
-    `asked` is the ratio to reach, or that for each instruction set or nv; `parts` the widths of what a row of
-    the results holds, in terms of nq, nv and n.
+    `goal` is the ratio to reach, optionally by instruction set or nv; `parts` are the widths of the results
+    in a row, in terms of nq, nv and n.
     """
 
     what: str
@@ -18,14 +18,14 @@ class Row:
     peer: str
     jobs: tuple[str, ...]
     against: str
-    asked: float | dict[object, float] | None
+    goal: float | dict[object, float] | None
     parts: str
 
     def minimum(self, nv: int, level: str) -> float | None:
-        """The ratio to reach with this robot on this instruction set."""
-        if not isinstance(self.asked, dict):
-            return self.asked
-        return self.asked.get(nv, self.asked.get(level))
+        """Returns the ratio to reach with this robot on this instruction set."""
+        if not isinstance(self.goal, dict):
+            return self.goal
+        return self.goal.get(nv, self.goal.get(level))
 
     def widths(self, nv: int) -> list[int]:
         sizes = {"nq": nv + 1, "nv": nv, "n": nv - 6, "6": 6}

@@ -1,4 +1,4 @@
-"""A contestant in Python: the lines of ``benches/peers/contestant.hpp``."""
+"""A timed process in Python, with the protocol of ``benches/peers/contestant.hpp``."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ import numpy as np
 
 @dataclass
 class Job:
-    """`run` does `units` of work; `result` tells what comes out (arrays, one row per state).
+    """`run` does `units` of work; `result` returns the results (arrays with one row per state).
 
-    Time is the processor's: what others take in between does not count. On several threads it is the wall's.
+    Processor time is measured, which excludes other processes; with several threads, wall-clock time.
     """
 
     units: int
@@ -27,7 +27,7 @@ class Job:
 
 
 def timed(job: Job, seconds: float) -> float:
-    """Nanoseconds per unit, the median over passes."""
+    """Returns the nanoseconds per unit, the median over passes."""
     clock = time.process_time_ns if job.threads == 1 else time.perf_counter_ns
     passes, end = [], time.perf_counter() + seconds
     while not passes or time.perf_counter() < end:
@@ -38,7 +38,7 @@ def timed(job: Job, seconds: float) -> float:
 
 
 def serve(ready: str, jobs: dict[str, Job]) -> None:
-    """Answer until standard input ends."""
+    """Answers requests until standard input ends."""
     answer({"ready": ready, "jobs": list(jobs)})
     for line in sys.stdin:
         verb, name, last = line.split()

@@ -5,8 +5,12 @@
 >>> model.nv
 6
 
-SI and radians everywhere; frames and layouts are those of ``docs/``: ``q = [p(3), quat_xyzw(4), joints]``,
-``v = [v_body(3), w_body(3), joint rates]``, linear before angular.
+All quantities are in SI and radians. ``q = [p(3), quat_xyzw(4), joints]`` and
+``v = [v_body(3), w_body(3), joint rates]``, linear before angular; ``docs/`` defines the frames.
+
+Data flow: ``scenario`` reads YAML and builds a :class:`Simulation`, ``simulation`` runs it and gets a
+:class:`Trace`, ``output`` writes trace, summary and manifest, and ``viewer``, ``figures`` and ``report`` show
+them. The page on design in ``docs`` has a diagram.
 """
 
 from __future__ import annotations
@@ -17,12 +21,14 @@ from typing import TYPE_CHECKING, Any
 
 from onorbit_rs import exceptions, relative, robots, scenarios
 from onorbit_rs._core import (
+    COLUMNS,
     MU_EARTH,
     Atmosphere,
     BodyWrench,
     Cannonball,
     Checkpoint,
     Circle,
+    Column,
     Compliance,
     ComputedTorque,
     ConstantAtmosphere,
@@ -62,6 +68,7 @@ from onorbit_rs._core import (
     Sgp4,
     Simulation,
     State,
+    Stepper,
     Surface,
     Target,
     ThirdBody,
@@ -72,22 +79,24 @@ from onorbit_rs._core import (
     propagate,
     rollout,
 )
-from onorbit_rs.control import Controller
 from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.simulation.controller import Controller
 
 if TYPE_CHECKING:
-    from onorbit_rs import layouts, plants
-    from onorbit_rs.comparison import Comparison, compare
-    from onorbit_rs.running import Run, resume, run
+    from onorbit_rs import engines, layouts
     from onorbit_rs.scenario import Scenario
+    from onorbit_rs.simulation.run import Run, resume, run
+    from onorbit_rs.tools.comparison import Comparison, compare
 
 __all__ = [
+    "COLUMNS",
     "MU_EARTH",
     "Atmosphere",
     "BodyWrench",
     "Cannonball",
     "Checkpoint",
     "Circle",
+    "Column",
     "Comparison",
     "Compliance",
     "ComputedTorque",
@@ -132,6 +141,7 @@ __all__ = [
     "Sgp4",
     "Simulation",
     "State",
+    "Stepper",
     "Surface",
     "Target",
     "ThirdBody",
@@ -140,9 +150,9 @@ __all__ = [
     "attach",
     "build_info",
     "compare",
+    "engines",
     "exceptions",
     "layouts",
-    "plants",
     "propagate",
     "relative",
     "resume",
@@ -154,29 +164,29 @@ __all__ = [
 
 __version__: str = build_info()["version"]
 
-_LATER = {
-    "Comparison": "comparison", "compare": "comparison", "Scenario": "scenario",
-    "Run": "running", "resume": "running", "run": "running",
+_LAZY = {
+    "Comparison": "tools.comparison", "compare": "tools.comparison", "Scenario": "scenario",
+    "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
 }  # fmt: skip
-"""Where names come from that are loaded when first asked for: numpy and pydantic take half a second."""
-_LATER_MODULES = ("layouts", "plants", "comparison", "running", "scenario")
+"""Modules of the names that are imported on first access, since numpy and pydantic load in half a second."""
+_LAZY_MODULES = ("engines", "layouts", "scenario")
 
 
-if not TYPE_CHECKING:  # or every misspelt name would have a type
+if not TYPE_CHECKING:  # otherwise every misspelt name would have a type
 
     def __getattr__(name: str) -> object:
-        """Load what is asked for."""
-        if name in _LATER_MODULES:
+        """Return a name that is imported on first access."""
+        if name in _LAZY_MODULES:
             return importlib.import_module(f"onorbit_rs.{name}")
-        if name not in _LATER:
+        if name not in _LAZY:
             raise AttributeError(f"module 'onorbit_rs' has no attribute {name!r}")
-        globals()[name] = found = getattr(importlib.import_module(f"onorbit_rs.{_LATER[name]}"), name)
+        globals()[name] = found = getattr(importlib.import_module(f"onorbit_rs.{_LAZY[name]}"), name)
         return found
 
 
 def _reduced(trace: Trace) -> tuple[Any, ...]:
-    """How a trace pickles; what of it travels is numpy's, and loaded when the first one does."""
-    from onorbit_rs.output.travel import reduced
+    """Return the pickled form of a trace; its module is imported when the first trace is pickled."""
+    from onorbit_rs.output.pickling import reduced
 
     return reduced(trace)
 
@@ -185,5 +195,5 @@ copyreg.pickle(Trace, _reduced)
 
 
 def __dir__() -> list[str]:
-    """Public names alone, for completion."""
+    """Return the public names, for completion."""
     return [*__all__, "__version__"]

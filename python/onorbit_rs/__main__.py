@@ -1,4 +1,4 @@
-"""``python -m onorbit_rs`` is ``onorbit``."""
+"""Runs ``onorbit`` as ``python -m onorbit_rs``."""
 
 from onorbit_rs.cli import main
 

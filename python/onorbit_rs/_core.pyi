@@ -1,4 +1,4 @@
-"""Types of the engine's module; what things mean stands in their docstrings."""
+"""Types of the compiled module; the docstrings are in the module itself."""
 
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
@@ -11,7 +11,7 @@ from typing_extensions import disjoint_base
 
 _Array = NDArray[np.float64]
 _Vector = Sequence[float] | np.ndarray[tuple[int], np.dtype[np.float64]]
-_Column = _Array | Any  # None where the run has nothing to fill it with
+_Column = _Array | Any  # None for columns that do not apply to the run
 _Path = str | PathLike[str]
 _External = Mapping[str, ArrayLike]
 _JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
@@ -24,7 +24,7 @@ _CertificateRow = tuple[str, float | None, float, bool]
 class _Controller(Protocol):
     def update(self, t: float, state: State, /) -> ArrayLike: ...
 
-class _Plant(Protocol):
+class _Engine(Protocol):
     def step(
         self,
         start: float,
@@ -48,6 +48,7 @@ class _BuildInfo(TypedDict):
     instruction_set: str
 
 __all__ = [
+    "COLUMNS",
     "MU_EARTH",
     "Atmosphere",
     "Body",
@@ -55,6 +56,7 @@ __all__ = [
     "Cannonball",
     "Checkpoint",
     "Circle",
+    "Column",
     "Compliance",
     "ComputedTorque",
     "ConstantAtmosphere",
@@ -98,6 +100,7 @@ __all__ = [
     "Sgp4",
     "Simulation",
     "State",
+    "Stepper",
     "Surface",
     "Target",
     "ThirdBody",
@@ -1016,7 +1019,7 @@ class Simulation:
         restitution: float = 0.0,
         record_wrenches: bool = False,
         rereference_beyond: float = 1e5,
-        plant: _Plant | None = None,
+        engine: _Engine | None = None,
     ) -> Simulation: ...
     def run(
         self,
@@ -1027,6 +1030,25 @@ class Simulation:
         checkpoint_every: float = 30.0,
         resume: Checkpoint | None = None,
     ) -> Trace: ...
+    def start(self, *, duration: float | None = None, resume: Checkpoint | None = None) -> Stepper: ...
+
+@final
+class Stepper:
+    @property
+    def time(self) -> float: ...
+    @property
+    def duration(self) -> float | None: ...
+    @property
+    def q(self) -> _Array: ...
+    @property
+    def v(self) -> _Array: ...
+    def advance(self, dt: float) -> None: ...
+    def advance_to(self, t: float, *, wall_s: float | None = None) -> None: ...
+    def command(self, tau: ArrayLike | dict[str, float]) -> None: ...
+    def trace(self) -> Trace: ...
+    def finish(self) -> Trace: ...
+    def columns(self, since: int = 0) -> dict[str, _Array]: ...
+    def checkpoint(self, since: int = 0) -> Checkpoint: ...
 
 @final
 class Checkpoint:
@@ -1037,6 +1059,27 @@ class Checkpoint:
     def columns(self) -> dict[str, _Array]: ...
     @property
     def wall_s(self) -> float: ...
+
+COLUMNS: Mapping[str, Column]
+
+@final
+class Column:
+    @property
+    def name(self) -> str: ...
+    @property
+    def path(self) -> str: ...
+    @property
+    def shape(self) -> tuple[str | int, ...]: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def frame(self) -> str: ...
+    @property
+    def meaning(self) -> str: ...
+    @property
+    def condition(self) -> str: ...
+    @property
+    def parts(self) -> Mapping[str, tuple[slice, str]]: ...
 
 @final
 class Trace:
@@ -1080,6 +1123,10 @@ class Trace:
     def position_eci(self) -> _Column: ...
     @property
     def velocity_eci(self) -> _Column: ...
+    @property
+    def reference_position_eci(self) -> _Column: ...
+    @property
+    def reference_velocity_eci(self) -> _Column: ...
     @property
     def reference_residual(self) -> _Column: ...
     def columns(self) -> list[str]: ...

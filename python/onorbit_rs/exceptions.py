@@ -1,43 +1,44 @@
-"""Every error of onorbit_rs, one class per concern.
+"""Errors of onorbit_rs, one class per concern.
 
-Each class is an :class:`OnOrbitError` and also the built-in that fits, so ``except ValueError`` works too.
-Each is made as ``Cls(message, **fields)``; fields are attributes, ``None`` where not given, and all pickle.
+Every class inherits from :class:`OnOrbitError` and from the built-in class in the table, so that, for
+example, ``except ValueError`` also works. Errors are created as ``Cls(message, **fields)``. The fields are
+attributes, None if not given, and are preserved by pickling.
 
 ==========================  =====================  ==========================================================
-class                       built-in               fields
+class                       built-in               fields: cause
 ==========================  =====================  ==========================================================
 ``InputError``              ``ValueError``         ``name, got, expected``: NaN, out of range, not unit norm
 ``ShapeError``              ``ValueError``         ``name, expected, got``: wrong array length or shape
 ``DtypeError``              ``TypeError``          ``name, expected, got``: not an array of real numbers
 ``ModelError``              ``ValueError``         ``link, joint, path``: masses, inertias, loops, bad URDF
 ``FrameError``              ``KeyError``           ``name, kind, known, suggestion``: no such frame or joint
-``OrbitError``              ``ValueError``         ``name, got, expected``: no orbit, or gravity refused
+``OrbitError``              ``ValueError``         ``name, got, expected``: invalid elements or wrong use
 ``ElementSetError``         ``OrbitError``         ``line, column, name``: a TLE or OMM that cannot be read
-``Sgp4Error``               ``OrbitError``         ``code, time, got``: what SGP4 refuses, decay included
-``PathError``               ``OrbitError``         ``time, start, end``: no path, or none at that time
-``EarthError``              ``ValueError``         ``name, got, expected``: epochs, the Earth's turn, sky
+``Sgp4Error``               ``OrbitError``         ``code, time, got``: an error of SGP4, such as decay
+``PathError``               ``OrbitError``         ``time, start, end``: invalid path, or time outside of it
+``EarthError``              ``ValueError``         ``name, got, expected``: epoch, orientation, ephemeris
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
-``GravityError``            ``ValueError``         ``name, got, expected, path, line``: a field, a file
+``GravityError``            ``ValueError``         ``name, got, expected, path, line``: a gravity field
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
-``PlantError``              ``ValueError``         ``name, got, expected``: another physics engine's limits
+``EngineError``             ``ValueError``         ``name, got, expected``: another physics engine
 ``CompareError``            ``ValueError``         ``name, got, expected``: two runs that cannot be compared
-``CheckpointError``         ``ValueError``         ``path``: broken, or of another run: no going on from it
+``CheckpointError``         ``ValueError``         ``path``: a checkpoint that cannot be resumed
 ``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or factorisation
 ``NotFoundError``           ``FileNotFoundError``  ``path, kind, suggestion``: no such file, robot or scenario
-``ReadError``               ``OSError``            ``path, kind``: a file is there but cannot be read
+``ReadError``               ``OSError``            ``path, kind``: a file exists but cannot be read
 ``IntegrityError``          ``ReadError``          ``path, kind, expected, got``: changed since a run wrote it
-``OutputFolderError``       ``OSError``            ``path``: base of the three below
-``OutputInUseError``        ``BlockingIOError``    ``path, pid, command, since``: another process writes it
-``OutputNotEmptyError``     ``FileExistsError``    ``path``: the folder holds files; ask with ``force``
-``OutputNotWritableError``  ``PermissionError``    ``path``: the folder cannot be written
-``ScenarioError``           ``ValueError``         ``file, path, line``: a YAML broken, misspelt or senseless
-``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is no angle
-``ViewerError``             ``RuntimeError``       ``reason``: the viewer does not start or shows nothing
+``OutputFolderError``       ``OSError``            ``path``: base class of the next three
+``OutputInUseError``        ``BlockingIOError``    ``path, pid, command, since``: another process writes to it
+``OutputNotEmptyError``     ``FileExistsError``    ``path``: the folder has files; see ``force``
+``OutputNotWritableError``  ``PermissionError``    ``path``: the folder is not writable
+``ScenarioError``           ``ValueError``         ``file, path, line``: an invalid scenario
+``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is not an angle
+``ViewerError``             ``RuntimeError``       ``reason``: the viewer does not start or displays nothing
 ==========================  =====================  ==========================================================
 
-:class:`RunInterrupted` stands apart: it is a ``KeyboardInterrupt`` (Ctrl-C), so neither ``except Exception``
-nor ``except OnOrbitError`` swallows it; its fields are ``time`` and ``trace``, the run so far.
+:class:`RunInterrupted` is a ``KeyboardInterrupt`` (Ctrl-C), so that neither ``except Exception`` nor
+``except OnOrbitError`` catches it. Its fields are ``time`` and ``trace``, the trace up to that time.
 """
 
 from __future__ import annotations
@@ -53,6 +54,7 @@ __all__ = [
     "EarthError",
     "EffectError",
     "ElementSetError",
+    "EngineError",
     "FrameError",
     "GravityError",
     "InputError",
@@ -66,7 +68,6 @@ __all__ = [
     "OutputNotEmptyError",
     "OutputNotWritableError",
     "PathError",
-    "PlantError",
     "QuantityError",
     "ReadError",
     "RunInterrupted",
@@ -79,7 +80,7 @@ __all__ = [
 
 
 class _Fields(BaseException):
-    """A message and named fields; survives pickling with both."""
+    """Error with a message and named fields, both of which are preserved by pickling."""
 
     def __init__(self, message: str = "", **fields: Any) -> None:
         super().__init__(message)
@@ -99,11 +100,11 @@ def _rebuild(cls: type[_Fields], message: str, fields: dict[str, Any]) -> _Field
 
 
 class OnOrbitError(_Fields, Exception):
-    """Root of every error of onorbit_rs."""
+    """Base class of all errors of onorbit_rs."""
 
 
 class InputError(OnOrbitError, ValueError):
-    """A value without physical sense: NaN, infinite, out of range, a quaternion off unit norm."""
+    """Invalid value: NaN, infinite, out of range, or a quaternion without unit norm."""
 
     name: Any = None
     got: Any = None
@@ -111,7 +112,7 @@ class InputError(OnOrbitError, ValueError):
 
 
 class ShapeError(OnOrbitError, ValueError):
-    """An array of the wrong length or shape."""
+    """Array of the wrong length or shape."""
 
     name: Any = None
     expected: Any = None
@@ -119,7 +120,7 @@ class ShapeError(OnOrbitError, ValueError):
 
 
 class DtypeError(OnOrbitError, TypeError):
-    """Not an array of real numbers."""
+    """Argument of the wrong type, such as an array that does not contain real numbers."""
 
     name: Any = None
     expected: Any = None
@@ -127,7 +128,7 @@ class DtypeError(OnOrbitError, TypeError):
 
 
 class ModelError(OnOrbitError, ValueError):
-    """A robot that cannot be: masses, inertias, loops, a malformed URDF."""
+    """Invalid robot: masses, inertias, loops, or an invalid URDF."""
 
     link: Any = None
     joint: Any = None
@@ -135,7 +136,7 @@ class ModelError(OnOrbitError, ValueError):
 
 
 class FrameError(OnOrbitError, KeyError):
-    """No frame, link, body or joint has this name."""
+    """Unknown name of a frame, link, body or joint."""
 
     name: Any = None
     kind: Any = None
@@ -144,9 +145,9 @@ class FrameError(OnOrbitError, KeyError):
 
 
 class OrbitError(OnOrbitError, ValueError):
-    """Elements that describe no orbit, or an orbit that cannot be used so.
+    """Invalid orbital elements, or an invalid use of an orbit.
 
-    ``time`` where there is one, s; ``index`` of the orbit among many.
+    ``time``, s, if the error depends on it; ``index`` of the orbit in a batch.
     """
 
     name: Any = None
@@ -157,14 +158,14 @@ class OrbitError(OnOrbitError, ValueError):
 
 
 class ElementSetError(OrbitError):
-    """A TLE or OMM that cannot be read: ``line`` and ``column`` (from 1) of a TLE, ``name`` of an entry."""
+    """Invalid TLE or OMM; ``line`` and ``column`` (from 1) of a TLE, ``name`` of the entry."""
 
     line: Any = None
     column: Any = None
 
 
 class Sgp4Error(OrbitError):
-    """SGP4 has no state at ``time``, s from the epoch: ``code`` is the reference code's error number.
+    """SGP4 has no state at ``time``, s from the epoch; ``code`` is the error number of the reference code.
 
     1 mean eccentricity, 2 mean motion, 3 perturbed eccentricity, 4 semi-latus rectum, 6 decayed; 5 is no
     longer raised. ``got`` is the offending value.
@@ -175,7 +176,7 @@ class Sgp4Error(OrbitError):
 
 
 class PathError(OrbitError):
-    """Points that make no path; or a ``time`` before its ``start`` or after its ``end``, s."""
+    """Invalid points of a path, or a ``time`` before its ``start`` or after its ``end``, s."""
 
     time: Any = None
     start: Any = None
@@ -183,7 +184,7 @@ class PathError(OrbitError):
 
 
 class EarthError(OnOrbitError, ValueError):
-    """An epoch, a time or parameters for which nobody knows how the Earth or the sky stands."""
+    """Epoch, time or parameters for which Earth orientation or the positions of Sun and Moon are unknown."""
 
     name: Any = None
     got: Any = None
@@ -191,7 +192,7 @@ class EarthError(OnOrbitError, ValueError):
 
 
 class EffectError(OnOrbitError, ValueError):
-    """An effect of the environment that makes no sense."""
+    """Invalid effect of the environment."""
 
     name: Any = None
     got: Any = None
@@ -199,7 +200,7 @@ class EffectError(OnOrbitError, ValueError):
 
 
 class GravityError(OnOrbitError, ValueError):
-    """A gravity field that cannot be, or a place where it does not hold; ``path`` and ``line`` of a file."""
+    """Invalid gravity field, or a position where it is invalid; ``path`` and ``line`` of its file."""
 
     name: Any = None
     got: Any = None
@@ -209,7 +210,7 @@ class GravityError(OnOrbitError, ValueError):
 
 
 class ControlError(OnOrbitError, ValueError):
-    """Gains, controllers or references that do not fit."""
+    """Invalid or inconsistent gains, controllers or references."""
 
     name: Any = None
     got: Any = None
@@ -217,7 +218,7 @@ class ControlError(OnOrbitError, ValueError):
 
 
 class SimulationError(OnOrbitError, ArithmeticError):
-    """The run diverged; ``trace`` holds what was recorded until then."""
+    """The run diverged; ``trace`` contains the rows recorded before."""
 
     time: Any = None
     q: Any = None
@@ -225,8 +226,8 @@ class SimulationError(OnOrbitError, ArithmeticError):
     trace: Any = None
 
 
-class PlantError(OnOrbitError, ValueError):
-    """Another physics engine that is not there, or that cannot do what it is asked for."""
+class EngineError(OnOrbitError, ValueError):
+    """Physics engine that is not installed, or does not support a setting."""
 
     name: Any = None
     got: Any = None
@@ -234,7 +235,7 @@ class PlantError(OnOrbitError, ValueError):
 
 
 class CompareError(OnOrbitError, ValueError):
-    """Two runs that have nothing to compare: another robot, no time in common."""
+    """Runs that cannot be compared: different robots, or no common time."""
 
     name: Any = None
     got: Any = None
@@ -242,7 +243,7 @@ class CompareError(OnOrbitError, ValueError):
 
 
 class CheckpointError(OnOrbitError, ValueError):
-    """A run cannot go on from its checkpoint: broken, or of another scenario, version or instruction set."""
+    """Checkpoint that cannot be resumed: invalid, or of another scenario, version or instruction set."""
 
     path: Any = None
 
@@ -263,7 +264,7 @@ class NotFoundError(OnOrbitError, FileNotFoundError):
 
 
 class ReadError(OnOrbitError, OSError):
-    """The file is there but cannot be read."""
+    """A file exists but cannot be read."""
 
     path: Any = None
     kind: Any = None
@@ -283,7 +284,7 @@ class OutputFolderError(OnOrbitError, OSError):
 
 
 class OutputInUseError(OutputFolderError, BlockingIOError):
-    """Another process writes the output folder: its ``pid``, its ``command``, and ``since`` when."""
+    """Another process writes to the output folder: its ``pid`` and ``command``, and its start, ``since``."""
 
     pid: Any = None
     command: Any = None
@@ -291,17 +292,17 @@ class OutputInUseError(OutputFolderError, BlockingIOError):
 
 
 class OutputNotEmptyError(OutputFolderError, FileExistsError):
-    """The output folder already holds files."""
+    """The output folder already contains files."""
 
 
 class OutputNotWritableError(OutputFolderError, PermissionError):
-    """The output folder cannot be written."""
+    """The output folder is not writable."""
 
 
 class ScenarioError(OnOrbitError, ValueError):
-    """A scenario that is broken, misspelt or makes no sense; says where.
+    """Invalid scenario, with the location of the error.
 
-    ``file`` is the YAML, ``path`` the place in it (``orbit.semi_major_axis``), ``line`` its line, from 1.
+    ``file`` is the YAML file, ``path`` the key (``orbit.semi_major_axis``), ``line`` its line, from 1.
     """
 
     file: Any = None
@@ -317,13 +318,13 @@ class QuantityError(OnOrbitError, ValueError):
 
 
 class ViewerError(OnOrbitError, RuntimeError):
-    """The viewer, a program of its own, does not start here or shows nothing."""
+    """The viewer, a separate program, does not start or displays nothing."""
 
     reason: Any = None
 
 
 class RunInterrupted(_Fields, KeyboardInterrupt):
-    """Ctrl-C during a run; ``trace`` holds the run so far."""
+    """Ctrl-C during a run; ``trace`` contains the rows recorded before."""
 
     time: Any = None
     trace: Any = None

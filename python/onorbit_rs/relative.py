@@ -1,9 +1,9 @@
-"""How one satellite moves as seen from another.
+"""Relative motion of satellites.
 
 >>> import numpy as np
 >>> from onorbit_rs import relative
 >>> n = 2 * np.pi / 5400  # rad/s
->>> start = [0.0, 100.0, 0.0, 0.0, 0.0, 0.0]  # 100 m ahead on the same circle: it stays there
+>>> start = [0.0, 100.0, 0.0, 0.0, 0.0, 0.0]  # 100 m ahead on the same circle: it does not move
 >>> np.allclose(relative.hill_transition(n, 1000.0) @ start, start)
 True
 """

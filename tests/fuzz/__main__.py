@@ -1,9 +1,9 @@
-"""``make fuzz``: every parser of the engine and of the package, guided by the coverage of its own code.
+"""``make fuzz``: fuzzes every parser of the engine and of the package, guided by its code coverage.
 
-A parser reads its input or raises an ``OnOrbitError``. A panic, a crash, any other exception, more than the
-limits of time or memory, or numbers that are not finite are findings: the input is kept in
+A parser must read its input or raise an ``OnOrbitError``. Findings are panics, crashes, other exceptions,
+exceeded limits of time or memory, and non-finite numbers: the input is kept in
 ``target/fuzz/work/findings`` beside a note with its seed, and the exit code is 1. ``--replay PARSER FILE``
-tries one input again.
+repeats one input.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 FOLDER = ROOT / "target" / "fuzz"
 WORK, CORPUS = FOLDER / "work", HERE / "corpus"
-# coverage by a flag of stable rustc; arithmetic that overflows panics
+# coverage by a flag of stable rustc; integer overflow panics
 BUILD = {
     "CARGO_TARGET_DIR": str(FOLDER / "build"),
     "CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS": "true",
@@ -35,15 +35,15 @@ BUILD = {
 }
 RUN = {"LLVM_PROFILE_FILE": os.devnull, "PYTHONPATH": f"{FOLDER / 'atheris'}:{ROOT / 'python'}"}
 ATHERIS = "atheris==3.0.0"
-# weights of a parser's share of the inputs: one in Python takes 10 to 100 times as long
+# relative numbers of inputs: parsers in Python take 10 to 100 times as long
 ENGINE, PYTHON = 25.0, 1.0
 LINE = "{parser:20} {inputs:9} {seconds:8.1f} {kept:5}  {findings}"
 
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python tests/fuzz", description=__doc__)
-    parser.add_argument("--seconds", type=float, default=10.0, help="of each parser at most")
-    parser.add_argument("--count", type=int, default=10**9, help="inputs in all at most")
+    parser.add_argument("--seconds", type=float, default=10.0, help="time limit of each parser")
+    parser.add_argument("--count", type=int, default=10**9, help="limit of the total number of inputs")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     parser.add_argument("--only", default="", help="parsers whose name contains this")
     parser.add_argument("--replay", nargs=2, metavar=("PARSER", "FILE"))
@@ -51,23 +51,23 @@ def arguments() -> argparse.Namespace:
 
 
 def engine() -> Path:
-    """The program that fuzzes the engine's parsers."""
+    """Builds the program that fuzzes the engine's parsers."""
     command = ["cargo", "build", "--release", "--quiet", "-p", "onorbit-core", "--example", "fuzz"]
     subprocess.run(command, cwd=ROOT, env=os.environ | BUILD, check=True)
     return FOLDER / "build" / "release" / "examples" / "fuzz"
 
 
 def install_atheris() -> str:
-    """Into a folder of its own; what is said where there is none for this platform."""
+    """Installs Atheris into a separate folder; returns a message describing the result."""
     if (FOLDER / "atheris").exists():
         return "Atheris"
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--only-binary", ":all:"]
     done = subprocess.run([*command, "--target", str(FOLDER / "atheris"), ATHERIS], capture_output=True)
-    return "Atheris" if done.returncode == 0 else "no Atheris for this platform: mutated blindly"
+    return "Atheris" if done.returncode == 0 else "no Atheris for this platform: mutations without coverage"
 
 
 def fuzzed(command: list[str | Path], name: str, seed: int) -> Report:
-    """What a parser's process reports; with the input that ended it, where one did."""
+    """Returns the report of a parser's process, with the input that crashed it, if any."""
     done = subprocess.run(
         [*map(str, command)], env=os.environ | RUN, capture_output=True, text=True, errors="replace"
     )
@@ -78,8 +78,10 @@ def fuzzed(command: list[str | Path], name: str, seed: int) -> Report:
     if (WORK / "current").exists():
         record = (WORK / "current").read_bytes()
         kept.write_bytes(record[8 : 8 + int.from_bytes(record[:8], "little")])
-    told = "\n".join([*done.stdout.splitlines()[-5:], *done.stderr.splitlines()[-30:]])
-    kept.with_suffix(".txt").write_text(f"parser {name}\nseed {seed}\nexit code {done.returncode}\n{told}\n")
+    output = "\n".join([*done.stdout.splitlines()[-5:], *done.stderr.splitlines()[-30:]])
+    kept.with_suffix(".txt").write_text(
+        f"parser {name}\nseed {seed}\nexit code {done.returncode}\n{output}\n"
+    )
     return {"parser": name, "inputs": 0, "kept": 0, "seconds": 0.0, "findings": 1}
 
 
@@ -101,7 +103,7 @@ def main() -> int:
     def run(name: str, count: int, seconds: float, number: int) -> Report:
         start = [program] if name in engines else [sys.executable, HERE / "guided.py"]
         (WORK / "current").unlink(missing_ok=True)
-        seed = given.seed + number  # the same would try the same mutations again
+        seed = given.seed + number  # the same seed would repeat the same mutations
         limits = [str(count), str(seconds), str(seed)]
         report = fuzzed([*start, name, *limits, CORPUS, WORK], name, seed)
         print(LINE.format(**report), flush=True)

@@ -1,6 +1,6 @@
-"""``guided.py TARGET COUNT SECONDS SEED CORPUS WORK``: one target, guided by its coverage with Atheris.
+"""``guided.py TARGET COUNT SECONDS SEED CORPUS WORK``: fuzzes one target, guided by Atheris.
 
-Without Atheris inputs are mutated blindly. The last line of output says what was done, as JSON.
+Without Atheris, inputs are mutated without coverage. The last line of output is a report in JSON.
 """
 
 from __future__ import annotations
@@ -57,10 +57,10 @@ def main() -> None:
         nonlocal tried
         tried += 1
         trial(data)
-        # here and not in a timer's thread, which would remove the files of an input that is being tried
+        # not in a timer thread, which would remove the files of the current input
         if tried >= int(count) or time.monotonic() - started >= float(seconds):
             done()
-            os._exit(1 if trial.places else 0)  # libFuzzer's own end leaves no chance to report
+            os._exit(1 if trial.places else 0)  # libFuzzer would exit without a report
 
     folders = [str(kept)] + ([str(given)] if given.is_dir() else [])
     limits = [f"-timeout={LIMIT_S}", f"-rss_limit_mb={LIMIT_MB}", f"-max_len={LONGEST}"]

@@ -1,4 +1,4 @@
-"""A controller that lets a short run leave a checkpoint, on a machine of any speed."""
+"""A controller that makes a short run write a checkpoint on machines of any speed."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ import numpy as np
 
 
 class Pausing:
-    """No efforts; while ``stops`` is set, the first update takes long and one half-way is a Ctrl-C."""
+    """Applies no efforts; while ``stops`` is set, the first update is slow and a later one is a Ctrl-C."""
 
     stops: ClassVar[bool] = False
-    """Of the class: no part of what a checkpoint keeps."""
+    """A class attribute, which is not part of a checkpoint."""
 
     def __init__(self) -> None:
         self.updates = 0
 
     def update(self, t: float, state: Any) -> Any:
-        """Return no efforts, for a body without joints."""
+        """Returns no efforts, for a body without joints."""
         if self.stops:
             if self.updates == 0:
-                time.sleep(0.06)  # the first checkpoint comes after 0.05 s at the earliest
+                time.sleep(0.06)  # the first checkpoint is written after 0.05 s or later
             if t > 0.2:
                 raise KeyboardInterrupt
         self.updates += 1

@@ -1,4 +1,4 @@
-"""How a campaign's inputs are shared out among parsers of very different speed."""
+"""Distributes a campaign's inputs among parsers of very different speed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 Report = dict[str, Any]
 SUMS = ("inputs", "kept", "seconds", "findings")
-SHORTEST_S = 1.0  # a process takes longer than that to start
+SHORTEST_S = 1.0  # the start of a process takes longer
 
 
 def in_rounds(
@@ -16,21 +16,21 @@ def in_rounds(
     seconds: float,
     run: Callable[[str, int, float, int], Report],
 ) -> list[Report]:
-    """Return what each parser did in all, when ``count`` inputs are done or no parser has time left.
+    """Runs the parsers until ``count`` inputs are done or their time is over; returns their total reports.
 
-    In the first round each parser is run for its share of ``count``. What slow parsers leave undone when
-    their ``seconds`` are over is shared out in further rounds, by the same weights, among those that did
-    their share in less. A parser with findings is not run again.
+    In the first round, ``count`` is distributed by the weights. Inputs that slow parsers could not process
+    in their ``seconds`` are distributed in further rounds among the parsers with time left, by the same
+    weights. A parser with findings is not run again.
 
     Parameters
     ----------
     weights : mapping of str to float
     count : int
     seconds : float
-        Of each parser, over all rounds.
+        Time limit of each parser over all rounds.
     run : callable
-        Runs a parser by name for at most so many inputs and seconds and returns its report; its last argument
-        is the number of the round, from 0.
+        Runs a parser by name for at most the given inputs and seconds and returns its report; the last
+        argument is the number of the round, from 0.
     """
     totals: dict[str, Report] = {name: {"parser": name} | dict.fromkeys(SUMS, 0) for name in weights}
     shares, number = _shares(weights, list(weights), count), 0
@@ -50,7 +50,7 @@ def in_rounds(
 
 
 def _shares(weights: Mapping[str, float], names: list[str], count: int) -> dict[str, int]:
-    """Whole numbers by weight whose sum is ``count``; names without an input are left out."""
+    """Returns integers by weight whose sum is ``count``; names without an input are omitted."""
     shares, weight = {}, sum(weights[name] for name in names)
     for name in names:
         shares[name] = round(count * weights[name] / weight)

@@ -1,4 +1,4 @@
-"""What the Python side reads: each target takes bytes and reads them, or raises an ``OnOrbitError``."""
+"""Fuzz targets in Python: each parses bytes or raises an ``OnOrbitError``."""
 
 from __future__ import annotations
 
@@ -15,29 +15,31 @@ import numpy as np
 from pausing import Pausing
 
 import onorbit_rs as oo
-from onorbit_rs import _core, keeping
-from onorbit_rs import kernel as _kernel  # noqa: F401  # loaded late else, when coverage is set up
-from onorbit_rs import omm as _omm  # noqa: F401
+from onorbit_rs import _core
+from onorbit_rs.ephemeris import omm as _omm  # noqa: F401
+from onorbit_rs.ephemeris import spice as _kernel  # noqa: F401  # loaded late else, when coverage is set up
 from onorbit_rs.exceptions import IntegrityError, NotFoundError, RunInterrupted
-from onorbit_rs.interop.expressions import evaluate
-from onorbit_rs.interop.onorbitros import convert
-from onorbit_rs.meshes import read_mesh
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import Manifest, read_manifest
 from onorbit_rs.output.read import read_summary, read_trace
 from onorbit_rs.output.sealed import sealed
-from onorbit_rs.plain_data import decode, encode
 from onorbit_rs.report.numbers import groups
 from onorbit_rs.robots.expand import expand
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 from onorbit_rs.scenario.load import check
-from onorbit_rs.scenario.path_file import read_points, two_lines
+from onorbit_rs.scenario.orbit.custom_path import CustomPathOrbit
+from onorbit_rs.scenario.orbit.sgp4 import two_lines
 from onorbit_rs.scenario.units import ANGLE, FORCE, GRAVITY, LENGTH, NUMBER, TIME, parse_quantity
 from onorbit_rs.scenario.yaml_lines import parse_yaml
+from onorbit_rs.simulation import finish
+from onorbit_rs.simulation.controller_state import decode, encode
+from onorbit_rs.tools.interop.expressions import evaluate
+from onorbit_rs.tools.interop.onorbitros import convert
+from onorbit_rs.visuals.meshes import read_mesh
 
-# pictures of a run that was resumed take most of a second, and read nothing
-keeping.write_pictures = lambda *_, **__: None
+# the figures of a resumed run take most of a second and parse nothing
+finish.write_pictures = lambda *_, **__: None
 
 SHORT_RUN = {
     "robot": {"rigid_body": {"mass": 1.0, "inertia": [1.0, 2.0, 3.0]}},
@@ -51,7 +53,7 @@ STOPPED_RUN = SHORT_RUN | {
 
 
 class Room:
-    """A folder of this process's own, and in it a file with the bytes that are tried."""
+    """A temporary folder of this process with a file of the bytes under test."""
 
     def __init__(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="onorbit-fuzz-"))
@@ -63,7 +65,7 @@ class Room:
         return path
 
     def run(self, *, stopped: bool) -> Path:
-        """A fresh copy of the folder of a short run; or of one that was stopped half-way."""
+        """Returns a new copy of the folder of a short run, or of a run that was interrupted."""
         if stopped not in self._runs:
             self._runs[stopped] = self._made(stopped)
         copy = self.folder / "copy"
@@ -95,7 +97,7 @@ def text(data: bytes) -> str:
 
 
 def all_finite(what: str, *arrays: Any) -> None:
-    """Fails where accepted input gives numbers that are not finite."""
+    """Fails if accepted input yields non-finite numbers."""
     for array in arrays:
         if not np.all(np.isfinite(array)):
             raise AssertionError(f"{what} accepted, and give {array}")
@@ -128,7 +130,7 @@ def tle_file(data: bytes, room: Room) -> None:
 
 
 def point_file(data: bytes, room: Room) -> None:
-    path = _core.CustomPath(**read_points(room.file("points.csv", data)), ends="coast")
+    path = CustomPathOrbit(file=room.file("points.csv", data), ends="coast").build(Path())
     all_finite("points are", *path.state(0.0)[:2])
 
 
@@ -152,7 +154,7 @@ def summary(data: bytes, room: Room) -> None:
 
 
 def resealed(data: bytes) -> bytes:
-    """The checksum of a mapping is put right, so that its entries are read."""
+    """Corrects the checksum of a mapping, so that its entries are read."""
     with contextlib.suppress(ValueError, RecursionError):
         record = json.loads(data)
         if isinstance(record, dict):
@@ -161,21 +163,21 @@ def resealed(data: bytes) -> bytes:
 
 
 def checkpoint(data: bytes, room: Room) -> None:
-    """The state of a stopped run."""
+    """Resumes from the checkpoint of an interrupted run."""
     folder = room.run(stopped=True)
     (folder / "checkpoint" / "state.json").write_bytes(resealed(data))
     oo.resume(folder, quiet=True)
 
 
 def controller_state(data: bytes, room: Room) -> None:
-    """What a checkpoint keeps of a Python controller; what was read once is written and read alike."""
+    """Parses a Python controller's state in a checkpoint; writing and reading it again must not change it."""
     text = encode(decode(data))
     if encode(decode(text)) != text:
         raise AssertionError(f"{text!r} is written otherwise once it was read")
 
 
 def manifest(data: bytes, room: Room) -> None:
-    """The list of a run's files, by which they are read; ``--force`` removes those and no others."""
+    """Parses the list of a run's files; ``--force`` must remove only these."""
     folder = room.run(stopped=b'"checkpoint": []' not in data)
     (folder / "manifest.json").write_bytes(resealed(data))
     (folder / "figures").mkdir(exist_ok=True)
@@ -199,7 +201,7 @@ def xacro(data: bytes, room: Room) -> None:
 
 
 def mesh(data: bytes, room: Room) -> None:
-    """The first line is the ending of the file."""
+    """Parses a mesh; the first line is the file's extension."""
     ending, _, content = data.partition(b"\n")
     found = read_mesh(room.file(f"mesh.{re.sub(r'[^a-z0-9]', '', text(ending))}", content))
     for part in found.parts:
@@ -222,7 +224,7 @@ TARGETS: dict[str, Target] = {
 
 
 def seeds(name: str, room: Room) -> list[bytes]:
-    """Inputs that depend on the version of the package, beside those in the corpus."""
+    """Returns inputs that depend on the version of the package, in addition to the corpus."""
     if name == "checkpoint":
         return [(room.run(stopped=True) / "checkpoint" / "state.json").read_bytes()]
     if name == "manifest":

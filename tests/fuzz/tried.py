@@ -1,4 +1,4 @@
-"""One input tried: read, refused with a typed error, or a finding that is kept on disk."""
+"""Tries one input: it is parsed, rejected with a typed error, or kept on disk as a finding."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from onorbit_rs.exceptions import OnOrbitError
 
 
 class Trial:
-    """A target, and what was found: one file for each place that fails."""
+    """A target and its findings: one file for each failing place."""
 
     def __init__(self, name: str, findings: Path, seed: int) -> None:
         self.name, self.target, self.seed = name, TARGETS[name], seed
@@ -25,7 +25,7 @@ class Trial:
         self.places: set[str] = set()
 
     def __call__(self, data: bytes) -> None:
-        """Try an input."""
+        """Tries an input."""
         try:
             with warnings.catch_warnings(), contextlib.redirect_stderr(io.StringIO()):
                 warnings.simplefilter("ignore")
@@ -35,7 +35,7 @@ class Trial:
                 self._keep(data, error)
         except Exception as error:
             self._keep(data, error)
-        except BaseException as error:  # pyo3's PanicException is no Exception
+        except BaseException as error:  # pyo3's PanicException does not derive from Exception
             self._keep(data, error)
             if isinstance(error, (KeyboardInterrupt, SystemExit)):
                 raise
@@ -49,12 +49,14 @@ class Trial:
         self.findings.mkdir(parents=True, exist_ok=True)
         file = self.findings / f"{self.name}-{hashlib.sha256(data).hexdigest()[:16]}"
         file.write_bytes(data)
-        told = "".join(traceback.format_exception(error))
-        file.with_suffix(".txt").write_text(f"target {self.name}\nseed {self.seed}\n{told}", encoding="utf-8")
+        traceback_text = "".join(traceback.format_exception(error))
+        file.with_suffix(".txt").write_text(
+            f"target {self.name}\nseed {self.seed}\n{traceback_text}", encoding="utf-8"
+        )
 
 
 def mutated(draw: random.Random, parent: bytes, other: bytes) -> bytes:
-    """A child of `parent`, perhaps crossed with `other`."""
+    """Returns a mutation of `parent`, sometimes crossed with `other`."""
     data = bytearray(parent)
     for _ in range(draw.choice((1, 1, 2, 4, 8))):
         at = draw.randrange(len(data) + 1)
@@ -79,7 +81,7 @@ def mutated(draw: random.Random, parent: bytes, other: bytes) -> bytes:
 
 
 def blind(trial: Trial, corpus: Iterable[bytes], count: int) -> int:
-    """Try the corpus and mutations of it, without a look at what they reach; how many were tried."""
+    """Tries the corpus and its mutations without coverage; returns the number of inputs."""
     inputs, draw = list(corpus), random.Random(trial.seed)
     for data in inputs:
         trial(data)

@@ -1,6 +1,6 @@
-"""Newton-Euler equations of a tree in 40 digits, in inertial axes and about each centre of mass.
+"""Newton-Euler equations of a tree with 40 digits, in inertial axes about each centre of mass.
 
-No code or formula of the package is shared: forces and torques follow from the definition, body by body,
+Shares no code or formula with the package: forces and torques follow from the definition, body by body,
 `f = m c̈` and `n = I α + ω × I ω`.
 """
 
@@ -11,7 +11,7 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 
-from onorbit_rs.validation.trees import Array, Part, Tree
+from onorbit_rs.tools.validation.trees import Array, Part, Tree
 
 DIGITS = 40
 
@@ -29,7 +29,7 @@ def dot(a: mp.matrix, b: mp.matrix) -> mp.mpf:
 
 
 def about(axis: mp.matrix, angle: mp.mpf) -> mp.matrix:
-    """Rodrigues' formula."""
+    """Returns a rotation matrix by Rodrigues' formula."""
     k = mp.matrix([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
     return mp.eye(3) + mp.sin(angle) * k + (1 - mp.cos(angle)) * (k * k)
 
@@ -41,7 +41,7 @@ def from_rpy(rpy: tuple[float, float, float]) -> mp.matrix:
 
 
 class ExactTree:
-    """Inverse and forward dynamics of a tree of moving joints, base first; its numbers are taken as exact."""
+    """Inverse and forward dynamics of a tree of moving joints, base first; its numbers count as exact."""
 
     def __init__(self, tree: Tree) -> None:
         self.parts = tree.parts
@@ -49,12 +49,12 @@ class ExactTree:
         self.nv = 5 + len(tree.parts)
 
     def inverse_dynamics(self, q: Array, v: Any, a: Any) -> mp.matrix:
-        """Generalized forces; inputs and base rows are those of `Model.inverse_dynamics`."""
+        """Returns the generalized forces; inputs and base rows are those of `Model.inverse_dynamics`."""
         with mp.workdps(DIGITS):
             return self._inverse_dynamics(q, mp.matrix(list(v)), mp.matrix(list(a)))
 
     def _inverse_dynamics(self, q: Array, v: mp.matrix, a: mp.matrix) -> mp.matrix:
-        # inertial axes that coincide with the base's now, where the dynamics do not depend on the pose
+        # inertial axes that coincide with the base's axes: the dynamics do not depend on the pose
         rot, pos = [mp.eye(3)], [mp.zeros(3, 1)]
         w, vel = [v[3:6]], [v[0:3]]
         alpha, acc = [a[3:6]], [a[0:3] + cross(v[3:6], v[0:3])]  # of the origin: v̇ + ω × v
@@ -113,7 +113,7 @@ class ExactTree:
     def _add_sizes(
         self, k: int, com: mp.matrix, pos: Any, moments: list[mp.matrix], force: mp.matrix
     ) -> None:
-        """Adds the part of body `k` in `size`, without regard to direction: `|f|` or `|n| + |lever| |f|`.
+        """Adds the contribution of body `k` to `size` by magnitude: `|f|` or `|n| + |lever| |f|`.
 
         Rounding the data of the body (an inertia, the direction of an axis) changes a row by about one
         unit in the last place of this.
@@ -128,7 +128,7 @@ class ExactTree:
         self.size[3:6] += n + f * float(mp.norm(com))
 
     def system(self, q: Array, v: Any) -> tuple[mp.matrix, mp.matrix]:
-        """Mass matrix and bias forces."""
+        """Returns mass matrix and bias forces."""
         still, bias = [0] * self.nv, self.inverse_dynamics(q, v, [0] * self.nv)
         with mp.workdps(DIGITS):
             mass = mp.zeros(self.nv)

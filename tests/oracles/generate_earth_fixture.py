@@ -1,10 +1,10 @@
-"""Writes ``tests/fixtures/earth.json``: the Earth, Sun and Moon, as others compute them.
+"""Writes ``tests/fixtures/earth.json``: Earth orientation, Sun and Moon from independent packages.
 
     pip install de421 jplephem mpmath pyerfa skyfield
     python tests/oracles/generate_earth_fixture.py
 
-Orientation from pyerfa (IAU 2006/2000A in full), TEME from skyfield, Sun and Moon from JPL's DE421, the
-rest from closed forms by mpmath.
+Orientation from pyerfa (full IAU 2006/2000A), TEME from skyfield, Sun and Moon from JPL's DE421, geodetic
+places and tides from closed forms by mpmath.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ FILE = Path(__file__).parents[1] / "fixtures" / "earth.json"
 DAY = 86_400.0
 ARC_SECOND = np.pi / 648_000
 
-# TAI, UT1 - TAI in s, pole in arc seconds: of the size they had or may have then
+# TAI, UT1 - TAI in s, pole in arc seconds: realistic magnitudes for these dates
 ORIENTATIONS = [
     ("1972-02-29T06:00:00", -10.3, 0.05, 0.2),
     ("1990-01-01T00:00:25", -25.1, -0.11, 0.26),
@@ -89,7 +89,7 @@ def sky() -> list[dict[str, Any]]:
 
 
 def places() -> list[dict[str, float]]:
-    """Places on and off WGS84, and where they are, to fifty digits."""
+    """Returns geodetic places on and off WGS84 and their positions to fifty digits."""
     mp.dps = 50
     a, f = mpf(6_378_137), 1 / mpf("298.257223563")
     e2, rows = f * (2 - f), []
@@ -99,7 +99,7 @@ def places() -> list[dict[str, float]]:
         (-6.2e6, -1000.0, 0.0, 4.1e5, 3.6e7, 3.8e8),
     ):
         if altitude < -1e6 and abs(latitude) > 1.4:
-            continue  # through the centre and out on the other side
+            continue  # below the centre, on the other side
         n = a / sqrt(1 - e2 * sin(mpf(latitude)) ** 2)
         p = (n + mpf(altitude)) * cos(mpf(latitude))
         x, y = p * cos(mpf(longitude)), p * sin(mpf(longitude))
@@ -112,7 +112,7 @@ def places() -> list[dict[str, float]]:
 
 
 def tides() -> list[dict[str, Any]]:
-    """What third bodies do to a satellite, to fifty digits: ``μ [(s - r)/|s - r|³ - s/|s|³]``."""
+    """Returns tidal accelerations of third bodies to fifty digits: ``μ [(s - r)/|s - r|³ - s/|s|³]``."""
     mp.dps = 50
     rows = []
     for mu, body in ((1.3271244e20, [-2.65e10, 1.327e11, 5.75e10]), (4.9028e12, [-2.9e8, -2.7e8, -9.3e7])):

@@ -3,10 +3,9 @@
     pip install de421 jplephem pyerfa skyfield
     python tests/oracles/generate_earth_tables.py
 
-The nutation's terms are those that skyfield carries, cut where they get small. Sun and Moon are our own short
-series: sines and cosines of the fundamental arguments, their multiples picked one by one, by what they
-explain of JPL's DE421 over 1900-2050 (orthogonal matching), amplitudes by least squares; in the mean ecliptic
-and equinox of date.
+The nutation terms are the larger terms of skyfield's table. The series of Sun and Moon are fitted here: sines
+and cosines of multiples of the fundamental arguments, chosen one by one to explain JPL's DE421 over 1900-2050
+(orthogonal matching pursuit), with amplitudes by least squares, in the mean ecliptic and equinox of date.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ Multiples = tuple[int, ...]
 
 
 def arguments(t: Any) -> Any:
-    """``l, l', F, D, Ω`` (IERS 2010, eq. 5.43) and longitudes of Venus, Mars and Jupiter (eq. 5.44), rad."""
+    """Returns ``l, l', F, D, Ω`` (IERS 2010, eq. 5.43), longitudes of Venus, Mars, Jupiter (5.44), rad."""
     return np.array([
         erfa.fal03(t), erfa.falp03(t), erfa.faf03(t), erfa.fad03(t), erfa.faom03(t),
         erfa.fave03(t), erfa.fama03(t), erfa.faju03(t),
@@ -42,7 +41,7 @@ def arguments(t: Any) -> Any:
 
 
 def spherical(jd: Any, position: Any) -> tuple[Any, Any, Any]:
-    """Longitude and latitude, mean ecliptic and equinox of date, and distance, of GCRF positions."""
+    """Converts GCRF positions to longitude, latitude (mean ecliptic and equinox of date) and distance."""
     gamma, phi, psi, _ = erfa.pfw06(jd, 0.0)
     for axis, angle in ((2, gamma), (0, phi), (2, -psi)):
         c, s = np.cos(angle), np.sin(angle)
@@ -54,7 +53,7 @@ def spherical(jd: Any, position: Any) -> tuple[Any, Any, Any]:
 
 
 def with_sun(multiples: list[int], k: int) -> Multiples:
-    """Adds ``k`` times the Earth's longitude, less half a turn: the Sun's is ``F - D + Ω``."""
+    """Adds ``k`` times the Earth's longitude, which is the Sun's, ``F - D + Ω``, minus half a turn."""
     return tuple(np.add(multiples, [0, 0, k, -k, k, 0, 0, 0]).tolist())
 
 
@@ -79,7 +78,7 @@ def lunar(odd: int) -> list[Multiples]:
 
 
 SLOW = tuple(-x for x in with_sun([-1, 0, 0, 0, 0, 18, 0, 0], -16))
-"""Venus' term of 273 years in the Moon's longitude, 14": no search tells half a cycle from a trend."""
+"""Returns Venus' 273-year term in the Moon's longitude, 14", half a cycle of which looks like a trend."""
 
 
 def solar() -> list[Multiples]:
@@ -96,7 +95,7 @@ def solar() -> list[Multiples]:
 
 
 def distinct(multiples: list[Multiples]) -> Any:
-    """One of each pair ``k, -k``."""
+    """Keeps one of each pair ``k, -k``."""
     first = lambda k: next((x for x in k if x), 0)  # noqa: E731
     return np.array(sorted({k if first(k) > 0 else tuple(-x for x in k) for k in multiples if first(k)}))
 
@@ -104,9 +103,9 @@ def distinct(multiples: list[Multiples]) -> Any:
 def fit(
     name: str, y: Any, t: Any, library: Any, terms: int, degree: int, given: Multiples | None = None
 ) -> tuple[Any, Any, Any]:
-    """Polynomial and multiples with their amplitudes that explain ``y``, one being ``given``."""
+    """Fits a polynomial and periodic terms to ``y``; returns them with their amplitudes."""
     library = library if given is None else np.vstack([given, library])
-    # terms with l' fade as the eccentricity of the Earth's orbit does
+    # terms with l' decrease with the eccentricity of the Earth's orbit
     fading = (1 - 0.002516 * t) ** np.abs(library[:, 1:2])
     angles = library @ arguments(t)
     waves = (fading * np.exp(1j * angles)).astype(np.complex64)
@@ -117,7 +116,7 @@ def fit(
         rest = y - np.array(columns).T @ solve()
         explained = np.abs(waves.conj() @ rest.astype(np.complex64))
         for k in np.argsort(-explained) if chosen or given is None else [0]:
-            # what differs too little from a chosen one over these years cannot be told from it
+            # over these years, terms with nearly equal frequencies cannot be separated
             if not chosen or np.abs(waves[chosen].conj() @ waves[k]).max() < 0.6 * t.size:
                 break
         chosen.append(int(k))
@@ -129,7 +128,7 @@ def fit(
 
 
 def written(number: float) -> str:
-    """With underscores between groups of three digits, as rustfmt's lints want them."""
+    """Writes a number with underscores between groups of three digits, as clippy requires."""
     text = f"{number:.3f}".rstrip("0")
     whole, _, part = text.partition(".")
     return (

@@ -1,4 +1,4 @@
-"""Writes ``tests/fixtures/gravity.json``: EGM2008 36 x 36 from its definition, with 100 digits.
+"""Writes ``tests/fixtures/gravity.json``: EGM2008 36 x 36 from its definition, computed with 100 digits.
 
     python -m pip install mpmath
     python tests/oracles/generate_gravity_fixture.py
@@ -27,14 +27,14 @@ mp.mp.dps = 100
 
 def coefficients() -> dict[tuple[int, int], tuple[mp.mpf, mp.mpf]]:
     rows = re.findall(r"^gfc (\d+) (\d+) (\S+) (\S+)$", MODEL.read_text(), re.MULTILINE)
-    # as doubles, which is what the engine holds
+    # as doubles, as in the engine
     return {
         (int(n), int(m)): (mp.mpf(float(c)), mp.mpf(float(s))) for n, m, c, s in rows if 2 <= int(n) <= DEGREE
     }
 
 
 def polynomial(n: int, m: int) -> list[tuple[int, mp.mpf]]:
-    """Powers and normalised coefficients of the m-th derivative of Legendre's polynomial."""
+    """Returns powers and normalised coefficients of the m-th derivative of Legendre's polynomial."""
     norm = mp.sqrt((1 if m == 0 else 2) * (2 * n + 1) * mp.factorial(n - m) / mp.factorial(n + m))
     terms = []
     for k in range((n - m) // 2 + 1):

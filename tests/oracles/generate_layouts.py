@@ -1,4 +1,4 @@
-"""Writes `fixtures/layouts.json`: states of a bundled robot as Drake, SPART and RBDL write them, and links.
+"""Writes `fixtures/layouts.json`: states of a bundled robot in Drake, SPART and RBDL, and their link poses.
 
 Run where `drake` and `spartpy` are installed, with a program built from `generate_layouts_rbdl.cc`:
 
@@ -21,7 +21,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from onorbit_rs.validation.against_spart import with_inertia_alone
+from onorbit_rs.tools.validation.against_spart import with_inertia_alone
 
 ROOT = Path(__file__).parents[2]
 URDF = ROOT / "python" / "onorbit_rs" / "robots" / "humanoid_dual_arm.urdf"
@@ -29,7 +29,7 @@ OUT = ROOT / "tests" / "fixtures" / "layouts.json"
 
 
 def drake() -> dict[str, Any]:
-    """The state is set through Drake's typed calls, then its vectors are read."""
+    """Sets the state through Drake's typed calls and reads its vectors."""
     tree, parsing = (importlib.import_module(f"pydrake.multibody.{name}") for name in ("plant", "parsing"))
     math = importlib.import_module("pydrake.math")
     spatial = importlib.import_module("pydrake.multibody.math")
@@ -68,7 +68,7 @@ def drake() -> dict[str, Any]:
 
 
 def spart() -> dict[str, Any]:
-    """Of the links that have an inertia."""
+    """Returns the states and poses of links with an inertia by SPART."""
     module = importlib.import_module("SPARTpy.SPARTpy")
     with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
         file.write(with_inertia_alone(URDF.read_text()))
@@ -106,7 +106,7 @@ def spart() -> dict[str, Any]:
 
 
 def rbdl(program: str) -> dict[str, Any]:
-    """The program draws a state in RBDL's vectors and prints links' poses and velocities."""
+    """Runs the program, which draws a state in RBDL's layout and prints the links' poses and velocities."""
     names = [str(link.get("name")) for link in ElementTree.parse(URDF).getroot().findall("link")]
     done = subprocess.run([program, str(URDF), *names], capture_output=True, text=True, check=True)
     table = json.loads(done.stdout)

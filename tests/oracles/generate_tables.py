@@ -1,8 +1,8 @@
-"""Writes ``tests/fixtures/pinocchio_tables.json``: an oracle for those without Pinocchio.
+"""Writes ``tests/fixtures/pinocchio_tables.json``: reference values for tests without Pinocchio.
 
     python tests/oracles/generate_tables.py
 
-Every number in it comes from Pinocchio; ours makes nothing but the names of the joints.
+All numbers come from Pinocchio; this package supplies only the joint names.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 import pin_robot
 import pinocchio as pin  # type: ignore[import-untyped]
 
-from onorbit_rs.validation.trees import TOOL, build, random_state, random_tree
+from onorbit_rs.tools.validation.trees import TOOL, build, random_state, random_tree
 
 FILE = Path(__file__).parents[1] / "fixtures" / "pinocchio_tables.json"
 SEEDS = (301, 302, 303)

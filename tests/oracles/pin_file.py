@@ -11,7 +11,7 @@ import pinocchio as pin  # type: ignore[import-untyped]
 
 import onorbit_rs as oo
 from onorbit_rs.robots.expand import expand
-from onorbit_rs.validation.trees import State, deviation, random_state
+from onorbit_rs.tools.validation.trees import State, deviation, random_state
 
 
 def read(file: Path, root_joint: bool = True) -> Any:

@@ -1,4 +1,4 @@
-"""The same robot in Pinocchio, asked in our layout: joints by name, fixed links as frames."""
+"""The same robot in Pinocchio, with states and results in the layout of this package."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin  # type: ignore[import-untyped]
 
 import onorbit_rs as oo
-from onorbit_rs.validation.trees import BASE, TOOL, Array, Part, State, Tree
+from onorbit_rs.tools.validation.trees import BASE, TOOL, Array, Part, State, Tree
 
 W_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 
@@ -19,10 +19,10 @@ def pose(xyz: Any, rpy: Any) -> Any:
 
 
 def build(tree: Tree) -> Any:
-    """The tree joint by joint; a fixed link's inertia goes to the joint it rides on.
+    """Builds the tree joint by joint; a fixed link's inertia is added to its parent joint.
 
-    Depth first: Pinocchio's crba and Jacobians take a subtree to be a contiguous range of joints, and are
-    wrong, without a word, where it is not.
+    The order is depth first: Pinocchio's crba and Jacobians assume that a subtree is a contiguous range of
+    joints and are silently wrong otherwise.
     """
     model = pin.Model()
     model.gravity.linear = np.zeros(3)
@@ -72,12 +72,12 @@ def from_urdf(text: str) -> Any:
 
 
 class PinRobot:
-    """Every kernel of ours, computed by Pinocchio; vectors in our order of joints."""
+    """Every kernel of this package computed by Pinocchio, with vectors in the package's joint order."""
 
     def __init__(self, model: Any, joint_names: list[str]) -> None:
         self.model, self.data = model, model.createData()
         self.joints = [model.joints[model.getJointId(name)] for name in joint_names]
-        # row i of ours is row order[i] of theirs
+        # row i of the package is row order[i] of Pinocchio
         self.order = np.array([*range(6), *(joint.idx_v for joint in self.joints)])
         assert sorted(self.order) == list(range(model.nv))
 
@@ -100,7 +100,7 @@ class PinRobot:
         return int(self.model.getFrameId(name, pin.FrameType.BODY))
 
     def wrenches(self, external: dict[str, Array]) -> Any:
-        """On joints, in their axes, from wrenches on frames."""
+        """Converts wrenches on frames to wrenches on joints, in joint axes."""
         total = [pin.Force.Zero() for _ in range(self.model.njoints)]
         for name, wrench in external.items():
             frame = self.model.frames[self.frame(name)]
@@ -110,7 +110,7 @@ class PinRobot:
         return vector
 
     def generalized(self, q: Array, external: dict[str, Array]) -> Array:
-        """``Q = Σ Jᵀ F``."""
+        """Returns the generalized force ``Q = Σ Jᵀ F``."""
         total = np.zeros(self.model.nv)
         for name, wrench in external.items():
             jacobian = pin.computeFrameJacobian(
@@ -155,7 +155,7 @@ class PinRobot:
         return np.array(h.vector)
 
     def kinetic_energy(self, state: State) -> float:
-        """Rotors' share included, whether this version of Pinocchio counts it or not."""
+        """Returns the kinetic energy including rotors, with every version of Pinocchio."""
         v = state.v
         return float(0.5 * v @ self.mass_matrix(state) @ v)
 
@@ -163,7 +163,7 @@ class PinRobot:
         return np.array(pin.centerOfMass(self.model, self.data, self.q(state.q)))
 
     def integrate(self, state: State) -> Array:
-        """Pinocchio's exponential on SE(3) for the base; joints add."""
+        """Integrates the base with Pinocchio's exponential on SE(3); joint coordinates are added."""
         free = pin.SE3(pin.XYZQUATToSE3(state.q[:7])) * pin.exp6(pin.Motion(state.v[:6]))
         base = pin.SE3ToXYZQUAT(free)
         return np.concatenate([base, state.q[7:] + state.v[6:]])
@@ -173,7 +173,7 @@ class PinRobot:
         return np.concatenate([pin.log6(start.actInv(end)).vector, other[7:] - state.q[7:]])
 
     def classical_bias(self, state: State, name: str) -> Array:
-        """``J̇ v`` from Pinocchio's own J̇."""
+        """Returns ``J̇ v`` from Pinocchio's J̇."""
         q, v = self.q(state.q), self.v(state.v)
         pin.computeJointJacobiansTimeVariation(self.model, self.data, q, v)
         pin.updateFramePlacements(self.model, self.data)
@@ -181,7 +181,7 @@ class PinRobot:
         return np.array(rate @ v)
 
     def free_floating(self, state: State, name: str, external: dict[str, Array]) -> dict[str, Array]:
-        """The reduced model by the book: blocks of M, c and Q, a solve with ``Mbb``."""
+        """Returns the reduced model by definition: blocks of M, c and Q, a solve with ``Mbb``."""
         mass, bias = self.mass_matrix(state), self.bias_forces(state)
         jacobian = self.frame_jacobian(state, name)
         applied = self.generalized(self.q(state.q), external)[self.order]
@@ -198,7 +198,7 @@ class PinRobot:
 
 
 def every_kernel(robot: PinRobot, state: State, tool: str) -> dict[str, Any]:
-    """One value per kernel, from Pinocchio."""
+    """Returns the results of all kernels from Pinocchio."""
     moved = robot.integrate(state)
     reduced = robot.free_floating(state, tool, state.external)
     return {
@@ -218,7 +218,7 @@ def every_kernel(robot: PinRobot, state: State, tool: str) -> dict[str, Any]:
 
 
 def same_kernels(model: oo.Model, state: Any, tool: str) -> dict[str, Any]:
-    """The same from ours; ``state`` holds one state or a batch that shares its wrenches."""
+    """Returns the package's results; ``state`` holds one state or a batch with common wrenches."""
     q, v, external = state.q, state.v, state.external
     moved = model.integrate(q, v)
     reduced = model.free_floating(q, v, tool, external=external)
@@ -244,7 +244,7 @@ def same_kernels(model: oo.Model, state: Any, tool: str) -> dict[str, Any]:
 
 
 def derivatives(robot: PinRobot, state: State, tool: str) -> dict[str, Array]:
-    """Every derivative from Pinocchio's analytic ones; of the reduced model through its definition."""
+    """Returns all derivatives from Pinocchio's analytic ones; the reduced model's by its definition."""
     model, data = robot.model, robot.data
     q, v, fext = robot.q(state.q), robot.v(state.v), robot.wrenches(state.external)
     square = np.ix_(robot.order, robot.order)
@@ -258,7 +258,7 @@ def derivatives(robot: PinRobot, state: State, tool: str) -> dict[str, Array]:
     for name, matrix in zip(("forward.dq", "forward.dv", "forward.dtau"), forward, strict=True):
         out[name] = np.array(matrix)[square]
 
-    # a_b = -Mbb⁻¹ (Mbm q̈ + cb - Qb) makes the base rows of inverse dynamics vanish, whatever q and v are
+    # a_b = -Mbb⁻¹ (Mbm q̈ + cb - Qb) makes the base rows of inverse dynamics vanish for all q and v
     rest = np.concatenate([np.zeros(6), state.a[6:]])
     mass = inverse(rest)[2]
     missing = pin.rnea(model, data, q, v, robot.v(rest), fext)[robot.order][:6]
@@ -275,7 +275,7 @@ def derivatives(robot: PinRobot, state: State, tool: str) -> dict[str, Array]:
 
 
 def point(robot: PinRobot, state: State, a: Array, name: str) -> tuple[Array, Array, Array]:
-    """``∂ẋ/∂q``, ``∂ẍ/∂q``, ``∂ẍ/∂v`` of a frame's origin, classical, W axes."""
+    """Returns ``∂ẋ/∂q``, ``∂ẍ/∂q``, ``∂ẍ/∂v`` of a frame's origin, classical, in W axes."""
     model, data = robot.model, robot.data
     twist, turning = robot.frame_velocity(state, name), robot.frame_jacobian(state, name)[3:].T
     pin.computeForwardKinematicsDerivatives(model, data, robot.q(state.q), robot.v(state.v), robot.v(a))
@@ -290,7 +290,7 @@ def point(robot: PinRobot, state: State, a: Array, name: str) -> tuple[Array, Ar
     speed_q, _ = pin.getPointVelocityDerivatives(*at)
 
     def in_w(linear: Array, angular: Array, of: Array | None = None) -> Array:
-        """Rows in the frame's axes turned to W; what they are derivatives of turns along with the frame."""
+        """Rotates derivative rows from frame axes to W, including the rotation of the frame itself."""
         rows = np.vstack([axes @ linear, axes @ angular[3:]])[:, robot.order]
         if of is not None:
             rows += np.hstack([np.cross(turning, of[:3]), np.cross(turning, of[3:])]).T

@@ -1,8 +1,7 @@
-"""Digits of small bodies far from the base, held against 40 digits of Newton and Euler, and beside Pinocchio.
+"""Accuracy for small bodies far from the base, against Newton-Euler with 40 digits and beside Pinocchio.
 
-Errors of inverse dynamics, and the residual of forward dynamics in the same equations, are in units of the
-moments that make up a row, taken without their signs: rounding the robot's own numbers changes a row by about
-1e-16 of that.
+Errors of inverse dynamics, and the residual of forward dynamics in the same equations, are relative to the
+sum of the absolute moments in a row: rounding of the robot's data changes a row by about 1e-16 of this sum.
 Worst of two states for each robot (seeds 0 and 1, printed with ``pytest -s``):
 
 - backward error of inverse and forward dynamics: 3e-15; 4.3e-15 over 150 random trees
@@ -18,7 +17,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.validation.trees import Array, Part, State, Tree, build, random_state
+from onorbit_rs.tools.validation.trees import Array, Part, State, Tree, build, random_state
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
 mp = pytest.importorskip("mpmath", reason="the oracle is in the test extra: pip install mpmath")
@@ -26,12 +25,12 @@ import pin_robot  # noqa: E402
 from exact_tree import DIGITS, ExactTree, as_floats  # noqa: E402
 
 BACKWARD = 1e-14
-HEAVY_ON_LIGHT = "sizes of all kinds, 2"  # 1e6 kg hang on 1 kg: Pinocchio is 4e-8 off
+HEAVY_ON_LIGHT = "sizes of all kinds, 2"  # 1e6 kg on 1 kg: Pinocchio's error is 4e-8
 STATES = range(2)
 
 
 def rod(name: str, mass: float, length: float, parent: str | None = None, **joint: Any) -> Part:
-    """A rod along z that hangs on its lower end."""
+    """Returns a rod along z, attached at its lower end."""
     radius = length / 10
     across = mass * (length**2 + 3 * radius**2) / 12
     inertia = np.diag([across, across, mass * radius**2 / 2]).tolist()
@@ -42,7 +41,7 @@ def rod(name: str, mass: float, length: float, parent: str | None = None, **join
 
 
 def fingers(reach: float, size: float, mass: float) -> Tree:
-    """Two fingers, one of two bones, on the wrist of two booms."""
+    """Returns two booms with a wrist and two fingers, one of which has two links."""
     tip = (0.0, 0.0, reach)
     return Tree(
         [
@@ -59,7 +58,7 @@ def fingers(reach: float, size: float, mass: float) -> Tree:
 
 
 def sizes_of_all_kinds(seed: int, links: int = 9) -> Tree:
-    """Bodies of 1 cm to 100 m of one density, so masses of 1e-3 to 1e9 kg, on skew axes and with branches."""
+    """Returns a branched robot of bodies of 1 cm to 100 m of one density: masses of 1e-3 to 1e9 kg."""
     rng = np.random.default_rng(seed)
     size = 10 ** rng.uniform(-2, 2, links)
 
@@ -96,7 +95,7 @@ ROBOTS = FINGERS | {
 
 @dataclass(frozen=True)
 class Errors:
-    """Of inverse dynamics; of forward dynamics the residual, and the error over the largest acceleration."""
+    """Errors of inverse dynamics; residual and relative acceleration error of forward dynamics."""
 
     inverse: float
     backward: float
@@ -104,7 +103,7 @@ class Errors:
 
 
 class Case:
-    """One robot at one state, its joints in the order of the tree."""
+    """A robot at one state, with the joints in the order of the tree."""
 
     def __init__(self, tree: Tree, seed: int) -> None:
         self.model, self.exact = build(tree), ExactTree(tree)
@@ -124,7 +123,7 @@ class Case:
         self.acceleration = self.exact.forward_dynamics(self.q, self.v, self.tau)
 
     def errors(self, robot: Any) -> Errors:
-        """Of anything with `inverse_dynamics(state)` and `forward_dynamics(state)`."""
+        """Returns the errors of an engine with `inverse_dynamics(state)` and `forward_dynamics(state)`."""
         effort, acceleration = (
             robot.inverse_dynamics(self.state)[self.order],
             robot.forward_dynamics(self.state)[self.order],
@@ -142,7 +141,7 @@ class Case:
 
 
 class Ours:
-    """One state, or the same state in all lanes of a batch."""
+    """The package with one state, or with the same state in all lanes of a batch."""
 
     def __init__(self, model: oo.Model, rows: int | None = None) -> None:
         self.model, self.rows = model, rows
@@ -162,7 +161,7 @@ class Ours:
 
 
 def worst(tree: Tree, rows: int | None = None) -> tuple[Errors, Errors]:
-    """Ours and Pinocchio's, largest over the states."""
+    """Returns the largest errors of the package and of Pinocchio over the states."""
     cases = [Case(tree, seed) for seed in STATES]
     ours = [case.errors(Ours(case.model, rows)) for case in cases]
     theirs = [case.errors(case.pinocchio) for case in cases]
@@ -184,25 +183,25 @@ def test_small_bodies_far_from_the_base_keep_their_digits(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [*FINGERS, HEAVY_ON_LIGHT])
-def test_batches_keep_them_too(name: str) -> None:
+def test_batches_of_small_bodies_keep_their_digits(name: str) -> None:
     ours, theirs = worst(ROBOTS[name], rows=9)
     assert max(ours.inverse, ours.backward) < BACKWARD
     assert ours.forward < 10 * theirs.forward
 
 
-def test_the_inverse_mass_keeps_them_where_heavy_bodies_hang_on_light_ones() -> None:
+def test_the_inverse_mass_matrix_keeps_its_digits_with_heavy_bodies_on_light_ones() -> None:
     """``M M⁻¹ = 1`` with rows and columns in units of the square roots of ``M``'s diagonal."""
     case = Case(ROBOTS[HEAVY_ON_LIGHT], 0)
     s, unit = case.state, np.sqrt(np.diag(case.model.mass_matrix(case.state.q)))
     inverse = case.model.forward_dynamics_derivatives(s.q, s.v, s.tau)[2]
     product = (case.model.mass_matrix(s.q) @ inverse) * unit / unit[:, None]
-    largest = np.abs(inverse * unit * unit[:, None]).max()  # what rounding the entries of M alone does
+    largest = np.abs(inverse * unit * unit[:, None]).max()  # effect of rounding the entries of M
     assert np.abs(product - np.eye(case.model.nv)).max() < BACKWARD * largest
     np.testing.assert_array_equal(inverse, case.model.forward_dynamics_derivatives(s.q, s.v, s.tau)[2])
 
 
-def test_the_measure_sees_moments_taken_about_the_base() -> None:
-    """Control: a moment formed about a point 200 m away in double precision and moved back is far off."""
+def test_the_measure_detects_moments_taken_about_the_base() -> None:
+    """Control: a moment about a point 200 m away in double precision, moved back, has a large error."""
     case = Case(FINGERS["1 g, 1 mm on 100 m"], 0)
     far = np.array([0.0, 0.0, 200.0])
 
@@ -218,7 +217,7 @@ def test_the_measure_sees_moments_taken_about_the_base() -> None:
 
 
 @pytest.mark.parametrize("name", FINGERS)
-def test_derivatives_of_inverse_dynamics_keep_them(name: str) -> None:
+def test_derivatives_of_inverse_dynamics_keep_their_digits(name: str) -> None:
     """Central differences in 40 digits, exact to 1e-20, of the columns of the joints."""
     case = Case(FINGERS[name], 0)
     s, step = case.state, mp.mpf(10) ** -14
@@ -235,6 +234,6 @@ def test_derivatives_of_inverse_dynamics_keep_them(name: str) -> None:
             with mp.workdps(DIGITS):
                 exact = as_floats((ends[0] - ends[1]) / (2 * step))
             column = ours[case.order, case.order[j]]
-            # a column is a force per radian: measured by the row's own moments, or the column where larger
+            # a column is a force per radian: relative to the row's moments, or to the column if larger
             sizes = np.maximum(case.size, np.abs(exact))
             assert np.max(np.abs(column - exact) / sizes) < BACKWARD, (name, j, place)

@@ -1,8 +1,8 @@
-"""The base of ETS-VII from conservation of momentum alone: Pinocchio's mass matrix along the recorded joints.
+"""The base motion of ETS-VII from conservation of momentum alone, with Pinocchio's mass matrix.
 
-Nothing acts on the whole robot and it starts at rest, so its momentum stays zero and the base's twist is
-`v_b = -Mbb⁻¹ Mbm q̇`. That, integrated, is the whole motion of the base: no forces, no
-controller and no integrator of ours.
+No external wrench acts and the robot starts at rest, so its momentum stays zero and the base's twist is
+`v_b = -Mbb⁻¹ Mbm q̇` along the recorded joints. Its integral is the motion of the base, without any forces,
+controller or integrator of this package.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.rotations import angle_between
+from onorbit_rs.common.rotations import angle_between
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
 import pin_robot  # noqa: E402
@@ -30,7 +30,7 @@ def run() -> oo.Run:
 
 
 def twists(run: oo.Run, *, carries_arm: bool = True) -> Any:
-    """(T, 6) of the base in its axes; an arm that is not carried adds nothing to the inertia of the base."""
+    """Returns the base twists (T, 6) in base axes; with or without the arm's inertia in that of the base."""
     text = oo.robots.path("ets_vii").read_text()
     robot = pin_robot.PinRobot(pin_robot.from_urdf(text), run.model.joint_names)
     q, v = np.asarray(run.trace.q), np.asarray(run.trace.v)
@@ -45,14 +45,14 @@ def twists(run: oo.Run, *, carries_arm: bool = True) -> Any:
 
 
 def robot_places(robot: pin_robot.PinRobot, q: Any) -> Any:
-    """Configurations of Pinocchio's with the base at the origin: where it is does not matter to ``M``."""
+    """Returns Pinocchio's configurations with the base at the origin; its position does not affect ``M``."""
     at_origin = q.copy()
     at_origin[:, :7] = [0, 0, 0, 0, 0, 0, 1]
     return (robot.q(row) for row in at_origin)
 
 
 def integrated(twist: Any, time: Any, first: Any) -> Any:
-    """(T, 7) poses: each step at the mean of the twists at its ends, on SE(3)."""
+    """Returns the poses (T, 7): each step uses the mean of the twists at its ends, on SE(3)."""
     pose = pin.XYZQUATToSE3(first)
     poses = [first]
     for step, mean in zip(np.diff(time), 0.5 * (twist[1:] + twist[:-1]), strict=True):
@@ -62,7 +62,7 @@ def integrated(twist: Any, time: Any, first: Any) -> Any:
 
 
 def apart(run: oo.Run, poses: Any) -> tuple[float, float]:
-    """The largest difference in attitude, rad, and in position, m."""
+    """Returns the largest differences in attitude, rad, and position, m."""
     q = np.asarray(run.trace.q)
     return (
         float(angle_between(q[:, 3:7], poses[:, 3:7]).max()),
@@ -70,14 +70,14 @@ def apart(run: oo.Run, poses: Any) -> tuple[float, float]:
     )
 
 
-def test_the_base_moves_as_momentum_says(run: oo.Run) -> None:
+def test_the_base_moves_as_momentum_conservation_requires(run: oo.Run) -> None:
     time = np.asarray(run.trace.time)
     rotation, position = apart(run, integrated(twists(run), time, run.trace.q[0, :7]))
     print(f"off by {rotation:.1e} rad and {position:.1e} m over {time[-1]:g} s")
     assert rotation < ROTATION_GATE and position < POSITION_GATE
 
 
-def test_a_base_that_is_held_or_carries_nothing_would_be_told_apart(run: oo.Run) -> None:
+def test_a_fixed_base_or_a_massless_arm_is_detected(run: oo.Run) -> None:
     time, first = np.asarray(run.trace.time), run.trace.q[0, :7]
     held = integrated(np.zeros((len(time), 6)), time, first)
     assert apart(run, held)[0] > 0.02 and apart(run, held)[1] > 0.01

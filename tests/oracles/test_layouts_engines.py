@@ -1,10 +1,10 @@
-"""Layouts of others against the engines: the same state puts every link in the same place and motion.
+"""State layouts of other engines: the same state must give every link the same pose and velocity.
 
-Pinocchio and MuJoCo run here. Drake (large), SPART (whose dynamics `onorbit validate` asks) and RBDL (its
-package builds on no current Python; its C++ was compiled) were run by `generate_layouts.py`, which wrote
-`fixtures/layouts.json`: states in their layouts with the poses and velocities of links that they computed.
-Drake also runs here where it is installed.
-Gate 1e-13 of the largest entry; seen is 4e-15 at most.
+Pinocchio and MuJoCo run here. Drake (a large package), SPART (whose dynamics `onorbit validate` checks) and
+RBDL (compiled from C++, since its package does not build on current Python) were run by
+`generate_layouts.py`, which wrote `fixtures/layouts.json`: states in their layouts, link poses and
+velocities. Drake also runs here if it is installed. The gate is 1e-13 of the largest entry; the largest
+value observed is 4e-15.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs import layouts
-from onorbit_rs.validation.trees import Array, build, deviation, random_tree, urdf
+from onorbit_rs.tools.validation.trees import Array, build, deviation, random_tree, urdf
 
 GATE = 1e-13
 TABLES = json.loads((Path(__file__).parents[1] / "fixtures" / "layouts.json").read_text())
@@ -55,15 +55,15 @@ def test_pinocchio(seed: int) -> None:
         assert deviation(model.frame_pose(q, name), data.oMf[frame].homogeneous) < GATE, name
         assert deviation(model.frame_velocity(q, v, name), twist) < GATE, name
     same_state((q, v), layouts.from_pinocchio(model, pin_q, pin_v, theirs))
-    # the same by names alone
+    # the same from joint names only
     names = list(theirs.names)[2:]
     unbounded = [name for name in names if theirs.joints[theirs.getJointId(name)].nq == 2]
     by_names = layouts.to_pinocchio(model, q, v, names, unbounded=unbounded)
     np.testing.assert_array_equal(by_names[0], pin_q)
 
 
-def test_pinocchio_s_order_matters() -> None:
-    """Siblings go by name there: with ours, a branched robot gets the joints of another arm."""
+def test_the_order_of_pinocchios_joints_matters() -> None:
+    """Pinocchio sorts siblings by name: without reordering, the joints of two arms would be swapped."""
     pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
     theirs = pin.buildModelFromXML(oo.robots.path("humanoid_dual_arm").read_text(), pin.JointModelFreeFlyer())
     assert list(theirs.names)[2:] != DUAL.joint_names
@@ -76,7 +76,7 @@ def test_pinocchio_s_order_matters() -> None:
 @pytest.mark.parametrize("seed", range(8))
 def test_mujoco(seed: int) -> None:
     mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
-    from onorbit_rs.validation.against_mujoco import mjcf
+    from onorbit_rs.tools.validation.against_mujoco import mjcf
 
     tree = random_tree(seed)
     model, theirs = build(tree), mujoco.MjModel.from_xml_string(mjcf(tree))
@@ -103,12 +103,12 @@ def test_mujoco(seed: int) -> None:
     qpos, qvel = layouts.to_mujoco(model, q, v, theirs)
     assert worst(qpos, qvel) < GATE
     same_state((q, v), layouts.from_mujoco(model, qpos, qvel, theirs))
-    # the control: its linear velocity read in body axes moves every link otherwise
+    # negative control: the linear velocity in body axes gives different link velocities
     assert worst(qpos, np.concatenate([v[:3], qvel[3:]])) > 1e-3
 
 
 def compare_links(q: Array, v: Array, links: dict[str, Any]) -> float:
-    """Largest deviation of our poses and velocities from theirs."""
+    """Returns the largest deviation of poses and velocities from the other engine's."""
     largest = 0.0
     for name, link in links.items():
         largest = max(
@@ -124,12 +124,12 @@ def test_drake_s_table() -> None:
     theirs_q, theirs_v = np.array(table["q"]), np.array(table["v"])
     q, v = layouts.from_drake(DUAL, theirs_q, theirs_v, table["joints"])
     assert len(table["links"]) > 15 and compare_links(q, v, table["links"]) < GATE
-    # set through Drake's typed calls, so nothing here knows its vector but the converter
+    # set through Drake's typed calls, so only the converter depends on the layout of its vector
     np.testing.assert_allclose(q[:3], table["position_m"], atol=1e-15)
     assert abs(q[3:7] @ table["quat_xyzw"]) == pytest.approx(1.0, abs=1e-15)
     again = layouts.to_drake(DUAL, q, v, table["joints"])
     assert deviation(again[0], theirs_q) < GATE and deviation(again[1], theirs_v) < GATE
-    # the control: velocities in MuJoCo's manner are others
+    # negative control: MuJoCo's convention gives different velocities
     swapped = np.concatenate([theirs_v[3:6], theirs_v[:3], theirs_v[6:]])
     assert (
         compare_links(q, layouts.from_drake(DUAL, theirs_q, swapped, table["joints"])[1], table["links"])
@@ -169,7 +169,7 @@ def test_rbdl_s_table() -> None:
     assert len(table["links"]) > 10 and compare_links(q, v, table["links"]) < GATE
     again = layouts.to_rbdl(DUAL, q, v, table["joints"])
     assert deviation(again[0], table["q"]) < GATE and deviation(again[1], table["v"]) < GATE
-    # the control: the scalar of the quaternion is not the seventh entry
+    # negative control: the quaternion's scalar is not the seventh entry
     wrong = np.array(table["q"])
     wrong[[6, -1]] = wrong[[-1, 6]]
     wrong[[3, 4, 5, -1]] /= np.linalg.norm(wrong[[3, 4, 5, -1]])
@@ -180,7 +180,7 @@ def test_rbdl_s_table() -> None:
 
 
 def test_spart_s_table() -> None:
-    """SPART speaks of centres of mass: poses and twists of each link are taken there."""
+    """SPART's poses and twists are those of the links' centres of mass."""
     table = TABLES["spart"]
     position = (table["R0"], table["r0"], table["qm"])
     q, v = layouts.from_spart(DUAL, position, (table["u0"], table["um"]), table["joints"])

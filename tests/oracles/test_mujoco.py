@@ -1,8 +1,9 @@
-"""Accelerations of free robots against MuJoCo: the reaction of a base that nothing holds.
+"""Accelerations of free-floating robots against MuJoCo.
 
-MuJoCo shares no code and no conventions with us: quaternions wxyz, the base's linear velocity in W axes, its
-angular velocity in body axes. Accelerations are compared, no trajectories: its integrators lose momentum.
-Gate 1e-11 of the largest entry; seen is 3e-13 at most.
+MuJoCo shares neither code nor conventions with this package: its quaternions are wxyz, the base's linear
+velocity is in W axes and its angular velocity in body axes. Accelerations are compared instead of
+trajectories because MuJoCo's integrators do not conserve momentum. The gate is 1e-11 of the largest entry;
+the largest value observed is 3e-13.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.validation.against_mujoco import GATE, MujocoRobot, compare, tree_of
-from onorbit_rs.validation.trees import Tree, build, deviation, random_state, random_tree
+from onorbit_rs.tools.validation.against_mujoco import GATE, MujocoRobot, compare, tree_of
+from onorbit_rs.tools.validation.trees import Tree, build, deviation, random_state, random_tree
 
 pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
 
@@ -33,7 +34,7 @@ def compared(model: oo.Model, tree: Tree, seed: int) -> None:
     whole, arm = compare(model, tree, seed)
     print(f"{model.name}, seed {seed}: largest deviations from MuJoCo {whole:.1e}, {arm:.1e}")
     assert whole < GATE and arm < GATE
-    # at MuJoCo's acceleration our inverse dynamics asks for the torques MuJoCo was given
+    # inverse dynamics of MuJoCo's acceleration must return the torques given to MuJoCo
     state = random_state(model, np.random.default_rng(seed), frames=1)
     theirs = MujocoRobot(tree, model.joint_names).acceleration(state.q, state.v, state.tau)
     assert deviation(model.inverse_dynamics(state.q, state.v, theirs), state.tau) < GATE * 100
@@ -49,7 +50,7 @@ def test_control_a_forgotten_transport_term_is_rejected() -> None:
     assert deviation(model.forward_dynamics(state.q, state.v, state.tau), theirs) > 1e-3
 
 
-def test_control_a_base_held_by_something_moves_otherwise() -> None:
+def test_control_a_fixed_base_gives_other_accelerations() -> None:
     # the arm on a fixed base: M_mm instead of M*
     model = oo.robots.load("humanoid_torso")
     robot = MujocoRobot(tree_of(oo.robots.path("humanoid_torso")), model.joint_names)
@@ -58,5 +59,5 @@ def test_control_a_base_held_by_something_moves_otherwise() -> None:
     held = np.linalg.solve(
         model.mass_matrix(state.q)[6:, 6:], state.tau[6:] - model.bias_forces(state.q, state.v)[6:]
     )
-    # the shoulder carries most of the recoil; the light wrist hardly feels it
+    # the base's reaction mostly affects the shoulder, hardly the light wrist
     assert deviation(held[:1], robot.acceleration(state.q, state.v, free)[6:7]) > 0.1

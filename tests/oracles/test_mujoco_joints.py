@@ -1,8 +1,9 @@
-"""Damping, friction and rotors of joints against MuJoCo with the same parameters.
+"""Joint damping, friction and rotors against MuJoCo with the same parameters.
 
-A spacecraft with an arm of hinge, slide, hinge. MuJoCo integrates with its RK4 at 0.1 ms. Its dry friction is
-soft: it gives way by a share ``1 - d`` of the unconstrained acceleration, ``d`` its ``solimp``; at its
-hardest, 0.9999, a slide of 4 s agrees to 3e-6 and what sticks here creeps there at 1e-9.
+The robot is a spacecraft with an arm of hinge, slide, hinge. MuJoCo integrates with its RK4 at 0.1 ms. Its
+dry friction is soft: it permits a fraction ``1 - d`` of the unconstrained acceleration, where ``d`` is
+``solimp``. With the largest value, 0.9999, a slide of 4 s agrees to 3e-6, and joints that stick in this
+package creep in MuJoCo at 1e-9.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ MJCF = """
 
 
 def ours(damping: Any, friction: Any, rotor: Any) -> oo.Model:
-    """The same robot here."""
+    """Returns the robot in this package."""
     builder = oo.ModelBuilder("arm", base="base", mass=40.0, inertia=np.diag([4.0, 5.0, 3.0]))
     links = (
         ("upper", "base", "a", "revolute", (0, 0, 1), (0.4, 0, 0.1), 4.0, (0.2, 0, 0), (0.02, 0.1, 0.1)),
@@ -77,7 +78,7 @@ def ours(damping: Any, friction: Any, rotor: Any) -> oo.Model:
 
 
 def theirs(damping: Any, friction: Any, rotor: Any) -> tuple[Any, Any]:
-    """MuJoCo's robot, at the same start."""
+    """Returns MuJoCo's robot in the same initial state."""
     joints = [
         f'damping="{d!r}" frictionloss="{f!r}" armature="{r!r}"'
         for d, f, r in zip(damping, friction, rotor, strict=True)
@@ -95,7 +96,7 @@ def start(model: oo.Model) -> np.ndarray[Any, Any]:
 
 
 def deviation(trace: oo.Trace, data: Any, k: int = -1) -> float:
-    """Largest difference of base origin, attitude and joints, m and rad."""
+    """Returns the largest difference of base origin, attitude and joints, m and rad."""
     q, (w, x, y, z) = trace.q[k], data.qpos[3:7]
     turn = 2.0 * (1.0 - abs(q[3:7] @ np.array([x, y, z, w])))
     return max(
@@ -103,8 +104,8 @@ def deviation(trace: oo.Trace, data: Any, k: int = -1) -> float:
     )
 
 
-def test_damping_and_rotors_accelerate_the_same() -> None:
-    """1e-10 of the largest acceleration."""
+def test_accelerations_with_damping_and_rotors_agree() -> None:
+    """They agree to 1e-10 of the largest acceleration."""
     model = ours(DAMPING, (0, 0, 0), ROTOR)
     trace = oo.Simulation(model, start(model), RATES).run(1e-3)
     mj_model, data = theirs(DAMPING, (0.0,) * 3, ROTOR)
@@ -114,8 +115,8 @@ def test_damping_and_rotors_accelerate_the_same() -> None:
 
 
 @pytest.mark.parametrize("integrator", ["rk4", "dormand_prince"])
-def test_damping_and_rotors_move_the_same(integrator: Any) -> None:
-    """1e-6 m and rad after 2 s; without the rotors (negative control) a thousand times that."""
+def test_motions_with_damping_and_rotors_agree(integrator: Any) -> None:
+    """They agree to 1e-6 m and rad after 2 s; without the rotors (negative control) to 1e-3 only."""
     mj_model, data = theirs(DAMPING, (0.0,) * 3, ROTOR)
     for _ in range(20_000):
         mujoco.mj_step(mj_model, data)
@@ -128,8 +129,8 @@ def test_damping_and_rotors_move_the_same(integrator: Any) -> None:
     assert deviation(oo.Simulation(bare, start(bare), RATES).run(2.0), data) > 1e-3
 
 
-def test_dry_friction_slides_and_stops_the_same() -> None:
-    """A robot that slides until all joints stand still, against the hardest friction MuJoCo has."""
+def test_dry_friction_slides_and_stops_alike() -> None:
+    """The joints slide until they stop, compared with MuJoCo's hardest friction."""
     mj_model, data = theirs(DAMPING, FRICTION, ROTOR)
     model = ours(DAMPING, FRICTION, ROTOR)
     simulation = oo.Simulation(model, start(model), RATES, record_every=100)

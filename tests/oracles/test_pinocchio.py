@@ -1,7 +1,7 @@
 """Every kernel against Pinocchio, on random trees with branches, skew axes, rotors and all kinds of joints.
 
-Gate 1e-12 of the largest entry. The issue asks for 1e-10; seen are 1.1e-14 or less for everything but
-forward dynamics (2.3e-14, which solves with a matrix of condition 1e3 to 1e4).
+The gate is 1e-12 of the largest entry. Observed values are at most 1.1e-14, except for forward dynamics
+(2.3e-14), which solves with a matrix of condition 1e3 to 1e4.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.validation.trees import TOOL, State, Tree, build, deviation, random_state, random_tree
+from onorbit_rs.tools.validation.trees import TOOL, State, Tree, build, deviation, random_state, random_tree
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
 import pin_robot  # noqa: E402
@@ -26,7 +26,7 @@ STATES = 4
 
 @pytest.fixture(scope="module")
 def worst() -> Iterator[dict[str, float]]:
-    """Largest deviation of each kernel, printed at the end (``pytest -s``)."""
+    """Collects the largest deviation of each kernel and prints it at the end (``pytest -s``)."""
     seen: dict[str, float] = {}
     yield seen
     print("\nlargest deviation from Pinocchio:", {name: f"{value:.1e}" for name, value in seen.items()})
@@ -39,7 +39,7 @@ def robots(seed: int) -> tuple[Tree, oo.Model, pin_robot.PinRobot]:
 
 
 def same_sign(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
-    """Two quaternions are one attitude."""
+    """Chooses the sign of a quaternion, since q and -q are the same attitude."""
     if np.dot(ours["integrate"][3:7], theirs["integrate"][3:7]) < 0:
         theirs["integrate"][3:7] *= -1
 
@@ -63,9 +63,9 @@ def test_every_kernel_for_one_state(seed: int, worst: dict[str, float]) -> None:
 def test_every_kernel_for_a_batch(seed: int) -> None:
     _, model, robot = robots(seed)
     rng = np.random.default_rng(2000 + seed)
-    count = (1, 3, 8, 13)[seed % 4]  # with and without whole sets of lanes, and a rest
+    count = (1, 3, 8, 13)[seed % 4]  # full groups of SIMD lanes, with and without a remainder
     states = [random_state(model, rng) for _ in range(count)]
-    external = states[0].external  # wrenches are shared by a batch
+    external = states[0].external  # a batch has common wrenches
     q, v, a, tau = (np.array([getattr(state, name) for state in states]) for name in ("q", "v", "a", "tau"))
     batch = pin_robot.same_kernels(model, State(q, v, a, tau, external), TOOL)
     for k, state in enumerate(states):
@@ -92,7 +92,7 @@ def test_every_frame_of_a_tree(seed: int) -> None:
         theirs = robot.free_floating(state, frame, {})
         for name in ("inertia", "bias", "drift"):
             assert deviation(getattr(ours, name), theirs[name]) < GATE, (frame, name)
-        # links that share the base have a jacobian of zero: an absolute gate on entries of order one
+        # links fixed to the base have a zero Jacobian: an absolute gate, entries are of order one
         np.testing.assert_allclose(ours.jacobian, theirs["jacobian"], atol=GATE, rtol=GATE)
         np.testing.assert_array_equal(ours.external, 0.0)
 
@@ -115,11 +115,11 @@ def test_difference_of_far_and_near_configurations() -> None:
         assert deviation(model.difference(state.q, other.q), theirs) < GATE
         for size in (1e-3, 1e-6, 1e-9):
             near = model.integrate(state.q, size * state.v)
-            # what is left of a difference of configurations of order one: 1e-16 / size of it
+            # cancellation in a difference of configurations of order one: 1e-16 / size
             assert deviation(model.difference(state.q, near), size * state.v) < 1e-14 / size
 
 
-# Negative controls: mistakes of the field, each of which the gates above must see.
+# Negative controls: common mistakes, each of which must exceed the gates above.
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Awkward files yield the same robot as in Pinocchio, including the base frame, or are refused as listed."""
+"""Unusual files give the same robot as in Pinocchio, including the base frame, or are rejected as listed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import pin_file  # noqa: E402
 GATE = 1e-12  # as in test_pinocchio.py
 HAS_XACRO = importlib.util.find_spec("xacro") is not None
 
-# refused by urdfdom, Pinocchio's reader
+# rejected by urdfdom, Pinocchio's reader
 REFUSED_BY_PINOCCHIO = {
     "ball_joint": "URDF has no such joint",
     "duplicate_material": "a material is defined once",
@@ -37,7 +37,7 @@ REFUSED_BY_PINOCCHIO = {
 READ_OTHERWISE = {
     "armature": "Pinocchio takes a rotor inertia from no URDF",
     "axis_without_xyz": "Pinocchio's axis has no length; it is x in URDF",
-    "inertia_without_products": "Pinocchio says so and leaves the link without inertia",
+    "inertia_without_products": "Pinocchio reports it and leaves the link without inertia",
     "planar_joint_without_axis": "Pinocchio's plane is that of x and y; URDF's lies across the axis",
 }
 # the link below the joint
@@ -47,7 +47,7 @@ SEVERAL_DEGREES = {
     "planar_joint_without_axis": "arm",
     "floating_joint_between_bodies": "arm",
 }
-CRASHES_PINOCCHIO = {"self_parent"}  # it recurses until the stack is full
+CRASHES_PINOCCHIO = {"self_parent"}  # it recurses until the stack overflows
 
 COMPARED = [
     name
@@ -72,7 +72,7 @@ def off(deviations: dict[str, float]) -> dict[str, float]:
 def test_it_is_the_same_robot(name: str, tmp_path: Path) -> None:
     file = awkward.path(name)
     model = load(file)
-    if name == "latin1_name":  # Pinocchio reads the names, but gives Python none that is not UTF-8
+    if name == "latin1_name":  # Pinocchio reads the names, but cannot pass names that are not UTF-8 to Python
         text = file.read_text(encoding="latin-1")
         file = tmp_path / file.name
         file.write_text(text, encoding="utf-8")
@@ -91,7 +91,7 @@ def test_joints_of_several_degrees_of_freedom_move_alike(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", READ_OTHERWISE)
-def test_what_pinocchio_reads_otherwise(name: str) -> None:
+def test_files_that_pinocchio_reads_differently(name: str) -> None:
     assert awkward.EXPECTED[name].loads
     file = awkward.path(name)
     if name in SEVERAL_DEGREES:
@@ -112,7 +112,7 @@ EQUATIONS = {"mass_matrix", "inverse_dynamics", "forward_dynamics"}
         ('mass value="3"', 'mass value="3.000001"', {*EQUATIONS, "mass"}),
     ],
 )
-def test_a_robot_that_differs_in_one_number_is_found(
+def test_a_robot_that_differs_in_one_number_is_detected(
     old: str, new: str, found: set[str], tmp_path: Path
 ) -> None:
     file = awkward.path("two_fixed_children_of_massless_root")
@@ -123,7 +123,7 @@ def test_a_robot_that_differs_in_one_number_is_found(
 
 
 @pytest.mark.parametrize("name", REFUSED_BY_PINOCCHIO)
-def test_what_pinocchio_refuses_and_we_read(name: str) -> None:
+def test_files_that_pinocchio_rejects_and_the_package_reads(name: str) -> None:
     assert awkward.EXPECTED[name].loads
     with pytest.raises(ValueError, match=r"not contain a valid URDF|greater than max_effort"):
         pin_file.read(awkward.path(name))
@@ -133,7 +133,7 @@ REFUSED = [name for name, to in awkward.EXPECTED.items() if not to.loads and nam
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_what_we_alone_refuse_is_refused_for_a_reason_of_physics(name: str) -> None:
+def test_files_that_only_the_package_rejects_are_physically_invalid(name: str) -> None:
     try:
         pin_file.read(awkward.path(name))
     except ValueError as error:

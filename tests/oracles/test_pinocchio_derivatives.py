@@ -1,7 +1,7 @@
-"""Derivatives of the dynamics against Pinocchio's analytic ones, on random trees with every kind of joint.
+"""Derivatives of the dynamics against Pinocchio's analytic derivatives, on random trees with all joint kinds.
 
-Gate 1e-10 of the largest entry, what the issue asks for (seen: 8e-14, printed): forward dynamics solves with
-matrices of condition 1e3 to 1e4.
+The gate is 1e-10 of the largest entry (observed: 8e-14), since forward dynamics solves with matrices of
+condition 1e3 to 1e4.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.validation.trees import TOOL, State, build, deviation, random_state, random_tree
+from onorbit_rs.tools.validation.trees import TOOL, State, build, deviation, random_state, random_tree
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
 import pin_robot  # noqa: E402
@@ -25,7 +25,7 @@ SEEDS = range(16)
 
 @pytest.fixture(scope="module")
 def worst() -> Iterator[dict[str, float]]:
-    """Largest deviation of each derivative, printed at the end (``pytest -s``)."""
+    """Collects the largest deviation of each derivative and prints it at the end (``pytest -s``)."""
     seen: dict[str, float] = {}
     yield seen
     print("\nlargest deviation from Pinocchio:", {name: f"{value:.1e}" for name, value in seen.items()})
@@ -78,7 +78,7 @@ def test_every_derivative_of_a_batch(seed: int) -> None:
 # Negative controls
 
 
-def test_control_what_is_left_out_or_taken_elsewhere_is_noticed() -> None:
+def test_control_omitted_terms_and_other_states_are_detected() -> None:
     model, robot = robots(11)
     state = random_state(model, np.random.default_rng(11))
     found, right = ours(model, state), pin_robot.derivatives(robot, state, TOOL)
@@ -96,8 +96,8 @@ def test_control_what_is_left_out_or_taken_elsewhere_is_noticed() -> None:
             assert deviation(found[key], theirs[key]) > 1e-3, (what, key)
 
 
-def test_control_a_wrench_fixed_in_w_is_another_derivative() -> None:
-    # the same wrench, but held in W axes while the base and the joints turn
+def test_control_a_wrench_fixed_in_w_has_another_derivative() -> None:
+    # the same wrench, but constant in W axes while the base and the joints rotate
     model, _ = robots(11)
     state = random_state(model, np.random.default_rng(12))
     wrench = state.external[TOOL]

@@ -9,7 +9,7 @@ import pytest
 import quirky_robots
 
 import onorbit_rs as oo
-from onorbit_rs.validation.trees import TOOL, build, deviation, random_state, random_tree, urdf
+from onorbit_rs.tools.validation.trees import TOOL, build, deviation, random_state, random_tree, urdf
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
 import pin_file  # noqa: E402
@@ -34,12 +34,12 @@ def compare(model: oo.Model, text: str, tool: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(100, 120))
-def test_random_trees_through_their_text(seed: int) -> None:
+def test_random_trees_from_urdf_text(seed: int) -> None:
     text = urdf(random_tree(seed, rotors=False))
     compare(oo.Model.from_urdf_string(text), text, TOOL, seed)
 
 
-def test_text_and_builder_make_the_same_robot() -> None:
+def test_urdf_text_and_builder_give_the_same_robot() -> None:
     tree = random_tree(5, rotors=False)
     built, read = build(tree), oo.Model.from_urdf_string(urdf(tree))
     assert built.joint_names == read.joint_names

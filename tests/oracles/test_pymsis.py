@@ -1,8 +1,8 @@
-"""NRLMSISE-00 against pymsis, the Naval Research Laboratory's own Fortran.
+"""NRLMSISE-00 against pymsis, the Naval Research Laboratory's Fortran code.
 
-Its Fortran is in single precision: it differs from the C translation in double precision (PyPI's
-``nrlmsise00``), which ours follows to 1e-12, by up to 9e-5 in density too. So what can be asked is
-agreement to that, and to 2e-6 in the middle.
+The Fortran is in single precision: its densities differ by up to 9e-5 from the C translation in double
+precision (PyPI's ``nrlmsise00``), with which this package agrees to 1e-12. The gates are therefore 9e-5 for
+the largest and 2e-6 for the median deviation.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def test_density_over_heights_places_times_and_space_weather(history: bool) -> N
     for text in EPOCHS:
         earth = oo.Earth(f"{text} UTC")
         for f107, f107a, ap in INDICES:
-            # nine of ten of the storm is over, or still to come
+            # most of the storm lies before or after the day
             aps = (
                 np.array([ap, 0.9 * ap, ap, 0.5 * ap, 0.4 * ap, 0.3 * ap, 0.2 * ap])
                 if history
@@ -48,7 +48,7 @@ def test_density_over_heights_places_times_and_space_weather(history: bool) -> N
     print(f"{np.size(errors)} places: worst {worst:.1e}, median {middle:.1e}")
     assert worst < 1e-4
     assert middle < 2e-6
-    # yesterday's indices would show
+    # indices of the previous day would be detected
     wrong = oo.Nrlmsise00(f107=151.0, f107a=140.0, ap=15.0).density(400e3, earth=earth)
     right = oo.Nrlmsise00(f107=150.0, f107a=140.0, ap=15.0).density(400e3, earth=earth)
     assert abs(wrong / right - 1.0) > 1e-3

@@ -12,12 +12,12 @@ from sgp4 import api as sgp4_api
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import Sgp4Error
-from onorbit_rs.validation.against_sgp4 import published
-from onorbit_rs.validation.sgp4 import CODES, codes, sets
+from onorbit_rs.tools.validation.against_sgp4 import published
+from onorbit_rs.tools.validation.sgp4 import CODES, codes, sets
 
-TOLERANCE = 2e-7  # km and km/s: python-sgp4's own; the tables are printed to 1e-8 km and 1e-9 km/s
+TOLERANCE = 2e-7  # km and km/s, as in python-sgp4's tests; the tables are printed to 1e-8 km and 1e-9 km/s
 CLOSE = (
-    1e-8  # km and km/s against PyPI on the same machine: measured 1.4e-10, another libm may round otherwise
+    1e-8  # km and km/s against PyPI on the same machine: measured 1.4e-10; another libm may round differently
 )
 WRONG_CHECKSUMS = ("33333", "33334", "33335")
 
@@ -62,7 +62,7 @@ def test_every_row_of_the_published_table(case: Case) -> None:
 
 
 def compare(peer: Any, orbit: oo.Sgp4, seconds: float) -> int:
-    """The code that both give, after comparing their states."""
+    """Compares the states of both and returns their common error code."""
     code, r, v = peer.sgp4_tsince(seconds / 60.0)
     try:
         got_r, got_v = orbit.state(seconds)
@@ -71,7 +71,7 @@ def compare(peer: Any, orbit: oo.Sgp4, seconds: float) -> int:
         assert error.time == seconds and np.isfinite(error.got)
         return int(code)
     assert code == 0, f"at {seconds} s: the reference gives error {code}"
-    # where nonsense elements put the satellite a million km and more away, its digits grow with it
+    # invalid elements can place the satellite millions of km away, where rounding is larger
     close = CLOSE * max(1.0, float(np.linalg.norm(r)) / 1e6)
     assert np.abs(got_r / 1e3 - r).max() < close, f"at {seconds} s"
     assert np.abs(got_v / 1e3 - v).max() < close, f"at {seconds} s"
@@ -87,7 +87,7 @@ def test_states_and_errors_minute_by_minute(case: Case) -> None:
 
 
 @pytest.mark.parametrize("case", [CASES[1], CASES[4]], ids=["a day", "half a day"])
-def test_a_resonant_state_does_not_depend_on_what_was_asked_before(case: Case) -> None:
+def test_a_resonant_state_does_not_depend_on_earlier_calls(case: Case) -> None:
     times = np.array([3e5, -3e5, 1e6, 1e3, -2e6, 1e6, 5e4, 3e5])
     orbit = case.orbit()
     together = orbit.state(times)[0]
@@ -104,19 +104,19 @@ def test_a_resonant_state_does_not_depend_on_what_was_asked_before(case: Case) -
     ids=["a day", "half a day"],
 )
 def test_resonance_can_stop_the_mean_motion(line2: str) -> None:
-    """Error 2, which no set of the published file reaches: nearly parabolic sets, made up."""
+    """Artificial, nearly parabolic sets reach error 2, which no published set reaches."""
     line1 = "1 00005U 58002B   00179.78495062  .00000000  00000-0  00000-0 0  4753"
     peer, orbit = sgp4_api.Satrec.twoline2rv(line1, line2), oo.Sgp4(line1, line2, check_checksum=False)
     assert [compare(peer, orbit, 60.0 * minutes) for minutes in (0.0, 700.0)] == [4, 2]
 
 
 def test_the_errors_of_the_whole_set_in_file_order() -> None:
-    """As python-sgp4's own test has them: each block's run of times ends at its first error."""
+    """As in python-sgp4's tests, the times of each block end at its first error."""
     assert list(codes()) == CODES
 
 
 def test_the_packages_table_is_the_published_one() -> None:
-    """First, middle and last row of each set, and every set."""
+    """The table holds the first, middle and last row of every set."""
     lines = [line.rstrip() for line in (resources.files("sgp4") / "SGP4-VER.TLE").read_text().splitlines()]
     for case, elements in zip(CASES, sets(), strict=True):
         assert f"{case.line1}" in lines and any(line.startswith(case.line2) for line in lines)
@@ -135,7 +135,7 @@ def test_every_earth_model(gravity: str) -> None:
     for minutes in (0.0, 333.0, 2880.0):
         _, r, _ = peer.sgp4_tsince(minutes)
         assert np.abs(orbit.state(60.0 * minutes)[0] / 1e3 - r).max() < TOLERANCE
-        if minutes:  # negative control: wgs72 and wgs84 lie metres apart
+        if minutes:  # negative control: wgs72 and wgs84 differ by metres
             assert np.abs(others[-1].state(60.0 * minutes)[0] / 1e3 - r).max() > 1e4 * TOLERANCE or (
                 gravity == "wgs72old"
             )

@@ -1,4 +1,4 @@
-"""Frozen numbers of other engines; nothing but ours need be installed."""
+"""Recorded results of other engines, which need not be installed."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.validation.bodies import IIWA, IIWA_DEGREES, IIWA_POSITION, IIWA_ROTATION
-from onorbit_rs.validation.trees import TOOL, State, Tree, build, deviation
+from onorbit_rs.tools.validation.bodies import IIWA, IIWA_DEGREES, IIWA_POSITION, IIWA_ROTATION
+from onorbit_rs.tools.validation.trees import TOOL, State, Tree, build, deviation
 
 TABLE = json.loads((Path(__file__).parents[1] / "fixtures" / "pinocchio_tables.json").read_text())
 CASES = [(case, state) for case in TABLE["cases"] for state in case["states"]]
@@ -51,19 +51,20 @@ def test_pinocchio(case: dict[str, Any], given: dict[str, Any]) -> None:
     for kernel, expected in given["expected"].items():
         value = np.array(ours[kernel])
         if kernel == "integrate" and value[3:7] @ expected[3:7] < 0:
-            value[3:7] *= -1  # two quaternions are one attitude
+            value[3:7] *= -1  # q and -q are the same attitude
         assert deviation(value, expected) < TABLE["tolerance"], kernel
 
 
-def test_the_table_says_where_it_is_from() -> None:
+def test_the_table_names_its_source() -> None:
     assert {"generator", "engine", "date", "tolerance", "layout"} <= set(TABLE)
 
 
-# What other libraries' own tests expect is in onorbit_rs.validation.bodies; here Drake's robot from a URDF.
+# Values from the tests of other libraries are in onorbit_rs.tools.validation.bodies; here Drake's robot
+# from a URDF.
 
 
 def iiwa(axial: float) -> str:
-    """The arm that Drake publishes numbers of, on an empty root; ``axial``: about a joint's axis, kg m²."""
+    """Returns Drake's iiwa arm on an empty root; ``axial`` is the inertia about a joint's axis, kg m²."""
     body = (
         '<inertial><origin xyz="0 0 0.05"/><mass value="3"/>'
         f'<inertia ixx="0.02" iyy="0.02" izz="{axial}" ixy="0" ixz="0" iyz="0"/></inertial>'
@@ -87,7 +88,7 @@ def test_drake_kuka_iiwa14() -> None:
     q = model.neutral()
     q[7:] = np.deg2rad(IIWA_DEGREES)
     pose = model.frame_pose(q, "link_7")
-    # the table is Drake's to 15 digits
+    # the table has 15 digits
     np.testing.assert_allclose(pose[:3, 3], IIWA_POSITION, atol=1e-14)
     np.testing.assert_allclose(pose[:3, :3], IIWA_ROTATION, atol=1e-14)
     # at rest, 1000 rad/s² on joint 7 take 1 N m on joints 1, 3, 5 and 7, whose axes are parallel at q = 0

@@ -1,6 +1,6 @@
 """``make soak``: kills, disk faults, leaks and long runs for an hour, or for ``--seconds``.
 
-Prints a line of JSON for each part; the exit code is 1 where anything went wrong.
+Prints a line of JSON for each part; the exit code is 1 if a part failed.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from faults import fault_campaign
 from leaks import leak_campaign
 from long_runs import arm, spin
 
-# shares of the time; the long runs come first and take what they take
+# fractions of the time; the long runs come first and are not limited
 KILLS, FAULTS, LEAKS = 0.5, 0.2, 0.3
 SPIN_STEPS, ARM_S, ORBITS_A_DAY = 10_000_000, 3600.0, 15.56
 
@@ -48,7 +48,7 @@ def main() -> int:
 
     parts: dict[str, Callable[[Path], dict[str, Any]]] = {
         "spin of 1e7 steps": lambda folder: spin(SPIN_STEPS),
-        "an hour of a limp arm": lambda folder: arm(ARM_S),
+        "an hour of an unactuated arm": lambda folder: arm(ARM_S),
         "spins of 1e6 rows": lambda folder: spins(given.seed, count=6, rows=1_000_000),
         "an orbit at 1 ms, Earth-pointing": lambda folder: earth_pointing(1.0, 1e-3),
         "a day at 10 ms, Earth-pointing": lambda folder: earth_pointing(ORBITS_A_DAY, 1e-2),

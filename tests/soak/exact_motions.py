@@ -1,4 +1,4 @@
-"""Motions known exactly, over hours and millions of rows: the certificate is green and the error small."""
+"""Motions with exact solutions over hours and millions of rows: certificates pass and errors are small."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ ORBIT = oo.Kepler.from_state([RADIUS, 0, 0], [0, RADIUS * RATE, 0])
 
 
 def about_z(angle: float) -> np.ndarray:
-    """Quaternion of a turn about z, rad."""
+    """Returns the quaternion of a rotation about z, rad."""
     return np.array([0.0, 0.0, np.sin(0.5 * angle), np.cos(0.5 * angle)])
 
 
 def turned(attitude: np.ndarray, angle: float) -> float:
-    """Angle between an attitude and a turn about z, rad."""
+    """Returns the angle between an attitude and a rotation about z, rad."""
     exact = about_z(angle)
     return float(2.0 * np.linalg.norm(attitude * np.sign(attitude @ exact) - exact))
 
 
 def spins(seed: int, count: int, rows: int) -> dict[str, Any]:
-    """Bodies of many shapes that turn evenly about z at many rates and steps, every row recorded."""
+    """Runs bodies of many shapes in uniform rotation about z at many rates and steps; records every step."""
     rng, began, wrong, worst = np.random.default_rng(seed), time.monotonic(), [], 0.0
     for _ in range(count):
         moments = np.sort(rng.uniform(1.0, 1.9, 3)) * 10 ** rng.uniform(-6, 8)
@@ -42,7 +42,7 @@ def spins(seed: int, count: int, rows: int) -> dict[str, Any]:
 
 
 def earth_pointing(orbits: float, time_step: float) -> dict[str, Any]:
-    """A rigid body that always shows the Earth the same face, held there by the gradient."""
+    """Runs an Earth-pointing rigid body that is stabilised by the gravity gradient."""
     began = time.monotonic()
     trace = oo.Simulation(
         oo.Model.rigid_body(100.0, np.diag([8.0, 10.0, 12.0])), np.array([0, 0, 0, 0, 0, 0, 1.0]),
@@ -55,7 +55,7 @@ def earth_pointing(orbits: float, time_step: float) -> dict[str, Any]:
 
 
 def station(orbits: float, time_step: float) -> dict[str, Any]:
-    """The bundled station, its arm held, under the gradient: no closed form, so the error is not stated."""
+    """Runs the bundled station with locked arm under gravity gradient; without an exact solution."""
     began, arm = time.monotonic(), oo.robots.load("station_arm")
     hold = oo.Control(oo.JointComputedTorque(kp=25.0, kd=10.0), reference=oo.JointHold(arm.neutral()[7:]))
     trace = oo.Simulation(

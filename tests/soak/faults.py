@@ -1,8 +1,7 @@
-"""Disks that fill up: runs whose files may not grow past a random size, then the same run without the limit.
+"""Full disks: runs whose files may not exceed a random size, then the same run without the limit.
 
-A run that meets the limit ends with an ``OnOrbitError`` or says so in a warning, never with a traceback of
-another kind; what it leaves is refused or complete, and once there is room the run ends in the bits of one
-without faults.
+A run that exceeds the limit must raise an ``OnOrbitError`` or issue a warning. Its output must be rejected or
+complete, and a later run without the limit must have the same bits as a run without faults.
 """
 
 from __future__ import annotations
@@ -22,14 +21,14 @@ from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.output.read import read_summary, read_trace
 from onorbit_rs.scenario import load
 
-# pictures take most of the time of a short run: small files stand in for them
+# figures take most of the time of a short run: small files replace them
 PROGRAM = """
 import json, resource, sys
 import onorbit_rs as oo
-from onorbit_rs import keeping
+from onorbit_rs.simulation import finish
 from onorbit_rs.exceptions import OnOrbitError
 
-keeping.write_pictures = lambda folder, *_, **__: None
+finish.write_pictures = lambda folder, *_, **__: None
 out, scenario, limit = sys.argv[1], json.loads(sys.argv[2]), int(sys.argv[3])
 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 try:
@@ -40,7 +39,7 @@ except OnOrbitError as error:
 
 
 def run_under(limit: int, out: Path, scenario: dict[str, Any]) -> subprocess.CompletedProcess[str]:
-    """A run in a process of its own, none of whose files may be longer than ``limit`` bytes."""
+    """Runs a scenario in a separate process whose files may not exceed ``limit`` bytes."""
     command = [sys.executable, "-c", PROGRAM, str(out), json.dumps(scenario), str(limit)]
     return subprocess.run(command, capture_output=True, text=True, timeout=600)
 
@@ -52,7 +51,7 @@ def columns(trace: Any) -> dict[str, bytes]:
 def fault_campaign(
     folder: Path, *, seed: int, seconds: float, most: int = 10**9, duration: float = 5.0
 ) -> dict[str, Any]:
-    """Runs under random limits for some time; what went wrong is in ``wrong``."""
+    """Runs with random limits for some time; failures are reported in ``wrong``."""
     scenario = load("free_tumble").resolved()
     scenario["simulation"] = {"duration": duration, "time_step": 1e-3}
     whole = columns(oo.run(scenario, quiet=True).trace)
@@ -65,20 +64,18 @@ def fault_campaign(
         found["runs"] += 1
         faulty = run_under(limit, out, scenario)
         found["refused"] += faulty.returncode != 0
-        told = faulty.stderr.splitlines()[-1:]
-        is_refused = faulty.returncode == 1 and told and told[0].startswith("refused: ")
+        last_lines = faulty.stderr.splitlines()[-1:]
+        is_refused = faulty.returncode == 1 and last_lines and last_lines[0].startswith("refused: ")
         if faulty.returncode and not is_refused:
             found["wrong"].append(f"limit {limit}: exit code {faulty.returncode}: {faulty.stderr[-500:]}")
         try:
             is_whole = read_summary(out)["status"] == "complete" and columns(read_trace(out)) == whole
             if not is_whole:
-                found["wrong"].append(f"limit {limit}: the folder holds another run than it says")
+                found["wrong"].append(f"limit {limit}: the summary does not match the trace")
         except OnOrbitError:
             if faulty.returncode == 0:
                 found["wrong"].append(f"limit {limit}: the run ended well and cannot be read")
         healthy = run_under(-1, out, scenario)
         if healthy.returncode or columns(read_trace(out)) != whole:
-            found["wrong"].append(
-                f"limit {limit}: not the same bits once there is room: {healthy.stderr[-500:]}"
-            )
+            found["wrong"].append(f"limit {limit}: other bits without the limit: {healthy.stderr[-500:]}")
     return found

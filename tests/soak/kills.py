@@ -1,6 +1,6 @@
-"""Kills of runs at random instants: what is left goes on to the same bits, or says that it does not.
+"""Kills runs at random instants: a resumed run must give the same bits or report that it cannot resume.
 
-``python tests/soak/kills.py --kills 200`` prints one line of JSON; exit code 1 where anything went wrong.
+``python tests/soak/kills.py --kills 200`` prints one line of JSON; the exit code is 1 after a failure.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.output.lock import owner_of
 from onorbit_rs.output.read import SavedRun
 
-# pictures take seconds: as many files stand in for them, of the same size
+# figures take seconds: files of the same number and size replace them
 PROGRAM = """
 import json, sys, warnings
 import onorbit_rs as oo
-from onorbit_rs import keeping
+from onorbit_rs.simulation import finish
 
 def pictures(folder, *_, **__):
     with folder.replacing() as files:
@@ -37,7 +37,7 @@ def pictures(folder, *_, **__):
     with folder.writing("run.rrd") as path:
         path.write_bytes(bytes(2_000_000))
 
-keeping.write_pictures = pictures
+finish.write_pictures = pictures
 out, scenario, is_resumed = sys.argv[1], json.loads(sys.argv[2]), sys.argv[3] == "resume"
 print("begins", flush=True)
 if is_resumed:
@@ -50,22 +50,22 @@ print("ends", flush=True)
 
 @dataclass
 class Campaign:
-    """What came of the kills."""
+    """Results of the kills."""
 
     seed: int
     kills: int = 0
     ended: int = 0
-    """Processes that came to their end before they were killed."""
+    """Processes that ended before they were killed."""
     resumed: int = 0
     same_bits: int = 0
-    """Runs that came to their end and left the bits of one that was never stopped."""
+    """Runs that ended with the bits of an uninterrupted run."""
     wrong: list[str] = field(default_factory=list)
 
 
 def kill_campaign(
     folder: Path, *, kills: int, seed: int, duration: float = 5.0, most_seconds: float = float("inf")
 ) -> Campaign:
-    """Kill processes that run and resume one scenario, ``kills`` times or until the time is over."""
+    """Kills processes that run and resume a scenario, ``kills`` times or until the time is over."""
     from onorbit_rs.scenario import load
 
     scenario = load("free_tumble").resolved()
@@ -92,7 +92,7 @@ def kill_campaign(
 
 
 def _was_killed(out: Path, scenario: dict[str, Any], how: str, after: float) -> bool:
-    """Run until the end, or until it is killed."""
+    """Runs a process until it ends or is killed."""
     command = [sys.executable, "-c", PROGRAM, str(out), json.dumps(scenario), how]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout is not None
@@ -109,9 +109,9 @@ def _was_killed(out: Path, scenario: dict[str, Any], how: str, after: float) -> 
 
 
 def _check(out: Path, whole: dict[str, bytes], found: Campaign, *, is_over: bool = False) -> None:
-    """After each process: the folder is free; what it holds is the whole run, or is refused."""
+    """Checks after each process that the folder is not locked and holds a complete run or is rejected."""
     if owner_of(out) is not None:
-        found.wrong.append("the lock outlived its process")
+        found.wrong.append("the folder is still locked")
     try:
         saved = SavedRun(out)
         status, rows = saved.summary()["status"], _rows(saved.trace())
@@ -129,7 +129,7 @@ def _rows(trace: Any) -> dict[str, bytes]:
 
 
 def main() -> None:
-    """From the command line."""
+    """Runs the campaign from the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--seed", type=int, default=14)

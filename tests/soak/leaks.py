@@ -1,4 +1,4 @@
-"""Many runs in one process: threads, files and memory stay where they were."""
+"""Many runs in one process must not leak threads, files or memory."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from onorbit_rs import viewer
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
 
-WARM_UP = 0.3  # of the loops: caches, thread pools and what the allocator keeps
-MOST_BYTES = 8e6  # that the later loops may add in all; each recording once left 4.5 MB
-MOST_BYTES_A_LOOP = 200.0  # or this; a run of ten steps with its trace holds 10 kB
-MOST_BYTES_A_RECORDING = 50e3  # rerun keeps 28 kB of each in native code
+WARM_UP = 0.3  # warm-up loops: caches, thread pools, memory kept by the allocator
+MOST_BYTES = 8e6  # growth allowed over the later loops; a leak of 4.5 MB per recording once occurred
+MOST_BYTES_A_LOOP = 200.0  # or per loop; a run of ten steps with its trace needs 10 kB
+MOST_BYTES_A_RECORDING = 50e3  # rerun keeps 28 kB of native memory per recording
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Use:
 
 
 def loops(folder: Path) -> dict[str, Callable[[], object]]:
-    """What is made and dropped again and again."""
+    """Returns the jobs that are repeated."""
     model = oo.robots.load("humanoid_torso")
     q, v = model.neutral(), np.full(model.nv, 0.1)
     orbit = oo.Kepler(semi_major_axis=7e6, eccentricity=0.01)
@@ -85,7 +85,7 @@ def loops(folder: Path) -> dict[str, Callable[[], object]]:
 
 
 def grown(job: Callable[[], object], *, seconds: float, most: int) -> tuple[int, Use, Use]:
-    """How often the job was done, and what was in use after the warm-up and at the end."""
+    """Repeats a job; returns the number of repetitions and the use after warm-up and at the end."""
     started, count, first = time.monotonic(), 0, None
     while count < most and (time.monotonic() - started < seconds or first is None):
         job()
@@ -97,7 +97,7 @@ def grown(job: Callable[[], object], *, seconds: float, most: int) -> tuple[int,
 
 
 def leaks(count: int, before: Use, after: Use, a_loop: float = MOST_BYTES_A_LOOP) -> list[str]:
-    """What the loops left behind."""
+    """Returns the leaks between two measurements."""
     found = []
     if after.threads > before.threads:
         found.append(f"{after.threads - before.threads} threads")
@@ -110,7 +110,7 @@ def leaks(count: int, before: Use, after: Use, a_loop: float = MOST_BYTES_A_LOOP
 
 
 def leak_campaign(folder: Path, *, seconds: float, most: int = 10**9) -> dict[str, Any]:
-    """Each loop for its share of the time; what leaked is in ``wrong``."""
+    """Runs each loop for an equal time; leaks are reported in ``wrong``."""
     jobs = loops(folder)
     found: dict[str, Any] = {"loops": {}, "grown_mb": {}, "wrong": []}
     for name, job in jobs.items():
@@ -119,6 +119,6 @@ def leak_campaign(folder: Path, *, seconds: float, most: int = 10**9) -> dict[st
         found["loops"][name] = count
         found["grown_mb"][name] = round((after.resident - before.resident) / 1e6, 2)
         found["wrong"] += [
-            f"{count} times {name}: {what} left behind" for what in leaks(count, before, after, a_loop)
+            f"{count} times {name}: leaked {what}" for what in leaks(count, before, after, a_loop)
         ]
     return found

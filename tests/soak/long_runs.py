@@ -1,4 +1,4 @@
-"""Long runs: their certificate is green, and where the motion has a closed form their error is small."""
+"""Long runs: certificates pass, and errors are small for motions with a closed form."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from onorbit_rs.scenario.build import build
 
 
 def red(trace: oo.Trace) -> list[str]:
-    """Checks of a run that are not passed."""
+    """Returns the failed checks of a run."""
     rows = trace.certificate()
     return [f"{name} {value} > {gate}" for name, value, gate, is_passed in rows if not is_passed]
 
 
 def spin(steps: int, *, time_step: float = 1e-3, record_every: int = 1000) -> dict[str, Any]:
-    """A body that turns evenly about a principal axis: its error and certificate after ``steps`` steps."""
+    """Returns error and failed checks of a uniform rotation about a principal axis after ``steps`` steps."""
     rate, started = 0.1, time.monotonic()
     model = oo.Model.rigid_body(100.0, np.diag([10.0, 20.0, 30.0]))
     v = np.zeros(6)
@@ -38,9 +38,9 @@ def spin(steps: int, *, time_step: float = 1e-3, record_every: int = 1000) -> di
 
 
 def arm(duration: float) -> dict[str, Any]:
-    """The bundled humanoid tumbling with a limp arm for a long time."""
+    """Runs the bundled humanoid, tumbling with an unactuated arm, for a long time."""
     data = load("free_tumble").resolved()
-    # at the scenario's 2 ms, differences to halved steps add up to 1.01 of the gate of the joints in an hour
+    # at the scenario's 2 ms, the step-doubling error of the joints reaches 1.01 of its gate in an hour
     data["simulation"] |= {"duration": duration, "time_step": 1e-3, "record_every": 100}
     started, built = time.monotonic(), build(Scenario(**data))
     trace = built.simulation.run(duration)

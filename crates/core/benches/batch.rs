@@ -1,4 +1,5 @@
-//! Batches on one thread: 1024 states of forward dynamics, and 1024 runs of 100 steps; times per state and step.
+//! Batches on one thread: 1024 states of forward dynamics, and 1024 runs of 100 steps; times per state and
+//! step.
 #![allow(missing_docs, clippy::unwrap_used)] // criterion's macros write undocumented items
 
 mod common;
@@ -65,7 +66,7 @@ fn batches(c: &mut Criterion, arms: usize, level: InstructionSet) {
                 threads: Some(1),
                 stop: &stop,
             };
-            // a state that runs away costs the same
+            // diverging states cost the same
             b.iter(|| _ = rollout.run(&model, black_box(&q), &v, &mut to_q, &mut to_v));
         });
     }

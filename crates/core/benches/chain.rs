@@ -1,5 +1,5 @@
-//! Time per joint of the recursions on chains of 10 to 100 joints: linear but for the mass matrix, whose entries are as
-//! many as pairs of joints.
+//! Time per joint of the recursions on chains of 10 to 100 joints: linear, except for the mass matrix, whose
+//! entries grow with the number of pairs of joints.
 #![allow(missing_docs, unreachable_pub, clippy::unwrap_used, clippy::print_stdout)] // a program that prints
 
 #[path = "../tests/common/chain.rs"]

@@ -1,7 +1,7 @@
-//! Cost of a planet's field, and of the pull of the full field on a robot.
+//! Cost of a planet's field, and of the full field on a robot.
 //!
-//! Varies: model and degree; whether the step began here (one expansion serves all bodies). Held: a place in a low orbit, one
-//! thread. The place moves a little at every call so that nothing is remembered.
+//! Varies: model and degree; whether the step began here (one expansion serves all bodies). Held: a position
+//! in a low orbit, one thread. The position changes slightly at every call, so that no cache is hit.
 #![allow(missing_docs)] // criterion's macros make an undocumented function
 
 use std::hint::black_box;
@@ -54,14 +54,14 @@ fn effects(c: &mut Criterion) {
         angular_velocity: Vector3::zeros(),
     };
     let bodies = Bodies::from_iter([body; 8]);
-    let mut wrenches = Wrenches::new(8);
+    let mut wrenches = Wrenches::new(&[8]);
     for (name, field) in fields() {
         let earth = Some(Arc::new(Earth::about_z(0.0, 7.292e-5)));
         let gravity = Gravity::of_field(Arc::new(field), earth).expect("an earth");
         let (position, zero) = (Vector3::from(PLACE), Vector3::zeros());
         let state = OrbitState { position, velocity: zero, acceleration: zero };
-        let reference = Some(Reference { state, gravity: Some(&gravity), falls_freely: false });
-        Scene::show((0.0, 1e-3), 5e-4, &bodies, reference, None, |scene| {
+        let reference = Some(Reference { state, gravity: Some(&gravity), in_free_fall: false });
+        Scene::with((0.0, 1e-3), 5e-4, &bodies, reference, None, |scene| {
             c.bench_function(&format!("gravity_8_bodies_{name}_known"), |b| {
                 b.iter(|| {
                     DifferentialGravity::default().add_wrenches(black_box(scene), &mut wrenches)?;

@@ -7,7 +7,7 @@
 mod common;
 
 use common::torso;
-use onorbit_core::control::{ComputedTorque, ControlLaw};
+use onorbit_core::control::{ComputedTorque, Control, Law};
 use onorbit_core::dynamics::{
     Data, FreeFloating, bias_forces, forward_dynamics, frame_drift, frame_jacobian, frame_pose,
     free_floating, inverse_dynamics, kinematics, mass_matrix, positions,
@@ -20,7 +20,6 @@ use onorbit_core::simulation::Simulation;
 use onorbit_core::spatial::{Fused, Real};
 use std::error::Error;
 use std::hint::black_box;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -148,9 +147,10 @@ fn reach(model: &Arc<Model>, in_orbit: bool) -> Result<Simulation, Box<dyn Error
         simulation.orbit = Some(Arc::new(Kepler::from_state(r, v, MU_EARTH)?));
         simulation.effects.push(Arc::new(GravityGradient));
     }
-    (simulation.reference, simulation.tool) = (Some(line.into()), Some(tool));
+    simulation.tool = Some(tool);
     let law = ComputedTorque { null_space_damping: 2.0, ..ComputedTorque::new(tool, 100.0, 20.0) };
-    simulation.control = ControlLaw::ComputedTorque(Box::new(law));
+    let law = Law::TaskComputedTorque(Box::new(law), line.into());
+    simulation.controls = vec![Control::on_all_joints(model, law)];
     Ok(simulation)
 }
 
@@ -158,7 +158,7 @@ fn reach(model: &Arc<Model>, in_orbit: bool) -> Result<Simulation, Box<dyn Error
 fn stepped(mut simulation: Simulation) -> Box<dyn FnMut() -> f64> {
     Box::new(move || {
         let started = Instant::now();
-        let trace = simulation.run(STEPS as f64 * 1e-3, &mut |_| ControlFlow::Continue(()));
+        let trace = simulation.run(STEPS as f64 * 1e-3);
         let time = started.elapsed().as_secs_f64() * 1e9 / STEPS as f64;
         black_box(trace).map_or(f64::NAN, |_| time)
     })

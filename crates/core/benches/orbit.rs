@@ -1,7 +1,7 @@
-//! Cost of one reference state, and of the planet's pull on a robot.
+//! Cost of one reference state, and of gravity on a robot.
 //!
-//! Varies: the conic, and the number of bodies. Held: the size of the orbit, one thread. Times
-//! walk through the orbit so that no branch and no cached phase repeats.
+//! Varies: the conic, and the number of bodies. Held: the size of the orbit, one thread. Times advance along
+//! the orbit so that no branch and no cached phase repeats.
 #![allow(missing_docs)] // criterion's macros make an undocumented function
 
 use std::hint::black_box;
@@ -66,10 +66,10 @@ fn effects(c: &mut Criterion) {
         angular_velocity: Vector3::zeros(),
     };
     let bodies = Bodies::from_iter([body; 8]);
-    let mut wrenches = Wrenches::new(8);
+    let mut wrenches = Wrenches::new(&[8]);
     let gravity = orbit.mu().map(Gravity::point_mass);
-    let reference = Some(Reference { state, gravity: gravity.as_ref(), falls_freely: false });
-    Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, |scene| {
+    let reference = Some(Reference { state, gravity: gravity.as_ref(), in_free_fall: false });
+    Scene::with((0.0, 1.0), 0.0, &bodies, reference, None, |scene| {
         c.bench_function("differential_gravity_8_bodies", |b| {
             b.iter(|| DifferentialGravity::default().add_wrenches(black_box(scene), &mut wrenches));
         });

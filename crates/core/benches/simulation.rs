@@ -1,5 +1,5 @@
-//! One simulated step of 1 ms of a torso with a seven-joint arm: 1000 steps per run, the time is
-//! that of one step, start and recording (every 100th step) included. Held: robot and state.
+//! One simulated step of 1 ms of a torso with a seven-joint arm: 1000 steps per run; the time is that of one
+//! step, including start and recording (every 100th step). Held: robot and state.
 #![allow(missing_docs, clippy::unwrap_used)] // criterion's macros write undocumented items
 
 mod common;
@@ -7,7 +7,7 @@ mod common;
 use common::torso;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use nalgebra::Vector3;
-use onorbit_core::control::{ComputedTorque, ControlLaw};
+use onorbit_core::control::{ComputedTorque, Control, Law};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::earth::{Earth, EarthParameters, Epoch};
 use onorbit_core::environment::atmosphere::{MagneticActivity, Nrlmsise00, SpaceIndices, SpaceWeather};
@@ -21,7 +21,6 @@ use onorbit_core::reference::LineParabola;
 use onorbit_core::simulation::{Integrator, Simulation};
 use onorbit_core::spatial::InstructionSet;
 use std::hint::black_box;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -55,16 +54,16 @@ fn controlled(mut simulation: Simulation) -> Simulation {
     let pose = frame_pose(&simulation.model, &data, &simulation.q, tool);
     let (rot, pos) = (pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra());
     let line = LineParabola::new(rot, pos, Vector3::x() * 0.1, Vector3::zeros(), 10.0).unwrap();
-    simulation.reference = Some(line.into());
     simulation.tool = Some(tool);
     let law = ComputedTorque { null_space_damping: 5.0, ..ComputedTorque::new(tool, 100.0, 20.0) };
-    simulation.control = ControlLaw::ComputedTorque(Box::new(law));
+    let law = Law::TaskComputedTorque(Box::new(law), line.into());
+    simulation.controls = vec![Control::on_all_joints(&simulation.model, law)];
     simulation
 }
 
-/// In everything: EGM2008 36 × 36, Sun and Moon, NRLMSISE-00 and light on the faces of the bundled torso, its reference
-/// integrated in the same field.
-fn in_everything() -> Simulation {
+/// All effects: EGM2008 36 × 36, Sun and Moon, NRLMSISE-00 and radiation pressure on the faces of the bundled
+/// torso, with a reference integrated in the same field.
+fn with_all_effects() -> Simulation {
     let urdf = concat!(env!("CARGO_MANIFEST_DIR"), "/../../python/onorbit_rs/robots/humanoid_torso.urdf");
     let model = Arc::new(from_file(urdf.as_ref(), &Default::default()).unwrap());
     let mut q = neutral(&model);
@@ -93,7 +92,7 @@ fn in_everything() -> Simulation {
 
 type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
 
-/// Times one step: criterion's iterations are steps, done a thousand at a time.
+/// Times one step: criterion's iterations are steps, a thousand at a time.
 fn step(group: &mut Group<'_>, name: &str, mut simulation: Simulation) {
     group.bench_function(name, |b| {
         b.iter_custom(|iterations| {
@@ -101,7 +100,7 @@ fn step(group: &mut Group<'_>, name: &str, mut simulation: Simulation) {
             let started = Instant::now();
             for _ in 0..runs {
                 let duration = black_box(STEPS as f64 * STEP);
-                black_box(simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap());
+                black_box(simulation.run(duration).unwrap());
             }
             started.elapsed().mul_f64(iterations as f64 / (runs * STEPS as u64) as f64)
         });
@@ -118,7 +117,7 @@ fn benches(c: &mut Criterion) {
     step(&mut group, "in orbit rk4", in_orbit(passive()));
     step(&mut group, "controlled rk4", controlled(passive()));
     step(&mut group, "controlled in orbit rk4", in_orbit(controlled(passive())));
-    step(&mut group, "in everything rk4", in_everything());
+    step(&mut group, "in everything rk4", with_all_effects());
     group.finish();
 }
 

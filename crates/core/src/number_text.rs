@@ -1,23 +1,23 @@
-//! Numbers as messages print them: the shortest text of a few digits, without the noise of rounding.
+//! Formatting of numbers in messages: the shortest text with a few digits, without rounding noise.
 
-/// Significant digits of a number in a message; the digits of a whole part are never left out.
+/// Number of significant digits in a message; the integer part is always printed in full.
 const DIGITS: usize = 6;
-/// From here on the digits of the whole part are too many to read.
+/// Magnitude from which numbers are printed with an exponent, since the integer part is too long to read.
 const LARGE: f64 = 1e9;
-/// Below this the zeros after the point are too many to read.
+/// Magnitude below which numbers are printed with an exponent, since there are too many leading zeros.
 const SMALL: f64 = 1e-4;
 
-/// Returns a number of at most six significant digits: `1.4`, `700000`, `1e-300`.
+/// Returns a number with at most six significant digits: `1.4`, `700000`, `1e-300`.
 ///
-/// A whole part is printed in full below 1e9: metres from the centre of the Earth have seven digits.
+/// An integer part is printed in full below 1e9: metres from the centre of the Earth have seven digits.
 #[must_use]
 pub fn short(value: f64) -> String {
     rounded(value, DIGITS)
 }
 
-/// Returns a number with as many digits as tell it apart from others that its message holds too.
+/// Returns a number with enough digits to distinguish it from other numbers in the same message.
 ///
-/// `1.000002` beside 1, where six digits would say that a norm of 1 is not 1.
+/// For example `1.000002` beside 1, which would both be printed as 1 with six digits.
 #[must_use]
 pub fn unlike(value: f64, others: &[f64]) -> String {
     let told_apart = |digits: &usize| {
@@ -27,19 +27,19 @@ pub fn unlike(value: f64, others: &[f64]) -> String {
     rounded(value, (DIGITS..17).find(told_apart).unwrap_or(17))
 }
 
-/// Returns several numbers: `[1, 2.5, 3]`.
+/// Returns several numbers as a list: `[1, 2.5, 3]`.
 #[must_use]
 pub fn list(values: &[f64]) -> String {
     format!("[{}]", values.iter().map(|&value| short(value)).collect::<Vec<_>>().join(", "))
 }
 
-/// Returns an amount of things: `1 number`, `2 numbers`.
+/// Returns a count with its noun: `1 number`, `2 numbers`.
 #[must_use]
 pub fn count(number: usize, one: &str) -> String {
     format!("{number} {one}{}", if number == 1 { "" } else { "s" })
 }
 
-/// `digits` significant digits, of which zeros at the end are left out.
+/// Returns a number with `digits` significant digits, without trailing zeros.
 fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();

@@ -1,23 +1,23 @@
-//! Text files that a user names: regular ones alone, read no further than they may be long.
+//! Reader of text files named by the user: regular files up to a size limit.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 use thiserror::Error;
 
-/// Why a text file cannot be read.
+/// Error of a text file that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[allow(missing_docs)] // the fields are what the messages say
+#[allow(missing_docs)] // the messages explain the fields
 pub enum TextFileError {
     #[error("there is no such file")]
     NotFound,
-    #[error("is a directory")]
+    #[error("it is a directory")]
     Folder,
-    #[error("a pipe or a device: save its content as a file")]
+    #[error("it is a pipe or a device; save its content as a file")]
     NotRegular,
-    #[error("larger than {limit} bytes")]
+    #[error("it is larger than {limit} bytes")]
     TooLarge { limit: usize },
-    #[error("not UTF-8 text")]
+    #[error("it is not UTF-8 text")]
     NotUtf8 { at: usize },
     #[error("{reason}")]
     Unreadable { reason: String },
@@ -26,7 +26,7 @@ pub enum TextFileError {
 /// Returns the text of a UTF-8 file of at most `limit` bytes.
 ///
 /// # Errors
-/// As [`read_bytes`], and [`TextFileError::NotUtf8`].
+/// Those of [`read_bytes`], and [`TextFileError::NotUtf8`].
 pub fn read_text(path: &Path, limit: usize) -> Result<String, TextFileError> {
     let text = String::from_utf8(read_bytes(path, limit)?);
     text.map_err(|error| TextFileError::NotUtf8 { at: error.utf8_error().valid_up_to() })
@@ -35,7 +35,7 @@ pub fn read_text(path: &Path, limit: usize) -> Result<String, TextFileError> {
 /// Returns the bytes of a file of at most `limit` bytes.
 ///
 /// # Errors
-/// [`TextFileError`]. Devices and pipes are refused, since reading them may never end.
+/// [`TextFileError`]. Devices and pipes are rejected, since reading them may not terminate.
 pub fn read_bytes(path: &Path, limit: usize) -> Result<Vec<u8>, TextFileError> {
     let refuse = |error: std::io::Error| match error.kind() {
         ErrorKind::NotFound => TextFileError::NotFound,

@@ -1,4 +1,4 @@
-//! What safe code may hand to batches: every wrong length, frame and robot is an error, never a panic.
+//! Checks that wrong lengths, frames and robots given to batches are errors and never panics.
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
 mod common;
@@ -17,7 +17,7 @@ use std::sync::{Arc, atomic::AtomicBool};
 
 const NO_WRENCH: &[Wrenches<'_>] = &[];
 
-/// Both ways to compute, with outputs of these lengths.
+/// Runs both ways to compute, with outputs of these lengths.
 fn refuse(
     kernel: Kernel,
     model: &Model,
@@ -43,7 +43,7 @@ fn outputs_of_another_length_are_refused() {
     let inputs = [Rows { data: &q, width: nq }, Rows { data: &v, width: nv }];
     for wrong in [0, nv - 1, nv + 1, 2 * nv] {
         let error = refuse(Kernel::BiasForces, &model, &inputs, NO_WRENCH, &[wrong]);
-        assert_eq!(error, InputError::WrongRoom { output: 0, expected: nv, got: wrong });
+        assert_eq!(error, InputError::WrongOutput { output: 0, expected: nv, got: wrong });
     }
     for wrong in [&[][..], &[nv, nv]] {
         let error = refuse(Kernel::BiasForces, &model, &inputs, NO_WRENCH, wrong);
@@ -68,7 +68,7 @@ fn inputs_that_are_missing_or_ragged_are_refused() {
 }
 
 #[test]
-fn frames_the_robot_does_not_have_are_refused() {
+fn unknown_frames_are_refused() {
     let model = random_model(3, 4);
     let (q, v) = random_state(&model, &mut Random::new(30));
     let count = model.frames().len();
@@ -80,7 +80,7 @@ fn frames_the_robot_does_not_have_are_refused() {
     assert_eq!(error, InputError::UnknownFrame { frame: usize::MAX, count });
 }
 
-/// A base of this mass, kg, with one arm.
+/// Returns a base of this mass, kg, with one arm.
 fn with_base_of(mass: f64) -> Model {
     let mut random = Random::new(7);
     let base = Link::new("base", Some(Inertial { mass, ..random.inertial() }));
@@ -91,9 +91,9 @@ fn with_base_of(mass: f64) -> Model {
 }
 
 #[test]
-fn one_state_is_one_state_of_any_robot() {
+fn a_single_state_must_fit_the_robot() {
     let (small, large) = (random_model(3, 4), random_model(5, 9));
-    let heavier = with_base_of(5.0); // two as long as each other, whose bases alone differ
+    let heavier = with_base_of(5.0); // of equal length, with bases that differ
     let lighter = with_base_of(2.0);
     let mut evaluator = Evaluator::new(&small);
     for model in [&large, &small, &heavier, &lighter] {
@@ -149,7 +149,7 @@ fn orbits_refuse_ragged_rows() {
     let (mut r, mut v) = ([0.0; 6], [0.0; 6]);
     let error = propagate(&orbits, Times::Each(&[0.0, 1.0, 2.0]), &mut r, &mut v, Some(1)).unwrap_err();
     assert_eq!(error, InputError::Ragged { name: "times", width: 2, got: 3 });
-    // an orbit is asked for more instants than there are rows, and fewer
+    // orbits with more instants than rows, and with fewer
     for times in [&[0.0, 1.0, 2.0][..], &[0.0]] {
         let rows = StateRows::new(2, &mut r, &mut v).unwrap();
         let error = orbit.fill(times, rows).unwrap_err();
@@ -157,9 +157,9 @@ fn orbits_refuse_ragged_rows() {
     }
 }
 
-/// Angles by way of registers, asked for outside of `enter`: the same numbers, and an error of nobody's.
+/// Outside of `enter`, sines of several angles at once have the same bits as one at a time.
 #[test]
-fn several_sines_need_no_entry() {
+fn sin_cos_each_works_outside_an_entry_point() {
     let angles: Vec<Fused> = (0..7).map(|k| Fused(0.37 * f64::from(k) - 1.0)).collect();
     let mut out = vec![Default::default(); 7];
     Fused::sin_cos_each(&angles, &mut out);

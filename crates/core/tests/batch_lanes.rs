@@ -1,4 +1,5 @@
-//! Batches on lanes agree with single states, for every kernel and every instruction set here.
+//! Checks that batches on lanes agree with single states, for every kernel and instruction set of this
+//! processor.
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
 mod common;
@@ -8,10 +9,9 @@ use onorbit_core::batch::{Evaluator, InputError, Kernel, Rollout, RolloutControl
 use onorbit_core::model::Model;
 use onorbit_core::simulation::{Integrator, Simulation};
 use onorbit_core::spatial::InstructionSet;
-use std::ops::ControlFlow;
 use std::sync::{Arc, atomic::AtomicBool};
 
-/// Rounding of a dozen bodies in another order or with fused products.
+/// Rounding error over a dozen bodies, with another order of summation or fused products.
 const ROUNDING: f64 = 1e-11;
 
 fn kernels(tool: usize) -> [Kernel; 16] {
@@ -35,7 +35,7 @@ fn kernels(tool: usize) -> [Kernel; 16] {
     ]
 }
 
-/// `count` rows of every input of a kernel.
+/// Returns `count` rows of every input of a kernel.
 fn inputs(kernel: Kernel, model: &Model, random: &mut Random, count: usize) -> Vec<(Vec<f64>, usize)> {
     let row = |name: &str, random: &mut Random| {
         let (q, v) = random_state(model, random);
@@ -53,7 +53,7 @@ fn inputs(kernel: Kernel, model: &Model, random: &mut Random, count: usize) -> V
     kernel.inputs().iter().map(rows).collect()
 }
 
-/// All outputs of a kernel, one after the other, each over all rows.
+/// Returns all outputs of a kernel, one after the other, each over all rows.
 fn many(
     kernel: Kernel,
     model: &Model,
@@ -73,14 +73,14 @@ fn wrenches() -> [Wrenches<'static>; 1] {
     [Wrenches { frame: 1, rows: &[1.0, -2.0, 0.5, 0.3, 0.2, -0.7] }]
 }
 
-/// In one test, since the level is the process's: levels not here fall back to what is.
+/// One test, since the instruction set is global to the process; levels that do not exist here fall back.
 #[test]
 fn every_kernel_on_every_instruction_set() {
     let model = random_model(7, 9);
     let tool = model.frame("tool").unwrap();
     for kernel in kernels(tool) {
         let mut random = Random::new(70);
-        let states = inputs(kernel, &model, &mut random, 131); // no multiple of the lanes or of a task
+        let states = inputs(kernel, &model, &mut random, 131); // not a multiple of the lanes or of a task
         InstructionSet::limit(InstructionSet::Baseline);
         let plain = many(kernel, &model, &states, Some(1));
         for level in [InstructionSet::Fused, InstructionSet::Wide] {
@@ -138,7 +138,7 @@ fn a_rollout_is_a_simulation_in_empty_space() {
     for (k, (q_k, v_k)) in states.iter().enumerate() {
         let mut simulation = Simulation::new(Arc::clone(&model), q_k.clone(), v_k.clone());
         simulation.time_step = h;
-        let trace = simulation.run(steps as f64 * h, &mut |_| ControlFlow::Continue(())).unwrap();
+        let trace = simulation.run(steps as f64 * h).unwrap();
         let last = |column: &[f64], width: usize| column[column.len() - width..].to_vec();
         assert!(difference(&q[k * model.nq()..][..model.nq()], &last(&trace.q, model.nq())) < 1e-12);
         assert!(difference(&v[k * model.nv()..][..model.nv()], &last(&trace.v, model.nv())) < ROUNDING);

@@ -1,4 +1,5 @@
-//! Many orbits at once agree with one at a time, whatever the threads; refusals name the orbit.
+//! Checks that batches of orbits agree with single orbits for any number of threads, and that errors name the
+//! orbit.
 
 use onorbit_core::batch::{InputError, Times, kepler_states, propagate};
 use onorbit_core::orbit::sgp4::Sgp4Error;
@@ -9,7 +10,7 @@ fn tle(line1: &str, line2: &str) -> Sgp4 {
     Sgp4::new(MeanElements::from_tle(line1, line2, true).expect("a TLE"), Default::default())
 }
 
-/// Low and eccentric, drag both fine and coarse, deep space: from the published verification set.
+/// Low and eccentric orbits with all drag terms, and deep space: from the published verification set.
 fn orbits() -> Vec<Arc<dyn Orbit>> {
     let ellipse = |e| Elements {
         phase: Phase::MeanAnomaly(1.0),
@@ -62,7 +63,7 @@ fn every_kind_agrees_with_one_state_at_a_time() {
             let (r, v) = orbit.position_velocity(t).expect("a state");
             let at = 3 * (index * times.len() + k);
             for c in 0..3 {
-                // 4 roundings of the position, and what rounding the phase of 1e5 rad does to it
+                // 4 roundings of the position, and the effect of rounding a phase of 1e5 rad
                 assert!(
                     (all.0[at + c] - r[c]).abs() < 2e-7,
                     "orbit {index} at {t} s: {} m",
@@ -84,7 +85,7 @@ fn the_first_orbit_refused_is_named_and_so_is_the_time() {
     orbits.insert(
         2,
         Arc::new(tle(
-            // its elements do not reach far
+            // these elements are valid for a short time only
             "1 28350U 04020A   06167.21788666  .16154492  76267-5  18678-3 0  8894",
             "2 28350  64.9977 345.6130 0024870 260.7578  99.9590 16.47856722116490",
         )),
@@ -113,7 +114,7 @@ fn the_first_orbit_refused_is_named_and_so_is_the_time() {
 }
 
 #[test]
-fn nothing_is_asked_of_no_orbits_and_no_times() {
+fn empty_batches_of_orbits_and_times_are_accepted() {
     let still: Vec<Arc<dyn Orbit>> = vec![Arc::new(
         FixedFrame::new(nalgebra::Vector3::x(), nalgebra::UnitQuaternion::identity(), None).expect("finite"),
     )];
@@ -122,7 +123,7 @@ fn nothing_is_asked_of_no_orbits_and_no_times() {
 }
 
 #[test]
-fn ellipses_by_their_elements_are_those_of_kepler() {
+fn ellipses_from_elements_agree_with_kepler() {
     let (count, mu) = (1003, 3.986e14);
     let column = |scale: f64, offset: f64| -> Vec<f64> {
         (0..count).map(|k| offset + scale * (0.618_033_988 * f64::from(k)).fract()).collect()
@@ -154,7 +155,7 @@ fn ellipses_by_their_elements_are_those_of_kepler() {
         });
         let (p, w) = orbit.expect("an orbit").position_velocity(t).expect("a state");
         for c in 0..3 {
-            // a phase of 1e2 rad rounded, ten times the speed at the periapsis
+            // the rounding of a phase of 1e2 rad, times ten at the periapsis
             assert!((r[3 * k + c] - p[c]).abs() < 1e-6, "{k}: {}", r[3 * k + c] - p[c]);
             assert!((v[3 * k + c] - w[c]).abs() < 1e-8, "{k}: {}", v[3 * k + c] - w[c]);
         }

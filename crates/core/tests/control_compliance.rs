@@ -1,23 +1,22 @@
-//! The tool on a spring: static balance in closed form, and energy that only falls.
+//! Checks compliance: static balance in closed form, and energy that decreases.
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
 mod common;
 
 use common::humanoid::{humanoid, start};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use onorbit_core::control::{Compliance, ComputedTorque, Control, ControlLaw, Law};
+use onorbit_core::control::{Compliance, ComputedTorque, Control, Law};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::environment::{Effect, EnvironmentError, Scene, Wrench, Wrenches};
 use onorbit_core::reference::{Hold, ReferenceFrame, TaskReference};
 use onorbit_core::simulation::{Simulation, Trace};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Stiffness, N/m and N m/rad.
 const LINEAR: f64 = 40.0;
 const ANGULAR: f64 = 0.4;
 
-/// The humanoid, its tool on a spring, damped or not (1 or 0), to `offset` (m) from where it starts.
+/// Returns the humanoid with its tool on a spring, damped or not (1 or 0), to `offset` (m) from the start.
 fn spring(frame: ReferenceFrame, offset: Vector3<f64>, damping: f64) -> Simulation {
     let model = humanoid();
     let (q, tool) = (start(&model), model.frame("tool").unwrap());
@@ -28,7 +27,7 @@ fn spring(frame: ReferenceFrame, offset: Vector3<f64>, damping: f64) -> Simulati
     let six = |linear: f64, angular: f64| {
         ComputedTorque::diagonal([linear, linear, linear, angular, angular, angular])
     };
-    // a wrist of 1e-4 kg m²: held torques stay stable up to a damping of about 2 I/h
+    // for a wrist of 1e-4 kg m², held torques are stable up to a damping of about 2 I/h
     let law = Compliance {
         frame: tool,
         stiffness: six(LINEAR, ANGULAR),
@@ -39,17 +38,17 @@ fn spring(frame: ReferenceFrame, offset: Vector3<f64>, damping: f64) -> Simulati
     let v = vec![0.0; model.nv()];
     let mut simulation = Simulation::new(Arc::new(model), q, v);
     (simulation.tool, simulation.time_step) = (Some(tool), 2e-4);
-    simulation.reference_start_tolerance[0] = 0.1; // m: the spring starts stretched
+    simulation.reference_start_tolerance[0] = 0.1; // m: the initial extension of the spring
     let law = Law::Compliance(Box::new(law), reference);
-    simulation.control = ControlLaw::Stack(vec![Control::new("arm", (0..7).collect(), law)]);
+    simulation.controls = vec![Control::new("arm", (0..7).collect(), law)];
     simulation
 }
 
 fn run(mut simulation: Simulation, duration: f64) -> Trace {
-    simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap()
+    simulation.run(duration).unwrap()
 }
 
-/// `T + ½ eᵀ K e` at every row, J.
+/// Returns `T + ½ eᵀ K e` at every row, J.
 fn energy(trace: &Trace) -> Vec<f64> {
     let spring = |row: usize| {
         let e = &trace.tracking[0].values[6 * row..6 * row + 6];
@@ -60,16 +59,16 @@ fn energy(trace: &Trace) -> Vec<f64> {
 }
 
 #[test]
-fn with_damping_the_energy_of_robot_and_spring_only_falls() {
+fn with_damping_the_energy_of_robot_and_spring_decreases() {
     for frame in [ReferenceFrame::World, ReferenceFrame::Base] {
         let mut simulation = spring(frame.clone(), Vector3::new(0.05, -0.03, 0.04), 1.0);
         if matches!(frame, ReferenceFrame::Base) {
-            simulation.v[..6].copy_from_slice(&[0.05, 0.0, -0.02, 0.1, -0.2, 0.1]); // whatever the momentum
+            simulation.v[..6].copy_from_slice(&[0.05, 0.0, -0.02, 0.1, -0.2, 0.1]); // for any momentum
         }
         let energy = energy(&run(simulation, 4.0));
         let (first, last) = (energy[0], energy[energy.len() - 1]);
         for pair in energy.windows(2) {
-            // what holding the torque over a step may add: (τ̇ h²) q̇, a millionth of the whole
+            // holding the torque over a step may add (τ̇ h²) q̇, 1e-6 of the total
             assert!(pair[1] <= pair[0] + 1e-6 * first, "{pair:?} of {first}");
         }
         assert!(matches!(frame, ReferenceFrame::Base) || last < 0.02 * first, "{last} of {first}");
@@ -77,26 +76,27 @@ fn with_damping_the_energy_of_robot_and_spring_only_falls() {
 }
 
 #[test]
-fn without_damping_the_energy_stays() {
+fn without_damping_the_energy_is_conserved() {
     let off = |time_step: f64| {
         let mut simulation = spring(ReferenceFrame::World, Vector3::new(0.02, -0.01, 0.015), 0.0);
         simulation.time_step = time_step;
         let energy = energy(&run(simulation, 0.5));
         energy.iter().fold(0.0_f64, |off, e| off.max((e - energy[0]).abs())) / energy[0]
     };
-    // a torque held over a step lags by half of it: the energy it adds halves with the step
+    // a held torque lags by half a step: the energy that it adds is proportional to the step
     let (coarse, fine) = (off(2e-4), off(1e-4));
     assert!(fine < 0.03 && (coarse / fine - 2.0).abs() < 0.15, "{coarse} {fine}");
 }
 
-/// A force on a body's centre of mass and its opposite on the base, along the same line: no net wrench.
+/// A force on the centre of mass of a body and the opposite force on the base, on the same line: no net
+/// wrench.
 #[derive(Debug)]
-struct Pair {
+struct Embedded {
     body: usize,
     force: Vector3<f64>,
 }
 
-impl Effect for Pair {
+impl Effect for Embedded {
     fn name(&self) -> &str {
         "pair"
     }
@@ -109,27 +109,27 @@ impl Effect for Pair {
 }
 
 #[test]
-fn at_rest_the_spring_gives_way_by_the_load_over_its_stiffness() {
+fn at_rest_the_spring_deflects_by_the_load_over_its_stiffness() {
     let mut simulation = spring(ReferenceFrame::Base, Vector3::zeros(), 1.0);
     let model = Arc::clone(&simulation.model);
     let tool = model.frame("tool").unwrap();
     let (body, force) = (model.frames()[tool].body, Vector3::new(0.2, -0.1, 0.15));
-    simulation.effects.push(Arc::new(Pair { body, force }));
+    simulation.effects.push(Arc::new(Embedded { body, force }));
     let trace = run(simulation, 20.0);
     let q = &trace.q[(trace.rows() - 1) * model.nq()..];
     let mut data = Data::<f64>::new(&model);
     positions(&model, &mut data, q);
     let pose = frame_pose(&model, &data, q, tool);
     let turn = UnitQuaternion::from_quaternion(Quaternion::new(q[6], q[3], q[4], q[5])).inverse();
-    // K e = −(F, r × F), in base axes, r from the tool's origin to where the force acts
+    // K e = −(F, r × F), in base axes, r from the tool's origin to the point of the force
     let force = turn * force;
     let origin = turn * (pose.pos_w.to_nalgebra() - Vector3::new(q[0], q[1], q[2]));
     let moment = (data.bodies[body].com_b().to_nalgebra() - origin).cross(&force);
     let e = &trace.tracking[0].values[trace.tracking[0].values.len() - 6..];
     for (i, load) in force.iter().chain(moment.iter()).enumerate() {
         let stiffness = if i < 3 { LINEAR } else { ANGULAR };
-        // what is left of the motion after 20 s
+        // remaining motion after 20 s
         assert!((e[i] + load / stiffness).abs() < 1e-4, "{i}: {} {}", e[i], -load / stiffness);
     }
-    assert!(force.norm() / LINEAR > 5e-3, "the spring did give way");
+    assert!(force.norm() / LINEAR > 5e-3, "the spring is compressed");
 }

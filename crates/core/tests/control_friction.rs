@@ -1,23 +1,24 @@
-//! Laws that compensate Coulomb friction move joints as if there were none: from rest, through reversals, at goals.
+//! Checks laws with friction compensation: joints move as without friction, from rest, through reversals, at
+//! goals.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
 
-use common::humanoid::{START, humanoid_with, start};
+use common::humanoid::{START, humanoid_with, humanoid_with_idle_joint, start};
 use common::slider::{run, slider_with};
+use common::stepping::{assert_same_bits, resumed, stopped};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use onorbit_core::batch::{Rollout, RolloutControl};
-use onorbit_core::control::{ComputedTorque, Control, ControlLaw, JointComputedTorque, Law};
+use onorbit_core::control::{ComputedTorque, Control, JointComputedTorque, Law};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder, neutral};
 use onorbit_core::reference::{JointHold, JointPath, JointSpline, LineParabola, TaskReference, Timing};
-use onorbit_core::simulation::{Checkpoint, Integrator, Simulation, Trace, certify};
+use onorbit_core::simulation::{Integrator, Simulation, Trace, certify};
 use std::collections::HashMap;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// What friction may leave of itself, rad (m) and rad/s (m/s).
+/// Remaining effect of friction, rad (m) and rad/s (m/s).
 const TOLERANCE: f64 = 1e-6;
 
 fn frictionless(_: &mut Joint) {}
@@ -27,7 +28,7 @@ fn friction(kinetic: f64, at_rest: f64) -> impl Fn(&mut Joint) {
     move |joint| (joint.friction, joint.static_friction) = (kinetic, Some(at_rest))
 }
 
-/// Arms of one link, 0.03 kg m² about their joints, side by side on a base.
+/// Returns arms of one link, 0.03 kg m² about their joints, on a common base.
 fn hinges(count: usize, change: impl Fn(&mut Joint)) -> Model {
     let solid = |mass: f64, inertia: f64, x: f64| {
         Some(Inertial { mass, com: Vector3::x() * x, inertia: Matrix3::identity() * inertia })
@@ -46,12 +47,11 @@ fn law(kp: f64, kd: f64, compensate_friction: bool) -> JointComputedTorque {
     JointComputedTorque { compensate_friction, ..JointComputedTorque::new(kp, kd) }
 }
 
-/// All joints under a joint law, from `q`.
+/// Returns a simulation with all joints under a joint law, from `q`.
 fn led(model: Model, q: Vec<f64>, law: JointComputedTorque, path: Arc<dyn JointPath>) -> Simulation {
     let (joints, v) = ((0..model.joint_count()).collect(), vec![0.0; model.nv()]);
     let mut simulation = Simulation::new(Arc::new(model), q, v);
-    simulation.control =
-        ControlLaw::Stack(vec![Control::new("arm", joints, Law::JointComputedTorque(law, path))]);
+    simulation.controls = vec![Control::new("arm", joints, Law::JointComputedTorque(law, path))];
     simulation
 }
 
@@ -60,7 +60,7 @@ fn to(model: Model, goal: Vec<f64>, law: JointComputedTorque) -> Simulation {
     led(model, q, law, Arc::new(JointHold::new(goal).unwrap()))
 }
 
-/// Largest difference of the joints' positions and rates at instants that both runs have as rows.
+/// Returns the largest difference of joint positions and rates at the common rows of two runs.
 fn apart(a: &Trace, b: &Trace, n: usize) -> f64 {
     let joints = |trace: &Trace, k: usize| {
         let (q, v) = (&trace.q[k * (n + 7) + 7..][..n], &trace.v[k * (n + 6) + 6..][..n]);
@@ -76,7 +76,7 @@ fn apart(a: &Trace, b: &Trace, n: usize) -> f64 {
     common.iter().map(off).fold(0.0, f64::max)
 }
 
-/// How often the compensation of a joint changes its sign, and when last.
+/// Returns how often the compensation of a joint changes its sign, and the last time.
 fn flips(trace: &Trace, joint: usize, n: usize) -> (usize, f64) {
     let signs = trace.friction_compensation.chunks(n).map(|row| row[joint]).zip(&trace.time);
     let signs: Vec<(f64, f64)> = signs.filter(|(c, _)| *c != 0.0).map(|(c, t)| (c.signum(), *t)).collect();
@@ -84,7 +84,7 @@ fn flips(trace: &Trace, joint: usize, n: usize) -> (usize, f64) {
     changes.fold((0, 0.0), |(count, _), pair| (count + 1, pair[1].1))
 }
 
-/// Reversals of a joint without friction.
+/// Returns the reversals of a joint without friction.
 fn reversals(trace: &Trace, joint: usize, n: usize, until: f64) -> usize {
     let rates: Vec<f64> = trace
         .v
@@ -96,7 +96,7 @@ fn reversals(trace: &Trace, joint: usize, n: usize, until: f64) -> usize {
     rates.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count()
 }
 
-/// 0.2 N m hold 0.03 kg m² for ever where the law asks for 0.15 N m.
+/// 0.2 N m of static friction hold 0.03 kg m² if the law commands 0.15 N m.
 #[test]
 fn a_joint_at_rest_breaks_away_to_a_goal_near_by() {
     for change in [friction(0.2, 0.2), friction(0.2, 0.35)] {
@@ -108,7 +108,7 @@ fn a_joint_at_rest_breaks_away_to_a_goal_near_by() {
         println!("{off:e} from the law without friction, {miss:e} rad from the goal, {changes} flips");
         assert!(off < TOLERANCE && miss < TOLERANCE && changes == 0);
         assert!(certify(&simulation.model, &trace).passed());
-        // negative control: without compensation it never moves
+        // negative control: without compensation the joint never moves
         let trace = run(&mut to(hinges(1, &change), vec![0.05], law(100.0, 20.0, false)), 20.0);
         assert!(trace.q.chunks(8).all(|q| q[7] == 0.0));
     }
@@ -128,21 +128,21 @@ fn a_joint_that_swings_about_its_goal_obeys_the_law_without_friction_and_then_re
         println!("{name}: {off:e} off, {changes} flips for {expected} reversals, the last at {last} s");
         assert!(off < TOLERANCE, "{off:e}");
         assert!(changes > 30 && changes <= expected + 1);
-        assert_eq!(trace.v[trace.v.len() - 1], 0.0); // friction has it
-        // what motors did is in the books: the torque is constant from row to row
+        assert_eq!(trace.v[trace.v.len() - 1], 0.0); // friction torque
+        // the recorded work includes the drives: the torque is constant between rows
         let (rows, mut done) = (trace.rows(), 0.0);
         (1..rows).for_each(|k| done += trace.tau[k - 1] * (trace.q[8 * k + 7] - trace.q[8 * k - 1]));
         assert!((trace.work[rows - 1] + trace.dissipated[rows - 1] - done).abs() < 1e-12);
         let certificate = certify(&simulation.model, &trace);
         assert!(certificate.passed(), "{certificate:#?}");
-        // negative control: with a tenth of a millinewton metre left to itself the swing is another
+        // negative control: with 1e-4 N m of uncompensated friction the swing differs
         let less = |joint: &mut Joint| joint.friction = 1e-4;
         let trace = run(&mut to(model(&less), vec![0.05], law(100.0, 2.0, false)), 25.0);
         assert!(apart(&free, &trace, 1) > TOLERANCE);
     }
 }
 
-/// Friction that differs from joint to joint, one without.
+/// Friction that differs between joints, one without.
 fn mixed(joint: &mut Joint) {
     let i = f64::from(joint.name.as_bytes()[4] - b'1');
     (joint.friction, joint.static_friction) = (0.02 * i, Some(0.03 * i));
@@ -177,9 +177,9 @@ fn arms_with_mixed_friction_follow_a_path_with_reversals() {
     }
 }
 
-/// The reach of the paper's humanoid.
-fn reaching(change: impl Fn(&mut Joint), compensate_friction: bool, stacked: bool) -> Simulation {
-    let model = humanoid_with(change);
+/// Returns the reach of the paper's humanoid.
+fn reaching(change: impl Fn(&mut Joint), compensate_friction: bool, in_group: bool) -> Simulation {
+    let model = if in_group { humanoid_with_idle_joint(change) } else { humanoid_with(change) };
     let (q, tool) = (start(&model), model.frame("tool").unwrap());
     let mut data = Data::<f64>::new(&model);
     positions(&model, &mut data, &q);
@@ -192,26 +192,21 @@ fn reaching(change: impl Fn(&mut Joint), compensate_friction: bool, stacked: boo
     let v = vec![0.0; model.nv()];
     let mut simulation = Simulation::new(Arc::new(model), q, v);
     simulation.tool = Some(tool);
-    if stacked {
-        let control = Control::new("arm", (0..7).collect(), Law::TaskComputedTorque(law, reference));
-        simulation.control = ControlLaw::Stack(vec![control]);
-    } else {
-        simulation.control = ControlLaw::ComputedTorque(law);
-        simulation.reference = Some(reference);
-    }
+    let law = Law::TaskComputedTorque(law, reference);
+    simulation.controls = vec![Control::new("arm", (0..7).collect(), law)];
     simulation
 }
 
 #[test]
 fn a_task_law_reaches_with_friction_as_without() {
     let largest = |trace: &Trace| trace.position_error.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
-    for stacked in [false, true] {
-        let free = run(&mut reaching(frictionless, true, stacked), 3.0);
+    for in_group in [false, true] {
+        let free = run(&mut reaching(frictionless, true, in_group), 3.0);
         for change in [friction(0.04, 0.04), friction(0.04, 0.06)] {
-            let mut simulation = reaching(&change, true, stacked);
+            let mut simulation = reaching(&change, true, in_group);
             let trace = run(&mut simulation, 3.0);
-            let off = apart(&free, &trace, 7);
-            let lost = largest(&run(&mut reaching(&change, false, stacked), 3.0));
+            let off = apart(&free, &trace, if in_group { 8 } else { 7 });
+            let lost = largest(&run(&mut reaching(&change, false, in_group), 3.0));
             println!(
                 "{off:e} off; misses by {:e} m, without friction {:e} m, uncompensated {lost:e} m",
                 largest(&trace),
@@ -230,12 +225,12 @@ fn a_rollout_compensates_friction_as_a_simulation_does() {
     let mut simulation = reaching(friction(0.04, 0.06), true, false);
     let trace = run(&mut simulation, 1.0);
     let (model, stop) = (Arc::clone(&simulation.model), AtomicBool::new(false));
-    let ControlLaw::ComputedTorque(law) = &simulation.control else { panic!() };
+    let Law::TaskComputedTorque(law, reference) = &simulation.controls[0].law else { panic!() };
     let rollout = Rollout {
         steps: 1000,
         time_step: 1e-3,
         integrator: Integrator::Rk4,
-        control: RolloutControl::ComputedTorque(law, simulation.reference.as_ref().unwrap()),
+        control: RolloutControl::ComputedTorque(law, reference),
         record_every: None,
         threads: Some(1),
         stop: &stop,
@@ -248,9 +243,9 @@ fn a_rollout_compensates_friction_as_a_simulation_does() {
     }
 }
 
-/// Joints that no law drives stick or slip, and those that one drives get what it asks for all the same.
+/// Joints that no law drives stick or slip; controlled joints realize their commanded accelerations.
 #[test]
-fn a_law_expects_joints_that_friction_holds_to_stay() {
+fn laws_account_for_joints_held_by_friction() {
     let mut held = Vec::new();
     for kinetic in [0.0, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 1.0] {
         let model = humanoid_with(friction(kinetic, 1.5 * kinetic));
@@ -260,7 +255,7 @@ fn a_law_expects_joints_that_friction_holds_to_stay() {
         let v = vec![0.0; model.nv()];
         let mut simulation = Simulation::new(Arc::new(model), q, v);
         let law = Law::JointComputedTorque(law(100.0, 20.0, true), path);
-        simulation.control = ControlLaw::Stack(vec![Control::new("part", driven.clone(), law)]);
+        simulation.controls = vec![Control::new("part", driven.clone(), law)];
         let trace = run(&mut simulation, 2e-3);
         let a = &trace.acceleration[6..13];
         for &j in &driven {
@@ -273,7 +268,7 @@ fn a_law_expects_joints_that_friction_holds_to_stay() {
     assert!(held[0] == 0 && held[7] == 3 && held.iter().any(|count| *count == 1 || *count == 2), "{held:?}");
 }
 
-/// The second arm swings while the first, a little off its goal, comes to it.
+/// The second arm swings while the first, near its goal, approaches it.
 #[test]
 fn a_joint_at_its_goal_does_not_chatter_while_another_moves() {
     let points = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
@@ -297,29 +292,14 @@ fn a_joint_at_its_goal_does_not_chatter_while_another_moves() {
 }
 
 #[test]
-fn what_a_drive_compensates_survives_a_checkpoint() {
+fn friction_compensation_is_restored_from_a_checkpoint() {
     let simulation = || {
         let mut simulation = to(hinges(2, friction(0.2, 0.3)), vec![0.05, -0.08], law(100.0, 4.0, true));
         simulation.control_period = Some(0.05);
         simulation
     };
     let whole = run(&mut simulation(), 1.5);
-    let mut kept: Option<(Checkpoint, Trace)> = None;
-    let failure = simulation()
-        .run(1.5, &mut |now| {
-            if now.time < 0.7 {
-                return ControlFlow::Continue(());
-            }
-            kept = Some((now.checkpoint().unwrap(), now.trace.clone()));
-            ControlFlow::Break(())
-        })
-        .unwrap_err();
-    drop(failure);
-    let (checkpoint, rows) = kept.unwrap();
-    let checkpoint = Checkpoint::from_json(&checkpoint.to_json()).unwrap();
-    let resumed = simulation().resume(1.5, (&checkpoint, rows), &mut |_| ControlFlow::Continue(())).unwrap();
-    for ((name, a), (_, b)) in whole.columns().zip(resumed.columns()) {
-        assert!(a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits()) && a.len() == b.len(), "{name}");
-    }
+    let (checkpoint, rows) = stopped(&mut simulation(), 1.5, 0.7);
+    assert_same_bits(&resumed(&mut simulation(), 1.5, &checkpoint, rows).unwrap(), &whole);
     assert!(!whole.friction_compensation.is_empty());
 }

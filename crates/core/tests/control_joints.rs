@@ -1,4 +1,4 @@
-//! Laws of joints against closed forms, goals, and controls one after the other.
+//! Checks joint laws against closed forms, goals, and successive controls.
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
 mod common;
@@ -6,17 +6,16 @@ mod common;
 use common::humanoid::{humanoid, start};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use onorbit_core::control::{
-    Begin, Control, ControlError, ControlLaw, Goal, Interface, JointComputedTorque, JointPid, Law, Outcome,
-    PerJoint, Stack,
+    Begin, Control, ControlError, ControlMemory, ControllerSet, Goal, Interface, JointComputedTorque,
+    JointPid, Law, Outcome, PerJoint,
 };
 use onorbit_core::dynamics::{Data, kinematics};
 use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder, neutral};
 use onorbit_core::reference::{JointHold, JointPath, JointReference, JointSample};
 use onorbit_core::simulation::{Simulation, SimulationError, Trace};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Two masses on a line through both centres: `M* = m₁ m₂/(m₁ + m₂)`, and nothing turns.
+/// Two masses on a line through both centres of mass: `M* = m₁ m₂/(m₁ + m₂)`, without rotation.
 fn slider() -> Model {
     let link = |name: &str, mass: f64| {
         let inertial = Inertial { mass, com: Vector3::zeros(), inertia: Matrix3::identity() };
@@ -30,7 +29,7 @@ fn slider() -> Model {
 
 const REDUCED_MASS: f64 = 2.0;
 
-/// From zero at a constant rate, then still.
+/// A path with constant rate from zero, then at rest.
 #[derive(Debug)]
 struct Ramp {
     rate: f64,
@@ -65,12 +64,12 @@ fn simulation(controls: Vec<Control>) -> Simulation {
     let q = neutral(&model);
     let v = vec![0.0; model.nv()];
     let mut simulation = Simulation::new(Arc::new(model), q, v);
-    (simulation.time_step, simulation.control) = (0.01, ControlLaw::Stack(controls));
+    (simulation.time_step, simulation.controls) = (0.01, controls);
     simulation
 }
 
 fn run(controls: Vec<Control>, duration: f64) -> Trace {
-    simulation(controls).run(duration, &mut |_| ControlFlow::Continue(())).unwrap()
+    simulation(controls).run(duration).unwrap()
 }
 
 fn joint(trace: &Trace, row: usize) -> (f64, f64) {
@@ -78,7 +77,7 @@ fn joint(trace: &Trace, row: usize) -> (f64, f64) {
 }
 
 #[test]
-fn a_pid_moves_a_slider_as_a_loop_written_by_hand_does() {
+fn a_pid_agrees_with_a_hand_written_loop() {
     for (interface, limit) in
         [(Interface::Position, 3.0), (Interface::Velocity, 1.2), (Interface::Position, 1e9)]
     {
@@ -114,8 +113,8 @@ fn a_pid_moves_a_slider_as_a_loop_written_by_hand_does() {
 }
 
 #[test]
-fn joint_computed_torque_leaves_a_linear_error_of_second_order() {
-    // critically damped: e = e₀ (1 + 5 t) exp(−5 t), on all seven joints while the base recoils
+fn the_error_of_joint_computed_torque_obeys_a_linear_second_order_equation() {
+    // critically damped: e = e₀ (1 + 5 t) exp(−5 t) on all seven joints, with a free base
     let off = |h: f64| {
         let model = humanoid();
         let (q, v) = (start(&model), vec![0.0; model.nv()]);
@@ -126,13 +125,13 @@ fn joint_computed_torque_leaves_a_linear_error_of_second_order() {
         );
         let mut simulation = Simulation::new(Arc::new(model), q, v);
         simulation.time_step = h;
-        simulation.control = ControlLaw::Stack(vec![Control::new("arm", (0..7).collect(), law)]);
+        simulation.controls = vec![Control::new("arm", (0..7).collect(), law)];
         let refused = simulation.check().unwrap_err();
         assert!(
             matches!(refused, SimulationError::JointsStartAway { offset, .. } if (offset - 0.3).abs() < 1e-12)
         );
         simulation.reference_start_tolerance[1] = 0.31; // rad
-        let trace = simulation.run(1.0, &mut |_| ControlFlow::Continue(())).unwrap();
+        let trace = simulation.run(1.0).unwrap();
         let mut most = 0.0_f64;
         for (row, t) in trace.time.iter().enumerate() {
             for j in 0..7 {
@@ -143,7 +142,7 @@ fn joint_computed_torque_leaves_a_linear_error_of_second_order() {
         most
     };
     let (coarse, fine) = (off(2e-3), off(1e-3));
-    // the torque is held over each step: first order in it
+    // the torque is held over each step, which is of first order
     assert!(fine < 1e-3 && (coarse / fine - 2.0).abs() < 0.1, "{coarse} {fine}");
 }
 
@@ -155,7 +154,7 @@ fn a_switch_is_exact_whatever_the_control_period() {
     (second.begin, second.end) = (Begin::At(0.6), 0.9001);
     let mut simulation = simulation(vec![first, second]);
     simulation.control_period = Some(0.25);
-    let trace = simulation.run(1.0, &mut |_| ControlFlow::Continue(())).unwrap();
+    let trace = simulation.run(1.0).unwrap();
     let expected = (1.0 * 0.3537 - 2.0 * 0.3001) / REDUCED_MASS;
     let (_, rate) = joint(&trace, trace.rows() - 1);
     assert!((rate - expected).abs() < 1e-12, "{rate} {expected}");
@@ -166,7 +165,7 @@ fn ramp(rate: f64, duration: f64) -> JointReference {
     Arc::new(Ramp { rate, duration })
 }
 
-/// A stiff law that follows a ramp with an error of 0.02 m at first.
+/// A stiff law that follows a ramp with an initial error of 0.02 m.
 fn follow(name: &str, goal: Goal, duration: f64) -> Control {
     let mut control = Control::new(
         name,
@@ -178,11 +177,11 @@ fn follow(name: &str, goal: Goal, duration: f64) -> Control {
 }
 
 #[test]
-fn goals_are_reached_missed_on_the_way_missed_at_the_end_or_left_open() {
+fn goals_succeed_violate_path_or_goal_tolerance_or_stay_unfinished() {
     let outcome = |goal: Goal, duration: f64| run(vec![follow("slide", goal, duration)], 2.0);
     let reached = outcome(Goal { time: Some(1.0), ..Goal::within(1e-4) }, 0.5);
     let Outcome::Succeeded { time } = reached.results[0].outcome else { panic!("{:?}", reached.results) };
-    // the path's end throws the slider off by v/(k e) = 7 mm; critically damped it is back within 1e-4 m by 1.2 s
+    // at the end of the path the error reaches v/(k e) = 7 mm; critically damped, it is below 1e-4 m at 1.2 s
     assert!(time > 0.5 && time < 1.3, "{time}");
 
     let missed = outcome(Goal { path: Some(PerJoint::from(5e-3)), ..Goal::within(1e-4) }, 1.0);
@@ -219,7 +218,7 @@ fn a_control_starts_when_the_goal_of_another_is_decided_from_where_the_joint_is(
 }
 
 #[test]
-fn what_cannot_work_is_refused_by_name() {
+fn invalid_controls_are_refused_by_name() {
     let refused = |controls: Vec<Control>| match simulation(controls).check() {
         Err(SimulationError::Control(error)) => error.to_string(),
         other => panic!("{other:?}"),
@@ -242,29 +241,28 @@ fn what_cannot_work_is_refused_by_name() {
         ])
     };
     assert!(after(Begin::At(0.0)).contains("'a', which has neither a goal nor an end"));
-    assert!(after(Begin::After(1)).contains("waits for itself"));
+    assert!(after(Begin::After(1)).contains("follows itself"));
     assert!(
         refused(vec![Control { goal: Some(Goal::within(1.0)), ..effort("a", 1.0) }])
-            .contains("tracks nothing")
+            .contains("has no reference")
     );
     let mut pid = JointPid::new(Interface::Position, 1.0, 0.0, 0.0);
     pid.p = PerJoint::new(vec![1.0, 2.0]);
     let gains = refused(vec![Control::new("a", vec![0], Law::Pid(pid, hold(0.0)))]);
-    assert!(gains.contains("p has 2 numbers, expected 1"), "{gains}");
+    assert!(gains.contains("p has 2 numbers; expected 1"), "{gains}");
     let two = Arc::new(JointHold::new(vec![0.0; 2]).unwrap());
     let law = Law::JointComputedTorque(JointComputedTorque::new(1.0, 1.0), two);
-    assert!(refused(vec![Control::new("a", vec![0], law)]).contains("has 2 joints, its group has 1"));
+    assert!(refused(vec![Control::new("a", vec![0], law)]).contains("has 2 joints, but its group has 1"));
 }
 
 #[test]
-fn controls_that_meet_in_the_run_are_refused_there() {
+fn controls_that_overlap_during_the_run_are_refused() {
     let first = follow("first", Goal::within(1e-3), 0.5);
     let mut second = follow("second", Goal::within(1e-3), 0.5);
     second.begin = Begin::After(0);
     let mut third = effort("third", 0.0);
     third.begin = Begin::At(1.5);
-    let failure =
-        simulation(vec![first, second, third]).run(2.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let failure = simulation(vec![first, second, third]).run(2.0).unwrap_err();
     let SimulationError::Control(ControlError::Overlap { first, second, joint, time }) = failure.error else {
         panic!("{failure:?}")
     };
@@ -272,7 +270,7 @@ fn controls_that_meet_in_the_run_are_refused_there() {
 }
 
 #[test]
-fn what_controls_remember_is_saved_and_taken_up_bit_by_bit() {
+fn states_of_controls_are_saved_and_restored_bit_by_bit() {
     let model = slider();
     let controls = || {
         let mut law = JointPid::new(Interface::Velocity, 3.0, 2.0, 0.1);
@@ -284,27 +282,28 @@ fn what_controls_remember_is_saved_and_taken_up_bit_by_bit() {
         [first, second]
     };
     let mut data = Data::<f64>::new(&model);
-    let mut step = |stack: &mut Stack<'_, f64>, k: i32| {
+    let mut step = |set: &mut ControllerSet<'_, f64>, k: i32| {
         let t = f64::from(k) * 0.05;
         let (mut q, mut v, mut tau) = (neutral(&model), vec![0.0; 7], [0.0]);
         (q[7], v[6]) = ((3.0 * t).sin() * 0.1, if t < 0.4 { 0.2 + 0.1 * t } else { 0.02 });
         kinematics(&model, &mut data, &q, &v);
-        stack.update(t, &model, &mut data, &q, &v, &mut tau).unwrap();
+        set.update(t, &model, &mut data, &q, &v, &mut tau).unwrap();
         tau[0].to_bits()
     };
     for cut in [3, 9, 14] {
-        let (mut one, mut other, mut saved) = (controls(), controls(), Vec::new());
-        let mut one = Stack::new(&mut one, &model, 1e-12).unwrap();
+        let (mut one, mut other) = (controls(), controls());
+        let mut one = ControllerSet::new(&mut one, &model, 1e-12).unwrap();
         (0..cut).for_each(|k| _ = step(&mut one, k));
-        one.save(&mut saved);
-        let mut other = Stack::new(&mut other, &model, 1e-12).unwrap();
+        let text = serde_json::to_string(&one.save().unwrap()).unwrap();
+        let mut saved: Vec<ControlMemory> = serde_json::from_str(&text).unwrap();
+        let mut other = ControllerSet::new(&mut other, &model, 1e-12).unwrap();
         other.load(&saved).unwrap();
         for k in cut..20 {
             assert_eq!(step(&mut one, k), step(&mut other, k), "cut at {cut}, tick {k}");
         }
         assert_eq!(one.outcome(0), other.outcome(0));
         assert!(other.load(&saved[1..]).is_err());
-        saved.push(0.0);
+        saved.push(saved[0].clone());
         assert!(other.load(&saved).is_err());
     }
 }

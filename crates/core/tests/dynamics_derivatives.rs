@@ -1,4 +1,5 @@
-//! Derivatives against dual numbers, which are exact: on random trees with every joint type, wrenches on every frame.
+//! Checks derivatives against dual numbers, which are exact: random trees, every joint type, wrenches on
+//! every frame.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
@@ -16,7 +17,7 @@ use onorbit_core::dynamics::{
 use onorbit_core::model::{Model, integrate};
 use onorbit_core::spatial::{Force, Real, Vec3};
 
-/// Rounding of two ways to the same number, relative to the largest entry.
+/// Rounding error of two ways to compute a number, relative to the largest entry.
 const ROUNDING: f64 = 1e-12;
 
 fn robots() -> impl Iterator<Item = (u64, Model, Random)> {
@@ -26,7 +27,7 @@ fn robots() -> impl Iterator<Item = (u64, Model, Random)> {
     std::iter::once(one).chain(trees)
 }
 
-/// What a function is differentiated by.
+/// Variable of differentiation.
 #[derive(Clone, Copy)]
 enum By {
     Q,
@@ -193,7 +194,7 @@ fn the_reduced_model_agrees_with_dual_numbers() {
         assert_same("∂ẍ/∂q", seed, acc_q, &rows(&by_q, n, 6));
         assert_same("∂ẍ/∂v", seed, acc_v, &rows(&by_v, n, 6));
         assert_same("∂ẋ/∂q", seed, vel_q, &rows(&by_q, n + 6, 6));
-        // the derivatives that are known by other names
+        // derivatives that equal other quantities
         let (mut data, mut ff) = (Data::new(model), FreeFloating::new(model));
         free_floating(model, &mut data, &case.q, &case.v, case.tool, &case.external, &mut ff);
         let by_a = case.exactly(By::Third, |q, v, a| reduced(&case, q, v, a));

@@ -6,14 +6,14 @@ mod common;
 
 use common::{Random, difference, random_model, random_state};
 use onorbit_core::dynamics::{
-    Data, FrameWrench, FreeFloating, base_twist, bias_forces, forward_dynamics, frame_acceleration,
-    frame_drift, frame_jacobian, frame_velocity, free_floating, inverse_dynamics, kinematics, kinetic_energy,
-    mass_matrix, momentum,
+    Data, FrameWrench, FreeFloating, bias_forces, forward_dynamics, frame_acceleration, frame_drift,
+    frame_jacobian, frame_velocity, free_floating, inverse_dynamics, kinematics, kinetic_energy, mass_matrix,
+    momentum, projected_base_twist,
 };
 use onorbit_core::model::{Model, integrate};
 use onorbit_core::spatial::{Force, Fused, Motion, Vec3};
 
-/// Rounding of recursions over a dozen bodies, relative.
+/// Relative rounding error of recursions over a dozen bodies.
 const ROUNDING: f64 = 1e-11;
 
 fn robots() -> impl Iterator<Item = (u64, Model, Random)> {
@@ -37,7 +37,7 @@ fn wrenches(model: &Model, random: &mut Random) -> Vec<FrameWrench<f64>> {
 }
 
 #[test]
-fn forward_dynamics_undoes_inverse_dynamics() {
+fn forward_dynamics_inverts_inverse_dynamics() {
     for (seed, model, mut random) in robots() {
         let (q, v) = random_state(&model, &mut random);
         let (a, external) = (random.numbers(model.nv()), wrenches(&model, &mut random));
@@ -63,7 +63,7 @@ fn inverse_dynamics_is_mass_matrix_times_acceleration_plus_bias_less_external() 
         let mut expected: Vec<f64> = times(&m, &a).iter().zip(&c).map(|(x, y)| x + y).collect();
         let mut jacobian = vec![0.0; 6 * nv];
         for FrameWrench { frame, wrench } in &external {
-            // Σ Jᵀ F with the wrench turned to W axes
+            // Σ Jᵀ F with the wrench rotated to W axes
             frame_jacobian(&model, &data, &q, *frame, &mut jacobian);
             let rot = onorbit_core::dynamics::frame_pose(&model, &data, &q, *frame).rot_wf;
             let w = six(Motion::new(rot * wrench.linear, rot * wrench.angular));
@@ -96,7 +96,7 @@ fn kinetic_energy_and_momentum_follow_from_the_mass_matrix() {
 }
 
 #[test]
-fn nothing_depends_on_the_base_pose() {
+fn dynamics_are_independent_of_the_base_pose() {
     for (seed, model, mut random) in robots() {
         let (q, v) = random_state(&model, &mut random);
         let (mut moved, _) = random_state(&model, &mut random);
@@ -160,14 +160,14 @@ fn reduced_model_is_exact_for_any_momentum_and_any_wrench() {
         let predicted: Vec<f64> = task.iter().zip(&d).map(|(x, d)| x + d).collect();
         let actual = six(frame_acceleration(&model, &data, &q, frame));
         assert!(difference(&predicted, &actual) < ROUNDING, "seed {seed}: {predicted:?} {actual:?}");
-        // negative control: the paper's d/dt(Mbb⁻¹ Mbm) forgotten is wrong by more than rounding
+        // negative control: without the paper's d/dt(Mbb⁻¹ Mbm) the error exceeds rounding
         let forgotten = six(frame_drift(&model, &data, &q, &v, frame));
         assert!(difference(&forgotten, &d) > 1e-3, "seed {seed}");
     }
 }
 
 #[test]
-fn base_twist_recovers_the_momentum() {
+fn projected_base_twist_recovers_the_momentum() {
     for (seed, model, mut random) in robots() {
         let (q, mut v) = random_state(&model, &mut random);
         let mut data = Data::new(&model);
@@ -176,7 +176,7 @@ fn base_twist_recovers_the_momentum() {
         let expected = v.clone();
         v[..6].copy_from_slice(&random.numbers(6));
         kinematics(&model, &mut data, &q, &v);
-        six(base_twist(&data, &q, &v, target)).iter().zip(&mut v).for_each(|(x, y)| *y = *x);
+        six(projected_base_twist(&data, &q, &v, target)).iter().zip(&mut v).for_each(|(x, y)| *y = *x);
         assert!(difference(&v, &expected) < ROUNDING, "seed {seed}");
     }
 }

@@ -1,10 +1,11 @@
-//! How the Earth is turned, against pyerfa and skyfield (`tests/oracles/generate_earth_fixture.py`).
+//! Checks the orientation of the Earth against pyerfa and skyfield
+//! (`tests/oracles/generate_earth_fixture.py`).
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::earth::{Axes, Earth, EarthParameters, Epoch};
 use serde_json::Value;
 
-/// 5 mas: 15 cm at the radius of a low orbit. What is left out of the nutation comes to 2 mas.
+/// 5 mas: 15 cm at the radius of a low orbit. The neglected nutation terms sum to 2 mas.
 const TOLERANCE: f64 = 5e-3 / 206_264.8;
 
 fn cases() -> Vec<Value> {
@@ -21,7 +22,7 @@ fn matrix(value: &Value) -> Matrix3<f64> {
     Matrix3::from_fn(|i, j| number(&value[i][j]))
 }
 
-/// Angle of the rotation between two, rad.
+/// Returns the angle of the rotation between two orientations, rad.
 fn apart(a: &Matrix3<f64>, b: &Matrix3<f64>) -> f64 {
     let between = a * b.transpose();
     0.5 * Vector3::new(
@@ -48,7 +49,7 @@ fn rotation_is_that_of_the_iau() {
         let rot_fi = earth.rot_fi(0.0);
         worst = worst.max(apart(&rot_fi, &matrix(&case["rot_fi"])));
         assert!((rot_fi * rot_fi.transpose() - Matrix3::identity()).norm() < 1e-15);
-        // leaving anything out is noticed
+        // any omitted term is detected
         for (what, rotation) in case["without"].as_object().expect("rotations") {
             let has_none = what == "polar motion" && number(&case["xp"]) == 0.0;
             let off = apart(&rot_fi, &matrix(rotation));
@@ -60,24 +61,24 @@ fn rotation_is_that_of_the_iau() {
 }
 
 #[test]
-fn axes_of_element_sets_are_those_of_skyfield() {
+fn teme_axes_agree_with_skyfield() {
     for case in cases() {
         let gcrf = earth(&case, true);
         let teme = gcrf.in_axes(Axes::Teme);
         let rot_f_teme = teme.rot_fi(0.0);
-        // mean sidereal time of 1982 and polar motion are all there is
+        // only mean sidereal time of 1982 and polar motion
         assert!(apart(&rot_f_teme, &matrix(&case["rot_f_teme"])) < 1e-9, "{}", case["tai"]);
         let rot_teme_gcrf = rot_f_teme.transpose() * gcrf.rot_fi(0.0);
         let off = apart(&rot_teme_gcrf, &matrix(&case["rot_teme_gcrf"]));
         assert!(off < TOLERANCE, "{}: {} mas", case["tai"], off * 206_264.8e3);
-        // the Sun stands where it stands
+        // the direction of the Sun is independent of the axes
         let there = teme.sun(0.0).expect("a Sun") - rot_teme_gcrf * gcrf.sun(0.0).expect("a Sun");
         assert!(there.norm() < 10.0, "{there}");
     }
 }
 
 #[test]
-fn it_turns_as_fast_as_its_angular_velocity_says() {
+fn the_rotation_agrees_with_the_angular_velocity() {
     for axes in [Axes::Gcrf, Axes::Teme] {
         let earth = earth(&cases()[8], true).in_axes(axes);
         for t in [-4e7, -12.0, 0.0, 3.3e5, 1.8e8] {
@@ -87,7 +88,7 @@ fn it_turns_as_fast_as_its_angular_velocity_says() {
             let rate = turn / 100.0;
             let w = earth.angular_velocity(t);
             assert!((rate - w).norm() < 1e-11, "{axes:?} {t}: {rate} {w}");
-            // an Earth about z alone is off by its pole
+            // negative control: a rotation about z only ignores the pole
             let is_pole_noticed = (rate - Vector3::z() * w.norm()).norm() > 1e-9;
             assert!(is_pole_noticed == (axes == Axes::Gcrf), "{axes:?} {t}");
         }
@@ -95,10 +96,10 @@ fn it_turns_as_fast_as_its_angular_velocity_says() {
 }
 
 #[test]
-fn it_is_continuous_and_pure() {
+fn the_rotation_is_continuous_and_a_pure_function_of_time() {
     let (asked, fresh) = (earth(&cases()[8], true), earth(&cases()[8], true));
     let day = 86_400.0;
-    // pieces of the pole begin every four days from 1900 on
+    // intervals of the pole begin every four days from 1900 on
     for k in 0..2000 {
         let t = 0.01 * day * k as f64;
         let step = apart(&asked.rot_fi(t + 1e-3), &asked.rot_fi(t));

@@ -1,4 +1,4 @@
-//! Instants, Earth-orientation parameters and places: what is read, what is refused.
+//! Checks epochs, Earth-orientation parameters and geodetic coordinates, and their errors.
 
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::earth::{
@@ -15,7 +15,7 @@ fn epoch(text: &str) -> Epoch {
 }
 
 #[test]
-fn one_instant_has_many_names() {
+fn time_scales_give_the_same_instant() {
     let one = epoch("2024-03-01T12:00:00 UTC");
     for text in [
         "2024-03-01T12:00:00Z",
@@ -34,7 +34,7 @@ fn one_instant_has_many_names() {
 }
 
 #[test]
-fn leap_seconds_are_instants_of_their_own() {
+fn leap_seconds_are_distinct_instants() {
     let around = [
         ("2016-12-31T23:59:24.5 UTC", "2017-01-01T00:00:00.5 TAI"),
         ("2016-12-31T23:59:59 UTC", "2017-01-01T00:00:35 TAI"),
@@ -54,7 +54,7 @@ fn leap_seconds_are_instants_of_their_own() {
 }
 
 #[test]
-fn texts_that_are_no_instants_are_refused() {
+fn invalid_instants_are_refused() {
     for text in [
         "",
         "Z",
@@ -91,8 +91,8 @@ fn table(rows: &[[f64; 4]]) -> EarthParameters {
 }
 
 #[test]
-fn ut1_runs_on_through_a_leap_second() {
-    // UT1 - UTC jumps by a second at the end of 2016, UT1 itself does not
+fn ut1_is_continuous_across_a_leap_second() {
+    // UT1 - UTC jumps by a second at the end of 2016, UT1 does not
     let rows = [
         [57_752.0, 0.0, 0.0, -0.405],
         [57_753.0, 0.0, 0.0, -0.406],
@@ -106,19 +106,19 @@ fn ut1_runs_on_through_a_leap_second() {
         let turn = earth.rot_fi(t + 0.1) * earth.rot_fi(t).transpose();
         assert!((turn[(0, 1)] - 7.292_115e-6).abs() < 1e-11, "{k}: {turn}");
     }
-    // at the rows it is what a constant says
+    // at the rows the table equals constant parameters
     let december = EarthParameters::Constant { ut1_minus_utc: -0.406, polar_motion: [0.0; 2] };
     let december = Earth::new(epoch("2016-12-31T00:00:00 UTC"), &december).expect("an Earth");
     assert!((earth.rot_fi(DAY) - december.rot_fi(0.0)).norm() < 1e-12);
     let january = EarthParameters::Constant { ut1_minus_utc: 0.593, polar_motion: [0.0; 2] };
     let january = Earth::new(epoch("2017-01-01T00:00:00 UTC"), &january).expect("an Earth");
     assert!((earth.rot_fi(2.0 * DAY + 1.0) - january.rot_fi(0.0)).norm() < 1e-12);
-    // a second off is 7e-5 rad off
+    // a second corresponds to 7e-5 rad
     assert!((earth.rot_fi(2.0 * DAY) - january.rot_fi(0.0)).norm() > 7e-5);
 }
 
 #[test]
-fn tables_end_and_say_where() {
+fn times_outside_a_table_are_refused() {
     let rows = [[60_370.0, 1e-7, 1e-6, -0.01], [60_372.0, 2e-7, 1e-6, -0.012]];
     let earth = Earth::new(epoch("2024-03-01T12:00:00 UTC"), &table(&rows)).expect("an Earth");
     assert!(earth.covers(1.5 * DAY).is_ok());
@@ -177,7 +177,7 @@ fn files_of_the_iers_are_read() {
 }
 
 #[test]
-fn element_sets_bring_their_epoch() {
+fn element_sets_define_the_epoch() {
     let lines = (
         "1 25544U 98067A   08264.51782528 -.00002182  00000-0 -11606-4 0  2927",
         "2 25544  51.6416 247.4627 0006703 130.5360 325.0288 15.72125391563537",
@@ -187,15 +187,15 @@ fn element_sets_bring_their_epoch() {
     let at = orbit.epoch().expect("an epoch");
     assert_eq!(at.to_string(), "2008-09-20T12:25:40.104192 UTC");
     let earth = Earth::new(at, &EarthParameters::default()).expect("an Earth");
-    assert!(matches!(earth.fits(orbit.axes(), Some(at)), Err(EarthError::OtherAxes { .. })));
+    assert!(matches!(earth.check_orbit(orbit.axes(), Some(at)), Err(EarthError::OtherAxes { .. })));
     let earth = earth.in_axes(Axes::Teme);
-    assert!(earth.fits(orbit.axes(), Some(at)).is_ok());
+    assert!(earth.check_orbit(orbit.axes(), Some(at)).is_ok());
     let other = Some(epoch("2008-09-20T12:25:40 UTC"));
-    assert!(matches!(earth.fits(orbit.axes(), other), Err(EarthError::OtherEpoch { .. })));
+    assert!(matches!(earth.check_orbit(orbit.axes(), other), Err(EarthError::OtherEpoch { .. })));
 }
 
 #[test]
-fn places_are_those_of_the_closed_form() {
+fn geodetic_coordinates_agree_with_the_closed_form() {
     let table: Value = serde_json::from_str(include_str!("../../../tests/fixtures/earth.json"))
         .expect("the fixture is JSON");
     let number = |value: &Value| value.as_f64().expect("a number");
@@ -206,7 +206,7 @@ fn places_are_those_of_the_closed_form() {
             altitude: number(&case["altitude"]),
         };
         let position = Vector3::from_fn(|i, _| number(&case["position"][i]));
-        // a nanometre, and what rounding of the numbers themselves comes to
+        // a nanometre, and the rounding of the input
         let tolerance = 1e-9 + 4.0 * f64::EPSILON * position.norm();
         assert!((given.position(&WGS84) - position).norm() < tolerance, "{case}");
         let found = Geodetic::of(&position, &WGS84).expect("a place");
@@ -220,7 +220,7 @@ fn places_are_those_of_the_closed_form() {
 }
 
 #[test]
-fn a_place_needs_a_distance_from_the_centre() {
+fn geodetic_coordinates_need_a_distance_from_the_centre() {
     for (position, is_near) in [
         (Vector3::zeros(), true),
         (Vector3::new(0.0, 0.0, 4.9e4), true),
@@ -240,7 +240,7 @@ fn a_place_needs_a_distance_from_the_centre() {
 }
 
 #[test]
-fn an_even_turn_is_an_even_turn() {
+fn a_uniform_rotation_is_uniform() {
     let earth = Earth::about_z(0.3, 7e-5);
     let (s, c) = (0.3_f64 + 7e-5 * 100.0).sin_cos();
     assert!((earth.rot_fi(100.0) - Matrix3::new(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0)).norm() < 1e-16);

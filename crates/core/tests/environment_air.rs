@@ -1,14 +1,15 @@
-//! Models of the air against other implementations.
+//! Checks models of the atmosphere against other implementations.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 
 use onorbit_core::earth::{Earth, EarthError, Epoch, Geodetic, WGS84};
 use onorbit_core::environment::atmosphere::{
-    AirPlace, Atmosphere, AtmosphereError, HarrisPriester, LocalAir, MagneticActivity, Nrlmsise00,
-    SpaceIndices, SpaceWeather, SpaceWeatherTable,
+    Atmosphere, AtmosphereError, AtmospherePoint, HarrisPriester, LocalAtmosphere, MagneticActivity,
+    Nrlmsise00, SpaceIndices, SpaceWeather, SpaceWeatherTable,
 };
 
 /// Altitude (m), cosine of the angle from the bulge, density (kg/m³) for n = 6: brahe 1.8.0,
-/// `density_harris_priester`, whose lag is 30°; 2026-11-21. Over 3000 places it differs by at most 4.1e-7.
+/// `density_harris_priester`, with a lag of 30°; 2026-11-21. The largest difference over 3000 positions is
+/// 4.1e-7.
 const HARRIS_PRIESTER: [(f64, f64, f64); 6] = [
     (160_209.566_304_123_03, -0.062_534_533_991_536_15, 1.259_338_773_803_707_6e-9),
     (261_671.446_830_658_24, 0.915_698_326_262_844_2, 6.932_283_261_508_475e-11),
@@ -46,7 +47,7 @@ fn density(
     [km, latitude, longitude]: [f64; 3],
 ) -> Result<f64, AtmosphereError> {
     let (latitude, longitude) = (latitude.to_radians(), longitude.to_radians());
-    air.density(&AirPlace::at(earth, t, Geodetic { latitude, longitude, altitude: km * 1e3 })?)
+    air.density(&AtmospherePoint::at(earth, t, Geodetic { latitude, longitude, altitude: km * 1e3 })?)
 }
 
 fn constant(f107: f64, f107a: f64, ap: &[f64]) -> Nrlmsise00 {
@@ -55,7 +56,7 @@ fn constant(f107: f64, f107a: f64, ap: &[f64]) -> Nrlmsise00 {
 }
 
 #[test]
-fn harris_priester_is_the_published_table_between_night_and_day() {
+fn harris_priester_interpolates_the_published_table() {
     let air = HarrisPriester::new(6.0, 0.0).expect("polar");
     for (altitude, cosine, expected) in HARRIS_PRIESTER {
         let got = air.at(altitude, cosine).expect("within");
@@ -67,7 +68,7 @@ fn harris_priester_is_the_published_table_between_night_and_day() {
 }
 
 #[test]
-fn the_bulge_follows_the_sun_two_hours_late() {
+fn the_bulge_lags_the_sun_by_two_hours() {
     let earth = earth("2024-03-20T03:06:00 UTC"); // equinox: the Sun is on the equator
     let air = HarrisPriester::default();
     let sun = earth.rot_fi(0.0) * earth.sun(0.0).expect("an epoch").normalize();
@@ -82,19 +83,19 @@ fn the_bulge_follows_the_sun_two_hours_late() {
 }
 
 #[test]
-fn nrlmsise_is_the_reference_in_c() {
+fn nrlmsise_agrees_with_the_reference_in_c() {
     for (epoch, place, [f107a, f107], ap, expected) in NRLMSISE {
         let got = density(&constant(f107, f107a, ap), &earth(epoch), 0.0, place).expect("air");
-        // altitudes go through m and back, angles through rad
+        // rounding of altitudes and angles by unit conversion
         assert!((got / expected - 1.0).abs() < 1e-12, "{epoch}: {got:e} is not {expected:e}");
-        // an hour later the Sun stands elsewhere
+        // negative control: the Sun an hour later
         let later = density(&constant(f107, f107a, ap), &earth(epoch), 3600.0, place).expect("air");
         assert!(place[0] < 50.0 || (later / expected - 1.0).abs() > 1e-4);
     }
 }
 
 #[test]
-fn space_weather_that_cannot_be_is_refused() {
+fn invalid_space_weather_is_refused() {
     let daily = |f107, f107a, ap| SpaceIndices::new(f107, f107a, MagneticActivity::Daily(ap));
     assert!(matches!(daily(0.0, 150.0, 4.0), Err(AtmosphereError::Value { name: "f107", .. })));
     assert!(matches!(daily(150.0, f64::NAN, 4.0), Err(AtmosphereError::Value { name: "f107a", .. })));
@@ -106,7 +107,7 @@ fn space_weather_that_cannot_be_is_refused() {
     ));
 }
 
-/// Days around a month's end; the numbers are made up so that each says where it stands.
+/// Days around the end of a month, with artificial numbers that identify their position.
 const TABLE: &str = "DATE,BSRN,AP1,AP2,AP3,AP4,AP5,AP6,AP7,AP8,AP_AVG,F10.7_OBS,F10.7_OBS_CENTER81
 2024-02-27,1,11,12,13,14,15,16,17,18,14,101,151
 2024-02-28,1,21,22,23,24,25,26,27,28,24,102,152
@@ -116,7 +117,7 @@ const TABLE: &str = "DATE,BSRN,AP1,AP2,AP3,AP4,AP5,AP6,AP7,AP8,AP_AVG,F10.7_OBS,
 ";
 
 #[test]
-fn a_table_gives_yesterdays_flux_and_the_last_three_days_activity() {
+fn a_table_gives_the_flux_of_the_day_before_and_three_days_of_activity() {
     let table = SpaceWeatherTable::from_csv(TABLE).expect("a table");
     let leap_day = 60_369; // 2024-02-29
     let got = table.at(leap_day + 1, 7.0 * 3600.0).expect("held"); // 07:00: the third interval
@@ -128,16 +129,16 @@ fn a_table_gives_yesterdays_flux_and_the_last_three_days_activity() {
     let daily = table.clone().daily().at(leap_day, 0.0).expect("held");
     assert_eq!(daily.activity, MagneticActivity::Daily(34.0));
 
-    // the next day needs the flux that is missing, the one after the last is not there
+    // the next day needs the missing flux, the day after the last is not in the table
     let missing = table.at(leap_day + 2, 0.0).expect_err("a gap").to_string();
     assert!(missing.contains("F10.7_OBS of 2024-03-01 is missing"), "{missing}");
     let outside = table.at(leap_day + 3, 0.0).expect_err("after the end").to_string();
     assert!(
-        outside.contains("2024-03-03 is outside of the table, which runs from 2024-02-27 to 2024-03-02"),
+        outside.contains("2024-03-03 is outside the table, which covers 2024-02-27 to 2024-03-02"),
         "{outside}"
     );
     assert!(matches!(table.at(leap_day - 2, 0.0), Err(AtmosphereError::OutsideTable { .. })));
-    // and so does a run on such a day
+    // likewise a run on such a day
     let air = Nrlmsise00::new(SpaceWeather::Table(table));
     let at = |epoch: &str| density(&air, &earth(epoch), 0.0, [400.0, 10.0, 20.0]);
     assert!(at("2024-03-01T07:00:00 UTC").is_ok());
@@ -146,18 +147,20 @@ fn a_table_gives_yesterdays_flux_and_the_last_three_days_activity() {
 }
 
 #[test]
-fn tables_that_cannot_be_read_say_where() {
+fn errors_of_tables_name_the_line() {
     let refused = |text: &str| SpaceWeatherTable::from_csv(text).expect_err("broken").to_string();
     assert!(refused("").contains("line 1: the table is empty"));
     assert!(refused("DATE,AP_AVG,F10.7_OBS\n").contains("no column F10.7_OBS_CENTER81"));
     let one = |row: &str| refused(&format!("DATE,AP_AVG,F10.7_OBS,F10.7_OBS_CENTER81\n{row}"));
     assert!(one("").contains("no rows"));
-    assert!(one("2023-02-29,4,150,150").contains("line 2: '2023-02-29' is no date"));
+    assert!(one("2023-02-29,4,150,150").contains("line 2: '2023-02-29' is not a date"));
     // the sum of days overflowed
-    assert!(one("2024-03-9223372036854775807,4,150,150").contains("is no date like 2024-03-01"));
-    assert!(one("9223372036854775807-03-01,4,150,150").contains("is no date like 2024-03-01"));
-    // a download cut short, and CelesTrak's mark of a gap
-    assert!(one("2023-02-28,4,150,150\n2023-03-01,4,1").contains("line 3: has 3 fields, the header 4"));
+    assert!(one("2024-03-9223372036854775807,4,150,150").contains("is not a date such as 2024-03-01"));
+    assert!(one("9223372036854775807-03-01,4,150,150").contains("is not a date such as 2024-03-01"));
+    // a truncated download, and CelesTrak's mark of a gap
+    assert!(
+        one("2023-02-28,4,150,150\n2023-03-01,4,1").contains("line 3: has 3 fields, but the header has 4")
+    );
     assert!(one("2023-02-28,4,999.9,150").contains("F10.7_OBS is '999.9'"));
     assert!(one("2023-02-28,401,150,150").contains("Ap, not Kp"));
     assert!(one("2023-02-28,four,150,150").contains("AP_AVG is 'four'"));
@@ -178,11 +181,12 @@ fn around_the_start_of_a_step_every_model_keeps_its_stated_error() {
             let altitude = 155e3 + 4e3 * f64::from(k);
             let place = Geodetic { latitude: 1.5 * angle.sin(), longitude: angle, altitude };
             let centre = earth.rot_fi(5.0).tr_mul(&place.position(&WGS84));
-            let local = LocalAir::new(air, &earth, 5.0, &centre).expect("outside");
+            let local = LocalAtmosphere::new(air, &earth, 5.0, &centre).expect("outside");
             for side in [-159.0, 159.0] {
                 let (s, c) = (2.0 * angle).sin_cos();
                 let r = centre + nalgebra::Vector3::new(c * s, s * s, c) * side;
-                let exact = air.density(&AirPlace::new(&earth, 5.0, &r).expect("outside")).expect("air");
+                let exact =
+                    air.density(&AtmospherePoint::new(&earth, 5.0, &r).expect("outside")).expect("air");
                 worst = worst.max((local.density(&r).expect("near") / exact - 1.0).abs());
             }
         }
@@ -192,12 +196,12 @@ fn around_the_start_of_a_step_every_model_keeps_its_stated_error() {
 }
 
 #[test]
-fn the_air_is_known_up_to_the_last_metre_of_a_model() {
+fn models_are_valid_up_to_their_highest_altitude() {
     let earth = earth("2014-03-01T06:00:00 UTC");
     let at = |altitude: f64| {
         let place = Geodetic { latitude: 0.3, longitude: 0.2, altitude };
         let centre = earth.rot_fi(0.0).tr_mul(&place.position(&WGS84));
-        LocalAir::new(&HarrisPriester::default(), &earth, 0.0, &centre).map(|air| (air, centre))
+        LocalAtmosphere::new(&HarrisPriester::default(), &earth, 0.0, &centre).map(|air| (air, centre))
     };
     for altitude in [100_001.0, 999_999.0] {
         let (air, centre) = at(altitude).expect("within");

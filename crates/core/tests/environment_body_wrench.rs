@@ -1,11 +1,11 @@
-//! A timed wrench: its frame, its lever, its switches, its refusals.
+//! Checks a timed wrench: frame, point of application, switching times, errors.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::environment::{
     Bodies, BodyState, BodyWrench, Effect, EnvironmentError, Scene, Wrench, Wrenches,
 };
 
-/// A body turned a quarter about z, its centre of mass off the link's origin.
+/// A body rotated by 90° about z, with the centre of mass off the link's origin.
 fn body() -> BodyState {
     BodyState {
         mass: 2.0,
@@ -19,10 +19,10 @@ fn body() -> BodyState {
 }
 
 fn act(effect: &BodyWrench, interval: (f64, f64)) -> Result<[Wrench; 2], EnvironmentError> {
-    let mut wrenches = Wrenches::new(2);
+    let mut wrenches = Wrenches::new(&[2]);
     let bodies = Bodies::from_iter([body(), body()]);
     let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
-    Scene::show(interval, interval.0, &bodies, None, None, act)?;
+    Scene::with(interval, interval.0, &bodies, None, None, act)?;
     Ok([0, 1].map(|k| wrenches.get(k).expect("a body there")))
 }
 
@@ -31,25 +31,25 @@ fn close(a: Vector3<f64>, b: Vector3<f64>) -> bool {
 }
 
 #[test]
-fn a_force_turns_with_the_body_and_has_a_lever() {
+fn a_body_fixed_force_rotates_with_the_body_and_has_a_moment() {
     let push = BodyWrench::new(1, Vector3::x() * 4.0, Vector3::x()).expect("finite");
     let [idle, pushed] = act(&push, (0.0, 1.0)).expect("a body there");
     assert_eq!(idle, Wrench::default());
-    // Link x is W y. The origin lies 0.5 m below the centre of mass along y: no lever.
+    // Link x is W y. The origin is 0.5 m below the centre of mass along y, so the moment is zero.
     assert!(close(pushed.force, Vector3::y() * 4.0));
     assert!(close(pushed.torque, Vector3::y()));
-    // At link (0, -2, 0), which is W (2, 0, 0) from the origin: 2 m times 4 N about z.
+    // at link (0, -2, 0), which is W (2, 0, 0) from the origin: 2 m times 4 N about z
     let [_, pushed] = act(&push.at(Vector3::y() * -2.0).expect("finite"), (0.0, 1.0)).expect("a body there");
     assert!(close(pushed.torque, Vector3::new(0.0, 1.0, 8.0)), "{}", pushed.torque);
 }
 
 #[test]
-fn the_middle_of_the_step_decides() {
+fn a_timed_wrench_is_switched_by_the_middle_of_the_step() {
     let push = BodyWrench::new(0, Vector3::x(), Vector3::zeros()).expect("finite");
     let push = push.during(1.0, 2.0).expect("start before end");
     assert_eq!(push.event_times(), [1.0, 2.0]);
     let is_on = |a, b| act(&push, (a, b)).expect("a body there")[0] != Wrench::default();
-    // The steps on either side of each event, though both touch it.
+    // the steps on either side of each event, although both touch it
     assert_eq!(
         [is_on(0.5, 1.0), is_on(1.0, 1.5), is_on(1.5, 2.0), is_on(2.0, 2.5)],
         [false, true, true, false]
@@ -64,15 +64,15 @@ fn a_wrench_without_an_end_has_one_event() {
 }
 
 #[test]
-fn bad_input_is_refused_with_its_numbers() {
+fn invalid_input_is_refused_with_its_values() {
     let push = BodyWrench::new(2, Vector3::x(), Vector3::zeros()).expect("finite");
-    assert_eq!(act(&push, (0.0, 1.0)), Err(EnvironmentError::UnknownBody { body: 2, count: 2 }));
+    assert_eq!(act(&push, (0.0, 1.0)), Err(EnvironmentError::UnknownBody { body: 2.into(), count: 2 }));
     for (start, end) in [(2.0, 1.0), (1.0, 1.0), (f64::NAN, 1.0), (0.0, f64::NAN)] {
         assert!(matches!(push.during(start, end), Err(EnvironmentError::EmptyInterval { .. })));
     }
     let error =
         BodyWrench::new(0, Vector3::new(0.0, f64::NAN, 0.0), Vector3::zeros()).expect_err("not finite");
-    assert_eq!(error.to_string(), "force holds NaN, finite numbers are needed");
+    assert_eq!(error.to_string(), "force holds NaN; expected finite numbers");
     assert!(BodyWrench::new(0, Vector3::x(), Vector3::x() * f64::INFINITY).is_err());
     assert!(push.at(Vector3::x() * f64::NAN).is_err());
 }

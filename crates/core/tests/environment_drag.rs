@@ -1,4 +1,4 @@
-//! Drag on surfaces against closed forms and sums over small plates.
+//! Checks drag on surfaces against closed forms and sums over small plates.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 
 mod common;
@@ -7,11 +7,11 @@ use common::stream::{alone, attitudes, ball, body, strips, summed, wrenches};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use onorbit_core::earth::{Earth, Epoch, Geodetic, WGS84};
 use onorbit_core::environment::atmosphere::{
-    AirPlace, Atmosphere, AtmosphereError, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester, Layer,
-    LocalAir,
+    Atmosphere, AtmosphereError, AtmospherePoint, ConstantAtmosphere, ExponentialAtmosphere, HarrisPriester,
+    Layer, LocalAtmosphere,
 };
 use onorbit_core::environment::surfaces::{Covering, Optics, Surface, SurfaceError, Surfaces};
-use onorbit_core::environment::{BodyState, Drag, EnvironmentError, Wrench};
+use onorbit_core::environment::{BodyIndex, BodyState, Drag, EnvironmentError, Wrench};
 use onorbit_core::model::{Geometry, Inertial, Link, Model, ModelBuilder, Visual};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -54,7 +54,7 @@ fn assert_close(got: &Wrench, (force, torque): (Vector3<f64>, Vector3<f64>), sha
 }
 
 #[test]
-fn a_cannonball_feels_half_rho_cd_a_v_squared_against_its_motion() {
+fn drag_on_a_cannonball_is_half_rho_cd_a_v_squared() {
     let air = Arc::new(ConstantAtmosphere::new(1.4e-12).expect("positive"));
     let effect = Drag::new(air, alone(Surface::cannonball(1.5, 2.2, 1.0).expect("positive")));
     let state = body(Matrix3::identity(), Vector3::new(0.0, 0.0, 3.0), Vector3::new(9.0, 8.0, 7.0));
@@ -67,14 +67,14 @@ fn a_cannonball_feels_half_rho_cd_a_v_squared_against_its_motion() {
 }
 
 #[test]
-fn a_plate_at_an_angle_has_its_closed_form_and_no_back() {
-    // 2 m² at 60° to the wind, on an arm of 3 m along x: F = -A cos 60° |v|² v̂, T = c × F
+fn drag_on_an_inclined_plate_agrees_with_the_closed_form() {
+    // 2 m² at 60° to the flow, at 3 m along x: F = -A cos 60° |v|² v̂, T = c × F
     let (s, c) = (PI / 3.0).sin_cos();
     let panel =
         |sign: f64| plates(&[2.0], &[[s * sign, c * sign, 0.0]], &[[3.0, 0.0, 0.0]]).expect("a plate");
     let v = Vector3::new(0.0, 7000.0, 0.0);
     let force = Vector3::new(0.0, -2.0 * 0.5 * 7000.0 * 7000.0, 0.0);
-    // the wind comes from +y: a panel on +x is pushed towards -y, which turns the body by -z
+    // flow from +y: a panel at +x is pushed towards -y, which gives a torque about -z
     let torque = Vector3::new(0.0, 0.0, 3.0 * force.y);
     assert_close(&drag(panel(1.0), body(Matrix3::identity(), STILL, STILL), v), (force, torque), 1e-14);
     let back = drag(panel(-1.0), body(Matrix3::identity(), STILL, STILL), v);
@@ -82,28 +82,28 @@ fn a_plate_at_an_angle_has_its_closed_form_and_no_back() {
 }
 
 #[test]
-fn a_box_shows_its_shadow_and_no_torque_about_its_middle() {
+fn drag_on_a_box_is_that_of_its_projected_area() {
     let [x, y, z] = [1.0, 2.0, 3.0];
-    let middle = Isometry3::translation(0.1, -0.2, 0.3); // where the centre of mass is
+    let middle = Isometry3::translation(0.1, -0.2, 0.3); // position of the centre of mass
     let v = Vector3::new(1000.0, -5000.0, 4000.0);
     for rot in attitudes() {
         let got = drag(of_shape(Geometry::Box([x, y, z]), middle), body(rot, STILL, STILL), v);
         let u = rot.transpose() * v;
         let shadow = y * z * u.x.abs() + z * x * u.y.abs() + x * y * u.z.abs();
-        // faces that look into the wind are centred off the middle, and their torques do not cancel
+        // the faces exposed to the flow are centred off the middle, and their torques do not cancel
         let sums =
             [(y * z, x, u.x, Vector3::x()), (z * x, y, u.y, Vector3::y()), (x * y, z, u.z, Vector3::z())];
         let torque: Vector3<f64> =
             sums.iter().map(|(area, edge, w, n)| (n * (0.5 * edge * w)).cross(&(u * -*area))).sum();
         assert_close(&got, (-v * shadow, rot * torque), 1e-14);
     }
-    // a cube has none: its faces push as a ball's would
+    // for a cube the torque is zero, as for a sphere
     let cube = drag(of_shape(Geometry::Box([1.0; 3]), middle), body(attitudes()[3], STILL, STILL), v);
     assert!(cube.torque.norm() < 1e-15 * cube.force.norm());
 }
 
 #[test]
-fn a_cylinder_is_what_many_strips_sum_up_to() {
+fn drag_on_a_cylinder_is_the_sum_over_strips() {
     let (radius, length) = (0.4, 2.5);
     let pose = Isometry3::translation(0.6, -0.9, 1.3);
     let centre = Vector3::new(0.5, -0.7, 1.0);
@@ -122,7 +122,7 @@ fn a_cylinder_is_what_many_strips_sum_up_to() {
 }
 
 #[test]
-fn a_ball_is_its_disc_and_a_capsule_is_a_tube_with_a_ball() {
+fn drag_on_a_capsule_is_that_of_a_cylinder_and_a_sphere() {
     let (radius, length) = (0.4, 1.0);
     let pose = Isometry3::translation(0.6, -0.9, 1.3);
     let centre = Vector3::new(0.5, -0.7, 1.0);
@@ -145,8 +145,8 @@ fn a_ball_is_its_disc_and_a_capsule_is_a_tube_with_a_ball() {
 }
 
 #[test]
-fn paddles_that_turn_are_braked_by_the_speed_of_their_own_centroids() {
-    // a wheel of four paddles, each seen from both sides, in air that does not flow: only their turn makes wind
+fn rotating_paddles_are_damped_by_the_velocity_of_their_centroids() {
+    // a wheel of four two-sided paddles in air at rest: only the rotation causes a flow
     let (areas, mut normals, mut centroids) = ([0.5; 8], Vec::new(), Vec::new());
     for k in 0..4 {
         let (s, c) = (f64::from(k) * PI / 2.0).sin_cos();
@@ -164,8 +164,8 @@ fn paddles_that_turn_are_braked_by_the_speed_of_their_own_centroids() {
 }
 
 #[test]
-fn a_body_off_its_axes_feels_the_same_in_all_of_them() {
-    // the same box once as a body at rest in turned axes, once turned itself: results follow the turn
+fn drag_is_independent_of_the_axes_of_the_body() {
+    // the box as a body at rest in rotated axes, and rotated itself: the results rotate with it
     let surface = of_shape(Geometry::Box([1.0, 2.0, 3.0]), Isometry3::translation(1.0, 0.0, 0.0));
     let (v, spin) = (Vector3::new(10.0, 7000.0, -300.0), Vector3::new(0.2, -0.1, 0.4));
     let plain = drag(surface.clone(), body(Matrix3::identity(), STILL, spin), v);
@@ -176,7 +176,7 @@ fn a_body_off_its_axes_feels_the_same_in_all_of_them() {
 }
 
 #[test]
-fn surfaces_that_cannot_be_are_refused() {
+fn invalid_surfaces_are_refused() {
     assert!(matches!(Surface::cannonball(-1.0, 2.2, 1.0), Err(SurfaceError::Value { name: "area", .. })));
     assert!(matches!(
         Surface::cannonball(1.0, f64::NAN, 1.0),
@@ -197,10 +197,17 @@ fn surfaces_that_cannot_be_are_refused() {
         Surfaces::from_shapes(&robot(&[]), 2.2, Optics::default()),
         Err(SurfaceError::NoShape { .. })
     ));
-    let covering = || Covering { body: 1, surface: Surface::cannonball(1.0, 2.2, 1.0).expect("positive") };
-    let unknown = Surfaces::new(vec![covering()], 1);
-    assert!(matches!(unknown, Err(SurfaceError::UnknownBody { body: 1, count: 1 })));
-    assert!(matches!(Surfaces::new(vec![covering(), covering()], 2), Err(SurfaceError::Twice { body: 1 })));
+    let covering =
+        || Covering { body: 1.into(), surface: Surface::cannonball(1.0, 2.2, 1.0).expect("positive") };
+    let unknown = Surfaces::new(vec![covering()], &[1]);
+    assert!(matches!(
+        unknown,
+        Err(SurfaceError::UnknownBody { body: BodyIndex { system: 0, body: 1 }, count: 1 })
+    ));
+    assert!(matches!(
+        Surfaces::new(vec![covering(), covering()], &[2]),
+        Err(SurfaceError::Twice { body: BodyIndex { system: 0, body: 1 } })
+    ));
 }
 
 #[test]
@@ -217,20 +224,20 @@ fn drag_needs_an_earth_and_air() {
     };
     assert!((altitude + 8_137.0).abs() < 1e-3);
     let message = HarrisPriester::default().at(1_000_001.0, 0.0).expect_err("above").to_string();
-    assert!(message.contains("1000000 m: an exponential atmosphere"), "{message}");
+    assert!(message.contains("1000000 m; use an exponential atmosphere"), "{message}");
     assert!(HarrisPriester::default().at(99_999.0, 0.0).is_err());
     assert!(HarrisPriester::new(1.0, 0.0).is_err() && HarrisPriester::new(2.0, f64::NAN).is_err());
 }
 
 #[test]
-fn layers_are_exponential_and_in_order() {
+fn exponential_layers_agree_with_the_published_table() {
     let layer = |base, density, scale_height| Layer { base, density, scale_height };
     let air = ExponentialAtmosphere::new(vec![layer(200e3, 3e-10, 40e3)]).expect("one layer");
     assert!((air.at(240e3) / (3e-10 * (-1.0_f64).exp()) - 1.0).abs() < 1e-15);
     assert!((air.at(0.0) / (3e-10 * 5.0_f64.exp()) - 1.0).abs() < 1e-14); // goes on below
     let table = ExponentialAtmosphere::table();
     assert_eq!(table.at(0.0), 1.225);
-    // Vallado's own worked number: 747.2119 km, 2.1219854e-14 kg/m³ (example 8-4)
+    // Vallado's example 8-4: 747.2119 km, 2.1219854e-14 kg/m³
     assert!((table.at(747.2119e3) / 2.121_985_4e-14 - 1.0).abs() < 1e-6, "{}", table.at(747.2119e3));
     for above in (25..1000).map(|km| f64::from(km) * 1e3) {
         assert!(table.at(above + 1.0) < table.at(above - 1.0) * 1.02, "{above}");
@@ -252,13 +259,13 @@ fn around_the_start_of_a_step_the_air_is_what_the_model_says_to_its_stated_error
     let earth = Earth::about_z(0.3, 7.3e-5);
     let air = ExponentialAtmosphere::table();
     let exact =
-        |r: &Vector3<f64>| air.density(&AirPlace::new(&earth, 5.0, r).expect("outside")).expect("air");
+        |r: &Vector3<f64>| air.density(&AtmospherePoint::new(&earth, 5.0, r).expect("outside")).expect("air");
     let mut worst = 0.0_f64;
     for latitude in [-1.5, -0.7, 0.0, 0.9] {
         for altitude in [160e3, 410e3, 720e3] {
             let place = Geodetic { latitude, longitude: 2.0, altitude };
             let centre = earth.rot_fi(5.0).tr_mul(&place.position(&WGS84));
-            let local = LocalAir::new(&air, &earth, 5.0, &centre).expect("outside");
+            let local = LocalAtmosphere::new(&air, &earth, 5.0, &centre).expect("outside");
             for turn in attitudes() {
                 let r = centre + turn * Vector3::new(0.0, 0.0, 159.0);
                 let got = local.density(&r).expect("near");
@@ -269,14 +276,14 @@ fn around_the_start_of_a_step_the_air_is_what_the_model_says_to_its_stated_error
     }
     println!("density within 159 m: {worst:.1e}");
     assert!(worst < 1e-4);
-    // without following the altitude it would be a hundred times that
-    let place = AirPlace::new(&earth, 5.0, &RADIUS).expect("outside");
+    // without the altitude dependence the error would be a hundred times larger
+    let place = AtmospherePoint::new(&earth, 5.0, &RADIUS).expect("outside");
     let above = exact(&(RADIUS + Vector3::new(99.0, 0.0, 0.0)));
     assert!((air.density(&place).expect("air") / above - 1.0).abs() > 1e-3);
 }
 
 #[test]
-fn drag_follows_the_model_to_its_stated_error_wherever_a_step_begins() {
+fn the_interpolated_air_has_the_stated_error_at_all_positions() {
     let air = ExponentialAtmosphere::table();
     let effect =
         Drag::new(Arc::new(air.clone()), alone(Surface::cannonball(2.0, 1.0, 1.0).expect("positive")));
@@ -286,17 +293,17 @@ fn drag_follows_the_model_to_its_stated_error_wherever_a_step_begins() {
     for k in 0..500 {
         let r = Vector3::new(6.7e6 + 37.7 * f64::from(k), 11.3 * f64::from(k), 400e3);
         let got = wrenches(&effect, Some(&earth), (r, v), &[body(Matrix3::identity(), STILL, STILL)]);
-        let density = air.density(&AirPlace::new(&earth, 0.0, &r).expect("outside")).expect("air");
+        let density = air.density(&AtmospherePoint::new(&earth, 0.0, &r).expect("outside")).expect("air");
         let u = v - Vector3::new(0.0, 0.0, 7.3e-5).cross(&r);
         let share = got.expect("outside")[0].force.norm() / (density * u.norm_squared()) - 1.0;
         worst = worst.max(share.abs());
     }
     println!("drag off the grid: {worst:.1e}");
-    assert!(worst > 1e-9 && worst < 1e-4); // it is a grid, and a fine one
+    assert!(worst > 1e-9 && worst < 1e-4); // the grid is fine
 }
 
 #[test]
-fn the_same_step_gives_the_same_bits_whatever_was_asked_before() {
+fn the_air_of_a_step_is_independent_of_earlier_queries() {
     let make = || {
         let surface = Surface::cannonball(1.0, 2.2, 1.0).expect("positive");
         Drag::new(Arc::new(ExponentialAtmosphere::table()), alone(surface))
@@ -313,21 +320,22 @@ fn the_same_step_gives_the_same_bits_whatever_was_asked_before() {
     assert_ne!(ask(&used, 6.8e6), ask(&used, 6.9e6));
 }
 
-/// A bare link above the end of a model asks nothing of it, a covered one does.
+/// A body without surfaces above the end of a model is accepted, one with surfaces is not.
 #[test]
-fn air_is_asked_for_where_something_meets_it() {
+fn the_air_is_evaluated_only_at_bodies_with_surfaces() {
     let far = BodyState { com: Vector3::x() * 9e5, ..body(Matrix3::identity(), STILL, STILL) };
     let states = [body(Matrix3::identity(), STILL, STILL), far];
     let on = |bodies: &[usize]| {
         let surface = || Surface::cannonball(1.0, 2.2, 1.0).expect("positive");
-        let coverings = bodies.iter().map(|&body| Covering { body, surface: surface() }).collect();
-        let surfaces = Surfaces::new(coverings, 2).expect("two bodies");
+        let coverings =
+            bodies.iter().map(|&body| Covering { body: body.into(), surface: surface() }).collect();
+        let surfaces = Surfaces::new(coverings, &[2]).expect("two bodies");
         let air = HarrisPriester::new(3.0, 0.5).expect("an exponent");
         let earth = Earth::about_z(0.0, 7.3e-5)
             .with_epoch(Epoch::parse("2024-01-03T00:00:00 UTC").expect("an instant"));
         wrenches(&Drag::new(Arc::new(air), surfaces), Some(&earth), (RADIUS, Vector3::y() * 7.6e3), &states)
     };
-    let felt = on(&[0]).expect("only the base meets air");
-    assert!(felt[0].force.norm() > 0.0 && felt[1] == Wrench::default());
+    let on_bodies = on(&[0]).expect("only the base meets air");
+    assert!(on_bodies[0].force.norm() > 0.0 && on_bodies[1] == Wrench::default());
     assert!(on(&[0, 1]).is_err(), "above the table");
 }

@@ -1,11 +1,11 @@
-//! Differential gravity and the gravity-gradient torque against numbers made elsewhere.
+//! Checks differential gravity and the gravity-gradient torque against independent numbers.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 #![allow(clippy::excessive_precision)] // tables stand as their sources print them
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::environment::{
-    Bodies, BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient, Place, Reference,
-    ReferenceMotion, Scene, Wrench, Wrenches,
+    Bodies, BodyIndex, BodyState, DifferentialGravity, Effect, EnvironmentError, GravityGradient,
+    GravityMode, Reference, Scene, ScenePoint, Wrench, Wrenches,
 };
 use onorbit_core::gravity::Gravity;
 use onorbit_core::orbit::{Kepler, MU_EARTH, Orbit, OrbitState};
@@ -50,16 +50,16 @@ fn body(com: Vector3<f64>) -> BodyState {
     }
 }
 
-/// Gravity that outlives every scene.
+/// Returns gravity with a static lifetime.
 fn point_mass(mu: f64) -> &'static Gravity {
     Box::leak(Box::new(Gravity::point_mass(mu)))
 }
 
-/// A reference that does not accelerate, at `position`.
+/// Returns a reference at `position` without acceleration.
 fn reference(position: [f64; 3], mu: f64) -> Reference<'static> {
     let zero = Vector3::zeros();
     let state = OrbitState { position: position.into(), velocity: zero, acceleration: zero };
-    Reference { state, gravity: Some(point_mass(mu)), falls_freely: false }
+    Reference { state, gravity: Some(point_mass(mu)), in_free_fall: false }
 }
 
 fn wrench(
@@ -67,30 +67,30 @@ fn wrench(
     reference: Option<Reference<'_>>,
     body: BodyState,
 ) -> Result<Wrench, EnvironmentError> {
-    let mut wrenches = Wrenches::new(1);
+    let mut wrenches = Wrenches::new(&[1]);
     let bodies = Bodies::from_iter([body]);
     let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
-    Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, act)?;
+    Scene::with((0.0, 1.0), 0.0, &bodies, reference, None, act)?;
     Ok(wrenches.get(0).expect("one body"))
 }
 
-const CARRIED: DifferentialGravity = DifferentialGravity { motion: ReferenceMotion::Carried };
-const TRUE: DifferentialGravity = DifferentialGravity { motion: ReferenceMotion::True };
+const CARRIED: DifferentialGravity = DifferentialGravity { gravity_mode: GravityMode::Carried };
+const TRUE: DifferentialGravity = DifferentialGravity { gravity_mode: GravityMode::True };
 
 #[test]
-fn the_tide_keeps_its_digits_from_a_millimetre_to_ten_thousand_kilometres() {
+fn the_tide_is_free_of_cancellation_from_1_mm_to_10000_km() {
     for (offset, expected) in TIDES {
         let got = wrench(&CARRIED, Some(reference(ORIGIN, MU_EARTH)), body(offset.into())).expect("outside");
         let expected = Vector3::from(expected);
         let error = (got.force - expected).norm() / expected.norm();
         println!("{:9.1e} m: {:.1} roundings", Vector3::from(offset).norm(), error / f64::EPSILON);
-        // A handful of roundings, none of them amplified.
+        // a few roundings, none of them amplified
         assert!(error < 4.0 * f64::EPSILON, "{offset:?}: {error}");
     }
 }
 
 #[test]
-fn plain_subtraction_of_two_pulls_would_fail() {
+fn plain_subtraction_of_accelerations_loses_the_tide() {
     let pull = |r: Vector3<f64>| r * (-MU_EARTH / r.norm().powi(3));
     let (offset, expected) = TIDES[0];
     let (origin, expected) = (Vector3::from(ORIGIN), Vector3::from(expected));
@@ -99,12 +99,12 @@ fn plain_subtraction_of_two_pulls_would_fail() {
 }
 
 #[test]
-fn a_reference_that_obeys_gravity_leaves_the_tide_alone_bit_for_bit() {
+fn a_reference_in_free_fall_leaves_exactly_the_tide() {
     let v = Vector3::new(109.649663, -7527.726490, 1484.521489);
     let orbit = Kepler::from_state(ORIGIN.into(), v, MU_EARTH).expect("an ellipse");
     for t in [0.0, 1234.5, 86_400.0] {
         let (state, gravity) = (orbit.state(t).expect("a valid time"), orbit.mu().map(point_mass));
-        let reference = Reference { state, gravity, falls_freely: false };
+        let reference = Reference { state, gravity, in_free_fall: false };
         assert_eq!(DifferentialGravity::residual(t, &reference), Ok(Some(Vector3::zeros())));
         let b = body(Vector3::new(0.3, -0.2, 0.1));
         assert_eq!(wrench(&TRUE, Some(reference), b), wrench(&CARRIED, Some(reference), b));
@@ -112,12 +112,12 @@ fn a_reference_that_obeys_gravity_leaves_the_tide_alone_bit_for_bit() {
 }
 
 #[test]
-fn a_reference_that_does_not_obey_gravity_is_fallen_away_from() {
-    // Held still in space, it sees the whole pull; carried along, the tide alone.
+fn gravity_acts_fully_relative_to_a_reference_at_rest() {
+    // for a reference at rest, the full gravity; in `carried` mode, only the tide
     let (r, b) = (reference([7e6, 0.0, 0.0], MU_EARTH), body(Vector3::zeros()));
     let g = MU_EARTH / 49e12;
     let force = wrench(&TRUE, Some(r), b).expect("outside").force;
-    // One division and one product apart.
+    // one division and one product
     assert!((force + Vector3::x() * g).norm() < 4.0 * f64::EPSILON * g, "{force}");
     assert_eq!(wrench(&CARRIED, Some(r), b).expect("outside").force, Vector3::zeros());
 }
@@ -127,11 +127,11 @@ fn force_scales_with_mass_and_adds_to_what_is_there() {
     let heavy = BodyState { mass: 3.0, ..body(Vector3::x()) };
     let bodies = Bodies::from_iter([body(Vector3::x()), heavy]);
     let there = Wrench { force: Vector3::new(1.0, 2.0, 3.0), torque: Vector3::y() };
-    let mut wrenches = Wrenches::new(2);
+    let mut wrenches = Wrenches::new(&[2]);
     wrenches.add(1, there).expect("two bodies");
     let reference = Some(reference(ORIGIN, MU_EARTH));
     let act = |scene: &Scene<'_>| CARRIED.add_wrenches(scene, &mut wrenches);
-    Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, act).expect("outside");
+    Scene::with((0.0, 1.0), 0.0, &bodies, reference, None, act).expect("outside");
     let [light, heavy] = [0, 1].map(|k| wrenches.get(k).expect("two bodies"));
     assert_eq!(heavy.force, there.force + light.force * 3.0);
     assert_eq!(heavy.torque, there.torque);
@@ -155,8 +155,8 @@ const CYLINDER: [Case; 3] = [
      [-1.958561461497211e-05, -0.001102150420357001, -0.0007137081527530395], [0.0, 9.285032588060049e-08, 2.393403219339611e-08]),
 ];
 
-/// Error of the angular acceleration, rad/s², with the body's inertia turned by `turned` and
-/// the torque times `sign`.
+/// Error of the angular acceleration, rad/s², with the inertia rotated by `turned` and the torque times
+/// `sign`.
 fn cylinder_error(case: &Case, sign: f64, turned: bool) -> f64 {
     let (position, rot_bw, rate_b, expected) = case;
     let (rot_bw, w) = (Matrix3::from_row_slice(rot_bw), Vector3::from(*rate_b));
@@ -177,14 +177,14 @@ fn gravity_gradient_torque_agrees_with_nasa() {
         println!("{error:.1e} rad/s²");
         // Accelerations of 1e-7, printed to 16 digits: 1e-23; differences of terms 1e-6 in size, rounded.
         assert!(error < 3e-20, "{error}");
-        // Negative controls: the torque with the wrong sign, and the inertia taken for one in W axes.
+        // negative controls: the torque with the wrong sign, and the inertia used in W axes
         assert!(cylinder_error(case, -1.0, true) > 1e-8);
         assert!(cylinder_error(case, 1.0, false) > 1e-8);
     }
 }
 
 #[test]
-fn a_long_body_is_turned_back_towards_the_vertical() {
+fn the_gravity_gradient_aligns_a_long_body_with_the_vertical() {
     // Pitched by θ about z from the radial x axis: T = -(3μ/2r³) (C - A) sin 2θ along z, with A the small moment.
     let (small, large, r, pitch) = (2.0, 30.0, 7e6_f64, 0.3_f64);
     let rot = Rotation3::from_axis_angle(&Vector3::z_axis(), pitch).into_inner();
@@ -192,7 +192,7 @@ fn a_long_body_is_turned_back_towards_the_vertical() {
     let b = BodyState { inertia, rot_wk: rot, ..body(Vector3::zeros()) };
     let got = wrench(&GravityGradient, Some(reference([r, 0.0, 0.0], MU_EARTH)), b).expect("outside").torque;
     let expected = -1.5 * MU_EARTH / r.powi(3) * (large - small) * (2.0 * pitch).sin();
-    // The difference of moments loses a digit of its 16.
+    // the difference of moments loses one of 16 digits
     assert!((got - Vector3::z() * expected).norm() < 1e-14 * expected.abs(), "{got} {expected}");
 }
 
@@ -204,7 +204,7 @@ fn torque_is_taken_at_the_body_and_not_at_the_reference() {
     let there = Some(reference([7e6, 7e6, 0.0], MU_EARTH));
     let moved = wrench(&GravityGradient, here, at(Vector3::y() * 7e6)).expect("outside").torque;
     assert_eq!(moved, wrench(&GravityGradient, there, at(Vector3::zeros())).expect("outside").torque);
-    // On a principal axis there is none.
+    // on a principal axis the torque is zero
     assert_eq!(
         wrench(&GravityGradient, here, at(Vector3::zeros())).expect("outside").torque,
         Vector3::zeros()
@@ -212,7 +212,7 @@ fn torque_is_taken_at_the_body_and_not_at_the_reference() {
 }
 
 #[test]
-fn gravity_is_refused_around_no_planet_and_inside_one() {
+fn gravity_without_a_planet_or_inside_one_is_refused() {
     let origin = reference(ORIGIN, MU_EARTH);
     let no_planet = Reference { gravity: None, ..origin };
     for effect in [&TRUE as &dyn Effect, &CARRIED, &GravityGradient] {
@@ -225,23 +225,32 @@ fn gravity_is_refused_around_no_planet_and_inside_one() {
             let error = wrench(effect, Some(reference(position, MU_EARTH)), body(Vector3::zeros()))
                 .expect_err("inside");
             assert!(
-                matches!(error, EnvironmentError::InsidePlanet { what: Place::Reference, .. }),
+                matches!(error, EnvironmentError::InsidePlanet { what: ScenePoint::Reference, .. }),
                 "{error}"
             );
         }
-        // The body falls into the Earth while the reference flies on.
+        // the body hits the Earth while the reference continues
         let error = wrench(effect, Some(origin), body(-Vector3::from(ORIGIN))).expect_err("inside");
-        assert!(matches!(error, EnvironmentError::InsidePlanet { what: Place::Body(0), .. }), "{error}");
+        assert!(
+            matches!(
+                error,
+                EnvironmentError::InsidePlanet {
+                    what: ScenePoint::Body(BodyIndex { system: 0, body: 0 }),
+                    ..
+                }
+            ),
+            "{error}"
+        );
     }
 }
 
 #[test]
 fn one_wrench_per_body_is_needed() {
-    let (bodies, mut two) = (Bodies::from_iter([body(Vector3::zeros())]), Wrenches::new(2));
+    let (bodies, mut two) = (Bodies::from_iter([body(Vector3::zeros())]), Wrenches::new(&[2]));
     for effect in [&TRUE as &dyn Effect, &GravityGradient] {
         let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut two);
         let reference = Some(reference(ORIGIN, MU_EARTH));
-        let error = Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, act).expect_err("one too many");
+        let error = Scene::with((0.0, 1.0), 0.0, &bodies, reference, None, act).expect_err("one too many");
         assert_eq!(error, EnvironmentError::WrongLength { expected: 1, got: 2 });
     }
 }

@@ -1,4 +1,4 @@
-//! Bodies side by side: the same wrenches on any lanes, however many bodies there are and however they are covered.
+//! Checks that wrenches are the same on any lanes, for any number of bodies and any surfaces.
 #![allow(clippy::unwrap_used)] // set-up that fails should stop
 
 mod common;
@@ -10,8 +10,8 @@ use onorbit_core::earth::{Earth, Epoch};
 use onorbit_core::environment::atmosphere::ExponentialAtmosphere;
 use onorbit_core::environment::surfaces::{Covering, Optics, Surface, Surfaces};
 use onorbit_core::environment::{
-    Bodies, BodyState, DifferentialGravity, Drag, Effect, EnvironmentError, GravityGradient, Place,
-    RadiationPressure, Reference, Scene, Wrench, Wrenches,
+    Bodies, BodyIndex, BodyState, DifferentialGravity, Drag, Effect, EnvironmentError, GravityGradient,
+    RadiationPressure, Reference, Scene, ScenePoint, Wrench, Wrenches,
 };
 use onorbit_core::gravity::{Gravity, GravityField};
 use onorbit_core::model::{Geometry, Inertial, Link, Model, ModelBuilder, Visual};
@@ -27,16 +27,17 @@ fn hull(shapes: Vec<Geometry>) -> Model {
     ModelBuilder::new("robot", link).and_then(ModelBuilder::build).unwrap()
 }
 
-/// Bodies with nothing, a ball, a box and a cylinder, a capsule, two boxes, ...: no two neighbours have as many parts.
+/// Bodies without surface, with a sphere, a box and a cylinder, a capsule, two boxes, …: neighbours differ in
+/// their number of parts.
 fn coverings(count: usize) -> Surfaces {
-    let tube = || Geometry::Cylinder { radius: 0.2, length: 0.7 };
+    let cylinder = || Geometry::Cylinder { radius: 0.2, length: 0.7 };
     let of_shapes = |shapes| {
         let optics = Optics::new(0.3, 0.4).unwrap();
         Surface::from_shapes(&hull(shapes), 0, 2.0, optics).unwrap()
     };
     let surface = |k: usize| match k % 5 {
         0 => Surface::cannonball(1.5 + 0.1 * k as f64, 2.2, 1.3).unwrap(),
-        1 => of_shapes(vec![Geometry::Box([0.3, 0.4, 0.5]), tube()]),
+        1 => of_shapes(vec![Geometry::Box([0.3, 0.4, 0.5]), cylinder()]),
         2 => of_shapes(vec![Geometry::Capsule { radius: 0.1, length: 0.4 }]),
         _ => of_shapes(vec![
             Geometry::Box([1.0, 0.1, 0.2]),
@@ -44,12 +45,16 @@ fn coverings(count: usize) -> Surfaces {
             Geometry::Sphere { radius: 0.2 },
         ]),
     };
-    // one in seven stays bare, but for the first
+    // one in seven has no surface, except the first
     let covered = (0..count).filter(|k| k % 7 != 6);
-    Surfaces::new(covered.map(|body| Covering { body, surface: surface(body) }).collect(), count).unwrap()
+    Surfaces::new(
+        covered.map(|body| Covering { body: body.into(), surface: surface(body) }).collect(),
+        &[count],
+    )
+    .unwrap()
 }
 
-/// Strewn over `spread` m.
+/// Positions distributed over `spread` m.
 fn bodies(count: usize, spread: f64) -> Vec<BodyState> {
     let mut random = Random::new(count as u64);
     let state = |k: usize| BodyState {
@@ -71,7 +76,7 @@ fn largest_difference(a: &[Wrench], b: &[Wrench]) -> f64 {
     a.iter().zip(b).map(apart).fold(0.0, f64::max)
 }
 
-/// What an effect does beside a reference that falls in this gravity.
+/// Returns the wrenches of an effect near a reference in free fall in this gravity.
 fn wrenches(
     effect: &dyn Effect,
     (gravity, earth): (&Gravity, &Earth),
@@ -80,10 +85,10 @@ fn wrenches(
     let position = Vector3::new(4.1e6, -4.9e6, 2.2e6);
     let (velocity, acceleration) = (Vector3::new(5.6e3, 3.1e3, -4.0e3), Vector3::zeros());
     let state = OrbitState { position, velocity, acceleration };
-    let reference = Reference { state, gravity: Some(gravity), falls_freely: true };
-    let (mut wrenches, bodies) = (Wrenches::new(bodies.len()), bodies.iter().copied().collect::<Bodies>());
+    let reference = Reference { state, gravity: Some(gravity), in_free_fall: true };
+    let (mut wrenches, bodies) = (Wrenches::new(&[bodies.len()]), bodies.iter().copied().collect::<Bodies>());
     let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
-    Scene::show((0.0, 1e-3), 0.0, &bodies, Some(reference), Some(earth), act)?;
+    Scene::with((0.0, 1e-3), 0.0, &bodies, Some(reference), Some(earth), act)?;
     Ok(wrenches.iter().collect())
 }
 
@@ -96,7 +101,7 @@ fn on_each_level<T>(job: impl Fn() -> T) -> [T; 3] {
 
 const COUNTS: [usize; 13] = [1, 2, 3, 4, 5, 7, 8, 9, 12, 13, 16, 17, 23];
 
-/// Near each other, beyond what a field, light and air are taken about, and farther: everywhere near and far are mixed.
+/// Bodies near each other, beyond the range of the expansions of field, light and air, and farther, mixed.
 const SPREADS: [f64; 4] = [3.0, 40.0, 200.0, 2e4];
 
 #[test]
@@ -118,23 +123,32 @@ fn every_instruction_set_gives_the_same_wrenches() {
         ];
         for (effect, gravity) in effects.iter().flat_map(|effect| gravities.iter().map(move |g| (*effect, g)))
         {
-            let [one_by_one, four, eight] =
+            let [scalar, four, eight] =
                 on_each_level(|| wrenches(effect, (gravity, &earth), &bodies).unwrap());
             for lanes in [four, eight] {
-                let apart = largest_difference(&one_by_one, &lanes);
+                let apart = largest_difference(&scalar, &lanes);
                 assert!(apart < 1e-12, "{} on {count} bodies over {spread} m: {apart:e}", effect.name());
             }
-            // every body has a wrench of its own: two changed places would be seen
-            let last = one_by_one.len() - 1;
-            let mut changed = one_by_one.clone();
+            // the wrenches of all bodies differ, so that exchanged bodies would be detected
+            let last = scalar.len() - 1;
+            let mut changed = scalar.clone();
             changed.swap(0, last);
-            assert!(last == 0 || largest_difference(&one_by_one, &changed) > 1e-6, "{}", effect.name());
+            assert!(last == 0 || largest_difference(&scalar, &changed) > 1e-6, "{}", effect.name());
         }
     }
-    // whoever is inside the planet is named, in whatever lane
+    // the error names the body inside the planet, in any lane
     let mut bodies = bodies(11, 3.0);
     bodies[9].com = -Vector3::new(4.1e6, -4.9e6, 2.2e6);
     for error in on_each_level(|| wrenches(&GravityGradient, (&gravities[0], &earth), &bodies).unwrap_err()) {
-        assert!(matches!(error, EnvironmentError::InsidePlanet { what: Place::Body(9), .. }), "{error}");
+        assert!(
+            matches!(
+                error,
+                EnvironmentError::InsidePlanet {
+                    what: ScenePoint::Body(BodyIndex { system: 0, body: 9 }),
+                    ..
+                }
+            ),
+            "{error}"
+        );
     }
 }

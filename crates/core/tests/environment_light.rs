@@ -1,4 +1,4 @@
-//! Radiation pressure on surfaces against closed forms and sums over small plates.
+//! Checks radiation pressure on surfaces against closed forms and sums over small plates.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 
 mod common;
@@ -18,7 +18,7 @@ fn earth() -> Earth {
     Earth::about_z(0.0, 7.29e-5).with_epoch(Epoch::parse("2024-01-03T00:00:00 UTC").expect("an instant"))
 }
 
-/// A place on the day side, and the direction and distance of the Sun from there.
+/// Returns a position on the day side, and the direction and distance of the Sun from there.
 fn day_side() -> (Vector3<f64>, Vector3<f64>, f64) {
     let sun = earth().sun(0.0).expect("an epoch");
     let r = sun.normalize() * 7.0e6;
@@ -35,7 +35,7 @@ fn light(surface: Surface, rot: Matrix3<f64>) -> Wrench {
     wrenches(&effect, Some(&earth()), (r, Vector3::zeros()), &[state]).expect("outside")[0]
 }
 
-/// The force on a plate, the formula as books print it.
+/// Returns the force on a plate by the textbook formula.
 fn plate_force(area: f64, n: &Vector3<f64>, s: &Vector3<f64>, specular: f64, diffuse: f64) -> Vector3<f64> {
     let cosine = n.dot(s);
     if cosine <= 0.0 {
@@ -67,7 +67,7 @@ fn assert_close(got: &Wrench, (force, torque): (Vector3<f64>, Vector3<f64>), sha
 }
 
 #[test]
-fn a_cannonball_feels_the_flux_at_its_true_distance_from_the_sun() {
+fn radiation_pressure_depends_on_the_distance_from_the_sun() {
     let (r, s, distance) = day_side();
     let effect = RadiationPressure::new(alone(Surface::cannonball(16.0, 2.2, 1.8).expect("positive")));
     let state = body(attitudes()[2], Vector3::zeros(), Vector3::zeros());
@@ -79,7 +79,7 @@ fn a_cannonball_feels_the_flux_at_its_true_distance_from_the_sun() {
 }
 
 #[test]
-fn mirrors_walls_and_black_plates_facing_the_sun() {
+fn specular_diffuse_and_absorbing_plates_facing_the_sun() {
     let (_, s, _) = day_side();
     let n = [s.x, s.y, s.z];
     for (specular, diffuse, share) in
@@ -91,14 +91,14 @@ fn mirrors_walls_and_black_plates_facing_the_sun() {
 }
 
 #[test]
-fn a_mirror_at_an_angle_is_pushed_along_its_normal_and_a_black_plate_along_the_light() {
+fn specular_force_is_along_the_normal_and_absorption_along_the_light() {
     let (_, s, _) = day_side();
     let side = s.cross(&Vector3::z()).normalize();
     let (sin, cos) = (40.0_f64).to_radians().sin_cos();
     let n = s * cos + side * sin;
     let mirror = light(plate(2.0, [n.x, n.y, n.z], [0.0; 3], 1.0, 0.0), Matrix3::identity());
     assert_close(&mirror, (n * (-2.0 * 2.0 * cos * cos), Vector3::zeros()), 1e-14);
-    // an arm to the side: light pushes the panel away from the Sun, T = c × F
+    // a panel to the side: light pushes it away from the Sun, T = c × F
     let black = light(
         plate(2.0, [n.x, n.y, n.z], [side.x * 3.0, side.y * 3.0, side.z * 3.0], 0.0, 0.0),
         Matrix3::identity(),
@@ -109,7 +109,7 @@ fn a_mirror_at_an_angle_is_pushed_along_its_normal_and_a_black_plate_along_the_l
 }
 
 #[test]
-fn tubes_and_balls_are_what_many_plates_sum_up_to() {
+fn radiation_pressure_on_curved_surfaces_is_the_sum_over_plates() {
     let (_, s, _) = day_side();
     let (radius, length, centre) = (0.4, 2.5, Vector3::new(0.5, -0.7, 1.0));
     let mut cylinder = strips(radius, length, centre, 20_000);
@@ -135,8 +135,8 @@ fn tubes_and_balls_are_what_many_plates_sum_up_to() {
 }
 
 #[test]
-fn a_black_body_takes_what_its_shadow_holds_up() {
-    // the momentum of the light in the shadow of a box, whatever its attitude
+fn the_force_on_an_absorbing_box_is_that_on_its_projected_area() {
+    // the momentum of the light intercepted by a box, for any attitude
     let (_, s, _) = day_side();
     let [x, y, z] = [1.0, 2.0, 3.0];
     for rot in attitudes() {
@@ -148,7 +148,7 @@ fn a_black_body_takes_what_its_shadow_holds_up() {
 }
 
 #[test]
-fn the_shadow_dims_and_can_be_left_out() {
+fn the_shadow_reduces_the_force_and_is_optional() {
     let (r, ..) = day_side();
     let sun = earth().sun(0.0).expect("an epoch");
     let state = body(Matrix3::identity(), Vector3::zeros(), Vector3::zeros());

@@ -1,4 +1,4 @@
-//! The Earth's shadow against discs counted point by point, and against its cones.
+//! Checks the Earth's shadow against ray tracing, and against its cones.
 
 use nalgebra::Vector3;
 use onorbit_core::environment::sunlit;
@@ -7,13 +7,13 @@ const AU: f64 = 149_597_870_700.0;
 const SUN: f64 = 6.957e8;
 const EARTH: f64 = 6_378_137.0;
 
-/// Share of the Sun's disc whose points see past the ball: rays traced from rings of points.
+/// Fraction of the Sun's disc that is visible, by tracing rays from rings of points.
 fn traced(r: &Vector3<f64>, sun: &Vector3<f64>, radius: f64) -> f64 {
     const RINGS: usize = 400;
     let toward = (sun - r).normalize();
     let side = toward.cross(&Vector3::new(0.3, 0.5, 0.8)).normalize();
     let other = toward.cross(&side);
-    // seen from r the disc has the angular radius a: its rim is where rays touch the Sun's ball
+    // seen from r, the disc has the angular radius a: its edge is where rays touch the Sun
     let a = (SUN / (sun - r).norm()).asin();
     let (mut seen, mut all) = (0.0, 0.0);
     for i in 0..RINGS {
@@ -31,13 +31,13 @@ fn traced(r: &Vector3<f64>, sun: &Vector3<f64>, radius: f64) -> f64 {
     seen / all
 }
 
-/// A place `behind` the Earth as seen from the Sun on x, `aside` of the axis, m.
+/// Returns a position `behind` the Earth as seen from the Sun on x, `aside` of the axis, m.
 fn place(behind: f64, aside: f64) -> (Vector3<f64>, Vector3<f64>) {
     (Vector3::new(-behind, 0.6 * aside, 0.8 * aside), Vector3::new(AU, 0.0, 0.0))
 }
 
 #[test]
-fn a_penumbra_is_the_share_of_the_disc_that_rays_reach() {
+fn the_penumbra_agrees_with_traced_rays() {
     let mut partial = 0;
     for behind in [2.5e6, 6.0e6, 42.0e6, 380e6] {
         let (inner, outer) = (EARTH - behind * (SUN - EARTH) / AU, EARTH + behind * (SUN + EARTH) / AU);
@@ -45,7 +45,8 @@ fn a_penumbra_is_the_share_of_the_disc_that_rays_reach() {
             let aside = inner + (outer - inner) * (f64::from(k) / 20.0 * 1.2 - 0.1);
             let (r, sun) = place(behind, aside);
             let (got, expected) = (sunlit(&r, &sun, EARTH), traced(&r, &sun, EARTH));
-            // low down the Earth's rim is curved by a part in b/a = 300: discs in the sky are no discs on paper
+            // at low altitude the Earth's limb is curved by a fraction b/a = 300: discs on the sphere are not
+            // plane discs
             assert!((got - expected).abs() < 2e-3, "{behind} {aside}: {got} is not {expected}");
             partial += i32::from(got > 0.01 && got < 0.99);
         }
@@ -54,7 +55,7 @@ fn a_penumbra_is_the_share_of_the_disc_that_rays_reach() {
 }
 
 #[test]
-fn umbra_ends_where_its_cone_does_and_light_is_whole_outside() {
+fn the_umbra_ends_at_the_tip_of_its_cone() {
     // r = R sun/(R☉ - R): the tip of the umbra, 1.38 million km away
     let tip = EARTH * AU / (SUN - EARTH);
     for (behind, aside, expected) in [
@@ -69,17 +70,17 @@ fn umbra_ends_where_its_cone_does_and_light_is_whole_outside() {
         let (r, sun) = place(behind, aside);
         assert_eq!(sunlit(&r, &sun, EARTH), expected, "{behind} {aside}");
     }
-    // beyond the tip a ring is left: 1 - (b/a)²
+    // beyond the tip a ring of the disc is visible: 1 - (b/a)²
     let (r, sun) = place(1.5 * tip, 0.0);
     let ratio = (EARTH / (1.5 * tip)).asin() / (SUN / (AU + 1.5 * tip)).asin();
     assert!((sunlit(&r, &sun, EARTH) - (1.0 - ratio * ratio)).abs() < 1e-12);
-    // inside of the Earth nothing is seen, and an Earth of no size shades nothing
+    // inside the Earth the Sun is invisible, and an Earth of radius zero has no shadow
     assert_eq!(sunlit(&Vector3::new(6.0e6, 0.0, 0.0), &sun, EARTH), 0.0);
     assert_eq!(sunlit(&Vector3::new(-7.0e6, 0.0, 0.0), &sun, 0.0), 1.0);
 }
 
 #[test]
-fn light_fades_without_a_jump() {
+fn the_penumbra_is_continuous() {
     let behind = 2.5e6;
     let width = behind * 2.0 * SUN / AU; // 23 km
     let at = |aside: f64| {
@@ -91,7 +92,7 @@ fn light_fades_without_a_jump() {
     assert_eq!(before, 0.0);
     for k in 1..=steps {
         let now = at(from + 2.0 * width * f64::from(k) / f64::from(steps));
-        // nowhere faster than at the disc's middle: 4/π of its mean
+        // the largest slope is at the middle of the disc: 4/π of the mean
         assert!(
             (-1e-9..=1.5 * 2.0 / f64::from(steps)).contains(&(now - before)),
             "step {k}: {before} to {now}"

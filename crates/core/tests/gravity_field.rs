@@ -1,4 +1,4 @@
-//! A planet's field against closed forms and against itself.
+//! Checks a planet's field against closed forms and for consistency.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use nalgebra::{Matrix3, Vector3};
@@ -32,7 +32,7 @@ fn legendre(degree: usize, u: f64) -> Vec<f64> {
     p
 }
 
-/// The coefficients of a unit mass that stands at `d` (units of `R`) instead of at the centre.
+/// Returns the coefficients of a unit mass at `d` (units of `R`) instead of the centre.
 ///
 /// `C̄nm + i S̄nm = dⁿ P̄nm(sin φ) exp(i m λ)/(2n + 1)`: the addition theorem.
 fn mass_off_centre(degree: usize, d: Vector3<f64>) -> (Vec<f64>, Vec<f64>) {
@@ -55,15 +55,16 @@ fn point_mass(r: Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
 }
 
 #[test]
-fn a_mass_off_the_centre_pulls_from_where_it_is() {
-    // Degree 360, and two thirds of the radius out: what is cut off is (d R/r)³⁶⁰.
+fn harmonics_of_an_offset_point_mass_give_its_attraction() {
+    // degree 360, two thirds of the radius out: the truncation error is (d R/r)³⁶⁰
     for (degree, d, tolerance) in [
         (20, Vector3::new(0.05, -0.1, 0.07), 1e-13),
         (360, Vector3::new(0.3, -0.4, 0.75), 1e-12),
         (360, Vector3::new(-0.2, 0.1, -0.88), 1e-12),
         (360, Vector3::new(0.0, 0.9, 0.0), 1e-12),
     ] {
-        // a share of the mass, for coefficients stay as small as planets have them: a power of two, so that nothing is rounded
+        // scaled by a power of two, so that the coefficients are as small as those of planets, without
+        // rounding
         let share = 2f64.powi(-14);
         let (c, s) = mass_off_centre(degree, d);
         let [c, s] = [c, s].map(|x| x.into_iter().map(|x| x * share).collect::<Vec<_>>());
@@ -155,7 +156,7 @@ fn the_gradient_is_that_of_the_acceleration() {
 }
 
 #[test]
-fn gravity_puts_the_field_into_inertial_axes() {
+fn gravity_transforms_the_field_to_inertial_axes() {
     use onorbit_core::earth::Earth;
     use std::sync::Arc;
     let field = Arc::new(GravityField::bundled("egm2008", 8, 8).unwrap());

@@ -1,4 +1,4 @@
-//! A jointed robot held rigid in orbit: what its bodies feel adds up to what one body would.
+//! Checks that the wrenches on the bodies of a rigid robot in orbit sum to those on the composite body.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 const ORIGIN: [f64; 3] = [-4292653.41, 955168.47, 5139356.57];
 
-/// Five links around the reference, the robot `size` times a metre, its centre of mass at `W`'s origin.
+/// Five links around the reference, the robot `size` times a metre, its centre of mass at the origin of `W`.
 fn robot(size: f64) -> Vec<BodyState> {
     let link = |mass: f64, com: [f64; 3], moments: [f64; 3], turn: [f64; 3]| {
         let com = Vector3::from(com) * size;
@@ -65,14 +65,14 @@ fn fields() -> [Gravity; 3] {
     ]
 }
 
-/// Wrenches of the engine's own effects; of `GravityGradient` alone where `forces` is not set.
-fn felt(gravity: &Gravity, bodies: &[BodyState], forces: bool) -> Vec<Wrench> {
+/// Returns the wrenches of the engine's effects; only of `GravityGradient` if `forces` is false.
+fn gravity_wrenches(gravity: &Gravity, bodies: &[BodyState], forces: bool) -> Vec<Wrench> {
     let position = Vector3::from(ORIGIN);
     let acceleration = gravity.acceleration(0.0, &position).unwrap();
     let state = OrbitState { position, velocity: Vector3::new(0.0, 5.4e3, 5.4e3), acceleration };
-    let reference = Some(Reference { state, gravity: Some(gravity), falls_freely: true });
-    let (mut wrenches, bodies) = (Wrenches::new(bodies.len()), bodies.iter().copied().collect::<Bodies>());
-    Scene::show((0.0, 1.0), 0.0, &bodies, reference, None, |scene| {
+    let reference = Some(Reference { state, gravity: Some(gravity), in_free_fall: true });
+    let (mut wrenches, bodies) = (Wrenches::new(&[bodies.len()]), bodies.iter().copied().collect::<Bodies>());
+    Scene::with((0.0, 1.0), 0.0, &bodies, reference, None, |scene| {
         GravityGradient.add_wrenches(scene, &mut wrenches).unwrap();
         if forces {
             DifferentialGravity::default().add_wrenches(scene, &mut wrenches).unwrap();
@@ -93,7 +93,7 @@ fn linearised_forces_and_torques_are_those_of_the_composite_body() {
         let expected = gradient_torque(&composite(&bodies), &g);
         let error = (total(&bodies, &linear) - expected).norm() / expected.norm();
         assert!(error < 1e-12, "{error:e}");
-        // Negative control: without the forces a third or more is missing.
+        // negative control: without the forces a third or more is missing
         let torques: Vec<Wrench> = linear.iter().map(|w| Wrench { force: Vector3::zeros(), ..*w }).collect();
         let error = (total(&bodies, &torques) - expected).norm() / expected.norm();
         assert!(error > 0.1, "{error:e}");
@@ -107,11 +107,13 @@ fn the_exact_field_differs_in_proportion_to_the_size_of_the_robot() {
         for size in [1.0, 3.0, 9.0] {
             let (bodies, g) = (robot(size), gravity.gradient(0.0, &ORIGIN.into()).unwrap());
             let expected = gradient_torque(&composite(&bodies), &g);
-            let error = (total(&bodies, &felt(gravity, &bodies, true)) - expected).norm() / expected.norm();
+            let error = (total(&bodies, &gravity_wrenches(gravity, &bodies, true)) - expected).norm()
+                / expected.norm();
             let bound = 20.0 * 2.2 * size / Vector3::from(ORIGIN).norm();
             assert!(error < bound, "{name} {size}: {error:e} > {bound:e}");
-            // Negative control: leaving out the forces.
-            let alone = (total(&bodies, &felt(gravity, &bodies, false)) - expected).norm() / expected.norm();
+            // negative control: without the forces
+            let alone = (total(&bodies, &gravity_wrenches(gravity, &bodies, false)) - expected).norm()
+                / expected.norm();
             assert!(alone > 0.1 && alone > 1e4 * bound, "{name}: {alone:e}");
             errors.push(error / size);
         }

@@ -10,7 +10,7 @@ use onorbit_core::model::{
     Inertial, Joint, JointKind, Link, LinkChange, Model, ModelBuilder, ModelError, ModelWarning, Mount,
 };
 
-/// A chain `base, l0, l1, …` with a frame `tip` on its end, whose names begin with `prefix`.
+/// Returns a chain `base, l0, l1, …` with a frame `tip` at its end, with names that begin with `prefix`.
 fn chain(random: &mut Random, count: usize) -> Vec<(Link, Option<Joint>)> {
     let mut links = vec![(Link::new("base", Some(random.inertial())), None)];
     for i in 0..count {
@@ -41,7 +41,7 @@ fn built(links: &[(Link, Option<Joint>)], tip: Isometry3<f64>) -> Model {
     builder.build().unwrap()
 }
 
-/// The largest difference of any number in two robots, and whether names and parents are the same.
+/// Returns the largest difference of all numbers of two robots, and whether names and parents are equal.
 fn difference(a: &Model, b: &Model) -> f64 {
     assert!(a.is_like(b), "{:?} {:?}", a.frames(), b.frames());
     let mut largest = 0.0_f64;
@@ -108,14 +108,14 @@ fn a_frame_on_the_base_of_the_other_is_put_on_the_mount() {
     let refused = bus.attach("tip", &arm, &mount("l0", pose)).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "joints move the frame 'l0': a robot is attached by a frame that is fixed to its base: base, flange"
+        "the frame 'l0' moves with joints; attach a robot by a frame that is fixed to its base: base, flange"
     );
     let refused = bus.attach("tip", &arm, &mount("flnge", pose)).unwrap_err();
     assert!(refused.to_string().ends_with("did you mean 'flange'?"), "{refused}");
 }
 
 #[test]
-fn names_of_both_are_told_with_the_way_out() {
+fn duplicate_names_are_reported_with_a_suggested_prefix() {
     let mut random = Random::new(5);
     let (bus, arm) = (chain(&mut random, 1), chain(&mut random, 2));
     let (bus, arm) = (built(&bus, Isometry3::identity()), built(&arm, Isometry3::identity()));
@@ -126,8 +126,8 @@ fn names_of_both_are_told_with_the_way_out() {
     let refused = left.attach("tip", &arm, &with("left_")).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "with the prefix 'left_' the robot that is attached has a link or frame 'left_base', as the other has; take \
-         another prefix"
+        "with the prefix 'left_' the attached robot has a link or frame 'left_base', and so has the other; choose \
+         a different prefix"
     );
     let both = left.attach("tip", &arm, &with("right_")).unwrap();
     assert!(both.frame("left_tip").is_ok() && both.frame("right_tip").is_ok());
@@ -159,7 +159,7 @@ fn a_link_changed_is_the_same_as_built_so() {
 }
 
 #[test]
-fn a_change_that_makes_no_robot_is_refused() {
+fn invalid_link_changes_are_refused() {
     let mut random = Random::new(9);
     let mut builder = ModelBuilder::new("r", Link::new("base", Some(random.inertial()))).unwrap();
     builder.add("base", Joint::new("f", JointKind::Fixed, random.pose()), Link::new("plate", None)).unwrap();

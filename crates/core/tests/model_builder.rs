@@ -1,4 +1,4 @@
-//! The builder: what it refuses, and what folding and aligning leave as it was.
+//! Checks the errors of the builder, and that merging fixed links and aligning axes preserve the robot.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
@@ -34,7 +34,7 @@ fn robot() -> ModelBuilder {
 }
 
 #[test]
-fn links_that_are_no_bodies_are_refused() {
+fn links_with_invalid_inertia_are_refused() {
     let add =
         |inertial| robot().add("base", revolute("j", Vector3::z()), Link::new("l", inertial)).unwrap_err();
     assert!(matches!(add(ball(-1.0)), ModelError::MassNotPositive { mass: -1.0, .. }));
@@ -63,7 +63,7 @@ fn names_are_used_once_and_known() {
     assert!(unknown.to_string().ends_with("did you mean 'arm'?"), "{unknown}");
     let again = builder.add_frame("arm", "base", Isometry3::identity()).unwrap_err();
     assert!(matches!(again, ModelError::DuplicateName { .. }));
-    // a refused link leaves nothing behind
+    // a rejected link does not change the builder
     builder.add("arm", revolute("k", Vector3::z()), Link::new("b", ball(1.0))).unwrap();
     let model = builder.build().unwrap();
     assert_eq!(model.joint_names().collect::<Vec<_>>(), ["j", "k"]);
@@ -71,7 +71,7 @@ fn names_are_used_once_and_known() {
 }
 
 #[test]
-fn robots_that_something_does_not_resist_are_refused() {
+fn robots_with_a_direction_without_inertia_are_refused() {
     let massless = ModelBuilder::new("r", Link::new("base", None)).unwrap().build();
     assert_eq!(massless.unwrap_err(), ModelError::NoMass);
 
@@ -80,7 +80,7 @@ fn robots_that_something_does_not_resist_are_refused() {
     let idle = idle.build().unwrap_err();
     assert_eq!(idle, ModelError::MasslessSubtree { joint: "j".into(), link: "l".into() });
 
-    // a point mass on the axis, far from the base and in skew axes: what is left is rounding
+    // a point mass on the axis, far from the base and in skew axes: its inertia is rounding error
     let point = Inertial { mass: 3.0, com: Vector3::new(0.1, 0.2, 0.3), inertia: Matrix3::zeros() };
     let mut on_axis = robot();
     let origin = Isometry3::new(Vector3::new(7.0, -5.0, 3.0), Vector3::new(0.3, 0.4, 0.5));
@@ -88,7 +88,7 @@ fn robots_that_something_does_not_resist_are_refused() {
     on_axis.add("base", joint, Link::new("l", Some(point))).unwrap();
     assert!(matches!(on_axis.build().unwrap_err(), ModelError::MasslessSubtree { .. }));
 
-    // two motors about one axis with nothing between them
+    // two motors about one axis without inertia between them
     let mut coaxial = robot();
     coaxial.add("base", revolute("a", Vector3::z()), Link::new("l", None)).unwrap();
     coaxial.add("l", revolute("b", Vector3::z()), Link::new("m", ball(1.0))).unwrap();
@@ -123,7 +123,7 @@ fn an_inertia_without_mass_needs_a_mass_that_moves_with_it() {
     base.add("base", revolute("j", Vector3::z()), Link::new("l", ball(1.0))).unwrap();
     assert_eq!(base.build().unwrap().mass(), 1.0);
 
-    // an inertia alone neither resists sliding nor makes a floating base
+    // an inertia without mass resists no translation and makes no floating base
     let mut sliding = robot();
     let rail = Joint::new("j", JointKind::Prismatic(Vector3::z()), Isometry3::identity());
     sliding.add("base", rail, Link::new("l", flywheel())).unwrap();
@@ -133,7 +133,7 @@ fn an_inertia_without_mass_needs_a_mass_that_moves_with_it() {
 }
 
 #[test]
-fn joints_that_only_let_a_world_carry_the_base_are_named() {
+fn joints_between_a_world_link_and_the_base_are_named() {
     let mut mobile = ModelBuilder::new("r", Link::new("world", None)).unwrap();
     let rail = |name: &str, axis| Joint::new(name, JointKind::Prismatic(axis), Isometry3::identity());
     mobile.add("world", rail("x", Vector3::x()), Link::new("l1", None)).unwrap();
@@ -145,7 +145,7 @@ fn joints_that_only_let_a_world_carry_the_base_are_named() {
 }
 
 #[test]
-fn massless_links_are_allowed_where_something_behind_them_resists() {
+fn massless_links_are_allowed_if_their_descendants_have_inertia() {
     let mut wrist = robot();
     wrist.add("base", revolute("a", Vector3::x()), Link::new("l", None)).unwrap();
     wrist.add("l", revolute("b", Vector3::z()), Link::new("m", ball(1.0))).unwrap();
@@ -158,7 +158,7 @@ fn massless_links_are_allowed_where_something_behind_them_resists() {
 }
 
 #[test]
-fn an_indefinite_part_is_lived_with_only_where_the_whole_is_definite() {
+fn an_indefinite_part_is_accepted_only_if_its_body_is_definite() {
     let part = shaped([-0.5, 1.0, 1.0]);
     let with = |base: f64| {
         let mut builder = ModelBuilder::new("r", Link::new("base", ball(base))).unwrap();
@@ -190,7 +190,7 @@ fn folding_fixed_links_keeps_mass_centre_and_inertia() {
         let model = builder.build().unwrap();
         let body = &model.nodes()[0];
 
-        // about the base's origin everything simply adds: Σ m, Σ m c, Σ R I Rᵀ − m c× c×
+        // about the base's origin the inertias add: Σ m, Σ m c, Σ R I Rᵀ − m c× c×
         let in_base = [Isometry3::identity(), poses[0], poses[0] * poses[1]];
         let (mut mass, mut moment, mut about_origin) = (0.0, Vector3::zeros(), Matrix3::zeros());
         for (part, pose) in parts.iter().zip(&in_base) {
@@ -235,7 +235,7 @@ fn a_root_without_mass_is_the_base_frame_of_what_is_fixed_to_it() {
     }
 }
 
-/// A chain whose link axes are turned by `turns`, otherwise the same bodies and joints in space.
+/// A chain whose link axes are rotated by `turns`, with otherwise the same bodies and joints in space.
 fn chain(turns: &[UnitQuaternion<f64>], seed: u64) -> Model {
     let mut random = Random::new(seed);
     let mut builder = ModelBuilder::new("r", Link::new("base", Some(random.inertial()))).unwrap();

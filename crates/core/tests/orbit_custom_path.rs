@@ -1,4 +1,4 @@
-//! Paths through given points: exactly through them, smooth across them, of the order of their splines.
+//! Checks paths through given points: interpolation, smoothness, and order of convergence.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3, Vector4};
@@ -11,7 +11,7 @@ fn kepler() -> Kepler {
     Kepler::new(&elements).expect("an ellipse")
 }
 
-/// Points of the ellipse over 2000 s, at gaps that differ by up to 40 %.
+/// Points of the ellipse over 2000 s, with gaps that differ by up to 40 %.
 fn sampled(pieces: usize, with_velocities: bool, with_accelerations: bool) -> PathPoints {
     let h = 2000.0 / pieces as f64;
     let uneven = |i: usize| h * (i as f64 + if i % 2 == 1 && i < pieces { 0.2 } else { 0.0 });
@@ -34,7 +34,7 @@ const KINDS: [(&str, bool, bool, f64); 3] =
     [("positions", false, false, 4.0), ("velocities", true, false, 6.0), ("accelerations", true, true, 6.0)];
 
 #[test]
-fn goes_exactly_through_what_was_given() {
+fn a_path_interpolates_its_points_exactly() {
     for (name, v, a, _) in KINDS {
         for pieces in [1, 2, 3, 7] {
             let points = sampled(pieces, v, a);
@@ -54,14 +54,14 @@ fn goes_exactly_through_what_was_given() {
 }
 
 #[test]
-fn position_velocity_and_acceleration_go_on_across_the_points() {
+fn position_velocity_and_acceleration_are_continuous() {
     for (name, v, a, _) in KINDS {
         let points = sampled(9, v, a);
         let path = path(points.clone());
         for t in &points.times[1..] {
             let just_before = path.state(t - t * f64::EPSILON).expect("within");
             let at = path.state(*t).expect("within");
-            // rounding of positions of 8e6 m over gaps of 180 s and more, and half a nanosecond of flight
+            // rounding of positions of 8e6 m over gaps of 180 s and more, and half a nanosecond of motion
             assert!((just_before.position - at.position).norm() < 2e-8, "{name} at {t}");
             assert!((just_before.velocity - at.velocity).norm() < 1e-9, "{name} at {t}");
             assert!((just_before.acceleration - at.acceleration).norm() < 1e-11, "{name} at {t}");
@@ -104,7 +104,7 @@ fn a_sampled_ellipse_is_recovered_to_the_order_of_the_spline() {
 }
 
 #[test]
-fn polynomials_of_the_degree_of_the_spline_come_back() {
+fn polynomials_of_the_degree_of_the_spline_are_reproduced() {
     let times: Vec<f64> = vec![0.0, 0.7, 1.5, 2.0, 3.1];
     let cubic = |t: f64| Vector3::new(t, t * t, t * t * t);
     let quintic = |t: f64| Vector3::new(t.powi(5), t.powi(4) - t, 1.0 + t * t);
@@ -153,10 +153,13 @@ fn attitudes_are_met_smooth_and_have_their_rate() {
         for t in &times[1..pieces] {
             let (a, b) = (path.frame(t - 1e-9).expect("within"), path.frame(t + 1e-9).expect("within"));
             assert!((a.rate_p - b.rate_p).norm() < 1e-9, "the rate goes on");
-            let bend = |t: f64| {
+            let angular_acceleration = |t: f64| {
                 (path.frame(t + 1e-4).expect("within").rate_p - path.frame(t).expect("within").rate_p) / 1e-4
             };
-            assert!((bend(t - 1e-4) - bend(*t)).norm() < 1e-4, "and so does its derivative");
+            assert!(
+                (angular_acceleration(t - 1e-4) - angular_acceleration(*t)).norm() < 1e-4,
+                "and so does its derivative"
+            );
         }
         // R_dot = R [ω]×
         let (t, d) = (7.3, 1e-4);
@@ -178,7 +181,7 @@ fn attitudes_are_met_smooth_and_have_their_rate() {
 }
 
 #[test]
-fn beyond_the_ends_there_is_nothing_or_a_straight_line() {
+fn beyond_the_ends_a_path_fails_or_coasts() {
     let points = sampled(8, true, false);
     let strict = path(points.clone());
     for time in [-1e-6, 2000.001, 1e9] {
@@ -189,7 +192,7 @@ fn beyond_the_ends_there_is_nothing_or_a_straight_line() {
     assert!(matches!(strict.state(f64::NAN), Err(OrbitError::NotFinite { .. })));
     let coasting = CustomPath::new(points, None, Ends::Coast).expect("a path");
     let knots = coasting.event_times();
-    assert!(knots.contains(&0.0) && knots.contains(&2000.0)); // and the points between, kinks all
+    assert!(knots.contains(&0.0) && knots.contains(&2000.0)); // and the points between, with jumps of the jerk
     let (end, beyond) = (coasting.state(2000.0).expect("an end"), coasting.state(2010.0).expect("coasts"));
     assert_eq!(beyond.velocity, end.velocity);
     assert_eq!(beyond.acceleration, Vector3::zeros());
@@ -197,7 +200,7 @@ fn beyond_the_ends_there_is_nothing_or_a_straight_line() {
 }
 
 #[test]
-fn points_that_make_no_path_are_refused() {
+fn invalid_points_of_a_path_are_refused() {
     let good =
         PathPoints { attitudes: Some(vec![Vector4::new(0.0, 0.0, 0.0, 1.0); 5]), ..sampled(4, true, true) };
     type Spoil = fn(&mut PathPoints);
@@ -205,13 +208,13 @@ fn points_that_make_no_path_are_refused() {
         ("at least 2", |p| {
             *p = PathPoints { times: vec![0.0], positions: vec![Vector3::zeros()], ..PathPoints::default() }
         }),
-        ("positions has 4 rows, times has 5", |p| p.positions.truncate(4)),
+        ("positions has 4 rows; expected 5", |p| p.positions.truncate(4)),
         ("velocities[2] holds NaN", |p| p.velocities.as_mut().expect("given")[2].y = f64::NAN),
         ("times must increase", |p| p.times[3] = p.times[2]),
         ("sort the rows", |p| p.times.swap(1, 2)),
         ("times[4] holds inf", |p| p.times[4] = f64::INFINITY),
         ("accelerations are given without velocities", |p| p.velocities = None),
-        ("attitudes[1] has norm 2", |p| p.attitudes.as_mut().expect("given")[1] *= 2.0),
+        ("attitudes[1] (x, y, z, w) has norm 2", |p| p.attitudes.as_mut().expect("given")[1] *= 2.0),
         ("points closer in time", |p| {
             p.attitudes.as_mut().expect("given")[4] = Vector4::new(1.0, 0.0, 0.0, 0.0)
         }),

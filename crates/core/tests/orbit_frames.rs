@@ -5,7 +5,7 @@
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::orbit::{Elements, Kepler, Lvlh, Nadir, Orbit, OrbitError, OrbitState, Size};
 
-/// No orbit of nature: a circle with an oscillation along z at another pace.
+/// An orbit that is no solution of gravity: a circle with an oscillation along z at another frequency.
 #[derive(Debug)]
 struct Wavy;
 
@@ -25,7 +25,7 @@ impl Orbit for Wavy {
     }
 }
 
-/// Rate in the frame's own axes from attitudes `d` s to either side: `[ω]× = Rᵀ Ṙ`.
+/// Returns the rate in the frame's axes from attitudes `d` s to either side: `[ω]× = Rᵀ Ṙ`.
 fn differenced(attitude: impl Fn(f64) -> Matrix3<f64>, t: f64) -> Vector3<f64> {
     let d = 0.5;
     // Fourth-order central difference
@@ -52,8 +52,8 @@ fn orbits() -> [(&'static str, Box<dyn Orbit>); 3] {
     ]
 }
 
-// Attitudes are good to 2e-16, differenced over 0.5 s: 5e-16 rad/s or so; the fourth-order
-// remainder is ω⁵ d⁴, below 1e-16. Rates are 1e-3.
+// attitudes are good to 2e-16, differenced over 0.5 s: about 5e-16 rad/s; the fourth-order remainder ω⁵ d⁴ is
+// below 1e-16; rates are 1e-3
 const RATE_TOLERANCE: f64 = 2e-15;
 
 #[test]
@@ -85,7 +85,7 @@ fn frames_are_right_handed_rotations() {
         let l = lvlh(&*orbit, 777.0);
         let n = Nadir::from(&l);
         for rot in [l.rot_il, n.rot_in] {
-            // Unit vectors rounded once per component.
+            // unit vectors, one rounding per component
             assert!((rot.transpose() * rot - Matrix3::identity()).norm() < 1e-15);
             assert!((rot.determinant() - 1.0).abs() < 1e-15);
         }
@@ -101,7 +101,7 @@ fn nadir_frame_agrees_with_nasa_cases() {
     let v = Vector3::new(109.649663, -7527.726490, 1484.521489);
     let orbit = Kepler::from_state(r, v, 3.986004415e14).expect("an ellipse");
     let n = Nadir::of(&orbit.state(0.0).expect("a valid time")).expect("a regular reference");
-    // 13 digits of the published rate.
+    // 13 digits of the published rate
     assert!((n.rate_n - Vector3::y() * -1.134454274550824e-3).norm() < 1e-15, "{}", n.rate_n);
     let y = Vector3::new(-0.772691975098125, -0.1336331223242703, -0.6205556383087864);
     assert!((n.rot_in.column(1) - y).norm() < 1e-12, "{}", n.rot_in);

@@ -1,4 +1,4 @@
-//! Kepler against numbers made elsewhere: sixty-digit solutions, textbooks, GMAT, NASA.
+//! Checks Kepler orbits against independent numbers: 60-digit solutions, textbooks, GMAT, NASA.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 #![allow(clippy::excessive_precision)] // tables stand as their sources print them
 
@@ -81,8 +81,8 @@ fn agrees_with_sixty_digit_solutions() {
             dr / r.norm() / f64::EPSILON,
             dv / v.norm() / f64::EPSILON
         );
-        // A rounding of the phase, at most 2π, and a few of the in-plane formulas: 4 of 2.2e-16
-        // (6e-9 m at 7000 km), at one day and at thirty alike.
+        // one rounding of the phase, at most 2π, and several of the in-plane formulas: 4 of 2.2e-16 (6e-9 m
+        // at 7000 km), after one day and after thirty
         assert!(dr < 4.0 * f64::EPSILON * r.norm(), "{row:?}: {dr} m");
         assert!(dv * time < 4.0 * f64::EPSILON * r.norm().max(v.norm() * time), "{row:?}: {dv} m/s");
     }
@@ -93,14 +93,14 @@ fn thirty_days_in_low_orbit_are_exact_to_6e_9_m() {
     for row in EXACT.iter().filter(|row| row.1 == 7e6) {
         let s = from_row(row).state(row.3).expect("a valid time");
         let dr = (s.position - vector(row.4)).norm();
-        // Two roundings of a phase up to π times 7000 km are 6e-9 m.
+        // two roundings of a phase of up to π times 7000 km are 6e-9 m
         assert!(dr < 6e-9, "{row:?}: {dr} m");
     }
 }
 
 #[test]
-fn a_mean_anomaly_that_is_not_reduced_with_care_would_fail() {
-    // Negative control: n t in plain doubles, taken modulo 2π, for the 30-day row with e = 0.
+fn naive_reduction_of_the_mean_anomaly_fails() {
+    // negative control: n t in plain doubles modulo 2π, for the 30-day row with e = 0
     let (t, a): (f64, f64) = (2.592e6, 7e6);
     let m = ((MU_EARTH / (a * a * a)).sqrt() * t) % std::f64::consts::TAU;
     let row = EXACT.iter().find(|row| row.2 == 0.0 && row.3 == t).expect("the row is there");
@@ -156,8 +156,8 @@ fn curtis_3_5_leaves_the_earth_on_a_hyperbola() {
 
 #[test]
 fn curtis_4_7_from_its_elements() {
-    // Curtis ex. 4.7: h = 80 000 km²/s, e = 1.4, i = 30°, Ω = 40°, ω = 60°, ν = 30°; the result recomputed,
-    // printed to 1e-7 km.
+    // Curtis ex. 4.7: h = 80 000 km²/s, e = 1.4, i = 30°, Ω = 40°, ω = 60°, ν = 30°; the result recomputed
+    // and given to 1e-7 km
     let (mu, h) = (3.986e14, 8e10_f64);
     let elements = Elements {
         inclination: 30f64.to_radians(),
@@ -174,7 +174,7 @@ fn curtis_4_7_from_its_elements() {
 }
 
 #[test]
-fn many_instants_are_the_single_ones() {
+fn many_instants_agree_with_single_ones() {
     let orbit = from_row(&EXACT[7]);
     let times = [0.0, 100.0, -3.0e4];
     let (mut r, mut v) = ([0.0; 9], [0.0; 9]);

@@ -1,11 +1,11 @@
-//! Kepler: round trips and laws of motion over drawn orbits, and what is refused.
+//! Checks Kepler orbits by round trips and laws of motion over random orbits, and their errors.
 
 use nalgebra::Vector3;
 use onorbit_core::orbit::{Elements, Kepler, MU_EARTH, Orbit, OrbitError, OrbitState, Phase, Size};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// Eccentricities of every kind, with those next to 0 and to 1 drawn on a logarithmic scale.
+/// Eccentricities of every kind; those near 0 and 1 are drawn on a logarithmic scale.
 fn eccentricity() -> impl Strategy<Value = f64> {
     prop_oneof![
         Just(0.0),
@@ -18,7 +18,7 @@ fn eccentricity() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Inclinations with the exactly and the nearly equatorial among them, both ways round.
+/// Inclinations including exactly and nearly equatorial ones, prograde and retrograde.
 fn inclination() -> impl Strategy<Value = f64> {
     prop_oneof![
         Just(0.0),
@@ -46,7 +46,7 @@ fn at(orbit: &Kepler, t: f64) -> OrbitState {
     orbit.state(t).expect("a valid time")
 }
 
-/// Distance of two orbits `t` s after the epoch, over their distance from the planet.
+/// Returns the distance of two orbits `t` s after the epoch, relative to their distance from the planet.
 fn apart(a: &Kepler, b: &Kepler, t: f64) -> f64 {
     let (a, b) = (at(a, t), at(b, t));
     let position = (a.position - b.position).norm() / a.position.norm();
@@ -56,7 +56,7 @@ fn apart(a: &Kepler, b: &Kepler, t: f64) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4000, rng_seed: proptest::test_runner::RngSeed::Fixed(2), failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Side by side as one at a time, bit for bit: a run that goes on from a checkpoint asks for one alone.
+    /// On lanes as one at a time, bit for bit, since a resumed run evaluates single instants.
     #[test]
     fn two_states_are_those_of_one_at_a_time(orbit in orbit(), t in -1e6..1e6f64, step in 1e-4..1e3f64) {
         if let Some(two) = orbit.two_states([t, t + step]) {
@@ -69,11 +69,11 @@ proptest! {
     fn a_state_gives_its_orbit_back(orbit in orbit()) {
         let s = at(&orbit, 0.0);
         let back = Kepler::from_state(s.position, s.velocity, MU_EARTH).expect("regular");
-        // At the epoch some roundings; later what they do to the mean motion, which for the elongated and
-        // the fast orbits is up to (v²/2)/(μ/2a) times as much, about 1/|1 - e|, so a short time is taken.
+        // at the epoch several roundings; later their effect on the mean motion, which for elongated and fast
+        // orbits is larger by up to (v²/2)/(μ/2a), about 1/|1 - e|, so a short time is used
         prop_assert!(apart(&orbit, &back, 0.0) < 16.0 * f64::EPSILON, "{}", apart(&orbit, &back, 0.0));
         prop_assert!(apart(&orbit, &back, 600.0) < 256.0 * f64::EPSILON, "{}", apart(&orbit, &back, 600.0));
-        // e is cos and sin of ν times e, each to a few roundings of one.
+        // e is cos and sin of ν times e, each to a few roundings of one
         prop_assert!((back.eccentricity() - orbit.eccentricity()).abs() < 32.0 * f64::EPSILON * (1.0 + orbit.eccentricity()));
         let ratio = back.semi_latus_rectum() / orbit.semi_latus_rectum();
         prop_assert!((ratio - 1.0).abs() < 64.0 * f64::EPSILON, "{}", ratio - 1.0);
@@ -95,7 +95,7 @@ proptest! {
         let (v2, r) = (s.velocity.norm_squared(), s.position.norm());
         let energy = 0.5 * v2 - MU_EARTH / r;
         let expected = -0.5 * MU_EARTH / orbit.semi_major_axis();
-        // The sum of two larger numbers: tolerance on their size.
+        // the sum of two larger numbers: the tolerance is relative to these
         prop_assert!((energy - expected).abs() < 16.0 * f64::EPSILON * (0.5 * v2 + MU_EARTH / r));
         let h = s.position.cross(&s.velocity);
         let expected = (MU_EARTH * orbit.semi_latus_rectum()).sqrt();
@@ -121,20 +121,20 @@ proptest! {
 }
 
 #[test]
-fn a_hyperbola_is_known_far_out_on_its_asymptotes() {
+fn a_hyperbola_is_accurate_far_out_on_its_asymptotes() {
     let elements = Elements { inclination: 0.7, raan: 1.0, ..Elements::new(Size::SemiMajorAxis(-2e7), 1.4) };
     let orbit = Kepler::new(&elements).expect("a hyperbola");
     for t in [-1e9, -1e7, 1e7, 1e9] {
         let s = at(&orbit, t);
         let back = at(&Kepler::from_state(s.position, s.velocity, MU_EARTH).expect("regular"), 0.0);
-        // 4e9 km away; the roundings of the round trip as near the planet.
+        // 4e9 km away; the round trip has the rounding error of positions near the planet
         assert!((back.position - s.position).norm() < 16.0 * f64::EPSILON * s.position.norm());
         assert!((back.velocity - s.velocity).norm() < 16.0 * f64::EPSILON * s.velocity.norm());
     }
 }
 
 #[test]
-fn degenerate_orbits_read_as_textbooks_expect() {
+fn degenerate_orbits_have_the_conventional_elements() {
     let base = Elements { phase: Phase::TrueAnomaly(0.5), ..Elements::new(Size::SemiMajorAxis(7e6), 0.1) };
     let equatorial = Elements { raan: 1.0, argument_of_periapsis: 2.0, ..base };
     let read = Kepler::new(&equatorial).expect("an ellipse").elements();
@@ -178,7 +178,7 @@ fn phases_agree_with_one_another() {
         );
         if e != 1.0 {
             let n = (MU_EARTH / 7e6f64.powi(3)).sqrt();
-            // n t and its inverse, one rounding each of at most 1 rad.
+            // n t and its inverse, one rounding each of at most 1 rad
             assert!(apart(&true_anomaly, &make(Phase::MeanAnomaly(-100.0 * n), 0.0), 900.0) < 1e-15);
         }
     }
@@ -191,7 +191,7 @@ fn refused(change: impl Fn(&mut Elements)) -> OrbitError {
 }
 
 #[test]
-fn elements_that_cannot_be_are_refused_with_their_numbers() {
+fn invalid_elements_are_refused_with_their_values() {
     use OrbitError as E;
     let (a, open) = (7e6, 1.5);
     assert_eq!(refused(|e| e.eccentricity = open), E::AxisSign { semi_major_axis: a, eccentricity: open });
@@ -242,7 +242,7 @@ fn elements_that_cannot_be_are_refused_with_their_numbers() {
     ] {
         assert!(matches!(error, E::NotFinite { .. }), "{error}");
     }
-    // the whole turns of such an angle are not a whole number in f64: the state was NaN
+    // the number of turns of such an angle is not an integer in f64: the state was NaN
     for phase in [4.3e56, -4.3e17, 1.1e15].map(|m| [Phase::MeanAnomaly(m), Phase::TrueAnomaly(m)]).concat() {
         let error = refused(|e| e.phase = phase);
         assert!(matches!(error, E::OutOfRange { .. }) && error.to_string().contains("1e15 rad"), "{error}");
@@ -252,7 +252,7 @@ fn elements_that_cannot_be_are_refused_with_their_numbers() {
 }
 
 #[test]
-fn states_that_cannot_be_are_refused() {
+fn invalid_states_are_refused() {
     let (x, y) = (Vector3::x() * 7e6, Vector3::y() * 7e3);
     let from = |r, v, mu| Kepler::from_state(r, v, mu).expect_err("must be refused");
     for (r, v) in [(x, x * 1e-3), (x, Vector3::zeros()), (Vector3::zeros(), y)] {
@@ -265,7 +265,7 @@ fn states_that_cannot_be_are_refused() {
 }
 
 #[test]
-fn times_that_mean_nothing_are_refused() {
+fn times_beyond_the_resolution_are_refused() {
     let ellipse = Kepler::new(&Elements::new(Size::SemiMajorAxis(7e6), 0.1)).expect("valid");
     let parabola = Kepler::new(&Elements::new(Size::SemiLatusRectum(7e6), 1.0)).expect("valid");
     for orbit in [ellipse, parabola] {

@@ -1,4 +1,4 @@
-//! The integrated orbit against the closed form of two bodies, and what it refuses.
+//! Checks the integrated orbit against the closed form of two bodies, and its errors.
 
 use nalgebra::Vector3;
 use onorbit_core::gravity::Gravity;
@@ -25,8 +25,8 @@ fn ellipse(a: f64, e: f64) -> Elements {
 }
 
 #[test]
-fn two_bodies_are_those_of_kepler_on_every_conic() {
-    // where the eccentricity is high the initial state's own rounding grows most
+fn an_integrated_two_body_orbit_agrees_with_kepler_on_every_conic() {
+    // for high eccentricity the rounding of the initial state is amplified most
     for (elements, tolerance) in [
         (ellipse(7e6, 0.0), 2e-6),
         (ellipse(26.6e6, 0.74), 1e-4),
@@ -45,7 +45,7 @@ fn two_bodies_are_those_of_kepler_on_every_conic() {
 }
 
 #[test]
-fn it_names_the_field_it_obeys_and_kepler_does_not() {
+fn an_integrated_orbit_names_its_field() {
     let gravity = Arc::new(Gravity::point_mass(MU_EARTH));
     let (r, v) = (Vector3::x() * 7e6, Vector3::y() * 7.5e3);
     let numerical = Numerical::new(r, v, 0.0, Arc::clone(&gravity)).expect("above ground");
@@ -55,7 +55,7 @@ fn it_names_the_field_it_obeys_and_kepler_does_not() {
 }
 
 #[test]
-fn an_orbit_that_enters_the_planet_ends_there_and_says_when() {
+fn an_orbit_that_enters_the_planet_reports_the_time() {
     let (kepler, numerical) = both(ellipse(7e6, 0.6));
     let failure = (0..10_000).map(f64::from).find_map(|t| numerical.state(t).err()).expect("it falls");
     let OrbitError::BelowSurface { time, distance, minimum } = failure.clone() else {
@@ -63,7 +63,7 @@ fn an_orbit_that_enters_the_planet_ends_there_and_says_when() {
     };
     let there = kepler.state(time).expect("a state").position.norm();
     assert!(distance < minimum && minimum - there < 1.0, "{there} {minimum}");
-    // later times say the same, earlier ones remain
+    // later times give the same error, earlier ones remain valid
     assert_eq!(numerical.state(1e6).expect_err("it fell"), failure);
     assert!(numerical.state(time - 1.0).is_ok());
 }
@@ -80,7 +80,7 @@ fn senseless_input_is_refused() {
     let orbit = Numerical::new(r, v, 0.0, gravity()).expect("above ground");
     assert!(matches!(orbit.state(f64::NAN), Err(OrbitError::NotFinite { name: "time", .. })));
     assert!(matches!(orbit.state(1e15), Err(OrbitError::TooManySteps { .. })));
-    // the clock's resolution at 1e20 s is 4 h: no step is short enough
+    // the resolution of the time at 1e20 s is 4 h: no step is short enough
     let late = Numerical::new(r, v, 1e20, gravity()).expect("above ground");
     assert!(matches!(late.state(2e20), Err(OrbitError::StepTooShort { .. })), "{:?}", late.state(2e20));
 }

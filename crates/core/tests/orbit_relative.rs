@@ -1,4 +1,4 @@
-//! Relative motion against Vallado's and CelesTrak's numbers, Kepler's closed form, and itself undone.
+//! Checks relative motion against Vallado's and CelesTrak's numbers, Kepler's closed form, and round trips.
 
 use nalgebra::{Vector3, Vector6};
 use onorbit_core::orbit::relative::{
@@ -6,7 +6,7 @@ use onorbit_core::orbit::relative::{
 };
 use onorbit_core::orbit::{Elements, Kepler, MU_EARTH, Orbit, OrbitError, OrbitState, Phase, Size};
 
-/// Vallado's circle at 590 km.
+/// Vallado's circular orbit at 590 km.
 fn vallado() -> f64 {
     let a: f64 = (6378.1363 + 590.0) * 1e3;
     (398_600.441_5e9 / a.powi(3)).sqrt()
@@ -58,7 +58,7 @@ fn an_intercept_is_the_one_that_celestrak_computes() {
 fn transitions_follow_each_other_and_start_at_rest() {
     let (n, at) = (vallado(), |t| hill_transition(vallado(), t).expect("finite"));
     assert_eq!(at(0.0), nalgebra::Matrix6::identity());
-    // in units in which lengths and lengths times n are alike
+    // in units in which lengths and lengths times n are comparable
     let scale = Vector6::new(1.0, 1.0, 1.0, n, n, n);
     let fault = at(500.0) * at(900.0) - at(1400.0);
     let fault = nalgebra::Matrix6::from_diagonal(&scale.map(|x| 1.0 / x))
@@ -83,13 +83,13 @@ fn against_kepler_the_error_is_of_second_order_in_the_separation() {
     };
     let (near, far) = (fault(100.0, 0.0), fault(1000.0, 0.0));
     assert!((far / near - 100.0).abs() < 2.0, "{near} m and {far} m");
-    // negative control: where the theory does not hold, on an ellipse, it is of first order
+    // negative control: on an ellipse, where the theory does not hold, the error is of first order
     let (near, far) = (fault(100.0, 0.05), fault(1000.0, 0.05));
     assert!((far / near - 10.0).abs() < 1.0, "{near} m and {far} m");
 }
 
 #[test]
-fn local_coordinates_are_derivatives_and_come_back() {
+fn local_coordinates_are_consistent_and_invertible() {
     let (chief, deputy) = (
         circle(0.2),
         Kepler::new(&Elements { inclination: 0.95, ..circle(0.21).elements() }).expect("an orbit"),
@@ -100,10 +100,11 @@ fn local_coordinates_are_derivatives_and_come_back() {
             (c, d, to_local(&c, frame, &d.position, &d.velocity).expect("a frame"))
         };
         let (c, d, [rho, rho_dot]) = at(700.0);
-        // the rate is that of the local position, the frame's turn included: central differences, h⁴ of 1 s
+        // the rate is the derivative of the local position, including the rotation of the frame: central
+        // differences, h⁴ of 1 s
         let slope = ((at(701.0).2[0] - at(699.0).2[0]) * 8.0 - (at(702.0).2[0] - at(698.0).2[0])) / 12.0;
         assert!((slope - rho_dot).norm() < 1e-6, "{}", slope - rho_dot);
-        // negative control: without ω × ρ it would be off by tens of m/s
+        // negative control: without ω × ρ the error is tens of m/s
         if frame == LocalFrame::Lvlh {
             let rot_il = onorbit_core::orbit::Lvlh::of(&c).expect("a frame").rot_il;
             assert!((slope - rot_il.tr_mul(&(d.velocity - c.velocity))).norm() > 10.0);
@@ -112,7 +113,7 @@ fn local_coordinates_are_derivatives_and_come_back() {
         assert!((r - d.position).norm() < 1e-12 * d.position.norm());
         assert!((v - d.velocity).norm() < 1e-12 * d.velocity.norm());
     }
-    // both flavours are one place: (x, y, z) of one are (y, -z, -x) of the other
+    // both frames have one origin: (x, y, z) of one is (y, -z, -x) of the other
     let (c, d) = (chief.state(0.0).expect("a state"), deputy.state(0.0).expect("a state"));
     let [l, _] = to_local(&c, LocalFrame::Lvlh, &d.position, &d.velocity).expect("a frame");
     let [n, _] = to_local(&c, LocalFrame::Nadir, &d.position, &d.velocity).expect("a frame");
@@ -120,7 +121,7 @@ fn local_coordinates_are_derivatives_and_come_back() {
 }
 
 #[test]
-fn relative_elements_come_back_and_mean_what_they_say() {
+fn relative_elements_are_invertible_and_have_their_meaning() {
     for e in [0.0, 1e-7, 0.1, 0.7] {
         let s = circle(e).state(0.0).expect("a state");
         let chief = [&s.position, &s.velocity];
@@ -152,7 +153,7 @@ fn relative_elements_come_back_and_mean_what_they_say() {
 }
 
 #[test]
-fn what_has_no_relative_elements_is_refused() {
+fn orbits_without_relative_elements_are_refused() {
     let s = circle(0.1).state(0.0).expect("a state");
     let flat = Kepler::new(&Elements::new(Size::SemiMajorAxis(7e6), 0.1)).expect("an orbit");
     let flat = flat.state(0.0).expect("a state");

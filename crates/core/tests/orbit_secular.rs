@@ -1,4 +1,5 @@
-//! Secular J₂ rates against Curtis' example 12.2, an integration of the flattened field, and OnOrbitROS' slip.
+//! Checks secular J₂ rates against Curtis' example 12.2, an integration of the field, and the error of
+//! OnOrbitROS.
 
 use nalgebra::Vector3;
 use onorbit_core::orbit::{Elements, Kepler, MU_EARTH, Orbit, OrbitError, Phase, SecularJ2, Size};
@@ -25,12 +26,12 @@ fn secular(e: f64) -> SecularJ2 {
 }
 
 #[test]
-fn rates_are_those_of_curtis_12_2() {
+fn rates_agree_with_curtis_12_2() {
     let (node, periapsis) = curtis().with_secular_j2(J2, RADIUS).expect("an ellipse").rates();
     let per_hour = |rate: f64| rate.to_degrees() * 3600.0;
     assert!((per_hour(node) / -0.172 - 1.0).abs() < 0.01, "{}", per_hour(node));
     assert!((per_hour(periapsis) / 0.282 - 1.0).abs() < 0.01, "{}", per_hour(periapsis));
-    // negative control: with OnOrbitROS' factor 1/e they would be eleven times that
+    // negative control: with the factor 1/e of OnOrbitROS the rates are eleven times larger
     assert!((per_hour(node) / curtis().eccentricity() / -0.172 - 1.0).abs() > 1.0);
 }
 
@@ -51,7 +52,7 @@ fn velocity_and_acceleration_are_derivatives_of_the_position() {
             let dv = (central(&|t| at(t).velocity) - s.acceleration).norm();
             // roundings of the time, 3e-11 s, of 8e6 m and 1e4 m/s over 2 s
             assert!(dr < 2e-7 && dv < 2e-10, "e = {e}, t = {t}: {dr} m/s, {dv} m/s²");
-            // it does not obey a point mass
+            // the orbit is not in free fall in the field of a point mass
             let g = -s.position * (MU_EARTH / s.position.norm().powi(3));
             assert!((s.acceleration - g).norm() > 1e-4);
         }
@@ -60,7 +61,7 @@ fn velocity_and_acceleration_are_derivatives_of_the_position() {
 }
 
 #[test]
-fn at_the_epoch_it_is_where_kepler_is() {
+fn at_the_epoch_the_position_is_that_of_kepler() {
     let orbit = secular(0.1);
     let kepler = Kepler::new(&Elements {
         inclination: 1.1,
@@ -74,7 +75,8 @@ fn at_the_epoch_it_is_where_kepler_is() {
     assert_eq!(orbit.state(50.0).expect("a state").position, there);
 }
 
-/// Mean rates of node and of the argument of latitude over whole revolutions in the flattened field, rad/s.
+/// Returns the mean rates of node and argument of latitude over whole revolutions in the field with J₂,
+/// rad/s.
 fn integrated(kepler: &Kepler, days: f64) -> f64 {
     let s = kepler.state(0.0).expect("a state");
     let mu = kepler.mu().expect("a planet");
@@ -88,7 +90,7 @@ fn integrated(kepler: &Kepler, days: f64) -> f64 {
         );
         part * (-mu / (r2 * r2.sqrt()))
     };
-    // classical Runge-Kutta at 5 s: independent of ours and good to metres
+    // classical Runge-Kutta at 5 s: independent of the crate's integrator and good to metres
     let (mut r, mut v, h) = (s.position, s.velocity, 5.0);
     let node = |r: &Vector3<f64>, v: &Vector3<f64>| {
         let w = r.cross(v);
@@ -109,7 +111,7 @@ fn integrated(kepler: &Kepler, days: f64) -> f64 {
 }
 
 #[test]
-fn the_node_of_an_integrated_orbit_turns_as_fast() {
+fn an_integrated_orbit_has_the_same_node_rate() {
     let orbit = curtis();
     let (node, _) = orbit.with_secular_j2(J2, RADIUS).expect("an ellipse").rates();
     let true_rate = integrated(&orbit, 2.0);
@@ -117,7 +119,7 @@ fn the_node_of_an_integrated_orbit_turns_as_fast() {
 }
 
 #[test]
-fn open_orbits_and_senseless_planets_are_refused() {
+fn open_orbits_and_invalid_planets_are_refused() {
     let open = Kepler::new(&Elements::new(Size::SemiMajorAxis(-8e6), 1.5)).expect("a hyperbola");
     assert!(matches!(open.with_secular_j2(J2, RADIUS), Err(OrbitError::NotClosed { .. })));
     assert!(matches!(

@@ -1,9 +1,9 @@
-//! SGP4: a short table of AIAA 2006-6753, what it refuses, and its acceleration.
+//! Checks SGP4 against a table of AIAA 2006-6753, its errors, and its acceleration.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 
 use nalgebra::Vector3;
 use onorbit_core::number_text::short;
-use onorbit_core::orbit::sgp4::{ElementSetError, Reference, Sgp4Error};
+use onorbit_core::orbit::sgp4::{ElementSetError, ExternalSgp4, Sgp4Error};
 use onorbit_core::orbit::{Axes, EarthModel, MeanElements, Orbit, OrbitError, Sgp4, states};
 use std::sync::Arc;
 
@@ -17,11 +17,11 @@ fn sgp4(line1: &str, line2: &str) -> Sgp4 {
     Sgp4::new(elements, EarthModel::Wgs72)
 }
 
-/// Rows of tcppver.out (minutes, km, km/s), AIAA 2006-6753: near the Earth, low drag-ridden, equatorial (Lyddane),
-/// resonant by half a day and by a day, two weeks long, 3.5 years from the epoch.
+/// Rows of tcppver.out (minutes, km, km/s), AIAA 2006-6753: near the Earth, high drag, equatorial (Lyddane),
+/// half-day and one-day resonance, two-week period, 3.5 years from the epoch.
 /// The whole table is compared in `tests/oracles/test_sgp4.py`.
 #[test]
-fn published_states_come_back() {
+fn published_states_are_reproduced() {
     #[rustfmt::skip]
     let table: [([&str; 2], &[[f64; 7]]); 8] = [
         (LINES, &[
@@ -106,7 +106,7 @@ fn the_acceleration_is_that_of_the_position() {
         let apart = (other - state.acceleration).norm();
         println!("acceleration at {t} s: {apart:.1e} m/s²");
         assert!(apart < 2e-7);
-        // and not that of the published velocity
+        // it is not the derivative of the published velocity
         let slope = (at(t + h).position - at(t - h).position) * 8.0
             - (at(t + 2.0 * h).position - at(t - 2.0 * h).position);
         let off = (slope / (12.0 * h) - state.velocity).norm();
@@ -159,7 +159,8 @@ fn corrupted_lines_are_refused_with_their_column() {
     assert!(MeanElements::from_tle(LINES[0], &one_digit, false).is_ok());
 }
 
-/// Each number of the reference code but 5, with time and value; the sets are the published file's own, but for 2.
+/// Every error number of the reference code except 5, with time and value; element sets of the published
+/// file, except for 2.
 #[test]
 fn every_error_is_reached() {
     let cases = [
@@ -223,9 +224,9 @@ fn every_error_is_reached() {
     }
 }
 
-/// A resonant state is the same whatever was asked before, and near a step of its integration (720 min).
+/// A resonant state is independent of earlier queries, also near a step of its integration (720 min).
 #[test]
-fn resonance_has_no_memory_and_no_jump() {
+fn resonant_states_are_independent_of_earlier_queries_and_continuous() {
     let line1 = "1 09880U 77021A   06176.56157475  .00000421  00000-0  10000-3 0  9814";
     let line2 = "2 09880  64.5968 349.3786 7069051 270.0229  16.3320  2.00813614112380";
     let orbit = sgp4(line1, line2);
@@ -238,7 +239,7 @@ fn resonance_has_no_memory_and_no_jump() {
     let (before, after) = (at(43_200.0 - 1e-3), at(43_200.0 + 1e-3));
     let slope = (after - before) / 2e-3;
     let (_, velocity) = orbit.position_velocity(43_200.0).expect("no decay");
-    assert!((slope - velocity).norm() < 3.0, "{slope} against {velocity}"); // SGP4's own mismatch is 1.3 m/s
+    assert!((slope - velocity).norm() < 3.0, "{slope} against {velocity}"); // SGP4's inconsistency is 1.3 m/s
 }
 
 #[test]
@@ -259,14 +260,14 @@ fn decay_and_far_times_are_refused() {
     assert!(matches!(orbit.state(f64::INFINITY), Err(OrbitError::NotFinite { .. })));
 }
 
-/// A circular orbit in place of the reference code; it decays after one hour and fails after two.
+/// A circular orbit in place of the external code; it decays after one hour and fails after two.
 #[derive(Debug)]
 struct Circle;
 
 /// rad/min.
 const RATE: f64 = 0.06;
 
-impl Reference for Circle {
+impl ExternalSgp4 for Circle {
     fn at(&self, minutes: f64) -> Result<[[f64; 3]; 2], u8> {
         if minutes > 120.0 {
             return Err(2);
@@ -279,14 +280,14 @@ impl Reference for Circle {
 }
 
 #[test]
-fn the_reference_code_gives_all_states_where_it_is_asked() {
-    let orbit = sgp4(LINES[0], LINES[1]).by_reference(Arc::new(Circle));
+fn with_external_code_all_states_are_its_own() {
+    let orbit = sgp4(LINES[0], LINES[1]).with_external(Arc::new(Circle));
     let state = orbit.state(600.0).expect("a state");
     let pull = -state.position * (RATE / 60.0) * (RATE / 60.0);
     assert!((state.position.norm() - 7e6).abs() < 1e-8);
     assert!((state.acceleration - pull).norm() < 1e-6);
     assert!((orbit.rate_of_position(600.0, &state).expect("a rate") - state.velocity).norm() < 1e-6);
-    assert!(orbit.velocity_source().contains("reference code"));
+    assert!(orbit.velocity_source().contains("reference implementation"));
     let (mut r, mut v) = ([0.0; 3], [0.0; 3]);
     states(&orbit, &[600.0], &mut r, &mut v).expect("a state");
     assert_eq!(r, *state.position.as_slice());
@@ -295,6 +296,6 @@ fn the_reference_code_gives_all_states_where_it_is_asked() {
         other => panic!("{other:?}"),
     };
     assert!(matches!(refusal(5000.0), Sgp4Error::Decayed { distance, .. } if (distance - 6e6).abs() < 1e-3));
-    assert_eq!(refusal(9000.0), Sgp4Error::OfReference { time: 9000.0, code: 2 });
+    assert_eq!(refusal(9000.0), Sgp4Error::External { time: 9000.0, code: 2 });
     assert_eq!((refusal(9000.0).code(), refusal(9000.0).time()), (2, 9000.0));
 }

@@ -1,4 +1,4 @@
-//! The corpus of `make fuzz` and a few mutations of each of its inputs: read or refused with a message.
+//! Checks that the corpus of `make fuzz` and some mutations of it are read or refused with a message.
 
 #[path = "../../../tests/fuzz/engine/mutate.rs"]
 mod mutate;
@@ -13,7 +13,7 @@ use std::path::Path;
 const MUTATIONS: usize = 100;
 const SEED: u64 = 14;
 
-/// The files of a parser, in order, and what the engine writes itself.
+/// The files of a parser, in order, and files that the engine writes.
 fn corpus(name: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fuzz/corpus").join(name);
     let mut files: Vec<_> =

@@ -1,4 +1,4 @@
-//! Lengths and indices that do not fit, at the safe functions of every module: errors, never panics.
+//! Checks that invalid lengths and indices are errors, never panics, at the public functions of every module.
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
 mod common;
@@ -35,11 +35,11 @@ fn frames_and_bodies_the_robot_does_not_have() {
         assert!(unknown(check_controls(&[control], &model).unwrap_err()));
     }
     let error = Surface::from_shapes(&model, bodies, 2.2, Optics::default()).unwrap_err();
-    assert_eq!(error, SurfaceError::UnknownBody { body: bodies, count: bodies });
+    assert_eq!(error, SurfaceError::UnknownBody { body: bodies.into(), count: bodies });
     let elsewhere = Frame { body: bodies, ..model.frames()[0].clone() };
     let (areas, x) = ([1.0], [[1.0, 0.0, 0.0]]);
     let plates = Surface::plates(&model, &elsewhere, &areas, &x, &x, 2.2, Optics::default());
-    assert_eq!(plates.unwrap_err(), SurfaceError::UnknownBody { body: bodies, count: bodies });
+    assert_eq!(plates.unwrap_err(), SurfaceError::UnknownBody { body: bodies.into(), count: bodies });
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! References: in every frame position, velocity and acceleration agree, ends and limits are met.
+//! Checks references: consistent position, velocity and acceleration in every frame; ends and limits.
 #![allow(clippy::unwrap_used, clippy::panic)] // set-up that fails should stop
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -30,7 +30,7 @@ const LIMITS: TaskLimits = TaskLimits {
     angular: RateLimit { rate: 0.5, acceleration: 0.6 },
 };
 
-/// Every kind, with its name.
+/// Returns every kind of path, with its name.
 fn paths() -> Vec<(&'static str, Arc<dyn TaskPath>)> {
     let (quintic, ramped) = (TimeLaw::quintic(3.0).unwrap(), TimeLaw::ramped(3.0, 0.25).unwrap());
     let start = pose([0.3, -0.6, 0.2], [0.4, -0.1, 0.7]);
@@ -58,7 +58,7 @@ fn paths() -> Vec<(&'static str, Arc<dyn TaskPath>)> {
     ]
 }
 
-/// An orbit whose plane turns, so that every component of L's rate changes: a circle of radius `A` in a
+/// An orbit whose plane rotates, so that every component of L's rate changes: a circle of radius `A` in a
 /// plane that precesses about z.
 #[derive(Debug)]
 struct Precessing;
@@ -92,7 +92,7 @@ fn frames() -> Vec<(&'static str, ReferenceFrame)> {
         raan: 0.4,
         argument_of_periapsis: 1.0,
         phase: Phase::TrueAnomaly(0.8),
-        mu: 1e5 * MU_EARTH, // 300 times as fast as around the Earth, so that frame terms are seen
+        mu: 1e5 * MU_EARTH, // 300 times faster than around the Earth, so that the frame terms matter
         epoch: 0.0,
     };
     let rot: Matrix3<f64> = *Rotation3::from_euler_angles(0.4, -0.2, 1.3).matrix();
@@ -107,17 +107,17 @@ fn frames() -> Vec<(&'static str, ReferenceFrame)> {
     ]
 }
 
-/// First derivative by central differences of sixth order.
+/// Returns the first derivative by central differences of sixth order.
 fn slope(f: impl Fn(f64) -> Vec3<f64>, t: f64, h: f64) -> Vec3<f64> {
     let pair = |k: f64| (f(t + k * h) - f(t - k * h)) * (1.0 / (60.0 * h));
     pair(1.0) * 45.0 - pair(2.0) * 9.0 + pair(3.0)
 }
 
-/// Worst disagreement of velocity with pose and of acceleration with velocity.
+/// Returns the largest difference of velocity and d(pose)/dt, and of acceleration and d(velocity)/dt.
 fn disagreement(sample: impl Fn(f64) -> TaskSample<f64>, duration: f64) -> [f64; 4] {
     let (h, mut worst) = (1e-3, [0.0_f64; 4]);
     for i in 1..60 {
-        // pieces join at 0.25, 0.75 (ramps) and at the waypoints: differences stay off them
+        // pieces join at 0.25, 0.75 (ramps) and at the waypoints, which the differences avoid
         let t = duration * (f64::from(i) + 0.37) / 61.0;
         let now = sample(t);
         let turned = |s: f64| log_rotation(&(sample(s).rot_wd * now.rot_wd.transpose()));
@@ -140,15 +140,15 @@ fn velocity_and_acceleration_are_derivatives_in_every_kind_and_frame() {
             let duration = if path.duration() == 0.0 { 3.0 } else { path.duration() };
             let start = 11.0;
             let worst = disagreement(|t| reference.sample(start + t, start).unwrap(), duration);
-            // h = 1 ms: rounding of 1e-14/h, the sixth order far below it
+            // h = 1 ms: rounding 1e-14/h; the sixth-order error is far below
             assert!(worst.iter().all(|x| *x < 1e-10), "{kind} in {name}: {worst:?}");
         }
     }
 }
 
 #[test]
-fn a_forgotten_frame_term_is_seen() {
-    // negative controls: without Coriolis, centripetal or Euler the same measure fails
+fn an_omitted_frame_term_is_detected() {
+    // negative controls: without the Coriolis, centripetal or Euler term the same measure fails
     let (_, frame) = frames().remove(2);
     let ReferenceFrame::Lvlh(orbit) = &frame else { panic!("an orbital frame") };
     let reference = TaskReference { path: Arc::clone(&paths()[2].1), frame: frame.clone() };
@@ -193,7 +193,7 @@ fn paths_start_and_end_where_they_should_and_hold_there() {
     let (half, goal) = (line.sample(1.5), poses()[2].sample(0.0));
     let (first, end) = (line.sample(0.0), line.sample(3.0));
     assert!((end.pos_w - goal.pos_w).norm() < 1e-15);
-    // on the geodesic, half the turn is done at half time
+    // on the geodesic, half of the rotation at half of the time
     let turn = |a: &TaskSample<f64>, b: &TaskSample<f64>| log_rotation(&(b.rot_wd * a.rot_wd.transpose()));
     assert!((turn(&first, &half) * 2.0 - turn(&first, &end)).norm() < 1e-14);
 }
@@ -224,7 +224,7 @@ fn a_circle_keeps_its_distance_and_a_screw_is_the_exponential_of_its_twist() {
 }
 
 #[test]
-fn limits_are_kept_and_nearly_reached() {
+fn limits_are_respected_and_nearly_reached() {
     let reached = |path: &dyn TaskPath, within: (f64, f64)| {
         let (mut worst, end) = (0.0_f64, path.duration());
         for i in 0..=20_011 {
@@ -254,7 +254,7 @@ fn limits_are_kept_and_nearly_reached() {
 }
 
 #[test]
-fn joints_keep_their_own_limits_and_arrive_together() {
+fn joints_respect_their_limits_and_arrive_together() {
     let points = [0.0, 0.0, 0.0, 1.0, -0.5, 0.1, 0.4, 0.5, 0.3];
     let limits = vec![
         RateLimit { rate: 0.3, acceleration: 0.2 },
@@ -305,7 +305,7 @@ fn one_joint_moves_after_the_other() {
 }
 
 #[test]
-fn samples_of_a_motion_give_it_back() {
+fn samples_of_a_motion_reproduce_it() {
     let screw = &paths()[5].1;
     let worst = |n: u32, with_velocities: bool| {
         let times: Vec<f64> = (0..=n).map(|k| 3.0 * f64::from(k) / f64::from(n)).collect();
@@ -331,7 +331,7 @@ fn samples_of_a_motion_give_it_back() {
 }
 
 #[test]
-fn the_offset_at_the_start_is_told_in_metres_and_radians() {
+fn the_offset_at_the_start_is_in_metres_and_radians() {
     let reference = TaskReference::from(poses()[0].clone());
     let away = pose([0.0, 0.0, 0.3], [0.0, 0.4, 0.3]).sample(0.0);
     let (metres, radians) = reference.start_offset(&away.rot_wd, away.pos_w, 0.0).unwrap();
@@ -339,7 +339,7 @@ fn the_offset_at_the_start_is_told_in_metres_and_radians() {
 }
 
 #[test]
-fn bad_references_are_told() {
+fn invalid_references_are_refused() {
     let start = poses()[0].clone();
     let given =
         |times: &[f64]| PoseSpline::waypoints(&poses(), &Timing::Given(times.to_vec()), true).unwrap_err();

@@ -1,34 +1,33 @@
-//! The adaptive pair keeps its tolerance, in attitude too; its rows between steps are on the group.
+//! Checks that the adaptive integrator meets its tolerance, also in attitude and in rows between steps.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
 
 use common::humanoid::{humanoid, start};
 use nalgebra::{Matrix3, Vector3};
-use onorbit_core::control::{ControlError, ControlLaw, Controller, Observation};
+use onorbit_core::control::{Control, ControlError, Controller, Law, Observation};
 use onorbit_core::environment::{
     BodyWrench, Effect, EnvironmentError, GravityGradient, Scene, Wrench, Wrenches,
 };
 use onorbit_core::model::{Model, difference, neutral};
 use onorbit_core::orbit::{Kepler, MU_EARTH};
 use onorbit_core::simulation::{Integrator, Simulation, SimulationError, Trace, certify};
-use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 
 const TOLERANCES: [f64; 6] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
 
 fn run(simulation: &mut Simulation, duration: f64) -> Trace {
-    simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap()
+    simulation.run(duration).unwrap()
 }
 
-/// A spacecraft of 10 kg that tumbles about no axis in particular, a turn in about six seconds.
+/// A spacecraft of 10 kg that tumbles about no principal axis, one turn in about six seconds.
 fn tumbling() -> Simulation {
     let model = Model::rigid_body(10.0, Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.5))).unwrap();
     let q = neutral(&model);
     Simulation::new(Arc::new(model), q, vec![0.1, 0.0, -0.2, 0.7, 0.9, -0.4])
 }
 
-/// The humanoid's arm, limp, while the torso tumbles.
+/// The humanoid's arm without control, while the torso tumbles.
 fn limp() -> Simulation {
     let model = humanoid();
     let (q, mut v) = (start(&model), vec![0.0; model.nv()]);
@@ -41,7 +40,7 @@ fn last(trace: &Trace, model: &Model) -> Vec<f64> {
     trace.q[trace.q.len() - model.nq()..].to_vec()
 }
 
-/// Differences in position, attitude and joints.
+/// Returns the differences in position, attitude and joints.
 fn errors(model: &Model, exact: &[f64], q: &[f64]) -> [f64; 3] {
     let mut delta = vec![0.0; model.nv()];
     difference(exact, q, &mut delta);
@@ -55,7 +54,7 @@ fn adaptive(mut simulation: Simulation, tolerance: f64, grid: f64) -> Simulation
     simulation
 }
 
-/// Counts how often the forces are asked for, and keeps the steps for which.
+/// Counts the evaluations of the forces, and records their steps.
 #[derive(Debug, Default)]
 struct Counter(Mutex<Vec<(f64, f64)>>);
 
@@ -85,8 +84,8 @@ impl Counter {
 /// Name, start, duration in s.
 type Case = (&'static str, fn() -> Simulation, f64);
 
-/// One turn of the spacecraft, a swing of the arm: errors of steps add up, and later the motion itself
-/// amplifies them. Not only at the end: the largest of twenty rows.
+/// One turn of the spacecraft, a swing of the arm: step errors accumulate and are later amplified by the
+/// motion. The largest error of twenty rows, not only at the end.
 #[test]
 fn the_tolerance_is_met_within_a_factor_of_ten_over_five_decades() {
     let cases: [Case; 2] = [("tumbling", tumbling, 8.0), ("limp arm", limp, 5.0)];
@@ -104,7 +103,7 @@ fn the_tolerance_is_met_within_a_factor_of_ten_over_five_decades() {
                 (0..3).for_each(|i| shares[i] = shares[i].max(found[i] / tolerance));
             }
             println!("{name}, {tolerance:e}: position, attitude, joints off by {shares:.4?} tolerances");
-            // what is hardest to follow meets it both ways: the spacecraft's attitude, the arm's joints
+            // the hardest components meet it both ways: the attitude of the spacecraft, the joints of the arm
             let hardest = shares[1].max(shares[2]);
             assert!((0.1..10.0).contains(&hardest), "{name} {tolerance}: {shares:?}");
             let certificate = certify(&simulation.model, &trace);
@@ -115,7 +114,7 @@ fn the_tolerance_is_met_within_a_factor_of_ten_over_five_decades() {
     }
 }
 
-/// Rows between the ends of long steps are as good as the steps: of fourth order.
+/// Rows inside long steps are of fourth order, as the steps.
 #[test]
 fn dense_rows_converge_with_fourth_order_at_least() {
     let make = || tumbling();
@@ -128,10 +127,10 @@ fn dense_rows_converge_with_fourth_order_at_least() {
         let counter = Counter::on(&mut simulation);
         let trace = run(&mut simulation, duration);
         assert_eq!(trace.rows(), 401);
-        let steps = (counter.evaluations() - 401) / 7; // rows ask once, steps seven times
+        let steps = (counter.evaluations() - 401) / 7; // a row has one evaluation, a step seven
         let pairs = exact.q.chunks(7).zip(trace.q.chunks(7));
         let error = pairs.map(|(exact, q)| errors(&simulation.model, exact, q)[1]).fold(0.0, f64::max);
-        // what the rows say about each other holds as well: momentum, energy, the straight line
+        // consistency of the rows: momentum, energy, the straight line
         let certificate = certify(&simulation.model, &trace);
         println!("{tolerance:e}: {steps} steps, rows off by {error:e} rad, {certificate:?}");
         assert!(certificate.angular_momentum_drift_rel < 1e-12);
@@ -144,7 +143,7 @@ fn dense_rows_converge_with_fourth_order_at_least() {
     assert!((3.7..6.0).contains(&order), "{order}");
 }
 
-/// An eccentric orbit: steps are short where gravity turns the robot fast.
+/// An eccentric orbit: steps are short where the gravity gradient changes fast.
 #[test]
 fn steps_follow_the_pace_of_an_eccentric_orbit() {
     let eccentric = |time_step: f64| {
@@ -160,7 +159,7 @@ fn steps_follow_the_pace_of_an_eccentric_orbit() {
     let mut simulation = adaptive(eccentric(600.0), 1e-8, 600.0);
     let counter = Counter::on(&mut simulation);
     let trace = run(&mut simulation, duration);
-    // the stages of a step share its interval; what asks once is a look ahead or a row
+    // the stages of a step share its interval; single evaluations are look-aheads or rows
     let lengths: Vec<f64> =
         counter.0.lock().unwrap().windows(2).filter(|w| w[0] == w[1]).map(|w| w[0].1 - w[0].0).collect();
     let (shortest, longest) =
@@ -170,7 +169,7 @@ fn steps_follow_the_pace_of_an_eccentric_orbit() {
     reference.record_every = 60_000;
     let exact = last(&run(&mut reference, duration), &reference.model);
     let found = errors(&reference.model, &exact, &last(&trace, &reference.model));
-    // RK4 as good as that
+    // RK4 of the same accuracy
     let mut even = (0.0, 0);
     for time_step in [60.0, 30.0, 20.0, 15.0, 10.0, 7.5, 5.0] {
         let mut simulation = eccentric(time_step);
@@ -190,9 +189,9 @@ fn steps_follow_the_pace_of_an_eccentric_orbit() {
     assert!(certificate.passed(), "{certificate:#?}");
 }
 
-/// A push that starts and ends off every grid: steps end there, and the impulse is exact.
+/// A push that starts and ends off all grids: steps end there, and the impulse is exact.
 #[test]
-fn events_cut_adaptive_steps_and_ticks_do_where_something_asks() {
+fn events_and_control_ticks_shorten_adaptive_steps() {
     let model = Model::rigid_body(7.0, Matrix3::identity()).unwrap();
     let mut simulation =
         adaptive(Simulation::new(Arc::new(model.clone()), neutral(&model), vec![0.0; 6]), 1e-9, 0.1);
@@ -207,7 +206,7 @@ fn events_cut_adaptive_steps_and_ticks_do_where_something_asks() {
 }
 
 #[test]
-fn what_no_step_can_follow_is_named() {
+fn a_motion_that_no_step_resolves_is_reported() {
     let mut simulation = adaptive(tumbling(), 1e-9, 0.1);
     for tolerance in [0.0, 1e-16, 0.5, f64::NAN] {
         simulation.tolerance = tolerance;
@@ -216,12 +215,12 @@ fn what_no_step_can_follow_is_named() {
     }
     simulation.tolerance = 1e-9;
     simulation.effects.push(Arc::new(Noise));
-    let failure = simulation.run(1.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let failure = simulation.run(1.0).unwrap_err();
     assert!(matches!(failure.error, SimulationError::StepTooSmall { .. }), "{failure}");
-    assert!(failure.to_string().contains("loosen tolerance") && failure.trace.rows() > 0);
+    assert!(failure.to_string().contains("increase tolerance") && failure.trace.rows() > 0);
 }
 
-/// A torque that is another one at every look.
+/// A torque that changes at every evaluation.
 #[derive(Debug)]
 struct Noise;
 
@@ -239,13 +238,13 @@ impl Effect for Noise {
     }
 }
 
-/// At rest under balanced loads there is only rounding: nothing to follow, and nothing to stop for.
+/// At rest under balanced loads there is only rounding error, which must not shorten steps.
 #[test]
 fn rounding_at_rest_does_not_shorten_the_steps() {
     let model = common::humanoid::humanoid_with(|joint| joint.friction = 2.0);
     let (q, v) = (start(&model), vec![0.0; model.nv()]);
     let mut simulation = adaptive(Simulation::new(Arc::new(model), q, v), 1e-9, 10.0);
-    simulation.control = ControlLaw::User(Box::new(Load));
+    simulation.controls = vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Load), None))];
     simulation.control_period = Some(50.0);
     let counter = Counter::on(&mut simulation);
     let trace = run(&mut simulation, 100.0);
@@ -254,7 +253,7 @@ fn rounding_at_rest_does_not_shorten_the_steps() {
     assert!(counter.evaluations() < 500);
 }
 
-/// Less than friction holds.
+/// A torque below the static friction.
 struct Load;
 
 impl Controller for Load {

@@ -1,22 +1,21 @@
-//! What a simulation refuses, each with its own error.
+//! Checks the errors of invalid simulations.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
 
 use common::humanoid::{humanoid, start};
 use nalgebra::{Matrix3, Vector3};
-use onorbit_core::control::{ComputedTorque, ControlError, ControlLaw};
+use onorbit_core::control::{ComputedTorque, Control, ControlError, Law};
 use onorbit_core::environment::atmosphere::ConstantAtmosphere;
 use onorbit_core::environment::surfaces::{Covering, Surface, Surfaces};
 use onorbit_core::environment::{
-    BodyWrench, DifferentialGravity, Drag, Effect, EnvironmentError, GravityGradient, Place,
-    RadiationPressure,
+    BodyWrench, DifferentialGravity, Drag, Effect, EnvironmentError, GravityGradient, RadiationPressure,
+    ScenePoint,
 };
 use onorbit_core::model::{Model, neutral};
 use onorbit_core::orbit::{Elements, Kepler, MU_EARTH, Orbit, Phase, Size};
 use onorbit_core::reference::Hold;
 use onorbit_core::simulation::{Simulation, SimulationError};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 fn sound() -> Simulation {
@@ -25,11 +24,11 @@ fn sound() -> Simulation {
     Simulation::new(Arc::new(model), q, v)
 }
 
-/// The error of a simulation after `spoil`; nothing may have been recorded.
+/// Returns the error of a simulation after `spoil`; no row may have been recorded.
 fn refused(spoil: impl FnOnce(&mut Simulation)) -> SimulationError {
     let mut simulation = sound();
     spoil(&mut simulation);
-    let failure = simulation.run(1.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let failure = simulation.run(1.0).unwrap_err();
     assert_eq!(failure.trace.rows(), 0);
     println!("{failure}");
     failure.error
@@ -39,9 +38,15 @@ fn tracking(simulation: &mut Simulation) -> usize {
     let tool = simulation.model.frame("tool").unwrap();
     let hold = Hold::new(Matrix3::identity(), Vector3::zeros()).unwrap();
     simulation.reference = Some(hold.into());
-    simulation.reference_start_tolerance = [1.0, 4.0]; // from wherever the tool is
+    simulation.reference_start_tolerance = [1.0, 4.0]; // from the present pose of the tool
     simulation.tool = Some(tool);
     tool
+}
+
+/// Makes the reference of the run that of a law on all joints.
+fn track_alone(simulation: &mut Simulation, law: ComputedTorque) {
+    let law = Law::TaskComputedTorque(Box::new(law), simulation.reference.take().unwrap());
+    simulation.controls = vec![Control::on_all_joints(&simulation.model, law)];
 }
 
 #[test]
@@ -63,8 +68,8 @@ fn a_quaternion_off_unit_norm() {
     assert!(matches!(refused(|s| s.q[6] = 0.0), SimulationError::QuaternionNorm { norm: 0.0 }));
     let mut nearly = sound();
     nearly.q[6] = 1.000_000_5;
-    let trace = nearly.run(0.01, &mut |_| ControlFlow::Continue(())).unwrap();
-    assert!((trace.q[6] - 1.0).abs() < 1e-15); // put right, not carried along
+    let trace = nearly.run(0.01).unwrap();
+    assert!((trace.q[6] - 1.0).abs() < 1e-15); // normalized
 }
 
 #[test]
@@ -74,7 +79,7 @@ fn steps_periods_and_durations_that_are_not_positive() {
         assert!(matches!(error, SimulationError::NotPositive { name: "time_step", .. }));
         let error = refused(|s| s.control_period = Some(value));
         assert!(matches!(error, SimulationError::NotPositive { name: "control_period", .. }));
-        let failure = sound().run(value, &mut |_| ControlFlow::Continue(())).unwrap_err();
+        let failure = sound().run(value).unwrap_err();
         assert!(matches!(failure.error, SimulationError::NotPositive { name: "duration", .. }));
     }
     assert!(matches!(refused(|s| s.record_every = 0), SimulationError::RecordEvery));
@@ -86,10 +91,10 @@ fn absurd_steps_and_states_are_refused_with_their_limit() {
         let message = refused(spoil).to_string();
         assert!(message.contains(words), "{message}");
     };
-    says(|s| s.time_step = 1e-300, "time_step is 1e-300 s, steps of 1e-12 s to 1e9 s");
+    says(|s| s.time_step = 1e-300, "time_step is 1e-300 s; it must be between 1e-12 and 1e9 s");
     says(
         |s| s.v[3] = 1e200,
-        "v[3], angular velocity of the base along x, is 1e200 rad/s, it must lie between -1e9 and",
+        "v[3], angular velocity of the base along x, is 1e200 rad/s; it must lie between -1e9 and",
     );
     says(|s| s.v[1] = -3e8, "v[1], velocity of the base along y, is -300000000 m/s");
     says(|s| s.v[6] = 1e10, "it must lie between -1e9 and 1e9 rad/s");
@@ -97,12 +102,12 @@ fn absurd_steps_and_states_are_refused_with_their_limit() {
     says(|s| s.q[7] = -1e300, "q[7], joint '");
     let mut fast = sound();
     (fast.v[0], fast.time_step) = (1e8, 1e-12);
-    fast.check().unwrap(); // control: what is fast but not absurd
+    fast.check().unwrap(); // control: fast, but accepted
 }
 
 #[test]
 fn more_rows_than_memory_holds() {
-    let failure = sound().run(1e15, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let failure = sound().run(1e15).unwrap_err();
     assert!(matches!(failure.error, SimulationError::TooManyRows { .. }), "{failure}");
 }
 
@@ -113,21 +118,28 @@ fn effects_without_what_they_need() {
     let push = BodyWrench::new(8, Vector3::x(), Vector3::zeros()).unwrap();
     let error = refused(|s| s.effects.push(Arc::new(push)));
     let SimulationError::Environment { source, .. } = error else { panic!("{error}") };
-    assert_eq!(source, EnvironmentError::UnknownBody { body: 8, count: 8 });
+    assert_eq!(source, EnvironmentError::UnknownBody { body: 8.into(), count: 8 });
 }
 
 #[test]
 fn laws_and_references_without_each_other() {
     let error = refused(|s| {
-        let tool = s.model.frame("tool").unwrap();
-        s.control = ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(tool, 100.0, 20.0)));
-    });
-    assert!(matches!(error, SimulationError::NeedsReference));
-    let error = refused(|s| {
         tracking(s);
         s.tool = None;
     });
     assert!(matches!(error, SimulationError::NeedsTool));
+    let error = refused(|s| {
+        let tool = tracking(s);
+        track_alone(s, ComputedTorque::new(tool, 100.0, 20.0));
+        s.tool = None;
+    });
+    assert!(matches!(error, SimulationError::NeedsTool));
+    let error = refused(|s| {
+        let tool = tracking(s);
+        track_alone(s, ComputedTorque::new(tool, 100.0, 20.0));
+        s.tool = Some(0);
+    });
+    assert!(matches!(error, SimulationError::OtherTool { .. }), "{error}");
 }
 
 #[test]
@@ -136,7 +148,7 @@ fn gains_and_frames_that_cannot_work() {
         refused(|s| {
             let mut law = ComputedTorque::new(tracking(s), 100.0, 20.0);
             change(&mut law);
-            s.control = ControlLaw::ComputedTorque(Box::new(law));
+            track_alone(s, law);
         })
     };
     let is_finite_error = |error| matches!(error, SimulationError::Control(ControlError::NotFinite { .. }));
@@ -149,20 +161,20 @@ fn gains_and_frames_that_cannot_work() {
     assert!(matches!(error, SimulationError::Control(ControlError::TooFewJoints { joints: 0, .. })));
 }
 
-/// Found while testing: indices were trusted, and the run panicked.
+/// Regression: unchecked indices caused a panic.
 #[test]
 fn frames_the_robot_does_not_have() {
     let error = refused(|s| s.tool = Some(99));
     assert!(matches!(error, SimulationError::UnknownFrame { frame: 99, .. }), "{error}");
     let error = refused(|s| {
         tracking(s);
-        s.control = ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(99, 1.0, 1.0)));
+        track_alone(s, ComputedTorque::new(99, 1.0, 1.0));
     });
     assert!(matches!(error, SimulationError::UnknownFrame { frame: 99, .. }), "{error}");
 }
 
 #[test]
-fn a_reference_that_starts_away_says_how_far() {
+fn a_reference_with_an_offset_at_the_start_is_reported() {
     let error = refused(|s| {
         tracking(s);
         s.reference_start_tolerance = [0.05, 0.1];
@@ -177,7 +189,7 @@ fn kepler(size: f64, eccentricity: f64, mu: f64) -> Option<Arc<dyn Orbit>> {
 }
 
 #[test]
-fn an_effect_given_twice_is_refused_by_its_name() {
+fn an_effect_given_twice_is_refused() {
     let twice = |effects: Vec<Arc<dyn Effect>>| {
         refused(|s| {
             s.orbit = kepler(7e6, 0.0, MU_EARTH);
@@ -186,18 +198,18 @@ fn an_effect_given_twice_is_refused_by_its_name() {
     };
     let is = |error: SimulationError, name: &str| matches!(&error, SimulationError::EffectTwice { effect, .. } if effect == name);
     assert!(is(twice(vec![Arc::new(GravityGradient), Arc::new(GravityGradient)]), "gravity gradient"));
-    // gravity comes with the orbit
+    // gravity is part of the orbit
     assert!(is(twice(vec![Arc::new(DifferentialGravity::default())]), "gravity"));
-    let ball = |body| {
+    let ball = |body: usize| {
         let surface = Surface::cannonball(1.0, 2.2, 1.3).unwrap();
-        Surfaces::new(vec![Covering { body, surface }], sound().model.nodes().len()).unwrap()
+        Surfaces::new(vec![Covering { body: body.into(), surface }], &[sound().model.nodes().len()]).unwrap()
     };
     let air = || Arc::new(ConstantAtmosphere::new(1e-12).unwrap());
     let drag = |body| -> Arc<dyn Effect> { Arc::new(Drag::new(air(), ball(body))) };
     let light = |body| -> Arc<dyn Effect> { Arc::new(RadiationPressure::new(ball(body))) };
     assert!(is(twice(vec![drag(0), light(0), drag(0)]), "drag"));
     assert!(is(twice(vec![light(3), light(3)]), "radiation pressure"));
-    // other bodies, another effect, and wrenches as many as one likes
+    // other bodies, another effect, and any number of wrenches
     let mut simulation = sound();
     simulation.orbit = kepler(7e6, 0.0, MU_EARTH);
     let push = || Arc::new(BodyWrench::new(0, Vector3::x(), Vector3::zeros()).unwrap());
@@ -206,31 +218,31 @@ fn an_effect_given_twice_is_refused_by_its_name() {
     simulation.check().unwrap();
 }
 
-/// At the perigee of an ellipse through the Earth, with nothing on that would look at the ground.
+/// At the perigee of an ellipse through the Earth, without an effect that would detect the ground.
 #[test]
-fn a_robot_that_falls_to_the_ground_stops_there() {
+fn a_run_that_reaches_the_ground_ends_there() {
     let fly = |mu: f64| {
         let model = Arc::new(Model::rigid_body(10.0, Matrix3::identity()).unwrap());
         let (q, v) = (neutral(&model), vec![0.0; 6]);
         let mut simulation = Simulation::new(model, q, v);
         simulation.time_step = 1.0;
         simulation.orbit = kepler(7e6, 0.1, mu);
-        simulation.run(3000.0, &mut |_| ControlFlow::Continue(()))
+        simulation.run(3000.0)
     };
     let failure = fly(MU_EARTH).unwrap_err();
     println!("{failure}");
     assert!(failure.error.to_string().contains("below ground"));
     let SimulationError::Environment { time, source } = &failure.error else { panic!("{failure}") };
-    let EnvironmentError::InsidePlanet { what: Place::Reference, distance, minimum, .. } = source else {
+    let EnvironmentError::InsidePlanet { what: ScenePoint::Reference, distance, minimum, .. } = source else {
         panic!("{source}")
     };
     assert_eq!(*time, 0.0); // the perigee is the start
     assert!(*distance == 6.3e6 && *minimum == 0.996 * 6_378_137.0, "{distance} {minimum}");
-    // a denser planet of another mass may be as small as that
+    // a denser planet of another mass may be as small
     assert_eq!(fly(1.1 * MU_EARTH).unwrap().rows(), 3001);
 }
 
-/// The same from above: it flies until it is there, and keeps what it had recorded.
+/// The same from above: the run ends at the ground and keeps its rows.
 #[test]
 fn the_rows_before_the_ground_are_kept() {
     let model = Arc::new(Model::rigid_body(10.0, Matrix3::identity()).unwrap());
@@ -239,7 +251,7 @@ fn the_rows_before_the_ground_are_kept() {
     let orbit = Kepler::new(&start).unwrap();
     simulation.orbit = Some(Arc::new(orbit));
     simulation.time_step = 1.0;
-    let failure = simulation.run(3000.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let failure = simulation.run(3000.0).unwrap_err();
     let SimulationError::Environment { time, .. } = failure.error else { panic!("{failure}") };
     let height = |t: f64| orbit.state(t).unwrap().position.norm() - 0.996 * 6_378_137.0;
     assert!(height(time) < 0.0 && height(time - 1.0) > 0.0, "{time} s");

@@ -1,21 +1,20 @@
-//! What a free robot must keep: momentum, energy, its straight line, the Jacobi integral.
+//! Checks the invariants of a free robot: momentum, energy, straight line, Jacobi integral.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
 
 use common::humanoid::{humanoid, humanoid_with, start};
 use nalgebra::{Matrix3, Vector3};
-use onorbit_core::control::{ControlError, ControlLaw, Controller, Observation};
+use onorbit_core::control::{Control, ControlError, Controller, Law, Observation};
 use onorbit_core::dynamics::{Data, kinematics};
 use onorbit_core::environment::GravityGradient;
 use onorbit_core::model::Model;
 use onorbit_core::orbit::{Kepler, MU_EARTH, Orbit};
 use onorbit_core::simulation::{Simulation, Trace, certify};
 use onorbit_core::spatial::Quat;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// A tumbling torso whose arm swings at about 1 rad/s.
+/// A tumbling torso with an arm that swings at about 1 rad/s.
 fn swinging(model: Model) -> Simulation {
     let (q, mut v) = (start(&model), vec![0.0; model.nv()]);
     v[..6].copy_from_slice(&[0.02, -0.01, 0.03, 0.1, -0.05, 0.08]);
@@ -24,11 +23,11 @@ fn swinging(model: Model) -> Simulation {
 }
 
 fn run(simulation: &mut Simulation, duration: f64) -> Trace {
-    simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap()
+    simulation.run(duration).unwrap()
 }
 
-/// The arm starts at half that rate: the wrist, light and chaotic, still reaches 10 rad/s and more.
-/// 2 s in a debug build.
+/// The arm starts at half that rate: the light, chaotic wrist still reaches 10 rad/s and more. 2 s in a debug
+/// build.
 #[test]
 fn a_hundred_seconds_of_free_motion_keep_momentum_energy_and_the_straight_line() {
     let mut simulation = swinging(humanoid());
@@ -41,7 +40,7 @@ fn a_hundred_seconds_of_free_motion_keep_momentum_energy_and_the_straight_line()
     assert!(certificate.linear_momentum_drift_rel < 1e-12);
     assert!(certificate.angular_momentum_drift_rel < 1e-12);
     assert!(certificate.energy_balance_error_rel < 1e-8);
-    // the centre of mass within 1e-7 m of its straight line
+    // the centre of mass stays within 1e-7 m of its straight line
     let mass = simulation.model.mass();
     let at = |column: &[f64], k: usize, width: usize| {
         Vector3::from_column_slice(&column[k * width..k * width + 3])
@@ -54,11 +53,11 @@ fn a_hundred_seconds_of_free_motion_keep_momentum_energy_and_the_straight_line()
     assert!(off < 1e-7);
 }
 
-/// Dampers take energy out, and `work` says how much.
+/// Dampers dissipate energy, and `work` records how much.
 #[test]
-fn damping_and_friction_dissipate_what_the_work_says() {
-    // the wrist is light: damped as hard as the shoulder it would be stiffer than RK4 takes at 1 ms;
-    // friction reverses within a step: first order there
+fn damping_and_friction_dissipate_the_recorded_work() {
+    // the wrist is light: with the damping of the shoulder it would be too stiff for RK4 at 1 ms; friction
+    // reverses within a step: first order there
     let dampings = [(0.3, 0.0, 1e-10), (0.0, 0.05, 1e-4)];
     for (damping, friction, tolerance) in dampings {
         let model = humanoid_with(|joint| {
@@ -75,7 +74,7 @@ fn damping_and_friction_dissipate_what_the_work_says() {
         assert!(lost > 0.3 * energy[0]);
         assert!(open < tolerance * energy[0]);
         assert!(energy.windows(2).all(|e| e[1] <= e[0] + 1e-9 * energy[0]));
-        // internal torques: momentum does not notice
+        // internal torques do not change the momentum
         let certificate = certify(&simulation.model, &trace);
         assert!(
             certificate.linear_momentum_drift_rel < 1e-12 && certificate.angular_momentum_drift_rel < 1e-12
@@ -83,7 +82,7 @@ fn damping_and_friction_dissipate_what_the_work_says() {
     }
 }
 
-/// N m: less where links are light.
+/// Torque amplitudes, N m: smaller for light links.
 const SWING: [f64; 7] = [0.01, 0.01, 3e-3, 3e-3, 1e-5, 1e-5, 1e-5];
 
 /// Torques that swing the arm, held over each step.
@@ -98,9 +97,9 @@ impl Controller for Swing {
     }
 }
 
-/// `Σ ½m|ρ̇−n×ρ|² + ½n²ρ_z²m − m n²R²X + ½(ω−n)·I(ω−n) − ½n·In [+ (3μ/2r³) r̂·I r̂]`, J: the energy
-/// in the frame that turns with a circular orbit. `X = (s−1)²(s+2)/2s`, `s² = 1 + (2R u + ρ²)/R²`,
-/// `u = R̂·ρ`: tide and centrifugal potential together, without cancellation.
+/// `Σ ½m|ρ̇−n×ρ|² + ½n²ρ_z²m − m n²R²X + ½(ω−n)·I(ω−n) − ½n·In [+ (3μ/2r³) r̂·I r̂]`, J: the energy in the
+/// frame that rotates with a circular orbit. `X = (s−1)²(s+2)/2s`, `s² = 1 + (2R u + ρ²)/R²`, `u = R̂·ρ`:
+/// tide and centrifugal potential together, without cancellation.
 fn jacobi(model: &Model, orbit: &Kepler, trace: &Trace, k: usize, gradient: bool) -> f64 {
     let (q, v) =
         (&trace.q[k * model.nq()..(k + 1) * model.nq()], &trace.v[k * model.nv()..(k + 1) * model.nv()]);
@@ -110,7 +109,7 @@ fn jacobi(model: &Model, orbit: &Kepler, trace: &Trace, k: usize, gradient: bool
     let reference = orbit.state(trace.time[k]).unwrap();
     let (radius, origin) = (reference.position.norm(), Vector3::from_column_slice(q));
     let n = reference.position.cross(&reference.velocity) / (radius * radius);
-    let rate2 = n.norm_squared();
+    let rate_squared = n.norm_squared();
     let mut sum = 0.0;
     for (node, body) in model.nodes().iter().zip(&data.bodies) {
         let rho = rot_wb * body.com_b().to_nalgebra() + origin;
@@ -121,7 +120,7 @@ fn jacobi(model: &Model, orbit: &Kepler, trace: &Trace, k: usize, gradient: bool
         let s_1 = shift / (1.0 + s);
         let x = s_1 * s_1 * (s + 2.0) / (2.0 * s);
         let z2 = n.dot(&rho).powi(2); // n² ρ_z²
-        sum += node.mass * (0.5 * rate.norm_squared() + 0.5 * z2 - rate2 * radius * radius * x);
+        sum += node.mass * (0.5 * rate.norm_squared() + 0.5 * z2 - rate_squared * radius * radius * x);
         let rot = rot_wb * body.rot_bk.to_nalgebra();
         let inertia = rot * node.about_com.to_nalgebra() * rot.transpose();
         let spin = rot_wb * body.velocity.angular.to_nalgebra() - n;
@@ -135,7 +134,7 @@ fn jacobi(model: &Model, orbit: &Kepler, trace: &Trace, k: usize, gradient: bool
     sum
 }
 
-/// On a circular orbit only the joints change the Jacobi integral. 1 s in a debug build.
+/// On a circular orbit only the joint torques change the Jacobi integral. 1 s in a debug build.
 #[test]
 fn the_jacobi_integral_changes_by_the_work_of_the_joints_alone() {
     let radius = 6_778e3;
@@ -152,14 +151,15 @@ fn the_jacobi_integral_changes_by_the_work_of_the_joints_alone() {
             simulation.effects.push(Arc::new(GravityGradient));
         }
         if driven {
-            simulation.control = ControlLaw::User(Box::new(Swing));
+            simulation.controls =
+                vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Swing), None))];
         }
-        // a driven arm is chaotic: its energy error varies tenfold with the last bit
+        // a driven arm is chaotic: its energy error varies by a factor of ten with the last bit
         simulation.time_step = if driven { 0.002 } else { 0.005 };
         let trace = run(&mut simulation, 300.0);
         let model = Arc::clone(&simulation.model);
         assert!(certify(&model, &trace).passed(), "{:#?}", certify(&model, &trace));
-        // torque held over a step does exactly τ·Δq
+        // a held torque does exactly the work τ·Δq
         let (mut work, mut worst) = (0.0, 0.0_f64);
         let first = jacobi(&model, &orbit, &trace, 0, gradient);
         let mut scale = trace.kinetic_energy[0];
@@ -178,9 +178,9 @@ fn the_jacobi_integral_changes_by_the_work_of_the_joints_alone() {
             "gradient {gradient}, driven {driven}: open {:e} of {scale} J; joints {work} J, tides {external} J",
             worst
         );
-        // RK4; with the torque, also the force of second order that goes with it and is left
-        // out: 1.5 n² I · 3 Δr/R is 6e-10 J here
+        // RK4; with the gravity-gradient torque, also the neglected second-order force: 1.5 n² I · 3 Δr/R is
+        // 6e-10 J here
         assert!(worst < if gradient { 1e-8 } else { 1e-9 } * scale);
-        assert!(external.abs() > 1e-4 * scale); // negative control: without the tide's potential it would show
+        assert!(external.abs() > 1e-4 * scale); // negative control: without the potential of the tide
     }
 }

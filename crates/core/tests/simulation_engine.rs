@@ -1,4 +1,4 @@
-//! Another engine in the place of our equations: it is given state, torques and environment, and what it leaves is the run.
+//! Checks an external engine: it receives state, torques and environment, and returns the states of the run.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -7,22 +7,21 @@ use common::slider::{BASE, SLIDER, moving, slider};
 use nalgebra::Vector3;
 use onorbit_core::environment::BodyWrench;
 use onorbit_core::simulation::{
-    Crossed, Crossing, Engine, Integrator, Outside, Simulation, SimulationError, Trace,
+    Engine, EnvironmentQuery, Integrator, Simulation, SimulationError, StepInput, StepOutput, Trace,
 };
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 const FORCE: f64 = 3.0;
 
-/// The slider in closed form: along x each mass feels what pushes it, and nothing turns.
+/// The slider in closed form: each mass is accelerated along x by its forces, without rotation.
 struct ClosedForm {
-    outside: Outside,
+    outside: EnvironmentQuery,
     steps: usize,
     fails_at: Option<usize>,
 }
 
 impl Engine for ClosedForm {
-    fn step(&mut self, now: &Crossing<'_>, crossed: &mut Crossed) -> Result<(), SimulationError> {
+    fn step(&mut self, now: &StepInput<'_>, crossed: &mut StepOutput) -> Result<(), SimulationError> {
         if self.fails_at == Some(self.steps) {
             return Err(SimulationError::Engine("no more".into()));
         }
@@ -45,7 +44,7 @@ impl Engine for ClosedForm {
     }
 }
 
-/// A push on the base alone for a second; the block slides on without friction.
+/// A push on the base for a second; the block slides without friction.
 fn pushed(fails_at: Option<usize>) -> Simulation {
     let mut simulation = moving(slider(0.0, 0.0, None, 0.0), 0.2, Integrator::Rk4, 0.3);
     let push = BodyWrench::new(0, Vector3::x() * FORCE, Vector3::zeros()).and_then(|w| w.during(0.5, 1.5));
@@ -56,16 +55,16 @@ fn pushed(fails_at: Option<usize>) -> Simulation {
 }
 
 fn run(simulation: &mut Simulation) -> Trace {
-    simulation.run(3.0, &mut |_| ControlFlow::Continue(())).expect("a run")
+    simulation.run(3.0).expect("a run")
 }
 
 #[test]
-fn the_run_is_what_the_engine_says_and_its_certificate_holds() {
+fn a_run_with_another_engine_is_certified() {
     let mut simulation = pushed(None);
     let trace = run(&mut simulation);
     let model = Arc::clone(&simulation.model);
     let (last, mass) = (trace.rows() - 1, BASE + SLIDER);
-    // the momentum is the block's at first, m r, and a second of the force
+    // the initial momentum is that of the block, m r, plus one second of the force
     let momentum = SLIDER * 0.2 + FORCE;
     assert!((trace.momentum[6 * last] - momentum).abs() < 1e-13);
     assert!((trace.impulse[6 * last] - FORCE).abs() < 1e-13);
@@ -74,8 +73,8 @@ fn the_run_is_what_the_engine_says_and_its_certificate_holds() {
     assert!((com - expected).abs() < 1e-13, "{com} {expected}");
     let certificate = onorbit_core::simulation::certify(&model, &trace);
     assert!(certificate.passed(), "{certificate:?}");
-    assert!(certificate.attitude_step_doubling_rad.is_none()); // nothing is known of another's steps
-    // and it is our own run
+    assert!(certificate.attitude_step_doubling_rad.is_none()); // the steps of another engine are unknown
+    // it agrees with our own run
     simulation.engine = None;
     let ours = run(&mut simulation);
     assert_eq!(ours.time, trace.time);
@@ -85,9 +84,9 @@ fn the_run_is_what_the_engine_says_and_its_certificate_holds() {
 }
 
 #[test]
-fn an_error_of_it_leaves_whole_rows() {
+fn an_error_of_the_engine_leaves_complete_rows() {
     let mut simulation = pushed(Some(4));
-    let failure = simulation.run(3.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let failure = simulation.run(3.0).unwrap_err();
     assert!(matches!(failure.error, SimulationError::Engine(_)), "{failure}");
     assert_eq!(failure.trace.rows(), 4);
     let widths = [("q", 8), ("v", 7), ("acceleration", 7), ("momentum", 6)];
@@ -99,10 +98,10 @@ fn an_error_of_it_leaves_whole_rows() {
 }
 
 #[test]
-fn without_its_impulse_the_certificate_fails() {
+fn without_the_impulse_of_the_engine_the_certificate_fails() {
     struct Silent(ClosedForm);
     impl Engine for Silent {
-        fn step(&mut self, now: &Crossing<'_>, crossed: &mut Crossed) -> Result<(), SimulationError> {
+        fn step(&mut self, now: &StepInput<'_>, crossed: &mut StepOutput) -> Result<(), SimulationError> {
             self.0.step(now, crossed)?;
             crossed.impulse = [0.0; 6];
             Ok(())

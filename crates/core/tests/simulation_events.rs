@@ -1,11 +1,11 @@
-//! Time and the loop: switches, control rate, repeatability, stops.
+//! Checks time and events: switches, control period, repeatability, interruption.
 #![allow(clippy::unwrap_used)] // a test that cannot set up should stop
 
 mod common;
 
 use common::humanoid::{humanoid, humanoid_with, start};
 use nalgebra::{Matrix3, Vector3};
-use onorbit_core::control::{ComputedTorque, ControlError, ControlLaw, Controller, Observation};
+use onorbit_core::control::{ComputedTorque, Control, ControlError, Controller, Law, Observation};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::environment::{BodyWrench, GravityGradient};
 use onorbit_core::model::{Model, neutral};
@@ -16,7 +16,7 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 
 fn run(simulation: &mut Simulation, duration: f64) -> Trace {
-    simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap()
+    simulation.run(duration).unwrap()
 }
 
 fn low_orbit() -> Arc<Kepler> {
@@ -24,7 +24,7 @@ fn low_orbit() -> Arc<Kepler> {
     Arc::new(Kepler::from_state(r, v, MU_EARTH).unwrap())
 }
 
-/// The humanoid holding its tool, in orbit under the gravity gradient.
+/// The humanoid holding its tool, in orbit with the gravity gradient.
 fn holding(kp: f64, kd: f64) -> Simulation {
     let model = humanoid();
     let (q, tool) = (start(&model), model.frame("tool").unwrap());
@@ -36,15 +36,15 @@ fn holding(kp: f64, kd: f64) -> Simulation {
     let mut simulation = Simulation::new(Arc::new(model), q, v);
     simulation.tool = Some(tool);
     let hold = Hold::new(pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra()).unwrap();
-    simulation.reference = Some(hold.into());
-    simulation.control = ControlLaw::ComputedTorque(Box::new(ComputedTorque::new(tool, kp, kd)));
+    let law = Law::TaskComputedTorque(Box::new(ComputedTorque::new(tool, kp, kd)), hold.into());
+    simulation.controls = vec![Control::on_all_joints(&simulation.model, law)];
     simulation.orbit = Some(low_orbit());
     simulation.effects.push(Arc::new(GravityGradient));
     simulation
 }
 
 #[test]
-fn a_timed_push_acts_for_its_time_exactly_though_off_the_grid() {
+fn a_timed_push_off_the_grid_acts_for_its_exact_duration() {
     let model = Model::rigid_body(7.0, Matrix3::identity()).unwrap();
     let (start, end) = (0.1234, 0.456_789);
     for time_step in [0.01, 0.3, 5.0] {
@@ -56,7 +56,7 @@ fn a_timed_push_acts_for_its_time_exactly_though_off_the_grid() {
         let trace = run(&mut simulation, 1.0);
         let gained = Vector3::from_column_slice(&trace.v[trace.v.len() - 6..]);
         assert!((gained - force * ((end - start) / 7.0)).norm() < 1e-15);
-        // p = ½ a Δt² + a Δt (1 − end), a quadratic that Runge-Kutta does exactly
+        // p = ½ a Δt² + a Δt (1 − end), a quadratic, which Runge-Kutta integrates exactly
         let moved = Vector3::from_column_slice(&trace.q[trace.q.len() - 7..]);
         let on: f64 = end - start;
         assert!((moved - force / 7.0 * (0.5 * on * on + on * (1.0 - end))).norm() < 1e-15);
@@ -64,7 +64,7 @@ fn a_timed_push_acts_for_its_time_exactly_though_off_the_grid() {
     }
 }
 
-/// Writes down when it was asked, and answers with a torque that grows by one at each call.
+/// A controller that records its times, and returns a torque that grows by one at each call.
 struct Clock(Arc<Mutex<Vec<f64>>>);
 
 impl Controller for Clock {
@@ -82,18 +82,19 @@ impl Controller for Clock {
 }
 
 #[test]
-fn control_runs_at_its_own_rate_and_its_torque_is_held() {
+fn control_runs_at_its_period_and_its_torque_is_held() {
     let times = Arc::new(Mutex::new(Vec::new()));
     let model = humanoid();
     let mut simulation = Simulation::new(Arc::new(model.clone()), start(&model), vec![0.0; 13]);
-    simulation.control = ControlLaw::User(Box::new(Clock(Arc::clone(&times))));
+    simulation.controls =
+        vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Clock(Arc::clone(&times))), None))];
     simulation.time_step = 0.01;
     simulation.control_period = Some(0.04);
     let trace = run(&mut simulation, 0.1);
-    assert_eq!(*times.lock().unwrap(), [0.0, 0.04, 0.08]); // not at the end, which is no tick
+    assert_eq!(*times.lock().unwrap(), [0.0, 0.04, 0.08]); // not at the end, which is not a tick
     let first: Vec<f64> = trace.tau.iter().step_by(7).map(|tau| (tau * 1e4).round()).collect();
     assert_eq!(first, [1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0, 3.0, 3.0]);
-    // faster than the step: steps are cut
+    // faster than the step: steps are shortened
     simulation.control_period = Some(0.004);
     let trace = run(&mut simulation, 0.02);
     assert_eq!(times.lock().unwrap().len(), 6);
@@ -140,16 +141,16 @@ fn every_run_starts_from_the_given_state_and_gives_the_same_bits() {
 }
 
 #[test]
-fn a_diverging_run_names_time_and_state_and_keeps_its_trace() {
-    // gains that no step of 10 ms can follow; and joints damped harder than the step resolves
+fn a_diverging_run_reports_time_and_state_and_keeps_its_trace() {
+    // gains too high for steps of 10 ms, and joints damped too strongly for the step
     let mut hard = holding(1e9, 1e6);
     hard.time_step = 0.01;
     let mut stiff = holding(0.0, 0.0);
     stiff.model = Arc::new(humanoid_with(|joint| joint.damping = 1e3));
-    stiff.control = ControlLaw::None;
+    stiff.controls = Vec::new();
     stiff.time_step = 0.01;
     for mut simulation in [hard, stiff] {
-        let failure = simulation.run(100.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
+        let failure = simulation.run(100.0).unwrap_err();
         let SimulationError::Diverged { time, q, v } = &failure.error else { panic!("{failure}") };
         assert!(q.iter().chain(v).all(|x| x.is_finite()) && q.len() == 14 && v.len() == 13);
         assert!(*time > 0.0 && *time < 100.0, "{failure}");
@@ -165,21 +166,23 @@ fn a_diverging_run_names_time_and_state_and_keeps_its_trace() {
 #[test]
 fn an_interrupted_run_keeps_its_trace_up_to_there() {
     let mut simulation = holding(100.0, 20.0);
-    let mut asked = 0;
-    let failure = simulation
-        .run(10.0, &mut |now| {
-            asked += 1;
-            if now.time > 0.2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        })
-        .unwrap_err();
-    let SimulationError::Interrupted { time } = failure.error else { panic!("{failure}") };
-    assert!(time > 0.2 && time < 0.3 && asked > 1);
-    assert_eq!(failure.trace.time.last(), Some(&time));
-    assert_eq!(failure.trace.acceleration.len(), 13 * failure.trace.rows());
+    let mut calls = 0;
+    let mut stepper = simulation.start(Some(10.0)).unwrap();
+    let advanced = stepper.advance_until(10.0, &mut |time| {
+        calls += 1;
+        if time > 0.2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert!(advanced.unwrap().is_break());
+    let time = stepper.time();
+    assert!(time > 0.2 && time < 0.3 && calls > 1);
+    let trace = stepper.finish().unwrap();
+    drop(stepper);
+    assert_eq!(trace.time.last(), Some(&time));
+    assert_eq!(trace.acceleration.len(), 13 * trace.rows());
     assert_eq!(run(&mut simulation, 0.1).rows(), 101); // and can run again
 }
 
-/// Fails at its third call, with an error of its own.
+/// A controller that fails at its third call.
 struct Failing(usize);
 
 #[derive(Debug, thiserror::Error)]
@@ -195,16 +198,17 @@ impl Controller for Failing {
 }
 
 #[test]
-fn what_a_controller_raises_comes_out_as_itself_with_the_rows_so_far() {
+fn an_error_of_a_controller_is_returned_unchanged_with_the_rows_so_far() {
     let mut simulation = holding(100.0, 20.0);
-    simulation.control = ControlLaw::User(Box::new(Failing(0)));
-    let failure = simulation.run(1.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    simulation.controls =
+        vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Failing(0)), None))];
+    let failure = simulation.run(1.0).unwrap_err();
     let SimulationError::Control(ControlError::User(error)) = failure.error else { panic!("{failure}") };
     assert!(error.is::<OutOfCoffee>());
     assert_eq!(failure.trace.rows(), 2);
 }
 
-/// Returns what no motor can do.
+/// A controller that returns a torque that is not finite.
 struct Broken;
 
 impl Controller for Broken {
@@ -215,10 +219,10 @@ impl Controller for Broken {
 }
 
 #[test]
-fn a_torque_that_is_no_number_is_refused() {
+fn a_torque_that_is_not_finite_is_refused() {
     let mut simulation = holding(100.0, 20.0);
-    simulation.control = ControlLaw::User(Box::new(Broken));
-    let failure = simulation.run(1.0, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    simulation.controls = vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Broken), None))];
+    let failure = simulation.run(1.0).unwrap_err();
     let text = failure.to_string();
-    assert!(text.contains("joint 3") && text.contains("finite"), "{text}");
+    assert!(text.contains("joint 'arm_4'") && text.contains("finite"), "{text}");
 }

@@ -1,4 +1,4 @@
-//! Coulomb friction: stops where the closed form says, sticks exactly, breaks away on time.
+//! Checks Coulomb friction: stops as in the closed form, sticks exactly, breaks away in time.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
@@ -12,7 +12,7 @@ use onorbit_core::simulation::{Integrator, Simulation, certify};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// N.
+/// Kinetic friction, N.
 const FRICTION: f64 = 2.0;
 
 #[test]
@@ -26,7 +26,7 @@ fn a_slider_stops_at_the_closed_form_time_and_place_and_stays() {
         let (nq, nv, rows) = (8, 7, trace.rows());
         let rates: Vec<f64> = trace.v.chunks(nv).map(|v| v[6]).collect();
         let (q, v) = (&trace.q[(rows - 1) * nq..], &trace.v[(rows - 1) * nv..]);
-        // semi-implicit Euler is of first order in the way, and exact in the time
+        // semi-implicit Euler is of first order in the distance, and exact in the time
         let tolerance = if integrator == Integrator::SemiImplicitEuler { 0.01 * rate } else { 1e-12 };
         println!("{integrator:?}: stopped {:e} m off", q[7] - way);
         assert!((q[7] - way).abs() < tolerance);
@@ -34,7 +34,7 @@ fn a_slider_stops_at_the_closed_form_time_and_place_and_stays() {
         if integrator != Integrator::DormandPrince {
             assert!(trace.time.iter().any(|t| (t - time).abs() < 1e-12)); // the stop is a row
         }
-        // the base takes all momentum there is: P/(M + m)
+        // the base receives all momentum: P/(M + m)
         assert!((v[0] - SLIDER * rate / (BASE + SLIDER)).abs() < 1e-14);
         let lost = 0.5 * REDUCED * rate * rate;
         let certificate = certify(&simulation.model, &trace);
@@ -48,7 +48,7 @@ fn a_slider_stops_at_the_closed_form_time_and_place_and_stays() {
 }
 
 #[test]
-fn it_stays_put_below_the_friction_and_breaks_away_above() {
+fn a_slider_sticks_below_the_friction_and_breaks_away_above() {
     for integrator in INTEGRATORS {
         let still = moving(slider(FRICTION, 0.0, None, 0.3), 0.0, integrator, 0.01);
         let mut loaded = driven(still, |t| if t < 4.995 { 0.95 * FRICTION } else { 1.2 * FRICTION });
@@ -62,13 +62,13 @@ fn it_stays_put_below_the_friction_and_breaks_away_above() {
             }
         }
     }
-    // negative control: friction smoothed over 1 mm/s lets it creep half a centimetre
+    // negative control: with friction smoothed over 1 mm/s the slider creeps 5 mm
     let smooth = moving(slider(0.0, FRICTION / 1e-3, None, 0.3), 0.0, Integrator::Rk4, 1e-3);
     let trace = run(&mut driven(smooth, |_| 0.95 * FRICTION), 5.0);
     assert!(trace.q[trace.q.len() - 1] > 4e-3);
 }
 
-/// A thruster spins the base up until the slider flies out: in the middle of a step.
+/// A thruster spins the base up until the slider moves, in the middle of a step.
 #[test]
 fn it_breaks_away_within_a_step_when_the_spin_is_fast_enough() {
     let (offset, torque) = (0.3, 0.8);

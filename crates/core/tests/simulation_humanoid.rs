@@ -1,18 +1,17 @@
-//! The reach of the humanoid torso against the numbers of an independent engine.
+//! Checks the reach of the humanoid torso against numbers of an independent engine.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
 
 use common::humanoid::{humanoid, start};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-use onorbit_core::control::{ComputedTorque, ControlLaw};
+use onorbit_core::control::{ComputedTorque, Control, Law};
 use onorbit_core::reference::LineParabola;
 use onorbit_core::simulation::{Simulation, Trace, certify};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// The reach over `duration`, gains 100 and 20, no orbit, plain pseudo-inverse, no null-space term,
-/// RK4 at 1 ms, torque held over each step.
+/// The reach over `duration`, gains 100 and 20, without orbit, plain pseudo-inverse, no null-space term, RK4
+/// at 1 ms, torque held over each step.
 fn reach(duration: f64) -> Trace {
     let model = Arc::new(humanoid());
     let (q, v) = (start(&model), vec![0.0; model.nv()]);
@@ -31,10 +30,10 @@ fn reach(duration: f64) -> Trace {
     );
     let mut simulation = Simulation::new(Arc::clone(&model), q, v);
     let law = ComputedTorque { damping: 0.0, ..ComputedTorque::new(tool, 100.0, 20.0) };
-    simulation.control = ControlLaw::ComputedTorque(Box::new(law));
+    let law = Law::TaskComputedTorque(Box::new(law), line.unwrap().into());
+    simulation.controls = vec![Control::on_all_joints(&simulation.model, law)];
     simulation.tool = Some(tool);
-    simulation.reference = Some(line.unwrap().into());
-    let trace = simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap();
+    let trace = simulation.run(duration).unwrap();
     let certificate = certify(&model, &trace);
     assert!(certificate.passed(), "{certificate:#?}");
     trace
@@ -57,7 +56,7 @@ fn assert_digits(name: &str, found: &[f64], printed: &[f64], half_digit: f64) {
 
 /// Source: issue 2, part 11. Roll, pitch, yaw: `R = Rz(yaw) Ry(pitch) Rx(roll)`, degrees.
 #[test]
-fn ten_seconds_end_where_an_independent_engine_ends() {
+fn ten_seconds_agree_with_an_independent_engine() {
     let trace = reach(10.0);
     let end = &trace.q[trace.q.len() - 14..];
     let attitude = UnitQuaternion::from_quaternion(Quaternion::new(end[6], end[3], end[4], end[5]));
@@ -76,10 +75,10 @@ fn ten_seconds_end_where_an_independent_engine_ends() {
 }
 
 #[test]
-fn two_seconds_pull_twenty_five_times_as_hard() {
+fn a_reach_in_two_seconds_needs_twenty_five_times_the_torque() {
     let trace = reach(2.0);
     assert_digits("peak torques, N m", &peak_torques(&trace)[..4], &[0.8014, 0.9838, 0.3073, 0.3446], 0.6e-4);
-    // the printed number is that of the worst component; the norm is 1.34e-5
+    // the published number is that of the largest component; the norm is 1.34e-5
     assert_digits("position error, m", &[largest(&trace.position_error)], &[1.2e-5], 0.6e-6);
-    assert!(largest(&trace.attitude_error) < 1e-4); // 100 times the error in position over the arm's metre
+    assert!(largest(&trace.attitude_error) < 1e-4); // 100 times the position error over the arm's length of one metre
 }

@@ -1,4 +1,4 @@
-//! Rigid stops: closed-form bounces, ledgers that close, nothing passes.
+//! Checks rigid stops: closed-form bounces, closed balances, no penetration.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
@@ -9,14 +9,14 @@ use onorbit_core::simulation::{Integrator, Simulation, SimulationError, certify}
 use std::sync::Arc;
 
 #[test]
-fn a_slider_bounces_as_the_closed_form_says() {
+fn a_slider_bounces_as_in_the_closed_form() {
     let (rate, limit) = (0.8, 0.25);
     for integrator in INTEGRATORS {
         for e in [0.0, 0.5, 1.0] {
             let mut simulation = moving(slider(0.0, 0.0, Some((-limit, limit)), 0.3), rate, integrator, 0.01);
             simulation.stops = Some(e);
             let trace = run(&mut simulation, 2.0);
-            // q = u t; then back and forth, each hit takes 1 − e of the rate
+            // q = u t; then back and forth, with the rate reduced by 1 − e at each impact
             for (k, t) in trace.time.iter().enumerate() {
                 let (mut q, mut u, mut left) = (0.0, rate, *t);
                 while u != 0.0 {
@@ -45,9 +45,9 @@ fn a_slider_bounces_as_the_closed_form_says() {
     }
 }
 
-/// Pushed against its stop a joint stays there; pulled it leaves at once.
+/// A joint pushed against its stop stays there; pulled, it leaves at once.
 #[test]
-fn a_stop_pushes_and_does_not_pull() {
+fn a_stop_is_unilateral() {
     for friction in [0.0, 1.0] {
         for integrator in INTEGRATORS {
             let model = slider(friction, 0.0, Some((-1.0, 0.1)), 0.3);
@@ -78,7 +78,7 @@ fn a_stop_pushes_and_does_not_pull() {
 
 /// An arm with limits all around its swing.
 #[test]
-fn an_arm_swings_between_its_stops_and_keeps_its_ledgers() {
+fn an_arm_between_its_stops_keeps_its_balances() {
     for (integrator, e) in [(Integrator::Rk4, 0.3), (Integrator::Rk4, 0.0), (Integrator::DormandPrince, 0.3)]
     {
         let model = humanoid_with(|joint| {
@@ -107,10 +107,10 @@ fn an_arm_swings_between_its_stops_and_keeps_its_ledgers() {
 }
 
 #[test]
-fn a_start_outside_a_limit_is_named() {
+fn a_start_outside_a_limit_is_refused() {
     let mut simulation = moving(slider(0.0, 0.0, Some((-0.1, 0.1)), 0.3), 0.0, Integrator::Rk4, 0.01);
     simulation.q[7] = 0.2;
-    simulation.check().unwrap(); // limits are not kept unless asked for
+    simulation.check().unwrap(); // limits are enforced only on request
     simulation.stops = Some(0.0);
     let error = simulation.check().unwrap_err();
     assert!(

@@ -1,4 +1,4 @@
-//! Observed orders of the integrators, and of one that composes attitudes the naive way.
+//! Checks the observed orders of the integrators, and of one that composes attitudes naively.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
@@ -7,12 +7,11 @@ use common::stepper::{Turning, free_motion};
 use common::{Random, random_model, random_state};
 use onorbit_core::model::{Model, difference};
 use onorbit_core::simulation::{Integrator, Simulation};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 const DURATION: f64 = 2.0;
 
-/// Configurations at the end with 2, 1 and ½ times the step, and with a much shorter one.
+/// Returns configurations at the end with 2, 1 and ½ times the step, and with a much shorter one.
 fn orders(model: &Model, end: impl Fn(usize) -> Vec<f64>, steps: usize) -> [f64; 3] {
     let exact = reference(model);
     let error = |steps: usize| {
@@ -31,7 +30,7 @@ fn simulated(model: &Model, integrator: Integrator, steps: usize) -> Vec<f64> {
     simulation.integrator = integrator;
     simulation.time_step = DURATION / steps as f64;
     simulation.record_every = steps;
-    let trace = simulation.run(DURATION, &mut |_| ControlFlow::Continue(())).unwrap();
+    let trace = simulation.run(DURATION).unwrap();
     trace.q[trace.q.len() - model.nq()..].to_vec()
 }
 
@@ -61,7 +60,7 @@ fn semi_implicit_euler_is_of_first_order() {
     assert!(orders.iter().all(|order| (0.85..1.15).contains(order)), "{orders:?}");
 }
 
-/// Negative control: the same stages, the attitude composed from averaged rates.
+/// Negative control: the same stages, with the attitude composed from averaged rates.
 #[test]
 fn a_naive_composition_of_rates_collapses_to_second_order() {
     let model = random_model(3, 8);

@@ -1,18 +1,18 @@
-//! A robot far from its reference is integrated about one of its own; its rows stay in W.
+//! Checks a robot far from its reference, which is integrated about a local reference; its rows stay in W.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
 
 use common::humanoid::humanoid;
+use common::stepping::{assert_same_bits, resumed, stopped};
 use nalgebra::{Matrix3, Vector3};
-use onorbit_core::environment::{BodyWrench, GravityGradient, ReferenceMotion};
+use onorbit_core::environment::{BodyWrench, GravityGradient, GravityMode};
 use onorbit_core::model::Model;
 use onorbit_core::orbit::{EarthModel, Kepler, MU_EARTH, MeanElements, Orbit, Sgp4};
-use onorbit_core::simulation::{Checkpoint, Integrator, Moment, Simulation, Trace, certify};
-use std::ops::ControlFlow;
+use onorbit_core::simulation::{Integrator, Simulation, Trace, certify};
 use std::sync::Arc;
 
-/// Where W flies, and how fast the robot leaves it at the start, m/s.
+/// Orbit of W, and the velocity of the robot relative to it at the start, m/s.
 const PLACE: [f64; 6] = [6.778e6, 0.0, 0.0, 0.0, 4.76e3, 6.0e3];
 const LEAVING: [f64; 3] = [3.0, 40.0, -10.0];
 
@@ -33,7 +33,7 @@ fn coasting(model: &Arc<Model>, time_step: f64, beyond: f64) -> Simulation {
     simulation
 }
 
-/// A thruster that drives it away again and again.
+/// A thruster that repeatedly drives the robot away.
 fn thrusting() -> Simulation {
     let mut simulation = coasting(&rigid(), 10.0, 2e4);
     let push = BodyWrench::new(0, Vector3::y() * 4.0, Vector3::zeros()).unwrap();
@@ -46,10 +46,10 @@ fn rigid() -> Arc<Model> {
 }
 
 fn go(simulation: &mut Simulation, duration: f64) -> Trace {
-    simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap()
+    simulation.run(duration).unwrap()
 }
 
-/// Distance of the base from where a Kepler orbit from the same start has it, m.
+/// Returns the distance of the base from a Kepler orbit with the same initial state, m.
 fn missed(trace: &Trace) -> f64 {
     let [x, y, z, vx, vy, vz] = PLACE;
     let velocity = Vector3::new(vx, vy, vz) + Vector3::from(LEAVING);
@@ -60,12 +60,12 @@ fn missed(trace: &Trace) -> f64 {
 }
 
 #[test]
-fn days_of_drifting_cost_no_accuracy() {
+fn days_of_drifting_keep_the_accuracy() {
     let day = 86_400.0;
     let [with, without] = [1e4, f64::INFINITY].map(|beyond| go(&mut coasting(&rigid(), 20.0, beyond), day));
     println!("after a day, steps of 20 s: {:.1e} m with, {:.1e} m without", missed(&with), missed(&without));
     println!("{} new references, the first at {} s", with.rereferenced.len(), with.rereferenced[0]);
-    // what is left was made before: the error of a step grows with the distance
+    // the remaining error arose before: the error of a step grows with the distance
     assert!(missed(&with) < 1e-3 && missed(&with) < missed(&without) / 1000.0);
     assert!(without.rereferenced.is_empty());
 }
@@ -81,7 +81,7 @@ fn an_adaptive_run_keeps_its_accuracy_too() {
     let (with, without) = (adaptive(2e4), adaptive(f64::INFINITY));
     println!("adaptive: {:.1e} m with, {:.1e} m without", missed(&with), missed(&without));
     assert!(!with.rereferenced.is_empty() && missed(&with) < 1e-3);
-    // rows between steps too
+    // also rows between steps
     for (a, b) in with.position_eci.iter().zip(&without.position_eci) {
         assert!((a - b).abs() < 1.0, "{a} {b}");
     }
@@ -108,9 +108,10 @@ fn rows_stay_in_w() {
     assert!(certificate.passed(), "{:?}", certificate.checks());
 }
 
-/// SGP4's velocity is not the rate of its position, which W's origin moves at: taken for it, the robot jumps by 1 cm/s.
+/// The velocity of SGP4 is not the rate of its position, with which the origin of W moves: used as such, it
+/// shifts the robot by 1 cm/s.
 #[test]
-fn a_reference_that_states_another_velocity_is_left_as_it_moves() {
+fn the_origin_of_w_moves_with_the_rate_of_the_position() {
     let lines = [
         "1 25544U 98067A   24080.00000000  .00016717  00000-0  10270-3 0  9002",
         "2 25544  51.6400 208.9163 0006317  69.9862  25.2906 15.49560532    15",
@@ -132,31 +133,16 @@ fn a_reference_that_states_another_velocity_is_left_as_it_moves() {
 }
 
 #[test]
-fn a_continued_run_keeps_the_reference_of_its_own() {
+fn a_resumed_run_keeps_its_local_reference() {
     let whole = go(&mut thrusting(), 6000.0);
-    let mut kept: Option<(Checkpoint, Trace)> = None;
-    let mut stop = |now: &Moment<'_>| {
-        if now.time < 3000.0 {
-            return ControlFlow::Continue(());
-        }
-        kept = Some((now.checkpoint().unwrap(), now.trace.clone()));
-        ControlFlow::Break(())
-    };
-    thrusting().run(6000.0, &mut stop).unwrap_err();
-    let (checkpoint, mut rows) = kept.unwrap();
-    let checkpoint = Checkpoint::from_json(&checkpoint.to_json()).unwrap();
-    rows.rereferenced.clear(); // the checkpoint knows
+    let (checkpoint, rows) = stopped(&mut thrusting(), 6000.0, 3000.0);
     assert!(whole.rereferenced.iter().any(|t| *t < 3000.0) && whole.rereferenced.iter().any(|t| *t > 3000.0));
-    let mut go_on = |_: &Moment<'_>| ControlFlow::Continue(());
-    let resumed = thrusting().resume(6000.0, (&checkpoint, rows), &mut go_on).unwrap();
-    assert_eq!(resumed.q, whole.q);
-    assert_eq!(resumed.work, whole.work);
-    assert_eq!(resumed.rereferenced, whole.rereferenced);
+    assert_same_bits(&resumed(&mut thrusting(), 6000.0, &checkpoint, rows).unwrap(), &whole);
 }
 
 #[test]
-fn a_robot_that_is_carried_or_led_stays_with_its_reference() {
+fn a_carried_or_controlled_robot_keeps_its_reference() {
     let mut carried = coasting(&rigid(), 10.0, 2e4);
-    carried.reference_motion = ReferenceMotion::Carried;
+    carried.gravity_mode = GravityMode::Carried;
     assert!(go(&mut carried, 6000.0).rereferenced.is_empty());
 }

@@ -1,11 +1,12 @@
-//! Static friction above the kinetic one: held, broken away from and stuck again where closed forms say.
+//! Checks static friction above the kinetic friction: sticking, breaking away and sticking again as in closed
+//! forms.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;
 
 use common::slider::{INTEGRATORS, REDUCED, driven, moving, run, slider_with};
 use nalgebra::Vector3;
-use onorbit_core::control::{ControlError, ControlLaw, Controller, Observation};
+use onorbit_core::control::{Control, ControlError, Controller, Law, Observation};
 use onorbit_core::environment::BodyWrench;
 use onorbit_core::model::{Joint, Model, ModelError};
 use onorbit_core::simulation::{Integrator, Simulation, Trace, certify};
@@ -23,7 +24,8 @@ fn rough(joint: &mut Joint) {
 fn a_slider_is_held_by_the_static_friction_and_slips_against_the_kinetic_one() {
     for integrator in INTEGRATORS {
         let still = moving(slider_with(rough, 0.3), 0.0, integrator, 0.01);
-        // between the two frictions it stays; above the static one it goes, with the kinetic one against it
+        // between the two frictions it sticks; above the static friction it slips against the kinetic
+        // friction
         let mut loaded = driven(still, |t| if t < 1.995 { 0.95 * STATIC } else { 1.05 * STATIC });
         let trace = run(&mut loaded, 3.0);
         let last = trace.rows() - 1;
@@ -42,13 +44,13 @@ fn a_slider_is_held_by_the_static_friction_and_slips_against_the_kinetic_one() {
             assert!(certify(&loaded.model, &trace).passed());
         }
     }
-    // negative control: with the kinetic friction alone it would have gone at once
+    // negative control: with the kinetic friction only it would move at once
     let equal = |joint: &mut Joint| joint.friction = KINETIC;
     let mut loaded = driven(moving(slider_with(equal, 0.3), 0.0, Integrator::Rk4, 0.01), |_| 0.95 * STATIC);
     assert!(run(&mut loaded, 0.1).v[7 + 6] > 0.0);
 }
 
-/// A thruster spins the base up until the slider flies out, later than against the kinetic friction alone.
+/// A thruster spins the base up until the slider moves, later than with the kinetic friction only.
 #[test]
 fn static_friction_decides_when_a_slider_breaks_away_within_a_step() {
     let (offset, torque) = (0.3, 0.8);
@@ -60,7 +62,7 @@ fn static_friction_decides_when_a_slider_breaks_away_within_a_step() {
     let trace = run(&mut simulation, time + 1.0);
     let off = trace.time.iter().map(|t| (t - time).abs()).fold(f64::INFINITY, f64::min);
     let row = trace.time.iter().position(|t| (t - time).abs() == off).unwrap();
-    // it jumps from rest to the acceleration that the two frictions differ by
+    // it jumps from rest to the acceleration of the difference of the frictions
     let jump = trace.acceleration[7 * row + 6];
     println!("breaks away {off:e} s off, at {jump} m/s²");
     assert!(off < 1e-9 && (jump - (STATIC - KINETIC) / REDUCED).abs() < 1e-3, "{off:e} {jump}");
@@ -68,7 +70,7 @@ fn static_friction_decides_when_a_slider_breaks_away_within_a_step() {
     assert!(error < 1e-8, "{error:e}");
 }
 
-/// A spring whose far end moves evenly.
+/// A spring whose far end moves uniformly.
 struct Pull {
     stiffness: f64,
     speed: f64,
@@ -86,20 +88,23 @@ const SPEED: f64 = 0.05;
 
 fn pulled(change: impl Fn(&mut Joint), time_step: f64, duration: f64) -> (Simulation, Trace) {
     let mut simulation = moving(slider_with(change, 0.3), 0.0, Integrator::Rk4, time_step);
-    simulation.control = ControlLaw::User(Box::new(Pull { stiffness: STIFFNESS, speed: SPEED }));
+    simulation.controls = vec![Control::on_all_joints(
+        &simulation.model,
+        Law::User(Box::new(Pull { stiffness: STIFFNESS, speed: SPEED }), None),
+    )];
     let trace = run(&mut simulation, duration);
     (simulation, trace)
 }
 
-/// When the slider breaks away, s.
+/// Returns when the slider breaks away, s.
 fn breakaways(trace: &Trace) -> Vec<f64> {
     let rates: Vec<f64> = trace.v.chunks(7).map(|v| v[6]).collect();
     let starts = (1..rates.len()).filter(|&k| rates[k - 1] == 0.0 && rates[k] != 0.0);
     starts.map(|k| trace.time[k - 1]).collect()
 }
 
-/// The textbook's block on a spring: it sticks for `2 A/V` and slips for `2/ω (π − atan(A ω/V))`,
-/// `A = (fs − fk)/k`, `ω² = k/μ`.
+/// A block on a spring: it sticks for `2 A/V` and slips for `2/ω (π − atan(A ω/V))`, `A = (fs − fk)/k`, `ω² =
+/// k/μ`.
 #[test]
 fn a_block_pulled_by_a_spring_sticks_and_slips_with_the_period_of_the_closed_form() {
     let (a, w) = ((STATIC - KINETIC) / STIFFNESS, (STIFFNESS / REDUCED).sqrt());
@@ -110,19 +115,19 @@ fn a_block_pulled_by_a_spring_sticks_and_slips_with_the_period_of_the_closed_for
         let (count, last) = (times.len() - 1, trace.rows() - 1);
         let measured = (times[count] - times[0]) / count as f64;
         assert!(count >= 3);
-        // the first at fs = k V t
+        // the first slip at fs = k V t
         assert!((times[0] - STATIC / (STIFFNESS * SPEED)).abs() <= 1.01 * time_step);
-        // what friction took is the kinetic one times the way, and the books close
+        // the dissipated energy is the kinetic friction times the distance, and the balance closes
         assert!((trace.dissipated[last] - KINETIC * trace.q[8 * last + 7]).abs() < 1e-11);
         let certificate = certify(&simulation.model, &trace);
         assert!(certificate.energy_balance_error_rel < 1e-9, "{certificate:#?}");
         println!("h {time_step}: period {measured} s, {period} s expected");
         (measured / period - 1.0).abs()
     };
-    // the spring's force is held over each step
+    // the spring force is held over each step
     let (coarse, fine) = (off(1e-3), off(1e-4));
     assert!(coarse < 5e-3 && fine < 5e-4, "{coarse:e} {fine:e}");
-    // negative control: one friction for both has another period, 2π/ω, and hardly a stop
+    // negative control: with a single friction the period is 2π/ω, and the block hardly stops
     let (_, trace) = pulled(|joint| joint.friction = STATIC, 1e-3, 5.5);
     let times = breakaways(&trace);
     let gaps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();

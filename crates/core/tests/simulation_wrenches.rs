@@ -1,4 +1,4 @@
-//! Wrenches per effect and body in the trace: they are what moved the robot.
+//! Checks the recorded wrenches per effect and body: they are the loads that moved the robot.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 
 mod common;
@@ -8,7 +8,6 @@ use onorbit_core::environment::{BodyWrench, Effect, GravityGradient};
 use onorbit_core::model::Model;
 use onorbit_core::orbit::{Kepler, MU_EARTH};
 use onorbit_core::simulation::{Simulation, Trace};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 fn run(record_every: usize, record_wrenches: bool) -> (Arc<Model>, Trace) {
@@ -30,21 +29,21 @@ fn run(record_every: usize, record_wrenches: bool) -> (Arc<Model>, Trace) {
     simulation.time_step = 0.01;
     simulation.record_every = record_every;
     simulation.record_wrenches = record_wrenches;
-    let trace = simulation.run(0.5, &mut |_| ControlFlow::Continue(())).expect("a run");
+    let trace = simulation.run(0.5).expect("a run");
     (model, trace)
 }
 
 #[test]
-fn every_effect_has_a_column_of_its_own() {
+fn every_effect_has_a_column() {
     let (model, trace) = run(1, true);
     let names: Vec<&str> = trace.wrenches.iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names, ["gravity_gradient", "body_wrench", "body_wrench_2", "gravity"]);
     let width = 6 * model.nodes().len();
     assert!(trace.wrenches.iter().all(|w| w.width == width && w.values.len() == width * trace.rows()));
-    // nothing before it is on
+    // before it is switched on the wrench is zero
     assert!(trace.wrenches[1].values[..4 * width].iter().all(|x| *x == 0.0));
     assert!(trace.wrenches[1].values[6 * width].abs() > 0.4);
-    // asked for nothing, it keeps nothing, and the run is the same
+    // without the option no column is stored, and the run is the same
     let (_, plain) = run(1, false);
     assert!(plain.wrenches.is_empty());
     assert_eq!(plain.q, trace.q);
@@ -73,7 +72,7 @@ fn their_sum_is_the_rate_of_the_momentum() {
 }
 
 #[test]
-fn rows_far_apart_hold_the_same_wrenches() {
+fn sparse_rows_hold_the_same_wrenches() {
     let ((_, all), (_, few)) = (run(1, true), run(5, true));
     for (all_rows, few_rows) in all.wrenches.iter().zip(&few.wrenches) {
         let width = few_rows.width;

@@ -1,5 +1,6 @@
-//! No processor meets an instruction that it does not know: outside the entry points of the instruction sets, this
-//! very program holds nothing beyond the baseline of x86-64. It disassembles itself with binutils' `objdump`.
+//! Checks that no processor executes an unknown instruction: outside the entry points of the instruction
+//! sets, this program has only instructions of the baseline of x86-64. It disassembles itself with binutils'
+//! `objdump`.
 #![cfg(target_arch = "x86_64")]
 #![allow(clippy::unwrap_used, clippy::print_stderr)] // a failed unwrap is a failed test; a skip says why
 
@@ -12,16 +13,15 @@ use onorbit_core::simulation::{Integrator, Simulation};
 use onorbit_core::spatial::InstructionSet;
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
-use std::ops::ControlFlow;
 use std::process::{Command, Stdio};
 use std::sync::{Arc, atomic::AtomicBool};
 
-/// Our entry points, then functions of libraries that are named after what they need and look at the processor first;
-/// the compiler's own names for single instructions are reached from the entry points alone, inlined but in test builds.
-const ENTRIES: [&str; 3] = ["enter_avx2", "enter_four", "enter_eight"];
+/// Entry points of the crate; functions of libraries that are named after their instruction set and detect
+/// the processor. Intrinsics are called only from the entry points and are inlined except in test builds.
+const ENTRIES: [&str; 3] = ["enter_fused", "enter_lanes4", "enter_lanes8"];
 const LIBRARIES: [&str; 4] = ["_avx2", "_avx512", "_with_fma", "core_arch::x86::"];
 
-/// Runs one state, a batch, a rollout and a simulation, so that what they are made of is part of this program.
+/// Runs one state, a batch, a rollout and a simulation, so that their code is part of this program.
 fn use_everything(model: Model) -> f64 {
     let (q, v) = random_state(&model, &mut Random::new(3));
     let rows = [&q, &v, &v].map(|data| Rows { data, width: data.len() });
@@ -40,11 +40,12 @@ fn use_everything(model: Model) -> f64 {
         stop: &stop,
     };
     rollout.run(&model, &q, &v, &mut to_q, &mut to_v).unwrap();
-    let run = Simulation::new(Arc::new(model), q, v).run(0.002, &mut |_| ControlFlow::Continue(())).unwrap();
+    let run = Simulation::new(Arc::new(model), q, v).run(0.002).unwrap();
     a[0] + to_q[0] + run.time.len() as f64
 }
 
-/// Instructions beyond the baseline by function: those whose names begin with `v` (AVX and later).
+/// Returns the number of instructions beyond the baseline by function: those with names that begin with `v`
+/// (AVX and later).
 fn newer_instructions() -> Option<BTreeMap<String, usize>> {
     let program = std::env::current_exe().unwrap();
     let arguments = ["-d", "--no-show-raw-insn", "-C"];
@@ -66,13 +67,13 @@ fn newer_instructions() -> Option<BTreeMap<String, usize>> {
 }
 
 #[test]
-fn newer_instructions_stand_in_their_entry_points_alone() {
+fn newer_instructions_occur_only_in_their_entry_points() {
     assert!(use_everything(random_model(5, 6)).is_finite(), "{:?}", InstructionSet::current());
     let Some(found) = newer_instructions() else {
         eprintln!("skipped: no objdump (binutils) on this machine");
         return;
     };
-    // a scan that sees nothing would prove nothing
+    // a scan that finds nothing would prove nothing
     for entry in ENTRIES {
         let seen: usize = found.iter().filter(|(name, _)| name.contains(entry)).map(|(_, count)| count).sum();
         assert!(seen > 100, "{entry} holds {seen} instructions of its set");

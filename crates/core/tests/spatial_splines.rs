@@ -1,4 +1,4 @@
-//! Splines: through their points, twice continuously differentiable, exact where they must be.
+//! Checks splines: interpolation, continuity, and exactness for polynomials.
 #![allow(clippy::unwrap_used, clippy::panic)] // set-up that fails should stop
 
 use onorbit_core::spatial::{Ends, Quat, RotationSpline, Spline, SplineError, Vec3, exp_so3, log_so3};
@@ -12,11 +12,11 @@ fn scalar(spline: &Spline, t: f64) -> [f64; 3] {
 }
 
 #[test]
-fn a_free_spline_gives_cubics_back() {
+fn a_free_spline_reproduces_cubics() {
     let cubic =
         |t: f64| [1.0 - t + 2.0 * t * t - 0.7 * t * t * t, -1.0 + 4.0 * t - 2.1 * t * t, 4.0 - 4.2 * t];
     let values = TIMES.map(|t| cubic(t)[0]);
-    let spline = Spline::passing(&TIMES, 1, &values, Ends::Free).unwrap();
+    let spline = Spline::interpolating(&TIMES, 1, &values, Ends::Free).unwrap();
     for i in 0..=340 {
         let t = f64::from(i) * 0.01;
         for (got, expected) in scalar(&spline, t).iter().zip(cubic(t)) {
@@ -33,7 +33,7 @@ fn errors_fall_with_the_fourth_power_of_the_step_and_with_the_sixth_of_known_slo
         let slopes: Vec<f64> = times.iter().map(|t| t.cos()).collect();
         let spline = match with_slopes {
             true => Spline::with_slopes(&times, 1, &values, &slopes),
-            false => Spline::passing(&times, 1, &values, Ends::Free),
+            false => Spline::interpolating(&times, 1, &values, Ends::Free),
         };
         let spline = spline.unwrap();
         (0..3000)
@@ -49,9 +49,9 @@ fn errors_fall_with_the_fourth_power_of_the_step_and_with_the_sixth_of_known_slo
 }
 
 #[test]
-fn slope_and_curvature_do_not_jump_and_the_ends_rest() {
+fn slope_and_curvature_are_continuous_and_zero_at_resting_ends() {
     let values = [0.0, 1.0, -0.5, 0.3, 0.3, 2.0];
-    for spline in [Spline::passing(&TIMES, 1, &values, Ends::Rest), Spline::resting(&TIMES, 1, &values)]
+    for spline in [Spline::interpolating(&TIMES, 1, &values, Ends::Rest), Spline::resting(&TIMES, 1, &values)]
         .map(Result::unwrap)
     {
         for (k, &t) in TIMES.iter().enumerate() {
@@ -80,7 +80,7 @@ fn attitudes() -> Vec<Quat<f64>> {
 }
 
 fn apart(a: Quat<f64>, b: Quat<f64>) -> Vec3<f64> {
-    log_so3(a.product(b.conjugate())) // in the axes both are given in
+    log_so3(a.product(b.conjugate())) // in the axes of the attitudes
 }
 
 #[test]
@@ -89,8 +89,8 @@ fn attitude_rate_and_acceleration_agree() {
     let rates: Vec<Vec3<f64>> = (0..6).map(|k| Vec3::new(0.3, f64::from(k) * 0.2, -0.5)).collect();
     let splines = [
         RotationSpline::resting(&TIMES, &given),
-        RotationSpline::passing(&TIMES, &given, Ends::Rest),
-        RotationSpline::passing(&TIMES, &given, Ends::Free),
+        RotationSpline::interpolating(&TIMES, &given, Ends::Rest),
+        RotationSpline::interpolating(&TIMES, &given, Ends::Free),
         RotationSpline::with_rates(&TIMES, &given, &rates),
     ];
     let h = 1e-4;
@@ -132,8 +132,9 @@ fn resting_attitudes_take_the_geodesic() {
 }
 
 #[test]
-fn points_that_no_curve_takes() {
-    let free = |times: &[f64], values: &[f64]| Spline::passing(times, 1, values, Ends::Free).unwrap_err();
+fn invalid_points_of_a_spline_are_refused() {
+    let free =
+        |times: &[f64], values: &[f64]| Spline::interpolating(times, 1, values, Ends::Free).unwrap_err();
     assert_eq!(free(&[0.0], &[1.0]), SplineError::TooFew { got: 1, least: 2 });
     assert_eq!(free(&[0.0, 1.0], &[1.0]), SplineError::WrongLength { name: "values", expected: 2, got: 1 });
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Every URDF that cannot be loaded has its own error, with the line and the name.
+//! Checks that every URDF that cannot be loaded has a specific error, with line and name.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
@@ -18,7 +18,7 @@ fn problem(xml: &str) -> UrdfProblem {
     *error(xml).problem
 }
 
-/// Links `a`, `b`, `c` with mass and whatever joints are given.
+/// Returns links `a`, `b`, `c` with mass and the given joints.
 fn robot(joints: &str) -> String {
     let link = |name| format!("<link name='{name}'>{INERTIAL}</link>\n");
     format!("<robot name='r'>\n{}{}{}{joints}\n</robot>", link("a"), link("b"), link("c"))
@@ -30,14 +30,14 @@ fn joint(name: &str, kind: &str, parent: &str, child: &str, inside: &str) -> Str
     )
 }
 
-/// Two links of which the second has this inertial.
+/// Returns two links; the second has this inertial.
 fn with_inertial(inertial: &str) -> String {
     let j = joint("j", "revolute", "a", "b", "");
     format!("<robot name='r'><link name='a'>{INERTIAL}</link><link name='b'>{inertial}</link>{j}</robot>")
 }
 
 #[test]
-fn what_is_not_xml() {
+fn text_that_is_not_xml_is_refused() {
     assert_eq!(problem(""), UrdfProblem::Empty);
     assert_eq!(problem(" \n\t"), UrdfProblem::Empty);
     for text in [
@@ -72,19 +72,19 @@ fn deep_and_huge_xml_is_refused_before_any_recursion() {
 }
 
 #[test]
-fn many_links_take_no_quadratic_time() {
+fn many_links_are_read_in_linear_time() {
     let mut xml = format!("<robot name='rope'><link name='l0'>{INERTIAL}</link>");
     for i in 1..=2000 {
         let j = joint(&format!("j{i}"), "revolute", &format!("l{}", i - 1), &format!("l{i}"), "");
         xml += &format!("<link name='l{i}'>{INERTIAL}</link>{j}");
     }
     let start = std::time::Instant::now();
-    assert_eq!(from_str(&(xml + "</robot>"), None, &Default::default()).unwrap().joint_count(), 2000); // as many as a robot may have
+    assert_eq!(from_str(&(xml + "</robot>"), None, &Default::default()).unwrap().joint_count(), 2000); // the largest number of joints
     assert!(start.elapsed().as_secs() < 8, "a dense elimination would take minutes");
 }
 
 #[test]
-fn files_that_cannot_be_read() {
+fn unreadable_files_are_refused() {
     let folder = std::env::temp_dir().join(format!("onorbit_urdf_{}", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
     let load = |path: &Path| from_file(path, &Default::default()).expect_err("must be refused");
@@ -107,7 +107,7 @@ fn files_that_cannot_be_read() {
 }
 
 #[test]
-fn what_is_not_a_tree() {
+fn robots_that_are_not_a_tree_are_refused() {
     let (ab, bc) = (joint("ab", "fixed", "a", "b", ""), joint("bc", "fixed", "b", "c", ""));
     let is_loop = |joints: &str, links: &[&str]| {
         let links = links.iter().map(|l| (*l).to_owned()).collect();
@@ -127,7 +127,7 @@ fn what_is_not_a_tree() {
 }
 
 #[test]
-fn names_that_are_missing_or_used_twice() {
+fn missing_and_duplicate_names_are_refused() {
     let twice = format!("<robot><link name='a'>{INERTIAL}</link><link name='a'/></robot>");
     assert_eq!(
         problem(&twice),
@@ -152,7 +152,7 @@ fn names_that_are_missing_or_used_twice() {
 }
 
 #[test]
-fn joints_that_are_not_ours() {
+fn unsupported_joints_are_refused() {
     for kind in ["Planar", "universal", "Floating", "screw", "Revolute", "hinge"] {
         let joints = joint("j", kind, "a", "b", "") + &joint("bc", "fixed", "b", "c", "");
         assert_eq!(
@@ -174,7 +174,7 @@ fn joints_that_are_not_ours() {
 }
 
 #[test]
-fn numbers_that_are_none_name_the_link() {
+fn invalid_numbers_name_the_link() {
     for text in ["nan", "inf", "1,0", "", "one", "1 2", "0x10", "--1", "1e999"] {
         let xml = with_inertial(&INERTIAL.replace("mass value=\"1\"", &format!("mass value=\"{text}\"")));
         let UrdfProblem::BadNumber { owner, attribute, .. } = problem(&xml) else {
@@ -193,7 +193,7 @@ fn numbers_that_are_none_name_the_link() {
 }
 
 #[test]
-fn inertials_that_no_body_has() {
+fn non_physical_inertials_are_refused() {
     let model = |inertial: &str| match problem(&with_inertial(inertial)) {
         UrdfProblem::Model(error) => error,
         other => panic!("{other}"),
@@ -216,14 +216,14 @@ fn inertials_that_no_body_has() {
 }
 
 #[test]
-fn xacro_is_named_with_the_way_out() {
+fn xacro_is_refused_with_a_suggested_fix() {
     let xmlns = "xmlns:xacro='http://www.ros.org/wiki/xacro'";
     let files = [
         format!("<robot {xmlns}><xacro:property name='p' value='1'/></robot>"),
         "<robot><xacro:property name='p' value='1'/></robot>".to_owned(),
         with_inertial(&INERTIAL.replace("value=\"1\"", "value=\"${mass}\"")),
         with_inertial("<inertial><origin xyz='$(arg xyz)'/><mass value='1'/></inertial>"),
-        // parts of the robot that only xacro can make
+        // parts of the robot that only xacro can generate
         format!(
             "<robot {xmlns}><link name='a'>{INERTIAL}</link><xacro:arm/>{}</robot>",
             joint("j", "fixed", "a", "b", "")
@@ -241,7 +241,7 @@ fn xacro_is_named_with_the_way_out() {
         "<robot {xmlns}><xacro:property name='p' value='1'/><xacro:macro name='m'><link name='a'/></xacro:macro></robot>"
     );
     assert_eq!(problem(&macros), UrdfProblem::OnlyMacros);
-    // declaring the prefix is what every expanded file still does
+    // every expanded file still declares the prefix
     assert!(
         from_str(
             &format!("<robot {xmlns}><link name='a'>{INERTIAL}</link></robot>"),
@@ -253,7 +253,7 @@ fn xacro_is_named_with_the_way_out() {
 }
 
 #[test]
-fn a_robot_that_lacks_what_a_prefix_hides_is_refused() {
+fn a_robot_made_incomplete_by_a_prefix_is_refused() {
     let ab = joint("ab", "fixed", "a", "b", "");
     let drake = joint("bc", "fixed", "b", "c", "")
         .replace("<joint", "<drake:joint")
@@ -264,7 +264,7 @@ fn a_robot_that_lacks_what_a_prefix_hides_is_refused() {
 }
 
 #[test]
-fn lines_stay_true_where_a_prefix_is_not_declared() {
+fn line_numbers_hold_with_undeclared_prefixes() {
     let xml = "<?xml version='1.0'?>\n<!-- <robot> -- -->\n<robot\n name='r'>\n<a:b/>\n<c:d e:f='1'/>\n<link name='l'><inertial><mass/></inertial></link></robot>";
     let found = error(xml);
     assert_eq!(

@@ -1,11 +1,11 @@
-//! Faults of `urdf-rs`' own reading of careless files, the reason why it is given a checked tree.
+//! Records faults of `urdf-rs`' own parser with careless files, the reason why it is given a checked tree.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
 use onorbit_core::model::urdf::from_str;
 
 #[test]
-fn it_takes_them_without_a_word_or_refuses_them() {
+fn urdf_rs_accepts_or_refuses_careless_files_silently() {
     const MASS: &str =
         "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
     let robot = |joint: &str| {

@@ -1,4 +1,4 @@
-//! Whatever stands in a file, loading it ends in a robot or an error.
+//! Checks that loading any file ends in a robot or an error.
 
 use onorbit_core::model::urdf::from_str;
 use proptest::prelude::*;
@@ -18,7 +18,7 @@ const SMALL: &str = r#"<?xml version="1.0"?>
     <limit lower="-1" upper="1"/><dynamics damping="1"/></joint>
 </robot>"#;
 
-/// Pieces that mean something where they land.
+/// Fragments with a meaning in URDF.
 const PIECES: [&str; 22] = [
     "",
     "<",

@@ -8,7 +8,7 @@ use onorbit_core::model::{Model, neutral};
 use onorbit_core::spatial::Vec3;
 use std::path::PathBuf;
 
-/// Where the bundled scenario starts.
+/// Initial configuration of the bundled scenario.
 const START: [f64; 7] = [0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974];
 
 fn load(name: &str) -> Model {
@@ -24,7 +24,7 @@ fn frame(model: &Model, q: &[f64], name: &str) -> (nalgebra::Matrix3<f64>, Vec3<
 }
 
 #[test]
-fn the_tool_starts_where_the_issue_says() {
+fn the_tool_starts_at_the_published_pose() {
     let model = load("humanoid_torso.urdf");
     assert_eq!((model.name(), model.joint_count(), model.warnings().len()), ("humanoid_torso", 7, 0));
     assert!((model.mass() - (93.0 + 2.741 + 2.425 + 2.209 + 0.877 + 1.878 + 0.409 + 0.308)).abs() < 1e-12);
@@ -47,7 +47,7 @@ fn equal_joint_values_are_mirror_images() {
     let mirror = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, -1.0, 1.0));
     assert!((mirror * rot_r * mirror - rot_l).norm() < 1e-14);
     assert!((p_r.x - p_l.x).abs() + (p_r.y + p_l.y).abs() + (p_r.z - p_l.z).abs() < 1e-14);
-    // the arms' masses too: every inertia of one arm is its twin's
+    // also the masses: every inertia of one arm is mirrored in the other
     let (nv, mut data) = (model.nv(), Data::new(&model));
     let mut m = vec![0.0; nv * nv];
     mass_matrix(&model, &mut data, &q, &mut m);

@@ -1,4 +1,4 @@
-//! What is read of a URDF, and what stands where the file says nothing.
+//! Checks what is read of a URDF, and the defaults of what is omitted.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
@@ -29,7 +29,7 @@ fn position(model: &Model, frame: &str) -> [f64; 3] {
 }
 
 #[test]
-fn a_joint_without_details_has_urdf_s_defaults() {
+fn a_joint_without_details_has_the_defaults_of_urdf() {
     let model = pair("revolute", "");
     let joint = &model.joints()[0];
     assert_eq!([joint.axis.x, joint.axis.y, joint.axis.z], [1.0, 0.0, 0.0]);
@@ -51,7 +51,7 @@ fn friction_rotor_and_limits_are_kept() {
 }
 
 #[test]
-fn limits_not_given_are_none() {
+fn omitted_limits_are_unlimited() {
     let position = |kind, limit: &str| pair(kind, limit).joints()[0].limits.position;
     assert_eq!(position("continuous", "<limit lower='-1' upper='1' effort='1'/>"), None);
     assert_eq!(position("revolute", "<limit effort='1' velocity='1'/>"), None);
@@ -60,7 +60,7 @@ fn limits_not_given_are_none() {
     assert_eq!(pair("revolute", "<limit effort='inf'/>").joints()[0].limits.effort, None);
     let gazebo = pair("revolute", "<limit effort='-1' velocity='-1.0'/>");
     assert_eq!(gazebo.joints()[0].limits, Limits::default());
-    assert!(gazebo.warnings()[0].to_string().contains("velocity limit is below zero"));
+    assert!(gazebo.warnings()[0].to_string().contains("velocity limit is negative"));
 }
 
 #[test]
@@ -70,12 +70,12 @@ fn poses_by_angles_and_by_quaternion_agree() {
     let quaternion = pair("revolute", &format!("{quaternion}<axis xyz='1 0 0'/>"));
     let (a, b) = (angles.nodes()[1].rot_pk.to_nalgebra(), quaternion.nodes()[1].rot_pk.to_nalgebra());
     assert!((a - b).norm() < 1e-15);
-    assert!((a.column(2) - nalgebra::Vector3::y()).norm() < 1e-15); // x turned by 90 degrees about z
+    assert!((a.column(2) - nalgebra::Vector3::y()).norm() < 1e-15); // x rotated by 90 degrees about z
     assert_eq!(position(&angles, "b"), [1.0, 2.0, 3.0]);
 }
 
 #[test]
-fn a_turned_inertial_is_given_in_link_axes() {
+fn a_rotated_inertial_is_converted_to_link_axes() {
     let model = load(&format!(
         "<link name='a'><inertial><origin xyz='1 0 0' rpy='0 0 {FRAC_PI_2}'/><mass value='2'/>\
          <inertia ixx='2' iyy='3' izz='4' ixy='0.5' ixz='0' iyz='0'/></inertial></link>"
@@ -89,7 +89,7 @@ fn a_turned_inertial_is_given_in_link_axes() {
 }
 
 #[test]
-fn a_mass_without_inertia_is_a_point_and_said_so() {
+fn a_mass_without_inertia_is_a_point_mass_with_a_warning() {
     let point = "<inertial><origin xyz='0 0 1'/><mass value='1'/></inertial>";
     let model = load(&format!(
         "<link name='a'>{INERTIAL}</link><link name='p'>{point}</link>\
@@ -111,7 +111,7 @@ fn a_massless_root_is_the_base_frame_of_what_is_fixed_to_it() {
     assert_eq!(fixed.body_names().collect::<Vec<_>>(), ["world"]);
     assert_eq!(fixed.frame_names().collect::<Vec<_>>(), ["world", "base", "tool"]);
     assert_eq!(position(&fixed, "tool"), [1.0, 0.0, 1.0]);
-    // the base floats anyway: the child of a floating joint becomes the base
+    // the base is floating: the child of a floating joint becomes the base
     let floating = model("floating");
     assert_eq!(floating.body_names().collect::<Vec<_>>(), ["base"]);
     assert_eq!(floating.frame_names().collect::<Vec<_>>(), ["base", "tool"]);
@@ -119,7 +119,7 @@ fn a_massless_root_is_the_base_frame_of_what_is_fixed_to_it() {
 }
 
 #[test]
-fn colours_are_found_by_name_and_shapes_that_cannot_be_read_are_told() {
+fn colours_are_found_by_name_and_unreadable_shapes_give_a_warning() {
     let visual = |geometry: &str, material: &str| {
         format!("<visual><geometry>{geometry}</geometry><material {material}</visual>")
     };
@@ -152,7 +152,7 @@ fn colours_are_found_by_name_and_shapes_that_cannot_be_read_are_told() {
     let texts: Vec<String> = model.warnings().iter().map(ToString::to_string).collect();
     assert!(!texts.iter().any(|text| text.contains("b.stl")), "{texts:?}");
     assert_eq!(
-        texts.iter().filter(|t| t.contains("visual shape of link 'a' is left out")).count(),
+        texts.iter().filter(|t| t.contains("visual shape of link 'a' is skipped")).count(),
         4,
         "{texts:?}"
     );
@@ -180,7 +180,7 @@ fn joints_may_come_before_links_and_keep_their_order() {
     assert_eq!(model.body_names().collect::<Vec<_>>(), ["body", "arm", "hand", "leg"]);
 }
 
-/// Pose of `b` for joint positions, by the engine.
+/// Returns the pose of `b` for joint positions, by the engine.
 fn pose(model: &Model, joints: &[f64]) -> nalgebra::Isometry3<f64> {
     let (mut data, mut q) = (Data::new(model), neutral(model));
     q[7..].copy_from_slice(joints);
@@ -205,12 +205,12 @@ fn a_ball_joint_is_yaw_pitch_and_roll() {
             - nalgebra::Matrix4::identity();
         assert!(off.norm() < 1e-14, "{off}");
         let text = model.warnings()[0].to_string();
-        assert!(text.contains("'j' is a ball joint") && text.contains("<limit> is not read"), "{text}");
+        assert!(text.contains("'j' is a ball joint") && text.contains("<limit> is ignored"), "{text}");
     }
 }
 
 #[test]
-fn a_floating_joint_is_three_that_slide_and_a_ball() {
+fn a_floating_joint_is_three_prismatic_joints_and_a_ball_joint() {
     let model = pair("floating", "<origin xyz='1 2 3'/>");
     let names = ["j_x", "j_y", "j_z", "j_yaw", "j_pitch", "j_roll"];
     assert_eq!(model.joint_names().collect::<Vec<_>>(), names);
@@ -226,7 +226,7 @@ fn a_floating_joint_is_three_that_slide_and_a_ball() {
 }
 
 #[test]
-fn names_made_up_are_free() {
+fn generated_names_are_unique() {
     let model = load(&format!(
         "<link name='j_x'>{INERTIAL}</link><link name='b'>{INERTIAL}</link><link name='j_x_2'/>\
          <joint name='j' type='planar'><parent link='j_x'/><child link='b'/></joint>\
@@ -236,7 +236,7 @@ fn names_made_up_are_free() {
 }
 
 #[test]
-fn what_an_inertial_lacks_is_told() {
+fn incomplete_inertials_give_a_warning() {
     let with = |inertial: &str| {
         load(&format!(
             "<link name='a'>{INERTIAL}</link><link name='b'>{inertial}</link>\
@@ -248,12 +248,15 @@ fn what_an_inertial_lacks_is_told() {
     assert!(notes(&none)[0].contains("link 'b' has no <mass>"), "{:?}", notes(&none));
     let no_products =
         with("<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixz='0'/></inertial>");
-    let told = ["the <inertia> of link 'b' has no ixy, iyz: read as 0"];
-    assert_eq!((notes(&no_products), moments(&no_products, 0)), (told.map(str::to_owned).to_vec(), [2.0; 3]));
+    let warnings = ["the <inertia> of link 'b' has no ixy, iyz, which is read as 0"];
+    assert_eq!(
+        (notes(&no_products), moments(&no_products, 0)),
+        (warnings.map(str::to_owned).to_vec(), [2.0; 3])
+    );
 }
 
 #[test]
-fn a_quaternion_needs_a_version_that_has_it() {
+fn quaternions_need_version_1_1() {
     let robot = |version: &str| {
         let xml = format!(
             "<robot {version}>\n<link name='a'>{INERTIAL}</link><link name='b'/>\n<joint name='j' type='fixed'>\
@@ -266,14 +269,14 @@ fn a_quaternion_needs_a_version_that_has_it() {
         assert_eq!(robot(version), (vec![], -1.0), "{version}");
     }
     for version in ["", "version='1.0'"] {
-        let (told, cosine) = robot(version);
-        assert!(told[0].starts_with("line 3: quat_xyzw is not read in version 1.0"), "{told:?}");
+        let (warnings, cosine) = robot(version);
+        assert!(warnings[0].starts_with("line 3: quat_xyzw is ignored in version 1.0"), "{warnings:?}");
         assert_eq!(cosine, 1.0);
     }
 }
 
 #[test]
-fn prefixes_decide_and_not_namespaces() {
+fn extensions_are_recognized_by_prefix_not_by_namespace() {
     let link = |name, more: &str| format!("<link {more} name='{name}'>{INERTIAL}</link>");
     let joint = "<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>";
     let both = format!(
@@ -288,13 +291,13 @@ fn prefixes_decide_and_not_namespaces() {
 }
 
 #[test]
-fn a_planar_joint_slides_in_its_plane_and_turns_about_its_normal() {
+fn a_planar_joint_moves_in_its_plane_and_about_its_normal() {
     let model = pair("planar", "<origin xyz='0 0 1'/><axis xyz='0 0 2'/>");
     assert_eq!(model.joint_names().collect::<Vec<_>>(), ["j_x", "j_y", "j_yaw"]);
     let got = pose(&model, &[0.4, -0.2, FRAC_PI_2]);
     assert!((got.translation.vector - nalgebra::Vector3::new(0.4, -0.2, 1.0)).norm() < 1e-15);
     assert!((got * nalgebra::Vector3::x() - nalgebra::Vector3::y()).norm() < 1e-15);
-    // with any normal: the motion stays in the plane
+    // for any normal the motion stays in the plane
     let skew = pair("planar", "<axis xyz='1 -2 0.5'/>");
     let normal = nalgebra::Vector3::new(1.0, -2.0, 0.5).normalize();
     assert!(pose(&skew, &[0.4, -0.2, 1.0]).translation.vector.dot(&normal).abs() < 1e-15);
@@ -302,7 +305,7 @@ fn a_planar_joint_slides_in_its_plane_and_turns_about_its_normal() {
 }
 
 #[test]
-fn a_mimic_joint_says_what_is_lost() {
+fn a_mimic_joint_gives_a_warning() {
     let model = pair("revolute", "<mimic joint='other' multiplier='-2' offset='0.1'/>");
     let text = model.warnings()[0].to_string();
     assert!(text.contains("(j = -2 other + 0.1)"), "{text}");
@@ -327,9 +330,9 @@ fn an_inertia_negative_by_rounding_is_zero() {
          <joint name='k' type='fixed'><child link='c'/><parent link='b'/></joint>"
     ));
     assert_eq!(model.mass(), 2.5);
-    assert!(notes(&model)[0].contains("link 'b' is negative by rounding"), "{:?}", notes(&model));
+    assert!(notes(&model)[0].contains("link 'b' has negative principal moments"), "{:?}", notes(&model));
     assert_eq!(moments(&model, 1), [1.0, 1.0 + 1e-20, 1.0]);
-    // by a millionth of 0.5 kg m2 it is no rounding: a radius of gyration of a millimetre
+    // 1e-6 of 0.5 kg m2 is not rounding: a radius of gyration of a millimetre
     let wrong = tiny.replace("-5e-20", "-5e-7");
     let refused =
         from_str(&format!("<robot><link name='a'>{wrong}</link></robot>"), None, &Default::default())
@@ -348,23 +351,23 @@ fn an_inertia_without_mass_adds_to_the_body_it_is_fixed_to() {
         )
     };
     let model = load(&[link("a", INERTIAL), link("b", rotor), fixed("a", "b")].concat());
-    // turned by 90° about z, and the same wherever it is
+    // rotated by 90° about z, in any position
     let found = moments(&model, 0);
     for (found, expected) in found.into_iter().zip([4.0, 3.0, 5.0]) {
         assert!((found - expected).abs() < 1e-14, "{found} {expected}");
     }
     assert_eq!(model.mass(), 1.0);
     assert!(notes(&model)[0].contains("link 'b' has no mass but a rotational inertia, which is added"));
-    // below a root without mass, and before any mass
+    // below a root without mass, and before any body with mass
     let below =
         [link("world", ""), link("b", rotor), link("a", INERTIAL), fixed("world", "b"), fixed("b", "a")];
     let model = load(&below.concat());
     assert_eq!(model.body_frame(0).name, "world");
-    assert!((moments(&model, 0)[0] - 4.0).abs() < 1e-14 && model.mass() == 1.0); // 'b' is turned by 90°, 'a' by 180°
+    assert!((moments(&model, 0)[0] - 4.0).abs() < 1e-14 && model.mass() == 1.0); // 'b' is rotated by 90°, 'a' by 180°
 }
 
 #[test]
-fn what_is_left_of_xacro_is_ignored_and_named_with_its_line() {
+fn leftover_xacro_is_ignored_with_a_warning() {
     let model = load(&format!(
         "\n<xacro:property name='p' value='1'/>\n<link name='a'>{INERTIAL}</link>\n\
          <xacro:macro name='m'><xacro:arm/><link name='${{x}}'/></xacro:macro>"
@@ -373,7 +376,7 @@ fn what_is_left_of_xacro_is_ignored_and_named_with_its_line() {
     let said = notes(&model);
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(
-        said[0].starts_with("line 2: <xacro:property> is a leftover xacro tag and ignored, as is one more"),
+        said[0].starts_with("line 2: <xacro:property> is an xacro tag and is ignored, as is one more"),
         "{said:?}"
     );
 }
@@ -386,5 +389,5 @@ fn elements_that_are_not_urdf_are_ignored_and_named() {
     assert_eq!(said.len(), 2, "{said:?}");
     assert!(said[0].starts_with("<gazebo:x> has a foreign prefix"), "{said:?}");
     assert!(said[0].ends_with("ignored (so are '<drake:joint>')"), "{said:?}");
-    assert!(said[1].starts_with("<Link> is no element of URDF: ignored"), "{said:?}");
+    assert!(said[1].starts_with("<Link> is not an element of URDF and is ignored"), "{said:?}");
 }

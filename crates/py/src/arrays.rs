@@ -1,4 +1,4 @@
-//! Arrays in and out.
+//! Conversion of numbers and arrays from and to Python.
 
 use crate::errors::{fields, raise, shape_error};
 use numpy::{
@@ -9,12 +9,12 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString, PyTuple};
 use pyo3::{PyClass, PyTypeInfo};
 
-/// What kind of thing was given, for a message.
+/// Returns the type of an object for a message.
 pub(crate) fn type_name(value: &Bound<'_, PyAny>) -> String {
     value.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string())
 }
 
-/// A whole number; no float, no truth value and no text stands for one.
+/// Returns an integer; floats, booleans and text are rejected.
 pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
     let py = value.py();
     let number = if value.is_instance_of::<PyBool>() { None } else { Some(value.extract::<i64>()) };
@@ -23,7 +23,7 @@ pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
         Some(Err(error)) if error.is_instance_of::<PyOverflowError>(py) => {
             let (limit, got) = (i64::MAX, value.str());
             let got = got.map_or_else(|_| "of thousands of digits".to_owned(), |got| got.to_string());
-            let message = format!("{name} is {got}, no count goes beyond {limit}");
+            let message = format!("{name} is {got}; it must be at most {limit}");
             Err(raise(
                 py,
                 "InputError",
@@ -33,33 +33,38 @@ pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
         }
         _ => {
             let got = type_name(value);
-            let message = format!("{name} is of type {got}, a whole number (int) is needed");
+            let message = format!("{name} is of type {got}; expected a whole number (int)");
             Err(raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": "int")))
         }
     }
 }
 
-/// A whole number of at least `least`; `hint` ends what is said of a smaller one.
+/// Returns an integer of at least `least`; `hint` is appended to the message for a smaller one.
 fn count(value: &Bound<'_, PyAny>, name: &str, least: usize, hint: &str) -> PyResult<usize> {
     let number = whole(value, name)?;
     usize::try_from(number).ok().filter(|count| *count >= least).ok_or_else(|| {
         let (py, expected) = (value.py(), format!("at least {least}"));
-        let message = format!("{name} is {number}, it must be {expected}{hint}");
+        let message = format!("{name} is {number}; it must be {expected}{hint}");
         raise(py, "InputError", &message, &fields!(py, "name": name, "got": number, "expected": expected))
     })
 }
 
-/// How many steps to take.
+/// Reads a number of steps.
 pub(crate) fn steps(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     count(value, "steps", 0, "")
 }
 
-/// Steps from one recorded row to the next.
+/// Reads a number of steps per recorded row.
 pub(crate) fn record_every(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     count(value, "record_every", 1, " step")
 }
 
-/// How many threads to run on.
+/// Number of the first row to return.
+pub(crate) fn first_row(value: &Bound<'_, PyAny>) -> PyResult<usize> {
+    count(value, "since", 0, "")
+}
+
+/// Argument `threads`: the number of threads.
 #[derive(Clone, Copy)]
 pub(crate) struct Threads(pub(crate) usize);
 
@@ -67,11 +72,11 @@ impl<'py> FromPyObject<'_, 'py> for Threads {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        count(&value, "threads", 1, "; leave it out for all cores").map(Self)
+        count(&value, "threads", 1, "; omit it to use all cores").map(Self)
     }
 }
 
-/// The entries of a list that all are of the class `T`; `what` is the class in words.
+/// Returns the entries of a list, all of class `T`; `what` names the class in messages.
 pub(crate) fn list_of<'py, T: PyClass>(
     value: &Bound<'py, PyAny>,
     name: &str,
@@ -80,7 +85,7 @@ pub(crate) fn list_of<'py, T: PyClass>(
     let py = value.py();
     let refuse = |says: &str, got: &Bound<'py, PyAny>| {
         let got = type_name(got);
-        let message = format!("{name} {says} {got}, a list of {what} is needed");
+        let message = format!("{name} {says} {got}; expected a list of {what}");
         raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
     };
     if value.is_instance_of::<PyString>() {
@@ -95,15 +100,15 @@ pub(crate) fn list_of<'py, T: PyClass>(
         .collect()
 }
 
-/// A contiguous array of `f64`, borrowed for reading.
+/// Contiguous array of `f64`, borrowed for reading.
 pub(crate) struct Input<'py> {
     array: PyReadonlyArrayDyn<'py, f64>,
 }
 
 impl<'py> Input<'py> {
-    /// Borrows `value`, converting lists and other real numbers; refuses anything else by name.
+    /// Borrows `value`, converting lists and other real numbers; rejects anything else by name.
     pub(crate) fn new(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        // no subclass: a masked array is one
+        // the type is exact: a subclass such as a masked array is converted
         if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
             && value.get_type_ptr() == PyUntypedArray::type_object_raw(value.py())
             && array.is_c_contiguous()
@@ -118,7 +123,7 @@ impl<'py> Input<'py> {
     fn converted(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let py = value.py();
         let refuse = |got: String| {
-            let message = format!("{name} is {got}, an array of real numbers (float64) is needed");
+            let message = format!("{name} is {got}; expected an array of real numbers (float64)");
             raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": "float64"))
         };
         if value.is_instance_of::<PyString>() {
@@ -127,19 +132,21 @@ impl<'py> Input<'py> {
         let numpy = py.import("numpy")?;
         if numpy.getattr("ma")?.call_method1("is_masked", (value,))?.is_truthy()? {
             let message = format!(
-                "{name} is a masked array with entries masked, which have no numbers: give them some by \
-                 {name}.filled(x), or leave them out by {name}.compressed()"
+                "{name} is a masked array with masked entries; replace them by {name}.filled(x), or remove \
+                 them by \
+                 {name}.compressed()"
             );
             let fields = fields!(py, "name": name, "got": "masked entries", "expected": "float64");
             return Err(raise(py, "DtypeError", &message, &fields));
         }
-        let array =
-            numpy.call_method1("asarray", (value,)).map_err(|_| refuse("no rectangular array".to_owned()))?;
+        let array = numpy
+            .call_method1("asarray", (value,))
+            .map_err(|_| refuse("not a rectangular array".to_owned()))?;
         let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
         if !matches!(kind.as_str(), "f" | "i" | "u") {
             return Err(refuse(format!("of dtype {}", array.getattr("dtype")?)));
         }
-        // ascontiguousarray makes a scalar one-dimensional; that is refused by its length later
+        // ascontiguousarray makes a scalar one-dimensional; its length is checked later
         let array = numpy.call_method1("ascontiguousarray", (array, "float64"))?;
         let array = array.cast_into::<PyArrayDyn<f64>>()?;
         if array.is_aligned() {
@@ -152,13 +159,19 @@ impl<'py> Input<'py> {
         match array.try_readonly() {
             Ok(array) => Ok(Self { array }),
             Err(_) => {
-                let (py, message) = (array.py(), format!("{name} is being written by another call"));
+                let (py, message) = (
+                    array.py(),
+                    format!(
+                        "{name} is being written by another call; use \
+                separate arrays for concurrent calls"
+                    ),
+                );
                 Err(raise(py, "InputError", &message, &fields!(py, "name": name)))
             }
         }
     }
 
-    /// All numbers, row after row.
+    /// Returns all elements in row-major order.
     pub(crate) fn data(&self) -> &[f64] {
         self.array.as_slice().unwrap_or(&[]) // contiguity was checked when it was borrowed
     }
@@ -168,7 +181,7 @@ impl<'py> Input<'py> {
     }
 }
 
-/// Exactly these numbers: a vector or matrix of fixed shape.
+/// Returns a vector or matrix of fixed shape.
 pub(crate) fn fixed<const N: usize>(
     value: &Bound<'_, PyAny>,
     name: &str,
@@ -185,20 +198,20 @@ pub(crate) fn fixed<const N: usize>(
     }
 }
 
-/// Refuses what is not finite.
+/// Returns an error for numbers that are not finite.
 pub(crate) fn finite(py: Python<'_>, name: &str, numbers: &[f64]) -> PyResult<()> {
     let Some(x) = numbers.iter().find(|x| !x.is_finite()) else { return Ok(()) };
-    let message = format!("{name} holds {x}, it must be finite");
+    let message = format!("{name} holds {x}; all values must be finite");
     Err(raise(py, "InputError", &message, &fields!(py, "name": name, "got": *x)))
 }
 
-/// The error for an array of the wrong shape.
+/// Returns the error for an array of the wrong shape.
 pub(crate) fn wrong_shape(py: Python<'_>, name: &str, expected: &str, got: &[usize]) -> PyErr {
-    let message = format!("{name} has shape {}, expected {expected}", shape_text(got));
+    let message = format!("{name} has shape {}; expected {expected}", shape_text(got));
     shape_error(py, &message, name, expected, got.to_vec())
 }
 
-/// `(2, 3)` as Python writes it.
+/// Returns a shape as Python writes it, such as `(2, 3)`.
 pub(crate) fn shape_text(shape: &[usize]) -> String {
     match shape {
         [n] => format!("({n},)"),
@@ -206,22 +219,22 @@ pub(crate) fn shape_text(shape: &[usize]) -> String {
     }
 }
 
-/// Numbers up to which memory is taken for granted: 8 MiB.
+/// Number of elements (8 MiB) up to which an allocation is assumed to succeed.
 const SMALL: usize = 1 << 20;
 
-/// A fresh array of zeros, to be written by the core.
+/// Returns a new array of zeros for results of the core.
 pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let count = shape.iter().try_fold(1_usize, |count, n| count.checked_mul(*n));
     if count.is_some_and(|count| count <= SMALL) {
         return Ok(PyArray::zeros(py, IxDyn(shape), false));
     }
-    // numpy says where memory ends; the constructor above would panic
-    let made = PyTuple::new(py, shape).and_then(|shape| py.import("numpy")?.call_method1("zeros", (shape,)));
-    match made {
+    // numpy raises MemoryError, where the constructor above would panic
+    let array = PyTuple::new(py, shape).and_then(|shape| py.import("numpy")?.call_method1("zeros", (shape,)));
+    match array {
         Ok(array) => Ok(array.cast_into::<PyArrayDyn<f64>>()?),
         Err(_) => {
             let message = format!(
-                "a result of shape {} does not fit in memory; ask for less at once",
+                "a result of shape {} does not fit in memory; compute it in smaller batches",
                 shape_text(shape)
             );
             Err(raise(py, "InputError", &message, &fields!(py, "name": "shape", "got": shape.to_vec())))
@@ -229,16 +242,16 @@ pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py
     }
 }
 
-/// The numbers of an array that was made just now and that nobody else has seen.
-#[allow(clippy::mut_from_ref)] // the slice is that of numpy's buffer, which only this call knows
+/// Returns the numbers of an array that was created in this call and has no other references.
+#[allow(clippy::mut_from_ref)] // the slice is numpy's buffer, which has no other references
 pub(crate) fn fresh<'a>(array: &'a Bound<'_, PyArrayDyn<f64>>) -> &'a mut [f64] {
-    // SAFETY: made by `zeros` in this call, contiguous, and not yet handed to Python.
+    // SAFETY: created by `zeros` in this call, contiguous, and not yet visible to Python.
     unsafe { array.as_slice_mut() }.unwrap_or(&mut [])
 }
 
-/// A fresh array that holds these numbers.
+/// Returns a new array with these numbers.
 pub(crate) fn array_of<'py>(py: Python<'py>, shape: &[usize], data: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
-    let array = PyArray::zeros(py, IxDyn(shape), false); // of the size of a state
+    let array = PyArray::zeros(py, IxDyn(shape), false); // as small as a state
     fresh(&array).copy_from_slice(data);
     array
 }

@@ -1,27 +1,34 @@
-//! Where a run stands, for Python to keep and to go on from.
+//! Checkpoints of runs for Python.
 
 use crate::arrays::{Input, array_of};
-use crate::errors::{IntoPython, SimulationErrorExt};
+use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
 use onorbit_core::number_text::{count, short};
-use onorbit_core::simulation::{self, Moment, NamedColumn, SimulationError, Trace};
+use onorbit_core::simulation::{self, NamedColumn, SimulationError, Stepper, TRACKING, Trace, WRENCHES};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
 use std::ffi::CString;
 use std::time::{Duration, Instant};
 
-/// Where a run stands between two steps: :meth:`Simulation.run` goes on from one with the same bits.
+/// State of a run, from which :meth:`Simulation.run` and :meth:`Simulation.start` resume with identical bits.
 ///
-/// ``state`` is text with every number to its last bit; ``columns`` maps the trace's names to rows (k, width): those since
-/// the last checkpoint where a run hands one out, all of them where a run goes on from one; ``wall_s`` is the time that
-/// the simulation loop has taken so far.
+/// A run passes checkpoints with the rows since the previous one to its callback; resuming needs all rows.
+///
+/// Parameters
+/// ----------
+/// state : str
+///     State of the run that its rows do not contain, as JSON.
+/// columns : dict of array
+///     Rows (k, width) of each column of the trace by its name, in the unit of the column.
+/// wall_s : float
+///     Wall-clock time of the run so far, s.
 #[pyclass(name = "Checkpoint", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyCheckpoint {
-    /// Everything of the run that its rows do not hold, as text (JSON).
+    /// State of the run that its rows do not contain, as text (JSON).
     state: String,
-    /// Rows of each column of the trace by its name, each (k, width), in the column's unit.
+    /// Rows of each column of the trace by its name: (k, width), in the unit of the column.
     columns: Py<PyDict>,
-    /// Time that the simulation loop has taken so far, s.
+    /// Wall-clock time of the simulation loop so far, s.
     pub(crate) wall_s: f64,
 }
 
@@ -48,7 +55,7 @@ impl PyCheckpoint {
 }
 
 impl PyCheckpoint {
-    /// What the core goes on from.
+    /// Returns the checkpoint of the core.
     pub(crate) fn read(&self, py: Python<'_>) -> PyResult<(simulation::Checkpoint, Trace)> {
         let refuse =
             |error: simulation::CheckpointError| SimulationError::from(error).into_python_with(py, None);
@@ -56,8 +63,8 @@ impl PyCheckpoint {
         let (mut rows, columns) = (Trace::default(), self.columns.bind(py));
         for (name, values) in columns {
             let name: String = name.extract()?;
-            for (kind, named) in [("tracking_", &mut rows.tracking), ("wrench_", &mut rows.wrenches)] {
-                if let Some(name) = name.strip_prefix(kind) {
+            for (kind, named) in [(&TRACKING, &mut rows.tracking), (&WRENCHES, &mut rows.wrenches)] {
+                if let Some(name) = kind.owner_of(&name) {
                     let width = Input::new(&values, name)?.shape().get(1).copied().unwrap_or(1);
                     named.push(NamedColumn { name: name.to_owned(), width, values: Vec::new() });
                 }
@@ -72,59 +79,81 @@ impl PyCheckpoint {
     }
 }
 
-/// Hands checkpoints to Python at a steady wall-clock pace.
-pub(crate) struct Keeper {
+/// Returns the rows of a trace from `since` on, as a dict of columns.
+pub(crate) fn columns_since<'py>(
+    py: Python<'py>,
+    trace: &Trace,
+    since: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (columns, rows) = (PyDict::new(py), trace.rows());
+    if since > rows {
+        let message = format!("since is {since}, but the run has {}", count(rows, "row"));
+        return Err(raise(py, "InputError", &message, &fields!(py, "name": "since", "got": since)));
+    }
+    for (name, column) in trace.columns().filter(|(_, column)| !column.is_empty()) {
+        let width = column.len() / rows;
+        columns.set_item(name, array_of(py, &[rows - since, width], &column[since * width..]))?;
+    }
+    Ok(columns)
+}
+
+/// Returns a checkpoint of a run with its rows from `since` on.
+pub(crate) fn checkpoint_of(
+    py: Python<'_>,
+    stepper: &Stepper<'_>,
+    since: usize,
+    wall_s: f64,
+) -> PyResult<PyCheckpoint> {
+    let checkpoint = stepper.checkpoint().map_err(|error| match error {
+        SimulationError::Control(error) => {
+            let reason = error.into_python(py);
+            let message =
+                format!("the controller cannot be saved ({reason}); give it get_state() and set_state()");
+            let refused = plain(py, "ControlError", &message);
+            refused.set_cause(py, Some(reason));
+            refused
+        }
+        error => error.into_python_with(py, None),
+    })?;
+    let columns = columns_since(py, stepper.rows(), since)?.unbind();
+    Ok(PyCheckpoint { state: checkpoint.to_json(), columns, wall_s })
+}
+
+/// Python callback that receives checkpoints at regular intervals of wall-clock time.
+pub(crate) struct CheckpointCallback {
     to: Option<Py<PyAny>>,
     every: Duration,
     last: Instant,
+    /// Rows that the callback has accepted.
     rows: usize,
-    wall_before: f64,
-    start: Instant,
 }
 
-impl Keeper {
-    /// `rows` and `wall_before` belong to an earlier part of the run.
-    pub(crate) fn new(to: Option<Py<PyAny>>, every: Duration, rows: usize, wall_before: f64) -> Self {
-        let now = Instant::now();
-        Self { to, every, last: now, rows, wall_before, start: now }
+impl CheckpointCallback {
+    pub(crate) fn new(to: Py<PyAny>, every: Duration, rows: usize) -> Self {
+        Self { to: Some(to), every, last: Instant::now(), rows }
     }
 
-    /// Time of the simulation loop so far, s.
-    pub(crate) fn wall(&self) -> f64 {
-        self.wall_before + self.start.elapsed().as_secs_f64()
+    /// Passes a checkpoint to the callback if one is due.
+    pub(crate) fn save_if_due(&mut self, py: Python<'_>, stepper: &Stepper<'_>, wall_s: f64) -> PyResult<()> {
+        if self.last.elapsed() < self.every { Ok(()) } else { self.save(py, stepper, wall_s) }
     }
 
-    /// Hands one out if it is due.
-    pub(crate) fn keep_if_due(&mut self, py: Python<'_>, now: &Moment<'_>) -> PyResult<()> {
-        if self.last.elapsed() < self.every { Ok(()) } else { self.keep(py, now) }
-    }
-
-    /// Hands one out.
-    pub(crate) fn keep(&mut self, py: Python<'_>, now: &Moment<'_>) -> PyResult<()> {
+    /// Passes a checkpoint to the callback. A run whose controller cannot be saved continues without
+    /// checkpoints.
+    pub(crate) fn save(&mut self, py: Python<'_>, stepper: &Stepper<'_>, wall_s: f64) -> PyResult<()> {
         let Some(to) = &self.to else { return Ok(()) };
-        let checkpoint = match now.checkpoint() {
+        let checkpoint = match checkpoint_of(py, stepper, self.rows, wall_s) {
             Ok(checkpoint) => checkpoint,
             Err(error) => {
-                self.to = None; // the run matters more than a way to go on with it
-                let message = format!(
-                    "no checkpoints of this run: its controller cannot be saved ({}); give it get_state() and set_state()",
-                    error.into_python(py)
-                );
+                self.to = None;
+                let message = format!("checkpoints are disabled for this run: {}", error.value(py));
                 return PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1);
             }
         };
-        let (columns, rows) = (PyDict::new(py), now.trace.rows());
-        for (name, column) in now.trace.columns().filter(|(_, column)| !column.is_empty()) {
-            let width = column.len() / rows;
-            let since = &column[self.rows * width..];
-            columns.set_item(name, array_of(py, &[rows - self.rows, width], since))?;
-        }
-        let state = checkpoint.to_json();
-        let checkpoint = PyCheckpoint { state, columns: columns.unbind(), wall_s: self.wall() };
         let answer = to.call1(py, (checkpoint,))?;
         self.last = Instant::now();
         if !answer.bind(py).is(PyBool::new(py, false)) {
-            self.rows = rows; // where it was not kept, its rows come again with the next
+            self.rows = stepper.rows().rows(); // if it was not stored, the next one contains its rows again
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Ctrl-C during long calls: Python's signal handlers run on this side of the border, at a steady wall-clock pace.
+//! Ctrl-C during long calls: Python's signal handlers run at regular intervals of wall-clock time.
 
 use crate::errors::IntoPython;
 use onorbit_core::batch::Threads;
@@ -12,13 +12,13 @@ use std::time::{Duration, Instant};
 /// Wall-clock time between two checks for signals.
 pub(crate) const PACE: Duration = Duration::from_millis(50);
 
-/// States of a batch from which on a thread of its own, some tens of microseconds, does not matter.
+/// Batch size above which the cost of a separate thread, some tens of microseconds, is negligible.
 pub(crate) const LONG_BATCH: usize = 1 << 16;
 
 /// Steps of an integrated orbit between two checks for signals.
 const STEPS: usize = 16;
 
-/// Runs a batch without the GIL, interruptible where it `is_long`.
+/// Runs a batch without the GIL; it can be interrupted if it `is_long`.
 pub(crate) fn batch<R: Send>(
     py: Python<'_>,
     count: Option<usize>,
@@ -32,10 +32,10 @@ pub(crate) fn batch<R: Send>(
     interruptible(py, &stop, || work(Threads { count, stop: Some(&stop) }))
 }
 
-/// Runs `work` on a separate thread; Ctrl-C during it raises at once and abandons `work`, which finishes in the
-/// background.
+/// Runs `work` on a separate thread; Ctrl-C during it raises at once and abandons `work`, which finishes in
+/// the background.
 ///
-/// For what cannot be stopped from outside: a file that is parsed, a certificate.
+/// For work that cannot be stopped: parsing a file, computing a certificate.
 pub(crate) fn abandonable<R: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> R + Send + 'static,
@@ -43,7 +43,7 @@ pub(crate) fn abandonable<R: Send + 'static>(
     let (done, finished) = mpsc::channel();
     let worker = std::thread::spawn(move || {
         let result = work();
-        let _ = done.send(()); // nobody receives it after a Ctrl-C
+        let _ = done.send(()); // there is no receiver after a Ctrl-C
         result
     });
     let finished = Mutex::new(finished);
@@ -53,7 +53,7 @@ pub(crate) fn abandonable<R: Send + 'static>(
     py.detach(|| worker.join()).map_err(|panic| std::panic::resume_unwind(panic))
 }
 
-/// Integrates an orbit as far as `times` need it, interruptible.
+/// Integrates an orbit over `times`; Ctrl-C interrupts it.
 pub(crate) fn prepare(py: Python<'_>, orbit: &dyn Orbit, times: &[f64]) -> PyResult<()> {
     if orbit.prepare(times, 0) {
         return Ok(());
@@ -64,8 +64,9 @@ pub(crate) fn prepare(py: Python<'_>, orbit: &dyn Orbit, times: &[f64]) -> PyRes
     Ok(())
 }
 
-/// Runs `work` without the GIL on one range of `rows` after another, of `first` rows to begin with and then of as many
-/// as take about the pace, and checks for signals in between. Ranges begin at multiples of `first`, a power of two.
+/// Runs `work` without the GIL on successive ranges of `rows`, initially `first` rows and then as many
+/// as take about one interval, and checks for signals in between. Ranges begin at multiples of `first`, a
+/// power of two.
 pub(crate) fn in_pieces<E: IntoPython + Send>(
     py: Python<'_>,
     rows: usize,
@@ -93,7 +94,7 @@ pub(crate) fn in_pieces<E: IntoPython + Send>(
     }
 }
 
-/// Runs `work` on a thread of its own; Ctrl-C meanwhile sets `stop` and raises once `work` has returned.
+/// Runs `work` on a separate thread; Ctrl-C meanwhile sets `stop` and raises after `work` has returned.
 pub(crate) fn interruptible<R: Send>(
     py: Python<'_>,
     stop: &AtomicBool,
@@ -122,7 +123,7 @@ pub(crate) fn interruptible<R: Send>(
     })
 }
 
-/// Waits for the worker, but not longer than the pace of looking for signals.
+/// Waits for the worker, at most for the interval between two checks for signals.
 fn wait(finished: &Mutex<mpsc::Receiver<()>>) -> Result<(), mpsc::RecvTimeoutError> {
     finished.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(PACE)
 }

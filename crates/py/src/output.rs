@@ -1,4 +1,4 @@
-//! Where results go: into fresh arrays, or into the caller's.
+//! Output arrays, either new or given by the caller.
 
 use crate::arrays::{Input, fresh, shape_text, zeros};
 use crate::errors::{fields, raise};
@@ -7,29 +7,29 @@ use pyo3::prelude::*;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// One array of results.
+/// Output array for results.
 pub(crate) struct Output<'py> {
     array: Bound<'py, PyArrayDyn<f64>>,
-    /// What keeps other calls out of the caller's array meanwhile.
+    /// Exclusive borrow of the caller's array during the call.
     borrowed: Option<PyReadwriteArrayDyn<'py, f64>>,
 }
 
 impl<'py> Output<'py> {
-    /// A fresh array of this shape.
+    /// Returns a new array of this shape.
     pub(crate) fn fresh(py: Python<'py>, shape: &[usize]) -> PyResult<Self> {
         Ok(Self { array: zeros(py, shape)?, borrowed: None })
     }
 
-    /// The caller's array, if it can hold this shape.
+    /// Returns the caller's array if it has this shape.
     fn given(value: Any<'_, 'py>, name: &str, shape: &[usize]) -> PyResult<Self> {
         let refuse = |class: &str, got: &str| {
             let (py, needed) = (value.py(), shape_text(shape));
             let message =
-                format!("{name} is {got}, a writable contiguous float64 array of shape {needed} is needed");
+                format!("{name} is {got}; expected a writable, contiguous float64 array of shape {needed}");
             raise(py, class, &message, &fields!(py, "name": name, "expected": shape.to_vec(), "got": got))
         };
         let Ok(array) = value.cast::<PyArrayDyn<f64>>() else {
-            return Err(refuse("DtypeError", "no float64 array"));
+            return Err(refuse("DtypeError", "not a float64 array"));
         };
         if array.shape() != shape {
             return Err(refuse("ShapeError", &format!("of shape {}", shape_text(array.shape()))));
@@ -40,11 +40,11 @@ impl<'py> Output<'py> {
         match array.try_readwrite() {
             Ok(borrowed) => Ok(Self { array: array.clone(), borrowed: Some(borrowed) }),
             Err(numpy::BorrowError::NotWriteable) => Err(refuse("InputError", "read-only")),
-            Err(_) => Err(refuse("InputError", "in use: an input, another output or another call's")),
+            Err(_) => Err(refuse("InputError", "in use as an input, as another output or by another call")),
         }
     }
 
-    /// Its numbers, row after row.
+    /// Returns the elements of the array in row-major order.
     pub(crate) fn numbers(&mut self) -> &mut [f64] {
         match &mut self.borrowed {
             Some(borrowed) => borrowed.as_slice_mut().unwrap_or(&mut []), // contiguity was checked
@@ -52,15 +52,15 @@ impl<'py> Output<'py> {
         }
     }
 
-    /// The array.
+    /// Returns the array.
     pub(crate) fn into_array(self) -> Bound<'py, PyArrayDyn<f64>> {
         self.array
     }
 }
 
-/// An array for each shape: the caller's in that order, or fresh ones.
+/// Returns one output array for each shape: the caller's arrays in this order, or new arrays.
 ///
-/// Arrays that share memory with an input or with each other are refused.
+/// Arrays that share memory with an input or with each other are rejected.
 pub(crate) fn outputs<'py, const N: usize>(
     py: Python<'py>,
     given: Option<[Bound<'py, PyAny>; N]>,
@@ -74,13 +74,13 @@ pub(crate) fn outputs<'py, const N: usize>(
             Some(given) => {
                 let name = if N == 1 { "out".to_owned() } else { format!("out[{k}]") };
                 let mut output = Output::given(&given[k], &name, shape)?;
-                // views that know nothing of each other may still share memory
+                // unrelated views may still share memory
                 let here = output.numbers().as_ptr_range();
                 let others = inputs.iter().map(|input| input.data().as_ptr_range());
                 let others = others.chain(made.iter_mut().map(|other| other.numbers().as_ptr_range()));
                 if others.into_iter().any(|other| here.start < other.end && other.start < here.end) {
                     let message =
-                        format!("{name} shares memory with an input or another output, give it its own");
+                        format!("{name} shares memory with an input or another output; use separate arrays");
                     return Err(raise(py, "InputError", &message, &fields!(py, "name": name)));
                 }
                 output
@@ -92,11 +92,11 @@ pub(crate) fn outputs<'py, const N: usize>(
     Ok(made)
 }
 
-/// `out=(a, b)`; `what` says what they are.
+/// Reads `out=(a, b)`; `what` names the arrays in messages.
 pub(crate) fn pair<'py>(out: Option<Any<'_, 'py>>, what: &str) -> PyResult<Option<[Bound<'py, PyAny>; 2]>> {
     let Some(out) = out else { return Ok(None) };
     let (a, b) = out.extract::<(Bound<'py, PyAny>, Bound<'py, PyAny>)>().map_err(|_| {
-        let message = format!("out is no pair of arrays, give {what}");
+        let message = format!("out is not a pair of arrays; expected {what}");
         raise(out.py(), "InputError", &message, &fields!(out.py(), "name": "out", "expected": what))
     })?;
     Ok(Some([a, b]))

@@ -1,54 +1,99 @@
-//! Runs.
+//! Simulations of one robot.
 
 use crate::arrays::{Input, fixed, record_every, wrong_shape};
-use crate::checkpoint::{Keeper, PyCheckpoint};
-use crate::control::{Robot, control_law};
+use crate::checkpoint::{CheckpointCallback, PyCheckpoint};
+use crate::control::{Robot, controls_of};
 use crate::earth::PyEarth;
+use crate::engine::PythonEngine;
 use crate::environment::effects;
-use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
+use crate::errors::{IntoPython, SimulationErrorExt, fields, raise};
 use crate::gravity::gravity_of;
-use crate::interrupt::{PACE, prepare};
+use crate::interrupt::prepare;
 use crate::model::PyModel;
 use crate::orbit::PyOrbit;
-use crate::plant::PythonPlant;
 use crate::reference;
+use crate::shared_run::SharedRun;
+use crate::stepper::PyStepper;
 use crate::trace::PyTrace;
-use onorbit_core::control::{ControlError, ControlLaw};
-use onorbit_core::environment::ReferenceMotion;
+use onorbit_core::environment::GravityMode;
 use onorbit_core::model::Model;
 use onorbit_core::number_text::short;
-use onorbit_core::simulation::{Integrator, Moment, RunFailure, Simulation, SimulationError};
-use pyo3::exceptions::PyKeyboardInterrupt;
+use onorbit_core::orbit::Orbit;
+use onorbit_core::simulation::{Integrator, Simulation, SimulationError};
 use pyo3::prelude::*;
-use std::ops::ControlFlow;
-use std::sync::{Arc, Mutex, TryLockError};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
+use std::time::Duration;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// A robot, where it starts, what acts on it and how time is cut; :meth:`run` starts afresh at every call.
+/// Simulation of one robot: model, initial state, environment, controllers and integrator settings.
 ///
-/// ``q`` (nq,), ``v`` (nv,); ``orbit`` brings gravity on every body: ``gravity_mode`` is
-/// ``true`` (the robot falls away from a reference that does not fall freely) or ``carried`` (tides only, the robot goes
-/// along; what is left out is ``trace.reference_residual``); ``earth`` says when that is and how the Earth turns. ``environment`` lists effects; ``controller`` is a law such
-/// as ``ComputedTorque``, an object with ``update(t, state) -> tau (n,)``, or a list of ``Control``; ``reference`` is for the frame ``tool`` (by
-/// default the controller's) and may start ``reference_start_tolerance`` (m, rad) from it, (0.05, 0.1) by default; ``control_period`` s between calls of the controller (every step by default);
-/// ``integrator`` is ``rk4``, ``semi_implicit_euler`` or ``dormand_prince``, which takes steps as long as ``tolerance`` lets
-/// it (a share: of a radian, of the robot's size, of rates) and records its rows on the grid of ``time_step`` in between;
-/// ``enforce_limits`` puts rigid stops at the joints' position limits, which give back ``restitution`` (0 to 1) of the rate;
-/// ``record_wrenches`` keeps the wrench of every effect on every body in ``trace.wrenches``;
-/// a robot that nothing leads through W and whose base drifts more than ``rereference_beyond`` m from the reference is integrated about
-/// one of its own from there (``trace.rereferenced`` says when; its rows stay in W);
-/// ``plant`` is another physics engine that moves the robot, such as ``onorbit_rs.plants.Mujoco``: an object with
-/// ``step(start, end, q, v, tau, wrenches)`` that returns ``(q, v)`` at the end, the acceleration at the start (nv,), the integral of
-/// external forces and of their moments about the centre of mass (6,), the work done on the robot less what its joints lost, and
-/// that loss, J. ``wrenches(t, q, v)`` (bodies, 6) is what the environment does to each body at a state: force through its centre of mass and
-/// torque about it, W axes. The plant integrates its own way and does not remember; ``integrator``, ``enforce_limits``, ``restitution`` and
-/// ``rereference_beyond`` are for our own.
+/// Parameters
+/// ----------
+/// model : Model
+///     Robot.
+/// q : (nq,) array
+///     Initial configuration.
+/// v : (nv,) array
+///     Initial velocity.
+/// orbit : Orbit, optional
+///     Reference orbit, on which the origin of W moves. An orbit around a planet adds gravity on every body.
+/// earth : Earth, optional
+///     Epoch and orientation of the Earth.
+/// gravity_mode : {"true", "carried"}
+///     Behaviour for a reference orbit that is not in free fall: the robot moves away from it, or it moves
+///     along with it: only the tide of gravity acts, and drag and radiation pressure without their common
+///     acceleration; the omitted acceleration of gravity is ``trace.reference_residual``.
+/// environment : list of Effect, optional
+///     Effects on the bodies.
+/// controller : control law, object or list of Control, optional
+///     Control law for all joints such as ``ComputedTorque``, an object with ``update(t, state)`` that
+///     returns joint torques (n,), or several controls.
+/// reference : Reference or JointReference, optional
+///     Reference of the controller.
+/// tool : str, optional
+///     Frame of the reference; default: that of the controller.
+/// time_step : float
+///     Length of fixed steps, s; with ``dormand_prince`` the spacing of the recorded rows.
+/// control_period : float, optional
+///     Time between calls of the controller, s; default: every step.
+/// integrator : {"rk4", "semi_implicit_euler", "dormand_prince"}
+///     Integrator; ``dormand_prince`` is adaptive.
+/// record_every : int
+///     Number of steps per recorded row.
+/// reference_start_tolerance : (float, float), optional
+///     Permitted initial deviation of the tool from its reference, m and rad; default: (0.05, 0.1).
+/// tolerance : float
+///     Permitted error per step of ``dormand_prince``, relative to one radian, the robot's size, and the
+///     rates.
+/// enforce_limits : bool
+///     If True, position limits of joints are rigid stops.
+/// restitution : float
+///     Coefficient of restitution of the stops, 0 to 1.
+/// record_wrenches : bool
+///     If True, ``trace.wrenches`` contains the wrench of every effect on every body.
+/// rereference_beyond : float
+///     Distance of the base from the reference orbit, m, beyond which integration continues about a new,
+///     freely falling reference, unless a controller tracks a pose in W. ``trace.rereferenced`` holds the
+///     times; the rows remain in W.
+/// engine : object, optional
+///     Another physics engine in place of the native equations of motion, such as
+///     ``onorbit_rs.engines.Mujoco``: an object with a method ``step`` (see Notes).
+///
+/// Notes
+/// -----
+/// ``engine.step(start, end, q, v, tau, wrenches)`` returns a tuple: ``q`` and ``v`` at ``end``, the
+/// acceleration at ``start`` (nv,), the integral of the external forces and of their moments about the centre
+/// of mass (6,), the work done on the robot less the energy lost in its joints, J, and that loss, J.
+/// ``wrenches(t, q, v)`` (bodies, 6) returns the force of the environment through the centre of mass of each
+/// body and the torque about it, W axes. The object must not keep state between calls. ``integrator``,
+/// ``enforce_limits``, ``restitution`` and ``rereference_beyond`` apply only to the native equations of
+/// motion.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
-    simulation: Mutex<Simulation>,
+    run: SharedRun,
     model: Arc<Model>,
+    orbit: Option<Arc<dyn Orbit>>,
 }
 
 #[pymethods]
@@ -58,7 +103,7 @@ impl PySimulation {
         model, q, v, *, orbit=None, earth=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
         time_step=1e-3, control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
         tolerance=1e-9, enforce_limits=false, restitution=0.0, record_wrenches=false,
-        rereference_beyond=1e5, plant=None,
+        rereference_beyond=1e5, engine=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -82,7 +127,7 @@ impl PySimulation {
         restitution: f64,
         record_wrenches: bool,
         rereference_beyond: f64,
-        plant: Option<Any<'_, '_>>,
+        engine: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
         let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
         let core = Arc::clone(&model.model);
@@ -93,50 +138,20 @@ impl PySimulation {
         }
         let mut simulation = Simulation::new(Arc::clone(&core), q.data().to_vec(), v.data().to_vec());
         simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
-        simulation.earth = earth.map(|earth| earth.get().beneath(simulation.orbit.as_deref()));
-        simulation.reference_motion = match gravity_mode {
-            "true" => ReferenceMotion::True,
-            "carried" => ReferenceMotion::Carried,
-            other => {
-                let message = format!("gravity_mode is '{other}'; there are 'true' and 'carried'");
-                let fields = fields!(py, "name": "gravity_mode", "got": other);
-                return Err(raise(py, "InputError", &message, &fields));
-            }
-        };
-        let environment = effects(environment)?;
-        let on_robot = environment.iter().filter_map(|effect| effect.get().on(py, &core).transpose());
-        simulation.effects = on_robot.collect::<PyResult<_>>()?;
-        let mu = simulation.orbit.as_ref().and_then(|orbit| orbit.mu());
-        let own = simulation.orbit.as_ref().and_then(|orbit| orbit.gravity());
-        let given = gravity_of(py, &environment, mu, simulation.earth.as_ref())?;
-        if let (Some(orbit), Some(earth)) = (&simulation.orbit, &simulation.earth) {
-            earth.fits(orbit.axes(), orbit.epoch()).map_err(|error| error.into_python(py))?;
-        }
-        let shared = given.map(|given| match own {
-            Some(own) => given.shared_with(own),
-            None => Ok(Arc::new(given)),
-        });
-        simulation.gravity = shared.transpose().map_err(|error| error.into_python(py))?;
+        simulation.earth = earth.map(|earth| earth.get().in_axes_of(simulation.orbit.as_deref()));
+        simulation.gravity_mode = gravity_mode_named(py, gravity_mode)?;
+        set_environment(py, &mut simulation, environment)?;
         if let Some(tolerance) = reference_start_tolerance {
             simulation.reference_start_tolerance = fixed(tolerance, "reference_start_tolerance", &[2])?;
         }
         simulation.tool = tool.map(|tool| model.frame(tool)).transpose()?;
         if let Some(controller) = controller {
             let robot = Robot { model: &core, orbit: simulation.orbit.as_ref(), tool: simulation.tool };
-            simulation.control = control_law(controller, reference, &robot)?;
-        }
-        match (&simulation.control, reference) {
-            (ControlLaw::Stack(controls), _) => {
-                let first = controls.iter().find_map(|control| control.task());
-                simulation.tool = simulation.tool.or(first.map(|(frame, _)| frame));
-            }
-            (control, reference) => {
-                if let ControlLaw::ComputedTorque(law) = control {
-                    simulation.tool.get_or_insert(law.frame);
-                }
-                let bind = |value| reference::extract(value, simulation.orbit.as_ref());
-                simulation.reference = reference.map(bind).transpose()?;
-            }
+            simulation.controls = controls_of(controller, reference, &robot)?;
+            let tracked = simulation.controls.iter().find_map(|control| control.law.task());
+            simulation.tool = simulation.tool.or(tracked.map(|(frame, _)| frame));
+        } else if let Some(reference) = reference {
+            simulation.reference = Some(reference::extract(reference, simulation.orbit.as_ref())?);
         }
         simulation.time_step = time_step;
         simulation.control_period = control_period;
@@ -147,18 +162,41 @@ impl PySimulation {
         simulation.rereference_beyond = rereference_beyond;
         simulation.stops = enforce_limits.then_some(restitution);
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
-        if let Some(plant) = plant {
-            simulation.engine = Some(Box::new(PythonPlant::new(plant, &simulation)?));
+        if let Some(engine) = engine {
+            simulation.engine = Some(Box::new(PythonEngine::new(engine, &simulation)?));
         }
-        Ok(Self { simulation: Mutex::new(simulation), model: core })
+        let orbit = simulation.orbit.clone();
+        Ok(Self { run: SharedRun::new(simulation), model: core, orbit })
     }
 
-    /// Run from the given state for ``duration`` s and return the :class:`Trace`.
+    /// Simulate from the initial state and return the trace.
     ///
-    /// ``progress(t, duration)`` is called at a steady wall-clock pace. ``checkpoint(c)`` is handed a :class:`Checkpoint` every
-    /// ``checkpoint_every`` s of wall clock (at most twenty a second) and at Ctrl-C; where it returns False, the next one has its
-    /// rows again. With ``resume`` the run goes on from a checkpoint, to the same bits.
-    /// Ctrl-C raises ``RunInterrupted``, a diverging run ``SimulationError``; both carry the trace so far.
+    /// It ends a run that :meth:`start` began.
+    ///
+    /// Parameters
+    /// ----------
+    /// duration : float
+    ///     Simulated time, s.
+    /// progress : callable, optional
+    ///     ``progress(t, duration)``, called at regular intervals of wall-clock time.
+    /// checkpoint : callable, optional
+    ///     ``checkpoint(c)``, called with a :class:`Checkpoint`. If it returns False, the next checkpoint
+    ///     contains the same rows again.
+    /// checkpoint_every : float, optional
+    ///     Wall-clock time between checkpoints, s (at most twenty per second); there is also one at Ctrl-C.
+    /// resume : Checkpoint, optional
+    ///     Checkpoint from which the run continues, with identical bits.
+    ///
+    /// Returns
+    /// -------
+    /// Trace
+    ///
+    /// Raises
+    /// ------
+    /// RunInterrupted
+    ///     At Ctrl-C; ``trace`` holds the rows so far.
+    /// SimulationError
+    ///     If the run diverges; ``trace`` holds the rows so far.
     #[pyo3(signature = (duration, *, progress=None, checkpoint=None, checkpoint_every=30.0, resume=None))]
     fn run(
         &self,
@@ -169,120 +207,110 @@ impl PySimulation {
         checkpoint_every: f64,
         resume: Option<&Bound<'_, PyCheckpoint>>,
     ) -> PyResult<PyTrace> {
-        let every = Duration::try_from_secs_f64(checkpoint_every).map_err(|_| {
-            let message =
-                format!("checkpoint_every is {} s, it must be zero or positive", short(checkpoint_every));
-            raise(
-                py,
-                "InputError",
-                &message,
-                &fields!(py, "name": "checkpoint_every", "got": checkpoint_every),
-            )
-        })?;
-        let from = resume.map(|checkpoint| checkpoint.get().read(py)).transpose()?;
-        let (rows, wall) =
-            (from.as_ref().map_or(0, |from| from.0.rows()), resume.map_or(0.0, |c| c.get().wall_s));
-        let begin = from.as_ref().map_or(0.0, |from| from.0.time());
-        self.prepare(py, begin)?;
-        let mut keeper = Keeper::new(checkpoint, every, rows, wall);
-        let mut raised: Option<PyErr> = None;
-        let ran = py.detach(|| {
-            let mut simulation = match self.simulation.try_lock() {
-                Ok(simulation) => simulation,
-                Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
-                Err(TryLockError::WouldBlock) => return None,
-            };
-            let mut last = Instant::now();
-            let mut monitor = |now: &Moment<'_>| {
-                if last.elapsed() < PACE {
-                    return ControlFlow::Continue(());
+        let every = period(py, "checkpoint_every", checkpoint_every)?;
+        let stepper = self.start(py, Some(duration), resume)?;
+        let rows = stepper.row_count(py)?; // those of the checkpoint
+        let mut saver = checkpoint.map(|to| CheckpointCallback::new(to, every, rows));
+        stepper.run_to_end(py, duration, &mut |py, stepper, wall_s| {
+            let called = py.check_signals().and_then(|()| match &progress {
+                Some(progress) => progress.call1(py, (stepper.time(), duration)).map(|_| ()),
+                None => Ok(()),
+            });
+            let Some(saver) = &mut saver else { return called };
+            match called {
+                Ok(()) => saver.save_if_due(py, stepper, wall_s),
+                Err(error) => {
+                    let _ = saver.save(py, stepper, wall_s); // only the first error is reported
+                    Err(error)
                 }
-                last = Instant::now();
-                let looked = Python::attach(|py| {
-                    look(py, progress.as_ref(), now.time, duration).inspect_err(|_| {
-                        let _ = keeper.keep(py, now); // the first error is told
-                    })?;
-                    keeper.keep_if_due(py, now)
-                });
-                match looked {
-                    Ok(()) => ControlFlow::Continue(()),
-                    Err(error) => {
-                        raised = Some(error);
-                        ControlFlow::Break(())
-                    }
-                }
-            };
-            Some(match from {
-                None => simulation.run(duration, &mut monitor),
-                Some((checkpoint, rows)) => simulation.resume(duration, (&checkpoint, rows), &mut monitor),
-            })
-        });
-        let Some(result) = ran else {
-            let message = "this simulation is running already; make another one to run beside it";
-            return Err(plain(py, "SimulationError", message));
-        };
-        let wall_s = keeper.wall();
-        let wrap =
-            |trace, is_complete| PyTrace { trace, model: Arc::clone(&self.model), is_complete, wall_s };
-        match result {
-            Ok(trace) => Ok(wrap(trace, true)),
-            Err(RunFailure { error, trace }) => Err(self.failure(py, error, wrap(*trace, false), raised)),
-        }
-    }
-}
-
-impl PySimulation {
-    /// Integrates the reference orbit as far as the begin of a run, interruptible; a run that runs already has it.
-    fn prepare(&self, py: Python<'_>, begin: f64) -> PyResult<()> {
-        let orbit = self.simulation.try_lock().ok().and_then(|simulation| simulation.orbit.clone());
-        orbit.map_or(Ok(()), |orbit| prepare(py, &*orbit, &[begin]))
+            }
+        })
     }
 
-    /// The exception for a run that stopped early.
-    fn failure(
+    /// Start a run that is advanced step by step.
+    ///
+    /// The steps are those of :meth:`run`, whatever the times to which the stepper is advanced. A simulation
+    /// has one run at a time: starting another one ends this one.
+    ///
+    /// Parameters
+    /// ----------
+    /// duration : float, optional
+    ///     Planned end of the run, s. It is the last cut, and the time over which the adaptive integrator and
+    ///     the certificate measure errors. Default: no planned end.
+    /// resume : Checkpoint, optional
+    ///     Checkpoint from which the run continues, with identical bits; its duration is the default.
+    ///
+    /// Returns
+    /// -------
+    /// Stepper
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     If the duration is not positive and finite.
+    /// CheckpointError
+    ///     If the checkpoint belongs to another simulation.
+    #[pyo3(signature = (*, duration=None, resume=None))]
+    fn start(
         &self,
         py: Python<'_>,
-        error: SimulationError,
-        trace: PyTrace,
-        raised: Option<PyErr>,
-    ) -> PyErr {
-        let is_ctrl_c = |error: &PyErr| error.is_instance_of::<PyKeyboardInterrupt>(py);
-        // Ctrl-C arrives where Python runs: at the monitor, in a controller of the user's, in another plant, or here,
-        // where it has been pending while the engine came upon an error of its own
-        let ctrl_c = match (raised, &error) {
-            (Some(other), _) if !is_ctrl_c(&other) => return other, // the progress callback raised
-            (Some(ctrl_c), _) => Some(ctrl_c),
-            (
-                None,
-                SimulationError::Control(ControlError::User(source)) | SimulationError::Engine(source),
-            ) => source.downcast_ref::<PyErr>().filter(|error| is_ctrl_c(error)).map(|e| e.clone_ref(py)),
-            (None, _) => match py.check_signals() {
-                Err(other) if !is_ctrl_c(&other) => return other,
-                checked => checked.err(),
-            },
-        };
-        let (time, is_interrupted) = match (&error, trace.trace.time.last()) {
-            (SimulationError::Interrupted { time }, _) => (Some(*time), true),
-            (_, last) => (last.copied(), false),
-        };
-        let trace = Py::new(py, trace).ok();
-        let Some(ctrl_c) = ctrl_c else { return error.into_python_with(py, trace) };
-        let Some(time) = time else { return ctrl_c };
-        let interrupted = SimulationError::Interrupted { time }.into_python_with(py, trace);
-        if !is_interrupted {
-            interrupted.set_context(py, Some(error.into_python_with(py, None)));
+        duration: Option<f64>,
+        resume: Option<&Bound<'_, PyCheckpoint>>,
+    ) -> PyResult<PyStepper> {
+        if let Some(duration) = duration {
+            let checked = SimulationError::check_positive("duration", duration);
+            checked.map_err(|error| error.into_python_with(py, None))?; // before the present run is ended
         }
-        interrupted.set_cause(py, Some(ctrl_c)); // which signal it was
-        interrupted
+        let from = resume.map(|checkpoint| checkpoint.get().read(py)).transpose()?;
+        let begin = from.as_ref().map_or(0.0, |from| from.0.time());
+        if let Some(orbit) = &self.orbit {
+            prepare(py, &**orbit, &[begin])?; // Ctrl-C interrupts it; after a resumed start it is done already
+        }
+        let wall_s = resume.map_or(0.0, |checkpoint| checkpoint.get().wall_s);
+        let number = self.run.start(py, duration, from, wall_s)?;
+        Ok(PyStepper::new(self.run.clone(), number, Arc::clone(&self.model)))
     }
 }
 
-/// Ctrl-C and progress.
-fn look(py: Python<'_>, progress: Option<&Py<PyAny>>, t: f64, duration: f64) -> PyResult<()> {
-    py.check_signals()?;
-    match progress {
-        Some(progress) => progress.call1(py, (t, duration)).map(|_| ()),
-        None => Ok(()),
+/// Checks an interval of wall-clock time, s.
+pub(crate) fn period(py: Python<'_>, name: &str, seconds: f64) -> PyResult<Duration> {
+    Duration::try_from_secs_f64(seconds).map_err(|_| {
+        let message = format!("{name} is {} s; it must be finite, zero or positive", short(seconds));
+        raise(py, "InputError", &message, &fields!(py, "name": name, "got": seconds))
+    })
+}
+
+/// Sets the effects on the robot and the gravity field; expects orbit and Earth.
+fn set_environment(
+    py: Python<'_>,
+    simulation: &mut Simulation,
+    environment: Option<&Bound<'_, PyAny>>,
+) -> PyResult<()> {
+    let environment = effects(environment)?;
+    let on_robot = environment.iter().filter_map(|effect| effect.get().on(py, &simulation.model).transpose());
+    simulation.effects = on_robot.collect::<PyResult<_>>()?;
+    let mu = simulation.orbit.as_ref().and_then(|orbit| orbit.mu());
+    let of_orbit = simulation.orbit.as_ref().and_then(|orbit| orbit.gravity());
+    let given = gravity_of(py, &environment, mu, simulation.earth.as_ref())?;
+    if let (Some(orbit), Some(earth)) = (&simulation.orbit, &simulation.earth) {
+        earth.check_orbit(orbit.axes(), orbit.epoch()).map_err(|error| error.into_python(py))?;
+    }
+    let shared = given.map(|given| match of_orbit {
+        Some(of_orbit) => given.shared_with(of_orbit),
+        None => Ok(Arc::new(given)),
+    });
+    simulation.gravity = shared.transpose().map_err(|error| error.into_python(py))?;
+    Ok(())
+}
+
+fn gravity_mode_named(py: Python<'_>, name: &str) -> PyResult<GravityMode> {
+    match name {
+        "true" => Ok(GravityMode::True),
+        "carried" => Ok(GravityMode::Carried),
+        other => {
+            let message = format!("gravity_mode is '{other}'; it must be 'true' or 'carried'");
+            Err(raise(py, "InputError", &message, &fields!(py, "name": "gravity_mode", "got": other)))
+        }
     }
 }
 
@@ -298,7 +326,7 @@ pub(crate) fn integrator_named(py: Python<'_>, name: &str) -> PyResult<Integrato
                 ""
             };
             let message = format!(
-                "integrator is '{other}'; there are 'rk4', 'semi_implicit_euler' and 'dormand_prince'{way_out}"
+                "integrator is '{other}'; it must be 'rk4', 'semi_implicit_euler' or 'dormand_prince'{way_out}"
             );
             Err(raise(py, "InputError", &message, &fields!(py, "name": "integrator", "got": other)))
         }

@@ -1,4 +1,4 @@
-"""The app and its commands, and the entry point."""
+"""The application, its commands, and the entry point."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from onorbit_rs import foreign_code
 from onorbit_rs.cli.check import check
 from onorbit_rs.cli.compare import compare
 from onorbit_rs.cli.convert import convert
-from onorbit_rs.cli.failing import ending_well, fail, leave_stdout, of_controller, stopped
+from onorbit_rs.cli.exit_codes import controller_error, discard_stdout, exit_stopped, fail, with_exit_codes
 from onorbit_rs.cli.info import info
 from onorbit_rs.cli.list import list_
 from onorbit_rs.cli.new import new
 from onorbit_rs.cli.report import report
 from onorbit_rs.cli.run import resume, run
-from onorbit_rs.cli.saying import complain, encode_all, say_all, show_warning
 from onorbit_rs.cli.show import show
 from onorbit_rs.cli.signals import ending_signals
+from onorbit_rs.cli.text_output import escape_unencodable, print_error, print_text, show_warning
 from onorbit_rs.cli.validate import validate
+from onorbit_rs.common import user_code
+from onorbit_rs.common.printable import printable
 from onorbit_rs.exceptions import OnOrbitError
-from onorbit_rs.printable import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -33,10 +33,10 @@ app = typer.Typer(
     name="onorbit",
     help="Simulate free-floating robots in orbit.",
     pretty_exceptions_enable=False,
-    rich_markup_mode=None,  # boxes take half a second to load, and break names on a narrow terminal
+    rich_markup_mode=None,  # boxes take half a second to load and wrap names on a narrow terminal
 )
 
-# in the order of the help; a command loads what it needs when it is called
+# in the order of the help; a command imports its modules when it is called
 COMMANDS: dict[str, Callable[..., None]] = {
     "run": run,
     "resume": resume,
@@ -51,14 +51,14 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "validate": validate,
 }
 for name, command in COMMANDS.items():
-    app.command(name=name)(ending_well(command))
+    app.command(name=name)(with_exit_codes(command))
 
 
 def _print_version(is_asked: bool) -> None:
     if is_asked:
         from onorbit_rs import __version__
 
-        say_all(f"onorbit {__version__}")
+        print_text(f"onorbit {__version__}")
         raise typer.Exit
 
 
@@ -71,15 +71,15 @@ VersionOption = Annotated[
 def onorbit(context: typer.Context, version: VersionOption = False) -> None:
     """Simulate free-floating robots in orbit."""
     if context.invoked_subcommand is None:
-        say_all(context.get_help())
+        print_text(context.get_help())
         raise typer.Exit(2)
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Entry point: an error is one line on stderr and exit code 2, Ctrl-C is 130, SIGTERM 143, SIGHUP 129."""
-    encode_all()
+    """Run a command; errors end with one line and exit code 2 (Ctrl-C 130, SIGTERM 143, SIGHUP 129)."""
+    escape_unencodable()
     try:
-        with ending_signals(), warnings.catch_warnings(), _executed_code_named():
+        with ending_signals(), warnings.catch_warnings(), _announcing_user_code():
             warnings.showwarning = show_warning
             code = app(arguments, standalone_mode=False, prog_name="onorbit")
             if sys.stdout is not None:
@@ -88,43 +88,43 @@ def main(arguments: list[str] | None = None) -> None:
         fail(str(error), 2)
     except (KeyboardInterrupt, typer.Abort) as stop:
         cause = stop if isinstance(stop, KeyboardInterrupt) else stop.__context__
-        stopped(cause if isinstance(cause, KeyboardInterrupt) else KeyboardInterrupt())
+        exit_stopped(cause if isinstance(cause, KeyboardInterrupt) else KeyboardInterrupt())
     except typer.TyperException as error:
-        fail(_with_way_out(error), 2)
+        fail(_with_suggestion(error), 2)
     except BrokenPipeError:
-        leave_stdout()
+        discard_stdout()
         sys.exit(0)
     except OSError as error:
-        if error.filename is not None:  # nobody may look there
+        if error.filename is not None:  # the error of a file
             fail(f"cannot use {error.filename}: {error.strerror or error}", 2)
-        leave_stdout()  # printing: the disk behind it is full
+        discard_stdout()  # the error of stdout, such as a full disk
         fail(f"cannot write: {error.strerror or error}", 2)
     except Exception as error:
         if not hasattr(error, "trace"):
             raise
-        fail(of_controller(error), 2)
+        fail(controller_error(error), 2)
     sys.exit(code if isinstance(code, int) else 0)
 
 
 @contextmanager
-def _executed_code_named() -> Iterator[None]:
-    """Print each file of Python that a scenario brings before it is executed."""
-    named: set[str] = set()
+def _announcing_user_code() -> Iterator[None]:
+    """Print the name of each Python file of a scenario before it is executed."""
+    announced: set[str] = set()
 
-    def name(source: str) -> None:
-        if source not in named:
-            named.add(source)
-            complain(f"onorbit: executes Python of this scenario: {printable(source)}")
+    def announce(source: str) -> None:
+        if source not in announced:
+            announced.add(source)
+            print_error(f"onorbit: executing Python code of this scenario: {printable(source)}")
 
-    foreign_code.listeners.append(name)
+    user_code.listeners.append(announce)
     try:
         yield
     finally:
-        foreign_code.listeners.remove(name)
+        user_code.listeners.remove(announce)
 
 
-def _with_way_out(error: typer.TyperException) -> str:
-    """An unknown command is answered with those there are, a wrong option with where they are told."""
+def _with_suggestion(error: typer.TyperException) -> str:
+    """Return the message of a usage error, followed by the list of commands or the help command."""
     message = error.format_message()
     if message.startswith("No such command"):
         return f"{message} Commands are: {', '.join(COMMANDS)}"

@@ -7,46 +7,49 @@ from typing import Annotated
 
 import typer
 
-from onorbit_rs.cli.saying import complain, say
-from onorbit_rs.cli.writing import claim
-from onorbit_rs.files import replacing
-from onorbit_rs.printable import printable, shell_word
+from onorbit_rs.cli.output_files import check_output_file
+from onorbit_rs.cli.text_output import print_error, print_line
+from onorbit_rs.common.files import replacing
+from onorbit_rs.common.printable import printable, shell_word
 
 
 def convert(
     files: Annotated[
-        list[Path], typer.Argument(metavar="FILE...", help="YAML files of OnOrbitROS, and the robot's URDF.")
+        list[Path],
+        typer.Argument(metavar="FILE...", help="YAML files of OnOrbitROS, and the URDF of the robot."),
     ],
-    out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write it here.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Output file.")] = None,
     controller: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Which of several controllers.")
+        str | None, typer.Option(metavar="NAME", help="Controller to convert, if there are several.")
     ] = None,
-    keep_going: Annotated[bool, typer.Option("--keep-going", help="Pass over unknown keys.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace the file that is there.")] = False,
+    keep_going: Annotated[bool, typer.Option("--keep-going", help="Ignore unknown keys.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
-    """Make a scenario of OnOrbitROS' YAML files.
+    """Convert YAML files of OnOrbitROS to a scenario.
 
-    Says on standard error what became of every line; without --out the scenario goes to standard output.
+    A note on standard error describes the conversion of each line. Without --out, the scenario is printed.
     """
-    from onorbit_rs.interop.onorbitros import convert as convert_files
-    from onorbit_rs.interop.write_scenario import scenario_text
     from onorbit_rs.scenario.load import check as check_scenario
+    from onorbit_rs.tools.interop.onorbitros import convert as convert_files
+    from onorbit_rs.tools.interop.write_scenario import scenario_text
 
-    claim(out, force=force)
-    done = convert_files(
+    check_output_file(out, force=force)
+    conversion = convert_files(
         files, controller=controller, keep_going=keep_going, beside=out.parent if out else None
     )
-    check_scenario(done.scenario, None, {})
-    for note in done.notes:
-        complain(printable(note))
-    made_of = ", ".join(file.name for file in files)
+    check_scenario(conversion.scenario, None, {})
+    for note in conversion.notes:
+        print_error(printable(note))
+    sources = ", ".join(file.name for file in files)
     text = scenario_text(
-        done.scenario, done.comments, f"Made by onorbit convert of {made_of}. SI and radians."
+        conversion.scenario,
+        conversion.comments,
+        f"Converted from {sources} by onorbit convert. SI and radians.",
     )
     if out is None:
         typer.echo(text, nl=False)
         return
     with replacing(out) as file:
         file.write_text(text, encoding="utf-8")
-    say(f"scenario: {out}")
-    say(f"next: onorbit check {shell_word(out)}")
+    print_line(f"scenario: {out}")
+    print_line(f"next: onorbit check {shell_word(out)}")

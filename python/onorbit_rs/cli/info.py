@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from onorbit_rs.cli.figure_files import check_figure_file, save_portrait
 from onorbit_rs.cli.options import (
     ArgumentsOption,
     JsonOption,
@@ -14,11 +15,10 @@ from onorbit_rs.cli.options import (
     PictureOption,
     RobotArgument,
     XacroOption,
-    in_words,
-    of_file,
+    as_arguments,
+    reading_options,
 )
-from onorbit_rs.cli.pictures import claim_picture, save_portrait
-from onorbit_rs.cli.saying import say
+from onorbit_rs.cli.text_output import print_line
 
 
 def info(
@@ -27,20 +27,20 @@ def info(
     arguments: ArgumentsOption = None,
     xacro: XacroOption = False,
     picture: PictureOption = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace the picture that is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Print a robot's tree, masses, joints, frames, oddities."""
+    """Print a robot's tree, masses, joints, frames, warnings."""
     from onorbit_rs import robots
-    from onorbit_rs.cli.printing import new_console, print_json
-    from onorbit_rs.cli.robot import print_info
+    from onorbit_rs.cli.console import new_console, print_json
+    from onorbit_rs.cli.robot_info import print_info
     from onorbit_rs.robots.describe import describe
     from onorbit_rs.robots.wording import COMMAND_LINE, worded
 
-    given = of_file(robot, packages, arguments, xacro)
-    claim_picture("--picture", picture, force=force)
+    given = reading_options(robot, packages, arguments, xacro)
+    check_figure_file("--picture", picture, force=force)
     with warnings.catch_warnings(), worded(COMMAND_LINE):
-        warnings.simplefilter("ignore")  # they are printed with the rest
+        warnings.simplefilter("ignore")  # print_info prints them
         model = robots.load(robot, **given)
     save_portrait(picture, model, model.neutral())
     if as_json:
@@ -48,5 +48,5 @@ def info(
     else:
         print_info(model, new_console(at_least=72))
         if picture is not None:
-            say(f"picture: {picture}")
-        say(f"next: onorbit new {in_words(robot, packages, arguments, xacro)} --out FILE")
+            print_line(f"picture: {picture}")
+        print_line(f"next: onorbit new {as_arguments(robot, packages, arguments, xacro)} --out FILE")

@@ -8,7 +8,7 @@ from onorbit_rs.cli.options import JsonOption
 def list_(as_json: JsonOption = False) -> None:
     """List the bundled scenarios and robots."""
     from onorbit_rs import robots, scenarios
-    from onorbit_rs.cli.printing import new_console, new_table, print_json, print_table, text
+    from onorbit_rs.cli.console import new_console, new_table, print_json, print_table, text
 
     found = {name: description(name) for name in scenarios.names()}
     if as_json:
@@ -29,7 +29,7 @@ def list_(as_json: JsonOption = False) -> None:
 
 
 def description(name: str) -> str:
-    """What a bundled scenario says of itself, read without the half second that checking it would take."""
+    """Return the description of a bundled scenario without validation, which takes half a second."""
     import yaml
 
     from onorbit_rs import scenarios

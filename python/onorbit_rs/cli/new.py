@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from onorbit_rs.cli.figure_files import check_figure_file, save_portrait
 from onorbit_rs.cli.options import (
     ArgumentsOption,
     PackagesOption,
@@ -14,84 +15,93 @@ from onorbit_rs.cli.options import (
     QuietOption,
     RobotArgument,
     XacroOption,
-    in_words,
-    of_file,
+    as_arguments,
+    reading_options,
 )
-from onorbit_rs.cli.pictures import claim_picture, save_portrait
-from onorbit_rs.cli.saying import say
-from onorbit_rs.cli.writing import claim
-from onorbit_rs.counting import count
+from onorbit_rs.cli.output_files import check_output_file
+from onorbit_rs.cli.text_output import print_line
+from onorbit_rs.common.counting import count
+from onorbit_rs.common.files import replacing
+from onorbit_rs.common.printable import shell_word
 from onorbit_rs.exceptions import InputError
-from onorbit_rs.files import replacing
-from onorbit_rs.printable import shell_word
 
 if TYPE_CHECKING:
-    from onorbit_rs.drafting import Draft
+    from onorbit_rs.tools.new_scenario import Draft
 
 
 def new(
     robot: RobotArgument,
-    out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write it here.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Output file.")] = None,
     tool: Annotated[
-        str | None, typer.Option(metavar="FRAME", help="The frame to move; else what looks most like a tool.")
+        str | None, typer.Option(metavar="FRAME", help="Frame to move; default: the most likely tool.")
     ] = None,
     bus: Annotated[
         str | None,
         typer.Option(
-            metavar="ROBOT", help="The robot that carries it: a bundled name, a URDF or a xacro file."
+            metavar="ROBOT", help="Spacecraft to attach the robot to: a bundled name, a URDF or a xacro file."
         ),
     ] = None,
     at: Annotated[str | None, typer.Option(metavar="FRAME", help="Frame of the bus to attach to.")] = None,
     prefix: Annotated[
-        str, typer.Option(metavar="TEXT", help="Prefix for the names of its links and joints, with --bus.")
+        str,
+        typer.Option(metavar="TEXT", help="Prefix for the robot's link and joint names; only with --bus."),
     ] = "",
     packages: PackagesOption = None,
     arguments: ArgumentsOption = None,
     xacro: XacroOption = False,
     picture: PictureOption = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace the files that are there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
     quiet: QuietOption = False,
 ) -> None:
     """Write a commented scenario that moves a robot's arm.
 
-    The scenario is simulated before it is written; without --out it goes to standard output. With --bus the
-    robot is attached to a spacecraft from another file; --picture draws the result.
+    The scenario is simulated before it is written; without --out, it is printed. With --bus, the robot is
+    attached to a spacecraft from another file; --picture draws the result.
     """
-    given = of_file(robot, packages, arguments, xacro, bus=bus)
-    if out is not None and picture is not None and out.absolute() == picture.absolute():
-        raise InputError(f"--out and --picture are both {out}: name two files", name="picture", got=str(out))
-    if bus is None and (at is not None or prefix):
-        raise InputError(
-            "--at and --prefix describe the mounting on a bus: add --bus ROBOT", name="bus", got=None
-        )
-    claim(out, force=force)
-    claim_picture("--picture", picture, force=force)
-    from onorbit_rs.drafting import Source, draft
-    from onorbit_rs.progress import doing
+    given = reading_options(robot, packages, arguments, xacro, bus=bus)
+    _check_options(out, picture, bus, at, prefix)
+    check_output_file(out, force=force)
+    check_figure_file("--picture", picture, force=force)
+    from onorbit_rs.common.progress import doing
     from onorbit_rs.robots.wording import COMMAND_LINE, worded
+    from onorbit_rs.tools.new_scenario import Source, draft
 
     options = {"--tool": tool, "--bus": bus, "--at": at, "--prefix": prefix}
-    named = "".join(f" {option} {shell_word(value)}" for option, value in options.items() if value)
-    written_by = f"onorbit new {in_words(robot, packages, arguments, xacro)}{named}"
-    beside = out.absolute().parent if out else None
+    mounting = "".join(f" {option} {shell_word(value)}" for option, value in options.items() if value)
+    command = f"onorbit new {as_arguments(robot, packages, arguments, xacro)}{mounting}"
+    folder = out.absolute().parent if out else None
     with doing("trying motions", quiet=quiet), worded(COMMAND_LINE):
         source = Source(robot, **given, bus=bus, at=at, prefix=prefix)
-        made = draft(source, tool=tool, beside=beside, command=written_by)
-    save_portrait(picture, made.model, made.q, [frame for frame in (at, made.tool) if frame is not None])
+        result = draft(source, tool=tool, beside=folder, command=command)
+    save_portrait(
+        picture, result.model, result.q, [frame for frame in (at, result.tool) if frame is not None]
+    )
     if out is None:
-        typer.echo(made.text, nl=False)
+        typer.echo(result.text, nl=False)
         return
     with replacing(out) as file:
-        file.write_text(made.text, encoding="utf-8")
+        file.write_text(result.text, encoding="utf-8")
     if not quiet:
-        say(f"scenario: {out} ({_motion(made)})")
+        print_line(f"scenario: {out} ({_motion(result)})")
         if picture is not None:
-            say(f"picture: {picture}")
-        say(f"next: onorbit check {shell_word(out)}")
+            print_line(f"picture: {picture}")
+        print_line(f"next: onorbit check {shell_word(out)}")
 
 
-def _motion(made: Draft) -> str:
-    """Describe what moves in a draft."""
-    if made.joints:
-        return f"{made.tool}, moved by {count(len(made.joints), 'joint', 'joints')}"
-    return "a body without joints" if made.tool is None else "all joints hold: no motion of the arm passed"
+def _check_options(
+    out: Path | None, picture: Path | None, bus: str | None, at: str | None, prefix: str
+) -> None:
+    """Raise InputError if options contradict each other."""
+    if out is not None and picture is not None and out.absolute() == picture.absolute():
+        raise InputError(
+            f"--out and --picture are both {out}; give two different files", name="picture", got=str(out)
+        )
+    if bus is None and (at is not None or prefix):
+        raise InputError("--at and --prefix apply only with a bus; add --bus ROBOT", name="bus", got=None)
+
+
+def _motion(result: Draft) -> str:
+    """Describe the motion of a draft."""
+    if result.joints:
+        return f"{result.tool}, moved by {count(len(result.joints), 'joint', 'joints')}"
+    return "a body without joints" if result.tool is None else "all joints hold: no motion of the arm passed"

@@ -1,4 +1,4 @@
-"""Arguments and options that commands share."""
+"""Arguments and options that several commands share."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from onorbit_rs.cli.completing import robot_names, scenario_names
+from onorbit_rs.cli.completion import robot_names, scenario_names
+from onorbit_rs.common.printable import shell_word
 from onorbit_rs.exceptions import InputError
-from onorbit_rs.printable import shell_word
 
 ScenarioArgument = Annotated[
     str,
@@ -23,30 +23,33 @@ RobotArgument = Annotated[
         metavar="ROBOT", help="A bundled name, a URDF or a xacro file.", autocompletion=robot_names
     ),
 ]
-FolderArgument = Annotated[Path, typer.Argument(metavar="DIR", help="A folder that a run has written.")]
-OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write results here.")]
-ForceOption = Annotated[bool, typer.Option("--force", help="Replace the run that is in DIR.")]
-JsonOption = Annotated[bool, typer.Option("--json", help="As data on stdout and nothing else.")]
+FolderArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a run.")]
+OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Folder for results.")]
+ForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing run in DIR.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON only.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar, no summary.")]
-ViewOption = Annotated[bool, typer.Option("--view", help="Watch it in the viewer while it runs.")]
+ViewOption = Annotated[bool, typer.Option("--view", help="Show the run in the viewer while it is computed.")]
 CheckpointOption = Annotated[
     float | None,
-    typer.Option(metavar="SECONDS", help="Wall-clock time between checkpoints in DIR; 30 unless told."),
+    typer.Option(metavar="SECONDS", help="Wall-clock time between checkpoints in DIR, s; default: 30."),
 ]
 
 PackagesOption = Annotated[
     list[Path] | None,
-    typer.Option("--package-path", metavar="DIR", help="Where ROS packages are; may be repeated."),
+    typer.Option("--package-path", metavar="DIR", help="Folder with ROS packages; may be repeated."),
 ]
 ArgumentsOption = Annotated[
-    list[str] | None, typer.Option("--arg", metavar="NAME=VALUE", help="For a xacro; may be repeated.")
+    list[str] | None,
+    typer.Option("--arg", metavar="NAME=VALUE", help="Argument of a xacro file; may be repeated."),
 ]
 
 PictureOption = Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the robot: PNG, PDF or SVG.")]
-XacroOption = Annotated[bool, typer.Option("--xacro", help="Expand a file that is not named .xacro as one.")]
+XacroOption = Annotated[
+    bool, typer.Option("--xacro", help="Expand the file with xacro even if its name does not end in .xacro.")
+]
 
 
-def of_file(
+def reading_options(
     robot: str,
     packages: list[Path] | None,
     arguments: list[str] | None,
@@ -54,45 +57,46 @@ def of_file(
     *,
     bus: str | None = None,
 ) -> dict[str, Any]:
-    """Return the keyword arguments with which :func:`onorbit_rs.robots.load` reads a robot's file.
+    """Return the keyword arguments of :func:`onorbit_rs.robots.load` for a robot's file.
 
     Raises
     ------
     InputError
-        If an option could have no effect: for a bundled robot, a missing folder, a file that is no xacro.
-        If there is a ``bus``, the message says where the arguments of its xacro go.
+        If an option would have no effect: for a bundled robot, a missing folder, a file that is not xacro.
+        If there is a ``bus``, the message explains where to put the arguments of its xacro file.
     """
     from onorbit_rs import robots
 
-    values = as_mapping(arguments)
+    values = xacro_arguments(arguments)
     is_xacro = xacro or Path(robot).suffix.lower() == ".xacro"
     if arguments and bus is not None and not is_xacro:
         raise InputError(
-            "--arg is for the robot's own xacro file; write the arguments of a xacro bus into the scenario: "
+            "--arg applies only to the robot, which is not a xacro file; set the arguments of the bus "
+            "in the scenario: "
             "robot.bus.xacro_arguments",
             name="arg", got=arguments,
         )  # fmt: skip
     if (packages or arguments or xacro) and not robots.is_file(robot):
         raise InputError(
-            f"--package-path, --arg and --xacro are for a robot's file, and {robot!r} is a name, not a path "
-            "of one",
+            f"--package-path, --arg and --xacro apply only to robot files, but {robot!r} is a bundled "
+            "name; omit "
+            "them or give a path",
             name="robot", got=robot,
         )  # fmt: skip
     for folder in packages or ():
         if not folder.is_dir():
-            raise InputError(
-                f"--package-path {folder}: there is no such folder", name="package_path", got=str(folder)
-            )
+            raise InputError(f"--package-path {folder}: no such folder", name="package_path", got=str(folder))
     if arguments and not is_xacro:
         raise InputError(
-            f"--arg is for a xacro, and {robot} is not named so: leave it out, or add --xacro",
+            f"--arg applies only to xacro files, but {robot} does not end in .xacro; omit --arg or add "
+            "--xacro",
             name="arg", got=arguments,
         )  # fmt: skip
     return {"package_paths": packages, "xacro_arguments": values, "xacro": xacro}
 
 
-def in_words(robot: str, packages: list[Path] | None, arguments: list[str] | None, xacro: bool) -> str:
-    """The robot and how it is read, as the next command takes them."""
+def as_arguments(robot: str, packages: list[Path] | None, arguments: list[str] | None, xacro: bool) -> str:
+    """Return the robot and its options as command-line arguments."""
     words = [robot]
     for option, values in (("--package-path", packages), ("--arg", arguments)):
         words += [word for value in values or () for word in (option, str(value))]
@@ -100,10 +104,10 @@ def in_words(robot: str, packages: list[Path] | None, arguments: list[str] | Non
     return " ".join(map(shell_word, words))
 
 
-def as_mapping(arguments: list[str] | None) -> dict[str, str] | None:
-    """``name=value`` or, as xacro writes it, ``name:=value``."""
+def xacro_arguments(arguments: list[str] | None) -> dict[str, str] | None:
+    """Return xacro arguments, written ``name=value`` or ``name:=value``, as a mapping."""
     pairs = [argument.replace(":=", "=", 1).partition("=") for argument in arguments or []]
     for name, equals, _ in pairs:
         if not equals or not name:
-            raise typer.BadParameter(f"write an argument of a xacro as name=value, not {name!r}")
+            raise typer.BadParameter(f"write a xacro argument as name=value, not {name!r}")
     return {name: value for name, _, value in pairs} or None

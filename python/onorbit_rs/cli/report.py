@@ -7,21 +7,21 @@ from typing import Annotated
 import typer
 
 from onorbit_rs.cli.options import FolderArgument, JsonOption, QuietOption
-from onorbit_rs.cli.saying import say
+from onorbit_rs.cli.text_output import print_line
 
 
 def report(
     folder: FolderArgument,
-    pdf: Annotated[bool, typer.Option(help="Also write every figure into DIR/figures as PDF.")] = True,
+    pdf: Annotated[bool, typer.Option(help="Also write each figure to DIR/figures as PDF.")] = True,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Write one HTML page of a run, with everything in it.
+    """Write a self-contained HTML report of a run.
 
-    Figures, numbers, certificate and scenario; the figures also as PDF.
+    It contains figures, numbers, certificate and scenario; the figures are also written as PDF.
     """
-    from onorbit_rs.cli.printing import print_json
-    from onorbit_rs.progress import parts_bar
+    from onorbit_rs.cli.console import print_json
+    from onorbit_rs.common.progress import parts_bar
 
     with parts_bar("report", quiet=quiet) as tell:
         from onorbit_rs.report import write_report
@@ -30,7 +30,7 @@ def report(
     if as_json:
         print_json({"report": str(page), "bytes": page.stat().st_size})
     elif not quiet:
-        say(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB, needs no other file)")
+        print_line(f"report: {page} ({page.stat().st_size / 1e6:.1f} MB, self-contained)")
         if any((folder / "figures").glob("*.pdf")) and pdf:
-            say(f"figures: {folder / 'figures'}, as PDF")
-        say("next: open it in a browser, or send it")
+            print_line(f"figures: {folder / 'figures'}, as PDF")
+        print_line("next: open it in a browser")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.cli.failing import as_far_as_read, fail
+from onorbit_rs.cli.exit_codes import fail, ignore_closed_pipe
 from onorbit_rs.cli.options import (
     CheckpointOption,
     FolderArgument,
@@ -20,7 +20,7 @@ from onorbit_rs.exceptions import InputError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from onorbit_rs.running import Run
+    from onorbit_rs.simulation.run import Run
 
 
 def run(
@@ -34,14 +34,14 @@ def run(
 ) -> None:
     """Run a scenario and certify its momentum and energy.
 
-    Exit code 1 where the certificate fails, 2 for errors, 130 after Ctrl-C, 143 after SIGTERM.
+    Exit code 1 if the certificate fails, 2 for errors, 130 after Ctrl-C, 143 after SIGTERM.
     """
-    from onorbit_rs.running import run as run_scenario
-    from onorbit_rs.watching import CHECKPOINT_EVERY
+    from onorbit_rs.simulation.live import CHECKPOINT_EVERY
+    from onorbit_rs.simulation.run import run as run_scenario
 
     if checkpoint_every is not None and out is None:
         raise InputError(
-            "--checkpoint-every leaves checkpoints in the folder of the run: add --out DIR",
+            "--checkpoint-every requires a folder for checkpoints; add --out DIR",
             name="checkpoint_every", got=checkpoint_every,
         )  # fmt: skip
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
@@ -59,12 +59,12 @@ def resume(
     view: ViewOption = False,
     checkpoint_every: CheckpointOption = None,
 ) -> None:
-    """Go on with a run that was stopped, to the same bits.
+    """Resume an interrupted run, with bit-identical results.
 
-    Killed or interrupted: it left a checkpoint in DIR. Exit codes are those of onorbit run.
+    The run continues from the last checkpoint in DIR. Exit codes are those of onorbit run.
     """
-    from onorbit_rs.running import resume as resume_run
-    from onorbit_rs.watching import CHECKPOINT_EVERY
+    from onorbit_rs.simulation.live import CHECKPOINT_EVERY
+    from onorbit_rs.simulation.run import resume as resume_run
 
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     _report(
@@ -75,22 +75,22 @@ def resume(
 
 
 def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
-    """Do it and print the summary."""
-    from onorbit_rs.cli.printing import print_json
+    """Run the job and print the summary."""
+    from onorbit_rs.cli.console import print_json
     from onorbit_rs.cli.summary import print_summary
 
     result = job()
-    with as_far_as_read():
+    with ignore_closed_pipe():
         if as_json:
             print_json(result.summary)
         elif not quiet:
             print_summary(result.summary, result.out)
     if not result.summary["certificate_passed"]:
-        fail(_uncertified(result.summary), 1)
+        fail(_failed_certificate(result.summary), 1)
 
 
-def _uncertified(summary: dict[str, Any]) -> str:
-    """What a run whose certificate failed says last, and what to do."""
+def _failed_certificate(summary: dict[str, Any]) -> str:
+    """Return the message of a run whose certificate failed, with advice."""
     from onorbit_rs.output.checks import advice
 
     return f"the certificate failed ({summary['certificate_failures']}): {advice(summary)}"

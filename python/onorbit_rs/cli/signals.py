@@ -1,4 +1,4 @@
-"""SIGTERM and SIGHUP end a command as Ctrl-C does: a run leaves its last checkpoint and says how to go on."""
+"""Handles SIGTERM and SIGHUP like Ctrl-C: a run writes its last checkpoint and prints how to resume."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from contextlib import contextmanager
 from types import FrameType
 
 REPEATS_S = 5.0
-"""Wall-clock time in which a repeated signal does not interrupt what is written because of the first.
+"""Wall-clock time during which repeated signals are ignored, so that they do not interrupt the final writing.
 
-A terminal that closes sends SIGHUP from the shell and from the kernel.
+A closing terminal sends SIGHUP twice, from the shell and from the kernel.
 """
 
 
 class _Handler:
-    """Raises ``KeyboardInterrupt`` with the name of the signal."""
+    """Signal handler that raises ``KeyboardInterrupt`` with the name of the signal."""
 
     def __init__(self) -> None:
         self._last = -REPEATS_S
@@ -31,7 +31,7 @@ class _Handler:
 
 @contextmanager
 def ending_signals() -> Iterator[None]:
-    """Handle SIGTERM and SIGHUP within, in the main thread and where nobody else handles or ignores them."""
+    """Handle SIGTERM and SIGHUP in the block, in the main thread, if they have their default handlers."""
     handler, replaced = _Handler(), []
     if threading.current_thread() is threading.main_thread():
         for name in ("SIGTERM", "SIGHUP"):  # Windows has no SIGHUP

@@ -1,4 +1,4 @@
-"""A run's summary on the terminal: its numbers, its certificate, its files, and what to do next."""
+"""Summary of a run on the terminal: numbers, certificate, files and next commands."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.cli.printing import new_console, new_table, print_table, text
+from onorbit_rs.cli.console import new_console, new_table, print_table, text
+from onorbit_rs.common.display_units import digits
+from onorbit_rs.common.printable import shell_word
 from onorbit_rs.output.checks import Check, checks, is_incomplete
-from onorbit_rs.output.words import EXCEEDED, goal_of, tracking
-from onorbit_rs.printable import shell_word
-from onorbit_rs.units import digits
+from onorbit_rs.output.summary_labels import EXCEEDED, goal_of, tracking
 
 if TYPE_CHECKING:
     from rich.table import Table
 
 _ROWS = (
     ("joint_torque_max_nm", "joint torque, largest", "N m"),
-    ("joint_force_max_n", "force of a sliding joint, largest", "N"),
+    ("joint_force_max_n", "force of a prismatic joint, largest", "N"),
     ("base_rotation_max_rad", "base rotation in W, largest", "rad"),
     ("base_displacement_max_m", "base displacement in W, largest", "m"),
     ("simulated_s", "simulated", "s"),
@@ -28,15 +28,15 @@ _FILES = (
     ("summary.json", "these numbers and more"),
     ("trace.npz", "every column of the trace, for numpy"),
     ("figures", "the figures, PNG"),
-    ("report.html", "one page with everything, for a browser"),
+    ("report.html", "self-contained report, for a browser"),
     ("run.rrd", "the recording, for the rerun viewer"),
-    ("scenario.yaml", "the scenario with every default; it runs again"),
+    ("scenario.yaml", "the scenario with all defaults, ready to run"),
 )
 _VERDICTS = {True: "[green]holds[/green]", False: "[red]BROKEN[/red]", None: "[yellow]not evaluated[/yellow]"}
 
 
 def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = True) -> None:
-    """The main numbers, the verdict, where the files are and what to do next."""
+    """Print the main numbers, the certificate, the files and the next commands."""
     console = new_console()
     console.print(f"[bold]{text(summary.get('scenario', ''))}[/bold]: {text(summary.get('status', ''))}")
     table = new_table()
@@ -54,7 +54,7 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
     if lines:
         print_table(console, _certificate(lines))
     if out is None:
-        console.print("nothing was written; keep the results with --out DIR", soft_wrap=True)
+        console.print("nothing was written; save the results with --out DIR", soft_wrap=True)
         return
     for name, what in _FILES:
         if (out / name).exists():
@@ -63,22 +63,22 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
         folder = text(shell_word(out))
         console.print(f"next: onorbit show {folder}    [dim]opens the recording[/dim]", soft_wrap=True)
         console.print(
-            f"      onorbit report {folder}  [dim]one page with everything, figures as PDF[/dim]",
+            f"      onorbit report {folder}  [dim]self-contained report, figures as PDF[/dim]",
             soft_wrap=True,
         )
 
 
 def _errors(summary: dict[str, Any]) -> list[tuple[str, str]]:
-    """Largest tracking errors: each controller's under its name, or those of the one there is."""
+    """Return the largest tracking errors, per controller if there are several."""
     found = [(tracking(key), value) for key, value in summary.items()]
     largest = [(error, value) for error, value in found if error is not None and error.is_largest]
-    named = [(error, value) for error, value in largest if error.whose]
+    named = [(error, value) for error, value in largest if error.owner]
     # the tool's errors are also those of the controller that moves it
-    return [(error.words, _said(value, error.unit)) for error, value in named or largest]
+    return [(error.label, _formatted(value, error.unit)) for error, value in named or largest]
 
 
 def _goals(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    """What came of the goals of controllers."""
+    """Yield the results of the controllers' goals."""
     for key, value in summary.items():
         if (whose := goal_of(key)) is not None:
             yield f"{whose}: goal", str(value).replace("_", " ")
@@ -87,30 +87,30 @@ def _goals(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:
 def _numbers(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:
     for key, name, unit in _ROWS:
         if key in summary:
-            yield name, _said(summary[key], unit)
+            yield name, _formatted(summary[key], unit)
 
 
-def _said(value: Any, unit: str) -> str:
+def _formatted(value: Any, unit: str) -> str:
     if not isinstance(value, (int, float)):
         return "not finite"
     return f"{digits(value)} {unit}".rstrip()
 
 
 def _verdict(summary: dict[str, Any]) -> str:
-    """Green or red, or neither where something was not checked."""
+    """Return the result of the certificate: green, red, or yellow if a check is missing."""
     has_passed = summary.get("certificate_passed")
     if has_passed is None:
         return "[yellow]certificate absent[/yellow]: nothing was checked"
     if has_passed and is_incomplete(summary):
         absent = text(summary.get("certificate_not_evaluated"))
-        return f"[yellow]certificate incomplete[/yellow]: nothing is beyond its gate, not evaluated: {absent}"
+        return f"[yellow]certificate incomplete[/yellow]: no value exceeds its gate, not evaluated: {absent}"
     if has_passed:
         return "[green]certificate passed[/green]: every value is within its gate"
     return f"[red]certificate FAILED[/red] ({text(summary.get('certificate_failures'))})"
 
 
 def _certificate(lines: list[Check]) -> Table:
-    """Each value beside the most that it may be."""
+    """Return a table of the values and their gates."""
     table = new_table("", "value", "gate", "unit", "")
     for check in lines:
         value = "not finite" if check.holds is False and check.value is None else _short(check.value)

@@ -9,18 +9,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from onorbit_rs.cli.failing import as_far_as_read
+from onorbit_rs.cli.exit_codes import ignore_closed_pipe
 from onorbit_rs.cli.options import JsonOption
 
 if TYPE_CHECKING:
-    from onorbit_rs.validation import Case, Verdict
+    from onorbit_rs.tools.validation import Case, Verdict
 
 OnlyOption = Annotated[
     list[str] | None,
-    typer.Option("--only", metavar="WORD", help="Cases whose family or name holds it; may be repeated."),
+    typer.Option("--only", metavar="WORD", help="Cases whose family or name contains WORD; may be repeated."),
 ]
-ListOption = Annotated[bool, typer.Option("--list", help="Cases with sources and gates, without running.")]
-AllOption = Annotated[bool, typer.Option("--all", help="Every number, not each case's nearest to its gate.")]
+ListOption = Annotated[
+    bool, typer.Option("--list", help="List cases with sources and gates, without running them.")
+]
+AllOption = Annotated[
+    bool, typer.Option("--all", help="Print all errors of each case, not only the one nearest to its gate.")
+]
 
 
 def validate(
@@ -29,19 +33,19 @@ def validate(
     in_full: AllOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Run the published cases and say how near we come.
+    """Run the published validation cases and print the deviations.
 
     Exit code 1 if any case fails, 2 for errors, 130 after Ctrl-C.
     """
-    from onorbit_rs.cli.printing import print_json
-    from onorbit_rs.cli.verdicts import print_cases, print_count, print_verdicts
-    from onorbit_rs.validation import select
+    from onorbit_rs.cli.console import print_json
+    from onorbit_rs.cli.validation_results import print_cases, print_count, print_verdicts
+    from onorbit_rs.tools.validation import select
 
     cases = select(only or ())
     started = time.perf_counter()
     verdicts = [case.not_run() for case in cases] if as_list else _run(cases)
     elapsed = time.perf_counter() - started
-    with as_far_as_read():
+    with ignore_closed_pipe():
         if as_json:
             print_json([verdict.as_dict() for verdict in verdicts])
         elif as_list:
@@ -54,9 +58,9 @@ def validate(
 
 
 def _run(cases: Sequence[Case]) -> list[Verdict]:
-    """With a bar where there is a terminal."""
-    from onorbit_rs.progress import parts_bar
-    from onorbit_rs.validation import run
+    """Run the cases, with a progress bar on a terminal."""
+    from onorbit_rs.common.progress import parts_bar
+    from onorbit_rs.tools.validation import run
 
     done = itertools.count(1)
     with parts_bar("validate", quiet=False) as tell:

@@ -1,7 +1,7 @@
-"""Figures of a run: the paper's Fig. 4-7, how the base reacts, the ledger, the environment, the orbit.
+"""Figures of a run: the paper's Fig. 4-7, base reaction, momentum and energy, environment and orbit.
 
-Each is a function that takes a trace and returns a ``matplotlib.figure.Figure``; nothing global is touched.
-This folder alone imports matplotlib.
+Each is a function that takes a trace and returns a ``matplotlib.figure.Figure``, without global state.
+Only this folder imports matplotlib.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.meshes import Part
+from onorbit_rs.visuals.meshes import Part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 FINEST = 1.0 / 400.0
-"""Edge of the first cubes, as a share of the robot's size: about a pixel of a panel."""
+"""Edge of the first cubes, as a fraction of the robot's size: about a pixel of a panel."""
 
 
 def coarse(parts: Sequence[Part], size: float, most: int) -> list[tuple[Floats, Floats]]:
     """Return the corners (k, 3, 3), m, and colours (k, 3), RGB from 0 to 1, of the triangles of each part.
 
-    The vertices in one cube of a grid are replaced by their mean; triangles that collapse are left out.
+    The vertices in one cube of a grid are replaced by their mean; triangles that collapse are omitted.
     The cubes grow until all parts together have at most ``most`` triangles.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Where two runs part."""
+"""Differences between two runs."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ from onorbit_rs.figures.style import (
 )
 
 if TYPE_CHECKING:
-    from onorbit_rs.comparison import Comparison, Difference
+    from onorbit_rs.tools.comparison import Comparison, Difference
 
 COLUMNS = 2
 LOWEST = 1e-12
-"""Of a panel, as a share of its top."""
+"""Lower end of a panel, as a fraction of its upper end."""
 
 
 def differences(compared: Comparison) -> Figure:
-    """Differences over time, one panel per measure: dashed what is allowed, a dot where the runs part."""
+    """Draw differences over time, one panel per quantity: tolerance dashed, a dot where it is exceeded."""
     measured = compared.differences
     lines = -(-len(measured) // COLUMNS)
     figure = new_figure(PAGE, 0.5 + 1.15 * lines)
-    title = f"{compared.b} against {compared.a}".replace("$", r"\$")  # as it is: folders can be long
+    title = f"{compared.b} against {compared.a}".replace("$", r"\$")  # $ would start a formula
     figure.suptitle(title, x=0.01, ha="left", fontsize=NORMAL, color=INK)
     panels = figure.subplots(lines, COLUMNS, sharex=True, squeeze=False)
     for axes in panels.flat[len(measured) :]:
         axes.set_visible(False)
     for axes, difference in zip(panels.flat, measured, strict=False):
         _draw(axes, compared, difference)
-    for axes in panels.flat[max(0, len(measured) - COLUMNS) : len(measured)]:  # the lowest of each column
+    for axes in panels.flat[max(0, len(measured) - COLUMNS) : len(measured)]:  # lowest of each column
         axes.set_xlabel("time [s]", fontsize=NORMAL, color=INK)
         axes.tick_params(labelbottom=True)
     return figure
@@ -62,5 +62,5 @@ def _draw(axes: Axes, compared: Comparison, difference: Difference) -> None:
         axes.text(0.5, 0.5, "no difference", transform=axes.transAxes, ha="center", **label)
     least, top = (float(above.min()), float(above.max())) if above.size else (0.0, 0.0)
     top = max(difference.allowed, top)
-    axes.set_yscale("log", nonpositive="clip")  # one row among zeros is seen as a line that comes up
+    axes.set_yscale("log", nonpositive="clip")  # a single value among zeros remains visible
     axes.set_ylim(max(least, top * LOWEST) / 3.0, top * 20.0)

@@ -1,4 +1,4 @@
-"""Which figures fit a run, under which name, with which words beneath."""
+"""Figures that apply to a run, with their names and captions."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
+from onorbit_rs.common.rotations import has_local_frame
 from onorbit_rs.figures.forces import environment_forces
 from onorbit_rs.figures.ground_track import ground_track
 from onorbit_rs.figures.ledger import ledger
@@ -19,20 +20,19 @@ from onorbit_rs.figures.orbit import orbit_overview
 from onorbit_rs.figures.relative import goes_far, relative_motion
 from onorbit_rs.figures.tracking import control_errors, joint_torques, tracking_errors
 from onorbit_rs.figures.trajectory import desired_trajectory, obtained_trajectory
-from onorbit_rs.planet import is_earth
-from onorbit_rs.rotations import has_local_frame
+from onorbit_rs.visuals.earth_shape import is_earth
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Trace
     from onorbit_rs.figures.subject import Subject
 
 WORTH_AN_ORBIT_DEG = 5.0
-"""Angle flown around the planet from which the orbit is drawn."""
+"""Smallest angle around the planet for which the orbit is drawn."""
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure yet to be drawn; ``name`` is that of its file."""
+    """A figure to be drawn; ``name`` is the stem of its file."""
 
     name: str
     caption: str
@@ -40,7 +40,7 @@ class Drawing:
 
 
 def drawings(subject: Subject) -> Iterator[Drawing]:
-    """Every figure that this run has the columns for; those of the paper's run carry the paper's numbers."""
+    """Yield every figure that applies to a run; those of the paper's experiment have the paper's numbers."""
     for number, drawing in _all(subject):
         if number and subject.is_the_papers:
             named = f"fig{number}_{drawing.name}"
@@ -50,7 +50,7 @@ def drawings(subject: Subject) -> Iterator[Drawing]:
 
 
 def _all(subject: Subject) -> Iterator[tuple[int, Drawing]]:
-    """With the number of the paper's figure of the same kind, or 0."""
+    """Yield the number of the corresponding figure of the paper, or 0, and the drawing."""
     yield from _of_the_arm(subject)
     for drawing in _of_the_base(subject):
         yield 0, drawing
@@ -79,14 +79,14 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
     for tool in subject.tools:
         if tool.control in trace.tracking and len(subject.tools) > 1:
             about = f"Tracking errors of the controller {tool.control}, which moves {tool.frame}; W axes."
-            name = f"tracking_errors_{_word(tool.control)}"
+            name = f"tracking_errors_{_file_part(tool.control)}"
             yield Drawing(name, about, partial(control_errors, trace, tool.control, []))
     for control, joints in (subject.joint_controls or {}).items():
         if control in trace.tracking and joints and np.any(trace.tracking[control]):
             is_alone = not subject.tools and len(subject.joint_controls or {}) == 1
             whose = "." if is_alone else f" of the controller {control}."
             about = f"Desired minus obtained positions of the joints{whose}"
-            name = "joint_errors" if is_alone else f"joint_errors_{_word(control)}"
+            name = "joint_errors" if is_alone else f"joint_errors_{_file_part(control)}"
             yield Drawing(name, about, partial(control_errors, trace, control, joints, model))
     if model is None:
         return
@@ -94,32 +94,32 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
         if len(tool.joints) >= 3:
             about = (
                 f"Manipulability of {tool.frame} along its path, √det(J Jᵀ), with the base free (generalized "
-                "Jacobian) and held; at zero some direction is out of reach."
+                "Jacobian) and with it fixed; at zero the tool cannot move in some direction."
             )
-            name = "manipulability" + (f"_{_word(tool.control)}" if len(subject.tools) > 1 else "")
+            name = "manipulability" + (f"_{_file_part(tool.control)}" if len(subject.tools) > 1 else "")
             yield Drawing(name, about, partial(manipulability, trace, model, tool.frame, tool.joints))
 
 
 def _of_the_base(subject: Subject) -> Iterator[Drawing]:
     trace, model = subject.trace, subject.model
     yield Drawing("base_motion", "Position and attitude of the base in W.", partial(base_motion, trace))
-    about = "The base's reaction: the angle it has turned by, and its angular velocity in its own axes."
+    about = "Reaction of the base: angle of rotation since the start, and angular velocity in base axes."
     yield Drawing("base_reaction", about, partial(base_reaction, trace))
     about = (
-        "Momentum and energy in W, and what of their change neither impulse nor work explains; angular "
-        "momentum is about the centre of mass."
+        "Momentum and energy in W, and the part of their change that impulse and work do not explain; "
+        "angular momentum is about the centre of mass."
     )
     yield Drawing("ledger", about, partial(ledger, trace))
     if trace.wrenches and model is not None:
         about = "Force and torque of every effect on every body; torques are about the body's centre of mass."
         if subject.is_carried:
             about += (
-                " The robot is carried along its reference, whose motion has them already: of drag and light "
-                "the share that moves all bodies alike is removed, of gravity the tides are left."
+                " The robot is carried by its reference, whose motion includes them: the common acceleration "
+                "due to drag and light is removed, and only the tidal part of gravity remains."
             )
         yield Drawing("environment_forces", about, partial(environment_forces, trace, model.body_names))
     if model is not None and has_local_frame(trace) and goes_far(trace, model):
-        about = "Paths relative to the reference orbit, in L: from beside the orbit, and from above."
+        about = "Paths relative to the reference orbit in L: seen along the orbit normal, and from above."
         yield Drawing("relative_motion", about, partial(relative_motion, trace, subject.targets))
     if subject.mu is None or not has_local_frame(trace) or _angle_flown_deg(trace) <= WORTH_AN_ORBIT_DEG:
         return
@@ -132,13 +132,13 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
         yield Drawing("ground_track", about, partial(ground_track, trace, earth))
 
 
-def _word(name: str) -> str:
-    """A name of the user's as a part of a file's."""
+def _file_part(name: str) -> str:
+    """Return a user-defined name in the form of a part of a file name."""
     return "".join(char if char.isalnum() or char in "-_" else "_" for char in name)[:60]
 
 
 def _angle_flown_deg(trace: Trace) -> float:
-    """Largest angle (degrees) between the first direction from the planet's centre and any other."""
+    """Return the largest angle (degrees) between the first and any other direction from the planet."""
     direction = np.asarray(trace.position_eci)
     direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
     return float(np.degrees(np.arccos(np.clip(direction @ direction[0], -1.0, 1.0)).max()))

@@ -1,4 +1,4 @@
-"""What the environment does to each body."""
+"""Forces and torques of the environment on each body."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from onorbit_rs._core import COLUMNS
+from onorbit_rs.common.display_units import ROUNDING
 from onorbit_rs.figures.style import (
     COLORS,
     FAINT_INK,
@@ -22,7 +24,6 @@ from onorbit_rs.figures.style import (
     thin,
     tidy,
 )
-from onorbit_rs.units import ROUNDING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,34 +34,42 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+_PARTS = COLUMNS["wrenches"].parts
+
 MOST_BODIES = len(COLORS)
-"""Each with a colour of its own; the others are grey."""
+"""Bodies with a colour; the others are grey."""
 LEAST = 1e-16
-"""N, N m; less is what is left of rounding where all of an effect is taken away, as of a carried body."""
+"""Smallest value that is drawn, N or N m; less is rounding of an effect that is removed."""
 DECADES = 1e5
-"""Below the largest of all bodies nothing is shown."""
+"""Range below the largest value of all bodies that is drawn."""
 
 
 def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
-    """Size of the force of every effect on every body, and of its torque about the body's centre of mass.
+    """Draw force and torque of every effect on every body; torques are about the body's centre of mass.
 
-    Rounding is no signal: nothing is drawn below :data:`~onorbit_rs.units.ROUNDING` of the largest force or
-    torque of all effects, and of what the effect's own have on a lever of 1 m.
-    Needs a run with ``record_wrenches``; ``bodies`` are ``model.body_names``.
+    Rounding is not drawn: magnitudes below :data:`~onorbit_rs.common.display_units.ROUNDING` times the
+    largest force or torque of all effects, or of the effect with a lever of 1 m.
+
+    Parameters
+    ----------
+    trace : Trace
+        Of a run with ``record_wrenches``.
+    bodies : sequence of str
+        ``model.body_names``.
     """
     time, label = clock(trace)
     wrenches = {name: np.asarray(rows) for name, rows in trace.wrenches.items()}
     shown = _largest(wrenches)
-    peaks = {effect: (_size(rows, 0).max(), _size(rows, 1).max()) for effect, rows in wrenches.items()}
+    peaks = {effect: [_size(rows, part).max() for part in _PARTS] for effect, rows in wrenches.items()}
     top = np.max(list(peaks.values()), axis=0)
     figure = new_figure(PAGE, 2.0)
     panels = figure.subplots(len(wrenches), 2, sharex=True, squeeze=False)
     for row, (effect, rows) in enumerate(wrenches.items()):
         is_last = row == len(wrenches) - 1
-        for column, (what, unit) in enumerate((("force", "N"), ("torque", "N m"))):
+        for column, (what, (_, unit)) in enumerate(_PARTS.items()):
             axes = panels[row, column]
             rounding = max(ROUNDING * max(top[column], *peaks[effect]), LEAST)
-            _plot_bodies(axes, time, _size(rows, column), bodies, shown, rounding)
+            _plot_bodies(axes, time, _size(rows, what), bodies, shown, rounding)
             name = f"{legend_name(effect.replace('_', ' '))}\n" if column == 0 else ""
             tidy(axes, label if is_last else "", f"{name}{what} [{unit}]")
     handles, names = panels[0, 0].get_legend_handles_labels()
@@ -72,27 +81,28 @@ def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
     return figure
 
 
-def _size(rows: Floats, part: int) -> Floats:
-    """Of the force (0) or torque (1), (T, bodies), of wrenches (T, bodies, 6)."""
-    size: Floats = np.linalg.norm(rows[:, :, 3 * part : 3 * part + 3], axis=2)
+def _size(rows: Floats, part: str) -> Floats:
+    """Return the magnitude (T, bodies) of ``force`` or ``torque`` of wrenches (T, bodies, 6)."""
+    entries, _ = _PARTS[part]
+    size: Floats = np.linalg.norm(rows[:, :, entries], axis=2)
     return size
 
 
 def _largest(wrenches: dict[str, Floats]) -> list[int]:
-    """The bodies that some effect acts on most, each effect counted as a share of its own largest."""
-    shares = [
+    """Return the bodies with the largest wrenches, each effect relative to its largest value."""
+    fractions = [
         peak / max(peak.max(), 1e-300)
         for rows in wrenches.values()
-        for peak in (_size(rows, 0).max(axis=0), _size(rows, 1).max(axis=0))
+        for peak in (_size(rows, part).max(axis=0) for part in _PARTS)
     ]
-    order = np.argsort(-np.max(shares, axis=0), kind="stable")
+    order = np.argsort(-np.max(fractions, axis=0), kind="stable")
     return sorted(int(body) for body in order[:MOST_BODIES])
 
 
 def _plot_bodies(
     axes: Axes, time: Floats, size: Floats, bodies: Sequence[str], shown: list[int], rounding: float
 ) -> None:
-    """One line for each body, on a logarithmic scale: a hand and its station are far apart."""
+    """Draw one line for each body on a logarithmic scale, because bodies differ by orders of magnitude."""
     others = [body for body in range(len(bodies)) if body not in shown]
     for body in others:
         axes.plot(*thin(time, size[:, body]), color=FAINT_INK, linewidth=0.5, label="_nolegend_")
@@ -105,7 +115,7 @@ def _plot_bodies(
         axes.set_yscale("log", nonpositive="mask")
         axes.set_ylim(max(peak / DECADES, rounding), 3.0 * peak)
     else:
-        said = "none" if peak == 0.0 else "none above rounding"
-        axes.text(0.5, 0.5, said, transform=axes.transAxes, ha="center", va="center", fontsize=SMALL)
-        axes.set_ylim(1.0, 2.0)  # where no zero is
+        text = "none" if peak == 0.0 else "none above rounding"
+        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=SMALL)
+        axes.set_ylim(1.0, 2.0)  # a range without zero
         axes.set_yticks([])

@@ -1,4 +1,4 @@
-"""Where on the Earth the run passes over."""
+"""Ground track of a run on the Earth."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from onorbit_rs.common.decimate import evenly_spaced
 from onorbit_rs.figures.style import (
     COLORS,
     INK,
@@ -19,7 +20,6 @@ from onorbit_rs.figures.style import (
     new_figure,
     tidy,
 )
-from onorbit_rs.thinning import evenly
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,48 +30,48 @@ if TYPE_CHECKING:
 
 _MOST_ROWS = 3_000
 LEAST_PER_REVOLUTION = 40
-"""Points of one revolution that make a line; fewer would be chords, and are drawn as dots."""
+"""Smallest number of points per revolution that are connected by a line; fewer are drawn as dots."""
 
 LOCAL_DEG = 20.0
-"""Extent of a track below which only its surroundings are drawn: a geostationary one is a dot on the map."""
+"""Extent of a track below which only its surroundings are drawn, as for a geostationary orbit."""
 
 
 def ground_track(trace: Trace, earth: Earth) -> Figure:
-    """Geodetic longitude and latitude under the base, on a plain grid, and its height above the ellipsoid.
+    """Draw geodetic longitude and latitude of the base, and its height above the ellipsoid.
 
-    A line; dots, and so the legend, where a long run has fewer than :data:`LEAST_PER_REVOLUTION` points for
-    each revolution.
+    The track is a line, or dots if the run has fewer than :data:`LEAST_PER_REVOLUTION` points per
+    revolution, as the legend then states.
     """
     time, label = clock(trace)
-    rows = evenly(len(time), _MOST_ROWS)
+    rows = evenly_spaced(len(time), _MOST_ROWS)
     position = np.ascontiguousarray(np.asarray(trace.position_eci)[rows])
     latitude, longitude, height = earth.geodetic(np.ascontiguousarray(trace.time[rows]), position)
     lat, lon = np.degrees(latitude), (np.degrees(longitude) + 180.0) % 360.0 - 180.0
     lon = unwrapped if np.ptp(unwrapped := np.unwrap(lon, period=360.0)) < LOCAL_DEG else lon
     figure = new_figure(PAGE, 2.6)
     world, profile = figure.subplots(1, 2, width_ratios=(2.0, 1.0))
-    look: dict[str, Any] = {"color": COLORS[0], "linewidth": LINE}
+    style: dict[str, Any] = {"color": COLORS[0], "linewidth": LINE}
     if len(rows) < LEAST_PER_REVOLUTION * _revolutions(trace):
         apart = float(trace.time[rows[-1]] - trace.time[rows[0]]) / (len(rows) - 1)
-        look = {"color": COLORS[0], "linestyle": "none", "marker": ".", "markersize": 1.5}
-        world.plot(lon, lat, label=f"a dot every {_span(apart)}", **look)
+        style = {"color": COLORS[0], "linestyle": "none", "marker": ".", "markersize": 1.5}
+        world.plot(lon, lat, label=f"a dot every {_span(apart)}", **style)
     else:
-        world.plot(*_broken_at_the_date_line(lon, lat), **look)
-    # a ring with room for the end, where that is the same place
+        world.plot(*_broken_at_the_date_line(lon, lat), **style)
+    # a ring, in which the end is visible at the same place
     world.plot(lon[0], lat[0], "o", color="none", markeredgecolor=INK, markersize=7, label="start")
     world.plot(lon[-1], lat[-1], "s", color=OBTAINED, markersize=3, label="end")
     tidy(world, "longitude, east [deg]", "geodetic latitude [deg]")
     world.axhline(0.0, color=INK, linewidth=0.5)
     _set_window(world, lon, lat)
     legend_above(world)
-    profile.plot(time[rows], height / 1e3, **look)
+    profile.plot(time[rows], height / 1e3, **style)
     tidy(profile, label, "height [km]")
     profile.ticklabel_format(axis="y", useOffset=False)
     return figure
 
 
 def _set_window(world: Axes, lon: Floats, lat: Floats) -> None:
-    """The whole map, or what is near a track that stays in place."""
+    """Show the whole map, or the surroundings of a small track."""
     sides = np.ptp(lon), np.ptp(lat)
     if max(sides) >= LOCAL_DEG:
         world.set(xlim=(-180.0, 180.0), ylim=(-90.0, 90.0), aspect="equal")
@@ -86,18 +86,18 @@ def _set_window(world: Axes, lon: Floats, lat: Floats) -> None:
 
 
 def _revolutions(trace: Trace) -> float:
-    """Times around the planet, from the rate `|r × v| / r²` along the way: rows may be revolutions apart."""
+    """Return the number of revolutions, from `|r × v| / r²`, because rows may be revolutions apart."""
     r, v = np.asarray(trace.position_eci), np.asarray(trace.velocity_eci)
     rate = np.linalg.norm(np.cross(r, v), axis=1) / np.einsum("ti,ti->t", r, r)
     return float(np.trapezoid(rate, trace.time)) / (2.0 * np.pi)
 
 
 def _span(seconds: float) -> str:
-    """As a person reads it."""
+    """Return a time span as text."""
     return f"{seconds:.3g} s" if seconds < 120.0 else f"{seconds / 60.0:.3g} min"
 
 
 def _broken_at_the_date_line(lon: Floats, lat: Floats) -> tuple[Floats, Floats]:
-    """The track with a gap where it leaves the map on one side and comes in on the other."""
+    """Return the track with a gap where it crosses the date line."""
     at = np.flatnonzero(np.abs(np.diff(lon)) > 180.0) + 1
     return np.insert(lon, at, np.nan), np.insert(lat, at, np.nan)

@@ -1,4 +1,4 @@
-"""The ledger of momentum and energy: what came and went, and what is left unexplained."""
+"""Balance of momentum and energy, and the part of their change that is unexplained."""
 
 from __future__ import annotations
 
@@ -8,20 +8,21 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from onorbit_rs._core import COLUMNS
+from onorbit_rs.common.display_units import ROUNDING, with_prefix
 from onorbit_rs.figures.style import (
     COLORS,
     INK,
     LINE,
     PAGE,
     XYZ_COLORS,
-    calm,
     clock,
+    hide_rounding,
     legend_above,
     new_figure,
     plot_lines,
     tidy,
 )
-from onorbit_rs.units import ROUNDING, with_prefix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,14 +31,14 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-_STRETCHES = 300
+_INTERVALS = 300
 
 
 def ledger(trace: Trace) -> Figure:
-    """Momentum, energy and work on the left; on the right, what the certificate says should stay zero.
+    """Draw momentum, energy and work on the left; on the right, the balances that should remain zero.
 
-    In W it is `P - ∫ΣF dt` and `L_com - ∫ΣT dt` that stay, and `K - W`, where the work `W` on the robot is
-    that of motors and external wrenches less what damping, friction and stops took.
+    `P - ∫ΣF dt`, `L_com - ∫ΣT dt` and `K - W` are constant in W, where the work `W` on the robot is that of
+    motors and external wrenches minus the energy dissipated in damping, friction and stops.
     """
     time, label = clock(trace)
     momentum, impulse = np.asarray(trace.momentum), np.asarray(trace.impulse)
@@ -46,39 +47,34 @@ def ledger(trace: Trace) -> Figure:
     )
     figure = new_figure(PAGE, 4.5)
     panels = figure.subplots(3, 2, sharex=True)
-    unexplained = [
-        momentum[:, :3] - impulse[:, :3],
-        momentum[:, 3:] - impulse[:, 3:],
-        (kinetic - work)[:, None],
+    residual = momentum - impulse
+    quantities = [
+        (f"{part}\nmomentum", unit, momentum[:, entries], ["x", "y", "z"], residual[:, entries])
+        for part, (entries, unit) in COLUMNS["momentum"].parts.items()
     ]
-    for row, (what, unit) in enumerate(
-        (("linear\nmomentum", "N s"), ("angular\nmomentum", "N m s"), ("energy", "J"))
-    ):
-        columns, names = momentum[:, 3 * row : 3 * row + 3], ["x", "y", "z"]
-        if row == 2:
-            columns, names = (
-                np.column_stack([kinetic, work, lost]),
-                ["kinetic", "work on the robot", "dissipated"],
-            )
-        if row == 2 and not lost.any():
-            columns, names = columns[:, :2], names[:2]
+    energies = {"kinetic": kinetic, "work on the robot": work} | ({"dissipated": lost} if lost.any() else {})
+    columns, balance = np.column_stack(list(energies.values())), (kinetic - work)[:, None]
+    quantities.append(("energy", COLUMNS["kinetic_energy"].unit, columns, list(energies), balance))
+    for row, (what, unit, columns, names, unexplained) in enumerate(quantities):
         factor, scaled = with_prefix(float(np.abs(columns).max()), unit)
         plot_lines(panels[row, 0], time, factor * columns, names, COLORS if row == 2 else XYZ_COLORS)
         if row == 2:
-            panels[row, 0].lines[1].set_linestyle((0, (3, 1.5)))  # it may lie upon the kinetic energy
-        calm(panels[row, 0], ROUNDING * max(factor, 1.0))
+            panels[row, 0].lines[1].set_linestyle((0, (3, 1.5)))  # it may hide the kinetic energy
+        hide_rounding(panels[row, 0], ROUNDING * max(factor, 1.0))
         tidy(panels[row, 0], label if row == 2 else "", f"{what} [{scaled}]")
         legend_above(panels[row, 0])
-        drift = np.linalg.norm(unexplained[row] - unexplained[row][0], axis=1)
+        drift = np.linalg.norm(unexplained - unexplained[0], axis=1)
         _plot_unexplained(panels[row, 1], time, drift)
         tidy(panels[row, 1], label if row == 2 else "", f"unexplained [{unit}]")
     return figure
 
 
 def _plot_unexplained(axes: Axes, time: Floats, drift: Floats) -> None:
-    """The largest of each stretch, on a logarithmic scale where anything is above zero."""
-    stretches = np.array_split(np.arange(len(time)), min(_STRETCHES, len(time)))
-    rows = np.array([stretch[0] + np.argmax(drift[stretch[0] : stretch[-1] + 1]) for stretch in stretches])
+    """Draw the largest value of each interval, on a logarithmic scale if any is above zero."""
+    intervals = np.array_split(np.arange(len(time)), min(_INTERVALS, len(time)))
+    rows = np.array(
+        [interval[0] + np.argmax(drift[interval[0] : interval[-1] + 1]) for interval in intervals]
+    )
     axes.plot(time[rows], drift[rows], color=INK, linewidth=LINE)
     above = drift[rows][drift[rows] > 0.0]
     if above.size:

@@ -1,4 +1,4 @@
-"""How well the tool can be moved along its path, and what the free base costs."""
+"""Manipulability of the tool along its path, with a free and with a fixed base."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from onorbit_rs import yoshikawa
+from onorbit_rs.common import manipulability as yoshikawa
+from onorbit_rs.common.coordinates import JOINTS_V
+from onorbit_rs.common.decimate import evenly_spaced
 from onorbit_rs.figures.style import (
     COLORS,
     COLUMN,
@@ -17,7 +19,6 @@ from onorbit_rs.figures.style import (
     plot_lines,
     tidy,
 )
-from onorbit_rs.thinning import evenly
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,10 +29,10 @@ _MOST_ROWS = 2_000
 
 
 def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] | None = None) -> Figure:
-    """Yoshikawa's measure `w = √det(J Jᵀ)` with the base free (`J = Jg`) and held (`J = Jm`).
+    """Draw Yoshikawa's measure `w = √det(J Jᵀ)` with the base free (`J = Jg`) and fixed (`J = Jm`).
 
-    Above of the tool's velocity and rate together where six joints or more drive it, below of its velocity
-    alone; both in m³ where every joint turns. At zero the tool cannot be moved in some direction.
+    The upper panel, with six joints or more, is for linear and angular velocity together, the lower one for
+    linear velocity; both in m³ if all joints are revolute. At zero the tool cannot move in some direction.
 
     Source: Yoshikawa, Int. J. Robotics Research 4(2), 1985; with `Jg` Umetani and Yoshida, 1989.
 
@@ -40,18 +41,18 @@ def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] 
     trace : Trace
     model : Model
     tool : str
-        The frame.
+        Name of the frame.
     joints : sequence of str, optional
-        Those that drive it; all where not given.
+        Joints that move it; default: all.
     """
     columns = [list(model.joint_names).index(name) for name in joints or model.joint_names]
     time, label = clock(trace)
-    rows = evenly(len(time), _MOST_ROWS)
+    rows = evenly_spaced(len(time), _MOST_ROWS)
     q, v = np.ascontiguousarray(trace.q[rows]), np.ascontiguousarray(trace.v[rows])
     free = np.asarray(model.free_floating(q, v, tool).jacobian)[:, :, columns]
-    held = np.asarray(model.frame_jacobian(q, tool))[:, :, 6:][:, :, columns]
-    slides = any(model.joints[index].kind == "prismatic" for index in columns)
-    unit = "SI" if slides else "m³"
+    held = np.asarray(model.frame_jacobian(q, tool))[:, :, JOINTS_V][:, :, columns]
+    has_prismatic = any(model.joints[index].kind == "prismatic" for index in columns)
+    unit = "SI" if has_prismatic else "m³"
     parts = [("w, pose", slice(0, 6))] if len(columns) >= 6 else []
     parts.append(("w, position", slice(0, 3)))
     figure = new_figure(COLUMN, 0.5 + 1.4 * len(parts))

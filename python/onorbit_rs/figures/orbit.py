@@ -1,4 +1,4 @@
-"""The orbit around the planet, and how the base turns in the local orbital frame."""
+"""The orbit around the planet, and the attitude of the base relative to the local orbital frame."""
 
 from __future__ import annotations
 
@@ -7,23 +7,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
+from onorbit_rs.common.coordinates import QUATERNION
+from onorbit_rs.common.display_units import ROUNDING_DEG, degrees_with_prefix, with_prefix
+from onorbit_rs.common.rotations import attitude_in_orbit
 from onorbit_rs.figures.space import add_space, fit, label
 from onorbit_rs.figures.style import (
     COLORS,
     OBTAINED,
     PAGE,
     XYZ_COLORS,
-    calm,
     clock,
+    hide_rounding,
     legend_above,
     new_figure,
     plot_lines,
     thin,
     tidy,
 )
-from onorbit_rs.planet import EARTH_RADIUS_KM
-from onorbit_rs.rotations import attitude_in_orbit, reference_motion_of
-from onorbit_rs.units import ROUNDING_DEG, degrees_with_prefix, with_prefix
+from onorbit_rs.visuals.earth_shape import EARTH_RADIUS_KM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,16 +34,17 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NEARLY_ROUND = 1e-5
-"""Change of the distance, as a share of it, below which the change alone is drawn."""
+"""Relative change of the distance below which only the change is drawn."""
 
 
 def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
-    """The path around the planet (inertial axes, to scale), distance, attitude of the base relative to L.
+    """Draw the path around the planet (inertial axes, to scale), its distance, and the attitude in L.
 
-    L is that of the reference orbit.
+    L is the local orbital frame of the reference orbit.
     """
     position = np.asarray(trace.position_eci)
-    angles = np.degrees(attitude_in_orbit(np.asarray(trace.q)[:, 3:7], *reference_motion_of(trace)))
+    quat, reference = np.asarray(trace.q)[:, QUATERNION], trace.reference_position_eci
+    angles = np.degrees(attitude_in_orbit(quat, reference, trace.reference_velocity_eci))
     distance_km = np.linalg.norm(position, axis=1)[:, None] / 1e3
     time, clock_label = clock(trace)
     figure = new_figure(PAGE, 3.2)
@@ -50,17 +52,17 @@ def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
     _draw_path(figure, position / 1e3, is_earth)
     upper, lower = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
     whose = f"distance from the\n{'Earth' if is_earth else 'planet'}'s centre"
-    if np.ptp(distance_km) < NEARLY_ROUND * distance_km[0, 0]:  # or the ticks would have a dozen digits
-        whose, distance_km = f"distance less\n{distance_km[0, 0]:.3f} km", distance_km - distance_km[0, 0]
+    if np.ptp(distance_km) < NEARLY_ROUND * distance_km[0, 0]:  # keeps tick labels short
+        whose, distance_km = f"distance minus\n{distance_km[0, 0]:.3f} km", distance_km - distance_km[0, 0]
     factor, unit = with_prefix(1e3 * float(np.abs(distance_km).max()), "m")
-    factor, unit = (1e-3, "km") if "less" not in whose else (factor, unit)
+    factor, unit = (1e-3, "km") if "minus" not in whose else (factor, unit)
     plot_lines(upper, time, 1e3 * factor * distance_km, ("distance",), COLORS)
     turn, turned = degrees_with_prefix(float(np.abs(angles).max()))
     plot_lines(lower, time, turn * angles, ("roll", "pitch", "yaw"), XYZ_COLORS)
-    calm(lower, ROUNDING_DEG * turn)
+    hide_rounding(lower, ROUNDING_DEG * turn)
     tidy(upper, "", f"{whose} [{unit}]")
     tidy(lower, clock_label, f"attitude\nrelative to L [{turned}]")
-    for axes in (upper, lower):  # an offset would lie on the legend
+    for axes in (upper, lower):  # an offset would overlap the legend
         axes.ticklabel_format(axis="y", useOffset=False)
     upper.tick_params(labelbottom=False)
     legend_above(lower)
@@ -91,12 +93,12 @@ def _draw_path(figure: Figure, position_km: Floats, is_earth: bool) -> None:
 def _is_behind(
     path_km: Floats, elevation_deg: float, azimuth_deg: float, radius_km: float
 ) -> NDArray[np.bool_]:
-    """Whether each point (k, 3) is hidden from a far eye by the planet."""
+    """Return whether the planet hides each point (k, 3) from a distant viewer."""
     elevation, azimuth = np.radians([elevation_deg, azimuth_deg])
-    eye = np.array(
+    to_viewer = np.array(
         [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
     )
-    along = path_km @ eye
-    aside = np.linalg.norm(path_km - along[:, None] * eye, axis=1)
+    along = path_km @ to_viewer
+    aside = np.linalg.norm(path_km - along[:, None] * to_viewer, axis=1)
     hidden: NDArray[np.bool_] = (along < 0.0) & (aside < radius_km)
     return hidden

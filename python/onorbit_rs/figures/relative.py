@@ -1,4 +1,4 @@
-"""How base and targets fly relative to the reference orbit."""
+"""Motion of base and targets relative to the reference orbit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onorbit_rs.appearance import shapes
+from onorbit_rs.common.coordinates import POSITION
+from onorbit_rs.common.decimate import evenly_spaced
+from onorbit_rs.common.display_units import with_prefix
+from onorbit_rs.common.rotations import local_orbital_axes
 from onorbit_rs.figures.style import (
     COLORS,
     INK,
@@ -19,10 +22,8 @@ from onorbit_rs.figures.style import (
     new_figure,
     tidy,
 )
-from onorbit_rs.geometry import extent
-from onorbit_rs.rotations import local_orbital_axes, reference_motion_of
-from onorbit_rs.thinning import evenly
-from onorbit_rs.units import with_prefix
+from onorbit_rs.visuals.geometry import extent
+from onorbit_rs.visuals.shapes import shapes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,21 +36,21 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 WORTH_A_PATH = 3.0
-"""Sizes of the robot from which the path of its base is drawn."""
+"""Smallest path of the base, in sizes of the robot, that is drawn."""
 _SIDES = 1.35
-"""Width of a panel as a part of its height."""
+"""Width of a panel over its height."""
 _NEAR = 10.0
-"""Extents of the paths within which the reference is shown."""
+"""Greatest distance of the paths, in their extents, at which the reference is shown."""
 _MOST_ROWS = 3_000
 
 
 def relative_motion(trace: Trace, targets: Sequence[Target] = ()) -> Figure:
-    """Paths of base and targets in L of the reference orbit: in its plane, and across it.
+    """Draw the paths of base and targets in L of the reference orbit: in its plane, and across it.
 
-    L is radial, along the track, along the orbit's normal: on a circular orbit a free base draws ellipses of
-    Hill's, twice as long as high. One metre is equally long along all axes.
+    The axes of L are radial, along track, and along the orbit normal. On a circular orbit the relative paths
+    of a free base are Hill's ellipses, twice as long as high. All axes have the same scale.
     """
-    paths = [path[evenly(len(path), _MOST_ROWS)] for path in paths_in_orbit(trace, targets)]
+    paths = [path[evenly_spaced(len(path), _MOST_ROWS)] for path in paths_in_orbit(trace, targets)]
     points = np.vstack(paths)
     is_near = np.linalg.norm(points, axis=1).max() < _NEAR * np.ptp(points, axis=0).max()
     if is_near:
@@ -62,7 +63,7 @@ def relative_motion(trace: Trace, targets: Sequence[Target] = ()) -> Figure:
             _plot_path(axes, factor * path[:, 1], factor * path[:, across], index)
         if is_near:
             axes.plot(0.0, 0.0, "+", color=INK, markersize=7, label="reference")
-        tidy(axes, f"along the track [{unit}]", f"{name} [{unit}]")
+        tidy(axes, f"along track [{unit}]", f"{name} [{unit}]")
         _set_window(axes, factor * points, across)
     figure.legend(
         *panels[0].get_legend_handles_labels(), loc="outside upper left", frameon=False, fontsize=SMALL,
@@ -72,7 +73,7 @@ def relative_motion(trace: Trace, targets: Sequence[Target] = ()) -> Figure:
 
 
 def _plot_path(axes: Axes, x: Floats, y: Floats, index: int) -> None:
-    """Of the base (0), or of a target; the legend names each kind once."""
+    """Draw the path of the base (index 0) or of a target; the legend names each kind once."""
     path, start, end = ("base", "start", "end") if index == 0 else ("target", "_nolegend_", "_nolegend_")
     path = "_nolegend_" if index > 1 else path
     axes.plot(x, y, color=COLORS[0] if index == 0 else COLORS[2], linewidth=LINE, label=path)
@@ -81,25 +82,24 @@ def _plot_path(axes: Axes, x: Floats, y: Floats, index: int) -> None:
 
 
 def paths_in_orbit(trace: Trace, targets: Sequence[Target] = ()) -> list[Floats]:
-    """Positions (T, 3), L, m, of the base and of each target."""
-    # W has inertial axes
-    rot_wl = local_orbital_axes(*reference_motion_of(trace))
+    """Return the positions (T, 3) of the base and of each target in L, m."""
+    rot_wl = local_orbital_axes(trace.reference_position_eci, trace.reference_velocity_eci)
     places = [
-        np.asarray(trace.q)[:, :3],
+        np.asarray(trace.q)[:, POSITION],
         *(target.position_at(np.asarray(trace.time)) for target in targets),
     ]
     return [np.einsum("tji,tj->ti", rot_wl, place) for place in places]
 
 
 def goes_far(trace: Trace, model: Model) -> bool:
-    """Whether the base's path in L is longer than :data:`WORTH_A_PATH` sizes of the robot."""
+    """Return True if the base's path in L is longer than :data:`WORTH_A_PATH` sizes of the robot."""
     (base,) = paths_in_orbit(trace)
     _, size = extent(model, shapes(model), np.asarray(trace.q)[:1])
     return float(np.ptp(base, axis=0).max()) > WORTH_A_PATH * size
 
 
 def _set_window(axes: Axes, points: Floats, across: int) -> None:
-    """Both panels to one scale."""
+    """Set the same scale in both panels."""
     low, high = points.min(axis=0), points.max(axis=0)
     sides = high - low
     height = 1.15 * float(max(sides[1] / _SIDES, sides[0], sides[2]))

@@ -1,4 +1,4 @@
-"""Figures as files: PNG to look at, PDF for a paper, SVG for a page."""
+"""Saves figures as PNG, PDF or SVG."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
+from onorbit_rs.common.files import replacing
 from onorbit_rs.figures.drawings import drawings
-from onorbit_rs.files import replacing
 
 if TYPE_CHECKING:
     from onorbit_rs.figures.subject import Subject
 
 FORMATS = ("png",)
-"""Of a run; the PDF for a paper take as long again, and come with the report."""
-# Publishers refuse Type 3 fonts, 42 is TrueType; equal figures give equal files.
+"""Formats that a run writes; PDF is written with the report."""
+# publishers reject Type 3 fonts, 42 is TrueType; the hash salt makes files reproducible
 _SETTINGS: Any = {"pdf.fonttype": 42, "svg.hashsalt": "onorbit", "path.simplify_threshold": 0.2}
 _NO_DATE: dict[str, dict[str, Any]] = {
     "png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None},
@@ -33,17 +33,22 @@ def save_all(
     formats: Sequence[str] = FORMATS,
     tell: Callable[[str], None] | None = None,
 ) -> list[Path]:
-    """Write every figure that fits a run; returns the files.
+    """Write every figure that applies to a run.
 
     Parameters
     ----------
     subject : Subject
     folder : Path
-        Made where missing.
+        Created if it does not exist.
     formats : sequence of str
-        Of ``png``, ``pdf`` and ``svg``.
+        Any of ``png``, ``pdf`` and ``svg``.
     tell : callable, optional
         Called with the name of each figure before it is drawn.
+
+    Returns
+    -------
+    list of Path
+        The files.
     """
     folder.mkdir(parents=True, exist_ok=True)
     files = []
@@ -70,7 +75,7 @@ def save(figure: Figure, file: Path) -> None:
 
 
 def as_bytes(figure: Figure, kind: str) -> bytes:
-    """A figure in one of the formats."""
+    """Return a figure in one of the formats."""
     content = io.BytesIO()
     with warnings.catch_warnings(), mpl.rc_context(_SETTINGS):
         warnings.filterwarnings("ignore", message="Glyph .* missing")  # a name in another script

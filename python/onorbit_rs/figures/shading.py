@@ -25,7 +25,7 @@ def add_surfaces(axes: Axes3D, faces: Floats, colors: Floats) -> None:
 
     Edges have the colour of their face, which closes the seams between faces.
     """
-    # The diagonals of a face give its normal even where two of its corners coincide, as at a pole.
+    # the diagonals of a face give its normal even if two corners coincide, as at a pole
     normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
     seen_from_behind = normals @ _direction_to_viewer(axes) < 0.0

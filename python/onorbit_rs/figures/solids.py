@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.appearance import shapes
 from onorbit_rs.figures.coarse import coarse
-from onorbit_rs.geometry import Shape, extent
+from onorbit_rs.visuals.geometry import Shape, extent
+from onorbit_rs.visuals.shapes import shapes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _AROUND = 20
-"""Sides of a round body."""
+"""Number of faces around a round body."""
 
 MESH_TRIANGLES = 8_000
 """Largest number of triangles of all meshes of a robot: 1 s and 200 kB in a PDF, a tenth of that in a PNG."""
@@ -94,13 +94,13 @@ def _box(size: Floats) -> Floats:
 
 
 def _arc(radius: float, height: float, start_deg: float, end_deg: float) -> Floats:
-    """(k, 2) points (distance from the axis, height along it) of an arc about (0, height)."""
+    """Return points (k, 2) (distance from the axis, height along it) of an arc about (0, height)."""
     angles = np.radians(np.linspace(start_deg, end_deg, 7))
     return np.column_stack([radius * np.cos(angles), height + radius * np.sin(angles)])
 
 
 def _revolved(profile: Floats) -> Floats:
-    """Faces of a profile (distance from the axis, height) turned about z."""
+    """Return the faces of a profile (distance from the axis, height) rotated about z."""
     turns = np.linspace(0.0, 2.0 * np.pi, _AROUND + 1)
     x = profile[:, 0, None] * np.cos(turns)
     y = profile[:, 0, None] * np.sin(turns)

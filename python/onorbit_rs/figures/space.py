@@ -24,10 +24,10 @@ def add_space(
     elevation: float = 18.0,
     azimuth: float = -62.0,
 ) -> Axes3D:
-    """3-D axes in a part of a figure (left, bottom, width, height from 0 to 1); angles in degrees."""
+    """Add 3-D axes to a part of a figure (left, bottom, width, height from 0 to 1); angles in degrees."""
     axes: Axes3D = figure.add_axes(place, projection="3d")
     axes.set_in_layout(False)
-    axes.patch.set_visible(False)  # beside others, whose labels it would cover
+    axes.patch.set_visible(False)  # it would cover the labels of neighbouring axes
     axes.view_init(elev=elevation, azim=azimuth)
     axes.tick_params(labelsize=SMALL, colors=INK, pad=-2)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
@@ -39,18 +39,23 @@ def add_space(
 
 
 def label(axes: Axes3D, unit: str, pad: float = -5.0, change: str = "") -> None:
-    """Names the three axes with their unit, ``Δx`` where they show a change."""
+    """Label the three axes with their unit, with ``Δ`` if they show a change."""
     axes.set_xlabel(f"{change}x [{unit}]", fontsize=NORMAL, labelpad=pad)
     axes.set_ylabel(f"{change}y [{unit}]", fontsize=NORMAL, labelpad=pad)
     axes.set_zlabel(f"{change}z [{unit}]", fontsize=NORMAL, labelpad=pad)
 
 
 def fit(axes: Axes3D, points: Floats, *, room: tuple[float, float], least: float = 0.0) -> None:
-    """Limits around (k, 3) points, one metre equally long along all three axes.
+    """Set limits around points (k, 3), with the same scale along all three axes.
 
-    ``room`` is the width and height that the box may take as it is seen, in units that make the space
-    diagonal of a box 2; ``least`` keeps a flat direction from vanishing: the smallest side as a part of the
-    largest. A side that is short beside the longest gets fewer ticks: their labels stay apart.
+    Parameters
+    ----------
+    axes : Axes3D
+    points : (k, 3) array
+    room : pair of float
+        Width and height available for the projected box, in units that make its space diagonal 2.
+    least : float
+        Smallest side as a fraction of the largest.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     largest = max(float((high - low).max()), 1e-9)
@@ -59,14 +64,14 @@ def fit(axes: Axes3D, points: Floats, *, room: tuple[float, float], least: float
     axes.set_xlim(center[0] - half[0], center[0] + half[0])
     axes.set_ylim(center[1] - half[1], center[1] + half[1])
     axes.set_zlim(center[2] - half[2], center[2] + half[2])
-    width, height = _seen(half / np.linalg.norm(half), axes.elev, axes.azim)
+    width, height = _projected_size(half / np.linalg.norm(half), axes.elev, axes.azim)
     axes.set_box_aspect(tuple(half), zoom=min(room[0] / width, room[1] / height))
-    for axis, share in zip((axes.xaxis, axes.yaxis, axes.zaxis), half / half.max(), strict=True):
-        axis.set_major_locator(MaxNLocator(4 if share > 0.7 else 3 if share > 0.45 else 2, min_n_ticks=1))
+    for axis, length in zip((axes.xaxis, axes.yaxis, axes.zaxis), half / half.max(), strict=True):
+        axis.set_major_locator(MaxNLocator(4 if length > 0.7 else 3 if length > 0.45 else 2, min_n_ticks=1))
 
 
-def _seen(half: Floats, elevation_deg: float, azimuth_deg: float) -> tuple[float, float]:
-    """Width and height of a box with these half sides, from far away."""
+def _projected_size(half: Floats, elevation_deg: float, azimuth_deg: float) -> tuple[float, float]:
+    """Return the projected width and height of a box with these half sides."""
     elevation, azimuth = np.radians([elevation_deg, azimuth_deg])
     right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
     up = np.array(

@@ -1,5 +1,5 @@
-"""One look for every figure: sizes of a two-column paper, colours safe for colour-blind readers, units in
-every label, no global state, no titles (a caption belongs to the page around it).
+"""Style of the figures: sizes of a two-column paper, colours for colour-blind readers, units in every
+label, no global state, and no titles, because captions belong to the page.
 """
 
 from __future__ import annotations
@@ -19,37 +19,37 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-# Okabe and Ito, "Color Universal Design", 2008; their yellow is too pale for a line on white.
+# Okabe and Ito, "Color Universal Design", 2008, without yellow, which is too pale on white
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7F7F7F", "#000000")
 XYZ_COLORS = ("#D55E00", "#009E73", "#0072B2")
 DESIRED, OBTAINED = "#000000", "#D55E00"
 INK, FAINT_INK, FAINT = "#222222", "#8A8A8A", "#D9D9D9"
 
 COLUMN, PAGE = 3.5, 7.16
-"""Inches: one column and the full width of a two-column page (IEEE)."""
+"""Width of one column, and of a two-column page (IEEE), inches."""
 SMALL, NORMAL = 7, 8
-"""Points, as printed."""
+"""Font sizes in print, points."""
 LINE = 1.1
 DPI = 300
 MOST_POINTS = 4_000
-"""Of one line; longer ones keep the extremes of each stretch. A column of print has 1050 dots at 300 dpi."""
+"""Largest number of points of a line; a printed column has 1050 dots at 300 dpi."""
 LONGEST_NAME = 32
-"""Letters of a name in a legend."""
+"""Largest number of characters of a name in a legend."""
 MOST_LINES = len(COLORS)
-"""In one plot: as many as can be told apart."""
+"""Largest number of coloured lines in one plot."""
 
 _CLOCK = ((4 * 86400.0, 86400.0, "d"), (3 * 3600.0, 3600.0, "h"), (1200.0, 60.0, "min"))
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure of this size in inches that draws to memory, without pyplot."""
+    """Return an empty figure of this size in inches that draws to memory, without pyplot."""
     figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     return figure
 
 
 def tidy(axes: Axes, x_label: str, y_label: str) -> None:
-    """Quiet frame, light grid, labels."""
+    """Set the labels, a light grid and a plain frame of axes."""
     axes.set_xlabel(x_label, fontsize=NORMAL, color=INK)
     axes.set_ylabel(y_label, fontsize=NORMAL, color=INK)
     axes.tick_params(labelsize=SMALL, colors=INK, length=2.5, width=0.6)
@@ -64,7 +64,7 @@ def tidy(axes: Axes, x_label: str, y_label: str) -> None:
 
 
 def legend_above(axes: Axes, width: float = COLUMN - 0.5) -> None:
-    """Legend above the axes, where it covers nothing, in as many columns as go into ``width`` inches."""
+    """Put the legend above the axes, in as many columns as fit into ``width`` inches."""
     handles, names = axes.get_legend_handles_labels()
     axes.legend(
         handles, names, loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False, fontsize=SMALL,
@@ -74,21 +74,21 @@ def legend_above(axes: Axes, width: float = COLUMN - 0.5) -> None:
 
 
 def legend_height(names: Sequence[str], width: float = COLUMN - 0.5) -> float:
-    """Inches that :func:`legend_above` takes."""
+    """Return the height of the legend of :func:`legend_above`, inches."""
     return 0.13 * -(-len(names) // legend_columns(names, width))
 
 
 def legend_columns(names: Sequence[str], width: float) -> int:
-    """How many names go side by side into ``width`` inches."""
+    """Return the number of legend columns that fit into ``width`` inches."""
     longest = min(max((len(name) for name in names), default=0), LONGEST_NAME)
     entry = 0.34 + SMALL * 0.55 / 72.0 * longest
     return max(1, min(len(names), int(width / entry)))
 
 
 def legend_name(name: str) -> str:
-    """A name of the user's, in which matplotlib must see no formula, and that no legend leaves out.
+    """Return a user-defined name for a legend: shortened in the middle, without formulas.
 
-    The middle of a long one is left out.
+    A leading underscore, with which matplotlib omits a line from the legend, is preceded by a space.
     """
     half = LONGEST_NAME // 2
     name = name if len(name) <= LONGEST_NAME else f"{name[:half]}…{name[-half:]}"
@@ -96,14 +96,14 @@ def legend_name(name: str) -> str:
     return f" {name}" if name.startswith("_") else name
 
 
-def calm(axes: Axes, rounding: float) -> None:
-    """Lines of zeros, and of no more than ``rounding`` (in the unit drawn), are drawn as what they are."""
+def hide_rounding(axes: Axes, rounding: float) -> None:
+    """Set the y axis to ±1 if all plotted magnitudes are smaller than ``rounding`` (in the plotted unit)."""
     if all(np.abs(line.get_ydata()).max() < rounding for line in axes.lines):
         axes.set_ylim(-1.0, 1.0)
 
 
 def clock(trace: Trace) -> tuple[Floats, str]:
-    """The time of each row, in a unit that fits the run, and the label of the axis."""
+    """Return the time of each row in a unit that fits the run, and the label of the axis."""
     time = np.asarray(trace.time)
     span = float(time[-1] - time[0])
     scale, unit = next(((scale, unit) for least, scale, unit in _CLOCK if span >= least), (1.0, "s"))
@@ -113,14 +113,14 @@ def clock(trace: Trace) -> tuple[Floats, str]:
 def plot_lines(
     axes: Axes, time: Floats, columns: Floats, names: Sequence[str], colors: Sequence[str] = COLORS
 ) -> None:
-    """One line per column of ``columns`` (T, n)."""
+    """Draw one line per column of ``columns`` (T, n)."""
     for index, name in enumerate(names):
         x, y = thin(time, columns[:, index])
         axes.plot(x, y, color=colors[index], linewidth=LINE, label=legend_name(name))
 
 
 def plot_largest(axes: Axes, time: Floats, columns: Floats, names: Sequence[str]) -> list[str]:
-    """The largest of many columns by name, the others in grey; returns what the legend says."""
+    """Draw the columns with the largest peaks in colours, the others in grey; return the legend."""
     names = list(names)
     if len(names) <= MOST_LINES:
         plot_lines(axes, time, columns, names)
@@ -139,15 +139,15 @@ def plot_largest(axes: Axes, time: Floats, columns: Floats, names: Sequence[str]
 
 
 def others_of(count: int) -> str:
-    """What the legend says of lines without a colour of their own."""
+    """Return the legend of the grey lines."""
     return f"{count} other{'s' if count > 1 else ''}, smaller"
 
 
 def thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """At most :data:`MOST_POINTS` points of a line that keep the lowest and highest of every stretch."""
+    """Return at most :data:`MOST_POINTS` points of a line, including the extremes of every interval."""
     if len(time) <= MOST_POINTS:
         return time, values
-    stretches = np.array_split(np.arange(len(time)), MOST_POINTS // 2)
-    kept = [s[0] + extreme(values[s[0] : s[-1] + 1]) for s in stretches for extreme in (np.argmin, np.argmax)]
+    intervals = np.array_split(np.arange(len(time)), MOST_POINTS // 2)
+    kept = [s[0] + extreme(values[s[0] : s[-1] + 1]) for s in intervals for extreme in (np.argmin, np.argmax)]
     rows = np.unique([0, *kept, len(time) - 1])
     return time[rows], values[rows]

@@ -1,4 +1,4 @@
-"""What the figures of a run need to know beyond its trace."""
+"""Data of a run that its figures need in addition to its trace."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from onorbit_rs.scenario.control import JOINT_LAWS
+from onorbit_rs.scenario.control import JointLaw
+from onorbit_rs.scenario.control.selection import joint_group, tool_of
 from onorbit_rs.scenario.load import load
-from onorbit_rs.scenario.make_control import group, tool_of
 from onorbit_rs.scenario.targets import Target, targets
 
 if TYPE_CHECKING:
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario import Scenario
 
 PAPER = "humanoid_reach"
-"""The bundled scenario that is the paper's experiment."""
+"""The bundled scenario of the paper's experiment."""
 
 
 class Tool(NamedTuple):
-    """A frame that is moved by some joints, and the control that does it."""
+    """A controlled frame, with the control and the joints that move it."""
 
     control: str
     frame: str
@@ -29,9 +29,24 @@ class Tool(NamedTuple):
 
 @dataclass(frozen=True)
 class Subject:
-    """A run to draw. ``model`` is None where the robot's file is gone, ``mu`` where there is no planet.
+    """A run to draw.
 
-    ``is_carried`` where the robot goes along with a reference that does not fall freely.
+    Attributes
+    ----------
+    trace : Trace
+    model : Model or None
+        None if the robot's file cannot be read.
+    tools : tuple of Tool
+    joint_controls : dict
+        Names of the joints by control, of controls in joint space.
+    mu : float or None
+        Gravitational parameter, m³/s²; None without a planet.
+    earth : Earth or None
+    is_the_papers : bool
+        Whether the run is the paper's experiment.
+    is_carried : bool
+        Whether the robot moves with a reference that is not in free fall.
+    targets : tuple of Target
     """
 
     trace: Trace
@@ -48,14 +63,14 @@ class Subject:
 def subject_of(
     trace: Trace, scenario: Scenario, model: Model | None, orbit: Orbit | None, earth: Earth | None
 ) -> Subject:
-    """From a run's scenario and what was built of it."""
+    """Return the subject from the scenario of a run and the objects built from it."""
     names = [] if model is None else list(model.joint_names)
     tools, joint_controls = [], {}
     for control in scenario.laws:
         driven: Any = getattr(control, "joints", None)
-        joints = group(driven, names) if driven is not None and names else names
+        joints = joint_group(driven, names) if driven is not None and names else names
         frame = tool_of(control, scenario.tool)
-        if isinstance(control, JOINT_LAWS):
+        if isinstance(control, JointLaw):
             joint_controls[getattr(control, "name", "control")] = joints
         elif frame is not None:
             tools.append(Tool(getattr(control, "name", ""), frame, joints))
@@ -68,10 +83,10 @@ def subject_of(
 
 
 def _is_the_papers(scenario: Scenario) -> bool:
-    """Whether everything but the integrator's settings, and the epoch, is as the bundled scenario has it."""
-    apart = ("name", "description", "epoch", "simulation")
-    ours, theirs = (
-        {key: value for key, value in one.resolved(Path()).items() if key not in apart}
+    """Return True if the scenario equals the bundled one apart from name, epoch and integrator settings."""
+    ignored = ("name", "description", "epoch", "simulation")
+    given, bundled = (
+        {key: value for key, value in one.resolved(Path()).items() if key not in ignored}
         for one in (scenario, load(PAPER))
     )
-    return ours == theirs
+    return given == bundled

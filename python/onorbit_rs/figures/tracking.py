@@ -1,4 +1,4 @@
-"""Figures 6 and 7 of the paper: tracking errors and torques."""
+"""Figures 6 and 7 of the paper: tracking errors and joint torques."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from onorbit_rs._core import COLUMNS
+from onorbit_rs.common.display_units import OR, ROUNDING, JointUnits, joint_units, with_prefix
 from onorbit_rs.figures.style import (
     COLUMN,
     INK,
     LINE,
     XYZ_COLORS,
-    calm,
     clock,
+    hide_rounding,
     legend_above,
     legend_height,
     new_figure,
@@ -22,7 +24,6 @@ from onorbit_rs.figures.style import (
     plot_lines,
     tidy,
 )
-from onorbit_rs.units import OR, ROUNDING, JointUnits, joint_units, with_prefix
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,28 +36,34 @@ if TYPE_CHECKING:
 
 
 def tracking_errors(trace: Trace) -> Figure:
-    """Fig. 6: desired minus obtained position and attitude (rotation vector) of the tool, W axes."""
+    """Draw Fig. 6: desired minus obtained position and attitude (rotation vector) of the tool, W axes."""
     time, label = clock(trace)
     figure = new_figure(COLUMN, 3.3)
     panels = figure.subplots(2, 1, sharex=True)
-    _plot_error(panels[0], time, np.asarray(trace.position_error), "m", "position error")
-    _plot_error(panels[1], time, np.asarray(trace.attitude_error), "rad", "attitude error")
+    _plot_errors(panels, time, (trace.position_error, trace.attitude_error))
     tidy(panels[1], label, panels[1].get_ylabel())
     return figure
 
 
 def control_errors(trace: Trace, name: str, joints: list[str], model: Model | None = None) -> Figure:
-    """The errors of one of several controllers: of its tool as in Fig. 6, or of each of its joints.
+    """Draw the errors of one of several controllers.
 
-    ``model`` tells which joints slide: their errors are in m, in a panel of their own.
+    Parameters
+    ----------
+    trace : Trace
+    name : str
+        Name of the control.
+    joints : list of str
+        Its joints; empty for a controller of a tool, whose errors are drawn as in Fig. 6.
+    model : Model, optional
+        The robot, from which the kinds of the joints follow: errors of prismatic joints, m, have a panel.
     """
     time, label = clock(trace)
     errors = np.asarray(trace.tracking[name])
     if not joints:
         figure = new_figure(COLUMN, 3.3)
         panels = figure.subplots(2, 1, sharex=True)
-        _plot_error(panels[0], time, errors[:, :3], "m", "position error")
-        _plot_error(panels[1], time, errors[:, 3:], "rad", "attitude error")
+        _plot_errors(panels, time, np.split(errors, 2, axis=1))
         tidy(panels[1], label, panels[1].get_ylabel())
         return figure
     groups = [(rows, "joint error", units.position) for rows, units in _by_kind(joints, model)]
@@ -64,30 +71,30 @@ def control_errors(trace: Trace, name: str, joints: list[str], model: Model | No
 
 
 def joint_torques(trace: Trace, model: Model) -> Figure:
-    """Fig. 7: the torque of every joint over each control step; apart, the force of those that slide."""
+    """Draw Fig. 7: the torque of every joint, and in a separate panel the force of prismatic joints."""
     time, label = clock(trace)
     names = list(model.joint_names)
     groups = [
-        (rows, "torque" if units.effort == "N m" else "force", units.effort)
+        (rows, "torque" if units == joint_units(["revolute"]) else "force", units.effort)
         for rows, units in _by_kind(names, model)
     ]
     return _many(time, label, np.asarray(trace.tau), names, groups)
 
 
 def _by_kind(names: Sequence[str], model: Model | None) -> list[tuple[list[int], JointUnits]]:
-    """The joints that turn and those that slide, with their units; all together where that is not known."""
+    """Return revolute and prismatic joints with their units; in one group if their kinds are unknown."""
     kinds = {} if model is None else {joint.name: joint.kind for joint in model.joints}
     if not all(name in kinds for name in names):
         return [(list(range(len(names))), joint_units(()))]
-    slides = [kinds[name] == "prismatic" for name in names]
-    rows = ([index for index, slide in enumerate(slides) if slide == kind] for kind in (False, True))
+    prismatic = [kinds[name] == "prismatic" for name in names]
+    rows = ([index for index, is_one in enumerate(prismatic) if is_one == kind] for kind in (False, True))
     return [(found, joint_units(kinds[names[index]] for index in found)) for found in rows if found]
 
 
 def _many(
     time: Floats, label: str, columns: Floats, names: list[str], groups: list[tuple[list[int], str, str]]
 ) -> Figure:
-    """A panel for each of ``groups`` (columns, what they are, unit): a line for each joint."""
+    """Draw one panel per group (columns, quantity, unit), with one line per joint."""
     figure = new_figure(COLUMN, 2.2)
     panels = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
     height = 0.2
@@ -104,7 +111,7 @@ def _many(
 def _plot_joints(
     axes: Axes, time: Floats, columns: Floats, names: list[str], unit: str
 ) -> tuple[list[str], str]:
-    """Symmetric about zero; returns what the legend says, and the unit with its prefix."""
+    """Draw lines on an axis symmetric about zero; return the legend, and the unit with its prefix."""
     peak = max(float(np.abs(columns).max()), ROUNDING)
     factor, scaled = with_prefix(peak, unit) if peak < 0.1 or peak >= 1e3 else (1.0, unit)
     if OR in unit:
@@ -115,12 +122,18 @@ def _plot_joints(
     return shown, scaled
 
 
+def _plot_errors(panels: Sequence[Axes], time: Floats, errors: Sequence[Floats]) -> None:
+    """Plot position and attitude errors (T, 3), each in its panel."""
+    for axes, error, name in zip(panels, errors, ("position_error", "attitude_error"), strict=True):
+        _plot_error(axes, time, np.asarray(error), COLUMNS[name].unit, name.replace("_", " "))
+
+
 def _plot_error(axes: Axes, time: Floats, error: Floats, unit: str, what: str) -> None:
     norm = np.linalg.norm(error, axis=1)
     factor, scaled_unit = with_prefix(float(norm.max()), unit)
     plot_lines(axes, time, factor * error, ("x", "y", "z"), XYZ_COLORS)
     plot_lines(axes, time, factor * norm[:, None], ("norm",), (INK,))
     axes.lines[-1].set(linestyle=(0, (3, 1.5)), linewidth=0.8 * LINE)
-    calm(axes, ROUNDING * factor)
+    hide_rounding(axes, ROUNDING * factor)
     tidy(axes, "", f"{what} [{scaled_unit}]")
     legend_above(axes)

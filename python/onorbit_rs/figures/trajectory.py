@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]  # ships no types
 
+from onorbit_rs.common.display_units import with_prefix
 from onorbit_rs.figures.shading import add_surfaces
 from onorbit_rs.figures.solids import robot_polygons
 from onorbit_rs.figures.space import add_space, fit, label
@@ -22,7 +23,6 @@ from onorbit_rs.figures.style import (
     clock,
     new_figure,
 )
-from onorbit_rs.units import with_prefix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,24 +32,25 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NEARLY_STILL = 0.02
-"""Size of a path, as a share of its distance from W's origin, below which it is drawn about its start."""
+"""Size of a path, as a fraction of its distance from W's origin, below which it is drawn about its start."""
 
 
 def desired_trajectory(trace: Trace, model: Model) -> Figure:
-    """Fig. 4: the robot at the first, the middle and the last point of the desired path, in W."""
+    """Draw Fig. 4: the robot at the first, the middle and the last point of the desired path, in W."""
     path = np.asarray(trace.reference_pose)[:, :3, 3]
     rows = [0, _row_at_half(path), len(path) - 1]
     drawn = robot_polygons(model, np.asarray(trace.q)[rows])
     corners = np.vstack([path, *(faces.reshape(-1, 3) for faces, _ in drawn)])
     figure = new_figure(PAGE, 3.1)
     figure.set_layout_engine("none")
-    time, unit = clock(trace)
+    time, time_label = clock(trace)
     for place, (row, (faces, colors)) in enumerate(zip(rows, drawn, strict=True)):
         axes = add_space(figure, (0.002 + place * 0.325, 0.09, 0.325, 0.86), elevation=14.0, azimuth=-68.0)
         add_surfaces(axes, faces, colors)
         _path_on_top(axes, path)
         axes.scatter(*path[row], color=OBTAINED, s=14, depthshade=False, zorder=12)
-        where = f"{('start', 'middle', 'end')[place]}, t = {time[row]:.4g} {unit[6:-1]}"
+        unit = time_label.removeprefix("time [").removesuffix("]")
+        where = f"{('start', 'middle', 'end')[place]}, t = {time[row]:.4g} {unit}"
         figure.text(0.17 + place * 0.325, 0.945, where, fontsize=NORMAL, ha="center", color=INK)
         fit(axes, corners, room=(1.38, 1.86))
         label(axes, "m")
@@ -57,7 +58,7 @@ def desired_trajectory(trace: Trace, model: Model) -> Figure:
 
 
 def obtained_trajectory(trace: Trace) -> Figure:
-    """Fig. 5: the tool's path, desired and obtained, in W; about its start where it hardly moves."""
+    """Draw Fig. 5: the tool's path, desired and obtained, in W; a small path is drawn about its start."""
     desired = np.asarray(trace.reference_pose)[:, :3, 3]
     obtained = np.asarray(trace.tool_pose)[:, :3, 3]
     both = np.vstack([desired, obtained])
@@ -90,17 +91,17 @@ def _path_on_top(axes: Axes3D, path: Floats) -> None:
 
 
 def _along(path: Floats) -> Floats:
-    """Length of the path up to each row."""
+    """Return the arc length of the path up to each row, m."""
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
 
 
 def _row_at_half(path: Floats) -> int:
-    """First row at which half of the path's length is behind; the middle row of a path that stands still."""
+    """Return the first row after half of the path's length; the middle row of a path of zero length."""
     length = _along(path)
     return int(np.searchsorted(length, length[-1] / 2.0)) if length[-1] > 0.0 else len(path) // 2
 
 
 def _sparse(path: Floats) -> Floats:
-    """Every so many points of a path, and its last."""
+    """Return at most about 1000 points of a path, including its last."""
     stride = max(1, len(path) // 1000)
     return np.vstack([path[::stride], path[-1:]])

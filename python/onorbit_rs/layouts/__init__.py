@@ -1,7 +1,7 @@
-"""Configurations and velocities as other engines write them.
+"""Converts configurations and velocities to and from the conventions of other engines.
 
-`p` and `R` are the position of the base's origin and its attitude in the world W, `v` and `w` its linear and
-angular velocity; the letter tells the axes they are given in: B base, W world.
+`p` is the position of the base's origin in the world W, `v` and `w` are its linear and angular velocity. The
+letter after them names the axes: B base, W world.
 
 ==============  ========================================  ======================================
 engine          configuration                             velocity
@@ -11,13 +11,13 @@ onorbit_rs      ``p, quat xyzw, joints``                  ``v_B, w_B, rates``
 ``mujoco``      ``p, quat wxyz, joints``                  ``v_W, w_B, rates``
 ``drake``       ``quat wxyz, p, joints``                  ``w_W, v_W, rates``
 ``rbdl``        ``p, quat xyz, joints, quat w``           ``v_W, w_B, rates``
-``spart``       ``(R0, r0, qm)``, ``r0`` the mass centre  ``(u0, um)``, ``u0 = w_B, v_W`` of it
+``spart``       ``(R0, r0, qm)``, ``r0`` mass centre      ``(u0, um)``, ``u0 = w_B, v_W`` of it
 ==============  ========================================  ======================================
 
-For each engine there is ``to_engine(model, q, v)`` and its inverse ``from_engine(model, their_q, their_v)``.
-One state ``(n,)`` or a batch ``(B, n)``. Engines order joints their own way (Pinocchio by name among
-siblings): ``joints=`` takes their names in the other engine's order, or for Pinocchio, MuJoCo and Drake the
-other engine's model itself. Ours is the order where nothing is given. Both must call the same link the base.
+For each engine there is ``to_engine(model, q, v)`` and its inverse ``from_engine(model, q, v)``, for one
+state ``(n,)`` or a batch ``(B, n)``. The order of joints differs between engines (Pinocchio sorts siblings by
+name): ``joints=`` gives their names in the order of the other engine or, for Pinocchio, MuJoCo and Drake, the
+model of that engine. The default is the order of onorbit_rs. The base must be the same link in both engines.
 
 >>> import onorbit_rs as oo
 >>> model = oo.Model.rigid_body(1.0, [[1, 0, 0], [0, 1, 0], [0, 0, 1]])

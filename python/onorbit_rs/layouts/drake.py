@@ -4,17 +4,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from onorbit_rs.common.coordinates import (
+    ANGULAR,
+    BASE_NQ,
+    BASE_NV,
+    JOINTS_Q,
+    JOINTS_V,
+    LINEAR,
+    POSITION,
+    QUATERNION,
+)
 from onorbit_rs.layouts.state import (
-    checked_pair,
-    joined,
+    check_unit,
+    checked_state,
+    checked_vectors,
+    concatenated,
+    in_model_order,
     names_in,
     no_floating_base,
     order_of,
-    pair,
     to_body,
     to_world,
-    unit,
-    unshuffled,
 )
 
 if TYPE_CHECKING:
@@ -25,31 +35,73 @@ if TYPE_CHECKING:
 
 
 def to_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> tuple[Floats, Floats]:
-    """Drake's positions ``[quat_wxyz, p, joints]`` and velocities ``[w_W, v_W, rates]``.
+    """Return Drake's positions ``[quat_wxyz, p, joints]`` and velocities ``[w_W, v_W, rates]``.
 
     Parameters
     ----------
-    q : (nq,) or (B, nq) array, v : (nv,) or (B, nv) array
-    joints : names in Drake's order, or its finalised ``MultibodyPlant`` with this robot alone
+    model : Model
+    q : (nq,) or (B, nq) array
+        Configuration of onorbit_rs, rad and m.
+    v : (nv,) or (B, nv) array
+        Velocity of onorbit_rs, rad/s and m/s.
+    joints : sequence of str or MultibodyPlant, optional
+        Names in Drake's order, or a finalised ``MultibodyPlant`` that contains only this robot.
+
+    Returns
+    -------
+    positions : (nq,) or (B, nq) array
+    velocities : (nv,) or (B, nv) array
+
+    Raises
+    ------
+    FrameError
+        If a joint does not exist.
+    InputError, ShapeError, DtypeError
+        If an argument is invalid.
     """
-    ours_q, ours_v = pair(model, q, v)
+    q_model, v_model = checked_state(model, q, v)
     order = _order(model, joints)
-    quat = ours_q[..., 3:7]
-    positions = joined(quat[..., [3, 0, 1, 2]], ours_q[..., :3], ours_q[..., 7 + order])
-    linear, angular = to_world(quat, ours_v[..., :3]), to_world(quat, ours_v[..., 3:6])
-    return positions, joined(angular, linear, ours_v[..., 6 + order])
+    quat = q_model[..., QUATERNION]
+    positions = concatenated(quat[..., [3, 0, 1, 2]], q_model[..., POSITION], q_model[..., BASE_NQ + order])
+    linear, angular = to_world(quat, v_model[..., LINEAR]), to_world(quat, v_model[..., ANGULAR])
+    return positions, concatenated(angular, linear, v_model[..., BASE_NV + order])
 
 
 def from_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> tuple[Floats, Floats]:
-    """Our `q` and `v` from positions and velocities."""
+    """Return `q` and `v` of onorbit_rs from Drake's positions and velocities.
+
+    Parameters
+    ----------
+    model : Model
+    q : (nq,) or (B, nq) array
+        Positions ``[quat_wxyz, p, joints]``.
+    v : (nv,) or (B, nv) array
+        Velocities ``[w_W, v_W, rates]``.
+    joints : sequence of str or MultibodyPlant, optional
+        As in :func:`to_drake`.
+
+    Returns
+    -------
+    q : (nq,) or (B, nq) array
+        Configuration of onorbit_rs.
+    v : (nv,) or (B, nv) array
+        Velocity of onorbit_rs.
+
+    Raises
+    ------
+    FrameError
+        If a joint does not exist.
+    InputError, ShapeError, DtypeError
+        If an argument is invalid.
+    """
     order = _order(model, joints)
-    theirs_q, theirs_v = checked_pair(q=(q, model.nq), v=(v, model.nv))
-    quat = theirs_q[..., [1, 2, 3, 0]]
-    unit("q", quat)
-    linear, angular = to_body(quat, theirs_v[..., 3:6]), to_body(quat, theirs_v[..., :3])
+    q_other, v_other = checked_vectors(q=(q, model.nq), v=(v, model.nv))
+    quat = q_other[..., [1, 2, 3, 0]]
+    check_unit("q", quat)
+    linear, angular = to_body(quat, v_other[..., 3:6]), to_body(quat, v_other[..., :3])
     return (
-        joined(theirs_q[..., 4:7], quat, unshuffled(theirs_q[..., 7:], order)),
-        joined(linear, angular, unshuffled(theirs_v[..., 6:], order)),
+        concatenated(q_other[..., 4:7], quat, in_model_order(q_other[..., JOINTS_Q], order)),
+        concatenated(linear, angular, in_model_order(v_other[..., JOINTS_V], order)),
     )
 
 

@@ -1,4 +1,4 @@
-"""Pinocchio: our layout, joints by name among siblings, unbounded joints as cosine and sine."""
+"""Pinocchio: siblings sorted by name, unbounded joints as cosine and sine; otherwise as onorbit_rs."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs.common.coordinates import BASE_NQ, BASE_NV, BASE_Q, BASE_V, JOINTS_Q, JOINTS_V, QUATERNION
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.layouts.state import (
-    checked_pair,
-    joined,
+    check_unit,
+    checked_state,
+    checked_vectors,
+    concatenated,
+    in_model_order,
     names_in,
     no_floating_base,
     order_of,
-    pair,
-    unit,
-    unshuffled,
 )
 
 if TYPE_CHECKING:
@@ -29,47 +30,91 @@ if TYPE_CHECKING:
 def to_pinocchio(
     model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None, *, unbounded: Sequence[str] = ()
 ) -> tuple[Floats, Floats]:
-    """Pinocchio's `q` and `v`: base linear and angular velocity in base axes, as ours.
+    """Return Pinocchio's `q` and `v`.
 
     Parameters
     ----------
-    q : (nq,) or (B, nq) array, v : (nv,) or (B, nv) array
-    joints : names in Pinocchio's order, or its ``pin.Model`` with a ``JointModelFreeFlyer`` as root
-    unbounded : names of the joints it writes as (cos, sin), a URDF's ``continuous``; a ``pin.Model`` says
+    model : Model
+    q : (nq,) or (B, nq) array
+        Configuration of onorbit_rs, rad and m.
+    v : (nv,) or (B, nv) array
+        Velocity of onorbit_rs, rad/s and m/s.
+    joints : sequence of str or pin.Model, optional
+        Names in Pinocchio's order, or a ``pin.Model`` with a ``JointModelFreeFlyer`` as root.
+    unbounded : sequence of str
+        Names of the joints that Pinocchio represents by cosine and sine: those that are ``continuous`` in the
+        URDF. Not needed with a ``pin.Model``.
+
+    Returns
+    -------
+    q : array
+        One entry more per unbounded joint.
+    v : (nv,) or (B, nv) array
+
+    Raises
+    ------
+    FrameError
+        If a joint does not exist.
+    InputError, ShapeError, DtypeError
+        If an argument is invalid.
     """
-    ours_q, ours_v = pair(model, q, v)
+    q_model, v_model = checked_state(model, q, v)
     order, is_unbounded = _layout(model, joints, unbounded)
-    parts = [ours_q[..., :7]]
+    parts = [q_model[..., BASE_Q]]
     for j, wraps in zip(order, is_unbounded, strict=True):
-        angle = ours_q[..., 7 + j, None]
+        angle = q_model[..., BASE_NQ + j, None]
         parts += [np.cos(angle), np.sin(angle)] if wraps else [angle]
-    return joined(*parts), joined(ours_v[..., :6], ours_v[..., 6 + order])
+    return concatenated(*parts), concatenated(v_model[..., BASE_V], v_model[..., BASE_NV + order])
 
 
 def from_pinocchio(
     model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None, *, unbounded: Sequence[str] = ()
 ) -> tuple[Floats, Floats]:
-    """Our `q` and `v`; an unbounded joint comes back between -π and π, whatever turns it had made."""
+    """Return `q` and `v` of onorbit_rs from those of Pinocchio; unbounded joints are between -π and π.
+
+    Parameters
+    ----------
+    model : Model
+    q, v : array
+        Configuration and velocity of Pinocchio, one or a batch.
+    joints : sequence of str or pin.Model, optional
+    unbounded : sequence of str
+        As in :func:`to_pinocchio`.
+
+    Returns
+    -------
+    q : (nq,) or (B, nq) array
+        Configuration of onorbit_rs.
+    v : (nv,) or (B, nv) array
+        Velocity of onorbit_rs.
+
+    Raises
+    ------
+    FrameError
+        If a joint does not exist.
+    InputError, ShapeError, DtypeError
+        If an argument is invalid.
+    """
     order, is_unbounded = _layout(model, joints, unbounded)
-    theirs_q, theirs_v = checked_pair(q=(q, model.nq + sum(is_unbounded)), v=(v, model.nv))
-    unit("q", theirs_q[..., 3:7])
+    q_other, v_other = checked_vectors(q=(q, model.nq + sum(is_unbounded)), v=(v, model.nv))
+    check_unit("q", q_other[..., QUATERNION])
     angles, at = [], 7
     for wraps in is_unbounded:
         if wraps:
-            unit("q (cosine and sine of a joint)", theirs_q[..., at : at + 2])
-            angles.append(np.arctan2(theirs_q[..., at + 1], theirs_q[..., at]))
+            check_unit("q (cosine and sine of a joint)", q_other[..., at : at + 2])
+            angles.append(np.arctan2(q_other[..., at + 1], q_other[..., at]))
         else:
-            angles.append(theirs_q[..., at])
+            angles.append(q_other[..., at])
         at += 2 if wraps else 1
-    values = np.stack(angles, axis=-1) if angles else theirs_q[..., 7:]
+    values = np.stack(angles, axis=-1) if angles else q_other[..., JOINTS_Q]
     return (
-        joined(theirs_q[..., :7], unshuffled(values, order)),
-        joined(theirs_v[..., :6], unshuffled(theirs_v[..., 6:], order)),
+        concatenated(q_other[..., BASE_Q], in_model_order(values, order)),
+        concatenated(v_other[..., BASE_V], in_model_order(v_other[..., JOINTS_V], order)),
     )
 
 
 def _layout(model: Model, joints: Any, unbounded: Sequence[str]) -> tuple[Any, list[bool]]:
-    """Order of their joints, and which of them are written as two numbers."""
+    """Return the order of the joints in Pinocchio, and which of them are represented by two numbers."""
     if names_in(joints, "idx_qs"):
         sizes = [int(size) for size in joints.nqs]  # the first is the universe, the second the free flyer
         if sizes[:2] != [0, 7] or any(size not in (1, 2) for size in sizes[2:]):
@@ -80,7 +125,7 @@ def _layout(model: Model, joints: Any, unbounded: Sequence[str]) -> tuple[Any, l
     unknown = [name for name in unbounded if name not in names]
     if unknown:
         raise InputError(
-            f"unbounded names {unknown[0]!r}, which is no joint",
+            f"unbounded contains {unknown[0]!r}, which is not a joint of the robot",
             name="unbounded",
             got=unknown,
             expected=names,

@@ -1,19 +1,20 @@
-"""RBDL: the base is three translations and a spherical joint, whose quaternion's scalar goes to the end."""
+"""RBDL: three translations and a spherical joint for the base; the quaternion's scalar is at the end."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from onorbit_rs.common.coordinates import ANGULAR, BASE_NQ, BASE_NV, JOINTS_V, LINEAR, POSITION, QUATERNION
 from onorbit_rs.layouts.state import (
-    checked_pair,
-    joined,
+    check_unit,
+    checked_state,
+    checked_vectors,
+    concatenated,
+    in_model_order,
     order_of,
-    pair,
     to_body,
     to_world,
-    unit,
-    unshuffled,
 )
 
 if TYPE_CHECKING:
@@ -26,29 +27,79 @@ if TYPE_CHECKING:
 def to_rbdl(
     model: Model, q: ArrayLike, v: ArrayLike, joints: Sequence[str] | None = None
 ) -> tuple[Floats, Floats]:
-    """RBDL's ``Q = [p, quat_xyz, joints, quat_w]`` and ``QDot = [v_W, w_B, rates]``.
+    """Return RBDL's ``Q = [p, quat_xyz, joints, quat_w]`` and ``QDot = [v_W, w_B, rates]``.
+
+    The base must be a ``JointTypeFloatingBase`` in RBDL, and all other joints have one degree of freedom.
 
     Parameters
     ----------
-    q : (nq,) or (B, nq) array, v : (nv,) or (B, nv) array
-    joints : names in RBDL's order; all must be of one degree of freedom, the base a ``JointTypeFloatingBase``
+    model : Model
+    q : (nq,) or (B, nq) array
+        Configuration of onorbit_rs, rad and m.
+    v : (nv,) or (B, nv) array
+        Velocity of onorbit_rs, rad/s and m/s.
+    joints : sequence of str, optional
+        Names in RBDL's order.
+
+    Returns
+    -------
+    Q : (nq,) or (B, nq) array
+    QDot : (nv,) or (B, nv) array
+
+    Raises
+    ------
+    FrameError
+        If a joint does not exist.
+    InputError, ShapeError, DtypeError
+        If an argument is invalid.
     """
-    ours_q, ours_v = pair(model, q, v)
+    q_model, v_model = checked_state(model, q, v)
     order = order_of(model, joints)
-    quat = ours_q[..., 3:7]
-    positions = joined(ours_q[..., :6], ours_q[..., 7 + order], quat[..., 3:])
-    return positions, joined(to_world(quat, ours_v[..., :3]), ours_v[..., 3:6], ours_v[..., 6 + order])
+    quat = q_model[..., QUATERNION]
+    positions = concatenated(
+        q_model[..., POSITION], quat[..., :3], q_model[..., BASE_NQ + order], quat[..., 3:]
+    )
+    return positions, concatenated(
+        to_world(quat, v_model[..., LINEAR]), v_model[..., ANGULAR], v_model[..., BASE_NV + order]
+    )
 
 
 def from_rbdl(
     model: Model, q: ArrayLike, v: ArrayLike, joints: Sequence[str] | None = None
 ) -> tuple[Floats, Floats]:
-    """Our `q` and `v` from ``Q`` and ``QDot``."""
+    """Return `q` and `v` of onorbit_rs from RBDL's ``Q`` and ``QDot``.
+
+    Parameters
+    ----------
+    model : Model
+    q : (nq,) or (B, nq) array
+        ``Q``.
+    v : (nv,) or (B, nv) array
+        ``QDot``.
+    joints : sequence of str, optional
+        Names in RBDL's order.
+
+    Returns
+    -------
+    q : (nq,) or (B, nq) array
+        Configuration of onorbit_rs.
+    v : (nv,) or (B, nv) array
+        Velocity of onorbit_rs.
+
+    Raises
+    ------
+    FrameError
+        If a joint does not exist.
+    InputError, ShapeError, DtypeError
+        If an argument is invalid.
+    """
     order = order_of(model, joints)
-    theirs_q, theirs_v = checked_pair(q=(q, model.nq), v=(v, model.nv))
-    quat = joined(theirs_q[..., 3:6], theirs_q[..., -1:])
-    unit("q", quat)
+    q_other, v_other = checked_vectors(q=(q, model.nq), v=(v, model.nv))
+    quat = concatenated(q_other[..., 3:6], q_other[..., -1:])
+    check_unit("q", quat)
     return (
-        joined(theirs_q[..., :3], quat, unshuffled(theirs_q[..., 6:-1], order)),
-        joined(to_body(quat, theirs_v[..., :3]), theirs_v[..., 3:6], unshuffled(theirs_v[..., 6:], order)),
+        concatenated(q_other[..., :3], quat, in_model_order(q_other[..., 6:-1], order)),
+        concatenated(
+            to_body(quat, v_other[..., :3]), v_other[..., 3:6], in_model_order(v_other[..., JOINTS_V], order)
+        ),
     )

@@ -1,4 +1,4 @@
-"""SPART: the base by its rotation matrix and the place of its centre of mass."""
+"""SPART: rotation matrix of the base and position of its centre of mass."""
 
 from __future__ import annotations
 
@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from onorbit_rs.common.coordinates import ANGULAR, BASE_NQ, BASE_NV, LINEAR, POSITION, QUATERNION
+from onorbit_rs.common.rotations import matrix_from_quaternion, quaternion_from_matrix
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.layouts.state import (
     NORM_TOLERANCE,
     checked,
-    joined,
+    checked_state,
+    concatenated,
+    in_model_order,
     order_of,
-    pair,
     same_batch,
     to_body,
     to_world,
-    unshuffled,
 )
-from onorbit_rs.rotations import matrix_from_quaternion, quaternion_from_matrix
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -36,32 +37,47 @@ def to_spart(
     *,
     base_com: ArrayLike | None = None,
 ) -> tuple[tuple[Floats, Floats, Floats], tuple[Floats, Floats]]:
-    """SPART's ``(R0, r0, qm)`` and ``(u0, um)``.
+    """Return SPART's ``(R0, r0, qm)`` and ``(u0, um)``.
 
-    ``R0`` takes base components to inertial ones; ``r0 = p + R c`` is the centre of mass of the base link;
-    ``u0 = [w_B, v_W + R (w_B × c)]``: its angular velocity in base axes, that of ``r0`` in inertial ones.
-    Its twist in inertial axes is ``t0 = P0 u0``.
+    ``R0`` rotates base axes to inertial axes, and ``r0 = p + R c`` is the centre of mass of the base link.
+    ``u0 = [w_B, v_W + R (w_B × c)]`` is its angular velocity in base axes and the velocity of ``r0`` in
+    inertial axes; its twist in inertial axes is ``t0 = P0 u0``.
 
     Parameters
     ----------
-    q : (nq,) or (B, nq) array, v : (nv,) or (B, nv) array
-    joints : names in SPART's order
-    base_com : (3,) array, m
-        ``c`` in the base link's axes. That of our base body where not given; SPART folds no fixed joints, so
-        give the base link's own where others are fixed to it.
+    model : Model
+    q : (nq,) or (B, nq) array
+        Configuration of onorbit_rs, rad and m.
+    v : (nv,) or (B, nv) array
+        Velocity of onorbit_rs, rad/s and m/s.
+    joints : sequence of str, optional
+        Names in SPART's order.
+    base_com : (3,) array, optional
+        ``c`` in the axes of the base link, m. Default: that of the base body. SPART does not merge links at
+        fixed joints, so give the centre of mass of the base link alone if others are fixed to it.
 
     Returns
     -------
-    (R0, r0, qm) : (3, 3), (3,), (n,) arrays, or batches
-    (u0, um) : (6,), (n,) arrays, or batches
+    (R0, r0, qm) : (3, 3), (3,) and (n,) arrays, or batches
+    (u0, um) : (6,) and (n,) arrays, or batches
+
+    Raises
+    ------
+    FrameError
+        If a joint does not exist.
+    InputError, ShapeError, DtypeError
+        If an argument is invalid.
     """
-    ours_q, ours_v = pair(model, q, v)
+    q_model, v_model = checked_state(model, q, v)
     order, com = order_of(model, joints), _com(model, base_com)
-    quat = ours_q[..., 3:7]
-    linear, angular = ours_v[..., :3], ours_v[..., 3:6]
-    r0 = ours_q[..., :3] + to_world(quat, com)
-    u0 = joined(angular, to_world(quat, linear + np.cross(angular, com)))
-    return (matrix_from_quaternion(quat), r0, ours_q[..., 7 + order]), (u0, ours_v[..., 6 + order])
+    quat = q_model[..., QUATERNION]
+    linear, angular = v_model[..., LINEAR], v_model[..., ANGULAR]
+    r0 = q_model[..., POSITION] + to_world(quat, com)
+    u0 = concatenated(angular, to_world(quat, linear + np.cross(angular, com)))
+    return (matrix_from_quaternion(quat), r0, q_model[..., BASE_NQ + order]), (
+        u0,
+        v_model[..., BASE_NV + order],
+    )
 
 
 def from_spart(
@@ -72,7 +88,31 @@ def from_spart(
     *,
     base_com: ArrayLike | None = None,
 ) -> tuple[Floats, Floats]:
-    """Our `q` and `v` from ``(R0, r0, qm)`` and ``(u0, um)``."""
+    """Return `q` and `v` of onorbit_rs from SPART's ``(R0, r0, qm)`` and ``(u0, um)``.
+
+    Parameters
+    ----------
+    model : Model
+    position : (R0, r0, qm)
+    velocity : (u0, um)
+    joints : sequence of str, optional
+    base_com : (3,) array, optional
+        As in :func:`to_spart`.
+
+    Returns
+    -------
+    q : (nq,) or (B, nq) array
+        Configuration of onorbit_rs.
+    v : (nv,) or (B, nv) array
+        Velocity of onorbit_rs.
+
+    Raises
+    ------
+    FrameError
+        If a joint does not exist.
+    InputError, ShapeError, DtypeError
+        If an argument is invalid.
+    """
     order, com = order_of(model, joints), _com(model, base_com)
     n = len(order)
     rot, r0, qm = (
@@ -86,12 +126,19 @@ def from_spart(
     )  # fmt: skip
     off = np.abs(np.swapaxes(rot, -1, -2) @ rot - np.eye(3)).max(initial=0.0)
     if off > NORM_TOLERANCE or (np.linalg.det(rot) < 0.0).any():
-        raise InputError("R0 is not a rotation matrix", name="R0", got=float(off), expected="orthonormal")
+        raise InputError(
+            f"R0 is not a rotation matrix: R0ᵀ R0 differs from the identity by {off:.3g}, or det R0 < 0",
+            name="R0",
+            got=float(off),
+            expected="orthonormal",
+        )
     quat = quaternion_from_matrix(rot)
     angular = u0[..., :3]
     linear = to_body(quat, u0[..., 3:]) - np.cross(angular, com)
     p = r0 - to_world(quat, com)
-    return joined(p, quat, unshuffled(qm, order)), joined(linear, angular, unshuffled(um, order))
+    return concatenated(p, quat, in_model_order(qm, order)), concatenated(
+        linear, angular, in_model_order(um, order)
+    )
 
 
 def _com(model: Model, base_com: ArrayLike | None) -> Floats:
@@ -99,5 +146,7 @@ def _com(model: Model, base_com: ArrayLike | None) -> Floats:
         return np.array(model.bodies[0].com)
     com = checked("base_com", base_com, 3)
     if com.ndim != 1:
-        raise InputError("base_com is one vector, not a batch", name="base_com", got=com.shape, expected=(3,))
+        raise InputError(
+            f"base_com has shape {com.shape}, expected (3,)", name="base_com", got=com.shape, expected=(3,)
+        )
     return com

@@ -1,4 +1,4 @@
-"""What the converters share: checked arrays, joints by name, rotations of batches."""
+"""Shared parts of the converters: checks of arrays, order of joints, rotations of batches."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs.common.coordinates import QUATERNION
+from onorbit_rs.common.rotations import matrix_from_quaternion
+from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import DtypeError, FrameError, InputError, ShapeError
-from onorbit_rs.names import did_you_mean, nearest
-from onorbit_rs.rotations import matrix_from_quaternion
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -19,10 +20,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NORM_TOLERANCE = 1e-6
+"""Largest deviation of the norm of a quaternion from 1."""
 
 
 def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
-    """A finite array of that shape, or a batch of such."""
+    """Return a finite array of this shape, or a batch of such arrays."""
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -35,113 +37,117 @@ def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
     extra = array.ndim - len(shape)
     if extra not in (0, 1) or array.shape[extra:] != shape:
         wanted = ", ".join(map(str, shape)) + ("," if len(shape) == 1 else "")
-        message = f"{name} has shape {array.shape}, expected ({wanted}) or a batch (B, {wanted.rstrip(',')})"
+        message = f"{name} has shape {array.shape}; expected ({wanted}) or a batch (B, {wanted.rstrip(',')})"
         raise ShapeError(message, name=name, expected=shape, got=array.shape)
     if not np.isfinite(array).all():
         raise InputError(
-            f"{name} holds NaN or infinity", name=name, got="not finite", expected="finite numbers"
+            f"{name} contains NaN or infinity", name=name, got="not finite", expected="finite numbers"
         )
     return array
 
 
-def checked_pair(**given: tuple[ArrayLike, int]) -> list[Floats]:
-    """Vectors and their lengths by name, checked: each one, or batches of one length."""
+def checked_vectors(**given: tuple[ArrayLike, int]) -> list[Floats]:
+    """Return checked vectors, given with their lengths by name; their batch sizes must agree."""
     arrays = {name: checked(name, value, length) for name, (value, length) in given.items()}
     same_batch(**{name: array[..., 0] for name, array in arrays.items()})
     return list(arrays.values())
 
 
-def pair(model: Model, q: ArrayLike, v: ArrayLike) -> tuple[Floats, Floats]:
-    """Our own state, checked: one, or batches of one length."""
-    checked_q, checked_v = checked_pair(q=(q, model.nq), v=(v, model.nv))
-    unit("q", checked_q[..., 3:7])
+def checked_state(model: Model, q: ArrayLike, v: ArrayLike) -> tuple[Floats, Floats]:
+    """Return configuration and velocity of onorbit_rs after checking them, one or a batch."""
+    checked_q, checked_v = checked_vectors(q=(q, model.nq), v=(v, model.nv))
+    check_unit("q", checked_q[..., QUATERNION])
     return checked_q, checked_v
 
 
 def same_batch(**first: Floats) -> None:
-    """All single, or all batches of one length."""
+    """Raise a ShapeError unless all arrays are single states or batches of the same size."""
     shapes = {name: value.shape for name, value in first.items()}
     if len(set(shapes.values())) > 1:
-        told = ", ".join(
+        lengths = ", ".join(
             f"{name} {shape[0] if shape else 'a single state'}" for name, shape in shapes.items()
         )
-        raise ShapeError(f"batches differ: {told}", name="batch", expected="one length", got=told)
+        message = f"batch sizes differ: {lengths}; all inputs must have the same batch size"
+        raise ShapeError(message, name="batch", expected="equal lengths", got=lengths)
 
 
-def unit(name: str, quat: Floats) -> None:
-    """Refuses quaternions off unit norm."""
+def check_unit(name: str, quat: Floats) -> None:
+    """Raise an InputError unless the norm of each quaternion is 1."""
     off = np.abs(np.linalg.norm(quat, axis=-1) - 1.0)
     if off.size and off.max() > NORM_TOLERANCE:
         norm = float(np.ravel(np.linalg.norm(quat, axis=-1))[np.argmax(off)])
-        message = f"the quaternion in {name} has norm {norm:.9g}, off 1 by more than {NORM_TOLERANCE:g}"
+        message = f"the quaternion in {name} has norm {norm:.9g}; it differs from 1 by more than 1e-6"
         raise InputError(message, name=name, got=norm, expected=1.0)
 
 
 def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
-    """Where each joint of theirs, in their order, stands among ours.
+    """Return the index of each joint of the other engine, in its order, among those of the model.
 
     Raises
     ------
     FrameError
-        A joint that the model does not have; suggests the nearest.
+        If the model does not have a joint; suggests the nearest name.
     InputError
-        Joints of the model that are missing or given twice.
+        If joints of the model are missing or given twice.
     """
-    ours = list(model.joint_names)
+    known = list(model.joint_names)
     if names is None:
-        return np.arange(len(ours))
+        return np.arange(len(known))
     if isinstance(names, str):
         raise DtypeError(
-            "joints is a text, a list of names is needed", name="joints", expected="list", got="str"
+            "joints is a string; it must be a list of names", name="joints", expected="list", got="str"
         )
-    theirs = [str(name) for name in names]
-    for name in theirs:
-        if name not in ours:
+    given = [str(name) for name in names]
+    for name in given:
+        if name not in known:
             raise FrameError(
-                f"no joint is named {name!r}{did_you_mean(name, ours)}",
-                name=name, kind="joint", known=ours, suggestion=nearest(name, ours),
+                f"no joint is named {name!r}{did_you_mean(name, known)}",
+                name=name, kind="joint", known=known, suggestion=nearest(name, known),
             )  # fmt: skip
-    missing = [name for name in ours if name not in theirs]
-    if missing or len(theirs) != len(ours):
-        what = f"lacks {', '.join(map(repr, missing))}" if missing else "names a joint twice"
+    missing = [name for name in known if name not in given]
+    if missing or len(given) != len(known):
+        what = f"does not contain {', '.join(map(repr, missing))}" if missing else "contains a joint twice"
         raise InputError(
-            f"joints {what}; it must name each moving joint once", name="joints", got=theirs, expected=ours
+            f"joints {what}; it must contain every moving joint once",
+            name="joints",
+            got=given,
+            expected=known,
         )
-    return np.array([ours.index(name) for name in theirs], dtype=np.intp)
+    return np.array([known.index(name) for name in given], dtype=np.intp)
 
 
 def names_in(joints: Any, attribute: str) -> bool:
-    """Whether ``joints`` is an engine's model, known by what it has, and not names."""
+    """Return whether ``joints`` is a model of the other engine, which has this attribute, and not names."""
     return joints is not None and hasattr(joints, attribute)
 
 
 def no_floating_base(engine: str) -> InputError:
-    """Their model has no free joint in front."""
+    """Return the error for a model that does not start with a free joint."""
     return InputError(
-        f"the model of {engine} is not one floating base and then joints of one degree of freedom each",
+        f"the model of {engine} must have a floating base, then joints with one degree of freedom each",
         name="joints", got=engine, expected="a floating base",
     )  # fmt: skip
 
 
 def to_world(quat_xyzw: Floats, vector_b: Floats) -> Floats:
-    """`R v`."""
+    """Return `R v`, from base to world axes."""
     result: Floats = np.einsum("...ij,...j->...i", matrix_from_quaternion(quat_xyzw), vector_b)
     return result
 
 
 def to_body(quat_xyzw: Floats, vector_w: Floats) -> Floats:
-    """`Rᵀ v`."""
+    """Return `Rᵀ v`, from world to base axes."""
     result: Floats = np.einsum("...ji,...j->...i", matrix_from_quaternion(quat_xyzw), vector_w)
     return result
 
 
-def unshuffled(theirs: Floats, order: NDArray[np.intp]) -> Floats:
-    """Joint values from their order to ours."""
-    ours = np.empty_like(theirs)
-    ours[..., order] = theirs
-    return ours
+def in_model_order(values: Floats, order: NDArray[np.intp]) -> Floats:
+    """Return joint values in the order of the model, given in that of the other engine."""
+    result = np.empty_like(values)
+    result[..., order] = values
+    return result
 
 
-def joined(*parts: Floats) -> Floats:
-    """Side by side along the last axis."""
+def concatenated(*parts: Floats) -> Floats:
+    """Return the arrays concatenated along the last axis."""
     return np.concatenate(parts, axis=-1)

@@ -1,4 +1,4 @@
-"""The folder a run leaves behind: scenario, trace, summary, figures, recording."""
+"""Output folder of a run: scenario, trace, summary, figures, recording and checkpoint."""
 
 from __future__ import annotations
 

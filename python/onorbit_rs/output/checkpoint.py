@@ -1,7 +1,8 @@
-"""``checkpoint/`` in the output folder: the rows so far and where the run stands, to go on from after a kill.
+"""``checkpoint/`` in the output folder: the rows so far and the state of the run, from which it can resume.
 
-``<column>.f64`` holds the rows of a column, appended; ``state.json`` is replaced as a whole and says how many
-rows count and what their SHA-256 is, so that a kill at any instant leaves a checkpoint that is whole.
+``<column>.f64`` holds the rows of a column; new rows are appended. ``state.json`` is replaced atomically and
+contains the number of valid rows and their SHA-256, so the checkpoint is consistent after a kill at any
+instant.
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ from urllib.parse import quote
 import numpy as np
 
 from onorbit_rs import _core
-from onorbit_rs.counting import count
+from onorbit_rs.common.counting import count
+from onorbit_rs.common.files import open_to_change, open_to_read, output_errors, read_bounded, sync_folder
 from onorbit_rs.exceptions import CheckpointError, OnOrbitError, OutputInUseError
-from onorbit_rs.files import open_to_change, open_to_read, read_bounded, refusals, sync_folder
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import CHECKPOINT, STATE
 from onorbit_rs.output.sealed import sealed, unsealed
@@ -30,11 +31,11 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Checkpoint
 
 _MOST = 1 << 28
-"""Bytes of ``state.json``; the state of controllers is part of it."""
+"""Largest size of ``state.json``, bytes; it contains the state of the controllers."""
 
 
 class SavedCheckpoint(NamedTuple):
-    """A checkpoint that was read: its number of rows, and the running digests of its columns."""
+    """A checkpoint read from a folder, with its number of rows and the running digests of its columns."""
 
     checkpoint: Checkpoint
     rows: int
@@ -42,25 +43,25 @@ class SavedCheckpoint(NamedTuple):
 
 
 class CheckpointWriter:
-    """Takes what :meth:`onorbit_rs.Simulation.run` hands to its ``checkpoint``."""
+    """Writes the checkpoints that :meth:`onorbit_rs.Simulation.run` passes to its ``checkpoint`` callback."""
 
     def __init__(self, folder: OutputFolder, digest: str, *, after: SavedCheckpoint | None = None) -> None:
-        """For a run whose scenario has this digest, which goes on ``after`` a checkpoint where given."""
+        """Write checkpoints of the scenario with this digest; a resumed run starts ``after`` a checkpoint."""
         self._folder, self._path = folder, folder.path / CHECKPOINT
         self._digest, self._rows = digest, after.rows if after else 0
         self._digests = dict(after.digests) if after else {}
         self._has_warned = False
 
     def __call__(self, checkpoint: Checkpoint) -> bool:
-        """Write the checkpoint; where that fails, warn once and return False: the run goes on.
+        """Write a checkpoint. If that fails, warn once and return False, and the run continues.
 
         Raises
         ------
         OutputInUseError
-            Another process has taken the folder: nothing of this run can be kept there.
+            If another process has locked the folder.
         """
         try:
-            with refusals(self._path):
+            with output_errors(self._path):
                 self._write(checkpoint)
         except OutputInUseError:
             raise
@@ -68,14 +69,15 @@ class CheckpointWriter:
             if not self._has_warned:
                 self._has_warned = True
                 warnings.warn(
-                    f"a checkpoint could not be written: {error}; the run goes on and tries again next time",
+                    f"a checkpoint could not be written: {error}; the run continues and retries at the "
+                    "next checkpoint",
                     UserWarning, stacklevel=2,
                 )  # fmt: skip
             return False
         return True
 
     def _write(self, checkpoint: Checkpoint) -> None:
-        """Append the new rows, then say that they count."""
+        """Append the new rows, then replace the state, which makes them valid."""
         files = {name: _file_name(name) for name in checkpoint.columns}
         self._folder.expect_checkpoint((STATE, *files.values()))
         widths: dict[str, int] = {}
@@ -98,7 +100,8 @@ class CheckpointWriter:
         content = sealed(record)
         if len(content) > _MOST:
             raise _refused(
-                f"the state of the run takes {len(content)} bytes, at most {_MOST} are kept", self._path
+                f"the state of the run has {len(content)} bytes, which exceeds the limit of {_MOST}",
+                self._path,
             )
         sync_folder(self._path)
         self._folder.replace(f"{CHECKPOINT}/{STATE}", content)
@@ -107,22 +110,23 @@ class CheckpointWriter:
 
 
 def has_checkpoint(folder: Path) -> bool:
-    """Whether a run that was stopped left something to go on from."""
+    """Return True if the folder contains a checkpoint."""
     return (folder / CHECKPOINT / STATE).is_file()
 
 
 def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
-    """The checkpoint in an output folder.
+    """Read the checkpoint of an output folder.
 
     Raises
     ------
     CheckpointError
-        There is none, it was changed or damaged, or it was left by another scenario, robot or controller.
+        If there is none, if they were changed or damaged, or if it belongs to another scenario, robot or
+        controller.
     """
     path = folder / CHECKPOINT
     if not has_checkpoint(folder):
         raise _refused(
-            f"no checkpoint in {folder}: the run ended, or was stopped before it left one; "
+            f"no checkpoint in {folder}: the run ended, or was stopped before its first checkpoint; "
             "run the scenario again",
             path,
         )
@@ -133,8 +137,8 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
         found, rows, wall = str(record["fingerprint"]), int(record["rows"]), float(record["wall_s"])
         if found != digest:
             raise _refused(
-                f"the checkpoint in {folder} is of another scenario: scenario.yaml, or a file it names, was "
-                "changed since; undo that or run the scenario again",
+                f"the checkpoint in {folder} belongs to another scenario: scenario.yaml, or a file it names, "
+                "was changed since; undo that or run the scenario again",
                 path,
             )
         columns, digests = {}, {}
@@ -142,27 +146,29 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
             file = path / _file_name(name)
             columns[name], digests[name] = _column(file, rows, int(width))
             if digests[name].hexdigest() != record["digests"][name]:
-                raise ValueError("its rows do not match their checksum: it was changed or damaged")
+                raise ValueError("its rows do not match their checksum: they were changed or damaged")
         state = json.dumps(record["engine"])
         return SavedCheckpoint(_core.Checkpoint(state, columns, wall_s=wall), rows, digests)
     except CheckpointError:
         raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, MemoryError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise _refused(f"the checkpoint is broken: {file}: {reason}; run the scenario again", file) from error
+        raise _refused(
+            f"the checkpoint is damaged: {file}: {reason}; run the scenario again", file
+        ) from error
 
 
 def scenario_digest(scenario: dict[str, Any]) -> str:
-    """Digest of a resolved scenario and of the content of every file it names."""
+    """Return the digest of a resolved scenario and of the content of every file that it names."""
     digest = hashlib.sha256(json.dumps(scenario, sort_keys=True, default=str).encode())
     for text in _texts(scenario):
         file = Path(text)
         try:
             if file.is_absolute() and file.is_file():
-                with file.open("rb") as stream:  # a SPICE kernel is larger than the memory
+                with file.open("rb") as stream:  # a SPICE kernel may exceed the memory
                     for part in iter(lambda: stream.read(1 << 20), b""):
                         digest.update(part)
-        except OSError:  # a text too long for a path; a file that closed itself is told by who reads it
+        except OSError:  # a text too long for a path, or an unreadable file, whose reader raises the error
             continue
     return digest.hexdigest()
 
@@ -175,15 +181,15 @@ def _texts(value: Any) -> list[str]:
 
 
 def _file_name(column: str) -> str:
-    """Name of the file of a column; names of controllers may hold what a path may not."""
+    """Return the file name of a column; characters that a path may not contain are quoted."""
     return f"{quote(column, safe=' ')}.f64"
 
 
 def _append(file: Path, content: bytes, *, after: int) -> None:
-    """Write rows at ``after`` bytes: what an earlier kill left behind that does not count is overwritten."""
+    """Write rows at the byte offset ``after``, replacing invalid rows of a run that was killed."""
     with open_to_change(file) as stream:
         if stream.seek(0, os.SEEK_END) < after:
-            raise _refused(f"rows of the checkpoint are gone from {file}; run the scenario again", file)
+            raise _refused(f"rows of the checkpoint are missing from {file}; run the scenario again", file)
         stream.truncate(after)
         stream.seek(after)
         left = memoryview(content)
@@ -193,16 +199,16 @@ def _append(file: Path, content: bytes, *, after: int) -> None:
 
 
 def _column(file: Path, rows: int, width: int) -> tuple[Any, _Hash]:
-    """The rows that count, and their running digest."""
+    """Return the valid rows of a column, and their running digest."""
     needed = rows * width
     with open_to_read(file) as stream:
         size = stream.seek(0, os.SEEK_END)
         if min(rows, width) < 0 or size < 8 * needed:
-            raise ValueError(f"it holds {count(size // 8, 'number', 'numbers')}, {needed} are needed")
+            raise ValueError(f"it contains {count(size // 8, 'number', 'numbers')}, expected {needed}")
         stream.seek(0)
         content = stream.read(8 * needed)
     if len(content) != 8 * needed:
-        raise ValueError("it could not be read to its end")
+        raise ValueError("it is truncated")
     return np.frombuffer(content, dtype="<f8").reshape(rows, width), hashlib.sha256(content)
 
 

@@ -1,11 +1,11 @@
-"""The lines of a run's certificate: what each is called, its unit, its gate, and whether it holds."""
+"""Checks of a certificate in a summary: name, unit, gate, and whether each passed."""
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
 GATE = "certificate_gate_"
-"""Before a check's key: the entry of a summary that says what it may be at most."""
+"""Prefix of the summary key of a check's gate, the largest value that passes."""
 
 CHECKS = {
     "linear_momentum_drift_rel": "relative",
@@ -18,17 +18,17 @@ CHECKS = {
     "joint_step_doubling_rel": "relative",
     "position_step_doubling_rel": "relative",
 }
-"""Every line a certificate can have, and its unit; a run leaves out those that do not apply to it."""
+"""Unit of every check that a certificate can have; checks that do not apply to a run are omitted."""
 
 JOINTS = ("joint_step_doubling_rel",)
-"""Lines that a robot without joints does not have."""
+"""Checks that do not apply to a robot without joints."""
 
 SUSPECT = 0.1
-"""From this share of its gate on, a difference of steps and halved steps makes the step a suspect."""
+"""Fraction of its gate above which a step-doubling error suggests that the time step is too long."""
 
 
 class Check(NamedTuple):
-    """A line; ``holds`` is None where it does not apply, ``gate`` where an older run left it out."""
+    """One check; ``holds`` is None if it was not evaluated, and ``gate`` is None if an older run lacks it."""
 
     key: str
     name: str
@@ -39,7 +39,7 @@ class Check(NamedTuple):
 
 
 def checks(summary: dict[str, Any]) -> list[Check]:
-    """Every line of the certificate in a summary."""
+    """Return every check of the certificate in a summary."""
     failed, absent = (_names(summary, f"certificate_{what}") for what in ("failures", "not_evaluated"))
     found = []
     for key, unit in CHECKS.items():
@@ -53,31 +53,31 @@ def checks(summary: dict[str, Any]) -> list[Check]:
 
 
 def is_incomplete(summary: dict[str, Any]) -> bool:
-    """Whether lines that apply to the run were not evaluated."""
+    """Return True if checks that apply to the run were not evaluated."""
     return any(check.holds is None for check in checks(summary))
 
 
 def advice(summary: dict[str, Any]) -> str:
-    """What to do about a certificate that failed; empty where the summary lacks the integrator's settings.
+    """Return advice for a failed certificate; empty if the summary lacks the integrator's settings.
 
-    A shorter step is named only where steps and halved steps differ, or were not compared.
+    A shorter step is suggested only if steps and halved steps differ, or were not compared.
     """
     if summary.get("integrator") == "dormand_prince":
         return "try a smaller tolerance"
     step = summary.get("time_step_s")
     if not isinstance(step, (int, float)):
         return ""
-    shares = [_share(check) for check in checks(summary) if "step_doubling" in check.key]
-    if not shares or max(shares) >= SUSPECT:
+    ratios = [_gate_ratio(check) for check in checks(summary) if "step_doubling" in check.key]
+    if not ratios or max(ratios) >= SUSPECT:
         return f"try a time_step shorter than {step:g} s"
     return (
-        "halved steps give the same motion, so a shorter time_step will not help; check a plant or effects "
-        "of your own, else please report it"
+        "halved steps give the same motion, so a shorter time_step will not help; check custom engines and "
+        "effects, or report a bug"
     )
 
 
-def _share(check: Check) -> float:
-    """The value as a share of its gate; infinite where that is not known."""
+def _gate_ratio(check: Check) -> float:
+    """Return the ratio of the value to its gate; infinite if either is unknown."""
     if check.value is None or not check.gate:
         return 0.0 if check.holds else float("inf")
     return check.value / check.gate

@@ -1,4 +1,4 @@
-"""The output folder: claimed before the run, written by one process at a time, replaced file by file."""
+"""The output folder: locked by one process at a time; each file is replaced atomically."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 
-from onorbit_rs.exceptions import OutputFolderError, OutputInUseError, OutputNotWritableError
-from onorbit_rs.files import (
-    described,
+from onorbit_rs.common.files import (
     exists,
+    file_kind,
     is_real_folder,
     is_regular,
     remove,
     renamed,
     sync_folder,
 )
+from onorbit_rs.exceptions import OutputFolderError, OutputInUseError, OutputNotWritableError
+from onorbit_rs.output.errors import edited, foreign, not_empty, not_writable
 from onorbit_rs.output.lock import LOCK, FolderLock, owner_of
 from onorbit_rs.output.manifest import (
     CHECKPOINT,
@@ -30,18 +31,17 @@ from onorbit_rs.output.manifest import (
     Manifest,
     read_manifest,
 )
-from onorbit_rs.output.refusals import edited, foreign, not_empty, not_writable
 from onorbit_rs.output.replacement import Replacement
 
 
 class OutputFolder:
-    """Where the files of one run go; a context that keeps other processes from writing there."""
+    """Folder for the files of one run; a context manager that locks it against other processes."""
 
     def __init__(self, path: Path) -> None:
-        """Lock a folder that is there."""
+        """Lock an existing folder."""
         self.path = path
         self._unfinished: set[str] = set()
-        """Names of temporary files that a process which was killed left behind."""
+        """Names of temporary files of a process that was killed."""
         try:
             self._lock = FolderLock(path)
         except OutputInUseError:
@@ -57,22 +57,22 @@ class OutputFolder:
 
     @classmethod
     def claim(cls, path: str | os.PathLike[str], *, force: bool = False) -> OutputFolder:
-        """Make the folder where missing, lock it, and see that it is empty and writable.
+        """Create the folder if it does not exist, lock it, and check that it is empty and writable.
 
         Parameters
         ----------
         path : str or path
         force : bool
-            Replace the files that ``manifest.json`` lists; all others stay.
+            Replace the files that ``manifest.json`` lists; other files are kept.
 
         Raises
         ------
         OutputNotEmptyError
-            It holds files and ``force`` is not set, or files of others where a run writes its own.
+            If it contains files and ``force`` is not set, or files with names of results that no run wrote.
         OutputNotWritableError
-            It is a file, or cannot be made or written.
+            If it is a file, or cannot be created or written.
         OutputInUseError
-            Another process writes it.
+            If another process writes to it.
         """
         folder = Path(path)
         _make(folder)
@@ -91,24 +91,24 @@ class OutputFolder:
         return claimed
 
     def __enter__(self) -> OutputFolder:
-        """Itself."""
+        """Return the folder."""
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Let other processes write the folder."""
+        """Release the lock."""
         self.close()
 
     def close(self) -> None:
-        """Let other processes write the folder; what is written is on the disk."""
+        """Release the lock; written files are on the disk."""
         self._lock.release()
 
     @contextmanager
     def replacing(self) -> Iterator[Replacement]:
-        """Files that are replaced together at the end, or not at all where an error comes before it.
+        """Yield files that are replaced together at the end; after an error the old files remain.
 
-        The manifest is written first: a reader finds either the files that it lists or none that fit.
+        The manifest is written first: a reader finds either the listed files, or files that do not match it.
         """
         files = Replacement(self)
         try:
@@ -119,23 +119,23 @@ class OutputFolder:
 
     @contextmanager
     def writing(self, name: str) -> Iterator[Path]:
-        """A temporary path that becomes ``name`` when all went well.
+        """Yield a temporary path, which is renamed to ``name`` on success.
 
         Raises
         ------
         OutputFolderError
-            The disk is full or gone, or ``name`` is there and no run wrote it.
+            If the file cannot be written, or if ``name`` exists and no run wrote it.
         """
         with self.replacing() as files, files.writing(name) as path:
             yield path
 
     def _check_lock(self) -> None:
-        """Before anything is written: lock the folder again where the file of the lock was removed.
+        """Lock the folder again if its lock file was removed; called before anything is written.
 
         Raises
         ------
         OutputInUseError
-            Another process writes the folder now, or did meanwhile.
+            If another process writes to the folder, or wrote to it in the meantime.
         """
         if self._lock.is_held:
             return
@@ -144,25 +144,27 @@ class OutputFolder:
         if found not in (None, self.manifest or Manifest()):
             self._lock.release()
             raise OutputInUseError(
-                f"{self.path} holds files of another run now: {LOCK} was removed while this process wrote "
-                "there, and another one did too; run it again into another folder",
+                f"{self.path} now contains files of another run: {LOCK} was removed while this process wrote "
+                "to the folder, and another process wrote to it too; run it again with another folder",
                 path=str(self.path),
             )
         warnings.warn(
-            f"{self._lock.path} was removed while this process writes the folder, and was made anew: leave "
-            "it there, it keeps other commands from writing",
+            f"{self._lock.path} was removed while this process writes to the folder, and was created again: "
+            "do not remove it, since it prevents other commands from writing",
             UserWarning, stacklevel=2,
         )  # fmt: skip
 
     def check_replaceable(self, name: str) -> None:
-        """Raise :class:`OutputNotEmptyError` where ``name`` is a link, or a file that no run wrote.
+        """Raise :class:`OutputNotEmptyError` if ``name`` is a link, edited, or not written by a run.
 
-        So is a figure that was edited since: it may have taken hours, where numbers come again.
+        Edited figures are kept because, unlike results, they cannot be recomputed.
         """
         file = self.path / name
         parent = file.parent
         if exists(parent) and not is_real_folder(parent) and parent != self.path:
-            raise OutputFolderError(f"cannot write {file}: {parent} is not a folder itself", path=str(file))
+            raise OutputFolderError(
+                f"cannot write {file}: {parent} is a link or a file, not a folder", path=str(file)
+            )
         listed = {} if self.manifest is None else self.manifest.files
         if exists(file) and not (name in listed and is_regular(file)):
             raise foreign(file)
@@ -170,24 +172,24 @@ class OutputFolder:
             raise edited(file)
 
     def check_figures(self) -> None:
-        """Raise :class:`OutputNotEmptyError` where a figure was edited since a run or report wrote it."""
+        """Raise :class:`OutputNotEmptyError` if a figure was edited after a run or report wrote it."""
         for name in [] if self.manifest is None else self.manifest.files:
             if name.startswith(FIGURES):
                 self.check_replaceable(name)
 
     def _is_edited(self, name: str, entry: Entry) -> bool:
-        """Whether a file is another than the manifest says; a kill may have left an old one in its place."""
+        """Return True if a file differs from its entry; False if a killed process did not replace it."""
         return _as_partial(name) not in self._unfinished and Entry.of(self.path / name) != entry
 
     def expect_checkpoint(self, names: tuple[str, ...]) -> None:
-        """Say in the manifest which files the checkpoint will have, before they are there."""
+        """List the files of the checkpoint in the manifest before they are created."""
         self._check_lock()
         manifest = self.manifest or Manifest()
         folder = self.path / CHECKPOINT
         if not exists(folder):
             folder.mkdir()
         elif not is_real_folder(folder):
-            raise OSError(f"{folder} is not a folder itself")
+            raise OSError(f"{folder} is a link or a file, but must be a folder")
         if not set(names) <= set(manifest.checkpoint):
             self.write_manifest(Manifest(manifest.files, names))
             sync_folder(self.path)
@@ -198,48 +200,48 @@ class OutputFolder:
         self.manifest = manifest
 
     def replace(self, name: str, content: bytes) -> None:
-        """Replace one file as a whole, whoever wrote it."""
+        """Replace one file atomically, even if no run wrote it."""
         temporary = self.temporary(name)
         with renamed(temporary, self.path / name):
             temporary.write_bytes(content)
 
     def temporary(self, name: str) -> Path:
-        """Path of a new file beside the others, for what becomes ``name``.
+        """Return the temporary path of a new file that will be renamed to ``name``.
 
-        After a kill the next owner removes it.
+        The next owner of the folder removes it if this process is killed.
 
         Raises
         ------
         OutputInUseError
-            Another process has taken the folder: someone removed the lock of this one.
+            If another process has locked the folder because the lock file was removed.
         """
         self._check_lock()
         return self.path / f".partial-{self._lock.token}-{_as_partial(name)}"
 
     def discard(self) -> None:
-        """Remove what a run that never began has written."""
+        """Remove the files of a run that did not start."""
         self._check_lock()
         for name in (SCENARIO, MANIFEST):
             remove(self.path / name)
 
     def discard_checkpoint(self) -> None:
-        """Remove the checkpoint of a run that ended; one that cannot be removed does no harm."""
+        """Remove the checkpoint of a run that ended; errors are ignored."""
         with suppress(OSError):
             self._check_lock()
             self._remove_checkpoint()
 
     def _remove_checkpoint(self) -> None:
-        """The files that the manifest names, and the folder if it is empty then."""
+        """Remove the files that the manifest lists, and the folder if it is then empty."""
         folder = self.path / CHECKPOINT
         if self.manifest is None or not is_real_folder(folder):
             return
-        for name in self.manifest.checkpoint:  # the state first: rows alone count nothing
+        for name in self.manifest.checkpoint:  # the state first: without it the rows are not valid
             remove(folder / name)
         if not any(folder.iterdir()):
             folder.rmdir()
 
     def _remove_temporaries(self) -> None:
-        """Those of the process that was killed while it held the lock."""
+        """Remove temporary files of the process that was killed while it held the lock."""
         previous = self._lock.previous
         if previous is None or not previous.token.isalnum():
             return
@@ -249,7 +251,7 @@ class OutputFolder:
             remove(file)
 
     def _remove_earlier_run(self) -> None:
-        """Only what the manifest lists, after a look at all that a run will write."""
+        """Remove the files that the manifest lists, after checking every file that a run writes."""
         for name in RESULTS:
             self.check_replaceable(name)
         for name in (FIGURES, CHECKPOINT):
@@ -276,7 +278,7 @@ def _make(folder: Path) -> None:
     try:
         if folder.exists() and not folder.is_dir():
             raise OutputNotWritableError(
-                f"output path is {described(folder)}, not a folder: {folder}", path=str(folder)
+                f"output path is {file_kind(folder)}, but must be a folder: {folder}", path=str(folder)
             )
         folder.mkdir(parents=True, exist_ok=True)
         next(folder.iterdir(), None)
@@ -287,12 +289,12 @@ def _make(folder: Path) -> None:
 
 
 def _is_empty(folder: Path) -> bool:
-    """But for the lock of a process that was killed, and what it had begun to write."""
+    """Return True if the folder is empty apart from the lock and temporary files of a killed process."""
     return not any(file.name != LOCK and not file.name.startswith(".partial-") for file in folder.iterdir())
 
 
 def _as_partial(name: str) -> str:
-    """The end of the name of the temporary file of what becomes ``name``."""
+    """Return the last part of the temporary file name for ``name``."""
     return name.replace("/", "-")
 
 

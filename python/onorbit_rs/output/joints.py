@@ -1,4 +1,4 @@
-"""What the joints did, for the summary: those that turn apart from those that slide, each in its unit."""
+"""Joint quantities of the summary, separately for revolute and prismatic joints, each in its unit."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core
-from onorbit_rs.scenario.control import JOINT_LAWS, JointPidController
-from onorbit_rs.scenario.make_control import columns_of, group
+from onorbit_rs.common.coordinates import JOINTS_Q, JOINTS_V
+from onorbit_rs.scenario.control import JointLaw, JointPidController
+from onorbit_rs.scenario.control.selection import joint_columns, joint_group
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,30 +23,30 @@ if TYPE_CHECKING:
 Summary = dict[str, Any]
 
 _ROUNDING = 1e-9
-"""Share of a limit by which a joint that is held at it may exceed it."""
+"""Fraction of a limit by which a joint held at the limit may exceed it by rounding."""
 
 
 def joint_loads(trace: Trace, built: Built) -> Summary:
-    """Largest torque and force, and how fast the joints still are at the end."""
-    tau, rates = np.abs(np.asarray(trace.tau)), np.abs(np.asarray(trace.v)[-1, 6:])
+    """Return the largest torque and force, and the largest joint rates at the end."""
+    tau, rates = np.abs(np.asarray(trace.tau)), np.abs(np.asarray(trace.v)[-1, JOINTS_V])
     loads: Summary = {}
-    for is_sliding, load, rate in (
+    for is_prismatic, load, rate in (
         (False, "joint_torque_max_nm", "joint_rate_final_max_rad_s"),
         (True, "joint_force_max_n", "joint_rate_final_max_m_s"),
     ):
-        columns = _slides(built, None) == is_sliding
+        columns = _are_prismatic(built, None) == is_prismatic
         if columns.any():
             loads |= {load: tau[:, columns].max(), rate: rates[columns].max()}
     return loads
 
 
 def efforts_at_limit(trace: Trace, built: Built) -> Summary:
-    """The joints under a PID whose effort was at its limit in a row: the law's, else the robot's own."""
+    """Return the joints under a PID whose effort reached the limit of the controller or else the robot."""
     names, tau = list(built.model.joint_names), np.abs(np.asarray(trace.tau)).max(axis=0)
     pids = [law for law in built.scenario.laws if isinstance(law, JointPidController)]
     reached = set()
     for law in pids:
-        columns = columns_of(law, names)
+        columns = joint_columns(law, names)
         own = [built.model.joints[column].effort for column in columns]
         limits = own if law.effort_limit is None else np.broadcast_to(law.effort_limit, len(columns))
         reached |= {column for column, limit in zip(columns, limits, strict=True)
@@ -53,45 +54,45 @@ def efforts_at_limit(trace: Trace, built: Built) -> Summary:
     return {"joint_efforts_at_limit": ", ".join(names[column] for column in sorted(reached))} if pids else {}
 
 
-def largest_shares(values: Floats, limits: Sequence[float | None]) -> Floats:
-    """Return the largest magnitude in each column of ``values``, (T, n), as a share of its limit, (n,).
+def largest_fractions(values: Floats, limits: Sequence[float | None]) -> Floats:
+    """Return the largest magnitude in each column of ``values``, (T, n), as a fraction of its limit, (n,).
 
-    The share is 0 where there is no limit. A limit of zero counts as none: exporters write it where they
-    know none.
+    The fraction is 0 for columns without a limit. A limit of zero means no limit, as exporters write it for
+    unknown limits.
     """
     largest = np.abs(values).max(axis=0, initial=0.0)
-    shares = [value / limit if limit else 0.0 for value, limit in zip(largest, limits, strict=True)]
-    return np.array(shares, dtype=np.float64)
+    fractions = [value / limit if limit else 0.0 for value, limit in zip(largest, limits, strict=True)]
+    return np.array(fractions, dtype=np.float64)
 
 
-def rate_shares(trace: Trace, model: Model) -> Floats:
-    """Return the largest rate of each joint as a share of its limit, (n,)."""
-    return largest_shares(np.asarray(trace.v)[:, 6:], [joint.velocity for joint in model.joints])
+def rate_fractions(trace: Trace, model: Model) -> Floats:
+    """Return the largest rate of each joint as a fraction of its limit, (n,)."""
+    return largest_fractions(np.asarray(trace.v)[:, JOINTS_V], [joint.velocity for joint in model.joints])
 
 
-def effort_shares(trace: Trace, model: Model) -> Floats:
-    """Return the largest effort of each joint as a share of its limit, (n,)."""
-    return largest_shares(np.asarray(trace.tau), [joint.effort for joint in model.joints])
+def effort_fractions(trace: Trace, model: Model) -> Floats:
+    """Return the largest effort of each joint as a fraction of its limit, (n,)."""
+    return largest_fractions(np.asarray(trace.tau), [joint.effort for joint in model.joints])
 
 
 def loads_exceeded(trace: Trace, model: Model) -> Summary:
-    """Return the names of the joints whose rate or effort was beyond the limit of the robot's file in a row.
+    """Return the names of the joints whose rate or effort exceeds the limit of the robot's file in a row.
 
-    Under any control law; an effort limit of the controller itself does not count.
+    Effort limits of controllers are not considered.
     """
     return {
-        key: ", ".join(np.array(model.joint_names)[shares > 1.0 + _ROUNDING])
-        for key, shares in (
-            ("joint_rates_exceeded", rate_shares(trace, model)),
-            ("joint_efforts_exceeded", effort_shares(trace, model)),
+        key: ", ".join(np.array(model.joint_names)[fractions > 1.0 + _ROUNDING])
+        for key, fractions in (
+            ("joint_rates_exceeded", rate_fractions(trace, model)),
+            ("joint_efforts_exceeded", effort_fractions(trace, model)),
         )
     }
 
 
 def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | None = None) -> Summary:
-    """``KEY_joint_error_max_rad``, ``…_m`` of errors (T, joints); ``wanted`` are names or patterns."""
-    slides = _slides(built, wanted)
-    units = {"rad": ~slides, "m": slides}
+    """Return ``KEY_joint_error_max_rad`` and ``…_m`` of errors (T, joints) of the joints ``wanted``."""
+    prismatic = _are_prismatic(built, wanted)
+    units = {"rad": ~prismatic, "m": prismatic}
     return {
         f"{key}_joint_error_max_{unit}": np.abs(errors[:, columns]).max()
         for unit, columns in units.items()
@@ -100,22 +101,25 @@ def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | Non
 
 
 def single_errors(trace: Trace, built: Built) -> Summary:
-    """The largest errors of the joints under the one ``controller`` of a scenario, where it has positions."""
+    """Return the largest joint tracking errors of a run with a single position controller.
+
+    Angles are in rad and lengths in m; the result is empty for other controllers.
+    """
     law = built.scenario.controller
     has_positions = not isinstance(law, JointPidController) or law.interface == "position"
-    if not isinstance(law, JOINT_LAWS) or not has_positions or not built.model.joints:
+    if not isinstance(law, JointLaw) or not has_positions or not built.model.joints:
         return {}
-    joints = np.asarray(trace.q)[:, 7:]
-    desired = joints[0]  # held where they start
+    joints = np.asarray(trace.q)[:, JOINTS_Q]
+    desired = joints[0]  # without a reference the joints are held at their start
     if isinstance(built.reference, _core.JointReference):
         desired, _, _ = built.reference.sample(np.asarray(trace.time))
     return joint_errors("tracking", desired - joints, built)
 
 
-def _slides(built: Built, wanted: list[str] | None) -> NDArray[np.bool_]:
-    """Whether each joint is prismatic, in the order of the robot, or of a controller's group."""
+def _are_prismatic(built: Built, wanted: list[str] | None) -> NDArray[np.bool_]:
+    """Return whether each joint of the robot, or of a controller's group, is prismatic."""
     kinds = {joint.name: joint.kind for joint in built.model.joints}
     names = list(built.model.joint_names)
     return np.array(
-        [kinds[name] == "prismatic" for name in (names if wanted is None else group(wanted, names))]
+        [kinds[name] == "prismatic" for name in (names if wanted is None else joint_group(wanted, names))]
     )

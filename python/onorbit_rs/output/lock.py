@@ -1,4 +1,4 @@
-"""One writer per folder: a lock of the operating system that ends with the process that holds it."""
+"""Lock of an output folder: an operating-system lock, released when the process that holds it ends."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from onorbit_rs.common.files import open_to_change, open_to_read, remove
+from onorbit_rs.common.printable import printable, shell_word
 from onorbit_rs.exceptions import OutputInUseError
-from onorbit_rs.files import open_to_change, open_to_read, remove
-from onorbit_rs.printable import printable, shell_word
 
 LOCK = ".onorbit.lock"
 _MOST = 10_000
 _FAR = 1 << 30
-"""Where Windows locks a byte: beyond the text, which others read."""
+"""Offset of the byte that is locked on Windows, beyond the text that other processes read."""
 _UNSUPPORTED = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EINVAL}
 _held: set[int] = set()
-"""Descriptors of locks of this process; a forked child closes them, or it would keep the lock alive."""
+"""Descriptors of the locks of this process; a forked child closes them so as not to hold the locks."""
 
 
 class Owner(NamedTuple):
-    """The process that holds a lock, or held it when it was killed."""
+    """The process that holds a lock, or was killed while holding it."""
 
     pid: int
     host: str
     command: str
     since: str
     token: str
-    """In the names of its temporary files."""
+    """Part of the names of its temporary files."""
 
     def __str__(self) -> str:
-        """``process 12 on host (onorbit run …) since 2026-01-01 12:00:00``."""
+        """Return the text ``process 12 on host (onorbit run …) since 2026-01-01 12:00:00``."""
         return printable(f"process {self.pid} on {self.host} ({self.command}) since {self.since}")
 
 
@@ -47,21 +47,21 @@ _UNKNOWN = Owner(0, "an unknown host", "unknown command", "an unknown time", "")
 
 
 class FolderLock:
-    """The right to write a folder, held from construction to :meth:`release`."""
+    """Lock on a folder, held from construction to :meth:`release`."""
 
     def __init__(self, folder: Path) -> None:
-        """Take the lock, or raise :class:`OutputInUseError` where another process has it."""
+        """Acquire the lock; raise :class:`OutputInUseError` if another process holds it."""
         self.path = folder / LOCK
         self._descriptor = self._taken(folder)
         _held.add(self._descriptor)
         self.previous = _owner(self.path)
-        """The process that was killed while it held the lock; None where there was none."""
+        """The process that was killed while it held the lock, if any."""
         self.token = secrets.token_hex(8)
         self._sign()
 
     @property
     def is_held(self) -> bool:
-        """Whether the locked file still has the name that others look at: someone may have removed it."""
+        """True if the lock file still exists under its name and was not removed."""
         return _is_at(self.path, self._descriptor)
 
     def retake(self) -> None:
@@ -70,7 +70,7 @@ class FolderLock:
         Raises
         ------
         OutputInUseError
-            Another process took it meanwhile.
+            If another process acquired it in the meantime.
         """
         again = self._taken(self.path.parent)
         self._close()
@@ -79,8 +79,8 @@ class FolderLock:
         self._sign()
 
     def release(self) -> None:
-        """Let others write the folder; twice does no harm."""
-        with contextlib.suppress(OSError):  # Windows removes no open file, and others may open it next
+        """Release the lock; calling it twice has no effect."""
+        with contextlib.suppress(OSError):  # Windows does not remove open files
             if self._descriptor in _held and self.is_held:
                 remove(self.path)
         self._close()
@@ -92,7 +92,7 @@ class FolderLock:
             self._descriptor = -1
 
     def _sign(self) -> None:
-        """Write into the file whose it is."""
+        """Write the description of this process to the lock file."""
         try:
             os.ftruncate(self._descriptor, 0)
             os.write(self._descriptor, json.dumps(_this_process(self.token)._asdict()).encode())
@@ -101,7 +101,7 @@ class FolderLock:
             raise
 
     def _taken(self, folder: Path) -> int:
-        """A locked descriptor of the file that has the name now: its owner may have removed it meanwhile."""
+        """Return a locked descriptor of the current lock file, which its owner may remove at any time."""
         for attempt in range(20):
             with open_to_change(self.path) as stream:
                 descriptor = os.dup(stream.fileno())
@@ -113,12 +113,12 @@ class FolderLock:
                 os.close(descriptor)
                 raise
             os.close(descriptor)
-            time.sleep(0.01 if attempt else 0.0)  # who only asks holds it for an instant
+            time.sleep(0.01 if attempt else 0.0)  # a process that reads the owner holds it for an instant
         raise _in_use(folder)
 
 
 def owner_of(folder: Path) -> Owner | None:
-    """The live process that holds the lock of a folder; None where there is none, or nobody can say."""
+    """Return the running process that holds the lock of a folder; None if there is none or it is unknown."""
     try:
         with open_to_read(folder / LOCK) as stream:
             if _try_lock(stream.fileno(), None):
@@ -130,18 +130,18 @@ def owner_of(folder: Path) -> Owner | None:
 
 def _in_use(folder: Path) -> OutputInUseError:
     owner = owner_of(folder) or _UNKNOWN
-    message = f"{folder} is in use: {owner} writes it; wait for its end, or choose another folder"
+    message = f"{folder} is in use by {owner}; wait until it ends, or choose another folder"
     return OutputInUseError(
         message, path=str(folder), pid=owner.pid, command=owner.command, since=owner.since
     )
 
 
 def _owner(file: Path) -> Owner | None:
-    """What the file says; None where it says nothing that can be understood."""
+    """Return the owner stored in a lock file; None if it cannot be read."""
     try:
         with open_to_read(file) as stream:
-            said: Any = json.loads(stream.read(_MOST))
-        owner = Owner(int(said["pid"]), *(str(said[name]) for name in Owner._fields[1:]))
+            stored: Any = json.loads(stream.read(_MOST))
+        owner = Owner(int(stored["pid"]), *(str(stored[name]) for name in Owner._fields[1:]))
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
     return owner
@@ -163,7 +163,7 @@ def _is_at(file: Path, descriptor: int) -> bool:
 
 
 def _try_lock(descriptor: int, folder: Path | None) -> bool:
-    """Whether the lock was free; it is taken shared where no ``folder`` to write is given."""
+    """Try to acquire the lock, in shared mode if ``folder`` is None; return True on success."""
     try:
         _lock(descriptor, is_shared=folder is None)
     except OSError as error:
@@ -171,7 +171,7 @@ def _try_lock(descriptor: int, folder: Path | None) -> bool:
             return False
         if folder is not None:
             warnings.warn(
-                f"{folder} cannot be locked ({error.strerror}): see that no other command writes it",
+                f"{folder} cannot be locked ({error.strerror}); make sure that no other command writes to it",
                 UserWarning, stacklevel=2,
             )  # fmt: skip
     return True
@@ -184,7 +184,7 @@ if sys.platform == "win32":
         os.lseek(descriptor, _FAR, os.SEEK_SET)
         try:
             msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-            if is_shared:  # Windows has no shared ones here
+            if is_shared:  # msvcrt has no shared locks
                 os.lseek(descriptor, _FAR, os.SEEK_SET)
                 msvcrt.locking(descriptor, msvcrt.LK_UNLCK, 1)
         finally:

@@ -1,4 +1,4 @@
-"""``manifest.json``: which files of a folder a run wrote, with their sizes and SHA-256."""
+"""``manifest.json``: the files that a run wrote, with their sizes and SHA-256."""
 
 from __future__ import annotations
 
@@ -9,35 +9,35 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
+from onorbit_rs.common.files import exists, open_to_read, read_bounded, sha256_of
+from onorbit_rs.common.printable import printable, shell_word
 from onorbit_rs.exceptions import IntegrityError, ReadError
-from onorbit_rs.files import exists, open_to_read, read_bounded, sha256_of
 from onorbit_rs.output.sealed import sealed, unsealed
-from onorbit_rs.printable import printable, shell_word
 
 MANIFEST = "manifest.json"
 SUMMARY, TRACE, SCENARIO, RECORDING, REPORT = (
     "summary.json", "trace.npz", "scenario.yaml", "run.rrd", "report.html",
 )  # fmt: skip
 RESULTS = (SUMMARY, TRACE, SCENARIO, RECORDING, REPORT)
-"""What a run and its report write beside figures, in the order in which ``--force`` removes it."""
+"""Files of a run and its report other than figures, in the order in which ``--force`` removes them."""
 FIGURES, CHECKPOINT = "figures", "checkpoint"
 STATE = "state.json"
 _FORMAT = 1
 _MOST = 16_000_000
-_STEM = r"[^/\\\x00\ud800-\udfff]+"  # half a surrogate pair, which JSON can hold, is no name of a file
+_STEM = r"[^/\\\x00\ud800-\udfff]+"  # lone surrogates, which JSON can contain, are not valid in file names
 _FIGURE = re.compile(rf"{FIGURES}/{_STEM}\.(png|pdf)")
 _CHECKPOINT = re.compile(rf"{re.escape(STATE)}|{_STEM}\.f64")
 
 
 class Entry(NamedTuple):
-    """What a run wrote under a name."""
+    """Size and digest of a file."""
 
     size: int
     sha256: str
 
     @classmethod
     def of(cls, file: Path) -> Entry:
-        """Of a file as it is now."""
+        """Return the entry of a file as it is now."""
         with open_to_read(file) as stream:
             digest = sha256_of(stream)
             return cls(stream.tell(), digest)
@@ -45,26 +45,26 @@ class Entry(NamedTuple):
 
 @dataclass(frozen=True)
 class Manifest:
-    """Files by their names in the folder (``figures/x.png``), and the names of those of the checkpoint."""
+    """Entries of files by name (``figures/x.png``), and the names of the files of the checkpoint."""
 
     files: Mapping[str, Entry] = field(default_factory=dict)
     checkpoint: tuple[str, ...] = ()
 
     def as_bytes(self) -> bytes:
-        """Content of ``manifest.json``."""
+        """Return the content of ``manifest.json``."""
         files = {name: entry._asdict() for name, entry in sorted(self.files.items())}
         return sealed({"format": _FORMAT, "files": files, "checkpoint": list(self.checkpoint)})
 
     @contextmanager
     def opened(self, folder: Path, name: str) -> Iterator[BinaryIO]:
-        """A file, open for reading, that is what the run wrote.
+        """Open a file for reading and check that it is unchanged.
 
         Raises
         ------
         IntegrityError
-            It was changed since, or the run did not write it.
+            If it was changed, or if the run did not write it.
         FileNotFoundError, OSError
-            It is not there or cannot be read.
+            If it does not exist or cannot be read.
         """
         with open_to_read(folder / name) as stream:
             expected = self.files.get(name)
@@ -79,12 +79,12 @@ class Manifest:
 
 
 def read_manifest(folder: Path) -> Manifest | None:
-    """The manifest in a folder; None where there is none.
+    """Return the manifest of a folder; None if there is none.
 
     Raises
     ------
     ReadError
-        It is damaged, or names what no run writes.
+        If it is damaged, or lists files that no run writes.
     """
     file = folder / MANIFEST
     if not exists(file):
@@ -93,16 +93,16 @@ def read_manifest(folder: Path) -> Manifest | None:
         with open_to_read(file) as stream:
             record = unsealed(read_bounded(stream, _MOST))
         if record["format"] != _FORMAT:
-            raise ValueError(f"its format is {record['format']!r}, this version reads {_FORMAT}")
+            raise ValueError(f"its format is {record['format']!r}, expected {_FORMAT}")
         files = {name: _entry(name, entry) for name, entry in record["files"].items()}
         names = tuple(record["checkpoint"])
         if not all(isinstance(name, str) and _CHECKPOINT.fullmatch(name) for name in names):
-            raise ValueError("it names files that no checkpoint has")
+            raise ValueError("it lists files that are not part of a checkpoint")
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise ReadError(
-            f"cannot read {file}: {error}; what the run wrote is no longer known: run it again into another "
-            f"folder: onorbit run {shell_word(folder / SCENARIO)}, or remove {MANIFEST} to read the folder "
-            "unchecked",
+            f"cannot read {file}: {error}; the files of the run cannot be verified: run it "
+            f"again with another folder: onorbit run {shell_word(folder / SCENARIO)}, or remove {MANIFEST} "
+            "to read the folder without verification",
             path=str(file), kind="manifest",
         ) from error  # fmt: skip
     return Manifest(files, names)
@@ -110,10 +110,10 @@ def read_manifest(folder: Path) -> Manifest | None:
 
 def _entry(name: str, entry: Any) -> Entry:
     if name not in RESULTS and not _FIGURE.fullmatch(name):
-        raise ValueError(f"it names {name!r}, which no run writes")
+        raise ValueError(f"it lists {name!r}, which is not a file of a run")
     size, digest = entry["size"], entry["sha256"]
     if type(size) is not int or not isinstance(digest, str):
-        raise ValueError(f"the entry of {name!r} is not a size and a digest")
+        raise ValueError(f"the entry of {name!r} must contain a size and a SHA-256")
     return Entry(size, digest)
 
 
@@ -125,7 +125,7 @@ def _changed(folder: Path, name: str, expected: Entry | None, got: Entry) -> Int
     else:
         what = f"{name} in {folder} was changed since the run wrote it: its SHA-256 differs from {MANIFEST}'s"
     again = f"onorbit run {shell_word(folder / SCENARIO)} --out DIR"
-    way_out = f"undo the change, or run it again: {again}"
+    fix = f"undo the change, or run it again: {again}"
     return IntegrityError(
-        printable(f"{what}; {way_out}"), path=str(folder / name), kind=name, expected=expected, got=got
+        printable(f"{what}; {fix}"), path=str(folder / name), kind=name, expected=expected, got=got
     )

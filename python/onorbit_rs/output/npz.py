@@ -1,4 +1,4 @@
-"""Arrays of a ``.npz``, read only after the sizes that it states were checked against the file itself."""
+"""Reads the arrays of a ``.npz`` file after checking its stated sizes against the size of the file."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ _HEADER = re.compile(
     rb"\{'descr': '(?P<kind>[<>|][biuf][1248])', 'fortran_order': (?P<is_fortran>True|False), "
     rb"'shape': \((?P<shape>[0-9, ]{0,200})\), \} *\n"
 )
-"""As numpy writes it; numpy itself reads it by Python's own parser, which is not for strangers' text."""
+"""Header that NumPy writes. NumPy parses it with ``ast``, which is not safe for untrusted input."""
 
 
 def read_arrays(stream: BinaryIO) -> dict[str, Any]:
-    """Every array of numbers in an uncompressed ``.npz``, as :func:`numpy.savez` writes it.
+    """Return every array of numbers in an uncompressed ``.npz`` written by :func:`numpy.savez`.
 
-    No more memory is taken than the file has bytes, whatever its headers say; nothing is unpickled.
+    The memory used is bounded by the size of the file, whatever its headers state; nothing is unpickled.
 
     Raises
     ------
     ValueError
-        It is no such file: no zip, compressed, cut, damaged, or sizes that contradict each other.
+        If the file is not a zip, is compressed, truncated or damaged, or states contradictory sizes.
     """
     size = stream.seek(0, 2)
     try:
@@ -41,15 +41,15 @@ def read_arrays(stream: BinaryIO) -> dict[str, Any]:
 
 
 def _check_directory(members: list[zipfile.ZipInfo], size: int) -> None:
-    """Before anything is read: plain copies, no name twice, together no larger than the file."""
+    """Check that members are uncompressed, have distinct names and are no larger than the file."""
     names = [member.filename for member in members]
     if len(names) > _MOST_COLUMNS or len(set(names)) < len(names):
-        raise ValueError("it has too many columns, or one twice")
+        raise ValueError("it has too many columns or duplicate columns")
     for member in members:
         if not member.filename.endswith(".npy"):
-            raise ValueError(f"it holds {member.filename!r}, which is no array")
+            raise ValueError(f"it contains {member.filename!r}, which is not an array")
         if member.compress_type != zipfile.ZIP_STORED or member.compress_size != member.file_size:
-            raise ValueError(f"{member.filename} is compressed; a run writes its trace uncompressed")
+            raise ValueError(f"{member.filename} is compressed, but must be uncompressed")
     if sum(member.file_size for member in members) > size:
         raise ValueError("its columns are larger than the file")
 
@@ -66,11 +66,11 @@ def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Any:
         shape = tuple(int(number) for number in header["shape"].split(b",") if number.strip())
         left, needed = member.file_size - 10 - length, math.prod(shape) * dtype.itemsize
         if needed != left:
-            raise ValueError(f"{member.filename} has {left} bytes, its shape {shape} takes {needed}")
+            raise ValueError(f"{member.filename} has {left} bytes, but its shape {shape} requires {needed}")
         content = bytearray()
-        while chunk := stream.read(_CHUNK):  # at its end the sum of the zip is checked
+        while chunk := stream.read(_CHUNK):  # the checksum of the zip is checked at its end
             content += chunk
     if len(content) != left:
-        raise ValueError(f"{member.filename} is cut")
+        raise ValueError(f"{member.filename} is truncated")
     order: Literal["F", "C"] = "F" if header["is_fortran"] == b"True" else "C"
     return np.frombuffer(content, dtype=dtype).reshape(shape, order=order)

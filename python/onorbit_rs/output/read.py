@@ -1,4 +1,4 @@
-"""A run read back from its folder, each file checked against the manifest."""
+"""Reads a run from its folder; each file is checked against the manifest."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
+from onorbit_rs.common.files import exists, file_kind, open_to_read, read_bounded
+from onorbit_rs.common.printable import shell_word
 from onorbit_rs.exceptions import IntegrityError, NotFoundError, OnOrbitError, ReadError
-from onorbit_rs.files import described, exists, open_to_read, read_bounded
 from onorbit_rs.output.checkpoint import has_checkpoint
 from onorbit_rs.output.checks import CHECKS, GATE
 from onorbit_rs.output.lock import owner_of
 from onorbit_rs.output.manifest import MANIFEST, SCENARIO, SUMMARY, TRACE, read_manifest
 from onorbit_rs.output.npz import read_arrays
 from onorbit_rs.output.saved_trace import SavedTrace, check_shapes
-from onorbit_rs.printable import shell_word
 from onorbit_rs.scenario import load
 
 if TYPE_CHECKING:
@@ -27,21 +27,21 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario import Scenario
 
 _MOST = 16_000_000
-"""Bytes of a summary."""
+"""Largest size of a summary, bytes."""
 
 
 class SavedRun:
-    """The files of one run in a folder, each checked against the manifest that was there at first."""
+    """Files of one run in a folder, each checked against the manifest read at construction."""
 
     def __init__(self, folder: Path) -> None:
-        """Read the manifest; a folder of an earlier version has none and is read with a warning.
+        """Read the manifest; a folder of an earlier version without one is read with a warning.
 
         Raises
         ------
         NotFoundError
-            No such folder.
+            If there is no such folder.
         ReadError
-            The manifest is damaged.
+            If the manifest is damaged.
         """
         self.folder = folder
         check_folder(folder)
@@ -50,14 +50,14 @@ class SavedRun:
 
     @contextmanager
     def opened(self, name: str) -> Iterator[BinaryIO]:
-        """A file as the run wrote it, open for reading.
+        """Open a file for reading and check that it is unchanged.
 
         Raises
         ------
         IntegrityError
-            It was changed since.
+            If it was changed.
         FileNotFoundError, OSError
-            It is not there, or cannot be read.
+            If it does not exist or cannot be read.
         """
         if self._manifest is None:
             with open_to_read(self.folder / name) as stream:
@@ -72,11 +72,11 @@ class SavedRun:
             if owner is None or owner.pid == os.getpid():
                 raise
             file = self.folder / name
-            message = f"{file} is being replaced: {owner} writes this folder; try again when it has ended"
+            message = f"{file} is being replaced by {owner}; try again when that process has ended"
             raise ReadError(message, path=str(file), kind=name) from error
 
     def check(self, name: str) -> None:
-        """Raise :class:`IntegrityError` where a file was changed since, ReadError where it is gone."""
+        """Raise :class:`IntegrityError` if a file was changed, :class:`ReadError` if it cannot be read."""
         try:
             with self.opened(name):
                 pass
@@ -86,7 +86,7 @@ class SavedRun:
             raise _unreadable(self.folder / name, name, error) from error
 
     def summary(self) -> dict[str, Any]:
-        """``summary.json``; raises as :func:`read_summary`."""
+        """Return ``summary.json``; raises as :func:`read_summary`."""
         file = self.folder / SUMMARY
         try:
             with self.opened(SUMMARY) as stream:
@@ -94,7 +94,7 @@ class SavedRun:
         except OnOrbitError:
             raise
         except FileNotFoundError as error:
-            what = f"no run in this folder (no {SUMMARY}): {self.folder}{_way_out(self.folder)}"
+            what = f"no run in this folder ({SUMMARY} is missing): {self.folder}{_hint(self.folder)}"
             raise NotFoundError(what, path=str(self.folder), kind="run") from error
         except OSError as error:
             raise _unreadable(file, "summary", error) from error
@@ -106,7 +106,7 @@ class SavedRun:
             ) from error
 
     def trace(self) -> Trace:
-        """``trace.npz``; raises as :func:`read_trace`."""
+        """Return ``trace.npz``; raises as :func:`read_trace`."""
         file = self.folder / TRACE
         try:
             with self.opened(TRACE) as stream:
@@ -117,19 +117,19 @@ class SavedRun:
         except OnOrbitError:
             raise
         except FileNotFoundError as error:
-            message = f"no trace in this folder: {file}{_way_out(self.folder)}"
+            message = f"no trace in this folder: {file}{_hint(self.folder)}"
             raise NotFoundError(message, path=str(file), kind="trace") from error
         except (OSError, ValueError, TypeError, AttributeError) as error:
             raise _unreadable(file, "trace", error) from error
         return cast("Trace", SavedTrace(arrays))
 
     def scenario_text(self) -> str:
-        """``scenario.yaml``.
+        """Return the text of ``scenario.yaml``.
 
         Raises
         ------
         NotFoundError, ReadError
-            It is not there, cannot be read, or was changed since.
+            If it does not exist, cannot be read, or was changed.
         """
         file = self.folder / SCENARIO
         try:
@@ -144,40 +144,45 @@ class SavedRun:
             raise _unreadable(file, "scenario", error) from error
 
     def scenario(self) -> Scenario:
-        """The scenario of the run; raises as :meth:`scenario_text`, and :class:`ScenarioError`."""
+        """Return the scenario of the run; raises as :meth:`scenario_text`, and :class:`ScenarioError`."""
         self.scenario_text()
         scenario = load(self.folder / SCENARIO)
-        self.check(SCENARIO)  # nobody replaced it meanwhile
+        self.check(SCENARIO)  # it was not replaced in the meantime
         return scenario
 
     def _warn(self) -> None:
         if not self._has_warned:
             self._has_warned = True
             warnings.warn(
-                f"{self.folder} has no {MANIFEST}, as folders of earlier versions: whether its files were "
-                "changed since the run wrote them is not known",
+                f"{self.folder} has no {MANIFEST}, because it was written by an earlier version; "
+                "changes to its "
+                "files since the run cannot be detected",
                 UserWarning, stacklevel=2,
             )  # fmt: skip
 
 
 def check_folder(folder: Path) -> None:
-    """Raise :class:`NotFoundError` where there is no folder of this name."""
+    """Raise :class:`NotFoundError` if there is no folder of this name."""
     if not folder.is_dir():
-        what = f"this is {described(folder)}, not the folder of a run" if exists(folder) else "no such folder"
+        what = (
+            f"it is {file_kind(folder)}, but the output folder of a run is required"
+            if exists(folder)
+            else "no such folder"
+        )
         raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
 
 
 def read_trace(folder: Path) -> Trace:
-    """The columns in ``trace.npz``; what a trace computes on request (its certificate) is not there.
+    """Return the columns in ``trace.npz``, without the methods that compute, such as ``certificate``.
 
     Raises
     ------
     NotFoundError
-        No such file.
+        If there is no such file.
     IntegrityError
-        It was changed since the run wrote it.
+        If it was changed after the run.
     ReadError
-        It is not the trace of a run.
+        If it is not the trace of a run.
     """
     return SavedRun(folder).trace()
 
@@ -187,27 +192,27 @@ def _unreadable(file: Path, kind: str, error: Exception) -> ReadError:
     return ReadError(f"cannot read {file}: {reason}", path=str(file), kind=kind)
 
 
-def _way_out(folder: Path) -> str:
-    """Who is writing the run, or how to go on with one that was killed."""
+def _hint(folder: Path) -> str:
+    """Return a hint: the process that writes the run or the command that resumes it, or an empty text."""
     owner = owner_of(folder)
     if owner is not None and owner.pid != os.getpid():
         return f"; {owner} is writing it"
     if not has_checkpoint(folder):
         return ""
-    return f"; its run was stopped before its end, go on with: onorbit resume {shell_word(folder)}"
+    return f"; its run was stopped before its end; continue with: onorbit resume {shell_word(folder)}"
 
 
 def read_summary(folder: Path) -> dict[str, Any]:
-    """``summary.json`` of a run.
+    """Return ``summary.json`` of a run.
 
     Raises
     ------
     NotFoundError
-        No such folder, or no run in it.
+        If there is no such folder, or no run in it.
     IntegrityError
-        It was changed since the run wrote it.
+        If it was changed after the run.
     ReadError
-        It cannot be read.
+        If it cannot be read.
     """
     try:
         return SavedRun(folder).summary()
@@ -222,21 +227,21 @@ _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "certificate_passed": ((bool, type(None)), "true or false"),
     "simulated_s": ((int, float, type(None)), "a number"),
 }
-"""What entries that decide what is said must be."""
+"""Required types of entries that the output depends on."""
 
 
 def _checked(summary: Any) -> dict[str, Any]:
     if not isinstance(summary, dict):
-        raise TypeError(f"it holds a {type(summary).__name__}, not a mapping")
+        raise TypeError(f"it contains a {type(summary).__name__}, expected a mapping")
     for name, value in summary.items():
         if name in CHECKS or name.startswith(GATE):
             if not isinstance(value, (int, float, type(None))):
-                raise TypeError(f"{name} is {_brief(value)}, expected a number")
+                raise TypeError(f"{name} is {_brief(value)}; expected a number")
         elif not isinstance(value, (str, int, float, type(None))):
-            raise TypeError(f"{name} is {_brief(value)}, expected a number, a word or null")
+            raise TypeError(f"{name} is {_brief(value)}; expected a number, text or null")
     for name, (kind, words) in _KINDS.items():
         if name in summary and not isinstance(summary[name], kind):
-            raise TypeError(f"{name} is {_brief(summary[name])}, expected {words}")
+            raise TypeError(f"{name} is {_brief(summary[name])}; expected {words}")
     return summary
 
 

@@ -1,4 +1,4 @@
-"""Several files of a folder that are replaced together."""
+"""Replaces several files of a folder together."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from onorbit_rs.files import partial, refusals, sync_folder
+from onorbit_rs.common.files import output_errors, partial, sync_folder
 from onorbit_rs.output.manifest import Entry, Manifest
 
 if TYPE_CHECKING:
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 
 class Replacement:
-    """Files on their way into a folder: written under temporary names, then renamed all at once."""
+    """Files that are written under temporary names and then renamed together."""
 
     def __init__(self, folder: OutputFolder) -> None:
-        """No file yet."""
+        """Start without files."""
         self._folder = folder
         self._written: dict[str, tuple[Path, Entry]] = {}
 
     @contextmanager
     def writing(self, name: str) -> Iterator[Path]:
-        """A temporary path for what becomes ``name`` with all the others."""
+        """Yield a temporary path, which :meth:`commit` renames to ``name``."""
         file = self._folder.path / name
-        with refusals(file):
+        with output_errors(file):
             self._folder.check_replaceable(name)
             temporary = self._folder.temporary(name)
             with partial(temporary):
@@ -34,18 +34,18 @@ class Replacement:
             self._written[name] = temporary, Entry.of(temporary)
 
     def commit(self) -> None:
-        """List the files in the manifest, then give them their names."""
+        """Add the files to the manifest, then rename them."""
         if not self._written:
             return
         folder = self._folder
-        with refusals(folder.path / next(iter(self._written))):
+        with output_errors(folder.path / next(iter(self._written))):
             entries = {name: entry for name, (_, entry) in self._written.items()}
-            if folder.manifest is not None:  # a folder of an earlier version stays without
+            if folder.manifest is not None:  # folders of earlier versions have no manifest
                 manifest = folder.manifest
                 folder.write_manifest(Manifest({**manifest.files, **entries}, manifest.checkpoint))
             try:
                 self._rename()
-            except KeyboardInterrupt:  # what was begun is brought to its end
+            except KeyboardInterrupt:  # complete the renaming before stopping
                 self._rename()
                 raise
             for parent in {folder.path, *((folder.path / name).parent for name in entries)}:
@@ -60,6 +60,6 @@ class Replacement:
             del self._written[name]
 
     def discard(self) -> None:
-        """Remove what was not renamed."""
+        """Remove the files that were not renamed."""
         for temporary, _ in self._written.values():
             temporary.unlink(missing_ok=True)

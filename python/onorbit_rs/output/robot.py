@@ -1,4 +1,4 @@
-"""Whether the robot that a run's folder names is still the one that ran."""
+"""Checks whether the robot of a run was changed after the run."""
 
 from __future__ import annotations
 
@@ -7,32 +7,32 @@ from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.exceptions import IntegrityError, OnOrbitError
 from onorbit_rs.output.read import SavedRun
-from onorbit_rs.robots.fingerprint import is_another
-from onorbit_rs.scenario.make_robot import make_robot
+from onorbit_rs.robots.fingerprint import has_changed
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
 
-CHANGED = "the robot's file was changed since the run: it is not the robot that was recorded"
+CHANGED = "the robot's file was changed since the run; the robot differs from the recorded one"
 
 
 def was_changed(model: Model, summary: dict[str, Any]) -> bool:
-    """Whether a robot is not the one of a run; of runs of earlier versions nobody knows."""
-    return is_another(model, summary.get("robot_fingerprint"))
+    """Return True if a robot differs from that of the run; False if the summary has no fingerprint."""
+    return has_changed(model, summary.get("robot_fingerprint"))
 
 
 def remark_on_robot(saved: SavedRun, summary: dict[str, Any]) -> str | None:
-    """What is to be said where the robot of a folder's run was changed since, or is gone; None where not.
+    """Return a remark if the robot of a run was changed or cannot be read; None otherwise.
 
     Raises
     ------
     IntegrityError
-        The folder's scenario was changed since the run.
+        If the scenario in the folder was changed after the run.
     """
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what the file is like was told when it ran
-            model = make_robot(saved.scenario())
+            warnings.simplefilter("ignore")  # the warnings were issued during the run
+            scenario = saved.scenario()
+            model = scenario.robot.build(scenario)
     except IntegrityError:
         raise
     except OnOrbitError as error:

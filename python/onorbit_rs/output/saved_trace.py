@@ -1,4 +1,4 @@
-"""Columns of a trace that was saved, and whether their shapes fit each other."""
+"""A trace that was read from a file, and the check that its columns have consistent shapes."""
 
 from __future__ import annotations
 
@@ -8,63 +8,59 @@ from typing import Any
 
 import numpy as np
 
+from onorbit_rs._core import COLUMNS
+from onorbit_rs.common.coordinates import BASE_NQ
+from onorbit_rs.output.columns import row_shape, split_path
+
 
 @dataclass(frozen=True)
 class SavedTrace:
-    """Columns under their names, as a :class:`onorbit_rs.Trace` has them."""
+    """Columns by path, with the attributes of a :class:`onorbit_rs.Trace`."""
 
     arrays: Mapping[str, Any]
 
     def __getattr__(self, name: str) -> Any:
-        """A column; None where the run had nothing for it."""
-        if name in _COLUMNS:
-            return self.arrays.get(name)
-        if name.startswith("__") or name == "arrays" or name not in self.arrays:
+        """Return a column; None if the run did not record it."""
+        if name.startswith("__") or name == "arrays" or (name not in COLUMNS and name not in self.arrays):
             raise AttributeError(f"the trace has no column {name!r}")
-        return self.arrays[name]
+        return self.arrays.get(name)
 
     def columns(self) -> list[str]:
-        """Names of the columns."""
-        return [name for name in self.arrays if not name.startswith(("tracking_", "wrench_", "rereferenced"))]
+        """Return the names of the columns that the run recorded, apart from ``tracking`` and ``wrenches``."""
+        return [path for path in self.arrays if split_path(path)[1] is None and path != "rereferenced"]
 
     @property
     def tracking(self) -> dict[str, Any]:
-        """Errors of each controller."""
-        return self._named("tracking_")
+        """Tracking errors by the name of the control."""
+        return self._by_owner("tracking")
 
     @property
     def wrenches(self) -> dict[str, Any]:
-        """(T, bodies, 6) of each effect."""
-        return self._named("wrench_")
+        """Wrenches (T, bodies, 6) by the name of the effect."""
+        return self._by_owner("wrenches")
 
-    def _named(self, kind: str) -> dict[str, Any]:
-        return {name.removeprefix(kind): rows for name, rows in self.arrays.items() if name.startswith(kind)}
+    def _by_owner(self, wanted: str) -> dict[str, Any]:
+        found = ((*split_path(path), values) for path, values in self.arrays.items())
+        return {owner: values for name, owner, values in found if owner is not None and name == wanted}
 
 
 def check_shapes(arrays: Mapping[str, Any]) -> None:
-    """Every column has a row per instant, and is as wide as the robot: (7 + n) and (6 + n) for n joints."""
-    rows, n = np.shape(arrays["time"]), max((np.shape(arrays["q"]) or (7,))[-1] - 7, 0)
+    """Check that every column has one entry per row and fits the number of joints.
+
+    Raises
+    ------
+    ValueError
+        If a column does not; the message names the first.
+    """
+    rows, joints = np.shape(arrays["time"]), max((np.shape(arrays["q"]) or (0,))[-1] - BASE_NQ, 0)
     if len(rows) != 1 or rows[0] == 0:
-        raise ValueError(f"column 'time' has shape {rows}, expected (T,) with a row at least")
-    widths = {name: width for name, width in _widths(n).items() if name in arrays}
-    for name, values in arrays.items():
-        if name.startswith("rereferenced"):
+        raise ValueError(f"column 'time' has shape {rows}; expected (T,) with T ≥ 1")
+    for path, values in arrays.items():
+        name, _ = split_path(path)
+        if name == "rereferenced":
             continue
-        shape, expected = np.shape(values), (*rows, *widths.get(name, np.shape(values)[1:]))
-        if shape != expected:
-            raise ValueError(f"column {name!r} has shape {shape}, expected {expected}")
-
-
-def _widths(n: int) -> dict[str, tuple[int, ...]]:
-    """Shapes of a row of the columns, for ``n`` joints."""
-    three, six, pose = (3,), (6,), (4, 4)
-    return {
-        "q": (7 + n,), "v": (6 + n,), "acceleration": (6 + n,), "tau": (n,), "momentum": six,
-        "friction_compensation": (n,), "impulse": six,
-        "kinetic_energy": (), "work": (), "dissipated": (), "center_of_mass": three,
-        "tool_pose": pose, "reference_pose": pose, "position_error": three, "attitude_error": three,
-        "position_eci": three, "velocity_eci": three, "reference_residual": three,
-    }  # fmt: skip
-
-
-_COLUMNS = ("time", *_widths(0))
+        shape = np.shape(values)
+        row = row_shape(name, joints) if name in COLUMNS else (-1,)
+        wanted = shape[1:] if -1 in row else row
+        if shape != (*rows, *wanted):
+            raise ValueError(f"column {path!r} has shape {shape}; expected {(*rows, *wanted)}")

@@ -1,4 +1,4 @@
-"""JSON records that carry a SHA-256 of their own content."""
+"""JSON records that contain a SHA-256 of their content."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ _SEAL = "sha256"
 
 
 def sealed(record: dict[str, Any]) -> bytes:
-    """The record as JSON, with the digest of its content as its last entry."""
+    """Return the record as JSON with the digest of its content as the last entry."""
     return json.dumps(record | {_SEAL: _digest(record)}, allow_nan=False).encode()
 
 
 def unsealed(text: bytes) -> dict[str, Any]:
-    """The record in what :func:`sealed` made.
+    """Return the record from the output of :func:`sealed`.
 
     Raises
     ------
     ValueError
-        It is no JSON mapping, has no digest, or its content does not match its digest.
+        If the text is not a JSON mapping, has no digest, or does not match its digest.
     """
     try:
         record = json.loads(text)
         if not isinstance(record, dict):
-            raise ValueError("it holds no mapping")
+            raise ValueError("it must contain a mapping")
         seal = record.pop(_SEAL, None)
         if seal is None:
             raise ValueError("it has no checksum")
@@ -37,6 +37,6 @@ def unsealed(text: bytes) -> dict[str, Any]:
 
 
 def _digest(record: dict[str, Any]) -> str:
-    """Of the values, whatever the order of the keys and the spaces between."""
+    """Return the digest of the values, independent of the order of keys and of spaces."""
     text = json.dumps(record, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()

@@ -1,4 +1,4 @@
-"""The summary of a run: flat, one number per key, its unit in the key."""
+"""Summary of a run: a flat mapping whose keys end in the unit."""
 
 from __future__ import annotations
 
@@ -8,6 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.common.coordinates import BASE_NQ, POSITION, QUATERNION
+from onorbit_rs.common.printable import json_value
+from onorbit_rs.common.rotations import angle_between
+from onorbit_rs.engines import versions
 from onorbit_rs.output.checks import CHECKS, GATE, JOINTS
 from onorbit_rs.output.joints import (
     efforts_at_limit,
@@ -16,11 +20,8 @@ from onorbit_rs.output.joints import (
     loads_exceeded,
     single_errors,
 )
-from onorbit_rs.plants import versions
-from onorbit_rs.printable import json_value
 from onorbit_rs.robots.fingerprint import fingerprint
-from onorbit_rs.rotations import angle_between
-from onorbit_rs.scenario.control import JOINT_LAWS
+from onorbit_rs.scenario.control import JointLaw
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Orbit, Trace
@@ -36,21 +37,21 @@ def summarize(
     *,
     status: str = "complete",
 ) -> Summary:
-    """Everything a reader wants to know of a run without opening its trace.
+    """Return the summary of a run.
 
     Parameters
     ----------
     trace : Trace
     built : Built
-        What was run.
+        The scenario and the objects built from it.
     status : str
-        ``complete``, ``interrupted`` (Ctrl-C), ``diverged``, or ``failed`` where a controller of the user's
-        raised, or orbit or environment ended.
+        ``complete``, ``interrupted`` (Ctrl-C), ``diverged``, or ``failed``: a custom controller raised, or
+        orbit or environment ended.
 
     Returns
     -------
     dict
-        As in ``summary.json``; a number that is not finite is None. ``wall_s`` is the simulation loop alone.
+        Content of ``summary.json``; None for non-finite numbers. ``wall_s`` is that of the simulation loop.
     """
     scenario = built.scenario
     simulated_s = float(trace.time[-1] - trace.time[0])
@@ -65,11 +66,11 @@ def summarize(
         | {"rereferenced": len(trace.rereferenced)}
         | {"simulated_s": simulated_s, "wall_s": trace.wall_s}
         | {"real_time_factor": simulated_s / max(trace.wall_s, 1e-9), "rows": len(trace.time)}
-        | versions(scenario.plant)
+        | versions(scenario.engine)
         | _settings(scenario)
         | _orbit(trace, scenario, built.orbit)
         | {
-            "warnings": "\n".join((*built.model.warnings, *built.doubts)),
+            "warnings": "\n".join((*built.model.warnings, *built.warnings)),
             "robot_fingerprint": fingerprint(built.model),
         }
         | _versions()
@@ -78,12 +79,12 @@ def summarize(
 
 
 def _certificate(trace: Trace) -> Summary:
-    """Every check that was evaluated, whether all are within their gates, and those that were not."""
+    """Return the evaluated checks, whether all passed, and the checks that were not evaluated."""
     rows = trace.certificate()
     balances: Summary = {name: value for name, value, _, _ in rows if value is not None}
     gates = {GATE + name: gate for name, value, gate, _ in rows if value is not None}
     failed = [name for name, _, _, passed in rows if not passed]
-    has_joints = np.shape(trace.q)[1] > 7
+    has_joints = np.shape(trace.q)[1] > BASE_NQ
     absent = [name for name in CHECKS if name not in balances and (has_joints or name not in JOINTS)]
     return (
         balances
@@ -111,7 +112,7 @@ def _tracking(trace: Trace) -> Summary:
 
 
 def _controls(trace: Trace, built: Built) -> Summary:
-    """The largest errors of each of several controllers, and what came of their goals."""
+    """Return the largest errors of each of several controllers, and the outcomes of their goals."""
     scenario = built.scenario
     if scenario.controllers is None:
         return {}
@@ -121,11 +122,12 @@ def _controls(trace: Trace, built: Built) -> Summary:
         if not errors.size:
             continue
         key = f"tracking_{control.name}"
-        if isinstance(control, JOINT_LAWS):
+        if isinstance(control, JointLaw):
             summary |= joint_errors(key, errors, built, control.joints)
         else:
-            summary[f"{key}_position_error_max_m"] = np.linalg.norm(errors[:, :3], axis=1).max()
-            summary[f"{key}_attitude_error_max_rad"] = np.linalg.norm(errors[:, 3:], axis=1).max()
+            position, attitude = (np.linalg.norm(part, axis=1) for part in np.split(errors, 2, axis=1))
+            summary[f"{key}_position_error_max_m"] = position.max()
+            summary[f"{key}_attitude_error_max_rad"] = attitude.max()
     with_goals = {control.name for control in scenario.controllers if control.goal is not None}
     results = {f"control_{result['name']}_result": result["outcome"] for result in trace.results
                if result["name"] in with_goals}  # fmt: skip
@@ -135,14 +137,14 @@ def _controls(trace: Trace, built: Built) -> Summary:
 def _motion(trace: Trace, built: Built) -> Summary:
     q = np.asarray(trace.q)
     motion = joint_loads(trace, built) | efforts_at_limit(trace, built)
-    motion["base_rotation_max_rad"] = angle_between(q[:, 3:7], q[0, 3:7]).max()
-    motion["base_displacement_max_m"] = np.linalg.norm(q[:, :3] - q[0, :3], axis=1).max()
+    motion["base_rotation_max_rad"] = angle_between(q[:, QUATERNION], q[0, QUATERNION]).max()
+    motion["base_displacement_max_m"] = np.linalg.norm(q[:, POSITION] - q[0, POSITION], axis=1).max()
     return motion
 
 
 def _losses(trace: Trace, built: Built) -> Summary:
-    """Energy the joints took, and the joints that went past limits nothing enforced."""
-    if np.asarray(trace.q).shape[1] == 7:
+    """Return the energy lost in the joints, and the joints beyond their limits."""
+    if np.asarray(trace.q).shape[1] == BASE_NQ:
         return {}
     losses: Summary = {}
     if "dissipated" in trace.columns():
@@ -157,7 +159,7 @@ def _settings(scenario: Scenario) -> Summary:
 
 
 def _orbit(trace: Trace, scenario: Scenario, orbit: Orbit | None) -> Summary:
-    """Axes of the absolute states, where their velocity comes from, and the gravity that was left out."""
+    """Return the inertial axes, the source of the velocity, and the residual gravity."""
     if orbit is None:
         return {}
     summary: Summary = {"inertial_axes": orbit.axes, "velocity_eci_source": orbit.velocity_source}

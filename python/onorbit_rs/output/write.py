@@ -11,8 +11,8 @@ import yaml
 
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import FIGURES, RECORDING, SCENARIO, SUMMARY, TRACE
+from onorbit_rs.output.pickling import arrays_of
 from onorbit_rs.output.replacement import Replacement
-from onorbit_rs.output.travel import arrays_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
-    """``scenario.yaml``: every default written out, SI; it runs again from where it lies."""
+    """Write ``scenario.yaml`` with all defaults in SI units and absolute paths, to run from any folder."""
     source = scenario.file or "Python"
     header = f"# resolved by onorbit_rs from {source}; run it again with: onorbit run scenario.yaml\n"
     with folder.writing(SCENARIO) as path:
@@ -38,7 +38,7 @@ def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
 
 
 def write_trace(files: Replacement, trace: Trace) -> None:
-    """``trace.npz``: the columns of the trace under their own names, and the errors of each controller."""
+    """Write ``trace.npz``: every column of the trace by path."""
     with files.writing(TRACE) as path, path.open("wb") as stream:
         columns = arrays_of(trace)
         if len(trace.rereferenced):
@@ -47,7 +47,7 @@ def write_trace(files: Replacement, trace: Trace) -> None:
 
 
 def write_summary(files: Replacement, summary: dict[str, Any]) -> None:
-    """``summary.json``."""
+    """Write ``summary.json``."""
     with files.writing(SUMMARY) as path:
         path.write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
@@ -60,8 +60,8 @@ def write_pictures(
     *,
     tell: Callable[[str], None] = lambda doing: None,
 ) -> None:
-    """Figures and recording; ``tell`` is called with what is being written."""
-    # Imported here: matplotlib and rerun take a second that a run without output should not pay.
+    """Write figures and recording; ``tell`` is called with the name of each."""
+    # Imported here because matplotlib and rerun take a second to import.
     from onorbit_rs import figures, viewer
 
     if len(trace.time) > 1:
@@ -78,7 +78,7 @@ def write_pictures(
 
 
 def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
-    """The resolved scenario with paths that hold from any folder, and the period of control."""
+    """Return the resolved scenario with absolute paths and the control period."""
     data = scenario.resolved(scenario.file.parent if scenario.file else Path())
     settings = data["simulation"]
     settings.setdefault("control_period", settings["time_step"])

@@ -1,4 +1,4 @@
-"""A run as one HTML page that needs nothing else: figures, numbers, certificate, scenario, versions."""
+"""A run as one self-contained HTML page: figures, numbers, certificate, scenario, versions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The summary of a run in words: what a key means, its unit, and its number as a person reads it."""
+"""Entries of a summary for the report: label, unit and formatted value."""
 
 from __future__ import annotations
 
@@ -6,27 +6,27 @@ import math
 import re
 from typing import Any, NamedTuple
 
+from onorbit_rs.common.display_units import digits, with_prefix
 from onorbit_rs.output.checks import CHECKS
-from onorbit_rs.output.words import goal_of, tracking
-from onorbit_rs.units import digits, with_prefix
+from onorbit_rs.output.summary_labels import goal_of, tracking
 
-# longest first: `_rad_s` ends in `_s` too
+# longest first, because `_rad_s` also ends in `_s`
 _UNITS = (
     ("_rad_s", "rad/s"), ("_m_s2", "m/s²"), ("_m_s", "m/s"), ("_nm", "N m"), ("_rad", "rad"),
     ("_rel", "relative"), ("_m", "m"), ("_s", "s"), ("_j", "J"), ("_n", "N"),
 )  # fmt: skip
 _LEAST_SCALED = 1e-9
-"""Smaller is rounding, and reads better as a power of ten."""
+"""Smallest value that gets a unit prefix; less is rounding and has an exponent."""
 _SCALED = ("m", "rad", "N m", "N", "J", "m/s²", "rad/s", "m/s")
 _NAMES = {
     "wall_s": "wall clock of the loop",
     "real_time_factor": "times real time",
     "base_rotation_max_rad": "base rotation in W, largest",
     "base_displacement_max_m": "base displacement in W, largest",
-    "joint_force_max_n": "force of a sliding joint, largest",
-    "joint_rate_final_max_m_s": "rate of a sliding joint at the end, largest",
+    "joint_force_max_n": "force of a prismatic joint, largest",
+    "joint_rate_final_max_m_s": "rate of a prismatic joint at the end, largest",
     "rows": "rows of the trace",
-    "rereferenced": "new reference orbits taken, having drifted too far off",
+    "rereferenced": "changes of reference orbit due to drift",
     "velocity_eci_source": "inertial velocity from",
     "onorbit_rs_version": "onorbit_rs",
     "python_version": "Python",
@@ -38,7 +38,7 @@ _GROUPS = (
     ("Orbit", ("inertial_axes", "velocity_eci", "gravity_mode", "reference_residual", "rereferenced")),
     (
         "Simulation",
-        ("simulated_s", "wall_s", "real_time_factor", "rows", "time_step_s", "integrator", "plant"),
+        ("simulated_s", "wall_s", "real_time_factor", "rows", "time_step_s", "integrator", "engine"),
     ),
     (
         "Versions",
@@ -53,12 +53,12 @@ _GROUPS = (
     ),
 )
 _ONLY_IF_ANY = ("rereferenced", "joint_dissipation_j")
-"""Say nothing where they are 0."""
+"""Entries that are omitted where they are 0."""
 _ELSEWHERE = ("scenario", "status", "warnings", *CHECKS)
 
 
 class Row(NamedTuple):
-    """A line of a table; ``shown`` is ``value`` as a person reads it."""
+    """A row of a table; ``shown`` is the formatted ``value``."""
 
     key: str
     name: str
@@ -68,7 +68,7 @@ class Row(NamedTuple):
 
 
 def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
-    """Every entry of a summary that the page does not show elsewhere, under a heading."""
+    """Return every entry of a summary that is not shown elsewhere on the page, by heading."""
     left = {key: value for key, value in summary.items()
             if key not in _ELSEWHERE and not key.startswith("certificate_")}  # fmt: skip
     found = []
@@ -85,7 +85,7 @@ def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
 
 
 def row(key: str, value: Any) -> Row:
-    """One entry with its unit, which its key ends in."""
+    """Return one entry with its unit, with which its key ends."""
     ending, unit = next(((ending, unit) for ending, unit in _UNITS if key.endswith(ending)), ("", ""))
     words = _NAMES.get(key) or _words(key, key.removesuffix(ending))
     shown = value.replace("_", " ") if goal_of(key) and isinstance(value, str) else value
@@ -98,11 +98,11 @@ def row(key: str, value: Any) -> Row:
 
 
 def _words(key: str, stem: str) -> str:
-    error, whose = tracking(key), goal_of(key)
+    error, owner = tracking(key), goal_of(key)
     if error is not None:
-        return error.words
-    if whose is not None:
-        return f"{whose}: goal"
+        return error.label
+    if owner is not None:
+        return f"{owner}: goal"
     return re.sub(r" max$", ", largest", re.sub(r" final\b", " at the end", stem.replace("_", " ")))
 
 

@@ -1,4 +1,4 @@
-"""The page: a template, and text of the user's that stays text."""
+"""The report page: a template, filled with escaped text."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
+from onorbit_rs.common.display_units import digits
+from onorbit_rs.common.printable import printable
 from onorbit_rs.output.checks import Check, advice, checks, is_incomplete
-from onorbit_rs.output.words import EXCEEDED
-from onorbit_rs.printable import printable
+from onorbit_rs.output.summary_labels import EXCEEDED
 from onorbit_rs.report.numbers import Row, groups
-from onorbit_rs.units import digits
 
 _TEMPLATE = Path(__file__).with_name("page.html")
 _VERDICTS = {True: ("passed", "holds"), False: ("failed", "BROKEN"), None: ("faint", "not evaluated")}
@@ -42,7 +42,7 @@ def page(
     again: str,
     version: str,
 ) -> str:
-    """HTML of a report; nothing in it refers to anything outside."""
+    """Return the HTML of a report, without references to other files."""
     name = printable(summary.get("scenario") or "run")
     return Template(_TEMPLATE.read_text(encoding="utf-8")).substitute(
         title=escape(f"{name}: onorbit report"),
@@ -61,12 +61,12 @@ def page(
 
 
 def _verdict(summary: dict[str, Any]) -> str:
-    """Green, red, or neither where checks are missing, and whether the run came to its end."""
+    """Return the verdict: passed, failed or incomplete, and whether the run reached its end."""
     status = str(summary.get("status") or "unknown")
     is_whole = status == "complete"
     has_passed = summary.get("certificate_passed")
     simulated = summary.get("simulated_s")
-    said = f"Run {status}" + (
+    text = f"Run {status}" + (
         f", {digits(simulated)} s simulated" if isinstance(simulated, (int, float)) else ""
     )
     if has_passed is None:
@@ -78,19 +78,21 @@ def _verdict(summary: dict[str, Any]) -> str:
         certificate, kind = "Certificate passed", "passed" if is_whole else "warned"
     else:
         broken = ", ".join(check.name for check in checks(summary) if check.holds is False)
-        broken = broken or str(summary.get("certificate_failures") or "it is not said what")
+        broken = broken or str(summary.get("certificate_failures") or "unknown check")
         certificate, kind = f"Certificate FAILED: {broken}", "failed"
         if is_whole and (words := advice(summary)):
-            said += f". {words[0].upper()}{words[1:]}"
-    lines = f"<strong>{escape(certificate)}</strong><p>{escape(said)}.</p>"
+            text += f". {words[0].upper()}{words[1:]}"
+    lines = f"<strong>{escape(certificate)}</strong><p>{escape(text)}.</p>"
     return f'<div class="verdict {kind}" id="verdict">{lines}</div>'
 
 
 def _remarks(summary: dict[str, Any], remarks: Sequence[str]) -> str:
-    """Warnings of the robot's file, and what the page had to leave out."""
-    said = str(summary.get("warnings") or "").splitlines()
-    said += [f"{what} were exceeded: {summary[key]}" for key, what in EXCEEDED.items() if summary.get(key)]
-    items = "".join(f"<li>{escape(text)}</li>" for text in (*said, *remarks))
+    """Return the warnings of the robot's file, and remarks on omitted parts of the page."""
+    warnings = str(summary.get("warnings") or "").splitlines()
+    warnings += [
+        f"{what} were exceeded: {summary[key]}" for key, what in EXCEEDED.items() if summary.get(key)
+    ]
+    items = "".join(f"<li>{escape(text)}</li>" for text in (*warnings, *remarks))
     return (
         f'<div class="verdict warned" id="warnings"><strong>Warnings</strong><ul>{items}</ul></div>'
         if items
@@ -108,7 +110,7 @@ def _table(title: str, rows: Sequence[Row]) -> str:
 
 
 def _data(row: Row) -> str:
-    """The number as a person reads it, and as ``summary.json`` has it."""
+    """Return the formatted value, with that of ``summary.json`` as an attribute."""
     return f'<data id="{escape(row.key)}" value="{escape(str(row.value))}">{escape(row.shown)}</data>'
 
 
@@ -119,11 +121,11 @@ def _checks(summary: dict[str, Any]) -> str:
     )
     head = head.format("check", "value", "gate") + '<th scope="col">unit</th><th scope="col">verdict</th>'
     table = f'<div class="scroll"><table class="checks"><thead><tr>{head}</tr></thead>{lines}</table></div>'
-    return table if lines else "<p>This run carries no certificate.</p>"
+    return table if lines else "<p>This run has no certificate.</p>"
 
 
 def _check(check: Check) -> str:
-    """Its value beside the most that it may be."""
+    """Return the table row of a check: value, gate and verdict."""
     kind, verdict = _VERDICTS[check.holds]
     value, gate = ("-" if number is None else f"{number:.2g}" for number in (check.value, check.gate))
     if check.holds is not None:

@@ -1,4 +1,4 @@
-"""``report.html`` of a run, from the files in its folder."""
+"""Writes ``report.html`` of a run from the files in its folder."""
 
 from __future__ import annotations
 
@@ -16,16 +16,14 @@ from onorbit_rs.output.read import SavedRun, read_summary
 from onorbit_rs.output.replacement import Replacement
 from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.report.page import Picture, page
-from onorbit_rs.scenario.earth import make_earth
-from onorbit_rs.scenario.make_orbit import make_orbit
-from onorbit_rs.scenario.make_robot import make_robot
+from onorbit_rs.scenario.environment.earth import build_earth
 
 if TYPE_CHECKING:
     from onorbit_rs.figures import Subject
     from onorbit_rs.scenario import Scenario
 
 LARGEST_SVG = 600_000
-"""Bytes; a figure of more polygons than that becomes a PNG."""
+"""Largest size of an SVG, bytes; larger figures are embedded as PNG."""
 
 
 def write_report(
@@ -34,16 +32,16 @@ def write_report(
     pdf: bool = False,
     tell: Callable[[str, float], None] = lambda doing, done: None,
 ) -> Path:
-    """Write ``report.html`` beside a run's other files; one page with everything in it.
+    """Write ``report.html``, a self-contained page, to the folder of a run.
 
     Parameters
     ----------
     folder : str or path
-        What ``out=`` of :func:`onorbit_rs.run` was.
+        The ``out`` folder of :func:`onorbit_rs.run`.
     pdf : bool
-        Whether to write each figure into ``figures/`` as PDF too.
+        Also write each figure to ``figures/`` as PDF.
     tell : callable
-        Called with what is done next, and the share of the work that is done, 0 to 1.
+        Called with the next task and the completed fraction of the work, 0 to 1.
 
     Returns
     -------
@@ -53,21 +51,21 @@ def write_report(
     Raises
     ------
     NotFoundError, ReadError
-        No run in this folder, or its files cannot be read.
+        If there is no run in this folder, or its files cannot be read.
     IntegrityError
-        They were changed since the run wrote them.
+        If the files were changed after the run.
     OutputFolderError
-        The page cannot be written, or another process writes the folder.
+        If the page cannot be written, or another process writes the folder.
     """
     path = Path(folder)
-    read_summary(path)  # a folder without a run is left as it is
+    read_summary(path)  # raises before anything is written
     with OutputFolder(path) as out, out.replacing() as files:
         out.check_replaceable(REPORT)
         return _write_report(out.path, files, pdf=pdf, tell=tell)
 
 
 def _write_report(folder: Path, files: Replacement, *, pdf: bool, tell: Callable[[str, float], None]) -> Path:
-    """The page and its figures; returns where the page will be."""
+    """Write the page and its figures; return the path of the page."""
     saved = SavedRun(folder)
     summary = saved.summary()
     text, scenario = saved.scenario_text(), saved.scenario()
@@ -76,7 +74,7 @@ def _write_report(folder: Path, files: Replacement, *, pdf: bool, tell: Callable
     subject = _subject(saved, scenario, summary, remarks)
     pictures: list[Picture] = []
     if summary.get("status") == "diverged":
-        remarks.append("the run diverged: its numbers make no picture")
+        remarks.append("the run diverged: figures are not drawn")
     elif len(subject.trace.time) > 1:
         pictures = list(_pictures(subject, files, pdf, tell))
     tell("writing the page", 1.0)
@@ -96,19 +94,19 @@ def _write_report(folder: Path, files: Replacement, *, pdf: bool, tell: Callable
 
 
 def _subject(saved: SavedRun, scenario: Scenario, summary: dict[str, Any], remarks: list[str]) -> Subject:
-    """What there is to draw; a robot, an orbit or an Earth whose files are gone or changed is a remark."""
+    """Return the subject of the figures; unreadable robots, orbits and Earth models become remarks."""
     from onorbit_rs import figures
 
     trace, folder = saved.trace(), saved.folder
     model = orbit = earth = None
-    with _remarked(remarks, "the robot could not be read, figures that show it are left out"):
-        model = make_robot(scenario)
+    with _remarked(remarks, "the robot could not be read; figures that show it are omitted"):
+        model = scenario.robot.build(scenario)
         if was_changed(model, summary):
             model = None
-            remarks.append(f"{CHANGED}; figures that show it are left out")
-    with _remarked(remarks, "the orbit could not be read, figures that show it are left out"):
-        orbit = None if scenario.orbit is None else make_orbit(scenario.orbit, folder)
-        earth = make_earth(scenario, orbit, folder)
+            remarks.append(f"{CHANGED}; figures that show it are omitted")
+    with _remarked(remarks, "the orbit could not be read; figures that show it are omitted"):
+        orbit = None if scenario.orbit is None else scenario.orbit.build(folder)
+        earth = build_earth(scenario.earth, scenario.epoch, orbit, folder)
     return figures.subject_of(trace, scenario, model, orbit, earth)
 
 

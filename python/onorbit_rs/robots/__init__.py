@@ -1,4 +1,4 @@
-"""Bundled robots, one URDF each, and those of others from their files."""
+"""Loads bundled robots, one URDF each, and robots from files."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from onorbit_rs import bundled
+from onorbit_rs.common import bundled_files
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
@@ -16,19 +16,19 @@ _FOLDER = Path(__file__).parent
 
 
 def names() -> list[str]:
-    """Names that :func:`load` and a scenario's ``robot`` take."""
-    return bundled.names(_FOLDER, ".urdf")
+    """Return the names of the bundled robots, for :func:`load` and the key ``robot`` of scenarios."""
+    return bundled_files.names(_FOLDER, ".urdf")
 
 
 def path(name: str) -> Path:
-    """The URDF of a bundled robot.
+    """Return the path of the URDF of a bundled robot.
 
     Raises
     ------
     NotFoundError
-        No bundled robot has this name; suggests the nearest.
+        If there is no such robot; suggests the nearest name.
     """
-    return bundled.path(name, "robot", _FOLDER, ".urdf")
+    return bundled_files.path(name, "robot", _FOLDER, ".urdf")
 
 
 def load(
@@ -38,19 +38,23 @@ def load(
     xacro_arguments: Mapping[str, object] | None = None,
     xacro: bool = False,
 ) -> Model:
-    """A bundled robot, or one from a file; its root link floats.
+    """Return a bundled robot or one from a file; its root link is free-floating.
 
     Parameters
     ----------
     name : str or path
-        One of :func:`names`, or a URDF or xacro file: what has a folder or one of their endings.
+        One of :func:`names`, or a URDF or xacro file; see :func:`is_file`.
     package_paths, xacro_arguments, xacro
-        As for :meth:`onorbit_rs.Model.from_urdf`, for files.
+        As in :meth:`onorbit_rs.Model.from_urdf`; only for files.
+
+    Returns
+    -------
+    Model
 
     Raises
     ------
     NotFoundError
-        No bundled robot has this name, or there is no such file.
+        If there is no such bundled robot or file.
     """
     from onorbit_rs._core import Model
 
@@ -60,7 +64,10 @@ def load(
 
 
 def is_file(name: str | os.PathLike[str]) -> bool:
-    """Whether a robot is named by a path: ``arms/my_arm.urdf``, and not ``humanoid_torso``."""
+    """Return whether a robot is given by a path, such as ``arms/my_arm.urdf``, and not by a bundled name.
+
+    A text is a path if it contains a folder or ends in ``.urdf``, ``.xml`` or ``.xacro``.
+    """
     text = os.fspath(name)
     has_ending = text.lower().endswith((".urdf", ".xml", ".xacro"))
     return not isinstance(name, str) or has_ending or "/" in text or "\\" in text

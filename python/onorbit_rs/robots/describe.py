@@ -1,10 +1,12 @@
-"""What a robot is made of, as plain data."""
+"""Describes a robot as plain data."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from onorbit_rs.common.coordinates import ANGULAR
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -13,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def describe(model: Model) -> dict[str, Any]:
-    """Everything that ``onorbit info`` prints, as plain data; SI and radians, None where there is no limit.
+    """Return the data that ``onorbit info`` prints, in SI and radians; None for a missing limit.
 
-    Masses and inertias are those of bodies: a link with all that is fixed to it. Centres of mass and
-    principal moments are given in the axes of the body's link; the robot's own in the base's, joints at zero.
+    A body is a link with all links that are fixed to it. Its centre of mass and principal moments are in the
+    axes of that link; those of the whole robot are in base axes with all joints at zero.
     """
-    com, moments = _whole(model)
+    com, moments = _whole_robot(model)
     return {
         "name": model.name, "nq": model.nq, "nv": model.nv,
         "mass_kg": model.mass, "com_m": com, "principal_moments_kg_m2": moments,
@@ -45,17 +47,17 @@ def describe(model: Model) -> dict[str, Any]:
 
 
 def _moments(inertia: NDArray[np.float64]) -> list[float]:
-    """Ascending."""
+    """Return the principal moments in ascending order."""
     return [float(moment) for moment in np.linalg.eigvalsh(inertia)]
 
 
-def _whole(model: Model) -> tuple[list[float], list[float]]:
-    """Centre of mass in the base's axes, and principal moments about it, joints at zero.
+def _whole_robot(model: Model) -> tuple[list[float], list[float]]:
+    """Return the centre of mass in base axes, and the principal moments about it, with joints at zero.
 
-    From the base's block of the mass matrix: `I_com = I_origin + m c× c×`.
+    The inertia follows from the base block of the mass matrix: `I_com = I_origin + m c× c×`.
     """
     q = model.neutral()
     x, y, z = com = np.asarray(model.center_of_mass(q))
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    about_com = np.asarray(model.mass_matrix(q))[3:6, 3:6] + model.mass * cross @ cross
+    about_com = np.asarray(model.mass_matrix(q))[ANGULAR, ANGULAR] + model.mass * cross @ cross
     return [float(value) for value in com], _moments(about_com)

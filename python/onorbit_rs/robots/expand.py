@@ -1,4 +1,4 @@
-"""From xacro to URDF text, with PyPI's ``xacro`` and without ROS."""
+"""Expands xacro files to URDF text with PyPI's ``xacro``, without ROS."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ import io
 import os
 import re
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-from onorbit_rs import reading
+from onorbit_rs.common import input_files
+from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import ModelError, NotFoundError, ReadError
-from onorbit_rs.names import did_you_mean
 from onorbit_rs.robots.functions import Work
 from onorbit_rs.robots.wording import wording
 from onorbit_rs.robots.xacro_files import Environment, Files
@@ -27,72 +28,103 @@ def expand(
     package_paths: Sequence[str | os.PathLike[str]] = (),
     arguments: Mapping[str, object] | None = None,
 ) -> tuple[str, list[str]]:
-    """Return the URDF that a xacro file stands for, and remarks on what was left out.
+    """Return the URDF text of a xacro file, and remarks about parts that were omitted.
 
     Parameters
     ----------
     path : path
-        The file. Its expressions are evaluated by :mod:`onorbit_rs.robots.expressions`; no code in
-        it is executed. It may include and load files of its own package and of packages that
-        ``$(find name)`` gives.
+        Xacro file. Its expressions are evaluated by :mod:`onorbit_rs.robots.expressions`; no code in
+        it is executed. It may include and load files of its package and of packages that
+        ``$(find name)`` returns.
     package_paths : sequence of paths
-        Folders that hold ROS packages or are one: what ``$(find name)`` gives; the file's parents come after.
+        ROS packages or folders of ROS packages, for ``$(find name)``; the parents of the file are searched
+        after them.
     arguments : mapping, optional
-        What ``$(arg name)``, ``$(env name)`` and ``$(optenv name)`` give; the environment is not read.
+        Values of ``$(arg name)``, ``$(env name)`` and ``$(optenv name)``; the environment is not read.
+
+    Returns
+    -------
+    urdf : str
+    remarks : list of str
 
     Raises
     ------
     NotFoundError, ReadError
-        No such file, or it cannot be read.
+        If there is no such file, or it cannot be read.
     ModelError
-        ``xacro`` is not installed (says how), or the file does not expand (says why).
+        If ``xacro`` is not installed, or the file cannot be expanded.
     """
     file = Path(path)
-    if not file.exists():
-        raise NotFoundError(f"{file}: there is no such file", path=str(file), kind="robot")
-    if file.is_dir():
-        raise ReadError(f"{file}: this is a folder, not a xacro file", path=str(file), kind="robot")
-    reading.check_regular(file, "robot")
-    try:
-        xacro = importlib.import_module("xacro")
-    except ImportError as error:
-        raise ModelError(
-            f"{file}: this is xacro, which PyPI's xacro expands: pip install 'onorbit-rs[xacro]'",
-            path=str(file),
-        ) from error
+    xacro = _import_xacro(file)
     values = {name: _text(value) for name, value in (arguments or {}).items()}
     used: set[str] = set()
     remarks: list[str] = []
-    said = io.StringIO()
+    output = io.StringIO()
+    with contextlib.redirect_stderr(output), _model_errors(file):
+        document = _process(xacro, file, package_paths, values, used, remarks)
+        text = document.documentElement.toxml()
+    if not document.getElementsByTagName("link") and b"<xacro:macro" in file.read_bytes():
+        raise ModelError(
+            f"{file}: defines xacro macros but no robot; give the file that calls them", path=str(file)
+        )
+    for name in values:
+        if name not in used:
+            remarks.append(f"the file does not use the argument {name!r}{did_you_mean(name, used)}")
+    lines = [line for line in dict.fromkeys(output.getvalue().splitlines()) if line.startswith("warning: ")]
+    remarks += [f"xacro {line}" for line in lines if "redefining global symbol" not in line]  # usually pi
+    return text, remarks
+
+
+def _import_xacro(file: Path) -> Any:
+    """Return PyPI's xacro, after checking that the file can be read."""
+    if not file.exists():
+        raise NotFoundError(f"no such file: {file}", path=str(file), kind="robot")
+    if file.is_dir():
+        raise ReadError(f"{file} is a folder; give a xacro file", path=str(file), kind="robot")
+    input_files.check_regular(file, "robot")
+    try:
+        return importlib.import_module("xacro")
+    except ImportError as error:
+        raise ModelError(
+            f"{file}: a xacro file requires PyPI's xacro: pip install 'onorbit-rs[xacro]'", path=str(file)
+        ) from error
+
+
+def _process(
+    xacro: Any,
+    file: Path,
+    package_paths: Sequence[str | os.PathLike[str]],
+    values: dict[str, str],
+    used: set[str],
+    remarks: list[str],
+) -> Any:
+    """Return the expanded document, and record the used arguments and the remarks."""
     work = Work()
     files = Files(file, [Path(folder) for folder in package_paths], work)
+    with _LOCK, contextlib.ExitStack() as undo:
+        replace_parts(xacro, undo, files, work, Environment(values, used), remarks)
+        return xacro.process_file(str(file), mappings=_Arguments(values, used))
+
+
+@contextlib.contextmanager
+def _model_errors(file: Path) -> Iterator[None]:
+    """Convert errors in the block to errors of this package that name the file."""
     try:
-        with _LOCK, contextlib.ExitStack() as undo, contextlib.redirect_stderr(said):
-            replace_parts(xacro, undo, files, work, Environment(values, used), remarks)
-            document = xacro.process_file(str(file), mappings=_Asked(values, used))
-            text = document.documentElement.toxml()
+        yield
     except RecursionError:
-        raise ModelError(f"{file}: macros, includes or elements nested too deep", path=str(file)) from None
+        raise ModelError(
+            f"{file}: macros, includes or elements are nested too deeply", path=str(file)
+        ) from None
     except OSError as error:
         raise ReadError(
             f"cannot read {file}: {error.strerror or error}", path=str(file), kind="robot"
         ) from error
-    except Exception as error:  # xacro's own, expat's, and whatever an expression in the file raises
+    except Exception as error:  # of xacro, of expat, or raised by an expression in the file
         raise ModelError(f"{file}: {_reason(error)}", path=str(file)) from error
-    if not document.getElementsByTagName("link") and b"<xacro:macro" in file.read_bytes():
-        raise ModelError(
-            f"{file}: defines xacro macros but no robot; expand the file that calls them", path=str(file)
-        )
-    for name in values:
-        if name not in used:
-            remarks.append(f"the file does not ask for the argument {name!r}{did_you_mean(name, used)}")
-    lines = [line for line in dict.fromkeys(said.getvalue().splitlines()) if line.startswith("warning: ")]
-    remarks += [f"xacro {line}" for line in lines if "redefining global symbol" not in line]  # pi, mostly
-    return text, remarks
 
 
-class _Asked(dict[str, str]):
-    """Arguments; notes which of them the file asks for."""
+class _Arguments(dict[str, str]):
+    """Arguments that record which of them the file uses."""
 
     def __init__(self, values: Mapping[str, str], used: set[str]) -> None:
         super().__init__(values)
@@ -104,15 +136,15 @@ class _Asked(dict[str, str]):
 
 
 def _text(value: object) -> str:
-    """As a command line would give it: ``true`` for True."""
+    """Return a value as on a command line: ``true`` for True."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _reason(error: Exception) -> str:
-    """In one line, without xacro's class names."""
+    """Return the message of an error in one line, without class names of xacro."""
     text = " ".join(str(error).split()) or type(error).__name__
     if "maximum recursion depth" in text:
-        return "macros, includes or elements nested too deep"
+        return "macros, includes or elements are nested too deeply"
     undefined = re.search(r"Undefined substitution argument\s+(\S+)", text)
     if undefined:
         name = undefined[1]

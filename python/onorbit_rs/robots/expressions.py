@@ -1,9 +1,9 @@
-"""Values of the expressions in a xacro file, computed from their syntax tree.
+"""Evaluates the expressions in a xacro file from their syntax tree.
 
-Nothing is compiled or executed. Numbers, text, truth values, lists and mappings exist, with arithmetic,
-comparisons, ``a if b else c``, indexing, and calls of the functions in :mod:`onorbit_rs.robots.functions`.
-There is no attribute of any object, no lambda, no comprehension and no assignment; sizes and the work of a
-whole file are bounded.
+Nothing is compiled or executed. Expressions may contain numbers, text, booleans, lists and mappings, with
+arithmetic, comparisons, ``a if b else c``, indexing, and calls of the functions in
+:mod:`onorbit_rs.robots.functions`. Attributes of objects, lambdas, comprehensions and assignments are
+refused; the sizes of values and the work for a whole file are limited.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ import operator
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
-from onorbit_rs.expressions import Evaluator, parsed
+from onorbit_rs.common.evaluator import Evaluator, parsed
 from onorbit_rs.robots.functions import (
     MAPPED,
     METHODS,
     Work,
     check_size,
+    remainder_or_text,
     repeated,
     safe_power,
     safe_shift,
-    text_of,
 )
 
 _LONGEST = 4096
-"""Characters of an expression; the longest of real robots has some hundred."""
+"""Largest number of characters of an expression; those of real robots have a few hundred."""
 
 _COMPARE: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
     ast.Eq: operator.eq,
@@ -48,21 +48,21 @@ def evaluate(text: str, names: Callable[[str], Any], functions: Mapping[str, Any
     Parameters
     ----------
     text : str
-        The expression, as between ``${`` and ``}``.
+        The expression between ``${`` and ``}``.
     names : callable
-        The value of a property by its name, or for a namespace such a callable; raises KeyError for one that
-        is not defined.
+        Returns the value of a property, or such a callable for a namespace; raises KeyError if undefined.
     functions : mapping
-        Functions and constants by their names, as ``sqrt`` and ``math.sqrt``.
+        Functions and constants by name, such as ``sqrt`` and ``math.sqrt``.
     work : Work
-        What the file may still cost.
+        Remaining steps for the file.
 
     Raises
     ------
     ValueError
-        The expression is too long, cannot be parsed, holds what has no place in it, or grows too large.
+        If the expression is too long, cannot be parsed, contains an element that is not allowed, or its
+        value is too large.
     NameError, TypeError, ArithmeticError, LookupError
-        As Python raises them.
+        As in Python.
     """
     text = text.strip()
     try:
@@ -73,7 +73,7 @@ def evaluate(text: str, names: Callable[[str], Any], functions: Mapping[str, Any
 
 
 class _Evaluation(Evaluator):
-    """The walk over one syntax tree."""
+    """Evaluation of one syntax tree."""
 
     constants: ClassVar = (int, float, str, bool, type(None))
     binary: ClassVar = {
@@ -82,7 +82,7 @@ class _Evaluation(Evaluator):
         ast.Mult: repeated,
         ast.Div: operator.truediv,
         ast.FloorDiv: operator.floordiv,
-        ast.Mod: text_of,
+        ast.Mod: remainder_or_text,
         ast.Pow: safe_power,
         ast.LShift: safe_shift,
         ast.RShift: operator.rshift,
@@ -101,7 +101,7 @@ class _Evaluation(Evaluator):
         self._names, self._functions, self._work = names, functions, work
 
     def visit(self, node: ast.AST) -> Any:
-        """Return the value of a node, which is plain data of bounded size."""
+        """Return the value of a node: plain data of limited size."""
         self._work.spend(1)
         value = super().visit(node)
         check_size(value, self._work)
@@ -113,14 +113,14 @@ class _Evaluation(Evaluator):
         except KeyError:
             return self._constant_of(node.id)
         if callable(found):
-            raise NameError(f"{node.id!r} is a namespace: write {node.id}.NAME")
+            raise NameError(f"{node.id!r} is a namespace; write {node.id}.NAME")
         return found
 
     def _constant_of(self, name: str) -> Any:
         found = self._functions.get(name)
         if found is None or callable(found):
             raise NameError(
-                f"name {name!r} is not defined" if found is None else f"{name!r} is a function: call it"
+                f"name {name!r} is not defined" if found is None else f"{name!r} is a function; call it"
             )
         return found
 
@@ -166,7 +166,7 @@ class _Evaluation(Evaluator):
         return slice(*(None if end is None else self.visit(end) for end in ends))
 
     def visit_Attribute(self, node: ast.Attribute) -> Any:
-        """Return ``mapping.key``, ``namespace.property`` or ``math.pi``; no attribute of an object."""
+        """Return ``mapping.key``, ``namespace.property`` or ``math.pi``; refuses attributes of objects."""
         if node.attr.startswith("_"):
             raise self.refused(node)
         dotted = self._dotted(node)
@@ -181,7 +181,7 @@ class _Evaluation(Evaluator):
         return owner[node.attr]
 
     def _dotted(self, node: ast.Attribute) -> str | None:
-        """Return ``math.sqrt`` where ``math`` is not a property of the file."""
+        """Return ``math.sqrt`` if ``math`` is not a property of the file, otherwise None."""
         if not isinstance(node.value, ast.Name):
             return None
         try:
@@ -191,7 +191,7 @@ class _Evaluation(Evaluator):
         return None
 
     def _scope(self, node: ast.expr) -> Callable[[str], Any] | None:
-        """Return the namespace that a name stands for, None where it is a value."""
+        """Return the namespace with this name, or None for a value."""
         outer = self._names if isinstance(node, ast.Name) else None
         if isinstance(node, ast.Attribute):
             outer = self._scope(node.value)
@@ -221,7 +221,7 @@ class _Evaluation(Evaluator):
         if name is not None:
             function = self._functions.get(name)
             if not callable(function):
-                raise NameError(f"there is no function {name!r} in expressions of xacro files")
+                raise NameError(f"function {name!r} is not available in xacro expressions")
             return function
         if not isinstance(node, ast.Attribute):
             raise self.refused(node)
@@ -236,6 +236,6 @@ class _Evaluation(Evaluator):
     def refused(self, node: ast.AST) -> ValueError:
         what = ast.unparse(node) if isinstance(node, ast.expr) else type(node).__name__
         return ValueError(
-            f"{what!r} has no place in a xacro expression: numbers, text, lists, mappings, arithmetic, "
-            "comparisons, conditions, indexing and calls of listed functions are evaluated"
+            f"{what!r} is not allowed in a xacro expression: only numbers, text, lists, mappings, "
+            "arithmetic, comparisons, conditions, indexing and calls of listed functions are"
         )

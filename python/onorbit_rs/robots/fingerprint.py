@@ -1,4 +1,4 @@
-"""Whether two robots are one: a digest of what moves, what is named, and what wind and light meet."""
+"""Fingerprint of a robot, which identifies its bodies, joints, frames and visual shapes."""
 
 from __future__ import annotations
 
@@ -14,14 +14,17 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Model
 
 DIGITS = 9
-"""Kept of every number, in m, rad or kg; of an inertia, of its largest entry. Rounding is no other robot."""
+"""Digits kept of each number (m, rad, kg), so that rounding does not change the fingerprint.
+
+For an inertia they are relative to its largest entry.
+"""
 
 
 def fingerprint(model: Model) -> str:
-    """Sixteen hexadecimal digits that follow from a robot's content, not from where its file lies.
+    """Return sixteen hexadecimal digits that depend on the content of a robot, not on its path.
 
-    Of bodies, joints, named frames, and of the shapes of its visuals without their colours. What is in the
-    file of a mesh is not looked at.
+    They depend on bodies, joints, named frames, and the shapes of visuals without their colours, but not on
+    the contents of mesh files.
     """
     content = {
         "bodies": [
@@ -44,13 +47,13 @@ def fingerprint(model: Model) -> str:
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:16]
 
 
-def is_another(model: Model, recorded: Any) -> bool:
-    """Whether a robot is not the one of this fingerprint; older runs have none, and then nobody knows."""
+def has_changed(model: Model, recorded: Any) -> bool:
+    """Return whether the fingerprint of a robot has changed; False for older runs, which recorded none."""
     return isinstance(recorded, str) and recorded != fingerprint(model)
 
 
 def _exact(number: float | None) -> str | None:
-    """What is written in a file and not computed."""
+    """Return a number from the file without rounding, because it is not the result of a computation."""
     return None if number is None else f"{number:.12g}"
 
 

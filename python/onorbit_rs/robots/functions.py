@@ -1,4 +1,4 @@
-"""Functions that expressions of a xacro file may call, and how large their values may grow."""
+"""Functions for the expressions of xacro files, and limits on the size of values."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from onorbit_rs.counting import count
+from onorbit_rs.common.counting import count
 
 MAX_TEXT = 100_000
-"""Characters."""
+"""Largest number of characters of a text."""
 MAX_ITEMS = 10_000
-"""Items of a list or mapping, those within it included."""
+"""Largest number of items of a list or mapping, including nested items."""
 MAX_BITS = 2048
-"""Of an integer; the largest float has 1024."""
+"""Largest number of bits of an integer; the largest float has 1024."""
 
 
 class Work:
-    """What the expansion of a file may cost, in steps of about a microsecond; large robots take a tenth."""
+    """Limit on the steps to expand a file, about a microsecond each; large robots use a tenth of it."""
 
     def __init__(self, steps: int = 4_000_000) -> None:
-        """For so many steps."""
+        """Start with this number of steps."""
         self._steps, self._left = steps, steps
 
     def spend(self, steps: int) -> None:
-        """Count steps; raises ValueError once they are used up."""
+        """Count steps; raises ValueError if none remain."""
         self._left -= steps
         if self._left < 0:
-            raise ValueError(f"takes more than {self._steps} steps to expand: no robot description does")
+            raise ValueError(f"the expansion requires more than {self._steps} steps, the limit for a file")
 
 
 def check_size(value: Any, work: Work) -> None:
-    """Raise ValueError unless a value is plain data of bounded size."""
+    """Raise ValueError unless a value is plain data of limited size."""
     waiting, items, length = [value], 0, 0
     while waiting:
         item = waiting.pop()
@@ -41,75 +41,77 @@ def check_size(value: Any, work: Work) -> None:
         if isinstance(item, str):
             length += len(item)
             if length > MAX_TEXT:
-                raise ValueError(f"text of more than {MAX_TEXT} characters")
+                raise ValueError(f"a text exceeds the limit of {MAX_TEXT} characters in xacro expressions")
         elif isinstance(item, int):
             if item.bit_length() > MAX_BITS:
-                raise ValueError(f"an integer of {item.bit_length()} bits, {MAX_BITS} are allowed")
+                raise ValueError(
+                    f"an integer has {item.bit_length()} bits, which exceeds the limit of {MAX_BITS}"
+                )
         elif isinstance(item, (list, tuple)):
             waiting.extend(list.__iter__(item) if isinstance(item, list) else item)
         elif isinstance(item, dict):
             waiting.extend(dict.values(item))
             waiting.extend(dict.keys(item))
         elif not (item is None or isinstance(item, float)):
-            raise ValueError(f"a value of type {type(item).__name__} has no place in a xacro expression")
+            raise ValueError(f"a value of type {type(item).__name__} is not allowed in a xacro expression")
         if items + len(waiting) > MAX_ITEMS:
-            raise ValueError(f"more than {MAX_ITEMS} items in a list or mapping")
+            raise ValueError(f"a list or mapping exceeds the limit of {MAX_ITEMS} items in xacro expressions")
     work.spend(items + length // 8)
 
 
 def repeated(a: Any, b: Any) -> Any:
-    """Return ``a * b``, where text and lists repeat to a bounded length."""
+    """Return ``a * b``; repeated text and lists have a limited length."""
     for items, times in ((a, b), (b, a)):
         if isinstance(items, (str, list, tuple)) and isinstance(times, int):
             limit = MAX_TEXT if isinstance(items, str) else MAX_ITEMS
-            _check(len(items) * times <= limit, f"{count(len(items), 'item', 'items')} {times} times")
+            _check(len(items) * times <= limit, f"{count(len(items), 'item', 'items')} {times} times", limit)
     return operator.mul(a, b)
 
 
 def safe_power(a: Any, b: Any) -> Any:
-    """Return ``a ** b`` unless it is an integer of very many digits."""
+    """Return ``a ** b``; raises ValueError if the result is an integer of more than :data:`MAX_BITS` bits."""
     if isinstance(a, int) and isinstance(b, int) and b > 0:
-        _check(a.bit_length() * b <= MAX_BITS or abs(a) <= 1, f"{a} ** {b}")
+        _check(a.bit_length() * b <= MAX_BITS or abs(a) <= 1, f"{a} ** {b}", f"{MAX_BITS} bits")
     return operator.pow(a, b)
 
 
 def safe_shift(a: Any, b: Any) -> Any:
-    """Return ``a << b`` unless it is an integer of very many digits."""
-    _check(not isinstance(b, int) or b <= MAX_BITS, f"a shift by {b} bits")
+    """Return ``a << b``; raises ValueError if the result is an integer of more than :data:`MAX_BITS` bits."""
+    _check(not isinstance(b, int) or b <= MAX_BITS, f"a shift by {b} bits", MAX_BITS)
     return operator.lshift(a, b)
 
 
-def text_of(a: Any, b: Any) -> Any:
-    """Return ``a % b``: the remainder, or text with values put in, to a bounded width."""
-    if isinstance(a, str):
-        _check(not re.search(r"%[^a-zA-Z%]*(\(|\*|\d{3})", a), f"a key or a width in {a!r}")
+def remainder_or_text(a: Any, b: Any) -> Any:
+    """Return ``a % b``: the remainder, or formatted text of limited width."""
+    if isinstance(a, str) and re.search(r"%[^a-zA-Z%]*(\(|\*|\d{3})", a):
+        raise ValueError(f"{a!r} has a key or a width of 100 or more, which is not allowed")
     return operator.mod(a, b)
 
 
 def _range(*ends: int) -> list[int]:
     made = range(*ends)
-    _check(len(made) <= MAX_ITEMS, f"a range of {len(made)} numbers")
+    _check(len(made) <= MAX_ITEMS, f"a range of {len(made)} numbers", MAX_ITEMS)
     return list(made)
 
 
 def _round(value: Any, digits: int | None = None) -> Any:
-    _check(digits is None or abs(digits) <= 400, f"rounding to {digits} digits")
+    _check(digits is None or abs(digits) <= 400, f"rounding to {digits} digits", 400)
     return round(value, digits)
 
 
 def _sum(values: Any, start: float = 0) -> Any:
-    return sum((value + 0 for value in values), start + 0)  # + 0: numbers alone
+    return sum((value + 0 for value in values), start + 0)  # + 0 raises an error for anything but numbers
 
 
 def _replace(text: str, old: str, new: str) -> str:
     length = len(text) + text.count(old) * len(new)
-    _check(length <= MAX_TEXT, f"text of {length} characters")
+    _check(length <= MAX_TEXT, f"a text of {length} characters", MAX_TEXT)
     return text.replace(old, new)
 
 
 def _join(text: str, parts: Any) -> str:
     length = len(text) * len(parts) + sum(map(len, parts))
-    _check(length <= MAX_TEXT, f"text of {length} characters")
+    _check(length <= MAX_TEXT, f"a text of {length} characters", MAX_TEXT)
     return text.join(parts)
 
 
@@ -119,13 +121,13 @@ def _tokenize(text: str, separators: str = ",; ", skip_empty: bool = True) -> li
 
 
 def _factorial(n: int) -> int:
-    _check(n <= 170, f"the factorial of {n}")
+    _check(n <= 170, f"the factorial of {n}", 170)
     return math.factorial(n)
 
 
-def _check(is_bounded: bool, what: str) -> None:
+def _check(is_bounded: bool, what: str, limit: int | str) -> None:
     if not is_bounded:
-        raise ValueError(f"{what} is more than a robot description needs")
+        raise ValueError(f"{what} exceeds the limit of {limit} in xacro expressions")
 
 
 _PYTHON: dict[str, Any] = {
@@ -160,10 +162,10 @@ FUNCTIONS: dict[str, Any] = (
     | _MATH
     | _PYTHON
 )
-"""Functions and constants by the names that PyPI's xacro gives them."""
+"""Functions and constants by their names in PyPI's xacro."""
 
 MAPPED = ("float", "int", "str", "bool", "abs", "len")
-"""Functions that ``map`` takes by their names."""
+"""Names of the functions that ``map`` accepts."""
 
 METHODS: dict[tuple[type, str], Callable[..., Any]] = {
     **{
@@ -196,4 +198,4 @@ METHODS: dict[tuple[type, str], Callable[..., Any]] = {
     (dict, "items"): lambda mapping: list(dict.items(mapping)),
     (dict, "get"): lambda mapping, key, default=None: dict.get(mapping, key, default),
 }
-"""Methods of text, lists and mappings; ``format`` is not among them, as it reads attributes."""
+"""Methods of text, lists and mappings; without ``format``, which reads attributes."""

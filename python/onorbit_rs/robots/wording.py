@@ -1,4 +1,4 @@
-"""How the caller writes the options for robot files, so that messages name what can be typed."""
+"""Names of the options for robot files, as the caller writes them, for messages."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Wording:
-    """Name of the folders with ROS packages; format of an argument of a xacro file."""
+    """Option for folders of ROS packages, and format of an argument of a xacro file."""
 
     packages: str
     _argument: str
 
     def argument(self, name: str) -> str:
-        """Return what gives the argument a value."""
+        """Return the option that gives this argument a value."""
         return self._argument.replace("NAME", name)
 
 
@@ -27,13 +27,13 @@ _current: ContextVar[Wording] = ContextVar("wording", default=PYTHON)
 
 
 def wording() -> Wording:
-    """Return the wording of the current caller; that of Python by default."""
+    """Return the wording for the present caller; that of Python by default."""
     return _current.get()
 
 
 @contextmanager
 def worded(by: Wording) -> Iterator[None]:
-    """Use this wording within the block."""
+    """Use this wording for messages within the block."""
     token = _current.set(by)
     try:
         yield

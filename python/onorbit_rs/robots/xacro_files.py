@@ -1,4 +1,4 @@
-"""Files that a xacro file may read: those of its own package and of the packages that were named or found."""
+"""Files that a xacro file may read: those of its package and of packages given or found."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from onorbit_rs.common.input_files import read_bytes
+from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import ReadError
-from onorbit_rs.names import did_you_mean
-from onorbit_rs.reading import read_bytes
 from onorbit_rs.robots.functions import Work
 from onorbit_rs.robots.wording import wording
 
 _LARGEST = 16 << 20
-"""Bytes, as for a URDF."""
+"""Size limit, bytes, as for a URDF."""
 
 
 class Files:
-    """Opens what one xacro file includes or loads, and finds packages for it."""
+    """Opens the files that one xacro file includes or loads, and finds packages."""
 
     def __init__(self, file: Path, package_paths: Sequence[Path], work: Work) -> None:
-        """For a file, which may read from its own package and those in ``package_paths``."""
+        """Allow a file to read from its package and those in ``package_paths``."""
         self._above = list(file.absolute().parents)
         self._given = [folder.absolute() for folder in package_paths]
         self._work = work
@@ -34,13 +34,15 @@ class Files:
     def find(self, package: str) -> str:
         """Return the folder of a package: one of ``package_paths``, or beside or above the file.
 
-        A folder beside the file's parents counts if it holds a ``package.xml``. What is not found stays
-        ``package://name``: a mesh there is not drawn, an include is reported as missing.
+        A folder beside the file's parents must contain a ``package.xml``. For a package that is not found,
+        returns ``package://name``: its meshes are not drawn, and includes are reported as missing.
         """
         if not package:
-            raise ValueError("$(find …): the name of the package is empty, as is an argument in it")
+            raise ValueError(
+                "$(find …): the package name is empty because an argument in it is empty; give its value"
+            )
         if package in (".", "..") or "/" in package or "\\" in package:
-            raise ValueError(f"$(find {package}): {package!r} is not the name of a package")
+            raise ValueError(f"$(find {package}): {package!r} is not a valid package name")
         for folder in [*self._given, *self._above]:
             beside = folder / package
             if folder.name == package and folder.is_dir():
@@ -54,59 +56,60 @@ class Files:
         return str(folder)
 
     def open(self, name: str | os.PathLike[str], mode: str = "r") -> io.StringIO:
-        """Return the text of a file; stands in for ``open`` within xacro.
+        """Return the text of a file; replaces ``open`` within xacro.
 
         Raises
         ------
         OSError
-            There is no such file or it cannot be read.
+            If there is no such file or it cannot be read.
         ValueError
-            It lies elsewhere, is no regular file of at most 16 MiB, is not UTF-8 text or has a document type.
+            If it is outside of the packages, is not a regular file of at most 16 MiB, is not UTF-8 text, or
+            has a document type.
         """
         path = Path(name)
         path.stat()  # a missing file must reach xacro as an OSError
         real = path.resolve()
         if mode != "r" or not any(real.is_relative_to(root) for root in self._roots):
             raise ValueError(
-                f"may not read {str(name)!r}, which lies outside of its package; if you trust it, name the "
+                f"{str(name)!r} is outside of the package and is not read; if you trust it, give the "
                 f"folder {str(real.parent)!r} with {wording().packages}"
             )
         try:
             raw = read_bytes(path, _LARGEST)
-        except ReadError as error:  # as an OSError it would be one of the outermost file
+        except ReadError as error:  # an OSError would be attributed to the outermost file
             raise ValueError(error.message) from None
         self._work.spend(len(raw) // 4)
         text = _checked(raw, str(name))
         return io.StringIO(text)
 
     def glob(self, pattern: str) -> list[str]:
-        """Return the files that an include with ``*`` names, in a folder that it names in full."""
+        """Return the files that match an include with ``*`` in its last component."""
         folder, last = os.path.split(pattern)
         if any(sign in folder for sign in "*?["):
-            raise ValueError(f"{pattern!r}: '*' stands in names of files only, not of folders")
+            raise ValueError(f"{pattern!r}: '*' is allowed in the names of files only, not of folders")
         return [str(found) for found in sorted(Path(folder or ".").glob(last))] if last else []
 
 
 class Environment:
-    """``$(env NAME)`` and ``$(optenv NAME default)``, answered from the arguments that were given."""
+    """Values of ``$(env NAME)`` and ``$(optenv NAME default)``, taken from the given arguments."""
 
     def __init__(self, values: dict[str, str], used: set[str]) -> None:
-        """Of these arguments; ``used`` receives the names that were asked for."""
+        """Use these arguments; the names that the file uses are added to ``used``."""
         self._values, self._used = values, used
 
     def required(self, name: str) -> str:
-        """Return the argument of this name; the environment of the process is not read."""
+        """Return the argument with this name; the environment of the process is not read."""
         self._used.add(name)
         if name not in self._values:
             hint = did_you_mean(name, self._values)
             raise ValueError(
-                f"$(env {name}): the environment is not read, give the value with "
+                f"$(env {name}): the environment is not read; give the value with "
                 f"{wording().argument(name)}{hint}"
             )
         return self._values[name]
 
     def optional(self, name: str, default: Any = "") -> Any:
-        """Return the argument of this name, or the file's default."""
+        """Return the argument with this name, or the default in the file."""
         self._used.add(name)
         return self._values.get(name, default)
 
@@ -116,7 +119,7 @@ def _is_package(folder: Path) -> bool:
 
 
 def _real(folder: Path) -> set[Path]:
-    """Return where a folder lies, also one whose files are links (``colcon build --symlink-install``)."""
+    """Return the real path of a folder, and that of its files if they are links (``--symlink-install``)."""
     manifest = folder / "package.xml"
     return {folder.resolve()} | ({manifest.resolve().parent} if manifest.is_file() else set())
 
@@ -129,5 +132,5 @@ def _checked(raw: bytes, name: str) -> str:
     if not text.strip():
         raise ValueError(f"{name!r}: the file is empty")
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise ValueError(f"{name!r}: a document type (<!DOCTYPE>) is refused; remove it")
+        raise ValueError(f"{name!r}: a document type (<!DOCTYPE>) is not allowed; remove it")
     return text

@@ -19,7 +19,7 @@ from onorbit_rs.robots.wording import wording
 from onorbit_rs.robots.xacro_files import Environment, Files
 
 _EXTRAS = re.compile(r"gazebo|ignition|(^|[_./])gz|ros2?_?control|transmission|plugin|sensor|isaac", re.I)
-"""What names files and macros of simulators, which a robot does without."""
+"""Names of files and macros for simulators, which are not required for the robot."""
 
 _UNITS = {
     "!radians": 1.0,
@@ -29,7 +29,7 @@ _UNITS = {
     "!foot": 0.3048,
     "!inches": 0.0254,
 }
-"""Units of numbers in YAML files, as xacro has them."""
+"""Units of numbers in YAML files, as in xacro."""
 
 
 def replace_parts(
@@ -40,10 +40,10 @@ def replace_parts(
     environment: Environment,
     remarks: list[str],
 ) -> None:
-    """Replace all of xacro that evaluates, opens files or reads the environment, until ``undo`` closes.
+    """Replace the parts of xacro that evaluate, open files or read the environment, until ``undo`` closes.
 
-    A version of xacro that lacks one of the replaced functions is refused (AttributeError): what evaluates in
-    their place is unknown. ``eval`` and ``exec`` themselves are hidden from it.
+    A version of xacro without one of the replaced functions is refused (AttributeError), since another
+    function would evaluate in its place. ``eval`` and ``exec`` are hidden from xacro.
     """
     substitution = importlib.import_module("xacro.substitution_args")
     functions = FUNCTIONS | _file_functions(xacro, files, work)
@@ -57,8 +57,8 @@ def replace_parts(
         def named(name: str) -> Any:
             return substitution.convert_value(context["arg"][name], "auto")
 
-        own = {"arg": named, "env": environment.required, "optenv": environment.optional, "find": files.find}
-        return str(evaluate(text, named, functions | own, work))
+        more = {"arg": named, "env": environment.required, "optenv": environment.optional, "find": files.find}
+        return str(evaluate(text, named, functions | more, work))
 
     def counted_eval_all(node: Any, *others: Any) -> None:
         work.spend(25)
@@ -74,9 +74,11 @@ def replace_parts(
         return str(Path(xacro.filestack[-1] or ".").absolute().parent)
 
     def refused(*_: Any) -> None:
-        raise ValueError("this version of xacro evaluates Python: install xacro 2.1")
+        raise ValueError(
+            "this version of xacro is not supported because it would execute Python; install xacro 2.1"
+        )
 
-    for owner, name, ours in (
+    for owner, name, replacement in (
         (xacro, "safe_eval", safe_eval),
         (xacro, "eval_all", counted_eval_all),
         (xacro, "process_include", include),
@@ -88,17 +90,17 @@ def replace_parts(
         (substitution, "_eval_dirname", folder_of),
     ):
         undo.callback(setattr, owner, name, getattr(owner, name))
-        setattr(owner, name, ours)
+        setattr(owner, name, replacement)
     for owner in (xacro, substitution):
-        for name, stand_in in (("open", files.open), ("eval", refused), ("exec", refused)):
-            setattr(owner, name, stand_in)
+        for name, substitute in (("open", files.open), ("eval", refused), ("exec", refused)):
+            setattr(owner, name, substitute)
             undo.callback(delattr, owner, name)
     undo.callback(setattr, xacro, "glob", xacro.glob)
     xacro.glob = files
 
 
 class _Sizes:
-    """Numbers of nodes in the bodies of macros."""
+    """Cache of the numbers of nodes in macro bodies."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Any, int]] = {}
@@ -109,14 +111,15 @@ class _Sizes:
             while waiting:
                 size += 1
                 waiting.extend(waiting.pop().childNodes)
-            self._known[id(body)] = (body, size)  # the body too, so that its id stays its own
+            self._known[id(body)] = (body, size)  # holds the body, so that its id is not reused
         return self._known[id(body)][1]
 
 
 def _property(table_type: Any, symbols: Any, name: str) -> Any:
-    """Return a property of the file, or for a namespace what looks its properties up; KeyError without it.
+    """Return a property of the file, or for a namespace a function that returns its properties.
 
-    The symbols that xacro itself defines, which hold Python's functions, are not looked at.
+    Raises KeyError if it is not defined. The symbols that xacro defines, among them Python's functions, are
+    not accessible.
     """
     table = symbols
     while isinstance(table, table_type):
@@ -128,7 +131,7 @@ def _property(table_type: Any, symbols: Any, name: str) -> Any:
 
 
 def _file_functions(xacro: Any, files: Files, work: Work) -> dict[str, Any]:
-    """Return the functions of xacro that depend on the file in which they are called."""
+    """Return the functions of xacro that depend on the file that calls them."""
 
     def fatal(*words: Any) -> None:
         raise ValueError(" ".join(map(str, words)))
@@ -162,7 +165,7 @@ def _loader(work: Work) -> type[yaml.SafeLoader]:
     """Return a loader of plain YAML with xacro's units."""
 
     class Loader(yaml.SafeLoader):
-        """A class of its own, so that other readers of YAML do not get the units."""
+        """Separate class, so that the units apply to no other reader of YAML."""
 
     def of_unit(factor: float, loader: yaml.SafeLoader, node: Any) -> float:
         return float(evaluate(str(loader.construct_scalar(node)), _nothing, FUNCTIONS, work)) * factor
@@ -179,7 +182,7 @@ def _nothing(name: str) -> Any:
 def _without_extras(
     xacro: Any, files: Files, remarks: list[str]
 ) -> tuple[Callable[..., None], Callable[..., Any]]:
-    """Xacro's include and macro call, which leave out what is a simulator's and not there."""
+    """Return xacro's include and macro call, modified to skip missing files and macros for simulators."""
     include, call = xacro.process_include, xacro.handle_macro_call
     left_out: list[str] = []
 
@@ -199,7 +202,7 @@ def _without_extras(
                 path = paths[-1] if paths else ""
                 raise ValueError(f"includes {_missing(name, path, files, given)}") from error
             xacro.filestack[:] = stack
-            _leave_out(node, f"the file {name!r} is not there", remarks)
+            _leave_out(node, f"the file {name!r} does not exist", remarks)
             left_out.append(name)
 
     def call_if_known(node: Any, *others: Any) -> Any:
@@ -209,21 +212,21 @@ def _without_extras(
             is_extra = left_out and _EXTRAS.search(node.tagName)
             if not (is_extra and str(error).startswith("unknown macro")):
                 raise
-            _leave_out(node, f"the macro <{node.tagName}> was to come from it", remarks)
+            _leave_out(node, f"it defines the macro <{node.tagName}>", remarks)
             return True
 
     return include_if_there, call_if_known
 
 
 def _leave_out(node: Any, why: str, remarks: list[str]) -> None:
-    remarks.append(f"left out, as an extra of a simulator: {why}")
+    remarks.append(f"skipped, since it is for simulators only: {why}")
     node.parentNode.removeChild(node)
 
 
 def _missing(name: str, path: str, files: Files, given: Mapping[str, Any]) -> str:
-    """Return why there is no such file: an argument is empty, its package was not found, or it is not there.
+    """Return why a file is missing: an argument is empty, the package was not found, or it does not exist.
 
-    ``name`` is as written in the file, ``path`` what it expands to; ``given`` are the values of arguments.
+    ``name`` is the name in the file, ``path`` its expanded path, and ``given`` are the values of arguments.
     """
     if empty := _empty(name, given):
         return f"{name!r}, in which the argument {empty!r} is empty; give it with {wording().argument(empty)}"
@@ -231,14 +234,14 @@ def _missing(name: str, path: str, files: Files, given: Mapping[str, Any]) -> st
     package = (found[1] or found[2]) if found else None
     if package and files.find(package).startswith("package:"):
         return (
-            f"{name!r}, whose package {package!r} is not there; name the folder that holds it with "
+            f"{name!r}, whose package {package!r} was not found; give the folder that contains it with "
             f"{wording().packages}"
         )
     shown = path if path and "$" in name else name
-    return f"{shown!r}, which is not there"
+    return f"{shown!r}, which does not exist"
 
 
 def _empty(name: str, given: Mapping[str, Any]) -> str | None:
-    """Return the first argument in a file's name whose value is empty."""
+    """Return the first argument in the name of a file whose value is empty."""
     asked = re.findall(r"\$\(arg\s+([^)\s]+)\s*\)", name)
     return next((argument for argument in asked if given.get(argument) == ""), None)

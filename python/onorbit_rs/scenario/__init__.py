@@ -1,4 +1,4 @@
-"""One YAML, checked before anything runs, and the objects built from it."""
+"""Reads and validates scenarios, and builds the objects of the engine from them."""
 
 from __future__ import annotations
 

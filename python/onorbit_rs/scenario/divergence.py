@@ -1,4 +1,4 @@
-"""What a run that diverged says: when, what moved fastest, and what to try."""
+"""Message of a run that diverged: the time, the fastest motion, and suggested fixes."""
 
 from __future__ import annotations
 
@@ -13,14 +13,12 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.schema import Scenario
 
 _BASE = ("linear", "m/s"), ("angular", "rad/s")
-
-
 _TURN = 0.1
-"""Radians that a robot may turn in a step that is short enough for most."""
+"""Rotation of the base per step, rad, up to which a step is usually short enough."""
 
 
 def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
-    """In one line; the whole of the last finite state stays in the error's ``q`` and ``v``."""
+    """Return the message, one line; the error contains the last finite state as ``q`` and ``v``."""
     if stop.time is None or stop.v is None:
         return stop.message
     settings = scenario.simulation
@@ -31,28 +29,28 @@ def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
     name, unit = list(_rates(model))[worst]
     turned = 0.0 if scenario.laws else _fastest_turn(stop) * settings.time_step
     shorter = min(1.0, _TURN / max(turned, _TURN)) * settings.time_step
-    ways = ["a smaller tolerance" if is_adaptive else f"a time_step shorter than {shorter:.2g} s"]
+    fixes = ["a smaller tolerance" if is_adaptive else f"a time_step shorter than {shorter:.2g} s"]
     if settings.control_period is not None and scenario.laws:
-        ways += [f"a control_period shorter than {settings.control_period:g} s"]
-    ways += ["softer gains, those of rates too"] if scenario.laws else []
-    ways += ["lower rates at the start"] if turned > 1.0 else []
+        fixes += [f"a control_period shorter than {settings.control_period:g} s"]
+    fixes += ["lower gains, including those of rates"] if scenario.laws else []
+    fixes += ["lower initial rates"] if turned > 1.0 else []
     is_damped = any(joint.damping > 0.0 for joint in model.joints)
-    ways += ["less damping of the joints"] if is_damped and not is_adaptive else []
+    fixes += ["less joint damping"] if is_damped and not is_adaptive else []
     return (
-        f"the run diverged at t = {stop.time:.6g} s{step}: the state is no longer finite; the fastest when "
-        f"it last was: {name}, {rates[worst]:.3g} {unit}; try {', or '.join(ways)}"
+        f"the run diverged at t = {stop.time:.6g} s{step}: the state is not finite; the largest rate "
+        f"in the last finite state: {name}, {rates[worst]:.3g} {unit}; try {', or '.join(fixes)}"
     )
 
 
 def _fastest_turn(stop: SimulationError) -> float:
-    """The largest rate at the start, rad/s: later ones are the divergence itself."""
+    """Return the largest initial rate, rad/s; later rates are a result of the divergence."""
     has_rows = stop.trace is not None and len(stop.trace) > 0
     start = np.asarray(stop.trace.v)[0] if has_rows else np.asarray(stop.v)
     return float(np.abs(start[3:]).max())
 
 
 def _rates(model: Model) -> Iterator[tuple[str, str]]:
-    """Each entry of ``v`` in words, and its unit."""
+    """Yield the description of each entry of ``v`` and its unit."""
     for kind, unit in _BASE:
         for axis in "xyz":
             yield f"the base's {kind} velocity along {axis}", unit

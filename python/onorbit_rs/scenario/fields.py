@@ -1,4 +1,4 @@
-"""Types of scenario fields: each reads a quantity of its own dimension and holds SI."""
+"""Types of scenario fields: each reads a quantity of one dimension and stores its value in SI."""
 
 from __future__ import annotations
 
@@ -25,23 +25,27 @@ def _reader(*allowed: Dimension) -> BeforeValidator:
 
 def _positive(value: float) -> float:
     if value <= 0.0:
-        raise QuantityError(f"{value:g} is not above zero", text=value, expected="above zero")
+        raise QuantityError(
+            f"{value:g} is not positive; it must be above zero", text=value, expected="above zero"
+        )
     return value
 
 
 def _not_negative(value: float) -> float:
     if value < 0.0:
-        raise QuantityError(f"{value:g} is negative", text=value, expected="zero or above")
+        raise QuantityError(
+            f"{value:g} is negative; it must be zero or above", text=value, expected="zero or above"
+        )
     return value
 
 
-def beside(path: Path | str, info: SerializationInfo) -> str:
-    """The path, from the folder that the context of the dump names, if it names one."""
+def resolved_path(path: Path | str, info: SerializationInfo) -> str:
+    """Return the absolute path, relative to the folder in the context of the dump, if there is one."""
     return str(path if info.context is None else (info.context / path).resolve())
 
 
-FilePath = Annotated[Path, PlainSerializer(beside, when_used="json")]
-"""A file or folder, beside the scenario unless its path is absolute."""
+FilePath = Annotated[Path, PlainSerializer(resolved_path, when_used="json")]
+"""Path of a file or folder; a relative path starts at the folder of the scenario."""
 
 Positive = AfterValidator(_positive)
 NotNegative = AfterValidator(_not_negative)
@@ -69,9 +73,7 @@ Stiffness = Annotated[float, _reader(units.STIFFNESS)]
 
 def _whole(value: object) -> object:
     if isinstance(value, bool):
-        raise QuantityError(
-            f"{value} is no number; a whole number is needed", text=value, expected="a number"
-        )
+        raise QuantityError(f"{value} is not a number; give an integer", text=value, expected="a number")
     return value
 
 
@@ -86,7 +88,7 @@ def _drift(value: object) -> float | Literal["never"]:
     except QuantityError as error:
         raise QuantityError(f"{error}, or never", text=value, expected="a length, or never") from None
     if distance < 1.0:
-        message = f"{distance:g} m is too near: give at least 1 m, or never"
+        message = f"{distance:g} m is too short; give at least 1 m, or never"
         raise QuantityError(message, text=value, expected="at least 1 m")
     return distance
 

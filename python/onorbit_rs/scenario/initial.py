@@ -1,66 +1,84 @@
-"""The state the run starts from."""
+"""Initial state of the run."""
 
 from __future__ import annotations
 
-import math
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
-from pydantic import Field, model_validator
+import numpy as np
+from pydantic import Field
 
-from onorbit_rs.scenario.fields import Angle3, AngularRate3, Length3, Number4, Speed3
-from onorbit_rs.scenario.joint_values import JointPositions, JointRates
+from onorbit_rs.common.coordinates import ANGULAR, JOINTS_Q, JOINTS_V, LINEAR, POSITION, QUATERNION
+from onorbit_rs.common.rotations import matrix_from_quaternion, quaternion_from_matrix
+from onorbit_rs.scenario.attitude import Attitude, quaternion_of
+from onorbit_rs.scenario.fields import AngularRate3, Length3, Speed3
+from onorbit_rs.scenario.joint_values import JointPositions, JointRates, joint_values
 from onorbit_rs.scenario.part import Part
-from onorbit_rs.scenario.refusals import wrong
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
-class Attitude(Part):
-    """Either a quaternion or three angles; it takes components of the base to components of the frame."""
+    from onorbit_rs._core import Model, Orbit
 
-    other_words: ClassVar = {
-        "rpy": "roll_pitch_yaw", "euler": "roll_pitch_yaw", "angles": "roll_pitch_yaw",
-        "quaternion": "quaternion_xyzw", "quat": "quaternion_xyzw", "xyzw": "quaternion_xyzw",
-    }  # fmt: skip
-
-    quaternion_xyzw: Number4 | None = None
-    roll_pitch_yaw: Angle3 | None = None
-    """About the frame's fixed x, then y, then z."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_list(cls, value: Any) -> Any:
-        if isinstance(value, list):
-            raise wrong("say which: 'quaternion_xyzw: [...]' or 'roll_pitch_yaw: [...]'")
-        return value
-
-    @model_validator(mode="after")
-    def _is_one_rotation(self) -> Attitude:
-        if (self.quaternion_xyzw is None) == (self.roll_pitch_yaw is None):
-            raise wrong("give exactly one of 'quaternion_xyzw' and 'roll_pitch_yaw'")
-        if self.quaternion_xyzw is not None:
-            norm = math.hypot(*self.quaternion_xyzw)
-            if abs(norm - 1.0) > 1e-6:
-                raise wrong(f"the quaternion has norm {norm:.9g}, off 1 by more than 1e-6")
-        return self
+    Floats = NDArray[np.float64]
 
 
 class InitialState(Part):
-    """Pose and twist of the base, and the joints; zero where not given."""
+    """Pose and twist of the base, positions and rates of the joints; each is zero by default."""
 
-    other_words: ClassVar = {
+    synonyms: ClassVar = {
         "velocity": "linear_velocity", "spin": "angular_velocity", "orientation": "attitude",
         "q": "joints", "joint_velocities": "joint_rates",
     }  # fmt: skip
 
     frame: Literal["world", "lvlh", "path"] = "world"
-    """What ``position`` and ``attitude`` are given in, and what the velocities are relative to: W, the
-    local orbital frame L (x radial outward, y along track, z along the orbital angular momentum), or the
-    attitude of the path (L where it has none)."""
+    """Frame of ``position`` and ``attitude``, relative to which the velocities are given: W, the local
+    orbital frame L (x radial outward, y along track, z along the orbital angular momentum), or the attitude
+    of the path (L if it has none)."""
     position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     attitude: Attitude | None = None
     linear_velocity: Speed3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Of the base's origin, body axes."""
+    """Velocity of the base's origin, body axes."""
     angular_velocity: AngularRate3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Of the base, body axes."""
+    """Angular velocity of the base, body axes."""
     joints: JointPositions = Field(default_factory=list)
     """In the order of the model's joints, or by name."""
     joint_rates: JointRates = Field(default_factory=list)
+
+    def build(self, model: Model, orbit: Orbit | None) -> tuple[Floats, Floats]:
+        """Return configuration and velocity at time zero.
+
+        A position and attitude relative to L are rotated by `R_il`, and the rotation of L is added in body
+        axes: `ω_b = ω + R_bl ω_l` and `v_b = v + R_bl (ω_l × p_l)`, with the rate `ω_l` in the axes of L.
+
+        Returns
+        -------
+        q : (nq,) array
+            Base position in m, base quaternion xyzw, joint positions in rad or m.
+        v : (nv,) array
+            Base twist in m/s and rad/s, body axes; joint rates.
+
+        Raises
+        ------
+        FrameError
+            If a joint does not exist; suggests the nearest name.
+        ShapeError
+            If a list of joints has the wrong length.
+        QuantityError
+            If the unit is a length on a revolute joint or an angle on a prismatic one.
+        """
+        q, v = np.array(model.neutral(), dtype=np.float64), np.zeros(model.nv)
+        rot_fb = matrix_from_quaternion(quaternion_of(self.attitude))
+        position, linear, angular = (
+            np.array(values) for values in (self.position, self.linear_velocity, self.angular_velocity)
+        )
+        if self.frame != "world" and orbit is not None:
+            frame = orbit.lvlh(0.0) if self.frame == "lvlh" else orbit.frame(0.0)
+            rot_il, rate = (np.asarray(value, dtype=np.float64) for value in frame)
+            linear = linear + rot_fb.T @ np.cross(rate, position)
+            angular = angular + rot_fb.T @ rate
+            position, rot_fb = rot_il @ position, rot_il @ rot_fb
+        q[POSITION], q[QUATERNION] = position, quaternion_from_matrix(rot_fb)
+        v[LINEAR], v[ANGULAR] = linear, angular
+        q[JOINTS_Q] = joint_values("joints", self.joints, q[JOINTS_Q], model)
+        v[JOINTS_V] = joint_values("joint_rates", self.joint_rates, v[JOINTS_V], model)
+        return q, v

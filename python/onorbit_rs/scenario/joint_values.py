@@ -1,30 +1,41 @@
-"""Types of scenario fields for joints, in order or by name; a unit is checked once the robot is known."""
+"""Joint positions and rates in a scenario, as a list or by name; units are checked against the robot."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import PlainSerializer, PlainValidator
 
-from onorbit_rs.exceptions import QuantityError
+from onorbit_rs.common.counting import count
+from onorbit_rs.common.suggestions import did_you_mean, nearest
+from onorbit_rs.exceptions import FrameError, QuantityError, ShapeError
 from onorbit_rs.scenario import units
+from onorbit_rs.scenario.errors import shortened
 from onorbit_rs.scenario.units import Dimension, parse_quantity
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Model
+
+    Floats = NDArray[np.float64]
 
 
 class JointValue(float):
-    """The value of a joint in SI; ``dimension`` is that of its unit, None for a bare number."""
+    """Value of a joint in SI; ``dimension`` is that of its unit, None for a bare number."""
 
     dimension: Dimension | None = None
 
 
 def _joint_value(value: object, allowed: tuple[Dimension, ...]) -> JointValue:
     number = JointValue(parse_quantity(value, *allowed))
-    fitting = [dimension for dimension in allowed if _measures(value, dimension)]
+    fitting = [dimension for dimension in allowed if _has_dimension(value, dimension)]
     number.dimension = fitting[0] if len(fitting) == 1 else None
     return number
 
 
-def _measures(value: object, dimension: Dimension) -> bool:
+def _has_dimension(value: object, dimension: Dimension) -> bool:
     try:
         parse_quantity(value, dimension)
     except QuantityError:
@@ -39,7 +50,9 @@ def _joints_reader(*allowed: Dimension) -> PlainValidator:
         if isinstance(value, list):
             return [_joint_value(entry, allowed) for entry in value]
         raise QuantityError(
-            "joints are a list in the model's order, or a mapping from joint name to value",
+            f"joints is {shortened(value)}; it must be a list in the model's order or a mapping from "
+            "joint name "
+            "to value",
             text=value,
             expected="joints",
         )
@@ -64,3 +77,52 @@ _Joints = list[JointValue] | dict[str, JointValue]
 
 JointPositions = Annotated[_Joints, _joints_reader(units.ANGLE, units.LENGTH), PlainSerializer(_plain)]
 JointRates = Annotated[_Joints, _joints_reader(units.ANGULAR_RATE, units.SPEED), PlainSerializer(_plain)]
+
+
+def joint_values(
+    name: str, given: list[JointValue] | dict[str, JointValue], default: Floats, model: Model
+) -> Floats:
+    """Return the values in the order of the model's joints; joints that are not given have the default.
+
+    Raises
+    ------
+    FrameError
+        If a joint does not exist; suggests the nearest name.
+    ShapeError
+        If a list has the wrong length.
+    QuantityError
+        If the unit is a length on a revolute joint or an angle on a prismatic one.
+    """
+    values, joints = default.copy(), list(model.joint_names)
+    if isinstance(given, dict):
+        for joint, value in given.items():
+            if joint not in joints:
+                hint = did_you_mean(joint, joints)
+                raise FrameError(
+                    f"{name}: no joint is named {joint!r}{hint}",
+                    name=joint, kind="joint", known=list(joints), suggestion=nearest(joint, joints),
+                )  # fmt: skip
+            values[joints.index(joint)] = value
+    elif given:
+        if len(given) != len(joints):
+            entries = count(len(given), "entry", "entries")
+            moving = count(len(joints), "moving joint", "moving joints")
+            message = f"{name} has {entries}, but the robot has {moving}"
+            raise ShapeError(message, name=name, expected=(len(joints),), got=(len(given),))
+        values[:] = given
+    by_name = given if isinstance(given, dict) else dict(zip(joints, given, strict=False))
+    if any(value.dimension is not None for value in by_name.values()):
+        _check_units(name, by_name, model)
+    return values
+
+
+def _check_units(name: str, given: dict[str, JointValue], model: Model) -> None:
+    """Raise QuantityError for a unit of length on a revolute joint or of angle on a prismatic joint."""
+    is_prismatic = {joint.name: joint.kind == "prismatic" for joint in model.joints}
+    for joint, value in given.items():
+        if value.dimension is None:
+            continue
+        if (value.dimension in (units.LENGTH, units.SPEED)) != is_prismatic[joint]:
+            kind, expected = ("prismatic", "a length") if is_prismatic[joint] else ("revolute", "an angle")
+            message = f"{name}: {joint} is {kind}, so {value.dimension.name} does not fit"
+            raise QuantityError(message, text=float(value), expected=expected)

@@ -1,4 +1,4 @@
-"""What every part of a scenario shares: unknown keys are refused, naming the nearest right one."""
+"""Base class of the parts of a scenario; unknown keys raise an error that suggests the nearest key."""
 
 from __future__ import annotations
 
@@ -6,24 +6,24 @@ from typing import Any, ClassVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, model_validator
 
-from onorbit_rs.names import nearest
-from onorbit_rs.scenario.refusals import shown, unknown_key, wrong
+from onorbit_rs.common.suggestions import nearest
+from onorbit_rs.scenario.errors import invalid, shortened, unknown_key
 
 FEW = 8
-"""Keys that are listed beside the nearest one."""
+"""Largest number of known keys that a message lists in addition to the nearest one."""
 
 
 class Part(BaseModel):
-    """A mapping in the YAML."""
+    """Mapping in the YAML file."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
-    other_words: ClassVar[dict[str, str]] = {}
-    """What people call a key, and what it is called here."""
+    synonyms: ClassVar[dict[str, str]] = {}
+    """Common other names of keys, for suggestions."""
 
     @classmethod
     def yaml_keys(cls) -> list[str]:
-        """Those it may have, as the YAML writes them."""
+        """Return the names of the keys in the YAML file."""
         return [field.alias or name for name, field in cls.model_fields.items()]
 
     @model_validator(mode="before")
@@ -40,19 +40,21 @@ class Part(BaseModel):
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
-        """The key that was meant: one that is not given yet."""
-        near = cls.other_words.get(key.lower()) or nearest(key, free)
+        """Return the end of the message about an unknown key; suggests keys that are not given yet."""
+        near = cls.synonyms.get(key.lower()) or nearest(key, free)
         known = [name for name in cls.yaml_keys() if name != "kind"]
         hint = f", did you mean {near!r}?" if near else ""
         if hint and len(known) > FEW:
             return hint
-        return f"{hint}{' ' if hint else ', '}known are: {', '.join(known)}" if known else "; it has none"
+        if not known:
+            return "; there are no keys"
+        return f"{hint}{' ' if hint else ', '}known are: {', '.join(known)}"
 
 
 def of_kind(union: Any) -> BeforeValidator:
-    """Before a union of parts, each with its ``kind``: a word alone is a kind, and complaints name the kinds.
+    """Return the validator of a union of parts with a ``kind``: errors name the kinds.
 
-    ``gravity_gradient`` means ``{kind: gravity_gradient}``.
+    A single word is a kind: ``gravity_gradient`` means ``{kind: gravity_gradient}``.
     """
     parts = {get_args(part.model_fields["kind"].annotation)[0]: part for part in get_args(union)}
     keys = {kind: part.yaml_keys() for kind, part in parts.items()}
@@ -63,16 +65,16 @@ def of_kind(union: Any) -> BeforeValidator:
         if isinstance(value, Part):
             return value
         if not isinstance(value, dict):
-            raise wrong(f"must be a mapping with a 'kind' ({kinds}), not {shown(value)}")
+            raise invalid(f"must be a mapping with a 'kind' ({kinds}), not {shortened(value)}")
         if "kind" not in value:
-            raise wrong(f"needs a 'kind': {kinds}")
-        own = keys.get(str(value["kind"]), [*value])  # of an unknown kind nothing is known
+            raise invalid(f"requires a 'kind': {kinds}")
+        own = keys.get(str(value["kind"]), [*value])  # an unknown kind accepts any key
         for key in value:
-            others = [kind for kind, theirs in keys.items() if key in theirs]
-            if key not in own and others:  # so the kind is known
-                meant = parts[str(value["kind"])].other_words.get(str(key))
-                way_out = f", did you mean {meant!r}?" if meant else f"; it belongs to {', '.join(others)}"
-                raise unknown_key(key, f" of kind '{value['kind']}'{way_out}")
+            others = [kind for kind, names in keys.items() if key in names]
+            if key not in own and others:  # implies that the kind is known
+                meant = parts[str(value["kind"])].synonyms.get(str(key))
+                hint = f", did you mean {meant!r}?" if meant else f"; it belongs to {', '.join(others)}"
+                raise unknown_key(key, f" of kind '{value['kind']}'{hint}")
         return value
 
     return BeforeValidator(read)

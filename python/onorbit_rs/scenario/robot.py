@@ -1,9 +1,11 @@
-"""The robot: a bundled name, a URDF or xacro file, one rigid body written in place, or a bus with arms."""
+"""Robot: a bundled name, a URDF or xacro file, one rigid body, or a bus with arms."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Self
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
+import numpy as np
 from pydantic import (
     BeforeValidator,
     Field,
@@ -12,11 +14,17 @@ from pydantic import (
     model_validator,
 )
 
-from onorbit_rs import robots
+from onorbit_rs import _core, robots
+from onorbit_rs.robots.wording import Wording, worded
+from onorbit_rs.scenario.errors import invalid, shortened
 from onorbit_rs.scenario.fields import FilePath, Inertia, Length3, Mass, Positive
+from onorbit_rs.scenario.locations import dotted, located
 from onorbit_rs.scenario.part import Part
-from onorbit_rs.scenario.refusals import shown, wrong
-from onorbit_rs.scenario.task_frame import Pose
+from onorbit_rs.scenario.pose import Pose
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.schema import Scenario
+    from onorbit_rs.scenario.yaml_lines import Location
 
 
 def _from_diagonal(value: Any) -> Any:
@@ -28,14 +36,14 @@ def _from_diagonal(value: Any) -> Any:
             ]
         if all(rows) and all(len(row) == 3 for row in value):
             return value
-    raise wrong("an inertia is three numbers (a diagonal) or a 3 x 3 matrix")
+    raise invalid("an inertia must be three numbers (the diagonal) or a 3 x 3 matrix")
 
 
 InertiaMatrix = Annotated[list[list[Inertia]], BeforeValidator(_from_diagonal)]
 
 
 class RigidBody(Part):
-    """A spacecraft without joints; its body is ``base``, its origin the centre of mass."""
+    """Spacecraft without joints; its body is named ``base``, its origin is the centre of mass."""
 
     mass: Annotated[Mass, Positive]
     inertia: InertiaMatrix
@@ -45,7 +53,7 @@ class RigidBody(Part):
 def _argument(value: Any) -> Any:
     if isinstance(value, (str, bool, int, float)):
         return value
-    raise wrong(f"an argument of xacro is text, a number, true or false, not {shown(value)}")
+    raise invalid(f"an argument of xacro must be text, a number, true or false, not {shortened(value)}")
 
 
 XacroArgument = Annotated[str | bool | int | float, BeforeValidator(_argument)]
@@ -73,9 +81,9 @@ class PlainRobot(Part):
     urdf: FilePath | None = None
     rigid_body: RigidBody | None = None
     package_paths: list[FilePath] = Field(default_factory=list)
-    """Folders in which ``package://`` and xacro's ``$(find ...)`` are looked up."""
+    """Folders that are searched for ``package://`` and xacro's ``$(find ...)``."""
     xacro_arguments: dict[str, XacroArgument] = Field(default_factory=dict)
-    """What ``$(arg name)`` gives in a xacro file."""
+    """Values of ``$(arg name)`` in a xacro file."""
     xacro: bool = False
     """Whether to expand a file that is not named ``.xacro``."""
     links: dict[str, LinkValues] = Field(default_factory=dict)
@@ -86,11 +94,11 @@ class PlainRobot(Part):
     @model_validator(mode="before")
     @classmethod
     def _from_text(cls, value: Any) -> Any:
-        """``humanoid_torso`` is a bundled name; ``arms/my_arm.urdf`` is a path, relative to the YAML."""
+        """Convert text to a bundled name (``ets_vii``) or a path relative to the YAML (``arms/arm.urdf``)."""
         if not isinstance(value, (str, dict, Part)):
-            raise wrong(
-                f"must be a bundled name, a path of a URDF, or a mapping with {cls._listed('or')}, "
-                f"not {shown(value)}"
+            raise invalid(
+                f"must be a bundled name, the path of a URDF, or a mapping with {cls._listed('or')}, "
+                f"not {shortened(value)}"
             )
         if not isinstance(value, str):
             return value
@@ -100,18 +108,41 @@ class PlainRobot(Part):
     def _exactly_one(self) -> Self:
         given = [name for name in self.sources if getattr(self, name) is not None]
         if len(given) != 1:
-            raise wrong(f"give exactly one of {self._listed('and')}; given: {', '.join(given) or 'none'}")
+            raise invalid(f"give exactly one of {self._listed('and')}; given: {', '.join(given) or 'none'}")
         if self.urdf is None and (self.package_paths or self.xacro_arguments or self.xacro):
-            raise wrong("'package_paths', 'xacro_arguments' and 'xacro' belong to a 'urdf'")
+            raise invalid("'package_paths', 'xacro_arguments' and 'xacro' require a 'urdf'")
         if self.rigid_body is not None and self.links:
-            raise wrong("'links' change the robot of a file; write the values of a 'rigid_body' there")
+            raise invalid("'links' applies only to robots from files; give these values in 'rigid_body'")
         return self
 
     @classmethod
     def _listed(cls, last: str) -> str:
-        """``'bundled', 'urdf' and 'rigid_body'``."""
+        """Return the names of the sources, such as ``'bundled', 'urdf' and 'rigid_body'``."""
         *some, end = cls.sources
         return f"{', '.join(map(repr, some))} {last} {end!r}"
+
+    def build_plain(self, scenario: Scenario, at: Location) -> _core.Model:
+        """Return the robot without arms; ``at`` is its location in the scenario."""
+        if self.rigid_body is not None:
+            with located(scenario, *at):
+                return _core.Model.rigid_body(self.rigid_body.mass, np.array(self.rigid_body.inertia))
+        with located(scenario, *at), worded(_wording(at)):
+            return _core.Model.from_urdf(**self._file(scenario.folder))
+
+    def build_part(self, scenario: Scenario, at: Location) -> _core.RobotPart:
+        """Return a robot that is attached to another; its root need not have mass."""
+        with located(scenario, *at), worded(_wording(at)):
+            return _core.RobotPart.from_urdf(**self._file(scenario.folder))
+
+    def _file(self, folder: Path) -> dict[str, Any]:
+        """Return the arguments of ``Model.from_urdf``."""
+        return {
+            "path": robots.path(self.bundled) if self.bundled is not None else folder / str(self.urdf),
+            "package_paths": [folder / path for path in self.package_paths] or None,
+            "xacro_arguments": self.xacro_arguments or None,
+            "xacro": self.xacro,
+            "links": {name: values.given for name, values in self.links.items()},
+        }
 
     @model_serializer(mode="wrap")
     def _without_empty_parts(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -121,7 +152,7 @@ class PlainRobot(Part):
 
 def _printable(value: Any) -> Any:
     if isinstance(value, str) and not value.isprintable():
-        raise wrong(f"{shown(value)} has characters that no name has")
+        raise invalid(f"{shortened(value)} contains characters that are not allowed in names")
     return value
 
 
@@ -145,7 +176,7 @@ class Robot(PlainRobot):
     """Exactly one of ``bundled``, ``urdf``, ``rigid_body`` and ``bus``."""
 
     bus: PlainRobot | None = None
-    """The robot that carries ``arms``, specified like any robot. Its base is that of the combined robot."""
+    """Robot to which ``arms`` are attached; its base is the base of the combined robot."""
     arms: Annotated[list[Arm], Field(min_length=1)] | None = None
 
     sources: ClassVar[tuple[str, ...]] = ("bundled", "urdf", "rigid_body", "bus")
@@ -157,7 +188,35 @@ class Robot(PlainRobot):
             return value
         has_bus, has_arms = value.get("bus") is not None, value.get("arms") is not None
         if has_arms and not has_bus:
-            raise wrong("'arms' belong to a 'bus': name the robot that carries them there")
+            raise invalid("'arms' requires a 'bus'; give the robot to attach them to")
         if has_bus and not has_arms:
-            raise wrong("a 'bus' carries 'arms': list at least one, each {urdf: FILE, at: FRAME}")
+            raise invalid("'bus' requires 'arms'; list at least one, each {urdf: FILE, at: FRAME}")
         return value
+
+    def build(self, scenario: Scenario) -> _core.Model:
+        """Return the robot of a scenario.
+
+        Raises
+        ------
+        OnOrbitError
+            The appropriate subclass; its message starts with file, line and key.
+        """
+        if self.bus is None:
+            return self.build_plain(scenario, ("robot",))
+        model = self.bus.build_plain(scenario, ("robot", "bus"))
+        for index, arm in enumerate(self.arms or ()):
+            at: Location = ("robot", "arms", index)
+            build = arm.build_part if arm.rigid_body is None else arm.build_plain
+            part, pose = build(scenario, at), None if arm.pose is None else arm.pose.transform()
+            with located(scenario, *at):
+                model = _core.attach(model, arm.at, part, arm.frame, pose=pose, prefix=arm.prefix)
+        for name, values in self.links.items():
+            with located(scenario, "robot", "links", name):
+                model = model.with_link(name, **values.given)
+        return model
+
+
+def _wording(at: Location) -> Wording:
+    """Return the names of the robot's options for messages, given its location in the scenario."""
+    place = dotted(at)
+    return Wording(f"{place}.package_paths", f"{place}.xacro_arguments: {{NAME: ...}}")

@@ -1,69 +1,80 @@
-"""How the run is integrated and recorded."""
+"""Settings of the integrator and the recorder."""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from onorbit_rs.scenario.errors import invalid
 from onorbit_rs.scenario.fields import Drift, NotNegative, Number, Positive, Time, Whole
 from onorbit_rs.scenario.part import Part
-from onorbit_rs.scenario.refusals import wrong
 
 NotNegativeNumber = Annotated[Number, NotNegative]
 MAX_STEPS = 10**10
 MAX_ROWS = 10**7
-"""Of the trace; a row is about half a kilobyte."""
+"""Largest number of rows in a trace; a row has about half a kilobyte."""
 
 
 class SimulationSettings(Part):
-    """Times in seconds of simulation."""
+    """Integrator and recording; times are simulated time."""
 
-    other_words: ClassVar = {
+    synonyms: ClassVar = {
         "dt": "time_step", "step": "time_step", "timestep": "time_step", "end": "duration",
     }  # fmt: skip
 
     duration: Annotated[Time, Positive]
+    """Duration of the run."""
     time_step: Annotated[Time, Positive] = 1e-3
+    """Step of the integrator."""
     control_period: Annotated[Time, Positive] | None = None
-    """How often the controller runs; every time step where not given."""
+    """Interval between two updates of the controllers. Default: the time step."""
     integrator: Literal["rk4", "semi_implicit_euler", "dormand_prince"] = "rk4"
-    """``dormand_prince`` adapts its steps; ``time_step`` is then the grid of the rows."""
+    """``dormand_prince`` adapts its steps; ``time_step`` is then the interval of the time grid."""
     tolerance: Number = Field(default=1e-9, ge=1e-13, le=0.1)
-    """Of ``dormand_prince``: error of a step as a share of a radian, of the robot's size, of rates."""
+    """Error of a step of ``dormand_prince``, relative to one radian, the robot's size, and rates."""
     enforce_limits: bool = False
     """Whether rigid stops keep the joints within their position limits."""
     restitution: Number = Field(default=0.0, ge=0.0, le=1.0)
-    """Share of its rate that a joint keeps when it hits a stop."""
+    """Fraction of its rate with which a joint rebounds from a stop."""
     record_every: Whole = Field(default=1, ge=1, le=MAX_STEPS)
-    """One row of the trace every so many steps."""
+    """Number of steps between two rows of the trace."""
     record_wrenches: bool = False
-    """Whether the trace holds the wrench of every effect on every body."""
+    """Whether the trace contains the wrench of every effect on every body."""
     rereference_beyond: Drift = 1e5
-    """How far a robot that nothing leads may drift before it gets a reference of its own; ``never``."""
+    """Distance from the reference orbit beyond which a robot that no controller tracks in W gets a new
+    reference orbit; or ``never``."""
     reference_start_tolerance: (
         Annotated[list[NotNegativeNumber], Field(min_length=2, max_length=2)] | None
     ) = None
-    """How far from the tool a reference may start, m and rad; 0.05 and 0.1 where not given."""
+    """Largest distance from the tool at which a reference may start, m and rad. Default: 0.05 and 0.1."""
 
     @property
     def steps(self) -> int:
-        """Of the grid of time steps that the run has."""
+        """Number of time steps of the run."""
         return math.ceil(self.duration / self.time_step * (1.0 - 1e-9))
 
+    def arguments(self) -> dict[str, Any]:
+        """Return the settings as keyword arguments of :class:`onorbit_rs.Simulation`."""
+        values = self.model_dump(exclude_none=True, exclude={"duration"})
+        if self.rereference_beyond == "never":
+            values["rereference_beyond"] = math.inf
+        return values
+
     @model_validator(mode="after")
-    def _steps_fit(self) -> SimulationSettings:
+    def _has_valid_steps(self) -> SimulationSettings:
         if self.time_step > self.duration:
-            raise wrong(f"time_step {self.time_step:g} s is longer than the duration {self.duration:g} s")
+            raise invalid(f"time_step {self.time_step:g} s exceeds the duration of {self.duration:g} s")
         if self.duration / self.time_step > MAX_STEPS:
-            raise wrong(f"duration / time_step is above {MAX_STEPS:.0e} steps; take a longer 'time_step'")
+            raise invalid(f"duration / time_step exceeds {MAX_STEPS:.0e} steps; give a longer 'time_step'")
         if self.steps / self.record_every > MAX_ROWS:
-            raise wrong(
+            raise invalid(
                 f"the trace would have more than {MAX_ROWS} rows; record less often with 'record_every'"
             )
         if self.control_period is not None and self.control_period < self.time_step * (1.0 - 1e-9):
-            raise wrong(
-                f"control_period {self.control_period:g} s is shorter than time_step {self.time_step:g} s"
+            raise invalid(
+                f"control_period {self.control_period:g} s is shorter than time_step {self.time_step:g} "
+                "s; it must be at least one step"
             )
         return self

@@ -1,4 +1,4 @@
-"""Target spacecraft of a scenario: what its references follow."""
+"""Target spacecraft that the references of a scenario follow."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.scenario.start import quaternion_of
+from onorbit_rs.scenario.attitude import quaternion_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,23 +20,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Target:
-    """A spacecraft that nothing acts on: pose at time zero, constant velocity and spin; W axes, m, rad."""
+    """Free-flying spacecraft: pose at time zero, constant velocity and angular velocity; W axes, SI."""
 
     position: Floats
     quat_xyzw: Floats
     velocity: Floats
     spin: Floats
     size: tuple[float, ...] = ()
-    """Edges of its box, m; axes alone are drawn where empty."""
+    """Edge lengths of its box, m; empty if only its axes are drawn."""
 
     def position_at(self, t: Floats) -> Floats:
-        """(T, 3), W, m."""
-        place: Floats = self.position + np.outer(t, self.velocity)
-        return place
+        """Return the positions (T, 3) in W, m, at the times ``t``, (T,), s."""
+        position: Floats = self.position + np.outer(t, self.velocity)
+        return position
 
 
 def targets(scenario: Scenario) -> tuple[Target, ...]:
-    """Every target that a reference follows, once."""
+    """Return the targets of all references, without duplicates."""
     found: dict[str, Target] = {}
     for reference in task_references(scenario):
         motion = getattr(reference.frame, "target", None)
@@ -49,6 +49,6 @@ def targets(scenario: Scenario) -> tuple[Target, ...]:
 
 
 def task_references(scenario: Scenario) -> Iterator[Any]:
-    """Those of tools, which alone have a frame."""
+    """Return the references of tools, the only ones with a frame."""
     parts = [scenario.reference, *(control.reference for control in scenario.controllers or [])]
     return (part for part in parts if hasattr(part, "frame"))

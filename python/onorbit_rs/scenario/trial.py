@@ -1,4 +1,4 @@
-"""A first step, thrown away: what would stop a run at once is told with its place in the scenario."""
+"""Trial step before the run, which locates errors in the scenario that would stop the run at once."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from onorbit_rs.exceptions import (
     ShapeError,
     SimulationError,
 )
-from onorbit_rs.scenario.air_and_light import Covered
 from onorbit_rs.scenario.divergence import divergence
-from onorbit_rs.scenario.place import located
+from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
+from onorbit_rs.scenario.locations import located
 from onorbit_rs.scenario.schema import Scenario
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Flight:
-    """A robot on its way."""
+    """Robot in its initial state, with orbit and Earth."""
 
     model: _core.Model
     q: Floats
@@ -45,7 +45,7 @@ class Flight:
 
 @contextmanager
 def about_controllers(scenario: Scenario) -> Iterator[None]:
-    """What is wrong with controllers that the engine puts together stands with them."""
+    """Locate errors of the combined controllers at their key."""
     try:
         yield
     except (ControlError, ShapeError):
@@ -55,7 +55,7 @@ def about_controllers(scenario: Scenario) -> Iterator[None]:
 
 @contextmanager
 def about_start(scenario: Scenario) -> Iterator[None]:
-    """What the engine refuses of a first state stands with ``initial``."""
+    """Locate errors of the initial state at ``initial``."""
     try:
         yield
     except InputError as error:
@@ -64,7 +64,7 @@ def about_start(scenario: Scenario) -> Iterator[None]:
 
 
 def try_one_step(scenario: Scenario, model: _core.Model, simulation: _core.Simulation) -> None:
-    """One step, thrown away: what would stop the run at once is told before anything is written."""
+    """Run one step, so that errors which would stop the run at once are raised before anything is written."""
     try:
         with about_controllers(scenario):
             simulation.run(scenario.simulation.time_step)
@@ -79,9 +79,9 @@ def try_one_step(scenario: Scenario, model: _core.Model, simulation: _core.Simul
 
 
 def try_effects(scenario: Scenario, effects: list[Any], flight: Flight) -> None:
-    """One step under air or light alone: what they refuse stands with them; the rest is told in its place."""
+    """Run one step under drag or radiation pressure alone, to locate their errors; ignore other errors."""
     for index, (part, effect) in enumerate(zip(scenario.environment, effects, strict=True)):
-        if not isinstance(part, Covered):
+        if not isinstance(part, SurfaceEffect):
             continue
         with located(scenario, "environment", index), warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the run itself warns

@@ -1,7 +1,7 @@
-"""Quantities: ``"6778 km"`` is 6778000.0 m; a bare number is SI already.
+"""Quantities: ``"6778 km"`` is 6778000.0 m; a number without a unit is in SI.
 
-A unit is a product of names with whole powers: ``km^3/s^2``, ``rev/min``, ``kg m^2``, ``N·m``. Angle counts
-as a dimension here, although physics calls it a pure number: so degrees where metres belong are an error.
+A unit is a product of names with integer powers: ``km^3/s^2``, ``rev/min``, ``kg m^2``, ``N·m``. Angle is a
+dimension here, although it is a pure number in physics, so that degrees instead of metres are an error.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import math
 import re
 from dataclasses import dataclass
 
+from onorbit_rs.common.suggestions import nearest
 from onorbit_rs.exceptions import QuantityError
-from onorbit_rs.names import nearest
-from onorbit_rs.scenario.refusals import shown
+from onorbit_rs.scenario.errors import shortened
 
 Powers = tuple[int, int, int, int]
 """Powers of mass (kg), length (m), time (s) and angle (rad)."""
@@ -20,13 +20,13 @@ Powers = tuple[int, int, int, int]
 
 @dataclass(frozen=True)
 class Dimension:
-    """What a quantity measures, and the SI unit it is kept in."""
+    """Dimension of a quantity, and its SI unit."""
 
     name: str
     powers: Powers
     si: str
     also: tuple[str, ...] = ()
-    """Units of several names that are worth a mention."""
+    """Compound units that messages list too."""
 
 
 NUMBER = Dimension("a plain number", (0, 0, 0, 0), "")
@@ -92,19 +92,24 @@ _FACTOR = re.compile(r"\s*([*·/]?)\s*([A-Za-z]+|1)\s*(?:(?:\^|\*\*)\s*([+-]?\d+
 
 
 def parse_quantity(value: object, *allowed: Dimension) -> float:
-    """A number, or text with a unit, in SI.
+    """Return the value of a quantity in SI.
 
     Parameters
     ----------
     value : float or str
-        ``0.5`` (SI already), ``"6778 km"``, ``"2 rev/min"``, ``"1e-3"``.
+        Such as ``0.5`` (in SI), ``"6778 km"``, ``"2 rev/min"`` or ``"1e-3"``.
     *allowed : Dimension
-        What it may measure; usually one.
+        Dimensions that are accepted.
+
+    Returns
+    -------
+    float
 
     Raises
     ------
     QuantityError
-        Not a finite number, an unknown unit, or a unit of another dimension; says which units would do.
+        If the value is not a finite number, or its unit is unknown or has another dimension; names units
+        that are accepted.
     """
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise _refused(value, f"is not {_any_of(allowed)}", allowed)
@@ -134,12 +139,12 @@ def _from_text(text: str, allowed: tuple[Dimension, ...]) -> float:
 
 
 def _parse_unit(unit: str, text: str, allowed: tuple[Dimension, ...]) -> tuple[float, Powers]:
-    """Factor to SI and powers of a compound unit such as ``km^3/s^2``."""
+    """Return the factor to SI and the powers of a compound unit such as ``km^3/s^2``."""
     factor, powers, at = 1.0, NUMBER.powers, 0
     while at < len(unit):
         match = _FACTOR.match(unit, at)
         if match is None:
-            raise _refused(text, f"has a unit that cannot be read, {unit!r}", allowed)
+            raise _refused(text, f"has an invalid unit {unit!r}", allowed)
         operator, name, power = match[1], match[2], int(match[3] or 1)
         if name not in _UNITS:
             fitting = [
@@ -149,7 +154,7 @@ def _parse_unit(unit: str, text: str, allowed: tuple[Dimension, ...]) -> tuple[f
             hint = f", did you mean {near!r}" if near else ""
             raise _refused(text, f"has the unknown unit {name!r}{hint}", allowed)
         if abs(power) > 9:
-            raise _refused(text, f"has an absurd power in its unit, {unit!r}", allowed)
+            raise _refused(text, f"has a power above 9 in its unit {unit!r}", allowed)
         signed = -power if operator == "/" else power
         scale, own = _UNITS[name]
         factor *= scale**signed
@@ -168,14 +173,12 @@ def _any_of(allowed: tuple[Dimension, ...]) -> str:
 
 
 def _example_units(dimension: Dimension) -> str:
-    """``m, km, ...`` for a message: units of this dimension, the SI unit first."""
+    """Return the units of a dimension for messages, such as ``m, km``; the SI unit is first."""
     same = [name for name, (_, powers) in _UNITS.items() if powers == dimension.powers and name != "1"]
     return ", ".join(dict.fromkeys([dimension.si, *dimension.also, *same])) if dimension.si else ""
 
 
 def _refused(value: object, why: str, allowed: tuple[Dimension, ...]) -> QuantityError:
     units = "; ".join(filter(None, (_example_units(dimension) for dimension in allowed)))
-    way_out = (
-        f"write a bare number (SI) or one with a unit: {units}" if units else "write a number without a unit"
-    )
-    return QuantityError(f"{shown(value)} {why}; {way_out}", text=value, expected=_any_of(allowed))
+    fix = f"give a number in SI, or one with a unit: {units}" if units else "give a number without a unit"
+    return QuantityError(f"{shortened(value)} {why}; {fix}", text=value, expected=_any_of(allowed))

@@ -1,25 +1,25 @@
-"""Bundled scenarios: one YAML each."""
+"""Bundled scenarios, one YAML file each."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from onorbit_rs import bundled
+from onorbit_rs.common import bundled_files
 
 _FOLDER = Path(__file__).parent
 
 
 def names() -> list[str]:
-    """Names that ``onorbit run`` and :func:`onorbit_rs.run` take."""
-    return bundled.names(_FOLDER, ".yaml")
+    """Return the names of the bundled scenarios, for ``onorbit run`` and :func:`onorbit_rs.run`."""
+    return bundled_files.names(_FOLDER, ".yaml")
 
 
 def path(name: str) -> Path:
-    """The YAML of a bundled scenario; copy it to start your own.
+    """Return the path of the YAML file of a bundled scenario.
 
     Raises
     ------
     NotFoundError
-        No bundled scenario has this name; suggests the nearest.
+        If there is no such scenario; suggests the nearest name.
     """
-    return bundled.path(name, "scenario", _FOLDER, ".yaml")
+    return bundled_files.path(name, "scenario", _FOLDER, ".yaml")

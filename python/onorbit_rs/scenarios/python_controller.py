@@ -1,4 +1,4 @@
-"""The controller of python_controller.yaml."""
+"""Controller of the scenario python_controller.yaml."""
 
 import numpy as np
 
@@ -6,15 +6,15 @@ import onorbit_rs as oo
 
 
 class Posture(oo.Controller):
-    """Springs and dampers, nearly critical, pull the joints into a posture."""
+    """Moves the joints to a posture with springs and nearly critical dampers."""
 
-    inertia = np.array([0.5, 0.4, 0.12, 0.12, 0.003, 0.001, 0.0004])  # that each joint feels, kg m²
+    inertia = np.array([0.5, 0.4, 0.12, 0.12, 0.003, 0.001, 0.0004])  # moving with each joint, kg m²
 
     def __init__(self, posture, frequency):
-        """Posture in rad, frequency of the springs in rad/s."""
+        """Store the posture, rad, and the natural frequency of the springs, rad/s."""
         self.posture, self.frequency = np.array(posture), frequency
 
     def update(self, t, state):
-        """Torques in N m, one per joint."""
+        """Return the joint torques, (n,), N m."""
         pull = self.frequency * (self.posture - state.q[7:]) - 2.0 * state.v[6:]
         return self.frequency * self.inertia * pull

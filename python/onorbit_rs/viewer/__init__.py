@@ -1,12 +1,12 @@
-"""Recordings for the rerun viewer. This folder alone imports rerun."""
+"""Recordings for the rerun viewer. Only this folder imports rerun."""
 
 from __future__ import annotations
 
 from onorbit_rs.viewer import silence  # noqa: F401  # before rerun is imported
 from onorbit_rs.viewer.notes import notes
 from onorbit_rs.viewer.recording import recorded_rows, write_recording
-from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.screenshot import take_screenshot
 from onorbit_rs.viewer.setting import Setting
+from onorbit_rs.viewer.trace_rows import TIMELINE
 
 __all__ = ["TIMELINE", "Setting", "notes", "recorded_rows", "take_screenshot", "write_recording"]

@@ -1,4 +1,4 @@
-"""Forces, torques and momenta as arrows, each kind on a scale of its own that its label states."""
+"""Forces, torques and momenta as arrows; each kind has its scale, which a label states."""
 
 from __future__ import annotations
 
@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.geometry import box_around
-from onorbit_rs.rotations import matrix_from_quaternion
-from onorbit_rs.units import amount, round_up
+from onorbit_rs._core import COLUMNS
+from onorbit_rs.common.coordinates import POSITION, QUATERNION
+from onorbit_rs.common.display_units import amount, round_up
+from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.viewer.colors import MOMENTUM, hues
 from onorbit_rs.viewer.frames import FOLLOW, WORLD, put_in
-from onorbit_rs.viewer.rows import TIMELINE
-from onorbit_rs.viewer.wrenches import centers_of_bodies, torque_about_center
+from onorbit_rs.viewer.trace_rows import TIMELINE
+from onorbit_rs.viewer.wrenches import centers_of_bodies, forces, net_force, torque_about_center
+from onorbit_rs.visuals.geometry import box_around
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,88 +25,90 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from onorbit_rs.viewer.colors import Color
-    from onorbit_rs.viewer.rows import Rows
     from onorbit_rs.viewer.setting import Setting
-    from onorbit_rs.viewer.stage import Stage
+    from onorbit_rs.viewer.trace_rows import TraceRows
+    from onorbit_rs.viewer.viewpoint import Viewpoint
 
     Floats = NDArray[np.float64]
 
 WORTH_SHOWING = 1e-3
-"""Least momentum, as a share of what the kinetic energy would give to one rigid body, to be drawn."""
+"""Smallest momentum that is drawn, as a fraction of that of a rigid body with the same kinetic energy."""
 
 ROUNDING = 1e-9
-"""A net force below it, in units of the largest on a body, is none."""
+"""Net forces below this fraction of the largest force on a body are rounding."""
 
 LEAST_LENGTH = 0.2
-"""Of the longest arrow of a kind outside a robot that is one solid, in sizes of the robot."""
+"""Least length outside the robot of the longest arrow of a kind, in sizes of the robot."""
 
 _FIRST_LINE, _LINE_HEIGHT = 0.5, 0.085
-"""Of the legend, in sizes of the robot."""
+"""Position and line height of the legend, in sizes of the robot."""
 
 
 @dataclass(frozen=True)
 class _Kind:
-    """Arrows that share a scale: where they are logged, their name, unit and look."""
+    """Arrows that share a scale: entity path, name, unit and style."""
 
     path: str
     name: str
     unit: str
     color: Color
     longest: float = 0.55
-    """How far it reaches from where it acts, in sizes of the robot."""
+    """Greatest length from the point of application, in sizes of the robot."""
     thickness: float = 1.0
 
     @classmethod
-    def of_turning(cls, path: str, name: str, unit: str, color: Color) -> _Kind:
-        """Of moments: thin, which the legend says."""
+    def of_moments(cls, path: str, name: str, unit: str, color: Color) -> _Kind:
+        """Return the kind of the corresponding torques or angular momenta, drawn as thin arrows."""
         return cls(path, f"{name} (thin)", unit, color, 0.45, 0.5)
 
 
 @dataclass
 class Arrows:
-    """Sends arrows and beside the robot what they mean. Scales only grow, so that a run may come in parts."""
+    """Sends arrows with a legend beside the robot. Scales never decrease, so a run can be sent in parts."""
 
     recording: rr.RecordingStream
     setting: Setting
-    stage: Stage
+    viewpoint: Viewpoint
     _scales: dict[str, float] = field(default_factory=dict)
 
-    def send(self, rows: Rows) -> None:
-        """Momenta at the centre of mass and, where they are recorded, forces and torques of every effect."""
+    def send(self, rows: TraceRows) -> None:
+        """Send momenta at the centre of mass and, if recorded, forces and torques of every effect."""
         center = rows["center_of_mass"][:, None, :]
         for kind, vectors in self._momenta(rows):
             self._send(rows, kind, center, vectors[:, None, :])
         if not rows.wrenches:
             return
         centers = centers_of_bodies(rows, self.setting.model)
+        (_, force_unit), (_, torque_unit) = COLUMNS["wrenches"].parts.values()
         for effect, hue in hues(rows.wrenches).items():
             wrenches, path, name = rows.wrenches[effect], f"world/arrows/{effect}", effect.replace("_", " ")
-            if 0.0 < ROUNDING * _peak(wrenches[:, :, :3]) > _peak(wrenches[:, :, :3].sum(axis=1)):
-                name = f"differential {name}"  # of a robot that is carried: less what all bodies share
-            force = _Kind(f"{path}/force", f"{name} force", "N", hue.full)
-            torque = _Kind.of_turning(f"{path}/torque", f"{name} torque", "N m", hue.pale)
-            self._send(rows, force, centers, wrenches[:, :, :3])
+            if 0.0 < ROUNDING * _peak(forces(wrenches)) > _peak(net_force(wrenches)):
+                name = f"differential {name}"  # of a carried robot: without the common acceleration
+            force = _Kind(f"{path}/force", f"{name} force", force_unit, hue.full)
+            torque = _Kind.of_moments(f"{path}/torque", f"{name} torque", torque_unit, hue.pale)
+            self._send(rows, force, centers, forces(wrenches))
             self._send(rows, torque, center, torque_about_center(rows, centers, wrenches)[:, None, :])
 
-    def _momenta(self, rows: Rows) -> Iterator[tuple[_Kind, Floats]]:
-        """Those that are more than rounding and the pull of tides beside the motion of the joints."""
+    def _momenta(self, rows: TraceRows) -> Iterator[tuple[_Kind, Floats]]:
+        """Yield the momenta that are significant compared to the motion of the joints."""
         mass, energy = self.setting.model.mass, float(rows["kinetic_energy"].max())
         path, hue = "world/arrows", MOMENTUM
-        linear = _Kind(f"{path}/linear_momentum", "linear momentum", "N s", hue.full, 0.5)
-        angular = _Kind.of_turning(f"{path}/angular_momentum", "angular momentum", "N m s", hue.pale)
+        (linear_entries, linear_unit), (angular_entries, angular_unit) = COLUMNS["momentum"].parts.values()
+        linear = _Kind(f"{path}/linear_momentum", "linear momentum", linear_unit, hue.full, 0.5)
+        angular = _Kind.of_moments(f"{path}/angular_momentum", "angular momentum", angular_unit, hue.pale)
         scale = math.sqrt(2.0 * mass * energy)
         for kind, vectors, at_least in (
-            (linear, rows["momentum"][:, :3], scale),
-            (angular, rows["momentum"][:, 3:], scale * self.stage.size / 4.0),
+            (linear, rows["momentum"][:, linear_entries], scale),
+            (angular, rows["momentum"][:, angular_entries], scale * self.viewpoint.size / 4.0),
         ):
             if _peak(vectors) > WORTH_SHOWING * at_least or kind.path in self._scales:
                 yield kind, vectors
 
-    def _send(self, rows: Rows, kind: _Kind, origins: Floats, vectors: Floats) -> None:
-        """Arrows (T, n, 3) at origins (T, n, 3), W."""
+    def _send(self, rows: TraceRows, kind: _Kind, origins: Floats, vectors: Floats) -> None:
+        """Send arrows (T, n, 3) at origins (T, n, 3), W."""
         path, to_surface = kind.path, self._to_surface(rows, origins, vectors)
-        room = kind.longest * self.stage.size - np.linalg.norm(to_surface, axis=2, keepdims=True)
-        needed = _peak(vectors / np.maximum(room, LEAST_LENGTH * self.stage.size))
+        room = kind.longest * self.viewpoint.size - np.linalg.norm(to_surface, axis=2, keepdims=True)
+        needed = _peak(vectors / np.maximum(room, LEAST_LENGTH * self.viewpoint.size))
         scale = max(round_up(needed), self._scales.get(path, 0.0))
         if scale == 0.0 or not np.isfinite(scale):
             return
@@ -124,14 +128,14 @@ class Arrows:
         parts = columns.partition([each] * count)
         self.recording.send_columns(path, [rows.times], parts, strict=True)
 
-    def _to_surface(self, rows: Rows, origins: Floats, vectors: Floats) -> Floats:
-        """(T, n, 3) from where arrows start to where they leave the base, which would hide the first; m."""
+    def _to_surface(self, rows: TraceRows, origins: Floats, vectors: Floats) -> Floats:
+        """Return the offsets (T, n, 3), m, that move the first arrows to the surface of the base."""
         found = np.zeros(vectors.shape)
         origins, vectors = origins[:, :1], vectors[:, :1]
-        rot_wb = matrix_from_quaternion(rows["q"][:, 3:7])
+        rot_wb = matrix_from_quaternion(rows["q"][:, QUATERNION])
         lengths = np.linalg.norm(vectors, axis=2, keepdims=True)
         ahead = vectors / np.where(lengths > 0.0, lengths, 1.0)
-        origin_b, ahead_b = (origins - rows["q"][:, None, :3]) @ rot_wb, ahead @ rot_wb
+        origin_b, ahead_b = (origins - rows["q"][:, None, POSITION]) @ rot_wb, ahead @ rot_wb
         way = np.zeros(lengths.shape)
         for shape in self.setting.shapes:
             if shape.link == self.setting.base:
@@ -146,13 +150,13 @@ class Arrows:
         return found
 
     def _introduce(self, kind: _Kind, meaning: str) -> None:
-        """The look of arrows, and the place of the line that tells their scale."""
+        """Log the style of arrows, and the position of the label that states their scale."""
         put_in(self.recording, kind.path, WORLD)
         put_in(self.recording, meaning, FOLLOW)
-        radius = kind.thickness * self.stage.size / 140.0
-        look = rr.Arrows3D.from_fields(colors=[kind.color], radii=[radius])
-        self.recording.log(kind.path, look, static=True, strict=True)
-        place = self.stage.place(0.79, _FIRST_LINE - _LINE_HEIGHT * len(self._scales))
+        radius = kind.thickness * self.viewpoint.size / 140.0
+        style = rr.Arrows3D.from_fields(colors=[kind.color], radii=[radius])
+        self.recording.log(kind.path, style, static=True, strict=True)
+        place = self.viewpoint.place(0.79, _FIRST_LINE - _LINE_HEIGHT * len(self._scales))
         line = rr.Points3D.from_fields(positions=[place], colors=[kind.color], radii=[0.0], show_labels=True)
         self.recording.log(meaning, line, static=True, strict=True)
 

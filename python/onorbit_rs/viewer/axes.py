@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from onorbit_rs.viewer.font import shown
 from onorbit_rs.viewer.frames import COMPASS, DESIRED, FOLLOW, fix_frame, of_link, put_in
-from onorbit_rs.viewer.letters import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +31,7 @@ def log_axes(
     origin: Floats | None = None,
     brightness: float = 1.0,
 ) -> None:
-    """Axes of a frame, static; the tips carry ``names``, if any."""
+    """Log static axes of a frame, with ``names`` at their tips."""
     colors = (_COLORS * brightness).astype(np.uint8)
     start = np.zeros(3) if origin is None else origin
     put_in(recording, path, frame)
@@ -52,7 +52,7 @@ def log_axes(
 
 
 def _log_name(recording: rr.RecordingStream, path: str, frame: str, name: str, place: Floats) -> None:
-    """A name beside a frame, static."""
+    """Log a static name beside a frame."""
     put_in(recording, path, frame)
     label = rr.Points3D([place], colors=[_NAME], radii=[0.0], labels=[shown(name)], show_labels=True)
     recording.log(path, label, static=True, strict=True)
@@ -69,11 +69,24 @@ def log_all_axes(
     in_orbit: bool,
     has_reference: bool,
 ) -> None:
-    """Axes of the base, the tool and what it should be at, and beside the robot those of I and of L.
+    """Log the axes of the base, the tool and its desired pose, and those of I and L beside the robot.
 
-    ``places`` are where the two are shown, in ``follow``, m.
-    ``tool_name_at`` is where the tool's name stands, in its axes, m.
-    ``near`` is the length of the tool's for the view of its path from near, which may be zero, m.
+    Parameters
+    ----------
+    recording : RecordingStream
+    setting : Setting
+    size : float
+        Size of the robot, m.
+    places : pair of (3,) arrays, m
+        Positions of the axes of I and of L in ``follow``.
+    near : float
+        Length of the tool's axes in the close-up view of its path, m; 0 for no such axes.
+    tool_name_at : (3,) array, m, optional
+        Position of the tool's name in its axes.
+    in_orbit : bool
+        Whether L is defined.
+    has_reference : bool
+        Whether the tool has a desired pose.
     """
     log_axes(recording, "world/axes/base", of_link(setting.base), 0.45 * size, ("x B", "y B", "z B"))
     if setting.tool is not None:

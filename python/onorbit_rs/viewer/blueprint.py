@@ -1,4 +1,4 @@
-"""How the viewer is laid out: the robot large, orbit and notes below it, the plots beside in groups."""
+"""Layout of the viewer: the robot with orbit and notes below it, and plots in groups beside it."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from onorbit_rs.viewer.flight import flight_view, is_apart
 from onorbit_rs.viewer.frames import FOLLOW
 from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL, shows_sun, to_eye
 from onorbit_rs.viewer.plots import plots_in_groups
-from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.scene import MOVES, TRAILS, UNTIL_NOW, on_path
+from onorbit_rs.viewer.trace_rows import TIMELINE
 
 if TYPE_CHECKING:
-    from onorbit_rs.viewer.rows import Rows
     from onorbit_rs.viewer.series import Series
     from onorbit_rs.viewer.setting import Setting
-    from onorbit_rs.viewer.stage import Stage
+    from onorbit_rs.viewer.trace_rows import TraceRows
+    from onorbit_rs.viewer.viewpoint import Viewpoint
 
 PLAYS_IN_S = 40.0
 """Longest wall-clock time a recording takes to play; shorter runs play in real time."""
@@ -29,29 +29,29 @@ _SPACE = (12, 14, 20)
 
 _LARGE = ("arrows", "axes", "flight")
 _SOLID, _HIDDEN = ("robot", "target"), 0.02
-"""What a shorter path, in sizes of the robot, would be hidden in or behind."""
+"""Entities that would hide a path shorter than this many sizes of the robot."""
 
 _TRAILS_UNTIL_NOW: dict[Any, Any] = dict.fromkeys(TRAILS.values(), UNTIL_NOW)
 
 
 def layout(
-    rows: Rows,
+    rows: TraceRows,
     setting: Setting,
-    stage: Stage,
+    viewpoint: Viewpoint,
     plots: Sequence[Series],
     duration_s: float,
     *,
     has_notes: bool,
     is_live: bool = False,
 ) -> rrb.Blueprint:
-    """The views of one run."""
+    """Return the layout of one run."""
     axes = "W (inertial axes)" if rows.quat_wl is None else "L (local orbital frame)"
     robot = rrb.Spatial3DView(
         origin="world",
         contents=["$origin/**", "- $origin/flight/**", "- $origin/near/**"],
-        name=f"{setting.robot}: the eye follows the base, axes of {axes}",
+        name=f"{setting.robot}: camera follows the base, axes of {axes}",
         spatial_information=rrb.SpatialInformation(FOLLOW, show_axes=False),
-        eye_controls=stage.eye(),
+        eye_controls=viewpoint.eye(),
         background=BACKGROUND,
         line_grid=False,
         overrides=_TRAILS_UNTIL_NOW,
@@ -59,11 +59,11 @@ def layout(
     below: list[rrb.View] = []
     if "position_eci" in rows:
         below.append(_orbit(rows, setting))
-    if is_apart(rows, setting, stage):
+    if is_apart(rows, setting, viewpoint):
         below.append(flight_view(rows, setting))
     if has_notes:
         below.append(rrb.TextDocumentView(origin="notes", name="Notes"))
-    close_up = near_path(rows, setting, stage) if "reference_pose" in rows and not is_live else None
+    close_up = near_path(rows, setting, viewpoint) if "reference_pose" in rows and not is_live else None
     top = robot if close_up is None else rrb.Tabs(robot, close_up, active_tab=0)
     left = rrb.Vertical(top, rrb.Horizontal(*below), row_shares=[5, 3]) if below else top
     return rrb.Blueprint(
@@ -81,15 +81,15 @@ def layout(
     )
 
 
-def near_path(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
-    """The path of the tool from near, in the frame in which it is drawn; None where it goes nowhere."""
+def near_path(rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> rrb.View | None:
+    """Return a close-up view of the tool's path; None if the tool keeps its pose."""
     points, frame = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
     low, high = points.min(axis=0), points.max(axis=0)
     length = float(np.linalg.norm(high - low))
-    if length < MOVES * stage.size:
+    if length < MOVES * viewpoint.size:
         return None
     center = (low + high) / 2.0
-    is_short = length < _HIDDEN * stage.size
+    is_short = length < _HIDDEN * viewpoint.size
     left_out = (*_LARGE, *_SOLID) if is_short else _LARGE
     return rrb.Spatial3DView(
         origin="world",
@@ -106,8 +106,8 @@ def near_path(rows: Rows, setting: Setting, stage: Stage) -> rrb.View | None:
     )  # fmt: skip
 
 
-def _orbit(rows: Rows, setting: Setting) -> rrb.View:
-    """Looks at the planet near where the run starts, north up, from where all of the path is seen."""
+def _orbit(rows: TraceRows, setting: Setting) -> rrb.View:
+    """Return the view of the orbit: towards the start of the run, north up, with the whole path visible."""
     position = rows["position_eci"] / 1e3
     if setting.orbit is not None and setting.orbit.mu is not None:
         center, reach = np.zeros(3), max(float(np.linalg.norm(position, axis=1).max()), 6400.0)
@@ -117,7 +117,7 @@ def _orbit(rows: Rows, setting: Setting) -> rrb.View:
         center, reach = (low + high) / 2.0, max(float(np.linalg.norm(high - low)) / 2.0, 1e-3)
         towards = np.array([0.5, -0.75, 0.45]) / np.linalg.norm([0.5, -0.75, 0.45])
     name = "Orbit (inertial axes, km)"
-    if shows_sun(setting):  # told here, since a label in space would stand before others
+    if shows_sun(setting):  # in the name, because a label in the view would hide others
         name = "Orbit (I, km); yellow arrow to the Sun"
     return rrb.Spatial3DView(
         origin="orbit",

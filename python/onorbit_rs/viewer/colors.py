@@ -1,6 +1,6 @@
-"""Colours of the viewer: its arrows have a hue for each effect, full for what pushes, pale for what turns.
+"""Colours of the viewer: arrows have one hue per effect, full for forces and pale for torques.
 
-Any two of a legend of up to six effects are at least 25 apart in CIE 1976 L*a*b*; the eye tells 2.3 apart.
+Any two of a legend of up to six effects differ by at least 25 in CIE 1976 L*a*b*; 2.3 is just noticeable.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ Color = tuple[int, int, int]
 
 
 class Hue(NamedTuple):
-    """Of one cause: red, green, blue, 0 to 255."""
+    """Two colours of one hue: red, green, blue, 0 to 255."""
 
     full: Color
     """Forces, linear momentum."""
@@ -22,7 +22,7 @@ class Hue(NamedTuple):
 
 BACKGROUND: Color = (28, 31, 38)
 ROBOT: Color = (255, 220, 120)
-"""Seen from afar."""
+"""Colour of the spacecraft in the view of the orbit."""
 TARGET: Color = (205, 170, 90)
 
 MOMENTUM = Hue((230, 135, 40), (253, 206, 165))
@@ -37,7 +37,7 @@ _OF_OTHERS = (Hue((250, 55, 130), (250, 158, 188)), Hue((60, 150, 80), (165, 245
 
 
 def hues(effects: Iterable[str]) -> dict[str, Hue]:
-    """Of each effect its own; others take what is left in their order, and from the seventh on share."""
+    """Return a hue for each effect; custom effects get the remaining hues in order, then repeat them."""
     names = list(effects)
     left = [*_OF_OTHERS, *(hue for name, hue in _OF_EFFECTS.items() if name not in names)]
     others = [name for name in names if name not in _OF_EFFECTS]

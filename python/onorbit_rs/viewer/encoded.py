@@ -1,4 +1,4 @@
-"""The content of a ``.rrd`` in memory: rerun's own file sink waits for ever where the disk is full."""
+"""Encodes a ``.rrd`` in memory, because rerun's file sink never returns when the disk is full."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ import rerun as rr
 from onorbit_rs.exceptions import ViewerError
 
 FLUSH_TIMEOUT_S = 300.0
-"""Wall-clock time given to rerun's encoder, which needs seconds."""
+"""Timeout of rerun's encoder, s; it usually takes seconds."""
 
 _MAGIC, _FOOTER_BYTES = b"RRF2", 12
-"""What a complete file ends with."""
+"""End of a complete file."""
 
 
 class Encoded:
-    """Takes all that a recording is sent from now on.
+    """Encodes everything that is sent to a recording after construction.
 
-    Where there are files in memory (Linux) rerun compresses in a thread of its own while rows still come.
+    On Linux rerun writes to a file in memory and compresses in its own thread while rows are sent.
     """
 
     def __init__(self, recording: rr.RecordingStream) -> None:
-        """Before anything is sent."""
+        """Attach to a recording before anything is sent."""
         self._recording = recording
         self._stream: rr.BinaryStream | None = None
         self._memory: BinaryIO | None = None
@@ -42,7 +42,7 @@ class Encoded:
         Raises
         ------
         ViewerError
-            It was not encoded to its end.
+            If the recording was not encoded completely.
         """
         with self._memory or nullcontext() as memory:
             content = self._end()
@@ -50,12 +50,12 @@ class Encoded:
                 path.write_bytes(content)
                 return
             memory.seek(-_FOOTER_BYTES, os.SEEK_END)
-            if not memory.read().startswith(_MAGIC):  # its thread ran out of memory, and says so to nobody
-                raise _not_encoded("it stops before its end")
+            if not memory.read().startswith(_MAGIC):  # its thread ran out of memory, without an error
+                raise _not_encoded("it is truncated")
             shutil.copyfile(f"/proc/self/fd/{memory.fileno()}", path)  # within the kernel
 
     def _end(self) -> bytes:
-        """End the recording; its content, where that is in no file."""
+        """End the recording; return its content unless it was written to a file."""
         content = b""
         try:
             if self._stream is not None:

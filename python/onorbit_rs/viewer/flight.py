@@ -1,4 +1,4 @@
-"""How base and targets fly relative to the reference orbit: their paths in L, in a view of their own."""
+"""Relative motion: paths of base and targets in L of the reference orbit, in a separate view."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
-from onorbit_rs.thinning import evenly
-from onorbit_rs.units import amount, round_up
+from onorbit_rs.common.coordinates import POSITION
+from onorbit_rs.common.decimate import evenly_spaced
+from onorbit_rs.common.display_units import amount, round_up
 from onorbit_rs.viewer.axes import log_axes
 from onorbit_rs.viewer.colors import BACKGROUND, ROBOT, TARGET
 from onorbit_rs.viewer.frames import FOLLOW, LOCAL, ORIGIN, put_in
@@ -20,24 +21,24 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from onorbit_rs.viewer.colors import Color
-    from onorbit_rs.viewer.rows import Rows
     from onorbit_rs.viewer.setting import Setting
-    from onorbit_rs.viewer.stage import Stage
+    from onorbit_rs.viewer.trace_rows import TraceRows
+    from onorbit_rs.viewer.viewpoint import Viewpoint
 
     Floats = NDArray[np.float64]
 
 APART = 2.0
-"""Nearer to the reference than so many sizes of the robot there is no such view."""
+"""Distance from the reference in sizes of the robot above which the view is shown."""
 
 AXES = 0.15
-"""Least length of the axes of L, as a share of the farthest distance."""
+"""Least length of the axes of L, as a fraction of the greatest distance."""
 
 _WHOLE = 0.5
-"""Brightness of the whole path, over which the trail is drawn."""
+"""Brightness of the whole path, on which the trail is drawn."""
 
 
-class _Flier(NamedTuple):
-    """The base or a target: entity, own frame, label, colour, and positions (T, 3) in L, m."""
+class _Body(NamedTuple):
+    """The base or a target: entity path, frame, label, colour, and positions (T, 3) in L, m."""
 
     path: str
     frame: str
@@ -46,48 +47,50 @@ class _Flier(NamedTuple):
     points: Floats
 
 
-def is_apart(rows: Rows, setting: Setting, stage: Stage) -> bool:
-    """Whether somebody flies so far from the reference that it is worth a view."""
-    return _reach(_fliers(rows, setting)) > APART * stage.size
+def is_apart(rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> bool:
+    """Return True if the base or a target is so far from the reference that the view is shown."""
+    return _farthest(_bodies(rows, setting)) > APART * viewpoint.size
 
 
-def log_flight(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
-    """L at its origin, and who flies under its name."""
-    fliers = _fliers(rows, setting)
-    log_axes(recording, "world/flight/axes", LOCAL, _axes_length(fliers), ("x L", "y L", "z L"))
-    for flier in fliers:
+def log_flight(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
+    """Log the axes of L, and the base and the targets with their names."""
+    bodies = _bodies(rows, setting)
+    log_axes(recording, "world/flight/axes", LOCAL, _axes_length(bodies), ("x L", "y L", "z L"))
+    for body in bodies:
         point = rr.Points3D(
             ORIGIN[None],
-            colors=[flier.color],
+            colors=[body.color],
             radii=rr.Radius.ui_points(6.0),
-            labels=[flier.label],
+            labels=[body.label],
             show_labels=True,
         )
-        recording.log(flier.path, point, static=True, strict=True)
-        put_in(recording, flier.path, flier.frame)
+        recording.log(body.path, point, static=True, strict=True)
+        put_in(recording, body.path, body.frame)
 
 
-def log_whole_flight(recording: rr.RecordingStream, rows: Rows, setting: Setting, most: int = 5000) -> None:
-    """The paths to their end, dim."""
-    for flier in _fliers(rows, setting):
-        points = flier.points[evenly(len(flier.points), most)]
-        dim = (np.array(flier.color) * _WHOLE).astype(np.uint8)
+def log_whole_flight(
+    recording: rr.RecordingStream, rows: TraceRows, setting: Setting, most: int = 5000
+) -> None:
+    """Log the whole paths in a dim colour."""
+    for body in _bodies(rows, setting):
+        points = body.points[evenly_spaced(len(body.points), most)]
+        dim = (np.array(body.color) * _WHOLE).astype(np.uint8)
         line = rr.LineStrips3D([points], colors=[dim], radii=rr.Radius.ui_points(1.0))
-        recording.log(f"{flier.path}/whole", line, static=True, strict=True)
-        put_in(recording, f"{flier.path}/whole", LOCAL)
+        recording.log(f"{body.path}/whole", line, static=True, strict=True)
+        put_in(recording, f"{body.path}/whole", LOCAL)
 
 
-def send_flight(recording: rr.RecordingStream, rows: Rows, setting: Setting, most: int) -> None:
-    """The paths up to now."""
-    for flier in _fliers(rows, setting):
-        send_trail(recording, f"{flier.path}/trail", LOCAL, rows, flier.points, most, flier.color)
+def send_flight(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, most: int) -> None:
+    """Send the paths up to the current time."""
+    for body in _bodies(rows, setting):
+        send_trail(recording, f"{body.path}/trail", LOCAL, rows, body.points, most, body.color)
 
 
-def flight_view(rows: Rows, setting: Setting) -> rrb.View:
-    """Radially outward is up, along the track to the right; looked at from beside the plane of the orbit."""
-    fliers = _fliers(rows, setting)
-    length = _axes_length(fliers)
-    points = np.concatenate([np.eye(3) * length, *(flier.points for flier in fliers)])
+def flight_view(rows: TraceRows, setting: Setting) -> rrb.View:
+    """Return the view from beside the orbital plane: radial is up, along track to the right."""
+    bodies = _bodies(rows, setting)
+    length = _axes_length(bodies)
+    points = np.concatenate([np.eye(3) * length, *(body.points for body in bodies)])
     low, high = points.min(axis=0), points.max(axis=0)
     center, size = (low + high) / 2.0, float(np.linalg.norm(high - low))
     to_eye = np.array([0.45, -0.4, -0.8])
@@ -100,29 +103,29 @@ def flight_view(rows: Rows, setting: Setting) -> rrb.View:
         ),
         background=BACKGROUND,
         line_grid=False,
-        overrides={f"{flier.path}/trail": UNTIL_NOW for flier in fliers},
+        overrides={f"{body.path}/trail": UNTIL_NOW for body in bodies},
     )
 
 
-def _fliers(rows: Rows, setting: Setting) -> list[_Flier]:
-    """None where there is no L."""
+def _bodies(rows: TraceRows, setting: Setting) -> list[_Body]:
+    """Return the base and the targets; empty if L is undefined."""
     if rows.rot_wl is None:
         return []
-    found = [("base", FOLLOW, setting.robot, ROBOT, rows["q"][:, :3])]
+    found = [("base", FOLLOW, setting.robot, ROBOT, rows["q"][:, POSITION])]
     for index, target in enumerate(setting.targets):
         place = target.position_at(rows["time"])
         found.append((f"target_{index}", frame_of_target(index), "target", TARGET, place))
     return [
-        _Flier(f"world/flight/{name}", frame, label, color, np.einsum("tji,tj->ti", rows.rot_wl, place))
+        _Body(f"world/flight/{name}", frame, label, color, np.einsum("tji,tj->ti", rows.rot_wl, place))
         for name, frame, label, color, place in found
     ]
 
 
-def _reach(fliers: list[_Flier]) -> float:
-    """Farthest from the reference, m."""
-    return max((float(np.linalg.norm(flier.points, axis=1).max()) for flier in fliers), default=0.0)
+def _farthest(bodies: list[_Body]) -> float:
+    """Return the greatest distance from the reference, m."""
+    return max((float(np.linalg.norm(body.points, axis=1).max()) for body in bodies), default=0.0)
 
 
-def _axes_length(fliers: list[_Flier]) -> float:
-    """A round one, which tells the scale, m."""
-    return round_up(AXES * _reach(fliers))
+def _axes_length(bodies: list[_Body]) -> float:
+    """Return a round length that shows the scale, m."""
+    return round_up(AXES * _farthest(bodies))

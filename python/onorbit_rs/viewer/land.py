@@ -1,7 +1,7 @@
-"""Where there is land, on a grid of two degrees, and a map drawn of it.
+"""Map of land on a grid of two degrees, and its texture.
 
 Made from the 30 arc second GLOBE elevation model (NOAA, 1999, public domain) by way of PyPI's
-`global-land-mask` 1.0.0: a cell is land where more than half of its points are.
+`global-land-mask` 1.0.0: a cell is land if more than half of its points are.
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ _PACKED = (
 
 
 def land() -> NDArray[np.bool_]:
-    """(90, 180) cells: rows from the north pole southwards, columns from longitude -180° eastwards."""
+    """Return (90, 180) cells: rows from the north pole southwards, columns from longitude -180° eastwards."""
     bits = np.frombuffer(zlib.decompress(base64.b85decode(_PACKED)), np.uint8)
     return np.unpackbits(bits).reshape(_CELLS).astype(bool)
 
 
 def world_map(has_land: bool, times: int = 4, grid_deg: float = 30.0) -> NDArray[np.uint8]:
-    """(90 · times, 180 · times, 3) colours of the Earth under a net of meridians; sea alone without land."""
+    """Return a (90 · times, 180 · times, 3) texture of the Earth with meridians; sea only without land."""
     rows, columns = (times * cells for cells in _CELLS)
-    share: NDArray[np.float64] = (
+    fraction: NDArray[np.float64] = (
         _smooth(np.kron(land(), np.ones((times, times))).astype(np.float64), times)
         if has_land
         else np.zeros((rows, columns))
@@ -51,7 +51,7 @@ def world_map(has_land: bool, times: int = 4, grid_deg: float = 30.0) -> NDArray
     longitude = -180.0 + 360.0 * (np.arange(columns) + 0.5) / columns
     ice = ((np.abs(latitude[:, None]) > 72.0) | (latitude[:, None] < -60.0))[..., None]
     ground = np.where(ice, _ICE, _LAND)
-    colors = np.where((share > 0.5)[..., None], ground, _SEA)
+    colors = np.where((fraction > 0.5)[..., None], ground, _SEA)
     step = 180.0 / rows
     lines = [np.abs((degrees + 1e-9) % grid_deg) < step for degrees in (latitude, longitude)]
     on_line = lines[0][:, None] | lines[1][None, :]
@@ -60,7 +60,7 @@ def world_map(has_land: bool, times: int = 4, grid_deg: float = 30.0) -> NDArray
 
 
 def _smooth(values: NDArray[np.float64], reach: int) -> NDArray[np.float64]:
-    """A running mean over ``reach`` cells on either side, around the globe in longitude."""
+    """Return the running mean over ``reach`` cells on either side, periodic in longitude."""
     for axis, mode in ((0, "edge"), (1, "wrap")):
         width = [(0, 0), (0, 0)]
         width[axis] = (reach, reach)

@@ -1,25 +1,25 @@
-"""The notes beside the picture, as Markdown in which no name or value of the user's is markup."""
+"""Notes beside the 3-D view, in Markdown; names and values from the user are escaped."""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.appearance import missing_meshes
-from onorbit_rs.printable import printable
+from onorbit_rs.common.printable import printable
+from onorbit_rs.visuals.shapes import missing_meshes
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
     from onorbit_rs.scenario import Scenario
 
 _MARKUP = re.compile(r"([!#&()*+<>\[\]\\^`{|}~$])|(?<!\w)_|_(?!\w)")
-"""What means something to Markdown; not the underscores within a name."""
+"""Characters with a meaning in Markdown, except underscores within a name."""
 
 _MOST_MESHES = 10
 
 
 def notes(summary: dict[str, Any], scenario: Scenario) -> str:
-    """The summary of a run."""
+    """Return the summary of a run as Markdown."""
     lines = "\n".join(f"| {escaped(key)} | {escaped(_short(value))} |" for key, value in summary.items())
     about = escaped(" ".join(scenario.description.split()))
     return f"# {escaped(scenario.name)}\n\n{about}\n\n| | |\n|-|-|\n{lines}\n"
@@ -33,11 +33,11 @@ def about_meshes(model: Model) -> str:
     more = "" if len(missing) <= _MOST_MESHES else f" and {len(missing) - _MOST_MESHES} more"
     named = ", ".join(escaped(name) for name in missing[:_MOST_MESHES])
     lost = "meshes that were not found or cannot be read"
-    return f"\n\nCollision shapes and sticks stand in for {lost}: {named}{more}.\n"
+    return f"\n\nCollision shapes and sticks replace {lost}: {named}{more}.\n"
 
 
 def escaped(text: str) -> str:
-    """On one line, as it reads: markup and what would not be seen is told instead of obeyed."""
+    """Return the text on one line with Markdown and invisible characters escaped."""
     return _MARKUP.sub(r"\\\g<0>", printable(text))
 
 

@@ -1,4 +1,4 @@
-"""The view from afar, in km: the planet with its day and night, the orbit, the spacecraft on it."""
+"""View of the orbit in km: the planet with day and night, the orbit and the spacecraft."""
 
 from __future__ import annotations
 
@@ -8,43 +8,43 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from onorbit_rs.common.decimate import evenly_spaced
+from onorbit_rs.common.rotations import quaternion_from_matrix
 from onorbit_rs.exceptions import OrbitError
-from onorbit_rs.planet import EARTH_FLATTENING, EARTH_RADIUS_KM, is_earth
-from onorbit_rs.rotations import quaternion_from_matrix
-from onorbit_rs.thinning import evenly
 from onorbit_rs.viewer.colors import ROBOT
 from onorbit_rs.viewer.frames import ORIGIN, fix_frame, put_in, send_frame
 from onorbit_rs.viewer.land import world_map
-from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.scene import send_trail
+from onorbit_rs.viewer.trace_rows import TIMELINE
+from onorbit_rs.visuals.earth_shape import EARTH_FLATTENING, EARTH_RADIUS_KM, is_earth
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Earth, Orbit
-    from onorbit_rs.viewer.rows import Rows
     from onorbit_rs.viewer.setting import Setting
+    from onorbit_rs.viewer.trace_rows import TraceRows
 
     Floats = NDArray[np.float64]
 
 INERTIAL, EARTH, SUN = "I", "earth", "sun"
 SUN_PLACE, SUN_ARROW = "sun_place", "sun_arrow"
 MEAN_DENSITY = 5.0e3
-"""Of a planet that is not the Earth: its size is not known, kg/m³."""
+"""Assumed mean density of a planet other than the Earth, from which its radius follows, kg/m³."""
 
 MOST_TURNS = 2000
-"""Moments at which the Earth's attitude is recorded."""
+"""Largest number of rows at which the Earth's attitude is recorded."""
 
 _ABOVE = 1.35
-"""How far above the planet's middle the Sun's arrow is seen, in radii of the orbit: above all that flies."""
+"""Distance of the Sun's arrow from the planet's centre on the screen, in radii of the orbit."""
 
 _GRAVITATION = 6.6743e-11
 _MOST_PATH_POINTS = 20_000
 _PATH, _RING = (255, 96, 64), (150, 155, 165)
 
 
-def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
-    """The planet, one revolution of the reference, the Sun's direction: what does not wait for the run."""
+def log_planet(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
+    """Log the static entities: the planet, one revolution of the reference orbit, and the Sun's arrow."""
     orbit = setting.orbit
     put_in(recording, "orbit", INERTIAL)
     if orbit is None or orbit.mu is None:
@@ -78,36 +78,36 @@ def log_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> N
         put_in(recording, "orbit/reference", INERTIAL)
 
 
-def to_eye(rows: Rows, setting: Setting) -> Floats:
-    """Unit vector to where the planet is looked at from: above the start of the run, half of it in light."""
+def to_eye(rows: TraceRows, setting: Setting) -> Floats:
+    """Return the unit vector towards the camera: above the start of the run, half of the planet lit."""
     start = rows["position_eci"][0] / np.linalg.norm(rows["position_eci"][0])
     towards: Floats = start + [0.0, 0.0, 0.5] + 0.6 * np.cross([0.0, 0.0, 1.0], start)
     if setting.earth is not None and has_sun(setting.earth):
         sun = np.asarray(setting.earth.sun(0.0)).reshape(3)
         towards -= 0.9 * (towards @ sun) / (sun @ sun) * sun
     towards /= np.linalg.norm(towards)
-    over_pole = abs(towards[2]) > 0.98  # where north is not up
+    over_pole = abs(towards[2]) > 0.98  # where north is not up on the screen
     return np.array([0.5, 0.0, math.copysign(math.sqrt(0.75), towards[2])]) if over_pole else towards
 
 
 def shows_sun(setting: Setting) -> bool:
-    """Whether there are night and the Sun's arrow."""
+    """Return True if night and the Sun's arrow are shown."""
     orbit = setting.orbit
     return orbit is not None and orbit.mu is not None and is_earth(orbit.mu) and has_sun(setting.earth)
 
 
 def has_sun(earth: Earth | None) -> bool:
-    """Whether it is known where the Sun is."""
+    """Return True if the position of the Sun is known."""
     return earth is not None and earth.epoch is not None
 
 
-def send_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
-    """How the Earth turns, and night with the Sun."""
+def send_planet(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
+    """Send the rotation of the Earth, and that of its night side."""
     earth = setting.earth
     if earth is None or setting.orbit is None or setting.orbit.mu is None:
         return
     t = rows["time"]
-    t = t[evenly(len(t), MOST_TURNS)]
+    t = t[evenly_spaced(len(t), MOST_TURNS)]
     rot_fi = np.asarray(earth.rotation(t)).reshape(-1, 3, 3)
     quat_if = quaternion_from_matrix(np.swapaxes(rot_fi, 1, 2))
     times = rr.TimeColumn(TIMELINE, duration=t)
@@ -121,34 +121,34 @@ def send_planet(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> 
 ORBIT_TRAIL = "orbit/trail"
 
 
-def send_orbit_trail(recording: rr.RecordingStream, rows: Rows, most: int) -> None:
-    """The path so far."""
+def send_orbit_trail(recording: rr.RecordingStream, rows: TraceRows, most: int) -> None:
+    """Send the path so far."""
     send_trail(recording, ORBIT_TRAIL, INERTIAL, rows, rows["position_eci"] / 1e3, most, _PATH)
 
 
-def log_path_flown(recording: rr.RecordingStream, rows: Rows) -> None:
-    """The whole path of the robot."""
+def log_path_flown(recording: rr.RecordingStream, rows: TraceRows) -> None:
+    """Log the whole path of the robot."""
     position = rows["position_eci"]
-    points = position[evenly(len(position), _MOST_PATH_POINTS)] / 1e3
+    points = position[evenly_spaced(len(position), _MOST_PATH_POINTS)] / 1e3
     path = rr.LineStrips3D([points], colors=[_PATH], radii=rr.Radius.ui_points(2.0))
     put_in(recording, "orbit/path", INERTIAL)
     recording.log("orbit/path", path, static=True, strict=True)
 
 
-def send_spacecraft(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
-    """Where the robot is, under its name."""
+def send_spacecraft(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
+    """Send the positions of the robot, with its name."""
     path = "orbit/spacecraft"
     put_in(recording, path, INERTIAL)
-    look = rr.Points3D.from_fields(
+    style = rr.Points3D.from_fields(
         colors=[ROBOT], radii=rr.Radius.ui_points(7.0), labels=[setting.robot], show_labels=True
     )
-    recording.log(path, look, static=True, strict=True)
+    recording.log(path, style, static=True, strict=True)
     place = rr.Points3D.columns(positions=rows["position_eci"] / 1e3)
     recording.send_columns(path, [rows.times], place, strict=True)
 
 
 def path_around_planet(orbit: Orbit | None, points: int = 361) -> Floats | None:
-    """(k, 3) positions along a closed orbit or a whole path, m; None where there is none around a planet."""
+    """Return positions (k, 3), m, along a closed orbit or custom path around a planet; None for others."""
     if orbit is None or orbit.mu is None:
         return None
     period = getattr(orbit, "period", None)
@@ -157,25 +157,25 @@ def path_around_planet(orbit: Orbit | None, points: int = 361) -> Floats | None:
         return None
     try:
         return np.asarray(orbit.state(np.linspace(start, end, points))[0])
-    except OrbitError:  # decays within its first revolution
+    except OrbitError:  # the orbit decays within its first revolution
         return None
 
 
-def _radius_km(mu: float, rows: Rows) -> float:
-    """Of a ball of a usual density, below the lowest point of the path."""
+def _radius_km(mu: float, rows: TraceRows) -> float:
+    """Return the radius of a sphere of the mean density, below the lowest point of the path."""
     radius = (3.0 * mu / (4.0 * math.pi * _GRAVITATION * MEAN_DENSITY)) ** (1.0 / 3.0)
     lowest = float(np.linalg.norm(rows["position_eci"], axis=1).min())
     return float(min(radius, 0.95 * lowest)) / 1e3
 
 
 def _globe(radii: Floats, *, has_land: bool, bands: int = 60, sectors: int = 120) -> rr.Mesh3D:
-    """An ellipsoid under a map whose middle is longitude zero, the x axis."""
+    """Return an ellipsoid with a map; longitude zero is the x axis."""
     v, u = (np.linspace(0.0, 1.0, count + 1) for count in (bands, sectors))
     colatitude, longitude = np.pi * v[:, None], 2.0 * np.pi * u[None, :] - np.pi
     unit = _directions(colatitude, longitude)
     return rr.Mesh3D(
         vertex_positions=(unit * radii).reshape(-1, 3),
-        vertex_normals=np.zeros((unit.shape[0] * unit.shape[1], 3)),  # the Sun is the light, not the viewer's
+        vertex_normals=np.zeros((unit.shape[0] * unit.shape[1], 3)),  # no shading by the light of the viewer
         vertex_texcoords=np.stack(np.broadcast_arrays(u[None, :], v[:, None]), axis=-1).reshape(-1, 2),
         triangle_indices=_triangles(bands, sectors),
         albedo_texture=world_map(has_land),
@@ -183,7 +183,7 @@ def _globe(radii: Floats, *, has_land: bool, bands: int = 60, sectors: int = 120
 
 
 def _night(radii: Floats, depth: float, bands: int = 24, sectors: int = 72) -> rr.Mesh3D:
-    """A dark veil over the half away from the x axis, where the Sun is ``depth`` rad below the horizon."""
+    """Return a dark surface over the half opposite x, where the Sun is ``depth`` rad below the horizon."""
     away, around = np.meshgrid(
         np.linspace(np.pi / 2 + depth, np.pi, bands + 1),
         np.linspace(0.0, 2.0 * np.pi, sectors + 1),
@@ -200,7 +200,7 @@ def _night(radii: Floats, depth: float, bands: int = 24, sectors: int = 72) -> r
 
 
 def _triangles(bands: int, sectors: int) -> NDArray[np.int64]:
-    """(2 bands sectors, 3) corners of a net of so many cells, band by band."""
+    """Return the corners (2 bands sectors, 3) of the triangles of a grid, band by band."""
     corner = (np.arange(bands)[:, None] * (sectors + 1) + np.arange(sectors)).reshape(-1)
     below = corner + sectors + 1
     return np.concatenate(
@@ -209,7 +209,7 @@ def _triangles(bands: int, sectors: int) -> NDArray[np.int64]:
 
 
 def _directions(colatitude: Floats, longitude: Floats) -> Floats:
-    """Unit vectors (bands, sectors, 3)."""
+    """Return unit vectors (bands, sectors, 3)."""
     parts = np.broadcast_arrays(
         np.sin(colatitude) * np.cos(longitude), np.sin(colatitude) * np.sin(longitude), np.cos(colatitude)
     )
@@ -217,7 +217,7 @@ def _directions(colatitude: Floats, longitude: Floats) -> Floats:
 
 
 def _axes_towards(directions: Floats) -> Floats:
-    """(T, 3, 3) axes whose x points along (T, 3); y stays in the plane of the equator."""
+    """Return axes (T, 3, 3) whose x points along the directions (T, 3), with y in the equatorial plane."""
     x = directions / np.linalg.norm(directions, axis=1, keepdims=True)
     y = np.cross([0.0, 0.0, 1.0], x)
     y /= np.linalg.norm(y, axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""The plots beside the picture: an overview, and a tab for each group."""
+"""Plots beside the 3-D view: an overview, and a tab for each group."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _FIRST = (
     "plots/base_attitude",
     "plots/slide_force",
 )
-_FIRST_ADRIFT = (
+_FIRST_WITHOUT_TOOL = (
     "plots/base_attitude_lvlh",
     "plots/base_rate",
     "plots/drag/force",
@@ -36,19 +36,19 @@ _FIRST_ADRIFT = (
 )
 _MOST_IN_A_COLUMN = 4
 _LOW = 4
-"""Share of the column that a plot of few lines has."""
+"""Relative height of a plot of few lines."""
 
 _MOST_TICKS = 6.0
-"""So many steps from tick to tick have room for their numbers in a low plot."""
+"""Largest number of labelled ticks in a low plot."""
 
 _FOR_LEGENDS = 1.24
-"""Plots go on for so much longer than the run, in units of it: legends stand there."""
+"""Length of the time axis in units of the run; the space after the run is for the legend."""
 
 
 def plots_in_groups(plots: Sequence[Series], duration_s: float, *, is_live: bool) -> rrb.Tabs:
-    """An overview, and a tab for each group."""
+    """Return an overview, and a tab for each group."""
     by_path = {plot.path: plot for plot in plots}
-    wanted = _FIRST if _FIRST[0] in by_path else _FIRST_ADRIFT
+    wanted = _FIRST if _FIRST[0] in by_path else _FIRST_WITHOUT_TOOL
     first = [by_path[path] for path in wanted if path in by_path][:_MOST_IN_A_COLUMN]
     tabs = {"Overview": first}
     for plot in plots:
@@ -67,7 +67,7 @@ def plots_in_groups(plots: Sequence[Series], duration_s: float, *, is_live: bool
 
 
 def _plot(series: Series, duration_s: float, *, is_live: bool) -> rrb.TimeSeriesView:
-    """A plot that shows the whole run from the start."""
+    """Return a plot over the whole run."""
     whole = rrb.TimeRange(
         start=rrb.TimeRangeBoundary.absolute(seconds=0.0),
         end=rrb.TimeRangeBoundary.absolute(seconds=_FOR_LEGENDS * duration_s),
@@ -83,9 +83,9 @@ def _plot(series: Series, duration_s: float, *, is_live: bool) -> rrb.TimeSeries
 
 
 def with_two_ticks(values: Floats) -> tuple[float, float] | None:
-    """A range in which a low plot has two numbers; None where it has them anyhow.
+    """Return a value range with two labelled ticks for a low plot; None if the default range has them.
 
-    Rerun has ticks at multiples of powers of ten alone, and leaves out those that stand near each other.
+    Rerun places ticks only at multiples of powers of ten, and omits ticks that are close to each other.
     """
     low, high = float(values.min(initial=np.inf)), float(values.max(initial=-np.inf))
     if not 0.0 < high - low < np.inf:

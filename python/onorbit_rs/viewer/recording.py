@@ -1,7 +1,7 @@
-"""``run.rrd``: the robot moving in named frames, its tool's path, arrows, the orbit apart, and the plots.
+"""``run.rrd``: the robot moving in named frames, its tool's path, arrows, a view of the orbit, and plots.
 
-W has the axes of the inertial frame and its origin on the reference orbit, so 32-bit graphics stay sharp at
-robot size. The orbit is drawn apart, in km; its exact state is there as 64-bit scalars.
+W has the axes of the inertial frame and its origin on the reference orbit, so that 32-bit graphics are
+precise at the scale of the robot. The orbit has its own view, in km; its exact state is plotted in 64 bits.
 """
 
 from __future__ import annotations
@@ -18,11 +18,10 @@ from onorbit_rs.viewer.axes import log_all_axes
 from onorbit_rs.viewer.blueprint import layout
 from onorbit_rs.viewer.encoded import Encoded
 from onorbit_rs.viewer.flight import is_apart, log_flight, log_whole_flight, send_flight
+from onorbit_rs.viewer.font import shown, shown_lines
 from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames
-from onorbit_rs.viewer.letters import shown, shown_lines
 from onorbit_rs.viewer.notes import about_meshes
 from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
-from onorbit_rs.viewer.rows import Rows
 from onorbit_rs.viewer.scene import (
     MOST_TRAIL_PIECES,
     NEAR,
@@ -33,9 +32,10 @@ from onorbit_rs.viewer.scene import (
     send_trails,
 )
 from onorbit_rs.viewer.series import Series, log_style, send_series, series_of
-from onorbit_rs.viewer.stage import Stage
 from onorbit_rs.viewer.streams import APPLICATION, release_streams, send_blueprint
 from onorbit_rs.viewer.targets import log_targets, send_targets
+from onorbit_rs.viewer.trace_rows import TraceRows
+from onorbit_rs.viewer.viewpoint import Viewpoint
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 MOST_STEPS = 500_000
-"""Steps in a recording, which take half a gigabyte; a longer trace is thinned evenly, its last row kept."""
+"""Largest number of rows, half a gigabyte; a longer trace is decimated evenly, including its last row."""
 
 
 def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = "") -> Path:
@@ -58,14 +58,14 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
         The ``.rrd`` file.
     trace : Trace
     setting : Setting
-        The robot and where it flies.
+        The robot, its orbit and its targets.
     notes : str
-        Markdown shown beside the picture.
+        Markdown shown beside the 3-D view.
 
     Raises
     ------
     OSError
-        The file cannot be written.
+        If the file cannot be written.
     """
     try:
         _encode(path, trace, setting, notes)
@@ -75,34 +75,34 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
 
 
 def _encode(path: Path, trace: Trace, setting: Setting, notes: str) -> None:
-    """Log all of the run into a stream of its own and write its bytes."""
+    """Log the run to a new stream and write its bytes."""
     chosen = recorded_rows(len(trace.time))
-    rows = Rows.of_trace(trace, slice(None) if len(chosen) == len(trace.time) else chosen)
+    rows = TraceRows.of_trace(trace, slice(None) if len(chosen) == len(trace.time) else chosen)
     if len(chosen) < len(trace.time):
-        notes += f"\n\nThe recording holds {len(chosen)} of the {len(trace.time)} rows of the trace.\n"
+        notes += f"\n\nThe recording contains {len(chosen)} of the {len(trace.time)} rows of the trace.\n"
     notes += about_meshes(setting.model)
     recording = new_recording(setting)
     encoded = Encoded(recording)
     plots = list(series_of(rows, setting))
-    stage = open_stage(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
+    viewpoint = send_static(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
     for series in plots:
         send_series(recording, rows, series)
-    send_rows(recording, rows, setting, stage)
+    send_rows(recording, rows, setting, viewpoint)
     if "reference_pose" in rows:
-        log_path(recording, rows, setting, stage.size)
+        log_path(recording, rows, setting, viewpoint.size)
     if "tool_pose" in rows:
         send_trails(recording, rows, setting, MOST_TRAIL_PIECES, "obtained")
     if "position_eci" in rows:
         log_path_flown(recording, rows)
-    if is_apart(rows, setting, stage):
+    if is_apart(rows, setting, viewpoint):
         log_whole_flight(recording, rows, setting)
         send_flight(recording, rows, setting, MOST_TRAIL_PIECES)
-    Arrows(recording, setting, stage).send(rows)
+    Arrows(recording, setting, viewpoint).send(rows)
     encoded.write_to(path)
 
 
 def new_recording(setting: Setting) -> rr.RecordingStream:
-    """Empty, on the time of the simulation alone: nothing here reads the wall clock."""
+    """Return an empty recording on simulation time, without wall-clock timelines."""
     recording = rr.RecordingStream(APPLICATION, recording_id=uuid.uuid4(), send_properties=False)
     recording.set_log_time_enabled(False)
     recording.set_log_tick_enabled(False)
@@ -111,46 +111,46 @@ def new_recording(setting: Setting) -> rr.RecordingStream:
     return recording
 
 
-def open_stage(
+def send_static(
     recording: rr.RecordingStream,
-    rows: Rows,
+    rows: TraceRows,
     setting: Setting,
     plots: list[Series],
     duration_s: float,
     *,
     notes: str = "",
     is_live: bool = False,
-) -> Stage:
-    """The layout and all that does not move, from the first rows."""
-    stage = Stage.of(rows, setting)
-    views = layout(rows, setting, stage, plots, duration_s, has_notes=bool(notes), is_live=is_live)
+) -> Viewpoint:
+    """Send the layout and log the static entities, from the first rows."""
+    viewpoint = Viewpoint.of(rows, setting)
+    views = layout(rows, setting, viewpoint, plots, duration_s, has_notes=bool(notes), is_live=is_live)
     send_blueprint(recording, views)
     put_in(recording, "world", WORLD)
     send_fixed_frames(recording, setting)
     log_robot(recording, setting)
     in_orbit = rows.quat_wl is not None
     log_all_axes(
-        recording, setting, stage.size, (stage.inertial_at, stage.local_at),
+        recording, setting, viewpoint.size, (viewpoint.inertial_at, viewpoint.local_at),
         near=NEAR * path_length(rows, setting), in_orbit=in_orbit,
-        tool_name_at=None if setting.tool is None else stage.beside_tool(rows, setting),
+        tool_name_at=None if setting.tool is None else viewpoint.beside_tool(rows, setting),
         has_reference="reference_pose" in rows,
     )  # fmt: skip
-    log_targets(recording, setting, stage.size)
+    log_targets(recording, setting, viewpoint.size)
     if "position_eci" in rows:
         log_planet(recording, rows, setting)
-    if is_apart(rows, setting, stage):
+    if is_apart(rows, setting, viewpoint):
         log_flight(recording, rows, setting)
     for series in plots:
         log_style(recording, series)
     if notes:
         text = rr.TextDocument(shown_lines(notes), media_type=rr.MediaType.MARKDOWN)
         recording.log("notes", text, static=True, strict=True)
-    return stage
+    return viewpoint
 
 
-def send_rows(recording: rr.RecordingStream, rows: Rows, setting: Setting, stage: Stage) -> None:
-    """All that moves, every row."""
-    send_moving_frames(recording, rows, setting, stage.inertial_at)
+def send_rows(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> None:
+    """Send everything that moves, for every row."""
+    send_moving_frames(recording, rows, setting, viewpoint.inertial_at)
     send_targets(recording, rows, setting)
     if "reference_pose" in rows:
         send_desired(recording, rows)
@@ -160,7 +160,7 @@ def send_rows(recording: rr.RecordingStream, rows: Rows, setting: Setting, stage
 
 
 def recorded_rows(count: int) -> NDArray[np.int64]:
-    """Indices of the rows of the trace that go into the recording."""
+    """Return the indices of the rows of the trace that are recorded."""
     stride = -(-count // MOST_STEPS)
     chosen = np.arange(0, count, stride)
     return chosen if chosen[-1] == count - 1 else np.append(chosen, count - 1)

@@ -1,4 +1,4 @@
-"""The viewer on a screen, in a process of its own that listens to this machine alone."""
+"""The viewer window, in a separate process that accepts local connections only."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rerun.experimental import ViewerClient
 from onorbit_rs.exceptions import ViewerError
 
 START_PATIENCE_S = 20.0
-"""Wall-clock time given to the viewer to start."""
+"""Longest wall-clock time to wait for the viewer to start, s."""
 
 _BINARIES = ("rerun", "rerun.exe", "Rerun.app/Contents/MacOS/Rerun")
 _PANIC = re.compile(r"panicked at '(.*)'$", re.MULTILINE)
@@ -27,29 +27,29 @@ _LOCAL = "127.0.0.1"
 
 
 def has_screen() -> bool:
-    """Whether a window may be opened here."""
+    """Return True if a window can be opened."""
     on_linux = sys.platform.startswith("linux")
     return not on_linux or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def open_recording(recording: Path) -> None:
-    """Open a ``.rrd`` and return once its window is there; the viewer outlives this process.
+    """Open a ``.rrd`` and return when its window is open; the viewer outlives this process.
 
     Raises
     ------
     ViewerError
-        The viewer ended before it opened a window.
+        If the viewer ended before it opened a window.
     """
     _start(free_port(), str(recording))
 
 
 def open_viewer() -> str:
-    """Start a viewer that waits for rows, and return where it does.
+    """Start a viewer that waits for rows, and return its URL.
 
     Raises
     ------
     ViewerError
-        The viewer ended before it opened a window.
+        If the viewer ended before it opened a window.
     """
     port = free_port()
     _start(port, "--expect-data-soon")
@@ -57,37 +57,37 @@ def open_viewer() -> str:
 
 
 def url_of(port: int) -> str:
-    """What a client connects to."""
+    """Return the URL of the viewer at a port."""
     return f"rerun+http://{_LOCAL}:{port}/proxy"
 
 
 def command_of(port: int) -> list[str]:
-    """The viewer itself, not ``python -m rerun_cli``, whose end would leave it alone."""
+    """Return the command of the viewer's executable; ``python -m rerun_cli`` does not stop it on exit."""
     places = [Path(rerun_cli.__file__).parent / name for name in _BINARIES]
     binary = next((place for place in places if place.is_file()), places[0])
     return [str(binary), "--bind", _LOCAL, "--port", str(port)]
 
 
 def environment() -> dict[str, str]:
-    """Of a viewer: no welcome, and errors alone on stderr."""
+    """Return the environment of a viewer: no welcome screen, and only errors on stderr."""
     return os.environ | {"RERUN_APP_ONLY": "true", "RUST_LOG": "error"}
 
 
 def listens(port: int) -> bool:
-    """Whether something does at this port of this machine."""
+    """Return True if a process listens at this local port."""
     with socket.socket() as probe:
         return probe.connect_ex((_LOCAL, port)) == 0
 
 
 def free_port() -> int:
-    """One that nothing listens at."""
+    """Return a free local port."""
     with socket.socket() as probe:
         probe.bind((_LOCAL, 0))
         return int(probe.getsockname()[1])
 
 
 def reason(printed: str) -> str:
-    """What ended a viewer: its panic, or the last thing that it said, without places in its code."""
+    """Return the reason why a viewer ended: its panic or last output line, without source positions."""
     if panic := _PANIC.search(printed):
         return panic[1]
     lines = printed.strip().splitlines()
@@ -105,14 +105,14 @@ def _start(port: int, *arguments: str) -> None:
             raise _not_started(str(error)) from error
         try:
             _await_window(viewer, port, said)
-        except BaseException:  # Ctrl-C, too: it has a session of its own and would stay
+        except BaseException:  # also Ctrl-C: the viewer has its own session and would keep running
             viewer.kill()
             viewer.wait()
             raise
 
 
 def _await_window(viewer: subprocess.Popen[bytes], port: int, said: IO[str]) -> None:
-    """Until it answers, or patience ends with one that listens: it does that before it has a window, too."""
+    """Wait until the viewer responds, or until the timeout if it listens but has no window yet."""
     answered = threading.Event()
     deadline = time.monotonic() + START_PATIENCE_S
     asked: threading.Thread | None = None
@@ -125,7 +125,7 @@ def _await_window(viewer: subprocess.Popen[bytes], port: int, said: IO[str]) -> 
             asked.start()
         time.sleep(0.05)
     if not answered.is_set() and not listens(port):
-        raise _not_started(f"it does not answer within {START_PATIENCE_S:g} s")
+        raise _not_started(f"it did not respond within {START_PATIENCE_S:g} s")
 
 
 def _not_started(why: str) -> ViewerError:
@@ -133,7 +133,7 @@ def _not_started(why: str) -> ViewerError:
 
 
 def _ask(url: str, answered: threading.Event) -> None:
-    """Ask what is shown, which a window alone can answer."""
+    """Ask for the state of the viewer, which only a viewer with a window returns."""
     try:
         ViewerClient.connect(url).get_state()
     except OSError:  # not yet

@@ -1,4 +1,4 @@
-"""A picture of a recording without a screen, from a viewer that listens to this machine alone.
+"""Picture of a recording from a headless viewer, which accepts local connections only.
 
 ``onorbit show out --picture picture.png --at 1``
 
@@ -15,39 +15,39 @@ from typing import IO
 
 from rerun.experimental import ViewerClient
 
+from onorbit_rs.common.files import replacing
 from onorbit_rs.exceptions import NotFoundError, ViewerError
-from onorbit_rs.files import replacing
-from onorbit_rs.viewer.rows import TIMELINE
 from onorbit_rs.viewer.screen import command_of, environment, free_port, reason, url_of
+from onorbit_rs.viewer.trace_rows import TIMELINE
 
 SETTLE_S = 3.0
-"""Wall-clock time given to the viewer to load fonts and draw, before and after moving in time."""
+"""Wall-clock time for the viewer to load fonts and draw, before and after a change of time, s."""
 
 
 def take_screenshot(
     recording: Path, picture: Path, *, at_s: float = 0.0, width: int = 1920, height: int = 1080
 ) -> Path:
-    """Open a ``.rrd`` headless, go to a time and save what the viewer shows.
+    """Open a ``.rrd`` without a window, go to a time, and save the picture.
 
     Parameters
     ----------
     recording : Path
         A ``run.rrd``.
     picture : Path
-        The PNG to write.
+        The PNG file to write.
     at_s : float
-        Time of simulation, s.
+        Simulation time, s.
     width, height : int
-        Of the window, pixels.
+        Size of the picture, pixels.
 
     Raises
     ------
     NotFoundError
-        No such recording.
+        If there is no such recording.
     ViewerError
-        The viewer did not start, or does not show the recording; says why.
+        If the viewer did not start, or does not show the recording.
     OutputFolderError
-        The picture cannot be written.
+        If the picture cannot be written.
     """
     if not recording.is_file():
         raise NotFoundError(f"no such recording: {recording}", path=str(recording), kind="recording")
@@ -58,13 +58,13 @@ def take_screenshot(
         "--hide-welcome-screen",
         *("--window-size", f"{width}x{height}", str(recording.resolve())),
     ]
-    with tempfile.TemporaryFile("w+", errors="replace") as said:  # a pipe that nobody reads stops who writes
+    with tempfile.TemporaryFile("w+", errors="replace") as said:  # an unread pipe would block the viewer
         try:
             viewer = subprocess.Popen(command, env=environment(), stdout=subprocess.DEVNULL, stderr=said)
         except OSError as error:
             raise _not_started(str(error)) from error
         try:
-            image = _seen(_connect(port, viewer, said), viewer, said, at_s)
+            image = _picture(_connect(port, viewer, said), viewer, said, at_s)
         finally:
             viewer.kill()
             viewer.wait()
@@ -73,14 +73,14 @@ def take_screenshot(
     return picture
 
 
-def _seen(
+def _picture(
     client: ViewerClient,
     viewer: subprocess.Popen[bytes],
     said: IO[str],
     at_s: float,
     patience_s: float = 60.0,
 ) -> bytes:
-    """What is shown at a time, once the recording has been read, as PNG."""
+    """Return the picture at a time as PNG, after the recording was read."""
     time.sleep(SETTLE_S)
     deadline = time.monotonic() + patience_s
     while True:
@@ -93,14 +93,14 @@ def _seen(
             if has_ended or time.monotonic() > deadline:
                 said.seek(0)
                 why = reason(said.read()) if has_ended else str(error)
-                raise ViewerError(f"the viewer does not show the recording: {why}", reason=why) from error
+                raise ViewerError(f"the viewer does not display the recording: {why}", reason=why) from error
             time.sleep(0.2)
 
 
 def _connect(
     port: int, viewer: subprocess.Popen[bytes], said: IO[str], patience_s: float = 30.0
 ) -> ViewerClient:
-    """A client of the viewer, once it answers."""
+    """Return a client of the viewer when it answers."""
     deadline = time.monotonic() + patience_s
     while time.monotonic() < deadline and viewer.poll() is None:
         try:

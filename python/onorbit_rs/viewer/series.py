@@ -1,4 +1,4 @@
-"""Columns of the trace as time series, in f64, in groups, each plot with a unit and a name on every line."""
+"""Columns of the trace as time series in groups; each plot has one unit and a name for every line."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.rotations import roll_pitch_yaw
-from onorbit_rs.units import OR, joint_units, with_prefix
-from onorbit_rs.viewer.letters import shown
-from onorbit_rs.viewer.wrenches import centers_of_bodies, torque_about_center
+from onorbit_rs._core import COLUMNS
+from onorbit_rs.common.coordinates import JOINTS_Q, JOINTS_V, QUATERNION
+from onorbit_rs.common.display_units import OR, joint_units, with_prefix
+from onorbit_rs.common.rotations import roll_pitch_yaw
+from onorbit_rs.viewer.font import shown
+from onorbit_rs.viewer.wrenches import centers_of_bodies, net_force, torque_about_center
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Model
-    from onorbit_rs.viewer.rows import Rows
     from onorbit_rs.viewer.setting import Setting
+    from onorbit_rs.viewer.trace_rows import TraceRows
 
     Floats = NDArray[np.float64]
 
@@ -30,11 +32,13 @@ _COLORS = [(85, 155, 250), (240, 130, 50), (70, 200, 120), (220, 140, 190), (240
 _OTHERS, OTHERS = (90, 94, 104), "others, smaller"
 _AXES, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
 
+_TOOL_ERRORS = (COLUMNS["position_error"], COLUMNS["attitude_error"])
+
 LEAST_PEAK, LARGEST_PEAK = 0.1, 1e4
-"""Between them values are plotted in SI units (and degrees)."""
+"""Range of peaks that are plotted in SI units (and degrees) without a prefix."""
 
 ROUNDING = 1e-12
-"""What stays below it, in SI units, is rounding."""
+"""Values below it, in SI units, are rounding."""
 
 
 @dataclass(frozen=True)
@@ -49,10 +53,10 @@ class Series:
     values: Floats
 
 
-def series_of(rows: Rows, setting: Setting, *, is_live: bool = False) -> Iterator[Series]:
-    """Every plot that these rows have the columns for.
+def series_of(rows: TraceRows, setting: Setting, *, is_live: bool = False) -> Iterator[Series]:
+    """Yield every plot for which these rows contain the columns.
 
-    Of a run that is over: in units that fit its peaks, rounding as zero, of effects what was not zero.
+    Plots of a completed run have units that fit their peaks; rounding is zero, and zero effects are omitted.
     """
     parts = (
         _of_tools(rows, setting),
@@ -68,7 +72,7 @@ def series_of(rows: Rows, setting: Setting, *, is_live: bool = False) -> Iterato
 
 
 def _fitted(series: Series) -> Series:
-    """Rerun's axes tell four decimals and no exponents: small values want a smaller unit."""
+    """Return the series with a unit that fits: rerun's axes show four decimals and no exponents."""
     peak = float(max(series.values.max(initial=0.0), -series.values.min(initial=0.0)))
     if peak < (np.degrees(ROUNDING) if series.unit == "deg" else ROUNDING):
         return replace(series, values=np.zeros_like(series.values))
@@ -78,39 +82,38 @@ def _fitted(series: Series) -> Series:
     return replace(series, values=factor * series.values, unit=unit)
 
 
-def _of_effects(rows: Rows, model: Model) -> Iterator[Series]:
+def _of_effects(rows: TraceRows, model: Model) -> Iterator[Series]:
     if not rows.wrenches:
         return
     centers = centers_of_bodies(rows, model)
     for effect, wrenches in rows.wrenches.items():
         name = effect.replace("_", " ").capitalize()
-        force, torque = wrenches[:, :, :3].sum(axis=1), torque_about_center(rows, centers, wrenches)
-        parts = (
-            ("force", "net force", "N", force),
-            ("torque", "torque about the centre of mass", "N m", torque),
-        )
-        for part, title, unit, values in parts:
+        force, torque = net_force(wrenches), torque_about_center(rows, centers, wrenches)
+        parts = (("force", "net force", force), ("torque", "torque about the centre of mass", torque))
+        for part, title, values in parts:
+            _, unit = COLUMNS["wrenches"].parts[part]
             yield Series("Forces", f"plots/{effect}/{part}", f"{name}: {title}", unit, _AXES, values)
 
 
-def _of_tools(rows: Rows, setting: Setting) -> Iterator[Series]:
+def _of_tools(rows: TraceRows, setting: Setting) -> Iterator[Series]:
     if "position_error" in rows:
-        for what, unit in (("position", "m"), ("attitude", "rad")):
-            title = f"{shown(setting.tool or 'Tool')}: {what} error"
-            yield Series("Tool", f"plots/tool_{what}_error", title, unit, _AXES, rows[f"{what}_error"])
+        for column in _TOOL_ERRORS:
+            title = f"{shown(setting.tool or 'Tool')}: {column.name.replace('_', ' ')}"
+            yield Series("Tool", f"plots/tool_{column.name}", title, column.unit, _AXES, rows[column.name])
     for name, errors in rows.tracking.items():
         path = f"plots/tracking/{name}"
-        if errors.shape[1] == 6:
-            yield Series("Tool", f"{path}/position", f"{name}: position error", "m", _AXES, errors[:, :3])
-            yield Series("Tool", f"{path}/attitude", f"{name}: attitude error", "rad", _AXES, errors[:, 3:])
+        if errors.shape[1] == 2 * len(_AXES):
+            for column, part in zip(_TOOL_ERRORS, np.split(errors, 2, axis=1), strict=True):
+                what = column.name.removesuffix("_error")
+                yield Series("Tool", f"{path}/{what}", f"{name}: {what} error", column.unit, _AXES, part)
         else:
             names = tuple(f"joint {index + 1}" for index in range(errors.shape[1]))
             unit = joint_units(joint.kind for joint in setting.model.joints).position
             yield Series("Joints", path, f"{name}: joint errors", unit, names, errors)
 
 
-def _of_joints(rows: Rows, model: Model) -> Iterator[Series]:
-    """Those that turn, and in plots of their own those that slide."""
+def _of_joints(rows: TraceRows, model: Model) -> Iterator[Series]:
+    """Yield the plots of revolute and of prismatic joints."""
     slides = np.array([joint.kind == "prismatic" for joint in model.joints], bool)
     for who, kind, chosen in (("joint", "revolute", ~slides), ("slide", "prismatic", slides)):
         if not chosen.any():
@@ -119,44 +122,51 @@ def _of_joints(rows: Rows, model: Model) -> Iterator[Series]:
         units, force = joint_units([kind]), "torque" if kind == "revolute" else "force"
         for what, unit, values in (
             (force, units.effort, rows["tau"]),
-            ("position", units.position, rows["q"][:, 7:]),
-            ("rate", units.rate, rows["v"][:, 6:]),
+            ("position", units.position, rows["q"][:, JOINTS_Q]),
+            ("rate", units.rate, rows["v"][:, JOINTS_V]),
         ):
             columns = values if chosen.all() else values[:, chosen]
             yield Series("Joints", f"plots/{who}_{what}", f"{who.capitalize()} {what}s", unit, names, columns)
 
 
-def _of_base(rows: Rows) -> Iterator[Series]:
-    q, v = rows["q"], rows["v"]
+def _of_base(rows: TraceRows) -> Iterator[Series]:
+    q = rows["q"]
     if rows.quat_lb is not None:
         angles = np.degrees(np.unwrap(roll_pitch_yaw(rows.quat_lb), axis=0))
         title = "Base attitude relative to L (local orbital frame)"
         yield Series("Base", "plots/base_attitude_lvlh", title, "deg", ANGLES, angles)
-    angles = np.degrees(np.unwrap(roll_pitch_yaw(q[:, 3:7]), axis=0))
+    angles = np.degrees(np.unwrap(roll_pitch_yaw(q[:, QUATERNION]), axis=0))
     yield Series("Base", "plots/base_attitude", "Base attitude in W", "deg", ANGLES, angles)
-    yield Series("Base", "plots/base_rate", "Base angular velocity, body axes", "rad/s", _AXES, v[:, 3:6])
-    yield Series("Base", "plots/base_position", "Base position in W", "m", _AXES, q[:, :3])
+    yield _of_part(rows, "Base", "plots/base_rate", "Base angular velocity, body axes", "v", "angular")
+    yield _of_part(rows, "Base", "plots/base_position", "Base position in W", "q", "position")
     if "position_eci" in rows:
-        r, rate = rows["position_eci"], rows["velocity_eci"]
-        yield Series("Orbit", "exact/position_eci", "Base position, inertial", "m", _AXES, r)
-        yield Series("Orbit", "exact/velocity_eci", "Base velocity, inertial", "m/s", _AXES, rate)
+        for name, title in (("position_eci", "Base position"), ("velocity_eci", "Base velocity")):
+            yield Series(
+                "Orbit", f"exact/{name}", f"{title}, inertial", COLUMNS[name].unit, _AXES, rows[name]
+            )
 
 
-def _of_balances(rows: Rows) -> Iterator[Series]:
-    momentum = rows["momentum"]
-    yield Series("Balance", "plots/linear_momentum", "Linear momentum in W", "N s", _AXES, momentum[:, :3])
+def _of_balances(rows: TraceRows) -> Iterator[Series]:
+    title = "Linear momentum in W"
+    yield _of_part(rows, "Balance", "plots/linear_momentum", title, "momentum", "linear")
     title = "Angular momentum about the centre of mass"
-    yield Series("Balance", "plots/angular_momentum", title, "N m s", _AXES, momentum[:, 3:])
+    yield _of_part(rows, "Balance", "plots/angular_momentum", title, "momentum", "angular")
     energy = np.column_stack([rows["kinetic_energy"], rows["work"]])
-    names = ("kinetic energy", "work done")
-    yield Series("Balance", "plots/energy", "Energy and work", "J", names, energy)
+    names, unit = ("kinetic energy", "work done"), COLUMNS["kinetic_energy"].unit
+    yield Series("Balance", "plots/energy", "Energy and work", unit, names, energy)
+
+
+def _of_part(rows: TraceRows, group: str, path: str, title: str, column: str, part: str) -> Series:
+    """Return the plot of three components of a column."""
+    entries, unit = COLUMNS[column].parts[part]
+    return Series(group, path, title, unit, _AXES, rows[column][:, entries])
 
 
 def log_style(recording: rr.RecordingStream, series: Series) -> None:
-    """Names and colours of the lines of a plot."""
+    """Log names and colours of the lines of a plot."""
     count = len(series.names)
     names, colors = list(series.names), list(_XYZ if series.names in (_AXES, ANGLES) else _COLORS)
-    if count > len(colors):  # none has another's colour
+    if count > len(colors):  # no two lines have the same colour
         peaks = np.abs(series.values).max(axis=0)
         largest = np.sort(np.argsort(-peaks, kind="stable")[: len(colors)])
         taken = dict(zip(largest.tolist(), _COLORS, strict=True))
@@ -166,13 +176,13 @@ def log_style(recording: rr.RecordingStream, series: Series) -> None:
         names=names,
         colors=colors[:count],
         widths=[1.5] * count,
-        aggregation_policy=rr.components.AggregationPolicy.MinMax,  # the mean of chatter is none
+        aggregation_policy=rr.components.AggregationPolicy.MinMax,  # the mean would hide oscillations
     )
     recording.log(series.path, style, static=True, strict=True)
 
 
-def send_series(recording: rr.RecordingStream, rows: Rows, series: Series) -> None:
-    """One entity with all lines of a plot."""
+def send_series(recording: rr.RecordingStream, rows: TraceRows, series: Series) -> None:
+    """Send one entity with all lines of a plot."""
     columns = rr.Scalars.columns(scalars=series.values.reshape(-1))
     lengths = np.full(len(series.values), len(series.names))
     recording.send_columns(series.path, [rows.times], columns.partition(lengths), strict=True)

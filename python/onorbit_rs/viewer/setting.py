@@ -1,4 +1,4 @@
-"""What the viewer must know of a run beside its rows."""
+"""Data of a run that the viewer needs in addition to its rows."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.appearance import shapes
-from onorbit_rs.geometry import Shape, extent
+from onorbit_rs.common.coordinates import BASE_Q
 from onorbit_rs.scenario.targets import Target, targets
-from onorbit_rs.viewer.letters import shown
+from onorbit_rs.viewer.font import shown
 from onorbit_rs.viewer.targets import PathFrame, path_frame
+from onorbit_rs.visuals.geometry import Shape, extent
+from onorbit_rs.visuals.shapes import shapes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,9 +26,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Setting:
-    """The robot and where it flies.
+    """The robot, its orbit and its targets.
 
-    ``tool`` is the frame whose pose the trace has; ``path_frame`` the one in whose axes its path is drawn.
+    ``tool`` is the frame whose pose the trace contains; its path is drawn in ``path_frame``.
     """
 
     model: Model
@@ -40,7 +41,7 @@ class Setting:
 
     @classmethod
     def of(cls, built: Built) -> Setting:
-        """Of a scenario."""
+        """Return the setting of a scenario."""
         scenario = built.scenario
         return cls(
             built.model,
@@ -54,31 +55,31 @@ class Setting:
 
     @cached_property
     def shapes(self) -> list[Shape]:
-        """What there is to draw of the robot."""
+        """Shapes to draw of the robot."""
         return shapes(self.model)
 
     @property
     def robot(self) -> str:
-        """Its name, as labels show it."""
+        """Name of the robot for labels."""
         return shown(self.model.name)
 
     @property
     def base(self) -> str:
-        """The link that floats."""
+        """Name of the base link."""
         return self.model.body_names[0]
 
     def extent(self, q: Floats) -> tuple[Floats, float]:
-        """Centre and size of the robot in all of some configurations (k, 7 + n), axes of the base, m."""
+        """Return centre and size of the robot over configurations (k, nq), in base axes, m."""
         return extent(self.model, self.shapes, _at_origin(q))
 
     def tool_pose(self, q: Floats) -> Floats:
-        """Of the tool in some configurations (k, 7 + n), axes of the base: (k, 4, 4), m."""
+        """Return the poses (k, 4, 4) of the tool in configurations (k, nq), in base axes, m."""
         assert self.tool is not None
         return np.asarray(self.model.frame_pose(_at_origin(q), self.tool))
 
 
 def _at_origin(q: Floats) -> Floats:
-    """Configurations (k, 7 + n) with the base in the origin of the world."""
+    """Return configurations (k, nq) with the base at the origin of the world."""
     moved = q.copy()
-    moved[:, :7] = [0, 0, 0, 0, 0, 0, 1]
+    moved[:, BASE_Q] = [0, 0, 0, 0, 0, 0, 1]
     return moved

@@ -1,6 +1,6 @@
-"""Imports rerun with its log off: what goes wrong in there is told by our own errors and warnings.
+"""Imports rerun with its log off; errors are reported by the exceptions and warnings of this package.
 
-Rerun reads ``RUST_LOG`` once, when it is first imported; who sets it gets what it asks for.
+Rerun reads ``RUST_LOG`` once, at its first import; a value set by the user is respected.
 """
 
 from __future__ import annotations

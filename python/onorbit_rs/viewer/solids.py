@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.geometry import Shape
-from onorbit_rs.meshes import Part
-from onorbit_rs.rotations import quaternion_from_matrix
+from onorbit_rs.common.rotations import quaternion_from_matrix
+from onorbit_rs.visuals.geometry import Shape
+from onorbit_rs.visuals.meshes import Part
 
 
 def log_shape(recording: rr.RecordingStream, path: str, shape: Shape) -> list[str]:

@@ -1,7 +1,7 @@
-"""Releases rerun's streams: rerun keeps every stream, with two threads and its buffers, until it is told to.
+"""Releases rerun's streams, each of which otherwise keeps two threads and its buffers.
 
-rerun disconnects a stream that Python dropped but releases it only at the next ``rr.init``, and the stream of
-a blueprint never, since its memory sink and the stream own each other (rerun-io/rerun issue 2116).
+rerun disconnects a stream that Python dropped but releases it only at the next ``rr.init``. It never releases
+the stream of a blueprint, because its memory sink and the stream own each other (rerun-io/rerun issue 2116).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import rerun.blueprint as rrb
 import rerun_bindings
 
 APPLICATION = "onorbit"
-"""The name under which the viewer keeps layouts."""
+"""Name under which the viewer stores layouts."""
 
 
 def send_blueprint(recording: rr.RecordingStream, views: rrb.Blueprint) -> None:
@@ -30,5 +30,5 @@ def send_blueprint(recording: rr.RecordingStream, views: rrb.Blueprint) -> None:
 
 
 def release_streams() -> None:
-    """End the threads and free the memory of streams that nobody holds; those in use are left alone."""
+    """End the threads and free the memory of streams without references; streams in use are kept."""
     rerun_bindings.flush_and_cleanup_orphaned_recordings()

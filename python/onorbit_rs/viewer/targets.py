@@ -1,4 +1,4 @@
-"""Target spacecraft as they are shown, and the frame in which the path of a tool is best seen."""
+"""Target spacecraft in the 3-D view, and the frame in which the path of a tool is drawn."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import rerun as rr
 
-from onorbit_rs.rotations import product
+from onorbit_rs.common.rotations import product
 from onorbit_rs.scenario.targets import task_references
 from onorbit_rs.viewer.axes import log_axes
 from onorbit_rs.viewer.colors import TARGET
@@ -15,21 +15,21 @@ from onorbit_rs.viewer.frames import WORLD, send_frame
 
 if TYPE_CHECKING:
     from onorbit_rs.scenario import Scenario
-    from onorbit_rs.viewer.rows import Rows
     from onorbit_rs.viewer.setting import Setting
+    from onorbit_rs.viewer.trace_rows import TraceRows
 
 PathFrame = Literal["world", "lvlh", "base"]
 
 
 def path_frame(scenario: Scenario) -> PathFrame:
-    """That of the first reference of a tool; a moving target's path is drawn in W."""
+    """Return the frame of the first reference of a tool; W for that of a moving target."""
     frames: tuple[PathFrame, ...] = ("lvlh", "base")
     first = next((reference.frame for reference in task_references(scenario)), None)
     return next((frame for frame in frames if frame == first), "world")
 
 
-def send_targets(recording: rr.RecordingStream, rows: Rows, setting: Setting) -> None:
-    """How they move."""
+def send_targets(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
+    """Send the motion of the targets."""
     t = rows["time"]
     for index, target in enumerate(setting.targets):
         rate = float(np.linalg.norm(target.spin))
@@ -41,7 +41,7 @@ def send_targets(recording: rr.RecordingStream, rows: Rows, setting: Setting) ->
 
 
 def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) -> None:
-    """Their axes, and their boxes where the scenario tells a size."""
+    """Log the axes of the targets, and boxes of those whose size is given."""
     for index, target in enumerate(setting.targets):
         path = f"world/target/{index}"
         log_axes(recording, path, frame_of_target(index), 0.25 * size, ("x T", "y T", "z T"))
@@ -51,5 +51,5 @@ def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) ->
 
 
 def frame_of_target(index: int) -> str:
-    """Name of its frame."""
+    """Return the name of the frame of a target."""
     return f"target/{index}"

@@ -1,4 +1,4 @@
-"""What acts on the robot: where on each body, and about the centre of mass of the whole."""
+"""Forces on the bodies, and their resultants about the centre of mass of the robot."""
 
 from __future__ import annotations
 
@@ -6,17 +6,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from onorbit_rs._core import COLUMNS
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Model
-    from onorbit_rs.viewer.rows import Rows
+    from onorbit_rs.viewer.trace_rows import TraceRows
 
     Floats = NDArray[np.float64]
 
 
-def centers_of_bodies(rows: Rows, model: Model) -> Floats:
-    """(T, bodies, 3) centres of mass, W, m."""
+(_FORCE, _), (_TORQUE, _) = COLUMNS["wrenches"].parts.values()
+
+
+def centers_of_bodies(rows: TraceRows, model: Model) -> Floats:
+    """Return the centres of mass of the bodies (T, bodies, 3), W, m."""
     q = np.ascontiguousarray(rows["q"])
     centers = np.empty((len(q), len(model.bodies), 3))
     for index, body in enumerate(model.bodies):
@@ -25,11 +30,28 @@ def centers_of_bodies(rows: Rows, model: Model) -> Floats:
     return centers
 
 
-def torque_about_center(rows: Rows, centers: Floats, wrenches: Floats) -> Floats:
-    """(T, 3) torque about the centre of mass `r` of the whole, W, N m: `Σ (rₖ - r) × Fₖ + Tₖ`.
+def forces(wrenches: Floats) -> Floats:
+    """Return the forces (T, bodies, 3), N, of wrenches (T, bodies, 6)."""
+    found: Floats = wrenches[:, :, _FORCE]
+    return found
 
-    ``wrenches`` (T, bodies, 6) act at ``centers`` (T, bodies, 3).
+
+def net_force(wrenches: Floats) -> Floats:
+    """Return the sum (T, 3), N, of the forces of wrenches (T, bodies, 6)."""
+    force: Floats = forces(wrenches).sum(axis=1)
+    return force
+
+
+def torque_about_center(rows: TraceRows, centers: Floats, wrenches: Floats) -> Floats:
+    """Return the torque (T, 3) about the centre of mass `r` of the robot, W, N m: `Σ (rₖ - r) × Fₖ + Tₖ`.
+
+    Parameters
+    ----------
+    rows : TraceRows
+    centers : (T, bodies, 3) array, m
+        Centres of mass of the bodies, at which the forces act.
+    wrenches : (T, bodies, 6) array, N and N m
     """
     lever = centers - rows["center_of_mass"][:, None, :]
-    torque: Floats = (np.cross(lever, wrenches[:, :, :3]) + wrenches[:, :, 3:]).sum(axis=1)
+    torque: Floats = (np.cross(lever, forces(wrenches)) + wrenches[:, :, _TORQUE]).sum(axis=1)
     return torque

@@ -47,10 +47,10 @@ fn stopped(limit: &str) {
     std::process::exit(3);
 }
 
-/// Processor time of the main thread, where the system tells it.
+/// Returns the processor time of the main thread, on systems that report it.
 fn busy() -> Duration {
-    let told = std::fs::read_to_string("/proc/self/schedstat").unwrap_or_default();
-    let nanoseconds = told.split_whitespace().next().and_then(|word| word.parse().ok());
+    let statistics = std::fs::read_to_string("/proc/self/schedstat").unwrap_or_default();
+    let nanoseconds = statistics.split_whitespace().next().and_then(|word| word.parse().ok());
     Duration::from_nanos(nanoseconds.unwrap_or(0))
 }
 

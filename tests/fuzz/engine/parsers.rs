@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::dynamics::{Data, mass_matrix};
-use onorbit_core::earth::{Earth, EarthParameters, Epoch, Kernel, KernelSegment};
+use onorbit_core::earth::{Earth, EarthParameters, Epoch, SpiceKernel, SpiceSegment};
 use onorbit_core::environment::atmosphere::SpaceWeatherTable;
 use onorbit_core::gravity::GravityField;
 use onorbit_core::model::{Model, neutral, urdf};
@@ -13,7 +13,6 @@ use onorbit_core::orbit::{
 };
 use onorbit_core::reference::{Hold, PoseSpline};
 use onorbit_core::simulation::{Checkpoint, Simulation, Trace};
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -122,7 +121,7 @@ fn numbers(bytes: &[u8]) -> Vec<f64> {
     text(bytes).split_whitespace().map(|word| word.parse().unwrap_or(f64::NAN)).collect()
 }
 
-fn told(error: impl std::fmt::Display) -> String {
+fn message(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 
@@ -137,13 +136,13 @@ fn all_finite<'a>(of: &str, numbers: impl IntoIterator<Item = &'a f64>) {
 /// The state at `t`, which is finite or refused.
 #[track_caller]
 fn state(orbit: &dyn Orbit, t: f64, of: &str) -> Outcome {
-    let state = orbit.state(t).map_err(told)?;
+    let state = orbit.state(t).map_err(message)?;
     all_finite(of, state.position.iter().chain(&state.velocity));
     Ok(())
 }
 
 fn read_urdf(bytes: &[u8]) -> Outcome {
-    let model = urdf::from_str(&text(bytes), None, &Default::default()).map_err(told)?;
+    let model = urdf::from_str(&text(bytes), None, &Default::default()).map_err(message)?;
     if model.nv() < 40 {
         let mut matrix = vec![0.0; model.nv() * model.nv()];
         mass_matrix(&model, &mut Data::<f64>::new(&model), &neutral(&model), &mut matrix);
@@ -157,7 +156,7 @@ fn read_tle(bytes: &[u8]) -> Outcome {
     let (line1, line2) = text.split_once('\n').unwrap_or((&text, ""));
     let elements = [true, false].map(|check| MeanElements::from_tle(line1, line2, check));
     let [_, elements] = elements;
-    state(&Sgp4::new(elements.map_err(told)?, EarthModel::Wgs72), 60.0, "the lines")
+    state(&Sgp4::new(elements.map_err(message)?, EarthModel::Wgs72), 60.0, "the lines")
 }
 
 fn read_omm(bytes: &[u8]) -> Outcome {
@@ -166,64 +165,62 @@ fn read_omm(bytes: &[u8]) -> Outcome {
         let pairs = text.lines().filter_map(|line| line.split_once('='));
         pairs.into_iter().find(|(name, _)| name.trim() == key).map(|(_, value)| value.trim().to_owned())
     };
-    let elements = MeanElements::from_omm(entry).map_err(told)?;
+    let elements = MeanElements::from_omm(entry).map_err(message)?;
     state(&Sgp4::new(elements, EarthModel::Wgs72), 60.0, "the entries")
 }
 
 /// A file of this process's own that holds the bytes.
 fn file(name: &str, bytes: &[u8]) -> Result<PathBuf, String> {
     let path = std::env::temp_dir().join(format!("onorbit-fuzz-{}-{name}", std::process::id()));
-    std::fs::write(&path, bytes).map_err(told).map(|()| path)
+    std::fs::write(&path, bytes).map_err(message).map(|()| path)
 }
 
 fn read_gfc(bytes: &[u8]) -> Outcome {
     let path = file("field.gfc", bytes)?;
-    let field = GravityField::from_gfc(&path, None, None).map_err(told);
-    std::fs::remove_file(path).map_err(told)?;
+    let field = GravityField::from_gfc(&path, None, None).map_err(message);
+    std::fs::remove_file(path).map_err(message)?;
     field.map(drop)
 }
 
 fn read_earth_parameters(bytes: &[u8]) -> Outcome {
-    let parameters = EarthParameters::read(&text(bytes)).map_err(told)?;
-    let epoch = Epoch::parse("2024-03-01T00:00:00 UTC").map_err(told)?;
-    let earth = Earth::new(epoch, &parameters).map_err(told)?;
-    earth.covers(60.0).map_err(told)?;
+    let parameters = EarthParameters::read(&text(bytes)).map_err(message)?;
+    let epoch = Epoch::parse("2024-03-01T00:00:00 UTC").map_err(message)?;
+    let earth = Earth::new(epoch, &parameters).map_err(message)?;
+    earth.covers(60.0).map_err(message)?;
     all_finite("the rows", earth.rot_fi(60.0).iter());
     Ok(())
 }
 
 fn read_space_weather(bytes: &[u8]) -> Outcome {
-    SpaceWeatherTable::from_csv(&text(bytes)).map_err(told).map(drop)
+    SpaceWeatherTable::from_csv(&text(bytes)).map_err(message).map(drop)
 }
 
 fn read_epoch(bytes: &[u8]) -> Outcome {
-    let epoch = Epoch::parse(&text(bytes)).map_err(told)?;
+    let epoch = Epoch::parse(&text(bytes)).map_err(message)?;
     all_finite("the epoch", &[epoch.utc_minus_tai()]);
-    let earth = Earth::new(epoch, &EarthParameters::default()).map_err(told)?;
+    let earth = Earth::new(epoch, &EarthParameters::default()).map_err(message)?;
     all_finite("the epoch", earth.rot_fi(0.0).iter());
     Ok(())
 }
 
-/// How long it turns, s: monitors are asked every 64 steps of a millisecond.
+/// Duration of its run, s.
 const DURATION: f64 = 0.1;
 
 /// A body that turns.
 fn turning() -> Result<Simulation, String> {
     let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0));
-    let model = Model::rigid_body(1.0, inertia).map_err(told)?;
+    let model = Model::rigid_body(1.0, inertia).map_err(message)?;
     let (q, mut v) = (neutral(&model), vec![0.0; 6]);
     v[3] = 0.1;
     Ok(Simulation::new(Arc::new(model), q, v))
 }
 
-/// A run of its own, stopped half-way: what there is to go on from.
+/// Returns the checkpoint and the rows of a run that was stopped half-way.
 fn stopped() -> Result<(Checkpoint, Trace), String> {
-    let mut kept = None;
-    let _ = turning()?.run(DURATION, &mut |now| {
-        kept = now.checkpoint().ok().map(|checkpoint| (checkpoint, now.trace.clone()));
-        ControlFlow::Break(())
-    });
-    kept.ok_or_else(|| "the run left no checkpoint".to_owned())
+    let mut simulation = turning()?;
+    let mut stepper = simulation.start(Some(DURATION)).map_err(message)?;
+    stepper.advance(DURATION / 2.0).map_err(message)?;
+    Ok((stepper.checkpoint().map_err(message)?, stepper.rows().clone()))
 }
 
 /// Inputs that depend on the version of the engine, beside those in the corpus.
@@ -233,10 +230,12 @@ pub(crate) fn seeds(name: &str) -> Vec<Vec<u8>> {
 }
 
 fn read_checkpoint(bytes: &[u8]) -> Outcome {
-    let checkpoint = Checkpoint::from_json(&text(bytes)).map_err(told)?;
+    let checkpoint = Checkpoint::from_json(&text(bytes)).map_err(message)?;
     let (_, rows) = stopped()?;
-    let run = turning()?.resume(DURATION, (&checkpoint, rows), &mut |_| ControlFlow::Continue(()));
-    run.map_err(|failure| told(failure.error)).map(drop)
+    let mut simulation = turning()?;
+    let mut stepper = simulation.resume(Some(DURATION), checkpoint, rows).map_err(message)?;
+    stepper.advance_to(DURATION).map_err(message)?;
+    stepper.finish().map_err(|failure| message(failure.error)).map(drop)
 }
 
 fn read_elements(bytes: &[u8]) -> Outcome {
@@ -255,7 +254,7 @@ fn read_elements(bytes: &[u8]) -> Outcome {
         },
         ..Elements::new(if kind > 3.0 { Size::SemiLatusRectum(size) } else { Size::SemiMajorAxis(size) }, e)
     };
-    state(&Kepler::new(&elements).map_err(told)?, 60.0, "the elements")
+    state(&Kepler::new(&elements).map_err(message)?, 60.0, "the elements")
 }
 
 fn read_path(bytes: &[u8]) -> Outcome {
@@ -270,7 +269,7 @@ fn read_path(bytes: &[u8]) -> Outcome {
         accelerations: (given.len().is_multiple_of(4)).then(|| vectors(7)),
         attitudes: None,
     };
-    let path = CustomPath::new(points, None, Ends::Coast).map_err(told)?;
+    let path = CustomPath::new(points, None, Ends::Coast).map_err(message)?;
     let (start, end) = path.span();
     state(&path, 0.5 * start + 0.5 * end, "the points")
 }
@@ -280,8 +279,8 @@ fn read_poses(bytes: &[u8]) -> Outcome {
     let rows: Vec<[f64; 16]> =
         given.as_chunks::<17>().0.iter().map(|row| *row.last_chunk().unwrap_or(&[0.0; 16])).collect();
     let times: Vec<f64> = given.as_chunks::<17>().0.iter().map(|row| row[0]).collect();
-    let poses = Hold::from_rows(&rows).map_err(told)?;
-    PoseSpline::sampled(&times, &poses, None).map_err(told).map(drop)
+    let poses = Hold::from_rows(&rows).map_err(message)?;
+    PoseSpline::sampled(&times, &poses, None).map_err(message).map(drop)
 }
 
 fn read_segments(bytes: &[u8]) -> Outcome {
@@ -289,18 +288,18 @@ fn read_segments(bytes: &[u8]) -> Outcome {
     let [start, length, count, ref coefficients @ ..] = given[..] else {
         return Err("too few numbers".to_owned());
     };
-    let segment = || KernelSegment {
+    let segment = || SpiceSegment {
         sign: 1.0,
         start,
         length,
         count: count as usize,
         coefficients: coefficients.to_vec(),
     };
-    let kernel = Kernel::new(vec![segment()], vec![segment()]).map_err(told)?;
-    let epoch = Epoch::parse("2000-01-01T12:00:00 TDB").map_err(told)?;
-    let earth = Earth::new(epoch, &EarthParameters::default()).map_err(told)?;
-    let earth = earth.with_kernel(kernel).map_err(told)?;
-    earth.covers(60.0).map_err(told)?;
-    all_finite("the segments", earth.sun(60.0).map_err(told)?.iter());
+    let kernel = SpiceKernel::new(vec![segment()], vec![segment()]).map_err(message)?;
+    let epoch = Epoch::parse("2000-01-01T12:00:00 TDB").map_err(message)?;
+    let earth = Earth::new(epoch, &EarthParameters::default()).map_err(message)?;
+    let earth = earth.with_kernel(kernel).map_err(message)?;
+    earth.covers(60.0).map_err(message)?;
+    all_finite("the segments", earth.sun(60.0).map_err(message)?.iter());
     Ok(())
 }

@@ -1,33 +1,34 @@
-//! Running a kernel over rows.
+//! Evaluation of a kernel for one state or for many.
 
-use super::input::{InputError, Wrenches, check_finite, check_quaternions, check_shapes};
-use super::kernel::{Kernel, OUTPUTS};
-use super::space::{Call, Rows, RowsMut, Space};
+use super::call::{Call, Rows, RowsMut, Wrenches};
+use super::input::{InputError, check_finite, check_quaternions, check_shapes};
+use super::kernels::{Kernel, OUTPUTS};
 use super::threads::{Threads, for_each};
+use super::workspace::Workspace;
 use crate::model::Model;
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// States that one task takes, so that a batch is cut alike for every number of threads.
+/// Number of states per task. It does not depend on the number of threads, so neither do the results.
 const CHUNK: usize = 128;
 
-/// Space of one model's kernels for single states, kept between calls.
+/// Evaluator of kernels, which keeps the workspace of one model for single states between calls.
 #[derive(Clone, Debug)]
 pub struct Evaluator {
-    plain: Space<f64>,
-    fused: Space<Fused>,
+    plain: Workspace<f64>,
+    fused: Workspace<Fused>,
 }
 
 impl Evaluator {
-    /// Space for `model`.
+    /// Allocates the workspace for `model`.
     pub fn new(model: &Model) -> Self {
-        Self { plain: Space::new(model), fused: Space::new(model) }
+        Self { plain: Workspace::new(model), fused: Workspace::new(model) }
     }
 
-    /// Checks inputs and outputs and computes one state on the calling thread.
+    /// Checks the shapes of inputs and outputs and computes one state on the calling thread.
     ///
     /// # Errors
-    /// [`InputError`]; the outputs are untouched then, but for [`InputError::Singular`] and
+    /// [`InputError`]. The outputs are unchanged, except after [`InputError::Singular`] and
     /// [`InputError::Overflow`].
     pub fn single(
         &mut self,
@@ -45,17 +46,19 @@ impl Evaluator {
         if !self.plain.fits(model) {
             *self = Self::new(model);
         }
-        let is_fine = match InstructionSet::current() {
-            InstructionSet::Baseline => self.plain.states(&call, 0..1, outputs),
-            InstructionSet::Fused | InstructionSet::Wide => self.fused.states(&call, 0..1, outputs),
+        let is_valid = match InstructionSet::current() {
+            InstructionSet::Baseline => self.plain.compute(&call, 0..1, outputs),
+            InstructionSet::Fused | InstructionSet::Wide => self.fused.compute(&call, 0..1, outputs),
         };
-        if is_fine { Ok(()) } else { fault(&call, outputs) }
+        if is_valid { Ok(()) } else { first_fault(&call, outputs) }
     }
 
-    /// Checks inputs and outputs and computes many states. The bits do not depend on the number of threads.
+    /// Checks the shapes of inputs and outputs and computes many states. The results are bit-identical for
+    /// any number of threads.
     ///
     /// # Errors
-    /// [`InputError`] for the first fault in the order of the arguments; what the outputs hold then is of no use.
+    /// [`InputError`] for the first error in the order of the arguments. The contents of the outputs are then
+    /// undefined.
     pub fn many<'a>(
         kernel: Kernel,
         model: &Model,
@@ -67,59 +70,63 @@ impl Evaluator {
         let threads = threads.into();
         let call = Call { kernel, model, inputs, external };
         check_shapes(&call, outputs)?;
-        let is_fine = match InstructionSet::current() {
-            InstructionSet::Baseline => all::<f64>(&call, outputs, threads),
-            InstructionSet::Fused => all::<Lanes4>(&call, outputs, threads),
-            InstructionSet::Wide => all::<Lanes8>(&call, outputs, threads),
+        let is_valid = match InstructionSet::current() {
+            InstructionSet::Baseline => evaluate_all::<f64>(&call, outputs, threads),
+            InstructionSet::Fused => evaluate_all::<Lanes4>(&call, outputs, threads),
+            InstructionSet::Wide => evaluate_all::<Lanes8>(&call, outputs, threads),
         }?;
-        if is_fine || threads.is_stopped() { Ok(()) } else { fault(&call, outputs) }
+        if is_valid || threads.is_stopped() { Ok(()) } else { first_fault(&call, outputs) }
     }
 }
 
-/// All states; whether they and what came of them are as they should be.
-fn all<S: Real>(
+/// Computes all states. Returns true if inputs and outputs are valid.
+fn evaluate_all<S: Real>(
     call: &Call<'_>,
     outputs: &mut [RowsMut<'_>],
     threads: Threads<'_>,
 ) -> Result<bool, InputError> {
     let (count, (widths, used)) = (call.count(), call.kernel.widths(call.model));
     let widths = &widths[..used];
-    let mut rest: [RowsMut<'_>; OUTPUTS] = Default::default();
-    rest.iter_mut().zip(outputs).for_each(|(rest, out)| *rest = out);
+    let mut remaining: [RowsMut<'_>; OUTPUTS] = Default::default();
+    remaining.iter_mut().zip(outputs).for_each(|(rows, out)| *rows = out);
     let tasks = (0..count.div_ceil(CHUNK)).map(|index| {
         let states = index * CHUNK..count.min((index + 1) * CHUNK);
-        (states.clone(), take(&mut rest, widths, states.len()))
+        (states.clone(), split_rows(&mut remaining, widths, states.len()))
     });
-    let is_fine = AtomicBool::new(true);
+    let is_valid = AtomicBool::new(true);
     for_each(
         threads,
         tasks,
-        || Space::<S>::new(call.model),
-        |space, (states, mut rows)| {
+        || Workspace::<S>::new(call.model),
+        |workspace, (states, mut rows)| {
             for start in states.clone().step_by(S::LANES) {
                 let group = start..states.end.min(start + S::LANES);
-                let mut rows = take(&mut rows, widths, group.len());
-                if !space.states(call, group, &mut rows[..used]) {
-                    is_fine.store(false, Ordering::Relaxed);
+                let mut rows = split_rows(&mut rows, widths, group.len());
+                if !workspace.compute(call, group, &mut rows[..used]) {
+                    is_valid.store(false, Ordering::Relaxed);
                 }
             }
         },
     )?;
-    Ok(is_fine.into_inner())
+    Ok(is_valid.into_inner())
 }
 
-/// The next `count` rows of every output.
-fn take<'a>(rest: &mut [RowsMut<'a>; OUTPUTS], widths: &[usize], count: usize) -> [RowsMut<'a>; OUTPUTS] {
-    let mut taken: [RowsMut<'a>; OUTPUTS] = Default::default();
-    for ((taken, rest), width) in taken.iter_mut().zip(rest).zip(widths) {
-        (*taken, *rest) = std::mem::take(rest).split_at_mut(count * width);
+/// Splits the next `count` rows off every output.
+fn split_rows<'a>(
+    remaining: &mut [RowsMut<'a>; OUTPUTS],
+    widths: &[usize],
+    count: usize,
+) -> [RowsMut<'a>; OUTPUTS] {
+    let mut next: [RowsMut<'a>; OUTPUTS] = Default::default();
+    for ((next, remaining), width) in next.iter_mut().zip(remaining).zip(widths) {
+        (*next, *remaining) = std::mem::take(remaining).split_at_mut(count * width);
     }
-    taken
+    next
 }
 
-/// What is wrong with a call of which something is.
+/// Returns the error of a call with invalid inputs or outputs.
 #[cold]
-fn fault(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
+fn first_fault(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
     for (name, rows) in call.kernel.inputs().iter().zip(call.inputs) {
         check_finite(name, rows.data, rows.width)?;
         if name.starts_with('q') {
@@ -129,7 +136,7 @@ fn fault(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
     for wrenches in call.external {
         check_finite("external wrench", wrenches.rows, 6)?;
     }
-    // the mass matrix is singular, or products overflow
+    // not finite: the mass matrix is singular, or products overflow
     for (out, width) in outputs.iter().zip(call.kernel.widths(call.model).0) {
         if let Some(index) = out.iter().position(|x| !x.is_finite()) {
             let state = index / width;

@@ -1,77 +1,68 @@
-//! What is checked before a kernel runs.
+//! Validation of shapes and values before a batch is computed.
 
-use super::kernel::Kernel;
-use super::space::{Call, RowsMut};
-use crate::model::Model;
+use super::call::{Call, RowsMut, Wrenches};
+use super::kernels::Kernel;
+use crate::model::{Model, QUATERNION};
 use crate::number_text::{count, short, unlike};
 use crate::orbit::OrbitError;
 use thiserror::Error;
 
-/// Wrenches on the body that carries a frame: in the frame's axes, about its origin, N and N m, linear first.
-#[derive(Clone, Copy, Debug)]
-pub struct Wrenches<'a> {
-    /// Index of the frame.
-    pub frame: usize,
-    /// Six numbers for all states, or six for each, (B, 6).
-    pub rows: &'a [f64],
-}
-
-/// Numbers that no kernel can take.
+/// Invalid input of a batch.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum InputError {
-    #[error("{name} has {got} per state, expected {expected} for this robot", got = count(*got, "number"))]
+    #[error("{name} has {got} per state; expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("{name} has {got}, the first argument has {expected}", got = count(*got, "state"))]
+    #[error("{name} has {got}, but the first argument has {expected}", got = count(*got, "state"))]
     WrongBatch { name: &'static str, expected: usize, got: usize },
-    #[error("{name} has {got}, which is not a whole number of rows of {width}", got = count(*got, "number"))]
+    #[error("{name} has {got}; expected a multiple of {width}, the length of a row", got = count(*got, "number"))]
     Ragged { name: &'static str, width: usize, got: usize },
-    #[error("{got} {what} are given, this kernel has {expected}")]
+    #[error("the number of {what} is {got}; this kernel requires {expected}")]
     WrongCount { what: &'static str, expected: usize, got: usize },
-    #[error("output {output} has room for {got}, it must be {expected}", got = count(*got, "number"))]
-    WrongRoom { output: usize, expected: usize, got: usize },
-    #[error("{got} states are given where one is computed: compute them with Evaluator::many")]
+    #[error("output {output} has a capacity of {got}; it must be {expected}", got = count(*got, "number"))]
+    WrongOutput { output: usize, expected: usize, got: usize },
+    #[error("got {got} states; expected one; use Evaluator::many for several")]
     NotSingle { got: usize },
-    #[error("frame {frame} is asked for, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    #[error("there is no frame {frame}; the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame { frame: usize, count: usize },
-    #[error("{name} holds {value} in state {state}, it must be finite", value = short(*value))]
+    #[error("{name} holds {value} in state {state}; it must be finite", value = short(*value))]
     NotFinite { name: &'static str, state: usize, value: f64 },
     #[error(
-        "the quaternion of state {state} has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w in \
-         q[3:7]: normalise it first",
+        "the quaternion of state {state} has norm {norm}; it must be 1 within 1e-6; normalise q[3:7], which is x, y, z, w",
         norm = unlike(*norm, &[1.0])
     )]
     QuaternionNorm { state: usize, norm: f64 },
     #[error(
-        "state {state} is singular: in this configuration nothing resists the motion of some joint; give the links \
-         around it an inertia or the joint a rotor (or its numbers are so large that their products overflow)"
+        "the mass matrix of state {state} is singular: in this configuration a joint moves no inertia; give \
+         the links around it an inertia or the joint a rotor_inertia (or the values of the state are so large that their products overflow)"
     )]
     Singular { state: usize },
-    #[error("the numbers of state {state} are so large that their products overflow: are their units right?")]
+    #[error("the values of state {state} are so large that their products overflow; check their units")]
     Overflow { state: usize },
     #[error(
-        "a rollout steps all states alike: take 'rk4' or 'semi_implicit_euler', or simulate states one by one"
+        "a rollout uses the same steps for all states; choose 'rk4' or 'semi_implicit_euler', or run a \
+         simulation per state"
     )]
     Adaptive,
-    #[error("the reference is given in the frame of an orbit, a rollout is in empty space: use a simulation")]
+    #[error("the reference is in an orbital frame, but a rollout has no orbit; use a Simulation")]
     NeedsOrbit,
-    #[error("threads is 0, it must be at least 1; leave it out for all cores")]
+    #[error("threads is 0; it must be at least 1; omit it to use all cores")]
     NoThreads,
     #[error(
-        "state {state} diverged: it is no longer finite; shorten time_step, lower the initial rates, or soften gains and joint damping"
+        "state {state} diverged: it is no longer finite; reduce time_step, the initial rates, the gains or the joint \
+         damping"
     )]
     Diverged { state: usize },
     #[error("orbit {orbit}: {source}")]
     Orbit { orbit: usize, source: OrbitError },
-    #[error("{name} is {value} in state {state}, it must be {expected}", value = short(*value))]
-    NoEllipse { name: &'static str, state: usize, value: f64, expected: &'static str },
+    #[error("{name} is {value} in state {state}; it must be {expected}", value = short(*value))]
+    NotAnEllipse { name: &'static str, state: usize, value: f64, expected: &'static str },
 }
 
 /// Largest deviation of a quaternion from unit norm.
 pub(super) const UNIT_NORM: f64 = 1e-6;
 
-/// Refuses rows of another width or number than the kernel takes, outputs with other room than it needs, and frames
-/// that the robot does not have.
+/// Checks the widths and the number of rows of inputs and outputs, and that the robot has the frames.
 pub(super) fn check_shapes(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
     let names = call.kernel.inputs();
     if call.inputs.len() != names.len() {
@@ -85,45 +76,50 @@ pub(super) fn check_shapes(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(
         }
         if rows.data.len() != count * expected {
             check_whole(name, rows.data, expected)?;
-            let got = rows.data.len() / expected.max(1); // a robot may have no joints
+            let got = rows.data.len() / expected.max(1); // the width is 0 for a robot without joints
             return Err(InputError::WrongBatch { name, expected: count, got });
         }
     }
-    for frame in call.kernel.frame().into_iter().chain(call.external.iter().map(|one| one.frame)) {
+    for frame in call.kernel.frame().into_iter().chain(call.external.iter().map(|wrenches| wrenches.frame)) {
         check_frame(call.model, frame)?;
     }
-    let (widths, outputs_wanted) = call.kernel.widths(call.model);
-    if outputs.len() != outputs_wanted {
-        return Err(InputError::WrongCount { what: "outputs", expected: outputs_wanted, got: outputs.len() });
+    let (widths, expected_outputs) = call.kernel.widths(call.model);
+    if outputs.len() != expected_outputs {
+        return Err(InputError::WrongCount {
+            what: "outputs",
+            expected: expected_outputs,
+            got: outputs.len(),
+        });
     }
     for (output, (out, width)) in outputs.iter().zip(widths).enumerate() {
         if out.len() != count * width {
-            return Err(InputError::WrongRoom { output, expected: count * width, got: out.len() });
+            return Err(InputError::WrongOutput { output, expected: count * width, got: out.len() });
         }
     }
-    match call.external.iter().find(|one| one.rows.len() != 6 && one.rows.len() != 6 * count) {
-        Some(one) => {
-            Err(InputError::WrongBatch { name: "external wrench", expected: count, got: one.rows.len() / 6 })
+    for Wrenches { rows, .. } in call.external {
+        if rows.len() != 6 && rows.len() != 6 * count {
+            let got = rows.len() / 6;
+            return Err(InputError::WrongBatch { name: "external wrench", expected: count, got });
         }
-        None => Ok(()),
     }
+    Ok(())
 }
 
-/// Refuses a frame that the robot does not have.
+/// Checks that the robot has a frame.
 pub(super) fn check_frame(model: &Model, frame: usize) -> Result<(), InputError> {
     let count = model.frames().len();
     if frame < count { Ok(()) } else { Err(InputError::UnknownFrame { frame, count }) }
 }
 
-/// Refuses numbers that make no whole number of rows.
+/// Checks that the length of the data is a multiple of `width`.
 pub(super) fn check_whole(name: &'static str, data: &[f64], width: usize) -> Result<(), InputError> {
     let got = data.len();
     if got.is_multiple_of(width.max(1)) { Ok(()) } else { Err(InputError::Ragged { name, width, got }) }
 }
 
-/// Refuses rows that are not finite.
+/// Checks that all numbers are finite.
 pub(super) fn check_finite(name: &'static str, data: &[f64], width: usize) -> Result<(), InputError> {
-    // a sum is finite only if every term is, and one pass of additions is cheap
+    // 0 · x is 0 only for a finite x, and one pass of additions is cheap
     let sum: f64 = data.iter().map(|x| x * 0.0).sum();
     if sum == 0.0 {
         return Ok(());
@@ -132,10 +128,10 @@ pub(super) fn check_finite(name: &'static str, data: &[f64], width: usize) -> Re
     Err(InputError::NotFinite { name, state: index / width.max(1), value: data[index] })
 }
 
-/// Refuses quaternions off unit norm.
+/// Checks that the quaternions have unit norm.
 pub(super) fn check_quaternions(q: &[f64], nq: usize) -> Result<(), InputError> {
     for (state, row) in q.chunks_exact(nq).enumerate() {
-        let norm = row[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
+        let norm = row[QUATERNION].iter().map(|x| x * x).sum::<f64>().sqrt();
         if (norm - 1.0).abs() > UNIT_NORM {
             return Err(InputError::QuaternionNorm { state, norm });
         }

@@ -1,20 +1,20 @@
-//! Ellipses by their elements, each at a time of its own.
+//! States on Kepler ellipses from orbital elements.
 
 use super::input::{InputError, check_finite, check_whole};
 use super::threads::{Threads, for_each};
 use crate::orbit::kepler::ellipse_state;
 use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real};
 
-/// States that one task takes.
+/// Number of states per task.
 const CHUNK: usize = 4096;
 
-/// Positions and velocities (N, 3) on ellipses, m and m/s.
+/// Computes positions and velocities (N, 3) on Kepler ellipses, m and m/s.
 ///
-/// `elements` holds seven numbers each of which is one for all or one per state: semi-major axis (m), eccentricity,
-/// inclination, right ascension of the node, argument of periapsis, mean anomaly at time zero (rad), time (s).
+/// `elements`: semi-major axis (m), eccentricity, inclination, right ascension of the node, argument of periapsis, mean
+/// anomaly at time zero (rad), time (s). Each has one value for all states or one per state.
 ///
 /// # Errors
-/// [`InputError`]: lengths, numbers that are not finite, an ellipse that is none, no threads.
+/// [`InputError`]: wrong lengths, numbers that are not finite, elements that are not those of an ellipse, zero threads.
 pub fn kepler_states<'a>(
     elements: [&[f64]; 7],
     mu: f64,
@@ -25,41 +25,41 @@ pub fn kepler_states<'a>(
     let threads = threads.into();
     let count = positions.len() / 3;
     check_whole("positions", positions, 3)?;
-    check(&elements, mu, count)?;
+    check_elements(&elements, mu, count)?;
     if velocities.len() != positions.len() {
         let (expected, got) = (positions.len(), velocities.len());
         return Err(InputError::WrongLength { name: "velocities", expected, got });
     }
     match InstructionSet::current() {
-        InstructionSet::Baseline => all::<f64>(elements, mu, positions, velocities, threads),
-        InstructionSet::Fused => all::<Lanes4>(elements, mu, positions, velocities, threads),
-        InstructionSet::Wide => all::<Lanes8>(elements, mu, positions, velocities, threads),
+        InstructionSet::Baseline => compute_all::<f64>(elements, mu, positions, velocities, threads),
+        InstructionSet::Fused => compute_all::<Lanes4>(elements, mu, positions, velocities, threads),
+        InstructionSet::Wide => compute_all::<Lanes8>(elements, mu, positions, velocities, threads),
     }
 }
 
 const NAMES: [&str; 7] =
     ["semi_major_axis", "eccentricity", "inclination", "raan", "argument_of_periapsis", "mean_anomaly", "t"];
 
-fn check(elements: &[&[f64]; 7], mu: f64, count: usize) -> Result<(), InputError> {
+fn check_elements(elements: &[&[f64]; 7], mu: f64, count: usize) -> Result<(), InputError> {
     for (name, values) in NAMES.into_iter().zip(elements) {
         if values.len() != count && values.len() != 1 {
             return Err(InputError::WrongLength { name, expected: count, got: values.len() });
         }
         check_finite(name, values, 1)?;
     }
-    let refuse = |name, values: &[f64], is_one: fn(f64) -> bool, expected| match values
+    let check = |name, values: &[f64], is_valid: fn(f64) -> bool, expected| match values
         .iter()
-        .position(|&value| !is_one(value))
+        .position(|&value| !is_valid(value))
     {
-        Some(state) => Err(InputError::NoEllipse { name, state, value: values[state], expected }),
+        Some(state) => Err(InputError::NotAnEllipse { name, state, value: values[state], expected }),
         None => Ok(()),
     };
-    refuse("mu", &[mu], |mu| mu > 0.0 && mu.is_finite(), "positive and finite")?;
-    refuse(NAMES[0], elements[0], |a| a > 0.0, "positive: hyperbolas go one by one")?;
-    refuse(NAMES[1], elements[1], |e| (0.0..1.0).contains(&e), "in [0, 1): open orbits go one by one")
+    check("mu", &[mu], |mu| mu > 0.0 && mu.is_finite(), "positive and finite")?;
+    check(NAMES[0], elements[0], |a| a > 0.0, "positive; use KeplerOrbit for a hyperbola")?;
+    check(NAMES[1], elements[1], |e| (0.0..1.0).contains(&e), "in [0, 1); use KeplerOrbit for an open orbit")
 }
 
-fn all<S: Real>(
+fn compute_all<S: Real>(
     elements: [&[f64]; 7],
     mu: f64,
     positions: &mut [f64],
@@ -74,14 +74,14 @@ fn all<S: Real>(
         |(), (chunk, (positions, velocities))| {
             S::enter(
                 #[inline(always)]
-                || chunk_of::<S>(&elements, mu, chunk * CHUNK, positions, velocities),
+                || compute_chunk::<S>(&elements, mu, chunk * CHUNK, positions, velocities),
             );
         },
     )
 }
 
 #[inline(always)]
-fn chunk_of<S: Real>(
+fn compute_chunk<S: Real>(
     elements: &[&[f64]; 7],
     mu: f64,
     first: usize,
@@ -90,7 +90,7 @@ fn chunk_of<S: Real>(
 ) {
     let width = 3 * S::LANES;
     for (group, (r, v)) in positions.chunks_mut(width).zip(velocities.chunks_mut(width)).enumerate() {
-        // lanes beyond the end repeat the last state
+        // surplus lanes repeat the last state
         let (from, last) = (first + group * S::LANES, r.len() / 3 - 1);
         let pick = [0, 1, 2, 3, 4, 5, 6].map(
             #[inline(always)]
@@ -105,7 +105,7 @@ fn chunk_of<S: Real>(
     }
 }
 
-/// One number for all, or those from `from` on; beyond lane `last` that of it.
+/// Returns the single value in all lanes, or the values starting at `from`; lanes after `last` repeat its value.
 #[inline(always)]
 fn pick<S: Real>(values: &[f64], from: usize, last: usize) -> S {
     if let [one] = values {

@@ -1,21 +1,21 @@
-//! Every kernel for one state or many: inputs and outputs are flat rows of `f64`.
+//! Kernels, rollouts and orbits for one state or many. Inputs and outputs are flat arrays of `f64` rows.
 
+mod call;
 mod evaluate;
+mod gather_scatter;
 mod input;
 mod kepler_states;
-mod kernel;
+mod kernels;
 mod propagate;
 mod rollout;
-mod side_by_side;
-mod space;
 mod threads;
-mod work;
+mod workspace;
 
+pub use call::{Rows, RowsMut, Wrenches};
 pub use evaluate::Evaluator;
-pub use input::{InputError, Wrenches};
+pub use input::InputError;
 pub use kepler_states::kepler_states;
-pub use kernel::Kernel;
+pub use kernels::Kernel;
 pub use propagate::{Times, propagate};
 pub use rollout::{Rollout, RolloutControl};
-pub use space::{Rows, RowsMut};
 pub use threads::Threads;

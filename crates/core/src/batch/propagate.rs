@@ -1,31 +1,33 @@
-//! Many orbits at many times.
+//! Propagation of many orbits to many times.
 
 use super::input::{InputError, check_whole};
 use super::threads::{Threads, for_each};
 use crate::orbit::{Orbit, OrbitError, StateRows};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Instants at which to look, s of simulation.
+/// Times of the states, s of simulation.
 #[derive(Clone, Copy, Debug)]
 pub enum Times<'a> {
     /// The same for all orbits, (T,).
     Common(&'a [f64]),
-    /// Each its own, (N, T) row after row.
+    /// Different for each orbit, (N, T), row after row.
     Each(&'a [f64]),
 }
 
-/// Instants of one orbit that are computed between two looks at whether to stop: a multiple of the SIMD lanes.
+/// Number of instants of one orbit that are computed between two checks of the stop flag; a multiple of the
+/// SIMD lanes.
 const INSTANTS: usize = 4096;
-/// Steps of an integrated orbit between two such looks.
+/// Number of integration steps of a numerical orbit between two checks of the stop flag.
 const STEPS: usize = 16;
 
-/// Positions and velocities of `orbits`, (N, T, 3) row after row, m and m/s, each in the axes of its orbit.
+/// Computes positions and velocities of `orbits`, (N, T, 3), row after row, m and m/s, each in the axes of
+/// its orbit.
 ///
-/// The bits do not depend on the number of threads.
+/// The results are bit-identical for any number of threads.
 ///
 /// # Errors
-/// [`InputError::NoThreads`], [`InputError::WrongLength`], [`InputError::Ragged`], and [`InputError::Orbit`] for the first orbit that is
-/// refused.
+/// [`InputError::NoThreads`], [`InputError::WrongLength`], [`InputError::Ragged`], and [`InputError::Orbit`]
+/// for the first orbit that has no state at one of its times.
 pub fn propagate<'a>(
     orbits: &[Arc<dyn Orbit>],
     times: Times<'_>,
@@ -64,7 +66,7 @@ pub fn propagate<'a>(
             };
             if let Err(error) = fill(&**orbit, instants, positions, velocities, threads) {
                 let mut first = first.lock().unwrap_or_else(PoisonError::into_inner);
-                if first.as_ref().is_none_or(|(known, _)| index < *known) {
+                if first.as_ref().is_none_or(|(earlier, _)| index < *earlier) {
                     *first = Some((index, error));
                 }
             }
@@ -76,7 +78,7 @@ pub fn propagate<'a>(
     }
 }
 
-/// Fills the rows of one orbit until it is stopped.
+/// Computes the rows of one orbit, until stopped.
 fn fill(
     orbit: &dyn Orbit,
     times: &[f64],

@@ -1,58 +1,61 @@
-//! Many runs at once, in empty space: passive, with given torques, or under computed torque.
+//! Rollouts: many runs without environment, passive, with given torques, or with computed torque.
 
+use super::gather_scatter::{Strides, gather, scatter};
 use super::input::{InputError, check_finite, check_frame, check_quaternions, check_whole};
-use super::side_by_side::{Places, gather, scatter};
 use super::threads::{Threads, for_each};
 use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
 use crate::model::{Model, neutral};
 use crate::reference::TaskReference;
-use crate::simulation::{Integrator, Nothing, Plant, State, Stepper, Stepping};
+use crate::simulation::{
+    EquationsOfMotion, Integrator, NoLoads, State, StepMethod, StepSettings, SystemState, only, only_mut,
+};
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// What drives the joints in a rollout.
+/// Control of the joints in a rollout.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum RolloutControl<'a> {
-    /// Nothing.
+    /// No torques.
     #[default]
     Passive,
     /// Given torques, `(B, steps, n)`, N m.
     Torques(&'a [f64]),
-    /// Computed torque towards one reference for all, in no orbit's frame.
+    /// Computed torque that tracks one reference in all runs; the reference must not be in an orbital frame.
     ComputedTorque(&'a ComputedTorque, &'a TaskReference),
 }
 
-/// How to roll out.
+/// Settings of a rollout.
 #[derive(Clone, Copy, Debug)]
 pub struct Rollout<'a> {
     /// Number of steps.
     pub steps: usize,
-    /// Step, s.
+    /// Length of a step, s.
     pub time_step: f64,
-    /// How to step.
+    /// Integrator.
     pub integrator: Integrator,
-    /// What drives the joints.
+    /// Control of the joints.
     pub control: RolloutControl<'a>,
-    /// Every how many steps a row is written, the start being the first; only the end if `None`.
+    /// Number of steps between recorded rows, the first of which is the initial state; `None` records only
+    /// the final state.
     pub record_every: Option<usize>,
     /// Number of threads; all cores if `None`.
     pub threads: Option<usize>,
-    /// Set from elsewhere to stop early; what is written then is of no use.
+    /// Flag that another thread sets to stop early. The contents of the outputs are then undefined.
     pub stop: &'a AtomicBool,
 }
 
 impl Rollout<'_> {
-    /// Rows written per state.
+    /// Returns the number of rows recorded per state.
     pub fn rows(&self) -> usize {
         self.record_every.map_or(1, |every| self.steps / every.max(1) + 1)
     }
 
-    /// Rolls out states `q0`, `(B, nq)`, and `v0`, `(B, nv)`, into `q`, `(B, rows, nq)`, and `v`,
-    /// `(B, rows, nv)`. The bits do not depend on the number of threads.
+    /// Simulates the states `q0`, `(B, nq)`, and `v0`, `(B, nv)`, and writes the recorded states to `q`,
+    /// `(B, rows, nq)`, and `v`, `(B, rows, nv)`. The results are bit-identical for any number of threads.
     ///
     /// # Errors
-    /// [`InputError`] for a start that no kernel takes, and [`InputError::Diverged`] for the first
-    /// state that did not stay finite; all others are written then.
+    /// [`InputError`] for invalid inputs, and [`InputError::Diverged`] for the first state that becomes
+    /// non-finite; the results of all other states are then written.
     pub fn run(
         &self,
         model: &Model,
@@ -85,7 +88,7 @@ impl Rollout<'_> {
         if self.integrator == Integrator::DormandPrince {
             return Err(InputError::Adaptive);
         }
-        // joints that stick and slip do so each at its own time: one state after the other
+        // stick-slip transitions occur at a different time in each state, so states are simulated one by one
         let sticks = model.has_friction();
         if let RolloutControl::ComputedTorque(law, reference) = self.control {
             check_frame(model, law.frame)?;
@@ -106,7 +109,7 @@ impl Rollout<'_> {
         }
     }
 
-    /// Rolls all out; returns the first that did not stay finite.
+    /// Simulates all states. Returns the first state that becomes non-finite.
     fn all<S: Real>(
         &self,
         model: &Model,
@@ -135,47 +138,48 @@ impl Rollout<'_> {
     }
 }
 
-/// As many runs as the scalar has lanes, one group of runs after the other.
+/// Workspace that simulates a group of runs, one per lane of the scalar.
 struct Lanes<'a, S> {
     settings: &'a Rollout<'a>,
-    plant: Plant<'a, S, Nothing>,
+    equations: EquationsOfMotion<'a, S, NoLoads>,
     state: State<S>,
-    stepper: Stepper<S>,
+    stepper: StepMethod<S>,
     work: Option<ComputedTorqueWork<S>>,
-    /// Number of the first run.
+    /// Index of the first run.
     first: usize,
-    /// Runs wanted; further lanes repeat the last.
+    /// Number of runs in the group; surplus lanes repeat the last run.
     count: usize,
 }
 
 impl<'a, S: Real> Lanes<'a, S> {
     fn new(settings: &'a Rollout<'a>, model: &'a Model) -> Self {
-        let mut plant = Plant::new(model, Nothing, None);
+        let mut equations = EquationsOfMotion::new(&[model], NoLoads, None);
         let q = neutral(model).into_iter().map(S::of).collect();
-        let state = State::at(model, &mut plant.data, q, vec![S::of(0.0); model.nv()]);
+        let state = State::at(&mut equations.systems, [(q, vec![S::of(0.0); model.nv()])]);
         let Rollout { integrator, time_step, .. } = *settings;
         let duration = time_step * settings.steps as f64;
-        let how = Stepping { integrator, tolerance: 0.0, time_step, duration };
-        let stepper = Stepper::new(model, &state, &how);
+        let how = StepSettings { integrator, tolerance: 0.0, time_step, duration };
+        let stepper = StepMethod::new(&state, &how);
         let is_controlled = matches!(settings.control, RolloutControl::ComputedTorque(..));
         let work = is_controlled.then(|| ComputedTorqueWork::new(model));
-        Self { settings, plant, state, stepper, work, first: 0, count: 0 }
+        Self { settings, equations, state, stepper, work, first: 0, count: 0 }
     }
 
-    /// Takes up the runs from `first` on.
+    /// Loads the initial states of `count` runs, starting with run `first`.
     fn start(&mut self, q0: &[f64], v0: &[f64], first: usize, count: usize) {
         (self.first, self.count) = (first, count);
-        let (mut q, mut v) = (std::mem::take(&mut self.state.q), std::mem::take(&mut self.state.v));
+        let (system, state) = (only_mut(&mut self.equations.systems), only_mut(&mut self.state.systems));
+        let (mut q, mut v) = (std::mem::take(&mut state.q), std::mem::take(&mut state.v));
         S::enter(
             #[inline(always)]
             || {
                 for (from, to) in [(q0, &mut q), (v0, &mut v)] {
-                    gather(from, Places { first: first * to.len(), stride: to.len(), count }, to);
+                    gather(from, Strides { first: first * to.len(), stride: to.len(), count }, to);
                 }
             },
         );
-        self.state = State::at(self.plant.model, &mut self.plant.data, q, v);
-        self.stepper.restart();
+        *state = SystemState::at(system.model, &mut system.data, q, v);
+        self.stepper.reset();
     }
 
     fn run(&mut self, q: &mut [f64], v: &mut [f64]) {
@@ -185,7 +189,7 @@ impl<'a, S: Real> Lanes<'a, S> {
             if self.settings.stop.load(Ordering::Relaxed) {
                 return;
             }
-            self.plant.settle(&mut self.state);
+            self.equations.project_momentum(&mut self.state);
             if record_every.is_some_and(|every| step % every.max(1) == 0) {
                 self.write(row, q, v);
                 row += 1;
@@ -193,70 +197,73 @@ impl<'a, S: Real> Lanes<'a, S> {
             self.drive(step);
             self.advance(step as f64 * time_step, (step + 1) as f64 * time_step);
         }
-        self.plant.settle(&mut self.state);
+        self.equations.project_momentum(&mut self.state);
         if record_every.is_none_or(|every| steps % every.max(1) == 0) {
             self.write(row, q, v);
         }
     }
 
-    /// One step, in pieces where joints stop or break away.
+    /// Advances one step, divided where joints stick or start to slip.
     fn advance(&mut self, mut t: f64, end: f64) {
-        let Self { plant, state, stepper, .. } = self;
-        plant.decide(&state.q, &state.v);
-        // in empty space nothing refuses a step
-        while let Ok(reached) = stepper.advance(plant, state, (t, end)) {
+        let Self { equations, state, stepper, .. } = self;
+        equations.solve_modes(state);
+        // without environment, no evaluation in a step returns an error
+        while let Ok(reached) = stepper.advance(equations, state, (t, end)) {
             if reached >= end {
                 break;
             }
             t = reached;
-            plant.settle(state);
-            plant.decide(&state.q, &state.v);
+            equations.project_momentum(state);
+            equations.solve_modes(state);
         }
     }
 
-    /// Torques for a step.
+    /// Computes the torques of a step.
     fn drive(&mut self, step: usize) {
-        let Self { plant, state, settings, work, first, count, .. } = self;
+        let Self { equations, state, settings, work, first, count, .. } = self;
+        let (system, state) = (only_mut(&mut equations.systems), only(&state.systems));
         match settings.control {
             RolloutControl::Passive => {}
             RolloutControl::Torques(tau) => {
-                let n = plant.command.len();
+                let n = system.command.len();
                 let stride = settings.steps * n;
-                let places = Places { first: *first * stride + step * n, stride, count: *count };
+                let strides = Strides { first: *first * stride + step * n, stride, count: *count };
                 S::enter(
                     #[inline(always)]
-                    || gather(tau, places, &mut plant.command),
+                    || gather(tau, strides, &mut system.command),
                 );
             }
             RolloutControl::ComputedTorque(law, reference) => {
                 let Some(work) = work else { return };
                 let t = step as f64 * settings.time_step;
                 let desired = reference.sample(t, 0.0).expect("no frame of an orbit: checked").lift();
-                let (data, command) = (&mut plant.data, &mut plant.command);
+                let (data, command) = (&mut system.data, &mut system.command);
                 let is_relative = reference.is_relative_to_base();
                 let (q, v) = (&state.q, &state.v);
-                computed_torque(law, plant.model, data, q, v, &desired, is_relative, work, command);
-                work.ask(law, plant.contacts.asked_mut());
+                computed_torque(law, system.model, data, q, v, &desired, is_relative, work, command);
+                work.desired_accelerations(law, system.modes.requested_mut());
             }
         }
     }
 
     fn write(&self, row: usize, q: &mut [f64], v: &mut [f64]) {
-        let (rows, count) = (self.settings.rows(), self.count);
+        let (rows, count, state) = (self.settings.rows(), self.count, only(&self.state.systems));
         S::enter(
             #[inline(always)]
             || {
-                for (values, to) in [(&self.state.q, q), (&self.state.v, v)] {
+                for (values, to) in [(&state.q, q), (&state.v, v)] {
                     let width = values.len();
-                    scatter(values, Places { first: row * width, stride: rows * width, count }, to);
+                    scatter(values, Strides { first: row * width, stride: rows * width, count }, to);
                 }
             },
         );
     }
 
-    /// The first of the runs whose state is not finite. One that was not once never is again.
+    /// Returns the lane of the first run whose state is not finite. A state that becomes non-finite remains
+    /// so.
     fn diverged(&self) -> Option<usize> {
-        let numbers = || self.state.q.iter().chain(&self.state.v);
+        let state = only(&self.state.systems);
+        let numbers = || state.q.iter().chain(&state.v);
         (0..self.count).find(|&lane| !numbers().all(|x| x.lane(lane).is_finite()))
     }
 }

@@ -1,16 +1,17 @@
-//! On how many threads a batch runs.
+//! Parallel evaluation of a batch.
 
 use super::input::InputError;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// On how many threads a batch runs, and what ends it early; made from an `Option<usize>` where nothing does.
+/// Number of threads of a batch, and the flag that stops it. `Option<usize>` converts to `Threads` without a
+/// flag.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Threads<'a> {
-    /// Number of threads; all cores if `None`.
+    /// Number of threads, or `None` for all cores.
     pub count: Option<usize>,
-    /// Set from elsewhere to stop early; what is written then is of no use.
+    /// Flag that another thread sets to stop early. The contents of the outputs are then undefined.
     pub stop: Option<&'a AtomicBool>,
 }
 
@@ -21,16 +22,16 @@ impl From<Option<usize>> for Threads<'_> {
 }
 
 impl Threads<'_> {
-    /// Whether the batch is to end early.
+    /// Returns true if the batch must stop early.
     pub(super) fn is_stopped(&self) -> bool {
         self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 }
 
-/// Runs `task` on every element until it is stopped, with a workspace per thread: never on more threads than there
-/// are elements or processors, and on the calling thread if that is one.
+/// Runs `task` for every element until stopped, with one workspace per thread.
 ///
-/// Elements are made as they are taken, so that a long batch costs no memory before it runs.
+/// Uses at most as many threads as there are elements and processors, and the calling thread if that number
+/// is one. The elements are generated on demand, so a long batch needs no memory in advance.
 ///
 /// # Errors
 /// [`InputError::NoThreads`].
@@ -42,44 +43,44 @@ pub(super) fn for_each<T, W>(
 ) -> Result<(), InputError> {
     let tasks = tasks.into_iter();
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
-    let wanted = threads.count.unwrap_or(processors).min(tasks.len()).min(processors);
+    let thread_count = threads.count.unwrap_or(processors).min(tasks.len()).min(processors);
     if threads.count == Some(0) {
         return Err(InputError::NoThreads);
     }
-    if wanted <= 1 {
-        let mut space = workspace();
-        tasks.take_while(|_| !threads.is_stopped()).for_each(|one| task(&mut space, one));
+    if thread_count <= 1 {
+        let mut workspace = workspace();
+        tasks.take_while(|_| !threads.is_stopped()).for_each(|element| task(&mut workspace, element));
         return Ok(());
     }
     let queue = Mutex::new(tasks);
     let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
-    let strand = || {
-        let mut space = workspace();
-        while let Some(one) = next().filter(|_| !threads.is_stopped()) {
-            task(&mut space, one);
+    let worker = || {
+        let mut workspace = workspace();
+        while let Some(element) = next().filter(|_| !threads.is_stopped()) {
+            task(&mut workspace, element);
         }
     };
     match pool() {
-        // no more strands than wanted, whatever the pool has
-        Some(pool) => pool.scope(|scope| (0..wanted).for_each(|_| scope.spawn(|_| strand()))),
-        None => strand(),
+        // `thread_count` workers, even if the pool has more threads
+        Some(pool) => pool.scope(|scope| (0..thread_count).for_each(|_| scope.spawn(|_| worker()))),
+        None => worker(),
     }
     Ok(())
 }
 
-/// The threads of this process, started when first needed; `None` where the system gives none.
+/// Returns the thread pool of this process, created on first use; `None` if the system cannot create threads.
 ///
-/// Not rayon's own: a child that `fork` made (Python's multiprocessing) has the memory of its parent's pool but
-/// none of its threads, and would wait for them forever.
+/// Rayon's global pool cannot be used: a child process made by `fork` (multiprocessing in Python) inherits
+/// the memory of the pool but not its threads, and would wait for them forever.
 fn pool() -> Option<&'static ThreadPool> {
     static POOL: Mutex<Option<(u32, &ThreadPool)>> = Mutex::new(None);
-    let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut cached = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
-    match *known {
+    match *cached {
         Some((owner, pool)) if owner == process => Some(pool),
         _ => {
             let pool: &ThreadPool = Box::leak(Box::new(ThreadPoolBuilder::new().build().ok()?));
-            *known = Some((process, pool));
+            *cached = Some((process, pool));
             Some(pool)
         }
     }

@@ -1,22 +1,22 @@
-//! What can be wrong with several controls, as far as it is known before the run.
+//! Validation of the controls before a run.
 
-use super::computed_torque::{frame_of, path_joints};
+use super::control::{Begin, Control};
 use super::error::ControlError;
-use super::group::{Begin, Control, Law};
+
 use crate::model::Model;
 
-/// Checks that each control can work on the robot, and all of them side by side.
+/// Checks that each control applies to the robot, and that no two of them conflict.
 ///
 /// # Errors
-/// [`ControlError`]: groups that are empty, repeat a joint or overlap while both run; gains, goals or
-/// references that do not fit a group; windows that cannot open.
+/// [`ControlError`] for groups that are empty, repeat a joint or overlap while both controls are active;
+/// gains, goals or references that do not fit a group; time windows that are empty.
 pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), ControlError> {
     for (i, control) in controls.iter().enumerate() {
         if controls[..i].iter().any(|other| other.name == control.name) {
             return Err(ControlError::RepeatedName { name: control.name.clone() });
         }
         check_group(control, model)?;
-        check_law(control, model)?;
+        control.law.check(&control.name, &control.joints, model)?;
         check_goal(control)?;
         check_window(i, controls)?;
         for other in &controls[..i] {
@@ -28,7 +28,7 @@ pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), Control
 
 fn check_group(control: &Control, model: &Model) -> Result<(), ControlError> {
     let (name, count) = (&control.name, model.joint_count());
-    if control.joints.is_empty() {
+    if control.joints.is_empty() && count > 0 {
         return Err(ControlError::EmptyGroup { control: name.clone() });
     }
     for (place, &joint) in control.joints.iter().enumerate() {
@@ -43,31 +43,6 @@ fn check_group(control: &Control, model: &Model) -> Result<(), ControlError> {
     Ok(())
 }
 
-fn check_law(control: &Control, model: &Model) -> Result<(), ControlError> {
-    let count = control.joints.len();
-    control.task().map(|(frame, _)| frame_of(model, frame)).transpose()?;
-    match &control.law {
-        Law::TaskComputedTorque(law, _) => {
-            law.check(model)?;
-            let joints = path_joints(model, law.frame).filter(|j| control.joints.contains(j)).count();
-            if joints < 6 {
-                let (control, frame) = (control.name.clone(), model.frames()[law.frame].name.clone());
-                return Err(ControlError::TooFewInGroup { control, frame, joints });
-            }
-        }
-        Law::JointComputedTorque(law, _) => law.check(count)?,
-        Law::Pid(law, _) => law.check(count)?,
-        Law::Compliance(law, _) => law.check()?,
-        Law::User(..) => {}
-    }
-    match control.joint_reference().map(|path| path.count()) {
-        Some(got) if got != count => {
-            Err(ControlError::ReferenceLength { control: control.name.clone(), expected: count, got })
-        }
-        _ => Ok(()),
-    }
-}
-
 fn check_goal(control: &Control) -> Result<(), ControlError> {
     if control.starts_at_present && control.width() == 0 {
         return Err(ControlError::NothingTracked { control: control.name.clone() });
@@ -75,7 +50,7 @@ fn check_goal(control: &Control) -> Result<(), ControlError> {
     let Some(goal) = &control.goal else { return Ok(()) };
     match control.width() {
         0 => Err(ControlError::NothingTracked { control: control.name.clone() }),
-        _ if control.task().is_some() => goal.check(2),
+        _ if control.law.task().is_some() => goal.check(2),
         width => goal.check(width),
     }
 }
@@ -115,12 +90,13 @@ fn check_window(i: usize, controls: &[Control]) -> Result<(), ControlError> {
 }
 
 fn check_pair(a: &Control, b: &Control, controls: &[Control], model: &Model) -> Result<(), ControlError> {
-    if let (Some(one), Some(other)) = (a.compensates_environment(), b.compensates_environment())
+    if let (Some(one), Some(other)) =
+        (a.law.control_law().compensates_environment(), b.law.control_law().compensates_environment())
         && one != other
     {
         return Err(ControlError::MixedCompensation { first: a.name.clone(), second: b.name.clone() });
     }
-    // one that waits for another runs when that is known at run time only
+    // activation times of a control that waits for another are known only during the run
     if let (Begin::At(start_a), Begin::At(start_b)) = (a.begin, b.begin) {
         let time = start_a.max(start_b).max(0.0);
         if time < a.end.min(b.end) && !(stops_before(a, controls) || stops_before(b, controls)) {
@@ -130,13 +106,13 @@ fn check_pair(a: &Control, b: &Control, controls: &[Control], model: &Model) -> 
     Ok(())
 }
 
-/// Whether a successor may stop it at a time that only the run will tell.
+/// Returns true if a successor may stop the control at a time that is known only during the run.
 fn stops_before(control: &Control, controls: &[Control]) -> bool {
     let is_it = |index: usize| controls.get(index).is_some_and(|other| std::ptr::eq(other, control));
     controls.iter().any(|other| matches!(other.begin, Begin::After(index) if is_it(index)))
 }
 
-/// Refuses two controls with a joint in common.
+/// Returns an error for two controls with a joint in common.
 pub(super) fn check_disjoint(a: &Control, b: &Control, model: &Model, time: f64) -> Result<(), ControlError> {
     match a.joints.iter().find(|joint| b.joints.contains(joint)) {
         Some(&joint) => Err(ControlError::Overlap {

@@ -1,31 +1,33 @@
-//! Gravity-free compliance: the tool hangs on a spring and a damper.
+//! Compliance: a virtual spring and damper between the tool and its reference.
 
 use super::computed_torque::gain;
+use super::control_law::{ControlLaw, EffortInput, EffortWork};
 use super::error::ControlError;
 use super::gains::{check_matrix, check_numbers};
-use super::pseudo_inverse::PseudoInverse;
+use crate::model::Model;
 use crate::spatial::Motion;
 
-/// Cartesian impedance without shaping of the inertia: `τ = Jgᵀ (K e + D ė) − k N q̇`.
+/// Cartesian impedance control without inertia shaping: `τ = Jgᵀ (K e + D ė) − k N q̇`.
 ///
-/// Nothing weighs anything in orbit, so nothing is compensated; nor is friction, which holds the tool off its
-/// goal where the spring pulls less than the joints' static friction. It is passive: joint torques work at the
-/// rate `τᵀ q̇`, so with the spring's energy `U = ½ eᵀ K e` and zero momentum (`ẋ = Jg q̇`), for a
-/// reference at rest
-/// `d/dt (T + U) = −ẋᵀ D ẋ − k |N q̇|² ≤ 0`. Relative to the base `ẋ = J q̇` whatever the momentum, and so
-/// is the claim. A robot that drifts past a spring fixed in W is pulled by it and may gain energy. The
-/// rotational spring has an energy where its stiffness is the same about all axes (or the error small).
+/// In free fall there is no gravity load to compensate. Friction is not compensated: the tool stays off its
+/// goal where the spring torque is below the static friction of the joints. The law is passive: the power of
+/// the joint torques is `τᵀ q̇`, so that with the spring energy `U = ½ eᵀ K e`, zero momentum (`ẋ = Jg q̇`)
+/// and a reference at rest
+/// `d/dt (T + U) = −ẋᵀ D ẋ − k |N q̇|² ≤ 0`. For a reference relative to the base, `ẋ = J q̇` for any
+/// momentum, and the same holds. A robot that drifts past a reference fixed in W is pulled by the spring and
+/// may gain energy. The rotational spring has an energy if its stiffness is the same about all axes, or if
+/// the error is small.
 ///
 /// Source: Hogan, J. Dyn. Sys. Meas. Control 107(1), 1985.
 #[derive(Clone, Debug)]
 pub struct Compliance {
-    /// Index of the frame that hangs on the spring.
+    /// Index of the frame on which the spring acts.
     pub frame: usize,
     /// `K`, row major `(6, 6)`, N/m and N m/rad.
     pub stiffness: [f64; 36],
     /// `D`, row major `(6, 6)`, N s/m and N m s/rad.
     pub damping: [f64; 36],
-    /// `k`, of the motion that the tool does not feel, N m s/rad.
+    /// `k`, damping of joint motion that does not move the tool, N m s/rad.
     pub null_space_damping: f64,
 }
 
@@ -40,40 +42,54 @@ impl Compliance {
         check_numbers("null_space_damping", &[self.null_space_damping])
     }
 
-    /// Torques of a group with the Jacobian `(6, k)` and `rates` `(k,)`.
-    pub(super) fn torques(
+    /// Computes the torques of a group with the Jacobian `(6, k)` and the rates `(k,)`.
+    fn torques(
         &self,
         jacobian: &[f64],
-        (error, lag): (Motion<f64>, Motion<f64>),
+        (error, velocity_error): (Motion<f64>, Motion<f64>),
         rates: &[f64],
-        room: &mut ComplianceRoom,
+        work: EffortWork<'_>,
         tau: &mut [f64],
     ) {
         let (k, mut wrench) = (tau.len(), [0.0; 6]);
-        (gain(&self.stiffness, error) + gain(&self.damping, lag)).write(&mut wrench);
+        (gain(&self.stiffness, error) + gain(&self.damping, velocity_error)).write(&mut wrench);
         // τ = Jgᵀ (K e + D ė)
         for (j, tau) in tau.iter_mut().enumerate() {
             *tau = (0..6).map(|i| jacobian[i * k + j] * wrench[i]).sum();
         }
+        // − k N q̇
         if self.null_space_damping > 0.0 {
-            let free = &mut room.free[..k];
-            room.inverse.factor(jacobian, k, &[0.0]);
-            room.inverse.free(jacobian, rates, free);
-            tau.iter_mut().zip(free).for_each(|(tau, free)| *tau -= self.null_space_damping * *free);
+            let null_space_rates = &mut work.scratch[..k];
+            work.inverse.factor(jacobian, k, &[0.0]);
+            work.inverse.free(jacobian, rates, null_space_rates);
+            for (tau, rate) in tau.iter_mut().zip(null_space_rates) {
+                *tau -= self.null_space_damping * *rate;
+            }
         }
     }
 }
 
-/// Workspace of [`Compliance::torques`].
-#[derive(Clone, Debug)]
-pub(super) struct ComplianceRoom {
-    inverse: PseudoInverse<f64>,
-    free: Vec<f64>,
-}
+impl ControlLaw for Compliance {
+    fn check_group(&self, _: &str, _: &[usize], _: &Model) -> Result<(), ControlError> {
+        self.check()
+    }
 
-impl ComplianceRoom {
-    /// For up to `n` joints.
-    pub(super) fn new(n: usize) -> Self {
-        Self { inverse: PseudoInverse::new(1), free: vec![0.0; n] }
+    fn uses_error(&self) -> bool {
+        true
+    }
+
+    fn needs_jacobian(&self) -> bool {
+        true
+    }
+
+    fn efforts(
+        &mut self,
+        input: &EffortInput<'_>,
+        work: EffortWork<'_>,
+        tau: &mut [f64],
+    ) -> Result<(), ControlError> {
+        let error = (Motion::from_slice(input.error.0), input.error.1);
+        self.torques(input.jacobian, error, input.rates, work, tau);
+        Ok(())
     }
 }

@@ -1,37 +1,19 @@
-//! The controllers a simulation can run.
+//! Interface of user-defined controllers.
 
-use super::computed_torque::ComputedTorque;
+use super::control_law::{ControlLaw, EffortInput, EffortWork};
 use super::error::ControlError;
-use super::group::{Begin, Control};
+use super::observation::Observation;
 use crate::model::Model;
-use crate::reference::TaskSample;
 
-/// What a controller sees when it is asked for torques.
-#[derive(Clone, Copy, Debug)]
-pub struct Observation<'a> {
-    /// Time, s.
-    pub time: f64,
-    /// Configuration, `(nq,)`.
-    pub q: &'a [f64],
-    /// Velocity, `(nv,)`.
-    pub v: &'a [f64],
-    /// The robot.
-    pub model: &'a Model,
-    /// Joints to drive, by index, in the order of the torques.
-    pub joints: &'a [usize],
-    /// Where the reference wants the tool, if there is one.
-    pub desired: Option<TaskSample<f64>>,
-}
-
-/// A user's controller. A new one is one `impl`.
+/// A controller implemented by the user.
 ///
 /// ```
 /// use onorbit_core::control::{ControlError, Controller, Observation};
 ///
-/// /// Brakes every joint.
-/// struct Brake(f64);
+/// /// Damps every joint.
+/// struct Damper(f64);
 ///
-/// impl Controller for Brake {
+/// impl Controller for Damper {
 ///     fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError> {
 ///         tau.iter_mut().zip(&now.v[6..]).for_each(|(tau, rate)| *tau = -self.0 * rate);
 ///         Ok(())
@@ -39,79 +21,66 @@ pub struct Observation<'a> {
 /// }
 /// ```
 pub trait Controller: Send {
-    /// Called at the start of each run.
+    /// Prepares the controller for a run; called at the start of each run.
     ///
     /// # Errors
-    /// What keeps the controller from starting.
+    /// [`ControlError`] if the controller cannot start; the error ends the run.
     fn reset(&mut self) -> Result<(), ControlError> {
         Ok(())
     }
 
-    /// Writes the torques of its joints, N m (N), that are held until the next call.
+    /// Writes the torques of the joints, N m (N); they are held until the next call.
     ///
     /// # Errors
-    /// Whatever stops the run.
+    /// [`ControlError`], which ends the run.
     fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError>;
 
-    /// What it remembers between calls, for a checkpoint; nothing by default.
+    /// Returns the state between calls for a checkpoint; by default the controller has none.
     ///
     /// # Errors
-    /// What keeps it from being written.
+    /// [`ControlError`] if the state cannot be written.
     fn save(&self) -> Result<Vec<u8>, ControlError> {
         Ok(Vec::new())
     }
 
-    /// Takes up what [`Controller::save`] gave.
+    /// Restores the state that [`Controller::save`] returned.
     ///
     /// # Errors
-    /// What does not fit.
+    /// [`ControlError`] if the state does not belong to this controller.
     fn load(&mut self, _saved: &[u8]) -> Result<(), ControlError> {
         Ok(())
     }
 }
 
-/// What drives the joints.
-#[derive(Default)]
-pub enum ControlLaw {
-    /// Nothing: the joints move freely.
-    #[default]
-    None,
-    /// Task-space computed torque on the generalized Jacobian.
-    ComputedTorque(Box<ComputedTorque>),
-    /// A user's controller on all joints.
-    User(Box<dyn Controller>),
-    /// Several controls, each on its own joints, side by side or one after the other.
-    Stack(Vec<Control>),
-}
-
-impl ControlLaw {
-    /// The controls, where there are several.
-    pub fn controls(&self) -> &[Control] {
-        if let Self::Stack(controls) = self { controls } else { &[] }
+impl ControlLaw for Box<dyn Controller> {
+    fn check_group(&self, _: &str, _: &[usize], _: &Model) -> Result<(), ControlError> {
+        Ok(())
     }
 
-    /// Instants at which a control starts or stops, as far as they are known, s.
-    pub fn switch_times(&self) -> Vec<f64> {
-        let starts = self.controls().iter().filter_map(|control| match control.begin {
-            Begin::At(start) => Some(start),
-            Begin::After(_) => None,
-        });
-        let ends = self.controls().iter().map(|control| control.end);
-        starts.chain(ends).filter(|t| t.is_finite() && *t > 0.0).collect()
-    }
-
-    /// Whether a law compensates Coulomb friction of joints.
-    pub fn compensates_friction(&self) -> bool {
-        match self {
-            Self::ComputedTorque(law) => law.compensate_friction,
-            Self::Stack(controls) => controls.iter().any(Control::compensates_friction),
-            Self::None | Self::User(_) => false,
+    fn efforts(
+        &mut self,
+        input: &EffortInput<'_>,
+        _: EffortWork<'_>,
+        tau: &mut [f64],
+    ) -> Result<(), ControlError> {
+        let Observation { time, model, joints, .. } = input.observation;
+        self.update(&input.observation, tau)?;
+        if let Some(place) = tau.iter().position(|tau| !tau.is_finite()) {
+            let (control, joint) = (input.control.to_owned(), model.joints()[joints[place]].name.clone());
+            return Err(ControlError::UserTorque { control, joint, time, value: tau[place] });
         }
+        Ok(())
     }
 
-    /// Whether one of several controls leads this frame.
-    pub fn tracks(&self, tool: Option<usize>) -> bool {
-        let leads = |control: &Control| control.task().is_some_and(|(frame, _)| Some(frame) == tool);
-        self.controls().iter().any(leads)
+    fn reset(&mut self) -> Result<(), ControlError> {
+        (**self).reset()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, ControlError> {
+        (**self).save()
+    }
+
+    fn load(&mut self, saved: &[u8]) -> Result<(), ControlError> {
+        (**self).load(saved)
     }
 }

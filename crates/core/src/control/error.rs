@@ -1,92 +1,104 @@
-//! What can be wrong with a controller.
+//! Errors of controls.
 
 use crate::number_text::{count, short, unlike};
 use crate::reference::ReferenceError;
 use thiserror::Error;
 
-/// A controller that cannot work, or that failed while it ran.
+/// Errors of controls that are invalid, or that occur during a run.
 #[derive(Debug, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ControlError {
-    #[error("{name} has {got}, expected {expected}", got = count(*got, "number"))]
+    #[error("{name} has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: String, got: usize },
-    #[error("{name} holds {value}, it must be finite", value = short(*value))]
+    #[error("{name} holds {value}; it must be finite", value = short(*value))]
     NotFinite { name: &'static str, value: f64 },
     #[error(
-        "{name} holds {value}, numbers between -{most} and {most} are accepted",
+        "{name} holds {value}; expected numbers between -{most} and {most}",
         value = short(*value), most = short(*most)
     )]
     TooLarge { name: &'static str, value: f64, most: f64 },
-    #[error("{name} is {value}, it must not be negative", value = short(*value))]
+    #[error("{name} is {value}; it must not be negative", value = short(*value))]
     Negative { name: &'static str, value: f64 },
     #[error(
-        "frame '{frame}' is moved by {joints}: a position and an attitude need at least 6 between it and the base",
+        "frame '{frame}' is moved by {joints}, but controlling its position and attitude requires at least \
+         6 between it and the base",
         joints = count(*joints, "joint")
     )]
     TooFewJoints { frame: String, joints: usize },
     #[error(
-        "the controller returned {value} for joint {joint} at t = {time} s, a torque must be finite",
-        time = short(*time), value = short(*value)
-    )]
-    TorqueNotFinite { joint: usize, time: f64, value: f64 },
-    #[error(
-        "control '{control}' returned {value} for joint '{joint}' at t = {time} s, a torque must be finite",
+        "control '{control}' returned {value} for joint '{joint}' at t = {time} s; a torque must be finite",
         time = short(*time), value = short(*value)
     )]
     UserTorque { control: String, joint: String, time: f64, value: f64 },
-    #[error("control '{control}' drives no joint: name at least one")]
+    #[error("the torque of joint {joint} is {value} at t = {time} s; it must be finite", time = short(*time), value = short(*value))]
+    Overflow { joint: usize, time: f64, value: f64 },
+    #[error("control '{control}' drives no joint; name at least one")]
     EmptyGroup { control: String },
-    #[error("control '{control}' drives joint {joint}, the robot has joints 0 to {last}", last = count.saturating_sub(1))]
+    #[error("control '{control}' drives joint {joint}, but the robot has joints 0 to {last}", last = count.saturating_sub(1))]
     NoSuchJoint { control: String, joint: usize, count: usize },
-    #[error("frame {frame} is to be controlled, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    #[error("a control tracks frame {frame}, but the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     NoSuchFrame { frame: usize, count: usize },
     #[error("control '{control}' names joint '{joint}' twice")]
     RepeatedJoint { control: String, joint: String },
     #[error(
-        "controls '{first}' and '{second}' both drive joint '{joint}' at t = {time} s: give them groups without a common joint, \
-         or times (start, end, after) at which only one of them runs",
+        "controls '{first}' and '{second}' both drive joint '{joint}' at t = {time} s; give them groups \
+         without a common joint, or times (start, end, after) at which only one of them is active",
         time = short(*time)
     )]
     Overlap { first: String, second: String, joint: String, time: f64 },
-    #[error("two controls are named '{name}': give each its own name")]
+    #[error("two controls are named '{name}'; give each a different name")]
     RepeatedName { name: String },
-    #[error("control '{control}' starts after '{after}', which is no control of this run")]
+    #[error("control '{control}' starts after '{after}', which is not a control of this run")]
     NoSuchControl { control: String, after: String },
-    #[error("control '{control}' waits for itself: no control of its chain of 'after' can start")]
+    #[error(
+        "control '{control}' follows itself: no control of its chain of 'after' can start; remove one \
+    'after'"
+    )]
     AfterItself { control: String },
-    #[error("control '{control}' starts after '{after}', which has neither a goal nor an end: give it one")]
+    #[error(
+        "control '{control}' starts after '{after}', which has neither a goal nor an end; give it one \
+    of them"
+    )]
     NeverEnds { control: String, after: String },
     #[error(
-        "control '{control}' starts at {begin} s and ends at {end} s: the start must be finite and before the end",
+        "control '{control}' starts at {begin} s and ends at {end} s; the start must be finite and before \
+         the end",
         begin = unlike(*begin, &[*end]), end = short(*end)
     )]
     EmptyWindow { control: String, begin: f64, end: f64 },
     #[error(
-        "control '{control}' tracks frame '{frame}' with {joints} between it and the base: a position and an attitude \
-         need at least 6 of its group",
+        "control '{control}' tracks frame '{frame}' with {joints} of its group between it and the base, but \
+         controlling position and attitude requires at least 6",
         joints = count(*joints, "joint")
     )]
     TooFewInGroup { control: String, frame: String, joints: usize },
-    #[error("the reference of control '{control}' has {got}, its group has {expected}", got = count(*got, "joint"))]
+    #[error("the reference of control '{control}' has {got}, but its group has {expected}", got = count(*got, "joint"))]
     ReferenceLength { control: String, expected: usize, got: usize },
     #[error(
-        "control '{control}' has a goal, or starts at the present, but tracks nothing: give it a reference of positions or rates"
+        "control '{control}' has a goal, or starts at the current configuration, but has no reference; give \
+         it a reference of positions or rates"
     )]
     NothingTracked { control: String },
-    #[error(
-        "{name} is not zero, but an effort is commanded as it is: leave the gains of the effort interface out"
-    )]
+    #[error("{name} is not zero, but the effort interface commands the reference itself; omit the gains")]
     GainOfEffort { name: &'static str },
     #[error(
-        "of controls '{first}' and '{second}' one compensates the environment and one does not: computed torques side by side \
-         need one answer"
+        "one of controls '{first}' and '{second}' compensates the environment and the other does not; set \
+         the same value for all computed torques of a robot"
     )]
     MixedCompensation { first: String, second: String },
-    #[error("the state of a control does not fit these controls: it holds {got} numbers too {what}")]
-    WrongSave { what: &'static str, got: usize },
+    #[error(
+        "the checkpoint has {got} controls, but the simulation has {expected}: it belongs to a different \
+         scenario; resume with the original one"
+    )]
+    OtherControls { got: usize, expected: usize },
+    #[error(
+        "the checkpoint has no state for control '{control}': it belongs to a different scenario; resume \
+         with the original one"
+    )]
+    OtherMemory { control: String },
     #[error("at t = {time} s: {source}", time = short(*time))]
     Reference { time: f64, source: ReferenceError },
-    /// What a user's controller raised, handed back untouched.
+    /// Error of a user's controller, unchanged.
     #[error(transparent)]
     User(Box<dyn std::error::Error + Send + Sync>),
 }

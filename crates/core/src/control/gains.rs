@@ -1,35 +1,35 @@
-//! Numbers a user gives a law, and what is accepted of them.
+//! Gains of control laws and their checks.
 
 use super::error::ControlError;
 
-/// One number for all joints of a group, or one for each.
+/// Parameter of the joints of a group: one number for all joints, or one for each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PerJoint(Vec<f64>);
 
 impl PerJoint {
-    /// These numbers; a single one is for all joints.
+    /// Returns the gains; a single number applies to all joints.
     pub fn new(numbers: Vec<f64>) -> Self {
         Self(numbers)
     }
 
-    /// The number of the joint at this place in the group.
+    /// Returns the gain of the joint at index `place` of the group.
     #[inline(always)]
     pub fn at(&self, place: usize) -> f64 {
         if self.0.len() == 1 { self.0[0] } else { self.0[place] }
     }
 
-    /// Whether there is a number other than zero.
+    /// Returns true if a number differs from zero.
     pub(super) fn is_used(&self) -> bool {
         self.0.iter().any(|x| *x != 0.0)
     }
 
-    /// Numbers that are not negative, one or one for each of `count` joints.
+    /// Checks that there is one number, or one for each of `count` joints, and that none is negative.
     pub(super) fn check(&self, name: &'static str, count: usize) -> Result<(), ControlError> {
         self.check_count(name, count)?;
         check_numbers(name, &self.0)
     }
 
-    /// The same, where infinity means that there is no limit.
+    /// Checks limits as [`PerJoint::check`] does; infinity means no limit.
     pub(super) fn check_limit(&self, name: &'static str, count: usize) -> Result<(), ControlError> {
         self.check_count(name, count)?;
         match self.0.iter().find(|x| x.is_nan() || **x < 0.0) {
@@ -58,7 +58,7 @@ impl From<f64> for PerJoint {
     }
 }
 
-/// Finite numbers that are not negative.
+/// Checks that the numbers are finite and not negative.
 pub(super) fn check_numbers(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
     if let Some(&value) = numbers.iter().find(|x| !x.is_finite()) {
         return Err(ControlError::NotFinite { name, value });
@@ -70,7 +70,7 @@ pub(super) fn check_numbers(name: &'static str, numbers: &[f64]) -> Result<(), C
     }
 }
 
-/// Largest gain in SI units; motors of robots take 1e-3 to 1e6.
+/// Largest gain in SI units; robots have 1e-3 to 1e6.
 const LARGEST: f64 = 1e20;
 
 fn check_size(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
@@ -80,7 +80,7 @@ fn check_size(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
     }
 }
 
-/// A finite `(6, 6)` gain whose diagonal is not negative.
+/// Checks that a `(6, 6)` gain is finite and its diagonal not negative.
 pub(super) fn check_matrix(name: &'static str, gains: &[f64; 36]) -> Result<(), ControlError> {
     if let Some(&value) = gains.iter().find(|x| !x.is_finite()) {
         return Err(ControlError::NotFinite { name, value });

@@ -1,34 +1,34 @@
-//! When a control has done its work: tolerances on the way, at the end, and what came of it.
+//! Goals of a tracked path: tolerances and outcome.
 
 use super::error::ControlError;
 use super::gains::{PerJoint, check_numbers};
+use serde::{Deserialize, Serialize};
 
-/// Tolerances of a tracked path, after the joint trajectory controller of ROS.
+/// Tolerances of a tracked path, as in the joint trajectory controller of ROS.
 ///
 /// The components are the joints of the group, rad or m; for a task the distance, m, and the angle, rad.
-/// While the path lasts, an error beyond `path` ends the goal and the control holds where it is, in W (or
-/// relative to the base, where its reference is). From the
-/// end of the path on, the goal is reached once all errors are within `tolerance`, and missed where that
-/// takes longer than `time`.
+/// During the path, an error beyond `path` ends the goal, and the control holds the current pose in W (or
+/// relative to the base, if its reference is). After the end of the path, the goal is reached once all errors
+/// are within `tolerance`, and missed after `time`.
 #[derive(Clone, Debug)]
 pub struct Goal {
-    /// Largest errors on the way; none asked for where `None`.
+    /// Largest errors during the path; `None` for no limit.
     pub path: Option<PerJoint>,
     /// Largest errors at the end.
     pub tolerance: PerJoint,
-    /// Time allowed after the end of the path, s; any where `None`.
+    /// Time allowed after the end of the path, s; `None` for no limit.
     pub time: Option<f64>,
 }
 
-/// What came of a goal.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Outcome of a goal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// Not decided: the control never ran, was stopped, or the run ended first.
+    /// No decision: the control never ran, was stopped, or the run ended first.
     #[default]
     Unfinished,
     /// All errors were within the goal's tolerance at `time`, s.
     Succeeded {
-        /// When, s of simulation.
+        /// Simulation time, s.
         time: f64,
     },
     /// An error left the tolerance of the path.
@@ -37,19 +37,19 @@ pub enum Outcome {
     GoalToleranceViolated(Miss),
 }
 
-/// The error that was too large.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Error that exceeded its tolerance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Miss {
-    /// Place of the joint in the group; for a task 0 is the position and 1 the attitude.
+    /// Index of the joint in the group; for a task, 0 is the position and 1 the attitude.
     pub component: usize,
-    /// When, s of simulation.
+    /// Simulation time, s.
     pub time: f64,
-    /// The error, rad or m.
+    /// Error, rad or m.
     pub error: f64,
 }
 
 impl Outcome {
-    /// As results and summaries call it.
+    /// Returns the name of the outcome in results and summaries.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Unfinished => "unfinished",
@@ -59,7 +59,7 @@ impl Outcome {
         }
     }
 
-    /// The error that was too large, if one was.
+    /// Returns the error that exceeded its tolerance.
     pub fn miss(&self) -> Option<Miss> {
         match self {
             Self::PathToleranceViolated(miss) | Self::GoalToleranceViolated(miss) => Some(*miss),
@@ -67,12 +67,12 @@ impl Outcome {
         }
     }
 
-    /// Whether nothing more can change.
+    /// Returns true if the outcome is final.
     pub fn is_decided(&self) -> bool {
         *self != Self::Unfinished
     }
 
-    /// When it was decided, s of simulation.
+    /// Returns the simulation time of the decision, s.
     pub fn time(&self) -> Option<f64> {
         match self {
             Self::Unfinished => None,
@@ -83,7 +83,8 @@ impl Outcome {
 }
 
 impl Goal {
-    /// The same tolerance for all components at the end, none on the way, any time.
+    /// Returns a goal with one tolerance for all components at the end, no tolerance during the path and no
+    /// time limit.
     pub fn within(tolerance: f64) -> Self {
         Self { path: None, tolerance: tolerance.into(), time: None }
     }
@@ -96,7 +97,7 @@ impl Goal {
         check_numbers("goal_time", self.time.as_slice())
     }
 
-    /// What `errors` say at `time`, `clock` s after the start of a path of `duration` s.
+    /// Returns the outcome for `errors` at `time`, `clock` s after the start of a path of `duration` s.
     pub(super) fn judge(&self, time: f64, clock: f64, duration: f64, errors: &[f64]) -> Outcome {
         let miss = |tolerance: &PerJoint| {
             let component = errors.iter().enumerate().position(|(i, e)| e.abs() > tolerance.at(i))?;

@@ -1,29 +1,39 @@
-//! State in, joint torques out.
+//! Controllers: joint torques from the state of the robot.
 //!
-//! Built-in laws are plain data, generic over the scalar; [`Controller`] is for the user's own. One law
-//! drives all joints, or several [`Control`]s drive groups of them, side by side and one after the other.
+//! A run has a list of [`Control`]s: each is a [`Law`] on a group of joints during an interval of time. Laws are plain
+//! data; [`Controller`] is the interface for users' own controllers. [`ControllerSet`] runs the list.
 
 mod check;
 mod compliance;
 mod computed_torque;
+#[allow(clippy::module_inception)] // the file of `Control`
+mod control;
+mod control_law;
+mod control_state;
 mod controller;
+mod controller_set;
 mod error;
 mod gains;
 mod goal;
-mod group;
-mod joint_space;
-mod progress;
+mod hybrid_dynamics;
+mod joint_computed_torque;
+mod joint_pid;
+mod law;
+mod observation;
 mod pseudo_inverse;
-mod side_by_side;
-mod stack;
 
 pub use check::check_controls;
 pub use compliance::Compliance;
 pub use computed_torque::{ComputedTorque, ComputedTorqueWork, computed_torque, task_error};
-pub use controller::{ControlLaw, Controller, Observation};
+pub use control::{Begin, Control};
+pub use control_law::Interface;
+pub use control_state::ControlMemory;
+pub use controller::Controller;
+pub use controller_set::ControllerSet;
 pub use error::ControlError;
 pub use gains::PerJoint;
 pub use goal::{Goal, Miss, Outcome};
-pub use group::{Begin, Control, Law};
-pub use joint_space::{Interface, JointComputedTorque, JointPid};
-pub use stack::Stack;
+pub use joint_computed_torque::JointComputedTorque;
+pub use joint_pid::JointPid;
+pub use law::Law;
+pub use observation::Observation;

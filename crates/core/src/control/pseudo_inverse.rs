@@ -2,15 +2,16 @@
 
 use crate::spatial::{Real, cholesky_factor, cholesky_solve, dot};
 
-/// Rows of one task: three of position, three of attitude.
+/// Number of rows of one task: three of position, three of attitude.
 pub(super) const ROWS: usize = 6;
 
-/// `J⁺ = Jᵀ (J Jᵀ + Λ²)⁻¹` for `k` tasks of six rows, undamped where a task is well conditioned.
+/// Damped pseudo-inverse `J⁺ = Jᵀ (J Jᵀ + Λ²)⁻¹` for `k` tasks of six rows; well-conditioned tasks are not
+/// damped.
 ///
-/// `σ² = 1/tr [(J Jᵀ)⁻¹]` over the six rows of a task is at most the square of the smallest singular
-/// value, and for one task at least a sixth of it. Where it falls below the task's `λ₀²` the damping makes
-/// up for what is missing, `λ² = λ₀² − σ²`, in the rows of that task alone. The null-space projector is
-/// always built from the undamped inverse: a damped one leaks into the task.
+/// `σ² = 1/tr [(J Jᵀ)⁻¹]` over the six rows of a task is at most the square of the smallest singular value,
+/// and for a single task at least a sixth of it. If it is below the task's `λ₀²`, the rows of that task are
+/// damped by the difference, `λ² = λ₀² − σ²`. The null-space projector is always built from the undamped
+/// inverse, since a damped one would disturb the task.
 ///
 /// Source: Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control 108(3), 1986, with another measure of
 /// the distance from singularity.
@@ -25,7 +26,7 @@ pub(super) struct PseudoInverse<S> {
 }
 
 impl<S: Real> PseudoInverse<S> {
-    /// Space for the factors of up to `tasks` tasks.
+    /// Allocates the workspace for up to `tasks` tasks.
     pub(super) fn new(tasks: usize) -> Self {
         let (rows, zero) = (ROWS * tasks, S::of(0.0));
         let square = vec![zero; rows * rows];
@@ -44,7 +45,7 @@ impl<S: Real> PseudoInverse<S> {
     pub(super) fn factor(&mut self, jacobian: &[S], n: usize, damping: &[f64]) {
         self.rows = ROWS * damping.len();
         match damping.len() {
-            1 => self.factor_rows(ROWS, jacobian, n, damping), // its own code, loops unrolled
+            1 => self.factor_rows(ROWS, jacobian, n, damping), // compiled separately, with unrolled loops
             k => self.factor_rows(ROWS * k, jacobian, n, damping),
         }
     }
@@ -61,7 +62,7 @@ impl<S: Real> PseudoInverse<S> {
             }
             trace += gram[i * rows + i];
         }
-        // the floor keeps the factor of a singular Jacobian finite; it is rounding otherwise
+        // the floor keeps the factor of a singular Jacobian finite; otherwise it is below rounding
         undamped.copy_from_slice(gram);
         let floor = trace * S::of(1e-14) + S::of(f64::MIN_POSITIVE);
         add_diagonal(undamped, rows, 0..rows, floor);
@@ -88,7 +89,7 @@ impl<S: Real> PseudoInverse<S> {
         }
     }
 
-    /// `out = J⁺ x`, damped; `x` is `(6 k,)`, `out` `(n,)`.
+    /// Computes `out = J⁺ x`, damped; `x` is `(6 k,)`, `out` `(n,)`.
     #[inline(always)]
     pub(super) fn apply(&mut self, jacobian: &[S], x: &[S], out: &mut [S]) {
         self.x[..self.rows].copy_from_slice(&x[..self.rows]);
@@ -96,38 +97,38 @@ impl<S: Real> PseudoInverse<S> {
         transpose_apply(self.rows, factor, jacobian, &mut self.x, out);
     }
 
-    /// Whether some task is damped.
+    /// Returns true if a task is damped.
     #[inline(always)]
     pub(super) fn is_damped(&self) -> bool {
         self.is_damped
     }
 
-    /// Of joint rates `y`, `(n,)`, what the tasks do not feel: `(1 − J⁺ J) y`, undamped.
+    /// Projects joint rates `y`, `(n,)`, on the null space of `J`: `(1 − J⁺ J) y`, undamped.
     #[inline(always)]
     pub(super) fn free(&mut self, jacobian: &[S], y: &[S], free: &mut [S]) {
-        feel(self.rows, jacobian, y, &mut self.x);
+        multiply(self.rows, jacobian, y, &mut self.x);
         transpose_apply(self.rows, &self.undamped, jacobian, &mut self.x, free);
         free.iter_mut().zip(y).for_each(|(free, y)| *free = *y - *free);
     }
 
-    /// Of joint rates `y`, `(n,)`, what the tasks feel but give up for the damping, zero where there is none; `kept` is what
-    /// they do not give up.
+    /// Computes `D y = (J₀⁺ − J⁺) J y` for joint rates `y`, `(n,)`, with the undamped inverse `J₀⁺`: the part that the
+    /// damping suppresses, zero without damping. `achieved` receives `J⁺ J y`.
     #[inline(always)]
-    pub(super) fn lost(&mut self, jacobian: &[S], y: &[S], kept: &mut [S], lost: &mut [S]) {
+    pub(super) fn suppressed(&mut self, jacobian: &[S], y: &[S], achieved: &mut [S], suppressed: &mut [S]) {
         if !self.is_damped {
-            return lost.fill(S::of(0.0));
+            return suppressed.fill(S::of(0.0));
         }
-        for (factor, out) in [(&self.undamped, &mut *lost), (&self.damped, &mut *kept)] {
-            feel(self.rows, jacobian, y, &mut self.x);
+        for (factor, out) in [(&self.undamped, &mut *suppressed), (&self.damped, &mut *achieved)] {
+            multiply(self.rows, jacobian, y, &mut self.x);
             transpose_apply(self.rows, factor, jacobian, &mut self.x, out);
         }
-        lost.iter_mut().zip(kept).for_each(|(lost, kept)| *lost -= *kept);
+        suppressed.iter_mut().zip(achieved).for_each(|(suppressed, achieved)| *suppressed -= *achieved);
     }
 }
 
-/// `x = J y`.
+/// Computes `x = J y`.
 #[inline(always)]
-fn feel<S: Real>(rows: usize, jacobian: &[S], y: &[S], x: &mut [S]) {
+fn multiply<S: Real>(rows: usize, jacobian: &[S], y: &[S], x: &mut [S]) {
     for i in 0..rows {
         x[i] = dot(&jacobian[i * y.len()..(i + 1) * y.len()], y);
     }
@@ -140,7 +141,7 @@ fn add_diagonal<S: Real>(a: &mut [S], rows: usize, at: std::ops::Range<usize>, x
     }
 }
 
-/// `out = Jᵀ A⁻¹ x` with the factor of `A`; `x` is used up.
+/// Computes `out = Jᵀ A⁻¹ x` with the factor of `A`; overwrites `x`.
 #[inline(always)]
 fn transpose_apply<S: Real>(rows: usize, factor: &[S], jacobian: &[S], x: &mut [S], out: &mut [S]) {
     match rows {
@@ -161,7 +162,8 @@ fn transpose_apply_rows<S: Real>(rows: usize, factor: &[S], jacobian: &[S], x: &
     }
 }
 
-/// `Σ (A⁻¹)_jj = Σ (L⁻¹)_ij²/D_i` over some columns `j`, with the factors of `A`; `column` is room for one.
+/// Returns `Σ (A⁻¹)_jj = Σ (L⁻¹)_ij²/D_i` over some columns `j`, with the factors of `A`; `column` is
+/// workspace.
 #[inline(always)]
 fn inverse_trace<S: Real>(factor: &[S], rows: usize, columns: std::ops::Range<usize>, column: &mut [S]) -> S {
     let mut trace = S::of(0.0);

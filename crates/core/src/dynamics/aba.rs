@@ -1,22 +1,22 @@
-//! Forward dynamics: the motion behind forces, in O(n) (articulated bodies, floating base).
+//! Forward dynamics in O(n): the articulated-body algorithm (ABA) with a floating base.
 
 use super::data::{BodyData, Data};
 use super::dense;
 use super::external::{FrameWrench, apply_external};
 use super::kinematics::kinematics;
-use super::rnea::{accelerations, net_force};
-use super::subspace::{along, articulated_force, joint_effort};
-use super::walk::{inward, outward};
+use super::passes::{leaf_to_root, root_to_leaf};
+use super::rnea::{body_accelerations, net_force};
+use super::subspace::{add_joint_motion, articulated_force, joint_effort};
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Force, Motion, Real};
 
-/// Acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)`.
+/// Computes the acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)`.
 ///
-/// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in its axes.
+/// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in base axes.
 ///
-/// The velocity products are dealt with first, as in inverse dynamics with `q̈ = 0`: what the joints add is counted from
-/// there, and the recursion of the articulated inertias has but one product with each. Where light bodies carry heavy
-/// ones the mass matrix gives the accelerations (`dense.rs`).
+/// The bias accelerations for `q̈ = 0` are computed first, as in inverse dynamics; the recursion then solves for the
+/// difference from these and multiplies each articulated inertia only once. If light bodies carry heavy ones, the
+/// mass matrix is used instead (`dense.rs`).
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Tables 7.1 and 9.4.
 pub fn forward_dynamics<S: Real>(
@@ -33,7 +33,7 @@ pub fn forward_dynamics<S: Real>(
     forward_dynamics_recursion(model, data, v, tau, a);
 }
 
-/// [`forward_dynamics`] after [`kinematics`], with the external wrenches in `data`.
+/// Computes [`forward_dynamics`] after [`kinematics`], with the external wrenches in `data`.
 pub fn forward_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -50,8 +50,8 @@ pub fn forward_dynamics_recursion<S: Real>(
     );
 }
 
-/// [`forward_dynamics_recursion`] with some joints (`locked`, `(n,)`) held as they are: they accelerate
-/// by exactly zero, and the torque that it takes is left in `drive` of their bodies, N m (N).
+/// Computes [`forward_dynamics_recursion`] with some joints locked (`locked`, `(n,)`): their acceleration is exactly
+/// zero, and `holding_torque` of their bodies receives the constraint torque, N m (N).
 pub(crate) fn locked_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -65,7 +65,7 @@ pub(crate) fn locked_dynamics_recursion<S: Real>(
         || kernel(model, data, v, tau, a, |k| locked[k - 1]),
     );
     if model.is_heavy_on_light() {
-        // after the recursion, whose `U` the margin of a held joint is measured by
+        // in addition to the recursion: the stick margin of a locked joint needs its `U`
         dense::solve(model, data, v, tau, a, |k| locked[k - 1]);
     }
 }
@@ -83,69 +83,72 @@ fn kernel<S: Real>(
     let bodies = &mut data.bodies[..nodes.len()];
     let (v, tau, a) = (&v[..nodes.len() + 5], &tau[..nodes.len() + 5], &mut a[..nodes.len() + 5]);
 
-    // what everything does if no joint accelerates; the rest is counted from there
-    accelerations(nodes, bodies, v, None);
-    let load = inward(
+    // bias accelerations for q̈ = 0; the recursion below solves for the difference from these
+    body_accelerations(nodes, bodies, v, None);
+    let children = leaf_to_root(
         nodes,
         bodies,
         #[inline(always)]
-        |k, node, body, load| {
-            let (articulated, force) = with_own(body, load);
-            // U = IA S,  D = Sᵀ U + rotor,  u = τ − Sᵀ p
-            let reach = articulated_force(node, body.axis(), &articulated);
+        |k, node, body, children| {
+            let (articulated, force) = add_body(body, children);
+            // U = IA S
+            let u_force = articulated_force(node, body.axis(), &articulated);
             if is_locked(k) {
-                body.force = force; // read for these alone, and a store of lanes is dear
+                body.force = force; // only locked joints need it, and storing lanes is expensive
             }
-            // a locked joint hands on all of IA: as if nothing could move it, 1/D = 0
-            body.inverse_pivot = match is_locked(k) {
+            // 1/D,  D = Sᵀ U + rotor; 1/D = 0 makes a locked joint rigid: it passes on all of IA
+            body.d_inverse = match is_locked(k) {
                 true => S::of(0.0),
-                false => S::of(1.0) / (joint_effort(node, body.axis(), reach) + S::of(node.rotor_inertia)),
+                false => S::of(1.0) / (joint_effort(node, body.axis(), u_force) + S::of(node.rotor_inertia)),
             };
-            body.drive = tau[k + 5] - joint_effort(node, body.axis(), force);
-            // Ia = IA − U Uᵀ/D,  pa = p + U u/D, about the parent's origin; shifting IA overlaps with the division by D
-            body.reach = reach.from_point(body.offset);
-            let yielding = body.reach * -body.inverse_pivot;
+            // u = τ − Sᵀ pA
+            body.joint_bias = tau[k + 5] - joint_effort(node, body.axis(), force);
+            // Ia = IA − U Uᵀ/D,  pa = pA + U u/D, about the parent's origin; shifting IA overlaps with the division by D
+            body.u_force = u_force.from_point(body.offset);
+            let minus_u_force_over_d = body.u_force * -body.d_inverse;
             (
-                articulated.from_point(body.offset).add_parallel(body.reach, yielding),
-                yielding.scale_add(-body.drive, force.from_point_late(body.offset)),
+                articulated.from_point(body.offset).add_parallel(body.u_force, minus_u_force_over_d),
+                minus_u_force_over_d.scale_add(-body.joint_bias, force.from_point_late(body.offset)),
             )
         },
     );
 
-    // a_0 = IA⁻¹ (τ_b − p)
+    // a_0 = IA⁻¹ (τ_b − pA)
     let base = &mut bodies[0];
-    (base.articulated, base.force) = with_own(base, load);
+    (base.articulated, base.force) = add_body(base, children);
     base.acceleration = base.articulated.solve(Force::from_slice(tau) - base.force);
-    base.response = base.acceleration;
+    base.delta_acceleration = base.acceleration;
     base.acceleration.write(a);
 
-    outward(
+    root_to_leaf(
         nodes,
         bodies,
         #[inline(always)]
-        |body| body.response,
+        |body| body.delta_acceleration,
         #[inline(always)]
-        |k, node, body, carried: Motion<S>| {
-            // q̈ = (u − Uᵀ a_p)/D,  a = a_p + S q̈, beside that of no q̈
-            let pull = body.reach * -body.inverse_pivot;
-            let acceleration = carried.dot_add(pull, body.drive * body.inverse_pivot);
+        |k, node, body, parent: Motion<S>| {
+            // q̈ = (u − Uᵀ Δa_p)/D
+            let minus_u_force_over_d = body.u_force * -body.d_inverse;
+            let acceleration = parent.dot_add(minus_u_force_over_d, body.joint_bias * body.d_inverse);
             if is_locked(k) {
-                body.drive = carried.dot(body.reach) - body.drive; // λ = Uᵀ a_p − u
+                // λ = Uᵀ Δa_p − u
+                body.holding_torque = parent.dot(body.u_force) - body.joint_bias;
             }
             a[k + 5] = acceleration;
-            let response = along(node, body.axis(), acceleration, carried.referred_to(body.offset));
-            body.acceleration += response;
+            // Δa = Δa_p + S q̈,  a = a(q̈ = 0) + Δa
+            let delta = add_joint_motion(node, body.axis(), acceleration, parent.referred_to(body.offset));
+            body.acceleration += delta;
             if node.is_fork {
-                body.response = response;
+                body.delta_acceleration = delta;
             }
-            response
+            delta
         },
     );
 }
 
-/// `IA` and `p` of a body: its own, `I` and `I a + v ×* I v − F`, and those of what it carries.
+/// Returns `IA` and `pA` of a body: `I` and `I a + v ×* I v − F` of the body itself plus the sums over its children.
 #[inline(always)]
-fn with_own<S: Real>(
+fn add_body<S: Real>(
     body: &BodyData<S>,
     (mut articulated, force): (ArticulatedInertia<S>, Force<S>),
 ) -> (ArticulatedInertia<S>, Force<S>) {

@@ -1,16 +1,18 @@
-//! Mass matrix (composite rigid bodies).
+//! Mass matrix: the composite-rigid-body algorithm (CRBA).
 
 use super::data::Data;
 use super::kinematics::positions_kernel;
+use super::passes::leaf_to_root;
 use super::subspace::{composite_force, joint_effort};
-use super::walk::inward;
 use crate::model::Model;
 use crate::spatial::{Real, SpatialInertia};
 
-/// Mass matrix `M(q)`, row major `(nv, nv)`, kg, kg m, kg m².
+/// Computes the mass matrix `M(q)`, row major `(nv, nv)`, kg, kg m, kg m².
 ///
-/// `Mbb = I_0^c` with the composite inertia `I_k^c` of the subtree of `k`. The force `I_k^c S_k`, moved from origin to
-/// origin towards the base, gives `M_jk = S_jᵀ I_k^c S_k` at each ancestor `j` of `k`, and in the end the coupling column.
+/// `Mbb = I_0^c` with the composite inertia `I_k^c` of the subtree of `k`. The force `I_k^c S_k`, shifted
+/// from origin to origin towards the base, gives `M_jk = S_jᵀ I_k^c S_k` at each ancestor `j` of `k`, and at
+/// the base the column of
+/// `Mbm`.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 6.2.
 pub fn mass_matrix<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], out: &mut [S]) {
@@ -23,25 +25,27 @@ pub fn mass_matrix<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], out: &mu
     );
 }
 
-/// [`mass_matrix`] after `positions`.
+/// Computes [`mass_matrix`] after `positions`.
 #[inline(always)]
 pub(super) fn kernel<S: Real>(model: &Model, data: &mut Data<S>, out: &mut [S]) {
     let (nodes, nv) = (model.nodes(), model.nv());
     let bodies = &mut data.bodies[..nodes.len()];
-    let carried = inward(
+    let children = leaf_to_root(
         nodes,
         bodies,
         #[inline(always)]
-        |_, node, body, carried| {
-            // I^c = I + Σ I^c of what it carries,  F = I^c S
-            let composite: SpatialInertia<S> = carried + body.inertia.about_origin();
+        |_, node, body, children| {
+            // I^c = I + Σ I^c of the children
+            let composite: SpatialInertia<S> = children + body.inertia.about_origin();
+            // F = I^c S
             body.force = composite_force(node, body.axis(), &composite);
             composite.from_point(body.offset)
         },
     );
-    base_block(&(carried + bodies[0].inertia.about_origin()), nv, out);
+    base_block(&(children + bodies[0].inertia.about_origin()), nv, out);
     for k in 1..nodes.len() {
         let row = k + 5;
+        // M_kk = S_kᵀ F + rotor
         out[row * nv + row] =
             joint_effort(&nodes[k], bodies[k].axis(), bodies[k].force) + S::of(nodes[k].rotor_inertia);
         let mut force = bodies[k].force.from_point(bodies[k].offset);
@@ -49,6 +53,7 @@ pub(super) fn kernel<S: Real>(model: &Model, data: &mut Data<S>, out: &mut [S]) 
         for j in (1..k).rev() {
             let mut entry = S::of(0.0);
             if j == ancestor {
+                // M_jk = S_jᵀ F
                 entry = joint_effort(&nodes[j], bodies[j].axis(), force);
                 force = force.from_point(bodies[j].offset);
                 ancestor = nodes[j].parent;
@@ -62,7 +67,7 @@ pub(super) fn kernel<S: Real>(model: &Model, data: &mut Data<S>, out: &mut [S]) 
     }
 }
 
-/// `Mbb = [[m 1, −h×], [h×, I_o]]`.
+/// Writes the base block of the mass matrix, `Mbb = [[m 1, −h×], [h×, I_o]]`.
 #[inline(always)]
 fn base_block<S: Real>(composite: &SpatialInertia<S>, nv: usize, out: &mut [S]) {
     let o = S::of(0.0);

@@ -1,82 +1,94 @@
-//! What the algorithms compute, allocated once per model.
+//! Workspace of the algorithms, allocated once per model.
 
-use super::kinematics::place_inertia;
-use crate::model::Model;
-use crate::spatial::{ArticulatedInertia, Force, Mat3, Motion, Real, RigidInertia, SpatialInertia, Vec3};
+use crate::model::{Model, Node};
+use crate::spatial::{
+    ArticulatedInertia, Force, Mat3, Motion, Real, RigidInertia, SpatialInertia, Sym3, Vec3,
+};
 
-/// Quantities of one body in base axes B, about the body's own origin, which lies on its joint's axis.
+/// Quantities of one body in base axes B, about the origin of the body, which lies on its joint axis.
 ///
-/// Moments about the base's origin would lose `(L/l)²` digits of a body of size `l` at a distance `L`.
+/// Moments about the origin of the base would lose `(L/l)²` digits for a body of size `l` at a distance `L`.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyData<S> {
-    /// Takes the body's components to B. Set by [`positions`](super::positions).
+    /// Rotation from body axes to B. Set by [`positions`](super::positions).
     pub rot_bk: Mat3<S>,
-    /// Its origin, from the base's. Set by [`positions`](super::positions), m.
+    /// Position of the body origin relative to the base origin, m. Set by [`positions`](super::positions).
     pub pos_b: Vec3<S>,
-    /// Its origin, from the parent's. Set by [`positions`](super::positions), m.
+    /// Position of the body origin relative to the parent origin, m. Set by [`positions`](super::positions).
     pub offset: Vec3<S>,
-    /// Its mass, its centre of mass and its inertia about it. Set by [`positions`](super::positions).
+    /// Mass, centre of mass and inertia about the centre of mass. Set by [`positions`](super::positions).
     pub inertia: RigidInertia<S>,
-    /// Its twist. Set by [`kinematics`](super::kinematics).
+    /// Twist of the body. Set by [`kinematics`](super::kinematics).
     pub velocity: Motion<S>,
-    /// Wrench from outside. Set by [`apply_external`](super::apply_external) or the simulation;
+    /// External wrench on the body. Set by [`apply_external`](super::apply_external) or by the simulation;
     /// every recursion reads it.
     pub external: Force<S>,
-    /// External wrenches on its subtree. Set by [`free_floating`](super::free_floating).
-    pub outside: Force<S>,
-    /// Spatial acceleration: velocity products alone, or all of it.
+    /// Sum of the external wrenches on the subtree. Set by [`free_floating`](super::free_floating).
+    pub subtree_external: Force<S>,
+    /// Spatial acceleration. Velocity products only, or complete, depending on the algorithm that ran last.
     pub acceleration: Motion<S>,
-    /// What of it joints and base add to the velocity products. Set by ABA where a tree forks.
-    pub response: Motion<S>,
-    /// Force through its joint, or `I S`, or the bias of the articulated body (of a locked joint).
+    /// Acceleration minus the bias acceleration for `q̈ = 0`. Set by ABA for bodies with several children.
+    pub delta_acceleration: Motion<S>,
+    /// Force through the joint (RNEA), `I S` (CRBA), or articulated bias force `p` of a locked joint (ABA).
     pub force: Force<S>,
-    /// Inertia of the subtree, rigid. Set by CRBA and `free_floating`.
+    /// Rigid inertia of the subtree. Set by CRBA and `free_floating`.
     pub composite: SpatialInertia<S>,
-    /// Inertia of the subtree, articulated. Set by ABA, of the base alone.
+    /// Articulated-body inertia `IA`. Set by ABA for the base only.
     pub articulated: ArticulatedInertia<S>,
-    /// `U = IA S`, about the parent's origin. Set by ABA.
-    pub reach: Force<S>,
-    /// `1 / (Sᵀ U + rotor)`. Set by ABA.
-    pub inverse_pivot: S,
-    /// `τ − Sᵀ p`, of a locked joint the torque that holds it. Set by ABA.
-    pub drive: S,
+    /// `U = IA S`, about the origin of the parent. Set by ABA.
+    pub u_force: Force<S>,
+    /// `1/D = 1 / (Sᵀ U + rotor)`, zero for a locked joint. Set by ABA.
+    pub d_inverse: S,
+    /// `u = τ − Sᵀ pA`, joint effort less the bias force of the articulated body, N m (N). Set by ABA.
+    pub joint_bias: S,
+    /// Constraint torque `λ` that keeps a locked joint from accelerating, N m (N). Set by ABA for locked
+    /// joints.
+    pub holding_torque: S,
 }
 
 impl<S: Real> BodyData<S> {
-    /// The joint's axis: z of the body's own axes.
+    /// Returns the joint axis, which is the z axis of the body.
     #[inline(always)]
     pub fn axis(&self) -> Vec3<S> {
         self.rot_bk.z
     }
 
-    /// Centre of mass from the base's origin, m.
+    /// Returns the centre of mass relative to the base origin, m.
     #[inline(always)]
     pub fn com_b(&self) -> Vec3<S> {
         self.pos_b + self.inertia.com
     }
 
-    /// Inertia about the base's origin.
+    /// Returns the inertia about the base origin.
     #[inline(always)]
     pub fn inertia_b(&self) -> SpatialInertia<S> {
         SpatialInertia::at_com(self.inertia.mass, self.com_b(), self.inertia.about_com)
     }
+
+    /// Rotates the centre of mass and the inertia of the body to base axes. Those of the base are constant.
+    #[inline(always)]
+    pub(super) fn rotate_inertia(&mut self, node: &Node) {
+        self.inertia.com = self.rot_bk * Vec3::of(&node.com);
+        self.inertia.about_com = Sym3::of(&node.about_com).rotate(&self.rot_bk);
+    }
 }
 
-/// Workspace of all algorithms for one state (or one set of lanes).
+/// Workspace of all algorithms for one state, or for one group of SIMD lanes.
 #[derive(Clone, Debug)]
 pub struct Data<S> {
     /// One entry per body, base first.
     pub bodies: Vec<BodyData<S>>,
-    /// Sine and cosine of each joint's position. Set by [`positions`](super::positions).
-    pub turns: Vec<(S, S)>,
-    /// `L` below the diagonal and `D⁻¹` on it, `M = L D Lᵀ`, `(nv, nv)`, of robots that need it (see `dense.rs`).
+    /// Sine and cosine of each joint position. Set by [`positions`](super::positions).
+    pub joint_sin_cos: Vec<(S, S)>,
+    /// `L` below the diagonal and `D⁻¹` on it, `M = L D Lᵀ`, `(nv, nv)`. Allocated only for robots solved by
+    /// the mass matrix (`dense.rs`).
     pub(super) factors: Vec<S>,
     /// Generalized forces, `(nv,)`, of the same robots.
-    pub(super) efforts: Vec<S>,
+    pub(super) forces: Vec<S>,
 }
 
 impl<S: Real> Data<S> {
-    /// Space for `model`.
+    /// Allocates the workspace for `model`.
     pub fn new(model: &Model) -> Self {
         let body = BodyData {
             rot_bk: Mat3::identity(),
@@ -85,27 +97,35 @@ impl<S: Real> Data<S> {
             inertia: RigidInertia::default(),
             velocity: Motion::zero(),
             external: Force::zero(),
-            outside: Force::zero(),
+            subtree_external: Force::zero(),
             acceleration: Motion::zero(),
-            response: Motion::zero(),
+            delta_acceleration: Motion::zero(),
             force: Force::zero(),
             composite: SpatialInertia::zero(),
             articulated: ArticulatedInertia::zero(),
-            reach: Force::zero(),
-            inverse_pivot: S::of(0.0),
-            drive: S::of(0.0),
+            u_force: Force::zero(),
+            d_inverse: S::of(0.0),
+            joint_bias: S::of(0.0),
+            holding_torque: S::of(0.0),
         };
         let (n, o) = (model.nodes().len(), S::of(0.0));
         let mut bodies = vec![body; n];
         for (node, body) in model.nodes().iter().zip(&mut bodies) {
             body.inertia.mass = S::of(node.mass);
         }
-        place_inertia(&model.nodes()[0], &mut bodies[0]);
+        bodies[0].rotate_inertia(&model.nodes()[0]);
         let nv = if model.is_heavy_on_light() { model.nv() } else { 0 };
-        Self { bodies, turns: vec![(o, o); n - 1], factors: vec![o; nv * nv], efforts: vec![o; nv] }
+        Self { bodies, joint_sin_cos: vec![(o, o); n - 1], factors: vec![o; nv * nv], forces: vec![o; nv] }
     }
 
-    /// Takes all external wrenches away.
+    /// Copies positions, velocities, inertias and wrenches from the workspace of the same model, without
+    /// allocating.
+    pub(crate) fn copy_from(&mut self, from: &Self) {
+        self.bodies.copy_from_slice(&from.bodies);
+        self.joint_sin_cos.copy_from_slice(&from.joint_sin_cos);
+    }
+
+    /// Sets all external wrenches to zero.
     #[inline(always)]
     pub fn clear_external(&mut self) {
         for body in &mut self.bodies {

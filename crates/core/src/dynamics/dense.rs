@@ -1,7 +1,7 @@
-//! Forward dynamics of robots in which a light body carries heavy ones, by the mass matrix.
+//! Forward dynamics by the mass matrix, for robots in which a light body carries heavy ones.
 //!
-//! The articulated inertia of such a body is a small difference of large ones, which cancels the digits that these have in
-//! common. The entries of `M` are accurate relative to their own size, and the residual of `M = L D Lᵀ` is small relative to
+//! The articulated inertia of such a body is a small difference of large numbers, so ABA loses digits to cancellation.
+//! The entries of `M` are accurate relative to their own size, and the residual of `M = L D Lᵀ` is small relative to
 //! the terms of each row.
 
 use super::crba;
@@ -10,8 +10,8 @@ use super::rnea::inverse_dynamics_recursion;
 use crate::model::Model;
 use crate::spatial::Real;
 
-/// Solves `M a = τ − c`. Leaves the accelerations of all bodies and the torques that hold locked joints in `data`, as the
-/// recursion does.
+/// Solves `M a = τ − c`. Stores the accelerations of all bodies and the holding torques of locked joints in `data`,
+/// as the recursion does.
 ///
 /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 10.
 pub(super) fn solve<S: Real>(
@@ -23,50 +23,50 @@ pub(super) fn solve<S: Real>(
     is_locked: impl Fn(usize) -> bool,
 ) {
     let nv = model.nv();
-    let (mut factors, mut efforts) = (std::mem::take(&mut data.factors), std::mem::take(&mut data.efforts));
-    inverse_dynamics_recursion(model, data, v, None, &mut efforts);
+    let (mut factors, mut forces) = (std::mem::take(&mut data.factors), std::mem::take(&mut data.forces));
+    inverse_dynamics_recursion(model, data, v, None, &mut forces);
     S::enter(
         #[inline(always)]
         || {
             crba::kernel(model, data, &mut factors);
             for i in 0..nv {
-                a[i] = tau[i] - efforts[i];
+                a[i] = tau[i] - forces[i];
             }
             for i in (6..nv).filter(|i| is_locked(i - 5)) {
-                hold(&mut factors, nv, i);
+                remove_joint(&mut factors, nv, i);
                 a[i] = S::of(0.0);
             }
             factorize(&mut factors, nv);
             substitute(&factors, nv, a);
         },
     );
-    inverse_dynamics_recursion(model, data, v, Some(a), &mut efforts);
+    inverse_dynamics_recursion(model, data, v, Some(a), &mut forces);
     for k in (1..=model.joint_count()).filter(|k| is_locked(*k)) {
-        data.bodies[k].drive = efforts[k + 5] - tau[k + 5];
+        data.bodies[k].holding_torque = forces[k + 5] - tau[k + 5];
     }
-    (data.factors, data.efforts) = (factors, efforts);
+    (data.factors, data.forces) = (factors, forces);
 }
 
-/// `M⁻¹` from the factors that [`solve`] left, row major `(nv, nv)`.
+/// Computes `M⁻¹`, row major `(nv, nv)`, from the factors stored by [`solve`].
 #[inline(always)]
 pub(super) fn inverse_mass<S: Real>(data: &Data<S>, nv: usize, out: &mut [S]) {
     for (j, row) in out.chunks_exact_mut(nv).enumerate() {
         row.fill(S::of(0.0));
         row[j] = S::of(1.0);
-        substitute(&data.factors, nv, row); // a row of a symmetric matrix is a column
+        substitute(&data.factors, nv, row); // rows and columns of a symmetric matrix are equal
     }
 }
 
-/// Takes joint `i` out of the equations: its row and column become those of the identity.
+/// Removes joint `i` from the equations: its row and column become those of the identity.
 #[inline(always)]
-fn hold<S: Real>(m: &mut [S], nv: usize, i: usize) {
+fn remove_joint<S: Real>(m: &mut [S], nv: usize, i: usize) {
     for j in 0..nv {
         (m[i * nv + j], m[j * nv + i]) = (S::of(0.0), S::of(0.0));
     }
     m[i * nv + i] = S::of(1.0);
 }
 
-/// `M = L D Lᵀ`, `L` below the diagonal and `D⁻¹` on it.
+/// Factorizes `M = L D Lᵀ` in place, with `L` below the diagonal and `D⁻¹` on it.
 #[inline(always)]
 fn factorize<S: Real>(m: &mut [S], nv: usize) {
     for i in 0..nv {
@@ -86,12 +86,12 @@ fn factorize<S: Real>(m: &mut [S], nv: usize) {
             m[i * nv + j] = scaled * m[j * nv + j];
             pivot -= scaled * m[i * nv + j];
         }
-        let pivot = S::select(pivot.less(least), least, pivot); // rounding alone takes it below that
+        let pivot = S::select(pivot.less(least), least, pivot); // only rounding makes it smaller
         m[i * nv + i] = S::of(1.0) / pivot;
     }
 }
 
-/// `L D Lᵀ x = b`, `b` being replaced by `x`.
+/// Solves `L D Lᵀ x = b` in place.
 #[inline(always)]
 fn substitute<S: Real>(m: &[S], nv: usize, x: &mut [S]) {
     for i in 0..nv {

@@ -1,20 +1,21 @@
-//! Wrenches from outside.
+//! External wrenches.
 
 use super::data::Data;
 use super::kinematics::{frame_offset, frame_rotation_b};
 use crate::model::Model;
 use crate::spatial::{Force, Real};
 
-/// A wrench on the body that carries a frame: in the frame's axes, about its origin, N and N m.
+/// Wrench on the body of a frame, in frame axes about the frame origin, N and N m.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameWrench<S> {
     /// Index of the frame.
     pub frame: usize,
-    /// Force and moment in the frame's axes.
+    /// Force and moment in frame axes.
     pub wrench: Force<S>,
 }
 
-/// Puts these wrenches, and no others, on the bodies. Needs [`positions`](super::positions).
+/// Sets the external wrenches of all bodies to the sums of `wrenches`. Requires up-to-date poses
+/// ([`positions`](super::positions)) in `data`.
 pub fn apply_external<S: Real>(model: &Model, data: &mut Data<S>, wrenches: &[FrameWrench<S>]) {
     S::enter(
         #[inline(always)]

@@ -1,21 +1,23 @@
-//! The reduced model of a manipulator whose base nothing holds.
+//! Reduced model of a free-floating manipulator.
 
 use super::data::{BodyData, Data};
 use super::external::{FrameWrench, apply_external};
-use super::jacobian::{classical, frame_drift, point_acceleration, write_column};
+use super::jacobian::{classical_acceleration, frame_drift, point_acceleration, write_column};
 use super::kinematics::{
     FramePose, base_rotation, frame_offset, frame_origin_b, frame_pose, frame_rotation_b, frame_velocity,
     kinematics,
 };
-use super::rnea::{accelerations, net_force};
+use super::passes::{accumulated, leaf_to_root};
+use super::rnea::{body_accelerations, net_force};
 use super::subspace::{composite_force, joint_effort, subspace};
-use super::walk::{inward, load};
 use crate::model::{Model, Node};
 use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, Vec3};
 
-/// `M* q̈ + c* = τ + Q*` and `ẍ = Jg q̈ + d` for one frame; exact for any momentum and any wrench.
+/// Reduced equations `M* q̈ + c* = τ + Q*` and task acceleration `ẍ = Jg q̈ + d` of one frame.
 ///
-/// With `M = [[Mbb, Mbm], [Mbmᵀ, Mmm]]`, bias `[cb; cm]`, frame Jacobian `[Jb Jm]` and generalized
+/// Exact for any momentum and any external wrench.
+///
+/// Symbols: `M = [[Mbb, Mbm], [Mbmᵀ, Mmm]]`, bias `[c_b; c_m]`, frame Jacobian `[Jb Jm]` and generalized
 /// external forces `Q = [Qb; Qm]`; matrices row major, frame rows in W axes, linear first.
 ///
 /// Source: Umetani and Yoshida, IEEE Trans. Robotics and Automation 5(3), 1989.
@@ -23,30 +25,30 @@ use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, 
 pub struct FreeFloating<S> {
     /// `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `(n, n)`.
     pub inertia: Vec<S>,
-    /// `c* = cm − Mbmᵀ Mbb⁻¹ cb`, `(n,)`, N m.
+    /// `c* = c_m − Mbmᵀ Mbb⁻¹ c_b`, `(n,)`, N m.
     pub bias: Vec<S>,
-    /// `Q* = Qm − Mbmᵀ Mbb⁻¹ Qb`, `(n,)`, N m: what the external wrenches do at the joints.
+    /// `Q* = Qm − Mbmᵀ Mbb⁻¹ Qb`, `(n,)`, N m: generalized external forces at the joints.
     pub external: Vec<S>,
     /// `Jg = Jm − Jb Mbb⁻¹ Mbm`, `(6, n)`.
     pub jacobian: Vec<S>,
-    /// `d = J̇ v − Jb Mbb⁻¹ (cb − Qb)`, m/s² and rad/s².
+    /// `d = J̇ v − Jb Mbb⁻¹ (c_b − Qb)`, m/s² and rad/s².
     pub drift: Motion<S>,
     /// Pose of the frame.
     pub pose: FramePose<S>,
     /// Twist of the frame in W axes at its origin.
     pub velocity: Motion<S>,
-    /// The robot's centre of mass `c` from the base's origin, m: about it `Mbb` falls into `m` and `I_c`.
+    /// Centre of mass `r_c` of the robot relative to the base origin, m. About `r_c`, `Mbb` is block diagonal: `m 1`, `I_c`.
     com_b: Vec3<S>,
-    /// `Mbb⁻¹ (cb − Qb)`, about `c`.
-    net: Motion<S>,
-    /// Columns of `Mbm`, about `c`.
+    /// `Mbb⁻¹ (c_b − Qb)`, about `r_c`.
+    base_bias: Motion<S>,
+    /// Columns of `Mbm`, about `r_c`.
     coupling: Vec<Force<S>>,
-    /// `−Mbb⁻¹ Mbm`, a twist of the base per unit joint rate, about `c`.
-    recoil: Vec<Motion<S>>,
+    /// `−Mbb⁻¹ Mbm`, base twist per unit joint rate, about `r_c`.
+    base_response: Vec<Motion<S>>,
 }
 
 impl<S: Real> FreeFloating<S> {
-    /// Space for `model`.
+    /// Allocates the reduced model of `model`.
     pub fn new(model: &Model) -> Self {
         let (n, o) = (model.joint_count(), S::of(0.0));
         Self {
@@ -58,14 +60,14 @@ impl<S: Real> FreeFloating<S> {
             pose: FramePose { rot_wf: Mat3::identity(), pos_w: Vec3::zero() },
             velocity: Motion::zero(),
             com_b: Vec3::zero(),
-            net: Motion::zero(),
+            base_bias: Motion::zero(),
             coupling: vec![Force::zero(); n],
-            recoil: vec![Motion::zero(); n],
+            base_response: vec![Motion::zero(); n],
         }
     }
 }
 
-/// [`FreeFloating`] of a frame (index) at `q`: `(nq,)`, `v`: `(nv,)`.
+/// Computes [`FreeFloating`] of a frame (index) at `q`: `(nq,)`, `v`: `(nv,)`.
 pub fn free_floating<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -80,7 +82,7 @@ pub fn free_floating<S: Real>(
     free_floating_recursion(model, data, q, v, frame, out);
 }
 
-/// [`free_floating`] after [`kinematics`], with the external wrenches in `data`.
+/// Computes [`free_floating`] after [`kinematics`], with the external wrenches in `data`.
 pub fn free_floating_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -95,8 +97,8 @@ pub fn free_floating_recursion<S: Real>(
     );
 }
 
-/// Another frame of the same reduced model: pose, twist, `Jg` and `d` anew, after
-/// [`free_floating_recursion`].
+/// Replaces pose, twist, `Jg` and `d` by those of another frame. Requires the results of
+/// [`free_floating_recursion`] in `out`.
 pub fn free_floating_frame<S: Real>(
     model: &Model,
     data: &Data<S>,
@@ -114,10 +116,10 @@ pub fn free_floating_frame<S: Real>(
     );
 }
 
-/// [`free_floating_frame`] as the base sees it: pose, twist, Jacobian and drift relative to B, in its
-/// axes. The base's recoil does not show there, so `Jg` is the arm's own Jacobian.
+/// Replaces pose, twist, Jacobian and drift by those of a frame relative to B, in base axes.
 ///
-/// `ẋ = J q̇`, `ẍ = J q̈ + d`, `d = J̇ q̇` with the bodies' twists less the base's.
+/// `ẋ = J q̇`, `ẍ = J q̈ + d`, `d = J̇ q̇`, with twists relative to the base. The motion of the base cancels,
+/// so `J` is the Jacobian of the arm alone.
 pub fn base_relative_frame<S: Real>(
     model: &Model,
     data: &Data<S>,
@@ -137,7 +139,7 @@ pub fn base_relative_frame<S: Real>(
             let twist = relative(&data.bodies[frame.body]);
             out.velocity = twist.referred_to(p);
             out.jacobian.fill(S::of(0.0));
-            // Σ v_k × S q̇ along the path to the base, at the origin of the frame's body
+            // Σ v_k × S q̇ along the path to the base, at the origin of the body of the frame
             let (mut spatial, mut lever) = (Motion::zero(), Vec3::zero());
             let mut k = frame.body;
             while k > 0 {
@@ -163,46 +165,52 @@ fn kernel<S: Real>(
 ) {
     let (nodes, n) = (model.nodes(), model.joint_count());
     let bodies = &mut data.bodies[..=n];
-    accelerations(nodes, bodies, v, None);
-    let load = inward(
+    body_accelerations(nodes, bodies, v, None);
+    let children = leaf_to_root(
         nodes,
         bodies,
         #[inline(always)]
-        |k, node, body, load| {
-            let (composite, (bias, Outside(outside))) = with_own(body, load);
-            // I^c S, cm − Qm, Qm
+        |k, node, body, children| {
+            let (composite, (bias, SubtreeWrench(external))) = add_body(body, children);
+            // c_m − Qm = Sᵀ f
             out.bias[k - 1] = joint_effort(node, body.axis(), bias);
-            out.external[k - 1] = joint_effort(node, body.axis(), outside);
+            // Qm = Sᵀ F, with F the sum of the external wrenches on the subtree
+            out.external[k - 1] = joint_effort(node, body.axis(), external);
+            // f_S = I^c S
             body.force = composite_force(node, body.axis(), &composite);
             let r = body.offset;
-            (composite.from_point(r), (bias.from_point_late(r), Outside(outside.from_point_late(r))))
+            (composite.from_point(r), (bias.from_point_late(r), SubtreeWrench(external.from_point_late(r))))
         },
     );
-    let (composite, (bias, Outside(outside))) = with_own(&bodies[0], load);
+    let (composite, (bias, SubtreeWrench(external))) = add_body(&bodies[0], children);
     bodies[0].composite = composite;
     let inverse = composite.inverse();
     out.com_b = inverse.com;
 
-    mobility(nodes, bodies, &inverse, out);
+    reduced_inertia(nodes, bodies, &inverse, out);
 
-    // Mbb⁻¹ (cb − Qb), Mbb⁻¹ Qb
+    // Mbb⁻¹ (c_b − Qb)
     let from_com = -inverse.com;
-    out.net = inverse.at_com(bias.from_point(from_com));
-    let outside = inverse.at_com(outside.from_point(from_com));
+    out.base_bias = inverse.at_com(bias.from_point(from_com));
+    // Mbb⁻¹ Qb
+    let external = inverse.at_com(external.from_point(from_com));
     for (k, coupling) in out.coupling.iter().enumerate() {
-        // Q* = Qm − Mbmᵀ Mbb⁻¹ Qb,  c* = (cm − Qm) − Mbmᵀ Mbb⁻¹ (cb − Qb) + Q*
-        out.external[k] -= outside.dot(*coupling);
-        out.bias[k] = out.bias[k] - out.net.dot(*coupling) + out.external[k];
+        // Q* = Qm − Mbmᵀ Mbb⁻¹ Qb
+        out.external[k] -= external.dot(*coupling);
+        // c* = (c_m − Qm) − Mbmᵀ Mbb⁻¹ (c_b − Qb) + Q*
+        out.bias[k] = out.bias[k] - out.base_bias.dot(*coupling) + out.external[k];
     }
-    out.drift = classical(model, data, q, frame, data.bodies[model.frames()[frame].body].acceleration);
+    // J̇ v
+    let spatial = data.bodies[model.frames()[frame].body].acceleration;
+    out.drift = classical_acceleration(model, data, q, frame, spatial);
     reduce_task(model, data, q, frame, out);
 }
 
-/// `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `Mbm` and the base's recoil from the forces `I^c S` of all joints.
+/// Computes `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `Mbm` and the base response `−Mbb⁻¹ Mbm` from the forces `f_S = I^c S` of all joints.
 ///
-/// `Mmm` has `S_jᵀ I^c S_k`, the force moved to the origin of each ancestor `j` of `k`.
+/// The entries of `Mmm` are `S_jᵀ f_S` with `f_S` of joint `k`, shifted to the origin of each ancestor `j` of `k`.
 #[inline(always)]
-fn mobility<S: Real>(
+fn reduced_inertia<S: Real>(
     nodes: &[Node],
     bodies: &[BodyData<S>],
     inverse: &InverseInertia<S>,
@@ -211,18 +219,20 @@ fn mobility<S: Real>(
     let n = nodes.len() - 1;
     for (k, body) in bodies[1..].iter().enumerate() {
         let force = body.force.from_point(body.pos_b - inverse.com);
-        (out.coupling[k], out.recoil[k]) = (force, -inverse.at_com(force));
+        (out.coupling[k], out.base_response[k]) = (force, -inverse.at_com(force));
     }
-    let (nodes, bodies, recoil) = (&nodes[1..], &bodies[1..=n], &out.recoil[..n]);
+    let (nodes, bodies, base_response) = (&nodes[1..], &bodies[1..=n], &out.base_response[..n]);
     for k in 0..n {
         let (mut force, coupling, mut ancestor) = (bodies[k].force, out.coupling[k], k + 1);
         for j in (0..=k).rev() {
-            let mut entry = recoil[j].dot(coupling);
+            // −(Mbmᵀ Mbb⁻¹ Mbm)_jk
+            let mut entry = base_response[j].dot(coupling);
             if j + 1 == ancestor {
+                // + S_jᵀ f_S
                 let (node, body) = (&nodes[j], &bodies[j]);
                 entry += joint_effort(node, body.axis(), force);
                 ancestor = node.parent;
-                // the base has no joint that needs it
+                // not needed at the base, which has no joint
                 if ancestor > 0 {
                     force = force.from_point(body.offset);
                 }
@@ -234,27 +244,31 @@ fn mobility<S: Real>(
     }
 }
 
-/// Wrenches from outside on a subtree.
+/// Sum of the external wrenches on a subtree.
 #[derive(Clone, Copy)]
-struct Outside<S>(Force<S>);
-impl<S: Real> std::ops::Add for Outside<S> {
+struct SubtreeWrench<S>(Force<S>);
+impl<S: Real> std::ops::Add for SubtreeWrench<S> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self(self.0 + other.0)
     }
 }
-load!(Outside<S>, Self(Force::zero()), |body| Self(body.outside), |this, body| body.outside = this.0);
-/// A body's own inertia, bias and wrench beside those of what it carries.
+accumulated!(SubtreeWrench<S>, Self(Force::zero()), |body| Self(body.subtree_external), |this, body| body
+    .subtree_external =
+    this.0);
+
+/// Returns inertia, bias force and external wrench of a body plus the sums over its children.
 #[inline(always)]
-fn with_own<S: Real>(
+fn add_body<S: Real>(
     body: &BodyData<S>,
-    (composite, (bias, outside)): (SpatialInertia<S>, (Force<S>, Outside<S>)),
-) -> (SpatialInertia<S>, (Force<S>, Outside<S>)) {
-    (composite + body.inertia.about_origin(), (bias + net_force(body), Outside(outside.0 + body.external)))
+    (composite, (bias, external)): (SpatialInertia<S>, (Force<S>, SubtreeWrench<S>)),
+) -> (SpatialInertia<S>, (Force<S>, SubtreeWrench<S>)) {
+    let external = SubtreeWrench(external.0 + body.external);
+    (composite + body.inertia.about_origin(), (bias + net_force(body), external))
 }
 
-/// Pose, twist, `Jg` and `d`, the last from `J̇ v`: what the frame does when the base gives way.
+/// Computes pose, twist and `Jg` of a frame, and completes `d` from `J̇ v`.
 #[inline(always)]
 fn reduce_task<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize, out: &mut FreeFloating<S>) {
     out.pose = frame_pose(model, data, q, frame);
@@ -265,7 +279,7 @@ fn reduce_task<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize, ou
     let (from_com, mut ancestor, mut lever) = (p - out.com_b, frame.body, frame_offset(data, frame));
     for k in (1..=n).rev() {
         // Jg = Jm − Jb Mbb⁻¹ Mbm
-        let mut twist = out.recoil[k - 1].referred_to(from_com);
+        let mut twist = out.base_response[k - 1].referred_to(from_com);
         if k == ancestor {
             let (node, body) = (&model.nodes()[k], &data.bodies[k]);
             twist += subspace(node, body.axis()).referred_to(lever);
@@ -273,6 +287,6 @@ fn reduce_task<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize, ou
         }
         write_column(&mut out.jacobian, n, k - 1, rot_wb, twist);
     }
-    // d = J̇ v − Jb Mbb⁻¹ (cb − Qb)
-    out.drift -= Motion::new(rot_wb * out.net.at(from_com), rot_wb * out.net.angular);
+    // d = J̇ v − Jb Mbb⁻¹ (c_b − Qb)
+    out.drift -= Motion::new(rot_wb * out.base_bias.at(from_com), rot_wb * out.base_bias.angular);
 }

@@ -1,4 +1,4 @@
-//! Frame Jacobians and their drift.
+//! Frame Jacobians and drift accelerations.
 
 use super::data::Data;
 use super::kinematics::{base_rotation, frame_offset};
@@ -6,9 +6,10 @@ use super::subspace::{subspace, velocity_product};
 use crate::model::Model;
 use crate::spatial::{Mat3, Motion, Real, Vec3};
 
-/// Jacobian of a frame (index): its twist at its origin in W axes is `J v`.
+/// Computes the Jacobian `J` of a frame (index): the twist at the frame origin in W axes is `J v`.
 ///
-/// `out`: row major `(6, nv)`, linear rows first. Needs [`positions`](super::positions).
+/// `out`: row major `(6, nv)`, linear rows first. Requires up-to-date poses ([`positions`](super::positions))
+/// in `data`.
 pub fn frame_jacobian<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize, out: &mut [S]) {
     S::enter(
         #[inline(always)]
@@ -18,10 +19,12 @@ pub fn frame_jacobian<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: us
             out.fill(S::of(0.0));
             let mut k = frame.body;
             while k > 0 {
+                // column of joint k: S_k, referred to the frame origin
                 let (node, body) = (&model.nodes()[k], &data.bodies[k]);
                 write_column(out, nv, k + 5, rot_wb, subspace(node, body.axis()).referred_to(lever));
                 (lever, k) = (lever + body.offset, node.parent);
             }
+            // columns of the base: (e_j, 0) and (e_j × r, e_j)
             for (j, axis) in unit_axes().into_iter().enumerate() {
                 write_column(out, nv, j, rot_wb, Motion::new(axis, Vec3::zero()));
                 write_column(out, nv, j + 3, rot_wb, Motion::new(axis.cross(lever), axis));
@@ -30,7 +33,7 @@ pub fn frame_jacobian<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: us
     );
 }
 
-/// Column `j` of a Jacobian `width` wide: the twist of the frame's origin, turned to W.
+/// Writes column `j` of a Jacobian with `width` columns: `twist` in base axes, rotated to W.
 #[inline(always)]
 pub(super) fn write_column<S: Real>(
     out: &mut [S],
@@ -46,21 +49,22 @@ pub(super) fn write_column<S: Real>(
     }
 }
 
-/// The axes of the frame at hand.
+/// Returns the unit vectors x, y, z.
 #[inline(always)]
 pub(super) fn unit_axes<S: Real>() -> [Vec3<S>; 3] {
     let (o, l) = (S::of(0.0), S::of(1.0));
     [Vec3::new(l, o, o), Vec3::new(o, l, o), Vec3::new(o, o, l)]
 }
 
-/// Drift `J̇ v` of a frame (index): its classical acceleration, m/s² and rad/s², at its origin in W
-/// axes while `v` does not change. Needs [`kinematics`](super::kinematics).
+/// Returns the drift `J̇ v` of a frame (index): the classical acceleration of the frame origin in W axes at
+/// constant
+/// `v`, m/s² and rad/s². Requires up-to-date kinematics ([`kinematics`](super::kinematics)) in `data`.
 pub fn frame_drift<S: Real>(model: &Model, data: &Data<S>, q: &[S], v: &[S], frame: usize) -> Motion<S> {
     S::enter(
         #[inline(always)]
         || {
             let index = &model.frames()[frame];
-            // Σ v_k × S q̇ along the path to the base, at the origin of the frame's body
+            // Σ v_k × S q̇ along the path to the base, at the origin of the body of the frame
             let (mut spatial, mut lever) = (Motion::zero(), Vec3::zero());
             let mut k = index.body;
             while k > 0 {
@@ -68,24 +72,24 @@ pub fn frame_drift<S: Real>(model: &Model, data: &Data<S>, q: &[S], v: &[S], fra
                 spatial += velocity_product(node, body, v[k + 5]).referred_to(lever);
                 (lever, k) = (lever + body.offset, node.parent);
             }
-            classical(model, data, q, frame, spatial)
+            classical_acceleration(model, data, q, frame, spatial)
         },
     )
 }
 
-/// Acceleration of a frame's origin, m/s², and its angular acceleration, rad/s², in W axes, after
-/// a recursion that left the bodies' accelerations in `data`.
+/// Returns the acceleration of a frame origin, m/s², and the angular acceleration of the frame, rad/s², in W
+/// axes. Requires the accelerations of the bodies in `data`, which the dynamics recursions store.
 pub fn frame_acceleration<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize) -> Motion<S> {
     let spatial = data.bodies[model.frames()[frame].body].acceleration;
-    classical(model, data, q, frame, spatial)
+    classical_acceleration(model, data, q, frame, spatial)
 }
 
-/// A body's spatial acceleration at its origin as that of a frame's origin, [`point_acceleration`], in W axes.
+/// Converts the spatial acceleration of a body to the classical acceleration of a frame origin in W axes.
 ///
-/// A spatial acceleration is the rate of the velocity field at a fixed point; the last term
-/// follows the material point instead.
+/// A spatial acceleration is the rate of change of the velocity field at a fixed point. The classical
+/// acceleration follows the material point ([`point_acceleration`]).
 #[inline(always)]
-pub(super) fn classical<S: Real>(
+pub(super) fn classical_acceleration<S: Real>(
     model: &Model,
     data: &Data<S>,
     q: &[S],
@@ -99,8 +103,11 @@ pub(super) fn classical<S: Real>(
     Motion::new(rot_wb * acceleration.linear, rot_wb * acceleration.angular)
 }
 
-/// `a + α × p + ω × (v + ω × p)`, and `α`: of the point at `p` of a body with this spatial acceleration and velocity.
+/// Returns the classical acceleration `a + α × p + ω × (v + ω × p)` and `α` of the point at `p` of a body,
+/// where
+/// `spatial = (a, α)` and `velocity = (v, ω)`.
 #[inline(always)]
 pub(super) fn point_acceleration<S: Real>(spatial: Motion<S>, velocity: Motion<S>, p: Vec3<S>) -> Motion<S> {
+    // a + α × p + ω × (v + ω × p)
     Motion::new(spatial.at(p) + velocity.angular.cross(velocity.at(p)), spatial.angular)
 }

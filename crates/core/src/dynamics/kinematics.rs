@@ -1,21 +1,22 @@
-//! Where the bodies are and how they move.
+//! Forward kinematics: poses and twists of bodies and frames.
 
 use super::data::{BodyData, Data};
-use super::subspace::along;
-use super::walk::outward;
+use super::passes::root_to_leaf;
+use super::subspace::add_joint_motion;
 use crate::model::{Axis, Frame, Model, Node};
-use crate::spatial::{Mat3, Motion, Quat, Real, Sym3, Vec3};
+use crate::spatial::{Mat3, Motion, Quat, Real, Vec3};
 
 /// Pose of a frame in W.
 #[derive(Clone, Copy, Debug)]
 pub struct FramePose<S> {
-    /// Takes frame components to W.
+    /// Rotation from frame axes to W.
     pub rot_wf: Mat3<S>,
-    /// Origin in W, m.
+    /// Frame origin in W, m.
     pub pos_w: Vec3<S>,
 }
 
-/// Poses, joint axes and inertias of all bodies, from the joints of `q` (`(nq,)`, m and rad).
+/// Computes poses, joint axes and inertias of all bodies from the joint positions in `q` (`(nq,)`, m and
+/// rad).
 pub fn positions<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
     S::enter(
         #[inline(always)]
@@ -23,7 +24,7 @@ pub fn positions<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
     );
 }
 
-/// [`positions`] and the twists of all bodies. `q`: `(nq,)`, `v`: `(nv,)`.
+/// Computes [`positions`] and the twists of all bodies. `q`: `(nq,)`, `v`: `(nv,)`.
 pub fn kinematics<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) {
     S::enter(
         #[inline(always)]
@@ -33,16 +34,16 @@ pub fn kinematics<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) 
 
 #[inline(always)]
 pub(super) fn positions_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
-    let Data { bodies, turns, .. } = data;
-    let q = turned(model, q, turns);
-    outward(
+    let Data { bodies, joint_sin_cos, .. } = data;
+    let q = joint_positions(model, q, joint_sin_cos);
+    root_to_leaf(
         model.nodes(),
         bodies,
         #[inline(always)]
         |body| (body.rot_bk, body.pos_b),
         #[inline(always)]
         |k, node, body, parent| {
-            place(node, parent, body, q[k - 1], turns[k - 1]);
+            place_body(node, parent, body, q[k - 1], joint_sin_cos[k - 1]);
             (body.rot_bk, body.pos_b)
         },
     );
@@ -50,35 +51,36 @@ pub(super) fn positions_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[
 
 #[inline(always)]
 pub(crate) fn kinematics_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) {
-    let Data { bodies, turns, .. } = data;
-    let (q, rates) = (turned(model, q, turns), &v[6..model.nv()]);
+    let Data { bodies, joint_sin_cos, .. } = data;
+    let (q, rates) = (joint_positions(model, q, joint_sin_cos), &v[6..model.nv()]);
     bodies[0].velocity = Motion::from_slice(v);
-    outward(
+    root_to_leaf(
         model.nodes(),
         bodies,
         #[inline(always)]
         |body| (body.rot_bk, body.pos_b, body.velocity),
         #[inline(always)]
         |k, node, body, (rot_bp, pos_b, velocity)| {
-            place(node, (rot_bp, pos_b), body, q[k - 1], turns[k - 1]);
+            place_body(node, (rot_bp, pos_b), body, q[k - 1], joint_sin_cos[k - 1]);
             // v_k = v_p + S q̇
-            body.velocity = along(node, body.axis(), rates[k - 1], velocity.referred_to(body.offset));
+            body.velocity =
+                add_joint_motion(node, body.axis(), rates[k - 1], velocity.referred_to(body.offset));
             (body.rot_bk, body.pos_b, body.velocity)
         },
     );
 }
 
-/// The joints of `q`, after working out their sines and cosines.
+/// Returns the joint positions in `q` and computes their sines and cosines.
 #[inline(always)]
-fn turned<'q, S: Real>(model: &Model, q: &'q [S], turns: &mut [(S, S)]) -> &'q [S] {
+fn joint_positions<'q, S: Real>(model: &Model, q: &'q [S], joint_sin_cos: &mut [(S, S)]) -> &'q [S] {
     let q = &q[7..model.nq()];
-    S::sin_cos_each(q, turns);
+    S::sin_cos_each(q, joint_sin_cos);
     q
 }
 
-/// Pose of a body from its parent's, `R_bk = R_bp R_pk Rz(q)`, and its inertia.
+/// Computes the pose of a body from that of its parent, and rotates its inertia to base axes.
 #[inline(always)]
-fn place<S: Real>(
+fn place_body<S: Real>(
     node: &Node,
     (rot_bp, pos_bp): (Mat3<S>, Vec3<S>),
     body: &mut BodyData<S>,
@@ -89,51 +91,47 @@ fn place<S: Real>(
     body.offset = rot_bp * Vec3::of(&node.pos_pk);
     match node.axis {
         Axis::Revolute => {
+            // R_bk = R_bp R_pk Rz(q)
             let x = tree.x.scale_add(c, tree.y * s);
             let y = tree.y.scale_add(c, -(tree.x * s));
             body.rot_bk = Mat3::from_columns(x, y, tree.z);
         }
         Axis::Prismatic => {
+            // R_bk = R_bp R_pk,  r = R_bp p_pk + z q
             body.rot_bk = tree;
             body.offset = tree.z.scale_add(q, body.offset);
         }
     }
     body.pos_b = pos_bp + body.offset;
-    place_inertia(node, body);
+    body.rotate_inertia(node);
 }
 
-/// Centre of mass and inertia of a body in base axes. The base's are constants.
-#[inline(always)]
-pub(super) fn place_inertia<S: Real>(node: &Node, body: &mut BodyData<S>) {
-    body.inertia.com = body.rot_bk * Vec3::of(&node.com);
-    body.inertia.about_com = Sym3::of(&node.about_com).rotate(&body.rot_bk);
-}
-
-/// Origin of a frame from that of its body, base axes, m. Needs [`positions`].
+/// Returns the origin of a frame relative to the origin of its body, in base axes, m. Requires up-to-date
+/// poses ([`positions`]) in `data`.
 #[inline(always)]
 pub(super) fn frame_offset<S: Real>(data: &Data<S>, frame: &Frame) -> Vec3<S> {
     data.bodies[frame.body].rot_bk * Vec3::of(&frame.pos_kf)
 }
 
-/// Origin of a frame in B, m. Needs [`positions`].
+/// Returns the origin of a frame in B, m. Requires up-to-date poses ([`positions`]) in `data`.
 #[inline(always)]
 pub(crate) fn frame_origin_b<S: Real>(data: &Data<S>, frame: &Frame) -> Vec3<S> {
     frame_offset(data, frame) + data.bodies[frame.body].pos_b
 }
 
-/// Rotation from a frame's axes to B. Needs [`positions`].
+/// Returns the rotation from frame axes to B. Requires up-to-date poses ([`positions`]) in `data`.
 #[inline(always)]
 pub(crate) fn frame_rotation_b<S: Real>(data: &Data<S>, frame: &Frame) -> Mat3<S> {
     data.bodies[frame.body].rot_bk * Mat3::of(&frame.rot_kf)
 }
 
-/// Rotation `R_wb` of the base.
+/// Returns the rotation `R_wb` of the base.
 #[inline(always)]
 pub(crate) fn base_rotation<S: Real>(q: &[S]) -> Mat3<S> {
     Quat::from_xyzw(&q[3..]).matrix()
 }
 
-/// Pose of a frame (index) in W. Needs [`positions`].
+/// Returns the pose of a frame (index) in W. Requires up-to-date poses ([`positions`]) in `data`.
 #[inline(always)]
 pub fn frame_pose<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize) -> FramePose<S> {
     let frame = &model.frames()[frame];
@@ -144,8 +142,8 @@ pub fn frame_pose<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize)
     }
 }
 
-/// Velocity of a frame's origin, m/s, and its angular velocity, rad/s, in W axes.
-/// Needs [`kinematics`].
+/// Returns the velocity of a frame origin, m/s, and the angular velocity of the frame, rad/s, in W axes.
+/// Requires up-to-date kinematics ([`kinematics`]) in `data`.
 #[inline(always)]
 pub fn frame_velocity<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize) -> Motion<S> {
     let frame = &model.frames()[frame];

@@ -1,10 +1,9 @@
-//! Equations of motion: free functions over a [`Model`](crate::model::Model), its [`Data`] and a
-//! state.
+//! Equations of motion: free functions of a [`Model`](crate::model::Model), its [`Data`] and a state.
 //!
-//! All recursions run in the axes of the base link B, so the base's pose drops out of everything but what is asked for
-//! in W. The motions, forces and inertias of a body are about its own origin, which lies on its joint's axis; between
-//! neighbours they are shifted by the vector from one origin to the other.
-//! A `*_recursion` expects [`kinematics`] to have run; the functions without that ending run it.
+//! All recursions run in the axes of the base link B, so the pose of the base enters only results expressed
+//! in W. Motions, forces and inertias of a body refer to the origin of the body, which lies on its joint
+//! axis; between parent and child they are shifted by the vector from one origin to the other.
+//! A function named `*_recursion` requires that [`kinematics`] has run; functions without this suffix run it.
 
 mod aba;
 mod crba;
@@ -16,9 +15,9 @@ mod free_floating;
 mod jacobian;
 mod kinematics;
 mod momentum;
+mod passes;
 mod rnea;
 mod subspace;
-mod walk;
 
 pub(crate) use aba::locked_dynamics_recursion;
 pub use aba::{forward_dynamics, forward_dynamics_recursion};
@@ -31,6 +30,8 @@ pub use free_floating::{
 pub use jacobian::{frame_acceleration, frame_drift, frame_jacobian};
 pub(crate) use kinematics::base_rotation;
 pub use kinematics::{FramePose, frame_pose, frame_velocity, kinematics, positions};
-pub use momentum::{Momentum, base_twist, center_of_mass, composite_momentum, kinetic_energy, momentum};
-pub(crate) use momentum::{center_of_mass_b, motion_of_whole};
+pub use momentum::{
+    Momentum, center_of_mass, composite_momentum, kinetic_energy, momentum, projected_base_twist,
+};
+pub(crate) use momentum::{center_of_mass_b, momentum_energy_com};
 pub use rnea::{bias_forces, inverse_dynamics, inverse_dynamics_recursion};

@@ -1,21 +1,22 @@
-//! Momentum, centre of mass, energy.
+//! Momentum, centre of mass and kinetic energy.
 
 use super::data::Data;
 use super::kinematics::base_rotation;
 use crate::model::Model;
 use crate::spatial::{Force, Mat3, Motion, Real, SpatialInertia, Vec3};
+use serde::{Deserialize, Serialize};
 
-/// Momentum of the whole robot in W axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Momentum of the robot in W axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Momentum<S> {
-    /// Linear, kg m/s.
+    /// Linear momentum, kg m/s.
     pub linear: Vec3<S>,
-    /// Angular about the system's centre of mass, kg m²/s.
+    /// Angular momentum about the centre of mass of the robot, kg m²/s.
     pub angular: Vec3<S>,
 }
 
-/// Inertia of the whole robot and its momentum `Σ I v`, both in B about the base's origin.
-/// Needs [`kinematics`](super::kinematics).
+/// Returns the composite inertia of the robot and its momentum `Σ I v`, both in B about the base origin.
+/// Requires up-to-date kinematics ([`kinematics`](super::kinematics)) in `data`.
 #[inline(always)]
 pub fn composite_momentum<S: Real>(data: &Data<S>) -> (SpatialInertia<S>, Force<S>) {
     let mut inertia = SpatialInertia::zero();
@@ -27,8 +28,8 @@ pub fn composite_momentum<S: Real>(data: &Data<S>) -> (SpatialInertia<S>, Force<
     (inertia, momentum)
 }
 
-/// Momentum in W axes, angular about the system's centre of mass.
-/// Needs [`kinematics`](super::kinematics).
+/// Returns the momentum in W axes, the angular part about the centre of mass of the robot.
+/// Requires up-to-date kinematics ([`kinematics`](super::kinematics)) in `data`.
 pub fn momentum<S: Real>(data: &Data<S>, q: &[S]) -> Momentum<S> {
     S::enter(
         #[inline(always)]
@@ -39,14 +40,15 @@ pub fn momentum<S: Real>(data: &Data<S>, q: &[S]) -> Momentum<S> {
     )
 }
 
-/// A momentum in B about the base's origin, in W axes about the centre of mass: `L_com = L − c × p`.
+/// Converts a momentum in B about the base origin to W axes about the centre of mass.
 #[inline(always)]
 fn about_com<S: Real>(h: Force<S>, com: Vec3<S>, rot_wb: &Mat3<S>) -> Momentum<S> {
+    // L_com = L − r_c × p, with the centre of mass r_c
     let angular = h.angular - com.cross(h.linear);
     Momentum { linear: *rot_wb * h.linear, angular: *rot_wb * angular }
 }
 
-/// Centre of mass in W, m. Needs [`positions`](super::positions).
+/// Returns the centre of mass in W, m. Requires up-to-date poses ([`positions`](super::positions)) in `data`.
 pub fn center_of_mass<S: Real>(data: &Data<S>, q: &[S]) -> Vec3<S> {
     S::enter(
         #[inline(always)]
@@ -54,7 +56,7 @@ pub fn center_of_mass<S: Real>(data: &Data<S>, q: &[S]) -> Vec3<S> {
     )
 }
 
-/// Centre of mass in B, m. Needs [`positions`](super::positions).
+/// Returns the centre of mass in B, m. Requires up-to-date poses ([`positions`](super::positions)) in `data`.
 #[inline(always)]
 pub(crate) fn center_of_mass_b<S: Real>(data: &Data<S>) -> Vec3<S> {
     let (mut mass, mut moment) = (S::of(0.0), Vec3::zero());
@@ -65,57 +67,63 @@ pub(crate) fn center_of_mass_b<S: Real>(data: &Data<S>) -> Vec3<S> {
     moment * (S::of(1.0) / mass)
 }
 
-/// Kinetic energy `½ Σ vᵀ I v + ½ Σ rotor q̇²` in W, J. Needs [`kinematics`](super::kinematics).
+/// Returns the kinetic energy `½ Σ vᵀ I v + ½ Σ rotor q̇²` in W, J. Requires up-to-date kinematics
+/// ([`kinematics`](super::kinematics)) in `data`.
 pub fn kinetic_energy<S: Real>(model: &Model, data: &Data<S>, v: &[S]) -> S {
     S::enter(
         #[inline(always)]
-        || sums(model, data, v).2,
+        || inertia_momentum_energy(model, data, v).2,
     )
 }
 
-/// [`momentum`], [`kinetic_energy`] and [`center_of_mass`] in one walk.
+/// Returns [`momentum`], [`kinetic_energy`] and [`center_of_mass`], computed in one pass.
 #[inline(always)]
-pub(crate) fn motion_of_whole<S: Real>(
+pub(crate) fn momentum_energy_com<S: Real>(
     model: &Model,
     data: &Data<S>,
     q: &[S],
     v: &[S],
 ) -> (Momentum<S>, S, Vec3<S>) {
-    let (inertia, h, energy) = sums(model, data, v);
+    let (inertia, h, energy) = inertia_momentum_energy(model, data, v);
     let (rot_wb, com) = (base_rotation(q), inertia.com());
     (about_com(h, com, &rot_wb), energy, rot_wb * com + Vec3::from_slice(q))
 }
 
-/// Inertia, momentum (both in B about the base's origin) and kinetic energy of the whole robot.
+/// Returns composite inertia, momentum (both in B about the base origin) and kinetic energy of the robot.
 #[inline(always)]
-fn sums<S: Real>(model: &Model, data: &Data<S>, v: &[S]) -> (SpatialInertia<S>, Force<S>, S) {
-    let (mut inertia, mut momentum, mut twice) = (SpatialInertia::zero(), Force::zero(), S::of(0.0));
+fn inertia_momentum_energy<S: Real>(
+    model: &Model,
+    data: &Data<S>,
+    v: &[S],
+) -> (SpatialInertia<S>, Force<S>, S) {
+    let (mut inertia, mut momentum, mut twice_energy) = (SpatialInertia::zero(), Force::zero(), S::of(0.0));
     for body in &data.bodies {
-        let own = body.inertia.momentum(body.velocity);
+        let body_momentum = body.inertia.momentum(body.velocity);
         inertia += body.inertia_b();
-        momentum += own.from_point(body.pos_b);
-        twice += body.velocity.dot(own);
+        momentum += body_momentum.from_point(body.pos_b);
+        twice_energy += body.velocity.dot(body_momentum);
     }
     for (node, rate) in model.nodes()[1..].iter().zip(&v[6..]) {
-        twice = (*rate * *rate).mul_add(S::of(node.rotor_inertia), twice);
+        twice_energy = (*rate * *rate).mul_add(S::of(node.rotor_inertia), twice_energy);
     }
-    (inertia, momentum, twice * S::of(0.5))
+    (inertia, momentum, twice_energy * S::of(0.5))
 }
 
-/// The base twist that goes with a momentum and joint rates: `v_b = Mbb⁻¹ (h − Mbm q̇)`.
+/// Projects the base twist onto a momentum: returns `v_b = Mbb⁻¹ (h − Mbm q̇)` in base axes, linear first.
 ///
-/// `target` is in W axes, angular about the centre of mass. Needs [`kinematics`](super::kinematics)
-/// at `q`, `v`; returned in base axes, linear first.
-pub fn base_twist<S: Real>(data: &Data<S>, q: &[S], v: &[S], target: Momentum<S>) -> Motion<S> {
+/// `h` is the momentum `target` in B about the base origin. `target` is in W axes, its angular part about the centre of
+/// mass. Needs [`kinematics`](super::kinematics) at `q`, `v`.
+pub fn projected_base_twist<S: Real>(data: &Data<S>, q: &[S], v: &[S], target: Momentum<S>) -> Motion<S> {
     S::enter(
         #[inline(always)]
         || {
-            let (inertia, h) = composite_momentum(data);
+            let (inertia, present) = composite_momentum(data);
             let rot_wb = base_rotation(q);
             let linear = rot_wb.transpose_mul(target.linear);
             let angular = rot_wb.transpose_mul(target.angular) + inertia.com().cross(linear);
-            // what the momentum misses, the base makes up for
-            Motion::from_slice(v) + inertia.inverse().apply(Force::new(linear, angular) - h)
+            // v_b ← v_b + Mbb⁻¹ (h − Σ I v), equal to Mbb⁻¹ (h − Mbm q̇)
+            let h = Force::new(linear, angular);
+            Motion::from_slice(v) + inertia.inverse().apply(h - present)
         },
     )
 }

@@ -1,16 +1,16 @@
-//! Inverse dynamics: the forces behind a motion (recursive Newton-Euler).
+//! Inverse dynamics: the recursive Newton-Euler algorithm (RNEA).
 
 use super::data::{BodyData, Data};
 use super::external::{FrameWrench, apply_external};
 use super::kinematics::kinematics;
-use super::subspace::{along, joint_effort, velocity_product};
-use super::walk::{inward, outward};
+use super::passes::{leaf_to_root, root_to_leaf};
+use super::subspace::{add_joint_motion, joint_effort, velocity_product};
 use crate::model::{Model, Node};
 use crate::spatial::{Force, Motion, Real};
 
-/// Generalized forces `M a + c − Σ Jᵀ F` that give the acceleration `a`.
+/// Computes the generalized forces `τ = M a + c − Σ Jᵀ F` for the acceleration `a`.
 ///
-/// `q`: `(nq,)`; `v`, `a`, `tau` (out): `(nv,)`; `tau[..6]` is the wrench on the base in its axes.
+/// `q`: `(nq,)`; `v`, `a`, `tau` (out): `(nv,)`; `tau[..6]` is the wrench on the base in base axes.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 5.1.
 pub fn inverse_dynamics<S: Real>(
@@ -27,8 +27,9 @@ pub fn inverse_dynamics<S: Real>(
     inverse_dynamics_recursion(model, data, v, Some(a), tau);
 }
 
-/// Bias forces less external wrenches, `c − Σ Jᵀ F`, with `c(q, v)` Coriolis and centrifugal:
-/// inverse dynamics at `a = 0`. `c` (out): `(nv,)`.
+/// Computes the bias forces `c − Σ Jᵀ F`: Coriolis and centrifugal forces `c(q, v)` minus the external wrenches.
+///
+/// Equal to inverse dynamics at `a = 0`. `c` (out): `(nv,)`.
 pub fn bias_forces<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -42,7 +43,7 @@ pub fn bias_forces<S: Real>(
     inverse_dynamics_recursion(model, data, v, None, c);
 }
 
-/// [`inverse_dynamics`] after [`kinematics`], with the external wrenches in `data`; no `a` is zero.
+/// Computes [`inverse_dynamics`] after [`kinematics`], with the external wrenches in `data`. `None` means `a = 0`.
 pub fn inverse_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -53,7 +54,7 @@ pub fn inverse_dynamics_recursion<S: Real>(
     S::enter(
         #[inline(always)]
         || match a {
-            Some(a) => kernel(model, data, v, Some(a), tau), // each its own code
+            Some(a) => kernel(model, data, v, Some(a), tau), // compiled separately for each case
             None => kernel(model, data, v, None, tau),
         },
     );
@@ -64,14 +65,15 @@ fn kernel<S: Real>(model: &Model, data: &mut Data<S>, v: &[S], a: Option<&[S]>, 
     let nodes = model.nodes();
     let bodies = &mut data.bodies[..nodes.len()];
     let tau = &mut tau[..nodes.len() + 5];
-    accelerations(nodes, bodies, v, a);
-    let carried = inward(
+    body_accelerations(nodes, bodies, v, a);
+    let children = leaf_to_root(
         nodes,
         bodies,
         #[inline(always)]
-        |k, node, body, carried: Force<S>| {
-            // f_k = I a + v ×* I v − F + Σ f of what it carries,  τ_k = Sᵀ f_k + rotor q̈
-            body.force = carried + net_force(body);
+        |k, node, body, children: Force<S>| {
+            // f_k = I a + v ×* I v − F + Σ f of the children
+            body.force = children + net_force(body);
+            // τ_k = Sᵀ f_k + rotor q̈
             tau[k + 5] = joint_effort(node, body.axis(), body.force);
             if let Some(a) = a {
                 tau[k + 5] = a[k + 5].mul_add(S::of(node.rotor_inertia), tau[k + 5]);
@@ -79,36 +81,43 @@ fn kernel<S: Real>(model: &Model, data: &mut Data<S>, v: &[S], a: Option<&[S]>, 
             body.force.from_point_late(body.offset)
         },
     );
-    bodies[0].force = carried + net_force(&bodies[0]);
+    bodies[0].force = children + net_force(&bodies[0]);
     bodies[0].force.write(tau);
 }
 
-/// Outward: `a_k = a_p + v_k × S q̇ + S q̈` of all bodies; no `a` is zero.
+/// Computes the accelerations `a_k = a_p + v_k × S q̇ + S q̈` of all bodies. `None` means `a = 0`.
 #[inline(always)]
-pub(super) fn accelerations<S: Real>(nodes: &[Node], bodies: &mut [BodyData<S>], v: &[S], a: Option<&[S]>) {
+pub(super) fn body_accelerations<S: Real>(
+    nodes: &[Node],
+    bodies: &mut [BodyData<S>],
+    v: &[S],
+    a: Option<&[S]>,
+) {
     let v = &v[..nodes.len() + 5];
     bodies[0].acceleration = a.map_or_else(Motion::zero, Motion::from_slice);
-    outward(
+    root_to_leaf(
         nodes,
         bodies,
         #[inline(always)]
         |body| body.acceleration,
         #[inline(always)]
-        |k, node, body, carrier: Motion<S>| {
-            let own = velocity_product(node, body, v[k + 5]);
+        |k, node, body, parent: Motion<S>| {
+            // a_k = a_p + v_k × S q̇
+            let product = velocity_product(node, body, v[k + 5]);
             body.acceleration = Motion::new(
-                carrier.linear + carrier.angular.cross_add(body.offset, own.linear),
-                carrier.angular + own.angular,
+                parent.linear + parent.angular.cross_add(body.offset, product.linear),
+                parent.angular + product.angular,
             );
             if let Some(a) = a {
-                body.acceleration = along(node, body.axis(), a[k + 5], body.acceleration);
+                // a_k += S q̈
+                body.acceleration = add_joint_motion(node, body.axis(), a[k + 5], body.acceleration);
             }
             body.acceleration
         },
     );
 }
 
-/// What moves a body as it does, less what acts on it from outside: `I a + v ×* I v − F`.
+/// Returns the inertial force minus the external wrench of a body, `I a + v ×* I v − F`.
 #[inline(always)]
 pub(super) fn net_force<S: Real>(body: &BodyData<S>) -> Force<S> {
     body.inertia.inertial_force(body.velocity, body.acceleration) - body.external

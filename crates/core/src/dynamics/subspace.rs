@@ -1,13 +1,13 @@
-//! The motion subspace `S` of a joint, at the body's origin in base axes.
+//! The motion subspace `S` of a joint, at the body origin in base axes.
 //!
-//! The origin lies on the joint's axis `z`, so `S = (0, z)` of a revolute joint and `(z, 0)` of a prismatic one: a
-//! product with it takes half of the other factor.
+//! The origin lies on the joint axis `z`, so `S = (0, z)` for a revolute joint and `(z, 0)` for a prismatic one.
+//! Products with `S` therefore need only half of the other factor.
 
 use super::data::BodyData;
 use crate::model::{Axis, Node};
 use crate::spatial::{ArticulatedInertia, Force, Motion, Real, SpatialInertia, Vec3};
 
-/// `S = (0, z)` or `(z, 0)`.
+/// Returns `S = (0, z)` or `(z, 0)`.
 #[inline(always)]
 pub(super) fn subspace<S: Real>(node: &Node, z: Vec3<S>) -> Motion<S> {
     match node.axis {
@@ -16,16 +16,16 @@ pub(super) fn subspace<S: Real>(node: &Node, z: Vec3<S>) -> Motion<S> {
     }
 }
 
-/// `S s + m`.
+/// Returns `m + S s`.
 #[inline(always)]
-pub(super) fn along<S: Real>(node: &Node, z: Vec3<S>, s: S, m: Motion<S>) -> Motion<S> {
+pub(super) fn add_joint_motion<S: Real>(node: &Node, z: Vec3<S>, s: S, m: Motion<S>) -> Motion<S> {
     match node.axis {
         Axis::Revolute => Motion::new(m.linear, z.scale_add(s, m.angular)),
         Axis::Prismatic => Motion::new(z.scale_add(s, m.linear), m.angular),
     }
 }
 
-/// `Sᵀ f`.
+/// Returns `Sᵀ f`.
 #[inline(always)]
 pub(super) fn joint_effort<S: Real>(node: &Node, z: Vec3<S>, f: Force<S>) -> S {
     match node.axis {
@@ -34,17 +34,17 @@ pub(super) fn joint_effort<S: Real>(node: &Node, z: Vec3<S>, f: Force<S>) -> S {
     }
 }
 
-/// `v × S q̇`: what the joint's rate adds to an acceleration, `v` being the body's own twist.
+/// Returns `v × S q̇`, the velocity-product acceleration of a joint, where `v` is the twist of its body.
 #[inline(always)]
 pub(super) fn velocity_product<S: Real>(node: &Node, body: &BodyData<S>, rate: S) -> Motion<S> {
-    let (v, moved) = (&body.velocity, body.axis() * rate);
+    let (v, joint_velocity) = (&body.velocity, body.axis() * rate);
     match node.axis {
-        Axis::Revolute => Motion::new(v.linear.cross(moved), v.angular.cross(moved)),
-        Axis::Prismatic => Motion::new(v.angular.cross(moved), Vec3::zero()),
+        Axis::Revolute => Motion::new(v.linear.cross(joint_velocity), v.angular.cross(joint_velocity)),
+        Axis::Prismatic => Motion::new(v.angular.cross(joint_velocity), Vec3::zero()),
     }
 }
 
-/// `IA S`.
+/// Returns `IA S`.
 #[inline(always)]
 pub(super) fn articulated_force<S: Real>(node: &Node, z: Vec3<S>, i: &ArticulatedInertia<S>) -> Force<S> {
     match node.axis {
@@ -53,7 +53,7 @@ pub(super) fn articulated_force<S: Real>(node: &Node, z: Vec3<S>, i: &Articulate
     }
 }
 
-/// `I S`.
+/// Returns `I S`.
 #[inline(always)]
 pub(super) fn composite_force<S: Real>(node: &Node, z: Vec3<S>, i: &SpatialInertia<S>) -> Force<S> {
     match node.axis {

@@ -1,8 +1,8 @@
-//! When a run takes place.
+//! Epochs and time scales.
 
 use hifitime::{Duration, Epoch as Instant, TimeScale, Unit};
 
-use super::EarthError;
+use super::error::EarthError;
 
 /// Seconds of a day.
 pub(super) const DAY: f64 = 86_400.0;
@@ -12,16 +12,18 @@ const DAY_NS: i64 = 86_400_000_000_000;
 /// Modified Julian date of 2000-01-01.
 const MJD_2000: i64 = 51_544;
 
-/// Terrestrial Time less TAI, s.
+/// TT - TAI, s.
 const TT_MINUS_TAI: f64 = 32.184;
 
-/// From here on UTC has whole leap seconds.
+/// First year in which UTC has whole leap seconds.
 const UTC_YEAR: i32 = 1972;
 
-/// Years accepted: what nutation, Sun and Moon are made for.
+/// Years accepted: the span of the series of nutation, Sun and Moon.
 const YEARS: std::ops::Range<i32> = 1900..2100;
 
-/// Time zero of a run, to the nanosecond (by default noon TAI of 2000-01-01); seconds of simulation are those of TAI and TT from there on.
+/// Epoch: time zero of a run, stored to the nanosecond; by default 2000-01-01T12:00:00 TAI.
+///
+/// Simulation time counts seconds of TAI (and TT) from this instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Epoch {
     /// Nanoseconds of TAI from 2000-01-01T12:00:00 TAI.
@@ -29,102 +31,108 @@ pub struct Epoch {
 }
 
 impl Epoch {
-    /// `2024-03-01T12:00:00 UTC`: a date, a time and its scale, which is UTC (or `Z`), TAI, TT or TDB.
+    /// Parses a text such as `2024-03-01T12:00:00 UTC`: date, time and time scale: UTC (or `Z`), TAI, TT or TDB.
     ///
-    /// A leap second is written as the 60th.
+    /// A leap second is second 60.
     ///
     /// # Errors
-    /// [`EarthError::Epoch`] for anything else and for years outside of 1900 to 2099;
+    /// [`EarthError::Epoch`] for any other text and for years outside 1900 to 2099;
     /// [`EarthError::BeforeUtc`] for UTC before 1972.
     pub fn parse(text: &str) -> Result<Self, EarthError> {
-        let refused = || EarthError::Epoch { text: text.to_owned() };
-        let (fields, scale) = split_scale(text.trim()).ok_or_else(refused)?;
-        let ([year, month, day, hour, minute, second], nanoseconds) = numbers(fields).ok_or_else(refused)?;
+        let invalid = || EarthError::Epoch { text: text.to_owned() };
+        let (fields, scale) = split_scale(text.trim()).ok_or_else(invalid)?;
+        let ([year, month, day, hour, minute, second], nanoseconds) = numbers(fields).ok_or_else(invalid)?;
         let year = i32::from(year);
         if scale == TimeScale::UTC && YEARS.contains(&year) && year < UTC_YEAR {
             return Err(EarthError::BeforeUtc { text: text.to_owned() });
         }
         let is_leap = second == 60;
-        let byte = |x: u16| u8::try_from(x).unwrap_or(u8::MAX); // no month and no hour
+        let byte = |x: u16| u8::try_from(x).unwrap_or(u8::MAX); // 255 is neither a month nor an hour
         let (month, day, hour, minute) = (byte(month), byte(day), byte(hour), byte(minute));
         let second = if is_leap { 59 } else { byte(second) };
         if !YEARS.contains(&year) || hour > 23 || second > 59 {
-            return Err(refused());
+            return Err(invalid());
         }
         let instant =
             Instant::maybe_from_gregorian(year, month, day, hour, minute, second, nanoseconds, scale)
-                .map_err(|_| refused())?
+                .map_err(|_| invalid())?
                 .to_time_scale(TimeScale::TAI);
         let epoch = Self::of(instant);
         match is_leap {
             false => Ok(epoch),
             true if scale == TimeScale::UTC && epoch.after(1.0).is_leap_second() => Ok(epoch.after(1.0)),
-            true => Err(refused()),
+            true => Err(invalid()),
         }
     }
 
     fn of(instant: Instant) -> Self {
         let nanoseconds = (instant.to_time_scale(TimeScale::TAI) - noon_of_2000()).total_nanoseconds();
-        Self { tai: nanoseconds as i64 } // years are those of this century and the last
+        Self { tai: nanoseconds as i64 } // fits, because years are limited
     }
 
-    /// Days from 2000-01-01 and seconds of UTC, as element sets give them; leap seconds from 1972 on.
+    /// Returns the epoch of a number of days from 2000-01-01 and seconds of UTC; leap seconds from 1972 on.
     pub(crate) fn of_utc(day: i64, seconds: f64) -> Self {
         let midnight = Instant::from_gregorian_utc_at_midnight(2000, 1, 1);
         Self::of(midnight + Unit::Day * day + Unit::Second * seconds)
     }
 
-    /// Modified Julian date of UTC.
+    /// Returns the epoch of a modified Julian date of UTC.
     pub(super) fn of_mjd_utc(mjd: f64) -> Self {
         Self::of_utc(mjd.floor() as i64 - MJD_2000, (mjd - mjd.floor()) * DAY)
     }
 
-    /// The instant `seconds` later.
+    /// Returns the epoch `seconds` later.
     pub(super) fn after(self, seconds: f64) -> Self {
         Self { tai: self.tai.saturating_add((seconds * 1e9).round() as i64) }
     }
 
-    /// Seconds from `earlier` until here.
+    /// Returns the seconds from `earlier` to this epoch.
     pub(crate) fn since(self, earlier: Self) -> f64 {
         (self.tai as i128 - earlier.tai as i128) as f64 * 1e-9
     }
 
-    /// Days of TAI from 2000-01-01T12:00:00 TAI: whole ones, and the part of the next.
+    /// Returns the days of TAI from 2000-01-01T12:00:00 TAI: whole days and fraction.
     pub(super) fn tai_days(self) -> (f64, f64) {
         (self.tai.div_euclid(DAY_NS) as f64, self.tai.rem_euclid(DAY_NS) as f64 / DAY_NS as f64)
     }
 
-    /// Seconds of TT from J2000.0 (2000-01-01T12:00:00 TT), `t` seconds later.
+    /// Returns the seconds of TT from J2000.0 (2000-01-01T12:00:00 TT) to `t` s after this epoch.
     pub(super) fn seconds_tt(self, t: f64) -> f64 {
         self.tai as f64 * 1e-9 + TT_MINUS_TAI + t
     }
 
-    /// Julian centuries of TT from J2000.0, likewise.
+    /// Returns the Julian centuries of TT from J2000.0 to `t` s after this epoch.
     pub(super) fn centuries(self, t: f64) -> f64 {
         self.seconds_tt(t) / (36_525.0 * DAY)
     }
 
-    /// UTC less TAI, s: a whole number, zero before 1972.
+    /// Returns UTC - TAI, s: a whole number, zero before 1972.
     pub fn utc_minus_tai(self) -> f64 {
         -f64::from(self.leap_seconds())
     }
 
-    /// TAI less UTC, s.
+    /// Returns TAI - UTC, s.
     fn leap_seconds(self) -> i32 {
-        // hifitime compares a count of TAI with instants of UTC, and steps as many seconds too early
+        // hifitime compares TAI seconds with UTC instants, so its steps are early by the leap seconds themselves
         let early = self.instant().leap_seconds_iers();
         (self.instant() - Unit::Second * i64::from(early)).leap_seconds_iers()
     }
 
-    /// Whether this is within a 60th second.
+    /// Returns true within a leap second.
     fn is_leap_second(self) -> bool {
         (1..self.after(1.0).leap_seconds()).contains(&self.leap_seconds())
     }
 
-    /// Modified Julian date of UTC, and seconds since its midnight.
+    /// Returns the modified Julian date of UTC and the seconds since midnight.
     pub(super) fn utc(self) -> (i64, f64) {
         let since_midnight = self.tai + DAY_NS / 2 + (self.utc_minus_tai() as i64) * 1_000_000_000;
         (MJD_2000 + since_midnight.div_euclid(DAY_NS), since_midnight.rem_euclid(DAY_NS) as f64 * 1e-9)
+    }
+
+    /// Returns the span of the series of nutation, Sun and Moon, 1900 to 2100, s after this epoch.
+    pub(super) fn series_span(self) -> (f64, f64) {
+        let since = self.since(Self::default());
+        (-36_525.0 * DAY - since, 36_525.0 * DAY - since)
     }
 
     fn instant(self) -> Instant {
@@ -133,7 +141,7 @@ impl Epoch {
 }
 
 impl std::fmt::Display for Epoch {
-    /// `2024-03-01T12:00:00.000000 UTC`, to the microsecond; in TAI before 1972.
+    /// Writes a text such as `2024-03-01T12:00:00.000000 UTC`, to the microsecond; in TAI before 1972.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let rounded = Self { tai: self.tai.saturating_add(500) };
         let (leap, is_leap_second) = (rounded.leap_seconds(), rounded.is_leap_second());
@@ -149,7 +157,7 @@ fn noon_of_2000() -> Instant {
     Instant::from_gregorian_tai_at_noon(2000, 1, 1)
 }
 
-/// The text before its time scale, and the scale.
+/// Splits a text into date with time, and time scale.
 fn split_scale(text: &str) -> Option<(&str, TimeScale)> {
     let scales = [
         ("Z", TimeScale::UTC),
@@ -161,7 +169,7 @@ fn split_scale(text: &str) -> Option<(&str, TimeScale)> {
     scales.iter().find_map(|(name, scale)| Some((text.strip_suffix(name)?.trim_end(), *scale)))
 }
 
-/// Year, month, day, hour, minute and second of `2024-03-01T12:00:00`, and nanoseconds.
+/// Parses year, month, day, hour, minute and second of `2024-03-01T12:00:00`, and nanoseconds.
 fn numbers(text: &str) -> Option<([u16; 6], u32)> {
     let (whole, fraction) = text.split_once('.').unwrap_or((text, "0"));
     let (date, time) = whole.split_once(['T', ' '])?;
@@ -177,6 +185,7 @@ fn numbers(text: &str) -> Option<([u16; 6], u32)> {
     Some((fields, nanoseconds))
 }
 
+/// Returns true for 1 to `longest` digits.
 fn is_number(text: &str, longest: usize) -> bool {
     (1..=longest).contains(&text.len()) && text.bytes().all(|c| c.is_ascii_digit())
 }

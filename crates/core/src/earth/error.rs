@@ -1,66 +1,64 @@
-//! What can be wrong with the turning Earth, its time or its sky.
+//! Errors of epochs, Earth rotation, Sun and Moon.
 
 use crate::number_text::{count, short, unlike};
 
-/// Refusals of the `earth` module; each carries the offending values.
+/// Errors of the `earth` module; each carries the offending values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EarthError {
-    /// A text is no instant.
+    /// A text does not represent an instant.
     #[error(
-        "epoch is '{text}': an instant and its time scale are needed, such as '2024-03-01T12:00:00 UTC' \
+        "epoch is '{text}'; expected an instant and its time scale, such as '2024-03-01T12:00:00 UTC' \
          (or TAI, TT, TDB; Z is UTC)"
     )]
     Epoch {
-        /// What was given.
+        /// Given value.
         text: String,
     },
-    /// UTC before it had leap seconds.
-    #[error(
-        "epoch is '{text}': UTC has whole leap seconds from 1972 on, give an earlier instant in TAI or TT"
-    )]
+    /// An epoch in UTC is before 1972, when UTC adopted leap seconds.
+    #[error("epoch '{text}' is before 1972, when UTC adopted leap seconds; give it in TAI or TT")]
     BeforeUtc {
-        /// What was given.
+        /// Given value.
         text: String,
     },
-    /// Something of the sky is asked for, and nobody said when the run takes place.
-    #[error("{what} needs an epoch: give the run one, such as '2024-03-01T12:00:00 UTC'")]
+    /// A quantity depends on the date, but there is no epoch.
+    #[error("{what} requires an epoch; give the run an epoch, such as '2024-03-01T12:00:00 UTC'")]
     NeedsEpoch {
-        /// What was asked for.
+        /// Name of the quantity.
         what: &'static str,
     },
-    /// An instant is outside the times for which something is known.
-    #[error("{what}: {time} s after the epoch {epoch} is outside of {from} to {to}", time = short(*time))]
+    /// An instant is outside the span in which a quantity is known.
+    #[error("{what}: {time} s after the epoch {epoch} is outside {from} to {to}", time = short(*time))]
     OutsideSpan {
-        /// What is not known then.
+        /// Name of the quantity.
         what: &'static str,
         /// Instant, s of simulation.
         time: f64,
         /// Epoch of the run.
         epoch: String,
-        /// First instant known.
+        /// First known instant.
         from: String,
-        /// Last instant known.
+        /// Last known instant.
         to: String,
     },
-    /// A time or an input is infinite or not a number.
-    #[error("{name} is {value}, a finite number is needed", value = short(*value))]
+    /// A time or an input is infinite or NaN.
+    #[error("{name} is {value}; expected a finite number", value = short(*value))]
     NotFinite {
-        /// Which input.
+        /// Name of the input.
         name: &'static str,
-        /// What was given.
+        /// Given value.
         value: f64,
     },
-    /// Earth-orientation parameters that cannot be true.
-    #[error("{name} is {value} in row {row}, {expected}", value = short(*value))]
+    /// An Earth-orientation parameter is implausible.
+    #[error("{name} is {value} in row {row}; expected {expected}", value = short(*value))]
     Parameter {
-        /// Which parameter.
+        /// Name of the parameter.
         name: &'static str,
-        /// What was given.
+        /// Given value.
         value: f64,
         /// Row of the table, from 0.
         row: usize,
-        /// What is accepted.
+        /// Accepted range.
         expected: &'static str,
     },
     /// A table of Earth-orientation parameters cannot be read.
@@ -68,22 +66,23 @@ pub enum EarthError {
     Table {
         /// Line, from 1.
         line: usize,
-        /// What is wrong there.
+        /// Problem.
         problem: String,
     },
-    /// A position is so near the Earth's centre that it has no latitude.
+    /// A position is so near the Earth's centre that its latitude is not unique.
     #[error(
-        "position is {distance} m from the Earth's centre, geodetic coordinates need at least {minimum} m",
+        "position is {distance} m from the Earth's centre, but geodetic coordinates are defined from \
+         {minimum} m outwards",
         distance = unlike(*distance, &[*minimum]), minimum = short(*minimum)
     )]
     NearCentre {
         /// Distance, m.
         distance: f64,
-        /// Smallest distance accepted, m.
+        /// Smallest accepted distance, m.
         minimum: f64,
     },
     /// The orbit's epoch and the Earth's differ.
-    #[error("the orbit's epoch is {orbit}, the run's is {run}: time zero of both must be the same instant")]
+    #[error("the epoch of the orbit is {orbit}, but that of the run is {run}; give both the same epoch")]
     OtherEpoch {
         /// Epoch of the orbit.
         orbit: String,
@@ -91,31 +90,33 @@ pub enum EarthError {
         run: String,
     },
     /// The orbit's axes and the Earth's differ.
-    #[error("the orbit has {orbit} axes, the Earth was made for {run}: make it in the orbit's")]
+    #[error(
+        "the orbit has {orbit} axes, but the Earth has {run} axes; create the Earth with the axes of the orbit"
+    )]
     OtherAxes {
         /// Axes of the orbit.
         orbit: &'static str,
         /// Axes of the Earth.
         run: &'static str,
     },
-    /// A number of a segment of a kernel that no ephemeris has.
-    #[error("{name} of a segment of the kernel is {value}, {expected}")]
+    /// A number in a segment of a kernel is implausible.
+    #[error("{name} of a segment of the kernel is {value}; expected {expected}")]
     Segment {
-        /// Which number.
+        /// Name of the number.
         name: &'static str,
-        /// What was given.
+        /// Given value.
         value: f64,
-        /// What is accepted.
+        /// Accepted range.
         expected: &'static str,
     },
-    /// Numbers do not come in the right amount.
-    #[error("{name} holds {got}, expected {expected}", got = count(*got, "number"))]
+    /// An array has the wrong length.
+    #[error("{name} holds {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength {
-        /// Which array.
+        /// Name of the array.
         name: &'static str,
-        /// Length needed.
+        /// Required length.
         expected: usize,
-        /// Length given.
+        /// Given length.
         got: usize,
     },
 }

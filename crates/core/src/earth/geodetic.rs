@@ -1,10 +1,10 @@
-//! Latitude, longitude and altitude.
+//! Geodetic coordinates.
 
 use nalgebra::Vector3;
 
-use super::EarthError;
+use super::error::EarthError;
 
-/// An oblate ellipsoid of revolution about the Earth's axis.
+/// Oblate ellipsoid of revolution about the Earth's axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid {
     /// Radius of the equator, m.
@@ -18,27 +18,27 @@ pub struct Ellipsoid {
 /// Source: NGA.STND.0036, version 1.0.0, 2014, table 3.1.
 pub const WGS84: Ellipsoid = Ellipsoid { radius: 6_378_137.0, flattening: 1.0 / 298.257_223_563 };
 
-/// A place by its latitude, longitude and altitude above an ellipsoid.
+/// Latitude, longitude and altitude on an ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geodetic {
-    /// Angle between the ellipsoid's normal and the equator, north positive, rad.
+    /// Angle between the ellipsoid's normal and the equator, positive in the north, rad.
     pub latitude: f64,
-    /// East of the zero meridian, from -π to π, rad; zero on the axis.
+    /// Longitude east of the zero meridian, -π to π, rad; zero on the axis.
     pub longitude: f64,
     /// Height along the normal, m.
     pub altitude: f64,
 }
 
-/// Nearer to the centre than this latitudes are not unique (the ellipsoid's normals meet within `a e²` = 43 km), m.
+/// Smallest distance from the centre, m; latitudes are not unique where normals meet, within `a e²` = 43 km.
 const NEAREST: f64 = 50e3;
 
 impl Geodetic {
-    /// Of a position from the Earth's centre, Earth-fixed axes, m.
+    /// Returns the coordinates of a position from the Earth's centre, Earth-fixed axes, m.
     ///
     /// # Errors
     /// [`EarthError::NearCentre`] within 50 km of the centre, [`EarthError::NotFinite`].
     ///
-    /// Source: Bowring, Survey Review 23(181), 1976, iterated: to rounding, at every altitude.
+    /// Source: Bowring, Survey Review 23(181), 1976, iterated to rounding at every altitude.
     pub fn of(position_f: &Vector3<f64>, ellipsoid: &Ellipsoid) -> Result<Self, EarthError> {
         let distance = position_f.norm();
         if !distance.is_finite() {
@@ -69,7 +69,7 @@ impl Geodetic {
         Ok(Self { latitude, longitude, altitude })
     }
 
-    /// Position from the Earth's centre, Earth-fixed axes, m.
+    /// Returns the position from the Earth's centre, Earth-fixed axes, m.
     pub fn position(&self, ellipsoid: &Ellipsoid) -> Vector3<f64> {
         let Ellipsoid { radius: a, flattening: f } = *ellipsoid;
         let e2 = f * (2.0 - f);
@@ -82,7 +82,7 @@ impl Geodetic {
     }
 }
 
-/// Sine and cosine of the angle whose tangent is `y/x`.
+/// Returns sine and cosine of the angle with tangent `y/x`.
 fn unit(y: f64, x: f64) -> (f64, f64) {
     let r = (x * x + y * y).sqrt();
     (y / r, x / r)

@@ -1,161 +1,144 @@
-//! The Earth as the inertial axes see it: when, how it turns, and where Sun and Moon are.
+//! Rotation of the Earth, time scales, and positions of Sun and Moon.
 //!
-//! `I` has inertial axes, `F` is fixed in the turning Earth (ITRF, or a stand-in for it).
+//! `I` has inertial axes; `F` is fixed in the rotating Earth (ITRF, or a simple substitute for it).
 
+mod arrays;
+mod axes;
+mod chebyshev;
 mod epoch;
 mod error;
 mod geodetic;
-mod kernel;
-mod many;
 mod moon_table;
 mod nutation_table;
 mod orientation;
 mod parameters;
 mod parameters_file;
-mod pieces;
 mod precession;
 mod rotation;
 mod series;
-mod sky;
+mod spice;
+mod sun_moon;
+mod sun_moon_series;
 mod sun_table;
 
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
+pub use axes::Axes;
 pub use epoch::Epoch;
 pub use error::EarthError;
 pub use geodetic::{Ellipsoid, Geodetic, WGS84};
-pub use kernel::{Kernel, KernelSegment};
 use orientation::Orientation;
 pub use parameters::{EarthParameterRow, EarthParameters};
-use sky::Sky;
+pub use rotation::ROTATION_RATE;
+pub use spice::{SpiceKernel, SpiceSegment};
+use sun_moon::SunMoon;
 
-/// Rate of the Earth's rotation, rad/s.
+/// Model of the Earth in a run: rotation, Sun and Moon as pure functions of time.
 ///
-/// Source: IERS Conventions (2010), Technical Note 36, equation 5.15: `2π 1.002 737 811 911 354 48` a day of UT1.
-pub const ROTATION_RATE: f64 = 7.292_115_146_706_979e-5;
-
-/// Inertial axes that an orbit is given in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Axes {
-    /// Geocentric celestial reference frame; for other planets any axes that do not turn.
-    #[default]
-    Gcrf,
-    /// True equator, mean equinox of date: SGP4's; a third of a degree from GCRF in 2024, and growing.
-    Teme,
-}
-
-impl Axes {
-    /// `GCRF` or `TEME`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Gcrf => "GCRF",
-            Self::Teme => "TEME",
-        }
-    }
-}
-
-/// The turning Earth during a run; every answer depends on the time alone.
+/// `arrays.rs` holds the methods for many instants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Earth {
-    turning: Turning,
-    sky: Option<Sky>,
+    rotation: Rotation,
+    sun_moon: Option<SunMoon>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Turning {
-    /// Evenly about z of `I`, whose axes matter to the sky.
+enum Rotation {
+    /// Uniform rotation about z of `I`; `inertial` defines these axes for Sun and Moon.
     AboutZ { angle: f64, rate: f64, inertial: Option<Box<Orientation>> },
-    /// As the IERS has it.
+    /// Rotation by IAU 2006 and the Earth-orientation parameters of the IERS.
     Iau2006(Box<Orientation>),
 }
 
 impl Earth {
-    /// An Earth that turns evenly about z of `I`: by `angle`, rad, at the start of the run, at `rate`, rad/s.
+    /// Returns an Earth that rotates uniformly about z of `I`: `angle`, rad, at time zero and `rate`, rad/s.
     pub fn about_z(angle: f64, rate: f64) -> Self {
-        Self { turning: Turning::AboutZ { angle, rate, inertial: None }, sky: None }
+        Self { rotation: Rotation::AboutZ { angle, rate, inertial: None }, sun_moon: None }
     }
 
-    /// The Earth of IAU 2006 and 2000A from `epoch` on, in GCRF axes: its pole to 2 mas (6 cm on the ground).
+    /// Returns the Earth of IAU 2006/2000A with time zero at `epoch`, in GCRF axes; its pole is within 2 mas (6 cm).
     ///
     /// # Errors
-    /// [`EarthError::Parameter`] and its kin for parameters that cannot be true, [`EarthError::OutsideSpan`] where
-    /// their table does not hold the epoch.
+    /// [`EarthError::Parameter`] and [`EarthError::WrongLength`] for invalid parameters; [`EarthError::OutsideSpan`] if
+    /// their table does not contain the epoch.
     pub fn new(epoch: Epoch, parameters: &EarthParameters) -> Result<Self, EarthError> {
-        let orientation = Orientation::new(epoch, Axes::Gcrf, parameters, years(epoch))?;
-        let earth =
-            Self { turning: Turning::Iau2006(Box::new(orientation)), sky: Some(Sky::new(epoch, None)) };
+        let orientation = Orientation::new(epoch, Axes::Gcrf, parameters, epoch.series_span())?;
+        let earth = Self {
+            rotation: Rotation::Iau2006(Box::new(orientation)),
+            sun_moon: Some(SunMoon::new(epoch, None)),
+        };
         earth.covers(0.0)?;
         Ok(earth)
     }
 
-    /// The same Earth with time zero at `epoch`: one that turns about z gets a Sun and a Moon, in GCRF axes.
+    /// Returns the same Earth with time zero at `epoch`; this adds Sun and Moon in GCRF axes to a uniform rotation.
     pub fn with_epoch(mut self, epoch: Epoch) -> Self {
-        if let Turning::AboutZ { inertial, .. } = &mut self.turning {
-            *inertial = Some(Box::new(Orientation::of_axes(epoch, years(epoch))));
+        if let Rotation::AboutZ { inertial, .. } = &mut self.rotation {
+            *inertial = Some(Box::new(Orientation::of_axes(epoch, epoch.series_span())));
         }
-        Self { sky: Some(Sky::new(epoch, None)), ..self }
+        Self { sun_moon: Some(SunMoon::new(epoch, None)), ..self }
     }
 
-    /// The same Earth with Sun and Moon as a kernel has them.
+    /// Returns the same Earth with the positions of Sun and Moon of a SPICE kernel.
     ///
     /// # Errors
-    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] where the kernel does not hold it, with eight days at least.
-    pub fn with_kernel(self, kernel: Kernel) -> Result<Self, EarthError> {
+    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] if the kernel does not cover eight days from the epoch.
+    pub fn with_kernel(self, kernel: SpiceKernel) -> Result<Self, EarthError> {
         let what = "a kernel of Sun and Moon";
         let epoch = self.epoch().ok_or(EarthError::NeedsEpoch { what })?;
-        let sky = Sky::new(epoch, Some(Arc::new(kernel)));
-        within(what, 0.0, epoch, sky.span)?;
-        Ok(Self { sky: Some(sky), ..self })
+        let sun_moon = SunMoon::new(epoch, Some(Arc::new(kernel)));
+        check_span(what, 0.0, epoch, sun_moon.span)?;
+        Ok(Self { sun_moon: Some(sun_moon), ..self })
     }
 
-    /// The same Earth seen in other axes.
+    /// Returns the same Earth with other inertial axes.
     pub fn in_axes(&self, axes: Axes) -> Self {
-        let turning = match &self.turning {
-            Turning::AboutZ { angle, rate, inertial } => {
+        let rotation = match &self.rotation {
+            Rotation::AboutZ { angle, rate, inertial } => {
                 let inertial = inertial.as_ref().map(|inertial| Box::new(inertial.in_axes(axes)));
-                Turning::AboutZ { angle: *angle, rate: *rate, inertial }
+                Rotation::AboutZ { angle: *angle, rate: *rate, inertial }
             }
-            Turning::Iau2006(orientation) => Turning::Iau2006(Box::new(orientation.in_axes(axes))),
+            Rotation::Iau2006(orientation) => Rotation::Iau2006(Box::new(orientation.in_axes(axes))),
         };
-        Self { turning, sky: self.sky.as_ref().map(Sky::anew) }
+        Self { rotation, sun_moon: self.sun_moon.as_ref().map(SunMoon::with_empty_cache) }
     }
 
-    /// Axes of `I`; none for an Earth that turns about z without an epoch, whatever they are.
+    /// Returns the axes of `I`; `None` for a uniform rotation without an epoch, which fits any axes.
     pub fn axes(&self) -> Option<Axes> {
-        match &self.turning {
-            Turning::AboutZ { inertial, .. } => inertial.as_ref().map(|inertial| inertial.axes()),
-            Turning::Iau2006(orientation) => Some(orientation.axes()),
+        match &self.rotation {
+            Rotation::AboutZ { inertial, .. } => inertial.as_ref().map(|inertial| inertial.axes()),
+            Rotation::Iau2006(orientation) => Some(orientation.axes()),
         }
     }
 
-    /// Time zero of the run.
+    /// Returns time zero of the run.
     pub fn epoch(&self) -> Option<Epoch> {
-        self.sky.as_ref().map(|sky| sky.epoch)
+        self.sun_moon.as_ref().map(|sun_moon| sun_moon.epoch)
     }
 
-    /// Whether all that turns the Earth is known at `t` seconds of simulation; asked once before a run.
+    /// Checks that the rotation of the Earth is known at `t` s of simulation; called once before a run.
     ///
     /// # Errors
-    /// [`EarthError::OutsideSpan`] outside of the table of parameters, or of the years 1900 to 2100.
+    /// [`EarthError::OutsideSpan`] outside the table of parameters or the years 1900 to 2100.
     pub fn covers(&self, t: f64) -> Result<(), EarthError> {
         if !t.is_finite() {
             return Err(EarthError::NotFinite { name: "time", value: t });
         }
         let Some(epoch) = self.epoch() else { return Ok(()) };
-        let table = match &self.turning {
-            Turning::AboutZ { .. } => None,
-            Turning::Iau2006(orientation) => orientation.parameters().span(),
+        let table = match &self.rotation {
+            Rotation::AboutZ { .. } => None,
+            Rotation::Iau2006(orientation) => orientation.parameters().span(),
         };
-        within("the years of the series", t, epoch, years(epoch))?;
-        table.map_or(Ok(()), |span| within("the Earth-orientation table", t, epoch, span))
+        check_span("the years of the series", t, epoch, epoch.series_span())?;
+        table.map_or(Ok(()), |span| check_span("the Earth-orientation table", t, epoch, span))
     }
 
-    /// Whether an orbit in `axes`, whose time zero is `epoch`, is one around this Earth.
+    /// Checks that an orbit in `axes` with time zero at `epoch` fits this Earth.
     ///
     /// # Errors
     /// [`EarthError::OtherAxes`], and [`EarthError::OtherEpoch`] for epochs more than a millisecond apart.
-    pub fn fits(&self, axes: Axes, epoch: Option<Epoch>) -> Result<(), EarthError> {
+    pub fn check_orbit(&self, axes: Axes, epoch: Option<Epoch>) -> Result<(), EarthError> {
         if let Some(own) = self.axes().filter(|own| *own != axes) {
             return Err(EarthError::OtherAxes { orbit: axes.name(), run: own.name() });
         }
@@ -167,78 +150,72 @@ impl Earth {
         }
     }
 
-    /// Takes `I` components to `F` components, at `t` seconds of simulation.
+    /// Returns the rotation from `I` to `F` components at `t` s of simulation.
     ///
-    /// Where the Earth does not [cover](Self::covers) `t`, parameters and pole are those of the nearest time it does.
+    /// Outside the span that the Earth [covers](Self::covers), parameters and pole are those of its nearest end.
     pub fn rot_fi(&self, t: f64) -> Matrix3<f64> {
-        match &self.turning {
-            Turning::AboutZ { angle, rate, .. } => rotation::r3(angle + rate * t),
-            Turning::Iau2006(orientation) => orientation.rot_fi(t),
+        match &self.rotation {
+            Rotation::AboutZ { angle, rate, .. } => rotation::r3(angle + rate * t),
+            Rotation::Iau2006(orientation) => orientation.rot_fi(t),
         }
     }
 
-    /// Angular velocity of `F` in `I`, axes of `I`, rad/s.
+    /// Returns the angular velocity of `F` in `I`, axes of `I`, rad/s.
     pub fn angular_velocity(&self, t: f64) -> Vector3<f64> {
-        match &self.turning {
-            Turning::AboutZ { rate, .. } => Vector3::z() * *rate,
-            Turning::Iau2006(orientation) => orientation.angular_velocity(t),
+        match &self.rotation {
+            Rotation::AboutZ { rate, .. } => Vector3::z() * *rate,
+            Rotation::Iau2006(orientation) => orientation.angular_velocity(t),
         }
     }
 
-    /// Position of the Sun's centre from the Earth's, axes of `I`, m: where it is at `t`, without light time.
+    /// Returns the geometric position of the Sun from the Earth's centre, axes of `I`, m, without light time.
     ///
-    /// Within 2″ and 4e-6 of its distance of JPL's DE421, 1900 to 2050, where no kernel is given.
+    /// Without a kernel, direction and distance are within 2″ and 4e-6 of JPL's DE421 from 1900 to 2050.
     ///
     /// # Errors
-    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] outside of 1900 to 2100.
+    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] outside 1900 to 2100.
     pub fn sun(&self, t: f64) -> Result<Vector3<f64>, EarthError> {
-        let sky = self.sky_at("the Sun", t)?;
-        Ok(sky.sun(t, |t| self.rot_ig(t)))
+        let sun_moon = self.sun_moon_at("the Sun", t)?;
+        Ok(sun_moon.sun(t, |t| self.rot_ig(t)))
     }
 
-    /// Position of the Moon's centre from the Earth's, axes of `I`, m; likewise.
+    /// Returns the geometric position of the Moon from the Earth's centre, axes of `I`, m, without light time.
     ///
-    /// Within 10″ and 3e-5 of its distance of JPL's DE421, 1900 to 2050, where no kernel is given.
+    /// Without a kernel, direction and distance are within 10″ and 3e-5 of JPL's DE421 from 1900 to 2050.
     ///
     /// # Errors
-    /// As [`Earth::sun`].
+    /// Those of [`Earth::sun`].
     pub fn moon(&self, t: f64) -> Result<Vector3<f64>, EarthError> {
-        let sky = self.sky_at("the Moon", t)?;
-        Ok(sky.moon(t, |t| self.rot_ig(t)))
+        let sun_moon = self.sun_moon_at("the Moon", t)?;
+        Ok(sun_moon.moon(t, |t| self.rot_ig(t)))
     }
 
-    /// Modified Julian date of UTC, and seconds since its midnight; with the leap seconds of the epoch.
+    /// Returns the modified Julian date of UTC and the seconds since midnight, with the leap seconds of the epoch.
     ///
     /// # Errors
     /// [`EarthError::NeedsEpoch`].
     pub fn utc(&self, t: f64) -> Result<(i64, f64), EarthError> {
-        self.sky.as_ref().map(|sky| sky.utc(t)).ok_or(EarthError::NeedsEpoch { what: "UTC" })
+        self.sun_moon.as_ref().map(|sun_moon| sun_moon.utc(t)).ok_or(EarthError::NeedsEpoch { what: "UTC" })
     }
 
-    fn sky_at(&self, what: &'static str, t: f64) -> Result<&Sky, EarthError> {
-        let sky = self.sky.as_ref().ok_or(EarthError::NeedsEpoch { what })?;
-        within(what, t, sky.epoch, sky.span).map(|()| sky)
+    fn sun_moon_at(&self, what: &'static str, t: f64) -> Result<&SunMoon, EarthError> {
+        let sun_moon = self.sun_moon.as_ref().ok_or(EarthError::NeedsEpoch { what })?;
+        check_span(what, t, sun_moon.epoch, sun_moon.span).map(|()| sun_moon)
     }
 
-    /// Takes GCRF components to those of `I`.
+    /// Returns the rotation from GCRF to `I` components.
     fn rot_ig(&self, t: f64) -> Matrix3<f64> {
-        match &self.turning {
-            Turning::AboutZ { inertial, .. } => {
+        match &self.rotation {
+            Rotation::AboutZ { inertial, .. } => {
                 inertial.as_ref().map_or_else(Matrix3::identity, |inertial| inertial.rot_ig(t))
             }
-            Turning::Iau2006(orientation) => orientation.rot_ig(t),
+            Rotation::Iau2006(orientation) => orientation.rot_ig(t),
         }
     }
 }
 
-/// The years 1900 to 2100, s of simulation.
-fn years(epoch: Epoch) -> (f64, f64) {
-    let since = epoch.since(Epoch::default());
-    (-36_525.0 * epoch::DAY - since, 36_525.0 * epoch::DAY - since)
-}
-
-/// Refuses an instant outside of what is known.
-fn within(what: &'static str, t: f64, epoch: Epoch, (from, to): (f64, f64)) -> Result<(), EarthError> {
+/// Rejects an instant outside the span `from` to `to`, s of simulation, in which `what` is known.
+fn check_span(what: &'static str, t: f64, epoch: Epoch, (from, to): (f64, f64)) -> Result<(), EarthError> {
     if (from..=to).contains(&t) {
         return Ok(());
     }

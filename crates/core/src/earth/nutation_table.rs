@@ -4,7 +4,7 @@
 /// `Δε` by cosine, cosine × T and sine, µas.
 ///
 /// Source: Mathews, Herring and Buffett, J. Geophysical Research 107(B4), 2002; IERS Conventions (2010),
-/// tables 5.3a and 5.3b, as PyPI's skyfield carries them.
+/// tables 5.3a and 5.3b, from the Python package skyfield.
 pub(super) const NUTATION: [([i8; 5], [f64; 6]); 89] = [
     ([0, 0, 0, 0, 1], [-17_206_416.1, -17_466.6, 3_338.6, 9_205_233.1, 908.6, 1_537.7]),
     ([0, 0, 2, -2, 2], [-1_317_090.6, -167.5, -1_369.6, 573_033.6, -301.5, -458.7]),

@@ -1,31 +1,32 @@
-//! How the Earth is turned in inertial axes: Earth rotation angle, the pole of date, polar motion.
+//! Orientation of the Earth: Earth rotation angle, pole of date, polar motion.
 
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
 
+use super::axes::Axes;
+use super::chebyshev::PiecewiseChebyshev;
 use super::epoch::{DAY, Epoch};
+use super::error::EarthError;
 use super::parameters::{EarthParameters, Parameters};
-use super::pieces::Pieces;
 use super::precession::{pole, polynomial};
-use super::rotation::r3;
-use super::{Axes, EarthError, ROTATION_RATE};
+use super::rotation::{ROTATION_RATE, r3};
 
-/// Length of the pieces over which the pole is kept, s.
-const PIECE: f64 = 4.0 * DAY;
+/// Length of the Chebyshev intervals of the pole, s.
+const INTERVAL: f64 = 4.0 * DAY;
 
-/// The Earth of IAU 2006 (precession) and 2000A (nutation), turned by UT1.
+/// Orientation of the Earth by IAU 2006 (precession) and 2000A (nutation).
 #[derive(Clone, Debug)]
 pub(super) struct Orientation {
     epoch: Epoch,
     axes: Axes,
-    /// Earth rotation angle at time zero if UT1 were TAI, rad.
+    /// Earth rotation angle at time zero for UT1 = TAI, rad.
     angle: f64,
     parameters: Parameters,
-    poles: Pieces<10>,
+    poles: PiecewiseChebyshev<10>,
 }
 
 impl Orientation {
-    /// For a run from `epoch`, asked for within `span`, s of simulation.
+    /// Returns the orientation for a run from `epoch` that needs the pole within `span`, s of simulation.
     pub(super) fn new(
         epoch: Epoch,
         axes: Axes,
@@ -37,21 +38,21 @@ impl Orientation {
 
     fn with(epoch: Epoch, axes: Axes, parameters: Parameters, span: (f64, f64)) -> Self {
         // θ = 2π (0.779 057 273 264 0 + 1.002 737 811 911 354 48 Tu), Tu in days of UT1 from J2000.0
-        // (IERS Conventions 2010, eq. 5.15), whole turns left out
+        // (IERS Conventions 2010, eq. 5.15), without whole turns
         let (days, part) = epoch.tai_days();
         let turns = 0.779_057_273_264 + part + 0.002_737_811_911_354_48 * (days + part);
         let angle = turns.fract() * TAU;
-        Self { epoch, axes, angle, parameters, poles: Pieces::new(span.0, span.1, PIECE) }
+        Self { epoch, axes, angle, parameters, poles: PiecewiseChebyshev::new(span.0, span.1, INTERVAL) }
     }
 
-    /// With UT1 that is UTC, and a pole that stays: for the axes alone.
+    /// Returns an orientation with UT1 = UTC and no polar motion, which defines inertial axes only.
     pub(super) fn of_axes(epoch: Epoch, span: (f64, f64)) -> Self {
         let ut1_minus_tai = epoch.utc_minus_tai();
         let parameters = Parameters::Constant { ut1_minus_tai, polar_motion: [0.0; 2] };
         Self::with(epoch, Axes::Gcrf, parameters, span)
     }
 
-    /// The same Earth in other axes.
+    /// Returns the same orientation with other inertial axes.
     pub(super) fn in_axes(&self, axes: Axes) -> Self {
         Self { axes, ..self.clone() }
     }
@@ -64,25 +65,25 @@ impl Orientation {
         &self.parameters
     }
 
-    /// `X, Y, s` at `t`, as precession and nutation have them.
+    /// Returns `X, Y, s` at `t` from precession and nutation.
     fn pole_at(&self, t: f64) -> Vector3<f64> {
         pole(self.epoch.centuries(t))
     }
 
-    /// Earth rotation angle, rad, and its rate, rad/s.
+    /// Returns the Earth rotation angle, rad, and its rate, rad/s.
     fn rotation_angle(&self, t: f64) -> (f64, f64) {
         let (ut1_minus_tai, rate) = self.parameters.ut1_minus_tai(t);
         (self.angle + ROTATION_RATE * (t + ut1_minus_tai), ROTATION_RATE * (1.0 + rate))
     }
 
-    /// Takes `I` components to those of the Earth: `W R₃(θ - s) Mᵀ` from GCRF, `W R₃(θ₈₂)` from TEME.
+    /// Returns the rotation from `I` to `F` components: `W R₃(θ - s) Mᵀ` from GCRF, `W R₃(θ₈₂)` from TEME.
     ///
     /// `Mᵀ R₃(s)` are the celestial intermediate axes, of pole `X, Y`; `θ₈₂` is the mean sidereal time of 1982.
     ///
     /// Source: IERS Conventions (2010), eq. 5.1 and 5.10; Vallado and others, AIAA 2006-6753, for TEME.
     pub(super) fn rot_fi(&self, t: f64) -> Matrix3<f64> {
         let (angle, _) = self.rotation_angle(t);
-        let wobble = self.wobble(t);
+        let wobble = self.polar_motion(t);
         match self.axes {
             Axes::Teme => wobble * r3(angle + self.sidereal_excess(t)),
             Axes::Gcrf => {
@@ -92,14 +93,14 @@ impl Orientation {
         }
     }
 
-    /// Polar motion, `R₁(-y_p) R₂(-x_p)`, of angles so small that their cubes vanish; the 0.05 mas of `s'` are left out.
-    fn wobble(&self, t: f64) -> Matrix3<f64> {
+    /// Returns the polar motion `R₁(-y_p) R₂(-x_p)` to second order in the angles; `s'` (0.05 mas) is neglected.
+    fn polar_motion(&self, t: f64) -> Matrix3<f64> {
         let [x, y] = self.parameters.polar_motion(t);
         let (cx, cy) = (1.0 - 0.5 * x * x, 1.0 - 0.5 * y * y);
         Matrix3::new(cx, 0.0, x, x * y, cy, -cx * y, -cy * x, y, cx * cy)
     }
 
-    /// Mean sidereal time of 1982 less the Earth rotation angle, rad.
+    /// Returns the mean sidereal time of 1982 minus the Earth rotation angle, rad.
     ///
     /// Source: Aoki and others, Astronomy and Astrophysics 105, 1982, eq. 14.
     fn sidereal_excess(&self, t: f64) -> f64 {
@@ -115,7 +116,7 @@ impl Orientation {
         polynomial(&TURNS, ut1 / 36_525.0) * TAU
     }
 
-    /// Takes GCRF components to those of `I`.
+    /// Returns the rotation from GCRF to `I` components.
     pub(super) fn rot_ig(&self, t: f64) -> Matrix3<f64> {
         match self.axes {
             Axes::Gcrf => Matrix3::identity(),
@@ -127,14 +128,14 @@ impl Orientation {
         }
     }
 
-    /// Angular velocity of the Earth in `I`, axes of `I`, rad/s.
+    /// Returns the angular velocity of the Earth in `I`, axes of `I`, rad/s.
     ///
-    /// `ω = θ̇ p + p × ṗ`: the origin on the equator has no part along the pole `p`. What the wobble adds is
-    /// below 1e-12 rad/s.
+    /// `ω = θ̇ p + p × ṗ` with the pole `p`; the CIO does not rotate about `p`. The rate of polar motion, below
+    /// 1e-12 rad/s, is neglected.
     pub(super) fn angular_velocity(&self, t: f64) -> Vector3<f64> {
         let (_, rate) = self.rotation_angle(t);
         match self.axes {
-            Axes::Teme => Vector3::z() * rate, // θ₈₂ runs ahead of θ by 7e-12 rad/s
+            Axes::Teme => Vector3::z() * rate, // θ̇₈₂ exceeds θ̇ by 7e-12 rad/s
             Axes::Gcrf => {
                 let (p, dp) = self.poles.with_rate(t, |t| self.pole_at(t));
                 let z = (1.0 - p.x * p.x - p.y * p.y).sqrt();
@@ -148,12 +149,12 @@ impl Orientation {
 
 impl PartialEq for Orientation {
     fn eq(&self, other: &Self) -> bool {
-        // the rest follows from these
+        // the other fields follow from these
         (self.epoch, self.axes, &self.parameters) == (other.epoch, other.axes, &other.parameters)
     }
 }
 
-/// Takes GCRF components to the equator of the pole `X, Y`: `Mᵀ` of eq. 5.10 with `a = 1/(1 + Z)`.
+/// Returns the rotation from GCRF to the equator of the pole `X, Y`: `Mᵀ` of eq. 5.10 with `a = 1/(1 + Z)`.
 fn equator(x: f64, y: f64) -> Matrix3<f64> {
     let z = (1.0 - x * x - y * y).sqrt();
     let a = 1.0 / (1.0 + z);

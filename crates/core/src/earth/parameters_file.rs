@@ -1,16 +1,17 @@
-//! Files of Earth-orientation parameters.
+//! Reader of files of Earth-orientation parameters.
 
+use super::error::EarthError;
+use super::parameters::{EarthParameterRow, EarthParameters};
 use super::precession::ARC_SECOND;
-use super::{EarthError, EarthParameterRow, EarthParameters};
 
-/// Columns of a table of ours, in its first line.
+/// Header of the CSV format.
 const HEADER: [&str; 4] = ["mjd", "x_arcsec", "y_arcsec", "ut1_minus_utc_s"];
 
 impl EarthParameters {
-    /// Reads a table: the IERS' `finals2000A` or `eopc04`, or lines of numbers between commas below the header
+    /// Reads a table in the IERS format `finals2000A` or `eopc04`, or CSV with the header
     /// `mjd,x_arcsec,y_arcsec,ut1_minus_utc_s`.
     ///
-    /// Rows of `finals2000A` that hold no UT1 yet end the table.
+    /// The table ends at the first row of `finals2000A` without UT1.
     ///
     /// # Errors
     /// [`EarthError::Table`] with the line.
@@ -19,20 +20,20 @@ impl EarthParameters {
         let lines: Vec<(usize, &str)> = text.lines().enumerate().collect();
         let mut lines = lines.iter().filter(is_data).copied().peekable();
         let Some((index, first)) = lines.peek().copied() else {
-            return Err(EarthError::Table { line: 1, problem: "the file holds no rows".to_owned() });
+            return Err(EarthError::Table { line: 1, problem: "the file has no rows".to_owned() });
         };
         let read = if first.contains(',') {
             let names: Vec<_> = first.split(',').map(str::trim).collect();
             if names != HEADER {
-                let problem = format!("the header is '{first}', '{}' is needed", HEADER.join(","));
+                let problem = format!("the header is '{first}'; expected '{}'", HEADER.join(","));
                 return Err(EarthError::Table { line: index + 1, problem });
             }
             lines.next();
-            between_commas
+            csv_row
         } else if first.get(16..17).is_some_and(|flag| matches!(flag, "I" | "P")) {
-            finals
+            finals_row
         } else {
-            c04
+            c04_row
         };
         let mut rows = Vec::new();
         for (index, line) in lines {
@@ -40,7 +41,8 @@ impl EarthParameters {
                 Ok(Some(row)) => rows.push(row),
                 Ok(None) if !rows.is_empty() => break,
                 Ok(None) | Err(()) => {
-                    let problem = format!("'{}' is no row of MJD, pole and UT1 - UTC", line.trim_end());
+                    let problem =
+                        format!("the row is '{}'; expected MJD, polar motion and UT1 - UTC", line.trim_end());
                     return Err(EarthError::Table { line: index + 1, problem });
                 }
             }
@@ -49,27 +51,27 @@ impl EarthParameters {
     }
 }
 
-/// A row; `None` where it holds nothing yet.
-type Read = Result<Option<EarthParameterRow>, ()>;
+/// Result of parsing one row; `None` for a row without values.
+type ParsedRow = Result<Option<EarthParameterRow>, ()>;
 
 fn number(text: &str) -> Result<f64, ()> {
     text.trim().parse().map_err(|_| ())
 }
 
-fn row(mjd: &str, x: &str, y: &str, ut1: &str) -> Read {
+fn row(mjd: &str, x: &str, y: &str, ut1: &str) -> ParsedRow {
     let polar_motion = [number(x)? * ARC_SECOND, number(y)? * ARC_SECOND];
     Ok(Some(EarthParameterRow { mjd: number(mjd)?, polar_motion, ut1_minus_utc: number(ut1)? }))
 }
 
-fn between_commas(line: &str) -> Read {
+fn csv_row(line: &str) -> ParsedRow {
     match line.split(',').collect::<Vec<_>>()[..] {
         [mjd, x, y, ut1] => row(mjd, x, y, ut1),
         _ => Err(()),
     }
 }
 
-/// Columns 8-15 MJD, 19-27 and 38-46 pole, 59-68 UT1 - UTC.
-fn finals(line: &str) -> Read {
+/// Parses `finals2000A`: columns 8-15 MJD, 19-27 and 38-46 polar motion, 59-68 UT1 - UTC.
+fn finals_row(line: &str) -> ParsedRow {
     let part = |from: usize, to: usize| line.get(from - 1..to.min(line.len())).unwrap_or("");
     let (x, y, ut1) = (part(19, 27), part(38, 46), part(59, 68));
     if [x, y, ut1].iter().any(|text| text.trim().is_empty()) {
@@ -78,8 +80,8 @@ fn finals(line: &str) -> Read {
     row(part(8, 15), x, y, ut1)
 }
 
-/// Year, month, day, in newer files the hour, MJD, pole, UT1 - UTC, and more.
-fn c04(line: &str) -> Read {
+/// Parses `eopc04`: year, month, day, in newer files hour, MJD, polar motion, UT1 - UTC, other columns.
+fn c04_row(line: &str) -> ParsedRow {
     let parts: Vec<_> = line.split_whitespace().collect();
     let has_hour = parts.get(3).and_then(|hour| hour.parse::<f64>().ok()).is_some_and(|hour| hour < 24.0);
     match parts.get(if has_hour { 4 } else { 3 }..) {

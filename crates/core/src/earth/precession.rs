@@ -1,4 +1,4 @@
-//! Where the Earth's pole points: precession and nutation.
+//! Precession and nutation of the Earth's pole.
 //!
 //! Every angle is in rad, `T` in Julian centuries of TT from J2000.0 (2000-01-01T12:00:00 TT).
 
@@ -10,12 +10,12 @@ use super::rotation::{r1, r3};
 /// One arc second, rad.
 pub(super) const ARC_SECOND: f64 = std::f64::consts::PI / 648_000.0;
 
-/// `c₀ + c₁ T + c₂ T² + …`
+/// Returns `c₀ + c₁ T + c₂ T² + …`.
 pub(super) fn polynomial(coefficients: &[f64], t: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
-/// Fundamental arguments of the Moon's and the Sun's motion: `l, l', F, D, Ω`.
+/// Returns the fundamental arguments of the motion of Moon and Sun: `l, l', F, D, Ω`.
 ///
 /// Source: Simon and others, Astronomy and Astrophysics 282, 1994; IERS Conventions (2010), eq. 5.43.
 pub(super) fn arguments(t: f64) -> [f64; 5] {
@@ -29,7 +29,7 @@ pub(super) fn arguments(t: f64) -> [f64; 5] {
     ARC_SECONDS.map(|c| (polynomial(&c, t) % 1_296_000.0) * ARC_SECOND)
 }
 
-/// Angles of the mean ecliptic and equator of date, Fukushima and Williams: `γ̄, φ̄, ψ̄, ε_A`; frame bias included.
+/// Returns the Fukushima-Williams angles of mean ecliptic and equator of date, `γ̄, φ̄, ψ̄, ε_A`, with frame bias.
 ///
 /// Source: Capitaine and others, Astronomy and Astrophysics 450, 2006, eq. 37-40 (IAU 2006).
 pub(super) fn precession(t: f64) -> [f64; 4] {
@@ -42,7 +42,7 @@ pub(super) fn precession(t: f64) -> [f64; 4] {
     ARC_SECONDS.map(|c| polynomial(&c, t) * ARC_SECOND)
 }
 
-/// Nutation in longitude and obliquity, `Δψ, Δε`: the lunisolar terms of at least 0.1 mas.
+/// Returns the nutation in longitude and obliquity, `Δψ, Δε`, from the lunisolar terms of at least 0.1 mas.
 fn nutation(t: f64, arguments: &[f64; 5]) -> [f64; 2] {
     let mut sum = [0.0; 2];
     for (multiples, c) in &NUTATION {
@@ -55,7 +55,7 @@ fn nutation(t: f64, arguments: &[f64; 5]) -> [f64; 2] {
     sum.map(|x| x * 1e-6 * ARC_SECOND)
 }
 
-/// The celestial intermediate pole's coordinates in GCRF and the origin's locator: `X, Y, s`.
+/// Returns the coordinates of the celestial intermediate pole in GCRF and the CIO locator: `X, Y, s`.
 ///
 /// `X` and `Y` are the last row of `R₁(-ε_A - Δε) R₃(-ψ̄ - Δψ) R₁(φ̄) R₃(γ̄)`.
 ///
@@ -65,6 +65,7 @@ pub(super) fn pole(t: f64) -> Vector3<f64> {
     let arguments = arguments(t);
     let [gamma, phi, psi, epsilon] = precession(t);
     let [d_psi, d_epsilon] = nutation(t, &arguments);
+    // R₁(-ε_A - Δε) R₃(-ψ̄ - Δψ) R₁(φ̄) R₃(γ̄)
     let equator = r1(-epsilon - d_epsilon) * r3(-psi - d_psi) * r1(phi) * r3(gamma);
     let (x, y) = (equator[(2, 0)], equator[(2, 1)]);
     // s = -XY/2 + polynomial + Σ C sin θ

@@ -1,19 +1,23 @@
-//! A wrench fixed in a body, on for a while.
+//! Effect: a wrench fixed in a body and active during an interval.
 
 use nalgebra::Vector3;
 
-use super::{Effect, EnvironmentError, Scene, Wrench, Wrenches};
+use super::body_index::BodyIndex;
+use super::effect::Effect;
+use super::error::EnvironmentError;
+use super::scene::Scene;
+use super::wrenches::{Wrench, Wrenches};
 use crate::model::Model;
 
-/// Constant force and torque in a body's own axes, on from `start` until `end`.
+/// Constant force and torque in body axes, active from `start` until `end`.
 ///
-/// In `W` about the centre of mass: `F = R f`, `T = R τ + (o + R p - c) × F`, with `R` the body's
-/// rotation, `o` its origin, `p` the point of application in body axes, `c` the centre of mass.
-/// On for a step iff the step's middle lies in `[start, end)`: since both are events, a step
-/// never straddles a switch.
+/// In `W` about the centre of mass: `F = R f`, `T = R τ + (o + R p - c) × F`, with `R` the rotation of the body,
+/// `o` its origin, `p` the point of application in body axes and `c` the centre of mass.
+/// The wrench is active in a step if the middle of the step lies in `[start, end)`. Both ends are events, so
+/// no step contains a switch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyWrench {
-    body: usize,
+    body: BodyIndex,
     force: Vector3<f64>,
     torque: Vector3<f64>,
     point: Vector3<f64>,
@@ -22,20 +26,24 @@ pub struct BodyWrench {
 }
 
 impl BodyWrench {
-    /// Force (N) at the body's origin and torque (N m) on the body with index `body`, body axes,
-    /// always on.
+    /// Returns a force (N) at the origin of `body` and a torque (N m), both in body axes and always active.
+    ///
+    /// A plain number is a body of the first system.
     ///
     /// # Errors
     /// [`EnvironmentError::NotFinite`].
-    pub fn new(body: usize, force: Vector3<f64>, torque: Vector3<f64>) -> Result<Self, EnvironmentError> {
-        finite("force", &force)?;
-        finite("torque", &torque)?;
+    pub fn new(
+        body: impl Into<BodyIndex>,
+        force: Vector3<f64>,
+        torque: Vector3<f64>,
+    ) -> Result<Self, EnvironmentError> {
+        check_finite("force", &force)?;
+        check_finite("torque", &torque)?;
         let (start, end) = (f64::NEG_INFINITY, f64::INFINITY);
-        Ok(Self { body, force, torque, point: Vector3::zeros(), start, end })
+        Ok(Self { body: body.into(), force, torque, point: Vector3::zeros(), start, end })
     }
 
-    /// Force (N) at the origin of a frame (index) and torque (N m), both in the frame's axes, always
-    /// on.
+    /// Returns a force (N) at the origin of a frame (index) and a torque (N m), both in frame axes and always active.
     ///
     /// # Errors
     /// [`EnvironmentError::NotFinite`], [`EnvironmentError::UnknownFrame`].
@@ -51,16 +59,16 @@ impl BodyWrench {
         Self::new(frame.body, rot_kf * force, rot_kf * torque)?.at(frame.pos_kf.to_nalgebra())
     }
 
-    /// The same with its force applied at `point`, body axes, m.
+    /// Returns the same wrench with its force applied at `point`, body axes, m.
     ///
     /// # Errors
     /// [`EnvironmentError::NotFinite`].
     pub fn at(self, point: Vector3<f64>) -> Result<Self, EnvironmentError> {
-        finite("point", &point)?;
+        check_finite("point", &point)?;
         Ok(Self { point, ..self })
     }
 
-    /// The same, on from `start` until `end`, s of simulation; either may be infinite.
+    /// Returns the same wrench, active from `start` until `end`, s of simulation; either may be infinite.
     ///
     /// # Errors
     /// [`EnvironmentError::EmptyInterval`] unless `start < end`.
@@ -72,14 +80,14 @@ impl BodyWrench {
         }
     }
 
-    /// Index of the body it acts on.
-    pub fn body(&self) -> usize {
+    /// Returns the body on which the wrench acts.
+    pub fn body(&self) -> BodyIndex {
         self.body
     }
 }
 
-/// Refuses a vector with a component that is not finite.
-fn finite(name: &'static str, x: &Vector3<f64>) -> Result<(), EnvironmentError> {
+/// Rejects a vector with a component that is not finite.
+fn check_finite(name: &'static str, x: &Vector3<f64>) -> Result<(), EnvironmentError> {
     match x.iter().find(|c| !c.is_finite()) {
         Some(&value) => Err(EnvironmentError::NotFinite { name, value }),
         None => Ok(()),

@@ -1,47 +1,51 @@
-//! Gravity as felt in a frame that falls with the reference: the force on each body.
+//! Gravity relative to the reference orbit: the force on each body in `W`.
 
 use nalgebra::Vector3;
 
-use super::eight::on_lanes;
-use super::wrenches::Push;
-use super::{Effect, EnvironmentError, Reference, Scene, Wrenches};
+use super::body_index::BodyIndex;
+use super::effect::Effect;
+use super::error::EnvironmentError;
+use super::scene::{Reference, Scene};
+use super::soa::on_lanes;
+use super::wrenches::{WrenchLanes, Wrenches};
 use crate::gravity::{point_mass, tide};
 use crate::spatial::{Real, Vec3};
 
-/// What happens where the reference does not itself fall freely in the field.
+/// Motion of the robot relative to a reference that is not in free fall (`gravity_mode` in YAML and Python).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ReferenceMotion {
-    /// The robot obeys the field and falls away from such a reference, as physics says.
+pub enum GravityMode {
+    /// The robot obeys the gravity field and falls away from such a reference.
     #[default]
     True,
-    /// Tides only: the robot is carried along by the reference.
+    /// The robot is carried along with the reference: of gravity only the tide acts, and drag and radiation pressure act
+    /// without the acceleration that they give to the whole robot.
     Carried,
 }
 
-/// The pull of planet and third bodies on every body, less the acceleration of `W`'s origin.
+/// Gravity of planet and third bodies on every body minus the acceleration of the origin of `W`.
 ///
-/// `F_k = m_k [g(r_k) - r̈_ref]`, `g` the full field, `r_k = r_ref + c_k`, with `c_k` the centre of
-/// mass of body k in `W`. Where the reference obeys `g`, or carries the robot along, this is the
-/// tide `g(r_k) - g(r_ref)`, formed without subtracting two nearly equal pulls. A body is taken as a
-/// point: the second-order force on an extended one is left out.
+/// `F_k = m_k [g(r_k) - r̈_ref]`, with the full field `g` and `r_k = r_ref + c_k`, where `c_k` is the centre of
+/// mass of body `k` in `W`. If the reference obeys `g`, or in [`GravityMode::Carried`], the force is
+/// the tide `m_k [g(r_k) - g(r_ref)]`, computed without cancellation. A body is a point mass here: the
+/// second-order force on an extended body is neglected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DifferentialGravity {
-    /// What to do with the part of `r̈_ref` that is not gravity.
-    pub motion: ReferenceMotion,
+    /// Treatment of the part of `r̈_ref` that is not gravity.
+    pub gravity_mode: GravityMode,
 }
 
 const NAME: &str = "gravity";
 
 impl DifferentialGravity {
-    /// The part of gravity that the reference does not follow, `g(r_ref) - r̈_ref`, m/s², `W` axes, at `t` seconds.
+    /// Returns `g(r_ref) - r̈_ref` at `t` s, m/s², `W` axes: the gravity that the reference does not follow.
     ///
-    /// Zero for a reference that falls freely, bit for bit; `None` around no planet.
+    /// Exactly zero for a reference in free fall; `None` without a planet.
     ///
     /// # Errors
-    /// What the field says of the reference's place.
+    /// [`EnvironmentError::Gravity`] where the field is not defined at the reference.
     pub fn residual(t: f64, reference: &Reference<'_>) -> Result<Option<Vector3<f64>>, EnvironmentError> {
         let Some(gravity) = reference.gravity else { return Ok(None) };
-        if reference.falls_freely {
+        if reference.in_free_fall {
             return Ok(Some(Vector3::zeros()));
         }
         let state = &reference.state;
@@ -62,13 +66,13 @@ impl Effect for DifferentialGravity {
         false
     }
 
-    fn counts_once_on(&self, _body: usize) -> bool {
+    fn counts_once_on(&self, _body: BodyIndex) -> bool {
         true
     }
 
     /// # Errors
     /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::InsidePlanet`] where the reference or a body is below
-    /// the lowest ground that a planet of that `μ` can have, and [`EnvironmentError::Gravity`].
+    /// the lowest possible ground of a planet with that `μ`, and [`EnvironmentError::Gravity`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }
@@ -78,29 +82,31 @@ impl DifferentialGravity {
     fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let planet = scene.planet(NAME)?;
         let state = &planet.reference;
-        let differs = planet.falls_freely || self.motion == ReferenceMotion::Carried;
-        let residual = if differs {
+        // only the tide g(r) - g(r_ref): the reference obeys g, or its residual is omitted
+        let tide_only = planet.in_free_fall || self.gravity_mode == GravityMode::Carried;
+        let point_mass_residual = if tide_only {
             Vector3::zeros()
         } else {
             point_mass(planet.mu, &state.position) - state.acceleration
         };
-        let field = scene.nearby(&planet, differs)?;
-        let (origin, residual) = (Vec3::from(state.position), Vec3::from(residual));
-        scene.push::<S>(
+        let field = scene.local_field(&planet, tide_only)?;
+        let (r_ref, point_mass_residual) = (Vec3::from(state.position), Vec3::from(point_mass_residual));
+        scene.add_lanes::<S>(
             wrenches,
             #[inline(always)]
             |group| {
                 let com = group.coms();
-                let (tide, distance) = tide(planet.mu, &origin, com);
-                planet.all_outside(group, distance)?;
-                let beyond = match field {
-                    Some(field) if differs => field.difference(com)?,
+                let (tide, distance) = tide(planet.mu, &r_ref, com);
+                planet.check_group_above_ground(group, distance)?;
+                let perturbation = match field {
+                    Some(field) if tide_only => field.difference(com)?,
                     Some(field) => field.acceleration(com)?,
                     None => Vec3::zero(),
                 };
-                // F = m [(g(r) - g(R)) + (g(R) - r̈_ref) + gp], g here that of the point mass
-                let force = (tide + Vec3::of(&residual) + beyond) * group.masses();
-                Ok(Push { force, torque: Vec3::zero() })
+                // F = m [(g0(r) - g0(r_ref)) + (g0(r_ref) - r̈_ref) + gp],  g = g0 + gp
+                // with g0 the point mass, gp field and third bodies; tide_only: gp(r) - gp(r_ref), no residual
+                let force = (tide + Vec3::of(&point_mass_residual) + perturbation) * group.masses();
+                Ok(WrenchLanes { force, torque: Vec3::zero() })
             },
         )
     }

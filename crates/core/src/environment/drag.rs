@@ -1,54 +1,58 @@
-//! Drag of the air that turns with the Earth.
+//! Aerodynamic drag in an atmosphere that rotates with the Earth.
 
-use super::atmosphere::{AirPlace, Atmosphere, AtmosphereError, LocalAir};
-use super::eight::on_lanes;
+use super::atmosphere::{Atmosphere, AtmosphereError, AtmospherePoint, LocalAtmosphere};
+use super::body_index::BodyIndex;
+use super::effect::Effect;
+use super::error::EnvironmentError;
+use super::scene::Scene;
+use super::soa::on_lanes;
 use super::surfaces::Surfaces;
-use super::wrenches::Push;
-use super::{Effect, EnvironmentError, Scene, Wrenches};
+use super::wrenches::{WrenchLanes, Wrenches};
 use crate::earth::Earth;
 use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Drag on every covered body, with its torque.
+/// Effect: drag force and torque on every body with a surface.
 ///
-/// A face of area `A` and outward normal `n` feels `F = -½ ρ C_D A (n·u)₊ u` at its centroid, a cannonball
-/// `F = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the velocity of that point in air that
-/// turns with the Earth, the same all over a face, tube or ball. No part shadows another.
+/// The force on a face of area `A` and outward normal `n` is `F = -½ ρ C_D A (n·u)₊ u` at its centroid `c`, that on a
+/// cannonball `F = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the velocity of this point
+/// relative to an atmosphere that rotates with the Earth, assumed uniform over a face, cylinder or sphere.
+/// Parts do not shadow each other.
 ///
-/// The density is computed at points of a grid of 128 m and 1/8 s, at the one next to the robot's base, and follows the
-/// scale height from there, within 160 m: wrong by at most 1e-4 of itself where the model is smooth. For bodies farther away it is computed
-/// afresh. Which point it is follows from place and time alone.
+/// The density is computed at the grid point (128 m, 1/8 s) nearest to the base of the robot and extrapolated with
+/// the scale height up to 160 m from there; the relative error is at most 1e-4 where the model is smooth. For bodies
+/// farther away the model is evaluated at the body. The grid point depends on position and time alone.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.
 #[derive(Debug)]
 pub struct Drag {
     atmosphere: Arc<dyn Atmosphere>,
     surfaces: Surfaces,
-    /// The last local air: a pure function of its own time and centre.
-    known: Mutex<Option<LocalAir>>,
+    /// Last evaluated local atmosphere, a pure function of its time and centre.
+    cached: Mutex<Option<LocalAtmosphere>>,
 }
 
 const NAME: &str = "drag";
 
 impl Drag {
-    /// Drag of this air on these surfaces.
+    /// Returns the effect for an atmosphere and the surfaces of the bodies.
     pub fn new(atmosphere: Arc<dyn Atmosphere>, surfaces: Surfaces) -> Self {
-        Self { atmosphere, surfaces, known: Mutex::new(None) }
+        Self { atmosphere, surfaces, cached: Mutex::new(None) }
     }
 
-    /// The air about the point of the grid next to `r`, or about `r` itself at the edge of a model.
-    fn local(&self, earth: &Earth, t: f64, r: &Vector3<f64>) -> Result<LocalAir, AtmosphereError> {
-        let (time, centre) = LocalAir::grid_point(t, r);
-        // not held while the model is evaluated: other runs may share it
-        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(air) = known().filter(|air| air.is_about(time, &centre)) {
-            return Ok(air);
+    /// Returns the atmosphere about the grid point nearest to `r`, or about `r` at the edge of a model.
+    fn local(&self, earth: &Earth, t: f64, r: &Vector3<f64>) -> Result<LocalAtmosphere, AtmosphereError> {
+        let (time, centre) = LocalAtmosphere::grid_point(t, r);
+        // The lock is released while the model is evaluated, because runs may share this effect.
+        let cached = || self.cached.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(local) = cached().filter(|local| local.is_about(time, &centre)) {
+            return Ok(local);
         }
-        let made = |time: f64, r: &Vector3<f64>| LocalAir::new(&*self.atmosphere, earth, time, r);
-        let air = made(time, &centre).or_else(|_| made(t, r))?;
-        *known() = Some(air);
-        Ok(air)
+        let about = |time: f64, r: &Vector3<f64>| LocalAtmosphere::new(&*self.atmosphere, earth, time, r);
+        let local = about(time, &centre).or_else(|_| about(t, r))?;
+        *cached() = Some(local);
+        Ok(local)
     }
 }
 
@@ -61,8 +65,8 @@ impl Effect for Drag {
         true
     }
 
-    fn counts_once_on(&self, body: usize) -> bool {
-        self.surfaces.cover(body)
+    fn counts_once_on(&self, body: BodyIndex) -> bool {
+        self.surfaces.covers(body)
     }
 
     fn acts_on_reference(&self) -> bool {
@@ -70,7 +74,7 @@ impl Effect for Drag {
     }
 
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], what the atmosphere refuses.
+    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], [`EnvironmentError::Atmosphere`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }
@@ -79,27 +83,27 @@ impl Effect for Drag {
 impl Drag {
     fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
-        let base = reference.position + scene.bodies.com_of_base();
-        let air = self.local(earth, scene.time, &base)?;
-        let afresh = |r: Vector3<f64>| -> Result<f64, EnvironmentError> {
-            Ok(self.atmosphere.density(&AirPlace::new(earth, scene.time, &r)?)?)
+        let base = reference.position + scene.bodies.base_com();
+        let local = self.local(earth, scene.time, &base)?;
+        let model = |r: Vector3<f64>| -> Result<f64, EnvironmentError> {
+            Ok(self.atmosphere.density(&AtmospherePoint::new(earth, scene.time, &r)?)?)
         };
-        let (origin, velocity) = (Vec3::from(reference.position), Vec3::from(reference.velocity));
-        let spin = Vec3::<S>::of(&air.spin.into());
-        scene.push::<S>(
+        let (r_ref, v_ref) = (Vec3::from(reference.position), Vec3::from(reference.velocity));
+        let earth_rate = Vec3::<S>::of(&local.earth_rate.into());
+        scene.add_lanes::<S>(
             wrenches,
             #[inline(always)]
             |group| {
-                let Some(surfaces) = self.surfaces.around(group.first) else { return Ok(Push::nothing()) };
-                let r = Vec3::<S>::of(&origin) + group.coms();
-                let counts = |i: usize| i < group.count && self.surfaces.cover(group.first + i);
-                let density = air.densities(r, counts, afresh)?;
-                // v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
+                let Some(surfaces) = self.surfaces.block(group.row) else { return Ok(WrenchLanes::zero()) };
+                let r = Vec3::<S>::of(&r_ref) + group.coms();
+                let counts = |i: usize| i < group.count && self.surfaces.covers(group.body(i));
+                let density = local.densities(r, counts, model)?;
+                // relative to the atmosphere:  v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
                 let [linear, angular] = group.velocities();
-                let (v, w) = (Vec3::<S>::of(&velocity) + linear - spin.cross(r), angular - spin);
+                let (v, w) = (Vec3::<S>::of(&v_ref) + linear - earth_rate.cross(r), angular - earth_rate);
                 let rot_wk = group.rot_wk::<S>();
-                let push = surfaces.blow(group.offset(), rot_wk.transpose_mul(v), rot_wk.transpose_mul(w));
-                Ok(push.turned(&rot_wk) * density)
+                let (v_k, w_k) = (rot_wk.transpose_mul(v), rot_wk.transpose_mul(w));
+                Ok(surfaces.drag(group.offset(), v_k, w_k).rotated(&rot_wk) * density)
             },
         )
     }

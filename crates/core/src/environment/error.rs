@@ -1,59 +1,60 @@
-//! What can be wrong with an effect or with the place it is asked to act in.
+//! Errors of effects and of the scenes in which they are evaluated.
 
 use super::atmosphere::AtmosphereError;
+use super::body_index::BodyIndex;
 use super::surfaces::SurfaceError;
 use crate::earth::EarthError;
 use crate::gravity::GravityError;
 use crate::number_text::{short, unlike};
 
-/// Refusals of the `environment` module; each carries the offending numbers.
+/// Errors of the `environment` module; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnvironmentError {
-    /// The gravity of planet and third bodies has no answer.
+    /// The gravity of planet and third bodies is not defined.
     #[error(transparent)]
     Gravity(#[from] GravityError),
-    /// An effect of the planet is on where there is no planet.
+    /// An effect that requires a planet is active without a planet.
     #[error(
-        "{effect} needs an orbit around a planet, this run has none: give an orbit or leave the effect out"
+        "{effect} requires an orbit around a planet, but this run has none; add an orbit or remove the effect"
     )]
     NoPlanet {
         /// Name of the effect.
         effect: &'static str,
     },
-    /// An effect of the turning Earth is on where nobody said how it turns.
-    #[error("{effect} needs to know how the Earth turns: give the run an earth (in YAML an epoch)")]
+    /// An effect that requires the rotation of the Earth is active without an Earth.
+    #[error("{effect} requires the rotation of the Earth; pass `earth` to the run (in YAML an epoch)")]
     NoEarth {
         /// Name of the effect.
         effect: &'static str,
     },
-    /// A path runs through the planet.
+    /// The reference or a body is inside the planet.
     #[error(
-        "{effect}: {what} is below ground, {distance} m from the planet's centre where at least {minimum} m are needed: \
-         end the run earlier, or raise the orbit",
+        "{effect}: {what} is below ground, {distance} m from the planet's centre; expected at least \
+         {minimum} m; end the run earlier or raise the orbit",
         distance = unlike(*distance, &[*minimum]), minimum = short(*minimum)
     )]
     InsidePlanet {
         /// Name of the effect.
         effect: &'static str,
-        /// What is there: the reference, or a body by its index.
-        what: Place,
+        /// Point inside the planet: the reference or a body.
+        what: ScenePoint,
         /// Distance from the planet's centre, m.
         distance: f64,
-        /// Smallest distance accepted, m.
+        /// Smallest accepted distance, m.
         minimum: f64,
     },
-    /// An input is infinite or not a number.
-    #[error("{name} holds {value}, finite numbers are needed", value = short(*value))]
+    /// An input holds an infinite value or NaN.
+    #[error("{name} holds {value}; expected finite numbers", value = short(*value))]
     NotFinite {
-        /// Which input.
+        /// Name of the input.
         name: &'static str,
-        /// What was given.
+        /// Given value.
         value: f64,
     },
-    /// A wrench ends before it starts.
+    /// The interval of a wrench is empty.
     #[error(
-        "wrench is on from {start} s to {end} s: the start must come before the end",
+        "wrench is active from {start} s to {end} s; the start must be before the end",
         start = unlike(*start, &[*end]), end = short(*end)
     )]
     EmptyInterval {
@@ -62,33 +63,33 @@ pub enum EnvironmentError {
         /// End, s.
         end: f64,
     },
-    /// A wrench acts on a body that the robot does not have.
-    #[error("wrench acts on body {body}, the robot has bodies 0 to {last}", last = count.saturating_sub(1))]
+    /// A wrench acts on a body that does not exist.
+    #[error("wrench acts on {body}, but the robot has bodies 0 to {last}", last = count.saturating_sub(1))]
     UnknownBody {
-        /// Index given.
-        body: usize,
+        /// Given body.
+        body: BodyIndex,
         /// Number of bodies.
         count: usize,
     },
-    /// A wrench acts on a frame that the robot does not have.
-    #[error("wrench acts on frame {frame}, the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    /// A wrench acts on a frame that does not exist.
+    #[error("wrench acts on frame {frame}, but the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame {
-        /// Index given.
+        /// Given index.
         frame: usize,
         /// Number of frames.
         count: usize,
     },
-    /// The air cannot be told.
+    /// The density of the atmosphere is not defined.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),
-    /// A surface makes no sense.
+    /// A surface is not valid.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
-    /// The Earth cannot say where the Sun is, or what time it is.
+    /// The position of the Sun or the time is unknown.
     #[error(transparent)]
     Earth(#[from] EarthError),
-    /// Bodies and wrenches do not pair up.
-    #[error("{got} wrenches are given for {expected} bodies, one per body is needed")]
+    /// The numbers of bodies and wrenches differ.
+    #[error("the number of wrenches is {got}; expected {expected}, one per body")]
     WrongLength {
         /// Number of bodies.
         expected: usize,
@@ -97,20 +98,20 @@ pub enum EnvironmentError {
     },
 }
 
-/// Which point of a scene an error speaks of.
+/// Point of a scene to which an error refers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum ScenePoint {
     /// The reference orbit.
     Reference,
-    /// The centre of mass of the body with this index.
-    Body(usize),
+    /// The centre of mass of this body.
+    Body(BodyIndex),
 }
 
-impl std::fmt::Display for Place {
+impl std::fmt::Display for ScenePoint {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Reference => write!(f, "the reference"),
-            Self::Body(k) => write!(f, "body {k}"),
+            Self::Body(body) => write!(f, "{body}"),
         }
     }
 }

@@ -1,16 +1,19 @@
-//! Torque of the field on each extended body.
+//! Gravity-gradient torque on each extended body.
 
-use super::eight::on_lanes;
-use super::wrenches::Push;
-use super::{Effect, EnvironmentError, Scene, Wrenches};
+use super::body_index::BodyIndex;
+use super::effect::Effect;
+use super::error::EnvironmentError;
+use super::scene::Scene;
+use super::soa::on_lanes;
+use super::wrenches::{WrenchLanes, Wrenches};
 use crate::spatial::{Real, Sym3, Vec3};
 
-/// Gravity-gradient torque of each body about its own centre of mass, at its own position.
+/// Gravity-gradient torque on each body about its centre of mass.
 ///
-/// `T_i = -ε_ijk (I G)_jk`, `G` the gradient of the full field there and `I` the inertia about the centre of
-/// mass, kg m²; for a point mass `T = (3μ/r³) r̂ × I r̂`, `r` running from its centre to the body's
-/// centre of mass. All in `W` axes. The force that goes with the body's
-/// place is [`super::DifferentialGravity`]: an articulated robot needs both.
+/// `T_i = -ε_ijk (I G)_jk`, with the gradient `G` of the full field at the body, 1/s², and the inertia `I` about the
+/// centre of mass, kg m²; for a point mass `T = (3μ/r³) r̂ × I r̂`, with `r` from the planet's centre to the
+/// centre of mass of the body. All quantities are in `W` axes. [`super::DifferentialGravity`] computes the
+/// force on the body; the motion of an articulated robot requires both.
 ///
 /// Source: Hughes, Spacecraft Attitude Dynamics, Wiley 1986, section 8.1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,7 +34,7 @@ impl Effect for GravityGradient {
         false
     }
 
-    fn counts_once_on(&self, _body: usize) -> bool {
+    fn counts_once_on(&self, _body: BodyIndex) -> bool {
         true
     }
 
@@ -45,39 +48,40 @@ impl Effect for GravityGradient {
 impl GravityGradient {
     fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let planet = scene.planet(NAME)?;
-        let field = scene.nearby(&planet, planet.falls_freely)?;
-        let origin = Vec3::from(planet.reference.position);
-        scene.push::<S>(
+        let field = scene.local_field(&planet, planet.in_free_fall)?;
+        let r_ref = Vec3::from(planet.reference.position);
+        scene.add_lanes::<S>(
             wrenches,
             #[inline(always)]
             |group| {
                 let com = group.coms();
-                let r = Vec3::<S>::of(&origin) + com;
+                let r = Vec3::<S>::of(&r_ref) + com;
                 let square = r.dot(r);
                 let distance = square.sqrt();
-                planet.all_outside(group, distance)?;
-                // G = (3μ/r³) r̂ r̂ᵀ + Gp;  what is left out, -(μ/r³) 1, turns nothing;  T = (3μ/r³) r̂ × I r̂ of the first
-                let inverse = distance * (S::of(1.0) / square); // root and quotient at the same time
+                planet.check_group_above_ground(group, distance)?;
+                let inverse = distance * (S::of(1.0) / square); // 1/r; root and quotient are independent
                 let up = r * inverse;
-                let rate = S::of(3.0 * planet.mu) * inverse * inverse * inverse;
+                let three_mu_over_r3 = S::of(3.0 * planet.mu) * inverse * inverse * inverse;
                 let (rot_wk, inertia) = (group.rot_wk(), group.inertias());
                 let torque_k = match field {
                     Some(field) => {
-                        let g = field.gradient(com)?.add_outer(up, rate);
+                        // G = (3μ/r³) r̂ r̂ᵀ + Gp;  the term -(μ/r³) 1 gives no torque
+                        let g = field.gradient(com)?.add_outer(up, three_mu_over_r3);
                         torque(&g.rotate(&rot_wk.transpose()), &inertia)
                     }
                     None => {
                         let up_k = rot_wk.transpose_mul(up);
-                        up_k.cross(inertia * up_k) * rate
+                        // T = (3μ/r³) r̂ × I r̂
+                        up_k.cross(inertia * up_k) * three_mu_over_r3
                     }
                 };
-                Ok(Push { force: Vec3::zero(), torque: rot_wk * torque_k })
+                Ok(WrenchLanes { force: Vec3::zero(), torque: rot_wk * torque_k })
             },
         )
     }
 }
 
-/// Torque of a field with gradient `G` about the centre of mass, N m; gradient, inertia and torque in the same axes.
+/// Returns the torque of a field with gradient `G` about the centre of mass, N m; all in the same axes.
 ///
 /// `T_i = ∫ ε_ijk x_j G_kl x_l dm = -ε_ijk (I G)_jk`, since `∫ x xᵀ dm = ½ tr(I) 1 - I` and `G` is symmetric:
 /// `T = Σ e_k × I G e_k`.

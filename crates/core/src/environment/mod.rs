@@ -1,94 +1,46 @@
-//! Forces and torques of the surroundings on every body.
+//! Forces and torques of the space environment on every body.
 //!
-//! [`Effect`] is the one trait; a new kind of effect is one file and one line here.
+//! | equation | file, function |
+//! |-|-|
+//! | `F = m [g(r) - r̈_ref]`; in [`GravityMode::Carried`] only the tide | `differential_gravity.rs`, `add` |
+//! | `T = (3μ/r³) r̂ × I r̂`, of a field `T_i = -ε_ijk (I G)_jk` | `gravity_gradient.rs`, `add`, `torque` |
+//! | `F = -½ ρ C_D A (n·u)₊ u` on a face | `surfaces/face.rs` `add_drag`, `sums.rs` `wrench`, `surface_block.rs` `drag` |
+//! | `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]` on a face | `surfaces/face.rs` `add_pressure`, `sums.rs` `wrench` |
+//!
+//! [`Effect`] is the trait that each effect implements; a new effect requires a file and a line in this
+//! module.
 //! `W` has inertial axes and its origin on the reference orbit.
 
 pub mod atmosphere;
 mod bodies;
+mod body_block;
+mod body_index;
 mod body_wrench;
 mod differential_gravity;
 mod drag;
-mod eight;
-mod eight_bodies;
+mod effect;
 mod error;
 mod gravity_gradient;
 mod radiation_pressure;
 mod scene;
 mod shadow;
+mod soa;
 pub mod surfaces;
 mod wrenches;
 
-pub use bodies::{Bodies, BodyState};
+pub use bodies::Bodies;
+pub(crate) use body_block::BodyMotion;
+pub use body_block::BodyState;
+pub use body_index::BodyIndex;
 pub use body_wrench::BodyWrench;
-pub use differential_gravity::{DifferentialGravity, ReferenceMotion};
+pub use differential_gravity::{DifferentialGravity, GravityMode};
 pub use drag::Drag;
-pub(crate) use eight::on_lanes;
-pub(crate) use eight_bodies::BodyMotion;
-pub use error::{EnvironmentError, Place};
+pub use effect::Effect;
+pub use error::{EnvironmentError, ScenePoint};
 pub use gravity_gradient::GravityGradient;
 pub use radiation_pressure::{RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX};
-pub(crate) use scene::Heavens;
+pub(crate) use scene::Ephemeris;
 pub use scene::{Reference, Scene};
 pub use shadow::sunlit;
+pub(crate) use soa::on_lanes;
 pub use wrenches::{Wrench, Wrenches};
-
-/// Something that pulls, pushes or turns the bodies of a robot.
-///
-/// ```
-/// use onorbit_core::environment::{Effect, EnvironmentError, Scene, Wrench, Wrenches};
-/// use nalgebra::Vector3;
-///
-/// /// Linear damping towards rest in `W`: every body feels `-c v`.
-/// #[derive(Debug)]
-/// struct Honey(f64);
-///
-/// impl Effect for Honey {
-///     fn name(&self) -> &str {
-///         "honey"
-///     }
-///     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
-///         for (k, body) in scene.bodies.iter().enumerate() {
-///             let force = body.velocity * -self.0;
-///             wrenches.add(k, Wrench { force, torque: Vector3::zeros() })?;
-///         }
-///         Ok(())
-///     }
-/// }
-/// ```
-pub trait Effect: Send + Sync + std::fmt::Debug {
-    /// Short name, for messages and recorded columns.
-    fn name(&self) -> &str;
-
-    /// Instants at which the effect jumps, s of simulation; the integrator stops at each.
-    fn event_times(&self) -> Vec<f64> {
-        Vec::new()
-    }
-
-    /// Whether the effect needs a reference orbit around a planet.
-    fn requires_orbit(&self) -> bool {
-        false
-    }
-
-    /// Whether the effect reads how the bodies move; where none does, the scene leaves that out.
-    fn reads_velocities(&self) -> bool {
-        true
-    }
-
-    /// Whether a reference that carries the robot along has it in its own motion: the share that moves all bodies alike
-    /// is then left out.
-    fn acts_on_reference(&self) -> bool {
-        false
-    }
-
-    /// Whether it is all there is of its kind on a body (index): a run refuses another effect of the same name there, which
-    /// would count twice.
-    fn counts_once_on(&self, _body: usize) -> bool {
-        false
-    }
-
-    /// Add this effect's wrench on each body to what `wrenches` holds; allocates nothing.
-    ///
-    /// # Errors
-    /// [`EnvironmentError`] where the effect is not defined in this scene.
-    fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError>;
-}

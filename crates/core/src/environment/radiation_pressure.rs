@@ -1,22 +1,26 @@
-//! The push of sunlight.
+//! Solar radiation pressure.
 
-use super::eight::on_lanes;
+use super::body_index::BodyIndex;
+use super::effect::Effect;
+use super::error::EnvironmentError;
+use super::scene::Scene;
 use super::shadow::sunlit;
+use super::soa::on_lanes;
 use super::surfaces::{SurfaceError, Surfaces, not_negative};
-use super::wrenches::Push;
-use super::{Effect, EnvironmentError, Scene, Wrenches};
+use super::wrenches::{WrenchLanes, Wrenches};
 use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 
-/// Radiation pressure on every covered body, with its torque, and the Earth's shadow.
+/// Force and torque of sunlight on every body with a surface, with the shadow of the Earth.
 ///
-/// A face of area `A` and outward normal `n` feels `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]` at its
-/// centroid where `cos θ = n·ŝ > 0`, a cannonball `F = -P C_R A ŝ` at the centre of mass. `ŝ` points to the Sun,
-/// `P = ν (Φ/c) (1 au/d)²` with the true distance `d` of the Sun and the share `ν` of its disc that the Earth leaves
-/// free. No part shadows another; light from the Earth is left out.
+/// The force on a face of area `A` and outward normal `n` is `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]` at
+/// its centroid where `cos θ = n·ŝ > 0`, that on a cannonball `F = -P C_R A ŝ` at the centre of mass. `ŝ` points to the
+/// Sun; `P = ν (Φ/c) (1 au/d)²` with the true distance `d` of the Sun and the fraction `ν` of the solar disc not
+/// occulted by the Earth. Parts do not shadow each other; light from the Earth is neglected.
 ///
-/// The shadow is looked at in every stage of a step: no step ends at its edge. A penumbra (some 8 s in low orbit) is
-/// smooth enough for steps of a second; long fixed steps miss its edge by a share of a step, adaptive ones shorten.
+/// The shadow is evaluated at every stage of a step; no step ends at its edge. A penumbra (about 8 s in a low orbit) is
+/// smooth enough for steps of 1 s. Long fixed steps resolve its edge to a fraction of a step; adaptive steps
+/// become shorter there.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.4.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,44 +35,46 @@ const NAME: &str = "radiation pressure";
 /// Mean solar flux at 1 au, W/m². Source: Kopp and Lean, Geophysical Research Letters 38, 2011 (1360.8).
 pub const SOLAR_FLUX: f64 = 1361.0;
 
-/// Equatorial radius of the Earth, m: what casts the shadow. Source: WGS84.
+/// Equatorial radius of the Earth, which casts the shadow, m. Source: WGS84.
 pub const SHADOW_RADIUS: f64 = 6_378_137.0;
 
-/// Distance from the base over which the light is the same, m: a penumbra changes by 1 part in 600 over it in a low
-/// orbit, where one is 60 km wide; the direction by 7e-10 rad.
-const REACH: f64 = 100.0;
+/// Distance from the base up to which the light is assumed uniform, m.
+///
+/// Over this distance, in a low orbit with a penumbra 60 km wide, `ν` changes by 1/600 and the direction by 7e-10 rad.
+const UNIFORM_RADIUS: f64 = 100.0;
 
 const ASTRONOMICAL_UNIT: f64 = 149_597_870_700.0;
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
 impl RadiationPressure {
-    /// Light of [`SOLAR_FLUX`] on these surfaces, shadowed by an Earth of [`SHADOW_RADIUS`].
+    /// Returns the pressure of [`SOLAR_FLUX`] on these surfaces, with the shadow of an Earth of [`SHADOW_RADIUS`].
     pub fn new(surfaces: Surfaces) -> Self {
         Self { surfaces, flux: SOLAR_FLUX, earth_radius: Some(SHADOW_RADIUS) }
     }
 
-    /// Whether a flux, W/m², and an Earth's radius, m, make sense.
+    /// Checks a flux, W/m², and a radius of the Earth, m.
     ///
     /// # Errors
     /// [`SurfaceError::Value`] where one is negative or not finite, or the radius below 100 km.
     pub fn check(flux: f64, earth_radius: f64) -> Result<(), SurfaceError> {
-        not_negative("flux", flux).and(a_planets(earth_radius)).map(drop)
+        not_negative("flux", flux).and(planet_radius(earth_radius)).map(drop)
     }
 
-    /// The light at `r`, with the Sun at `sun`, both from the Earth's centre, m.
+    /// Returns direction and pressure of the light at `r` with the Sun at `sun`, both from the Earth's
+    /// centre, m.
     fn light(&self, r: &Vector3<f64>, sun: &Vector3<f64>) -> Light<f64> {
         let to_sun = sun - r;
         let distance = to_sun.norm();
-        let share = self.earth_radius.map_or(1.0, |radius| sunlit(r, sun, radius));
+        let fraction = self.earth_radius.map_or(1.0, |radius| sunlit(r, sun, radius));
         // P = ν (Φ/c) (1 au/d)²
         let ratio = ASTRONOMICAL_UNIT / distance;
         Light {
             to_sun: (to_sun / distance).into(),
-            pressure: share * self.flux / SPEED_OF_LIGHT * ratio * ratio,
+            pressure: fraction * self.flux / SPEED_OF_LIGHT * ratio * ratio,
         }
     }
 
-    /// The same with another flux at 1 au, W/m².
+    /// Returns the same effect with another flux at 1 au, W/m².
     ///
     /// # Errors
     /// [`SurfaceError::Value`] where it is negative or not finite.
@@ -76,17 +82,17 @@ impl RadiationPressure {
         Ok(Self { flux: not_negative("flux", flux)?, ..self })
     }
 
-    /// The same with a shadow cast by an Earth of this radius, m; without shadow if none.
+    /// Returns the same effect with the shadow of an Earth of this radius, m; `None` disables the shadow.
     ///
     /// # Errors
     /// [`SurfaceError::Value`] where it is below 100 km or not finite.
     pub fn with_shadow(self, earth_radius: Option<f64>) -> Result<Self, SurfaceError> {
-        let earth_radius = earth_radius.map(a_planets).transpose()?;
+        let earth_radius = earth_radius.map(planet_radius).transpose()?;
         Ok(Self { earth_radius, ..self })
     }
 }
 
-/// Unit vector to the Sun, and what its light presses with, N/m².
+/// Unit vector to the Sun and radiation pressure, N/m².
 #[derive(Clone, Copy)]
 struct Light<S> {
     to_sun: Vec3<S>,
@@ -94,14 +100,15 @@ struct Light<S> {
 }
 
 impl<S: Real> Light<S> {
-    /// Another one on each body.
+    /// Gathers the light on each body.
     #[inline(always)]
     fn from_lanes(light: impl Fn(usize) -> Light<f64>) -> Self {
         Self { to_sun: Vec3::from_lanes(|i| light(i).to_sun), pressure: S::from_lanes(|i| light(i).pressure) }
     }
 }
 
-fn a_planets(radius: f64) -> Result<f64, SurfaceError> {
+/// Returns `radius` if it can be that of a planet in metres.
+fn planet_radius(radius: f64) -> Result<f64, SurfaceError> {
     if radius.is_finite() && radius >= 1e5 {
         return Ok(radius);
     }
@@ -118,8 +125,8 @@ impl Effect for RadiationPressure {
         true
     }
 
-    fn counts_once_on(&self, body: usize) -> bool {
-        self.surfaces.cover(body)
+    fn counts_once_on(&self, body: BodyIndex) -> bool {
+        self.surfaces.covers(body)
     }
 
     fn acts_on_reference(&self) -> bool {
@@ -131,7 +138,7 @@ impl Effect for RadiationPressure {
     }
 
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], and an Earth without epoch.
+    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], [`EnvironmentError::Earth`] without an epoch.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }
@@ -140,27 +147,27 @@ impl Effect for RadiationPressure {
 impl RadiationPressure {
     fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
-        let (sun, base) = (scene.sun(earth)?, scene.bodies.com_of_base());
+        let (sun, base) = (scene.sun(earth)?, scene.bodies.base_com());
         let at_base = self.light(&(reference.position + base), &sun);
-        let near = |com: Vector3<f64>| (com - base).norm_squared() <= REACH * REACH;
+        let near = |com: Vector3<f64>| (com - base).norm_squared() <= UNIFORM_RADIUS * UNIFORM_RADIUS;
         let on_each = |coms: Vec3<S>| {
             Light::<S>::from_lanes(|i| match coms.lane(i).to_nalgebra() {
                 com if near(com) => at_base,
                 com => self.light(&(reference.position + com), &sun),
             })
         };
-        scene.push::<S>(
+        scene.add_lanes::<S>(
             wrenches,
             #[inline(always)]
             |group| {
-                let Some(surfaces) = self.surfaces.around(group.first) else { return Ok(Push::nothing()) };
+                let Some(surfaces) = self.surfaces.block(group.row) else { return Ok(WrenchLanes::zero()) };
                 let com = group.coms::<S>();
                 let offset = com - Vec3::of(&base.into());
-                let is_far = S::any(S::of(REACH * REACH).less(offset.dot(offset)));
+                let is_far = S::any(S::of(UNIFORM_RADIUS * UNIFORM_RADIUS).less(offset.dot(offset)));
                 let light = if is_far { on_each(com) } else { Light::from_lanes(|_| at_base) };
                 let rot_wk = group.rot_wk::<S>();
-                let push = surfaces.shine(group.offset(), rot_wk.transpose_mul(light.to_sun));
-                Ok(push.turned(&rot_wk) * light.pressure)
+                let to_sun_k = rot_wk.transpose_mul(light.to_sun);
+                Ok(surfaces.pressure(group.offset(), to_sun_k).rotated(&rot_wk) * light.pressure)
             },
         )
     }

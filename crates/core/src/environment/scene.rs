@@ -1,115 +1,120 @@
-//! What an effect sees of the robot and of the orbit at one instant.
+//! Input of the effects: robots, reference orbit and Earth at one instant.
 
 use nalgebra::Vector3;
 
-use super::EnvironmentError;
 use super::bodies::Bodies;
-use super::eight_bodies::Group;
-use super::error::Place;
-use super::wrenches::{Push, Wrenches};
+use super::body_block::LaneGroup;
+use super::error::{EnvironmentError, ScenePoint};
+use super::wrenches::{WrenchLanes, Wrenches};
 use crate::earth::Earth;
-use crate::gravity::{Gravity, Nearby, Sky, Station, lowest_ground_cubed};
+use crate::gravity::{FieldPoint, Gravity, LocalField, Sky, lowest_ground_cubed};
 use crate::orbit::OrbitState;
 use crate::spatial::Real;
 use std::cell::OnceCell;
 
-/// The reference orbit at one instant.
+/// State of the reference orbit at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Reference<'a> {
-    /// Its state, axes of `I`; `W`'s origin is at its position.
+    /// State of the reference, axes of `I`; the origin of `W` is at its position.
     pub state: OrbitState,
-    /// The gravity that acts on robot and reference; `None` around no planet.
+    /// Gravity that acts on robot and reference; `None` around no planet.
     pub gravity: Option<&'a Gravity>,
-    /// Whether the reference obeys just that gravity: what then remains of it are differences.
-    pub falls_freely: bool,
+    /// True if the reference obeys exactly this gravity, so that only differences of gravity act in `W`.
+    pub in_free_fall: bool,
 }
 
-/// What depends on the instant and the reference alone, found at the first look: stages of a step, and steps, share it.
+/// Quantities that depend on the instant and the reference alone, computed on first use and shared by stages and steps.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Heavens {
+pub(crate) struct Ephemeris {
     sky: OnceCell<Sky>,
     sun: OnceCell<Vector3<f64>>,
 }
 
-impl Heavens {
-    /// Nothing is known any more: they stand for another time or place.
-    pub(crate) fn forget(&mut self) {
+impl Ephemeris {
+    /// Clears all values before the next instant or reference.
+    pub(crate) fn clear(&mut self) {
         self.sky.take();
         self.sun.take();
     }
 }
 
-/// All that an effect may look at.
+/// State of robots, reference orbit and Earth at one instant.
 #[derive(Clone, Debug)]
 pub struct Scene<'a> {
-    /// The step being integrated, s: its middle decides what is switched on.
+    /// Step being integrated, s; its middle decides which wrenches are active.
     pub interval: (f64, f64),
     /// Instant of this evaluation, s of simulation.
     pub time: f64,
-    /// The reference orbit now, where the run has one.
+    /// The reference orbit at this instant, if the run has one.
     pub reference: Option<Reference<'a>>,
-    /// How the Earth turns, where the run says so.
+    /// Rotation of the Earth, if the run has an Earth.
     pub earth: Option<&'a Earth>,
-    /// The robot's bodies now.
+    /// States of the bodies at this instant.
     pub bodies: &'a Bodies,
-    heavens: &'a Heavens,
-    /// What effects look at one after the other: the field by itself, and where differences are asked for.
-    near: [OnceCell<Nearby<'a>>; 2],
+    ephemeris: &'a Ephemeris,
+    /// Local gravity fields shared by the effects: one for accelerations, and one for differences from the
+    /// reference.
+    local_fields: [OnceCell<LocalField<'a>>; 2],
 }
 
 impl Scene<'_> {
-    /// Shows effects the bodies at `time` in a step over `interval`, s, beside a reference orbit and above an Earth where
-    /// there are: what a run does at every stage of a step.
-    pub fn show<R>(
+    /// Calls `evaluate` with the scene of the bodies at `time` in a step over `interval`, s.
+    ///
+    /// A run evaluates its effects in this way at every stage of a step.
+    pub fn with<R>(
         interval: (f64, f64),
         time: f64,
         bodies: &Bodies,
         reference: Option<Reference<'_>>,
         earth: Option<&Earth>,
-        look: impl FnOnce(&Scene<'_>) -> R,
+        evaluate: impl FnOnce(&Scene<'_>) -> R,
     ) -> R {
-        let heavens = Heavens::default();
-        look(&Scene { reference, earth, ..Scene::new(interval, time, bodies, &heavens) })
+        let ephemeris = Ephemeris::default();
+        evaluate(&Scene { reference, earth, ..Scene::new(interval, time, bodies, &ephemeris) })
     }
 }
 
 impl<'a> Scene<'a> {
-    /// The bodies at `time` in a step over `interval`; no orbit, no Earth. `heavens` are those of that time and reference.
-    pub(crate) fn new(interval: (f64, f64), time: f64, bodies: &'a Bodies, heavens: &'a Heavens) -> Self {
-        Self { interval, time, reference: None, earth: None, bodies, heavens, near: Default::default() }
+    /// Returns a scene without orbit and Earth; `ephemeris` belongs to `time` and to the reference set later.
+    pub(crate) fn new(interval: (f64, f64), time: f64, bodies: &'a Bodies, ephemeris: &'a Ephemeris) -> Self {
+        let local_fields = Default::default();
+        Self { interval, time, reference: None, earth: None, bodies, ephemeris, local_fields }
     }
 
-    /// Middle of the step being integrated, s.
+    /// Returns the middle of the step being integrated, s.
     pub fn middle(&self) -> f64 {
         0.5 * (self.interval.0 + self.interval.1)
     }
 
-    /// Adds what acts on the bodies, found for as many at once as `S` has lanes.
+    /// Adds the wrenches that `wrench_of` returns for each group of bodies, one body per lane of `S`, to
+    /// `wrenches`.
     ///
     /// # Errors
-    /// [`EnvironmentError::WrongLength`] when there is not one wrench per body, and what `push` says.
+    /// [`EnvironmentError::WrongLength`] if bodies and wrenches do not match; errors of `wrench_of`.
     #[inline(always)]
-    pub(super) fn push<S: Real>(
+    pub(super) fn add_lanes<S: Real>(
         &self,
         wrenches: &mut Wrenches,
-        push: impl Fn(&Group<'a>) -> Result<Push<S>, EnvironmentError>,
+        wrench_of: impl Fn(&LaneGroup<'a>) -> Result<WrenchLanes<S>, EnvironmentError>,
     ) -> Result<(), EnvironmentError> {
-        let (expected, got) = (self.bodies.len(), wrenches.len());
-        if expected != got {
+        if self.bodies.layout != wrenches.layout {
+            let (expected, got) = (self.bodies.len(), wrenches.len());
             return Err(EnvironmentError::WrongLength { expected, got });
         }
         S::enter(
             #[inline(always)]
             || {
-                for group in self.bodies.groups::<S>() {
-                    wrenches.add_lanes(group.first, push(&group)?);
+                for system in 0..self.bodies.layout.systems().len() {
+                    for group in self.bodies.groups::<S>(system) {
+                        wrenches.add_lanes(group.row, wrench_of(&group)?);
+                    }
                 }
                 Ok(())
             },
         )
     }
 
-    /// State of the reference around its planet, and how the Earth turns.
+    /// Returns the state of the reference around its planet, and the Earth.
     pub(super) fn reference_and_earth(
         &self,
         effect: &'static str,
@@ -118,79 +123,81 @@ impl<'a> Scene<'a> {
         Ok((reference, self.earth.ok_or(EnvironmentError::NoEarth { effect })?))
     }
 
-    /// State of the reference and gravity of its planet, the reference being outside it.
+    /// Returns the planet of the reference orbit; the reference must be above ground.
     pub(super) fn planet(&self, effect: &'static str) -> Result<Planet<'a>, EnvironmentError> {
-        let around = |r: Reference<'a>| Some((r.state, r.gravity?, r.falls_freely));
+        let around = |r: Reference<'a>| Some((r.state, r.gravity?, r.in_free_fall));
         let found = self.reference.and_then(around);
-        let (reference, gravity, falls_freely) = found.ok_or(EnvironmentError::NoPlanet { effect })?;
+        let (reference, gravity, in_free_fall) = found.ok_or(EnvironmentError::NoPlanet { effect })?;
         let minimum_cubed = lowest_ground_cubed(gravity.mu());
-        let planet = Planet { effect, mu: gravity.mu(), gravity, reference, falls_freely, minimum_cubed };
-        planet.outside(Place::Reference, reference.position.norm())?;
+        let planet = Planet { effect, mu: gravity.mu(), gravity, reference, in_free_fall, minimum_cubed };
+        planet.check_above_ground(ScenePoint::Reference, reference.position.norm())?;
         Ok(planet)
     }
 
-    /// Gravity without the planet's point mass, around the robot; none where that is all there is.
-    pub(super) fn nearby(
+    /// Returns the gravity around the robot without the planet's point mass; `None` if it is a point mass only.
+    ///
+    /// `tide_only` selects the field that also gives its difference to the reference, the tide.
+    pub(super) fn local_field(
         &self,
         planet: &Planet<'a>,
-        differs: bool,
-    ) -> Result<Option<&Nearby<'a>>, EnvironmentError> {
+        tide_only: bool,
+    ) -> Result<Option<&LocalField<'a>>, EnvironmentError> {
         if planet.gravity.is_point_mass() {
             return Ok(None);
         }
-        let near = || -> Result<Nearby<'a>, EnvironmentError> {
+        let expand = || -> Result<LocalField<'a>, EnvironmentError> {
             let OrbitState { position, velocity, .. } = planet.reference;
             let travel = velocity.norm() * (self.interval.1 - self.interval.0);
-            let (time, origin, com) = (self.time, position.into(), self.bodies.center_of_mass());
-            let sky = found(&self.heavens.sky, || planet.gravity.sky(time, origin))?;
-            let station = Station { time, origin, com, travel };
-            Ok(planet.gravity.nearby(&station, sky, differs)?)
+            let (time, r_ref, com) = (self.time, position.into(), self.bodies.center_of_mass());
+            let sky = get_or_try_init(&self.ephemeris.sky, || planet.gravity.sky(time, r_ref))?;
+            let point = FieldPoint { time, r_ref, com, travel };
+            Ok(planet.gravity.local_field(&point, sky, tide_only)?)
         };
-        found(&self.near[usize::from(differs)], near).map(Some)
+        get_or_try_init(&self.local_fields[usize::from(tide_only)], expand).map(Some)
     }
 
-    /// Position of the Sun from the Earth's centre, axes of `I`, m.
+    /// Returns the position of the Sun from the Earth's centre, axes of `I`, m.
     pub(super) fn sun(&self, earth: &Earth) -> Result<Vector3<f64>, EnvironmentError> {
-        Ok(*found(&self.heavens.sun, || earth.sun(self.time))?)
+        Ok(*get_or_try_init(&self.ephemeris.sun, || earth.sun(self.time))?)
     }
 }
 
-/// What the cell holds, or is given now.
-fn found<T, E>(cell: &OnceCell<T>, find: impl FnOnce() -> Result<T, E>) -> Result<&T, E> {
+/// Returns the value of the cell; an empty cell is filled by `compute`.
+fn get_or_try_init<T, E>(cell: &OnceCell<T>, compute: impl FnOnce() -> Result<T, E>) -> Result<&T, E> {
     match cell.get() {
-        Some(known) => Ok(known),
-        None => find().map(|it| cell.get_or_init(|| it)),
+        Some(value) => Ok(value),
+        None => compute().map(|value| cell.get_or_init(|| value)),
     }
 }
 
-/// The planet of a scene, as one effect sees it.
+/// Planet of a scene as seen by one effect.
 pub(super) struct Planet<'a> {
     effect: &'static str,
     pub(super) mu: f64,
     pub(super) gravity: &'a Gravity,
     pub(super) reference: OrbitState,
-    pub(super) falls_freely: bool,
+    pub(super) in_free_fall: bool,
     minimum_cubed: f64,
 }
 
 impl Planet<'_> {
-    /// Refuses bodies that are below ground; `distance` from its centre, m.
+    /// Rejects bodies below ground; `distance` is that from the planet's centre, m.
     #[inline(always)]
-    pub(super) fn all_outside<S: Real>(
+    pub(super) fn check_group_above_ground<S: Real>(
         &self,
-        group: &Group<'_>,
+        group: &LaneGroup<'_>,
         distance: S,
     ) -> Result<(), EnvironmentError> {
         if S::any((distance * distance * distance).less(S::of(self.minimum_cubed))) {
-            for (i, k) in (group.first..).take(group.count).enumerate() {
-                self.outside(Place::Body(k), distance.lane(i))?;
+            for i in 0..group.count {
+                self.check_above_ground(ScenePoint::Body(group.body(i)), distance.lane(i))?;
             }
         }
         Ok(())
     }
 
-    /// Refuses a `distance` from the planet's centre, m, at which all is ground.
-    pub(super) fn outside(&self, what: Place, distance: f64) -> Result<(), EnvironmentError> {
+    /// Rejects a `distance` from the planet's centre, m, that is certainly below ground.
+    pub(super) fn check_above_ground(&self, what: ScenePoint, distance: f64) -> Result<(), EnvironmentError> {
         if distance * distance * distance >= self.minimum_cubed {
             return Ok(());
         }

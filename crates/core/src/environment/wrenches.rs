@@ -1,12 +1,13 @@
-//! Forces and torques on the bodies of a robot, side by side.
+//! Forces and torques on the bodies of all systems, in blocks of eight.
 
-use super::EnvironmentError;
-use super::eight::{Eight, WIDTH, store};
+use super::body_index::{BlockLayout, BodyIndex};
+use super::error::EnvironmentError;
+use super::soa::{Column8, WIDTH, store};
 use crate::spatial::{Mat3, Real, Vec3};
 use nalgebra::Vector3;
 use std::ops::{Add, Mul};
 
-/// Force through a body's centre of mass and torque about it.
+/// Force through the centre of mass of a body and torque about it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
     /// Force, `W` axes, N.
@@ -15,106 +16,115 @@ pub struct Wrench {
     pub torque: Vector3<f64>,
 }
 
-/// One wrench on each body of a robot, base first.
+/// Wrenches on all bodies of all systems, one per body.
 #[derive(Clone, Debug)]
 pub struct Wrenches {
-    count: usize,
-    blocks: Vec<Push<Eight>>,
+    pub(super) layout: BlockLayout,
+    blocks: Vec<WrenchLanes<Column8>>,
 }
 
-/// A force through the centre of mass and a torque about it.
+/// Forces through the centres of mass of several bodies and torques about them.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Push<T> {
+pub(crate) struct WrenchLanes<T> {
     pub(crate) force: Vec3<T>,
     pub(crate) torque: Vec3<T>,
 }
 
 impl Wrenches {
-    /// None on any of `count` bodies.
-    pub fn new(count: usize) -> Self {
-        Self { count, blocks: vec![Push::default(); count.div_ceil(WIDTH)] }
+    /// Returns zero wrenches on systems with these numbers of bodies.
+    pub fn new(counts: &[usize]) -> Self {
+        let layout = BlockLayout::new(counts);
+        Self { blocks: vec![WrenchLanes::default(); layout.block_count()], layout }
     }
 
-    /// How many bodies there are.
+    /// Returns the number of bodies of all systems.
     pub fn len(&self) -> usize {
-        self.count
+        self.layout.body_count()
     }
 
-    /// Whether there are no bodies.
+    /// Returns true if there are no bodies.
     pub fn is_empty(&self) -> bool {
-        self.count == 0
+        self.len() == 0
     }
 
-    /// None any more.
+    /// Sets all wrenches to zero.
     pub fn clear(&mut self) {
-        self.blocks.fill(Push::default());
+        self.blocks.fill(WrenchLanes::default());
     }
 
-    /// That on one body; none where there is no such body.
-    pub fn get(&self, body: usize) -> Option<Wrench> {
-        let (push, i) = (self.blocks.get(body / WIDTH).filter(|_| body < self.count)?, body % WIDTH);
-        let vector = |rows: &Vec3<Eight>| rows.map(|row| row.get(i)).to_nalgebra();
-        Some(Wrench { force: vector(&push.force), torque: vector(&push.torque) })
+    /// Returns the wrench on a body, if the body exists; a plain number is a body of the first system.
+    pub fn get(&self, body: impl Into<BodyIndex>) -> Option<Wrench> {
+        let row = self.layout.row(body.into())?;
+        let (block, i) = (&self.blocks[row / WIDTH], row % WIDTH);
+        let vector = |columns: &Vec3<Column8>| columns.map(|column| column.get(i)).to_nalgebra();
+        Some(Wrench { force: vector(&block.force), torque: vector(&block.torque) })
     }
 
-    /// All of them, base first.
+    /// Returns the wrenches of all bodies, system by system, base first.
     pub fn iter(&self) -> impl Iterator<Item = Wrench> {
-        (0..self.count).filter_map(|body| self.get(body))
+        self.layout.bodies().filter_map(|body| self.get(body))
     }
 
-    /// Adds one to what is on a body.
+    /// Returns the wrenches on the bodies of a system, base first.
+    pub(crate) fn of_system(&self, system: usize) -> impl Iterator<Item = Wrench> {
+        let count = self.layout.systems()[system].1;
+        (0..count).filter_map(move |body| self.get(BodyIndex { system, body }))
+    }
+
+    /// Adds a wrench to the wrench on a body; a plain number is a body of the first system.
     ///
     /// # Errors
     /// [`EnvironmentError::UnknownBody`].
-    pub fn add(&mut self, body: usize, wrench: Wrench) -> Result<(), EnvironmentError> {
-        if body >= self.count {
-            return Err(EnvironmentError::UnknownBody { body, count: self.count });
-        }
+    pub fn add(&mut self, body: impl Into<BodyIndex>, wrench: Wrench) -> Result<(), EnvironmentError> {
+        let body = body.into();
+        let unknown = EnvironmentError::UnknownBody { body, count: self.len() };
+        let row = self.layout.row(body).ok_or(unknown)?;
         let Wrench { force, torque } = wrench;
-        self.add_lanes(body, Push::<f64> { force: force.into(), torque: torque.into() });
+        self.add_lanes(row, WrenchLanes::<f64> { force: force.into(), torque: torque.into() });
         Ok(())
     }
 
-    /// Adds pushes to those on as many bodies as `S` has lanes, from `first` on.
+    /// Adds to the wrenches on as many bodies as `S` has lanes, from `row` on.
     #[inline(always)]
-    pub(super) fn add_lanes<S: Real>(&mut self, first: usize, push: Push<S>) {
-        let (to, offset) = (&mut self.blocks[first / WIDTH], first % WIDTH);
-        let sum = to.load(offset) + push;
+    pub(super) fn add_lanes<S: Real>(&mut self, row: usize, wrenches: WrenchLanes<S>) {
+        let (to, offset) = (&mut self.blocks[row / WIDTH], row % WIDTH);
+        let sum = to.load(offset) + wrenches;
         store(&mut to.force, offset, sum.force);
         store(&mut to.torque, offset, sum.torque);
     }
 
-    /// Those on as many bodies as `S` has lanes, from `first` on.
+    /// Returns the wrenches on as many bodies of a system as `S` has lanes, from body `first` on.
     #[inline(always)]
-    pub(crate) fn lanes<S: Real>(&self, first: usize) -> Push<S> {
-        self.blocks[first / WIDTH].load(first % WIDTH)
+    pub(crate) fn lanes<S: Real>(&self, system: usize, first: usize) -> WrenchLanes<S> {
+        let row = self.layout.systems()[system].0 + first;
+        self.blocks[row / WIDTH].load(row % WIDTH)
     }
 }
 
-impl Push<Eight> {
+impl WrenchLanes<Column8> {
     #[inline(always)]
-    fn load<S: Real>(&self, offset: usize) -> Push<S> {
-        Push {
-            force: self.force.map(|row| row.load(offset)),
-            torque: self.torque.map(|row| row.load(offset)),
+    fn load<S: Real>(&self, offset: usize) -> WrenchLanes<S> {
+        WrenchLanes {
+            force: self.force.map(|column| column.load(offset)),
+            torque: self.torque.map(|column| column.load(offset)),
         }
     }
 }
 
-impl<S: Real> Push<S> {
+impl<S: Real> WrenchLanes<S> {
     #[inline(always)]
-    pub(super) fn nothing() -> Self {
+    pub(super) fn zero() -> Self {
         Self { force: Vec3::zero(), torque: Vec3::zero() }
     }
 
-    /// In the axes that `rot` leads to.
+    /// Returns the wrenches in other axes: `R f`, `R τ` with the rotation matrix `rot`.
     #[inline(always)]
-    pub(crate) fn turned(self, rot: &Mat3<S>) -> Self {
+    pub(crate) fn rotated(self, rot: &Mat3<S>) -> Self {
         Self { force: *rot * self.force, torque: *rot * self.torque }
     }
 }
 
-impl<S: Real> Add for Push<S> {
+impl<S: Real> Add for WrenchLanes<S> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -122,7 +132,7 @@ impl<S: Real> Add for Push<S> {
     }
 }
 
-impl<S: Real> Mul<S> for Push<S> {
+impl<S: Real> Mul<S> for WrenchLanes<S> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, s: S) -> Self {

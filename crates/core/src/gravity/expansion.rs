@@ -1,16 +1,17 @@
-//! A field linear about a point.
+//! Linear expansion of a gravity field about a point.
 
-use super::{GravityError, GravityField};
+use super::error::GravityError;
+use super::field::GravityField;
 use crate::spatial::{Mat3, Real, Sym3, Vec3};
 use std::sync::{Mutex, PoisonError};
 
-/// Distance over which a field is taken for linear, m.
+/// Distance over which a field is approximated as linear, m.
 ///
-/// What that leaves out is `½ ∂²g d²`: at most 3.5e-12 m/s² within 28 m from 150 km up, 7e-13 in the mean (EGM2008 36 × 36,
-/// measured in `tests/gravity_nearby.rs`), a ten-billionth of the field without its point mass.
-const REACH: f64 = 40.0;
+/// The error `½ ∂²g d²` is at most 3.5e-12 m/s² and 7e-13 on average within 28 m, at altitudes from 150 km (EGM2008
+/// 36 × 36, measured in `tests/gravity_local_field.rs`): 1e-10 of the field without its point mass.
+const LINEAR_RADIUS: f64 = 40.0;
 
-/// `g(x) = g₀ + G₀ (x - x₀)`
+/// Linear expansion `g(x) = g₀ + G₀ (x - x₀)`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expansion {
     pub(super) at: Vec3<f64>,
@@ -24,26 +25,27 @@ impl Expansion {
         Ok(Self { at, value: value.into(), gradient: gradient.into() })
     }
 
-    /// `g(x)`
+    /// Returns `g(x)`.
     #[inline(always)]
     pub(super) fn value_at<S: Real>(&self, x: Vec3<S>) -> Vec3<S> {
-        Vec3::of(&self.value) + self.rise(x - Vec3::of(&self.at))
+        Vec3::of(&self.value) + self.difference(x - Vec3::of(&self.at))
     }
 
-    /// `g(x + d) - g(x)`
+    /// Returns `g(x + d) - g(x)`.
     #[inline(always)]
-    pub(super) fn rise<S: Real>(&self, d: Vec3<S>) -> Vec3<S> {
+    pub(super) fn difference<S: Real>(&self, d: Vec3<S>) -> Vec3<S> {
         Sym3::of(&self.gradient) * d
     }
 
-    /// Whether it is good at all these places.
+    /// Returns true if the expansion is accurate at all these positions.
     #[inline(always)]
-    pub(super) fn reaches<S: Real>(&self, places: Vec3<S>) -> bool {
-        is_near(Vec3::of(&self.at), places)
+    pub(super) fn covers<S: Real>(&self, positions: Vec3<S>) -> bool {
+        is_near(Vec3::of(&self.at), positions)
     }
 
-    /// In the axes that `rot` takes to those of this one.
-    pub(super) fn turned_back(&self, rot: &Mat3<f64>) -> Self {
+    /// Returns the expansion in axes `A`, where `rot` converts `A` components to components of this
+    /// expansion.
+    pub(super) fn rotated_back(&self, rot: &Mat3<f64>) -> Self {
         Self {
             at: rot.transpose_mul(self.at),
             value: rot.transpose_mul(self.value),
@@ -52,35 +54,35 @@ impl Expansion {
     }
 }
 
-/// Whether places are within reach of each other, in all lanes.
+/// Returns true if the positions are near each other in all lanes.
 #[inline(always)]
 pub(super) fn is_near<S: Real>(a: Vec3<S>, b: Vec3<S>) -> bool {
     let d = a - b;
-    !S::any(S::of(REACH * REACH).less(d.dot(d)))
+    !S::any(S::of(LINEAR_RADIUS * LINEAR_RADIUS).less(d.dot(d)))
 }
 
-/// What was expanded last: functions of the place alone, so that it does not matter who asked for them.
+/// Cache of the last four expansions, which depend on the position alone.
 #[derive(Debug, Default)]
-pub(super) struct Memo(Mutex<[Option<Expansion>; 4]>);
+pub(super) struct ExpansionCache(Mutex<[Option<Expansion>; 4]>);
 
-impl Clone for Memo {
+impl Clone for ExpansionCache {
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-impl Memo {
-    /// The field about this place.
+impl ExpansionCache {
+    /// Returns the expansion about this position.
     pub(super) fn about(&self, field: &GravityField, at: Vec3<f64>) -> Result<Expansion, GravityError> {
-        // not held while the field is evaluated: other runs may share it
-        let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(expansion) = known().iter().flatten().find(|expansion| expansion.at == at) {
+        // The lock is released while the field is evaluated, because runs may share it.
+        let cached = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(expansion) = cached().iter().flatten().find(|expansion| expansion.at == at) {
             return Ok(*expansion);
         }
         let expansion = Expansion::of(field, at)?;
-        let mut known = known();
-        known.rotate_right(1);
-        known[0] = Some(expansion);
+        let mut cached = cached();
+        cached.rotate_right(1);
+        cached[0] = Some(expansion);
         Ok(expansion)
     }
 }

@@ -1,7 +1,7 @@
-//! The part of a planet's gravity that is not that of a point mass.
+//! Gravity field of a planet without its point mass.
 
-use super::GravityError;
 use super::coefficients::{Coefficients, check_planet};
+use super::error::GravityError;
 use super::gfc;
 use super::harmonics::Harmonics;
 use super::point_mass::SURFACE;
@@ -10,14 +10,14 @@ use crate::text_file::{TextFileError, read_text};
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
 
-/// Models that come with the engine, to degree and order 70.
+/// Bundled models, to degree and order 70.
 const BUNDLED: [(&str, &str); 2] =
     [("egm2008", include_str!("models/egm2008.gfc")), ("jgm3", include_str!("models/jgm3.gfc"))];
 
-/// Bytes of a model's file: 0.3 GB to degree 2190.
+/// Largest size of a model file, bytes; a model to degree 2190 has 0.3 GB.
 const LARGEST_FILE: usize = 1 << 30;
 
-/// A planet's field without that of its point mass, in axes `F` fixed in the planet, z along its axis.
+/// Gravity field of a planet without its point mass, in axes `F` fixed in the planet with z along the rotation axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GravityField {
     name: String,
@@ -35,7 +35,7 @@ enum Kind {
 }
 
 impl GravityField {
-    /// `J2` to `Jdegree` of the Earth (EGM2008), for degrees 2 to 6.
+    /// Returns the zonal field `J2` to `Jdegree` of the Earth (EGM2008); `degree` is from 2 to 6.
     ///
     /// # Errors
     /// [`GravityError::ZonalDegree`].
@@ -45,11 +45,11 @@ impl GravityField {
         Self::zonals(3.986_004_415e14, 6_378_136.3, j)
     }
 
-    /// A planet with `mu`, m³/s², and `J2`, `J3`, … `J6` (as many as are given, not normalised) for the
-    /// reference radius `R`, m.
+    /// Returns the zonal field of a planet with `mu`, m³/s², reference radius `R`, m, and up to five `J2`, `J3`, … `J6`
+    /// (not normalised).
     ///
     /// # Errors
-    /// [`GravityError`]: none or more than five, numbers that are not finite, `mu` or `radius` not positive.
+    /// [`GravityError`] for no or more than five coefficients, non-finite numbers, and non-positive `mu` or `radius`.
     pub fn zonals(mu: f64, radius: f64, j: &[f64]) -> Result<Self, GravityError> {
         let degree = j.len() + 1;
         if j.is_empty() || degree > zonal::HIGHEST {
@@ -65,7 +65,7 @@ impl GravityField {
         Ok(Self { name: "zonal".to_owned(), mu, radius, degree, order: 0, kind })
     }
 
-    /// A model that comes with the engine: `egm2008` (tide-free) or `jgm3` (`C̄20` with the permanent tide), both to degree and order 70.
+    /// Returns a bundled model: `egm2008` (tide-free) or `jgm3` (`C̄20` with the permanent tide), to degree and order 70.
     ///
     /// # Errors
     /// [`GravityError::UnknownModel`], [`GravityError::BeyondModel`], [`GravityError::OrderAboveDegree`].
@@ -79,11 +79,11 @@ impl GravityField {
         Self::new(&coefficients, degree, order)
     }
 
-    /// A model in a `.gfc` file; to the degree of the file, and to the order of its degree, where none is given.
+    /// Reads a model from a `.gfc` file; `degree` defaults to that of the file and `order` to `degree`.
     ///
     /// # Errors
-    /// [`GravityError`]: a file that cannot be read, is cut short, not normalised or varies with time, with the
-    /// line where there is one; and what [`GravityField::new`] says.
+    /// [`GravityError`] for a file that is unreadable, truncated, not normalised or time-dependent, and as
+    /// [`GravityField::new`].
     pub fn from_gfc(path: &Path, degree: Option<usize>, order: Option<usize>) -> Result<Self, GravityError> {
         let file = path.display().to_string();
         let text = read_text(path, LARGEST_FILE).map_err(|error| {
@@ -98,12 +98,12 @@ impl GravityField {
         Self::new(&coefficients, degree, order.unwrap_or(degree))
     }
 
-    /// The part of a model up to `degree` and `order`; zonals up to degree 6 take their closed form.
+    /// Returns the field of a model up to `degree` and `order`; zonal fields up to degree 6 use their closed form.
     ///
     /// # Errors
     /// [`GravityError::BeyondModel`], [`GravityError::OrderAboveDegree`], [`GravityError::Degree`].
     pub fn new(coefficients: &Coefficients, degree: usize, order: usize) -> Result<Self, GravityError> {
-        let series = coefficients.cut(degree, order)?;
+        let series = coefficients.truncated(degree, order)?;
         let Coefficients { model, mu, radius, .. } = coefficients;
         let (name, mu, radius) = (model.clone(), *mu, *radius);
         let is_closed = order == 0 && degree <= zonal::HIGHEST && series.get(1, 0) == [0.0; 2];
@@ -117,40 +117,40 @@ impl GravityField {
         Ok(Self { name, mu, radius, degree, order, kind })
     }
 
-    /// Name of the model.
+    /// Returns the name of the model.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Gravitational parameter that the coefficients belong to, m³/s².
+    /// Returns the gravitational parameter of the coefficients, m³/s².
     pub fn mu(&self) -> f64 {
         self.mu
     }
 
-    /// Reference radius `R`, m.
+    /// Returns the reference radius `R`, m.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Highest degree.
+    /// Returns the highest degree.
     pub fn degree(&self) -> usize {
         self.degree
     }
 
-    /// Highest order; with 0 the field is symmetric about z of `F`.
+    /// Returns the highest order; with 0 the field is symmetric about z of `F`.
     pub fn order(&self) -> usize {
         self.order
     }
 
-    /// Whether a value costs so little that none needs to be expanded from.
+    /// Returns true for a field in closed form, which requires no grid of expansions.
     pub(super) fn is_closed(&self) -> bool {
         matches!(self.kind, Kind::Zonal(_))
     }
 
-    /// Acceleration at `r` from the planet's centre, m, axes of `F`: m/s².
+    /// Returns the acceleration at `r` from the planet's centre, m, axes of `F`, in m/s².
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`] below 0.996 `R`, where no series is to be trusted; [`GravityError::NotFinite`].
+    /// [`GravityError::BelowSurface`] below 0.996 `R`, where series are not reliable; [`GravityError::NotFinite`].
     #[inline]
     pub fn acceleration(&self, r: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
         self.check(r)?;
@@ -160,10 +160,10 @@ impl GravityField {
         })
     }
 
-    /// Acceleration as above, and its gradient `∂g/∂r`, symmetric and without trace, 1/s².
+    /// Returns the acceleration, m/s², and its gradient `∂g/∂r`, symmetric and with zero trace, 1/s².
     ///
     /// # Errors
-    /// As [`GravityField::acceleration`].
+    /// Those of [`GravityField::acceleration`].
     pub fn gradient(&self, r: &Vector3<f64>) -> Result<(Vector3<f64>, Matrix3<f64>), GravityError> {
         self.check(r)?;
         Ok(match &self.kind {
@@ -172,10 +172,11 @@ impl GravityField {
         })
     }
 
-    /// Accelerations at many places: rows of three numbers, `F` axes, m and m/s².
+    /// Computes the accelerations `(n, 3)`, m/s², at positions `(n, 3)`, m, axes of `F`.
     ///
     /// # Errors
-    /// [`GravityError::WrongLength`]; otherwise the first error of [`GravityField::acceleration`], rows before it being written.
+    /// [`GravityError::WrongLength`]; otherwise the first error of [`GravityField::acceleration`], after the rows before it
+    /// were written.
     pub fn accelerations(&self, positions: &[f64], out: &mut [f64]) -> Result<(), GravityError> {
         self.at_each(positions, out, 3, |r, row| {
             row.copy_from_slice(self.acceleration(r)?.as_slice());
@@ -183,10 +184,10 @@ impl GravityField {
         })
     }
 
-    /// Gradients at many places: rows of nine numbers, 1/s²; as [`GravityField::accelerations`].
+    /// Computes the gradients `(n, 3, 3)`, 1/s², at positions `(n, 3)`, m, axes of `F`.
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`GravityField::accelerations`].
     pub fn gradients(&self, positions: &[f64], out: &mut [f64]) -> Result<(), GravityError> {
         self.at_each(positions, out, 9, |r, row| {
             row.copy_from_slice(self.gradient(r)?.1.as_slice());

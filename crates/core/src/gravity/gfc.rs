@@ -1,10 +1,10 @@
-//! Reading `.gfc`, the format of the International Centre for Global Earth Models.
+//! Reader of `.gfc`, the format of the International Centre for Global Earth Models.
 
-use super::GravityError;
 use super::coefficients::{Coefficients, check_degree};
+use super::error::GravityError;
 use super::series::Series;
 
-/// Reads the text of a `.gfc` file, up to `degree` where one is given; `file` is its name, for messages.
+/// Reads the text of a `.gfc` file, up to `degree` if given; `file` is the name in messages.
 ///
 /// # Errors
 /// [`GravityError`] with file and line.
@@ -20,11 +20,12 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
     let rows = text.lines().enumerate().skip(header.lines).filter(|(_, line)| !line.trim().is_empty());
     for (index, text) in rows {
         let line = index + 1;
-        let refuse = || GravityError::Row { file: file.to_owned(), line, got: text.trim().to_owned() };
+        let invalid = || GravityError::Row { file: file.to_owned(), line, got: text.trim().to_owned() };
         let words: Vec<&str> = text.split_whitespace().collect();
-        let (n, m) = (index_of(words.get(1)).ok_or_else(refuse)?, index_of(words.get(2)).ok_or_else(refuse)?);
+        let (n, m) =
+            (index_of(words.get(1)).ok_or_else(invalid)?, index_of(words.get(2)).ok_or_else(invalid)?);
         if m > n || n > header.degree {
-            return Err(refuse());
+            return Err(invalid());
         }
         match words[0] {
             "gfc" => {}
@@ -33,18 +34,19 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
                 let key = words[0].to_owned();
                 return Err(GravityError::VariesWithTime { file: file.to_owned(), line, key });
             }
-            _ => return Err(refuse()),
+            _ => return Err(invalid()),
         }
         if words.len() != 5 && words.len() != header.words {
-            return Err(refuse());
+            return Err(invalid());
         }
-        let (c, s) = (number(words[3]).ok_or_else(refuse)?, number(words[4]).ok_or_else(refuse)?);
+        let (c, s) = (number(words[3]).ok_or_else(invalid)?, number(words[4]).ok_or_else(invalid)?);
         if n > degree {
             continue;
         }
-        // where no error and no end of the line follows it, S may be cut; an exponent that is cut shows by its size
-        let is_plain = m > 0 && !words[4].contains(['e', 'E', 'd', 'D']);
-        if is_cut && line == last && words.len() == 5 && is_plain {
+        // S at the end of the file, without error column and line end, may be truncated; a truncated exponent
+        // shows by its size
+        let may_be_cut = m > 0 && !words[4].contains(['e', 'E', 'd', 'D']);
+        if is_cut && line == last && words.len() == 5 && may_be_cut {
             return Err(GravityError::CutRow { file: file.to_owned(), line, got: text.trim().to_owned() });
         }
         if std::mem::replace(&mut is_given[n * (n + 1) / 2 + m], true) {
@@ -60,47 +62,53 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
             return Err(GravityError::Truncated { file: file.to_owned(), degree: n, order });
         }
     }
-    // U = (μ/r) [C00 + …]: what stands before all terms is μ, the rest is relative to it
-    Coefficients::checked(header.model, header.mu * central, header.radius, series.over(central))
+    // U = (μ/r) [C00 + …]: C00 is part of μ, and the other coefficients are relative to it
+    Coefficients::checked(header.model, header.mu * central, header.radius, series.divided_by(central))
 }
 
-/// What the lines before the coefficients say.
+/// Contents of the header.
 struct Header {
     model: String,
     mu: f64,
     radius: f64,
     degree: usize,
-    /// Words in a row of coefficients with its errors.
+    /// Words in a row of coefficients with error columns.
     words: usize,
-    /// Lines until the coefficients.
+    /// Number of lines before the coefficients.
     lines: usize,
 }
 
 impl Header {
     fn read(file: &str, text: &str) -> Result<Self, GravityError> {
         let end = text.lines().position(|line| line.starts_with("end_of_head"));
-        let refuse = |key: &'static str, got: Option<&str>, expected: &'static str| GravityError::Header {
+        let invalid = |key: &'static str, got: Option<&str>, expected: &'static str| GravityError::Header {
             file: file.to_owned(),
             key,
             got: got.map_or_else(|| "missing".to_owned(), |got| format!("'{got}'")),
             expected,
         };
-        let end = end.ok_or_else(|| refuse("end_of_head", None, "the line that ends the header"))?;
+        let end = end.ok_or_else(|| invalid("end_of_head", None, "the line that ends the header"))?;
         let value = |key: &str| {
             let mut lines = text.lines().take(end).map(str::split_whitespace);
             lines.find_map(|mut words| words.next().filter(|word| *word == key).and_then(|_| words.next()))
         };
         let kind = value("product_type");
         if kind != Some("gravity_field") {
-            return Err(refuse("product_type", kind, "gravity_field"));
+            return Err(invalid("product_type", kind, "gravity_field"));
         }
         let model = value("modelname").unwrap_or(file).to_owned();
         if let Some(norm) = value("norm").filter(|norm| *norm != "fully_normalized") {
-            return Err(GravityError::NotNormalised { model, found: format!("its header says norm {norm}") });
+            return Err(GravityError::NotNormalised {
+                model,
+                found: format!(
+                    "the norm in the header is \
+            {norm}"
+                ),
+            });
         }
         let real = |key: &'static str, got: Option<&str>| {
             let good = got.and_then(number).filter(|x| *x > 0.0);
-            good.ok_or_else(|| refuse(key, got, "a positive number"))
+            good.ok_or_else(|| invalid(key, got, "a positive number"))
         };
         let degree = value("max_degree");
         let errors = value("errors").unwrap_or("no");
@@ -112,7 +120,7 @@ impl Header {
             )?,
             radius: real("radius", value("radius"))?,
             degree: index_of(degree.as_ref())
-                .ok_or_else(|| refuse("max_degree", degree, "a whole number"))?,
+                .ok_or_else(|| invalid("max_degree", degree, "a whole number"))?,
             words: match errors {
                 "no" => 5,
                 "calibrated_and_formal" => 9,
@@ -123,11 +131,12 @@ impl Header {
     }
 }
 
+/// Parses a degree or order.
 fn index_of(word: Option<&&str>) -> Option<usize> {
     word?.parse().ok()
 }
 
-/// A finite number, its exponent marked as in C or as in Fortran.
+/// Parses a finite number with a C or Fortran exponent.
 fn number(word: &str) -> Option<f64> {
     word.replace(['d', 'D'], "e").parse().ok().filter(|x: &f64| x.is_finite())
 }
@@ -154,7 +163,7 @@ mod tests {
         assert_eq!((read.mu, read.radius, read.degree()), (3.986_004_415e14, 6_378_136.3, 3));
         assert_eq!(read.series.get(2, 0), [-0.4841e-3, 0.0]);
         assert_eq!(read.series.get(3, 3), [7e-7, 1.4e-6]);
-        // what stands at degree 0 belongs to the point mass
+        // coefficients of degree 0 belong to the point mass
         let doubled = GOOD.replace("gfc 0 0 1.0d0", "gfc 0 0 2.0d0");
         let doubled = super::read("tiny.gfc", &doubled, Some(2)).expect("a good file");
         assert_eq!((doubled.mu, doubled.series.get(2, 0)[0]), (2.0 * read.mu, -0.24205e-3));
@@ -163,13 +172,13 @@ mod tests {
     #[test]
     fn broken_files_are_refused_with_the_line() {
         let cut = |count: usize| GOOD.lines().take(count).map(|line| format!("{line}\n")).collect::<String>();
-        // rows are missing, or the last one breaks off
+        // rows are missing, or the last row is truncated
         assert!(matches!(refused(&cut(18), None), GravityError::Truncated { degree: 3, order: 3, .. }));
         assert!(matches!(refused(&cut(11), None), GravityError::Truncated { degree: 2, order: 0, .. }));
         assert!(read("tiny.gfc", &cut(16), Some(2)).is_ok());
         let broken = GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7");
         assert!(matches!(refused(&broken, None), GravityError::Row { line: 19, .. }));
-        // within its last number, which then reads as another; what stands behind it may be missing
+        // truncated within its last number, which then has a different value; text after it may be missing
         for cut in ["7e-7 0.0000014", "7e-7 0.00", "7e-7 1.4"] {
             let cut = refused(&GOOD.replace("7e-7 1.4e-6 0 0\n", cut), None);
             assert!(matches!(cut, GravityError::CutRow { line: 19, .. }), "{cut}");

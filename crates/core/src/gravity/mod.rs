@@ -1,7 +1,7 @@
-//! The gravity of a planet and of bodies beyond it.
+//! Gravity of a planet and of third bodies.
 //!
-//! [`Gravity`] is the full field chosen: a point mass at the planet's centre and all that disturbs it.
-//! Robot and reference feel the same one.
+//! [`Gravity`] is the full field of a run: the point mass at the planet's centre and all perturbations. It is
+//! shared by robot and reference orbit.
 
 mod coefficients;
 mod error;
@@ -9,10 +9,10 @@ mod expansion;
 mod field;
 mod gfc;
 mod harmonics;
-mod likeness;
-mod nearby;
+mod local_field;
 mod perturber;
 mod point_mass;
+mod same_gravity;
 mod series;
 mod sky;
 mod third_body;
@@ -21,7 +21,7 @@ mod zonal;
 pub use coefficients::Coefficients;
 pub use error::GravityError;
 pub use field::GravityField;
-pub(crate) use nearby::{Nearby, Station};
+pub(crate) use local_field::{FieldPoint, LocalField};
 pub use perturber::{Luminary, Perturber};
 pub(crate) use point_mass::{lowest_ground_cubed, point_mass, point_mass_gradient, tide};
 pub(crate) use sky::Sky;
@@ -29,32 +29,33 @@ pub use third_body::ThirdBody;
 
 use crate::earth::{Earth, Epoch};
 use crate::spatial::Vec3;
-use expansion::Memo;
+use expansion::ExpansionCache;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
-/// The full field chosen for a run.
+/// Full gravity field of a run.
 ///
-/// `g(t, r) = -μ r/|r|³ + rot_if g_F(rot_fi r) + Σ [g_b(r - s_b) - g_b(-s_b)]`: the point mass, the planet's field fixed
-/// in the turning planet, and the pull of every third body at `s_b` less what it does to the planet's centre.
+/// `g(t, r) = -μ r/|r|³ + rot_if g_F(rot_fi r) + Σ [g_b(r - s_b) - g_b(-s_b)]`: the point mass, the perturbing field
+/// fixed in the rotating planet, and the gravity of every third body at `s_b` minus that at the planet's centre.
+/// `local_field.rs`, `sky.rs` and `same_gravity.rs` hold more of its methods.
 #[derive(Clone, Debug)]
 pub struct Gravity {
     mu: f64,
     field: Option<Arc<GravityField>>,
     earth: Option<Arc<Earth>>,
     third_bodies: Vec<Arc<dyn ThirdBody>>,
-    memo: Memo,
+    expansions: ExpansionCache,
 }
 
 impl Gravity {
-    /// The field of a point mass with `mu`, m³/s².
+    /// Returns the field of a point mass with `mu`, m³/s².
     pub fn point_mass(mu: f64) -> Self {
-        Self { mu, field: None, earth: None, third_bodies: Vec::new(), memo: Memo::default() }
+        Self { mu, field: None, earth: None, third_bodies: Vec::new(), expansions: ExpansionCache::default() }
     }
 
-    /// A planet's field, its point mass (the model's `mu`) included, in a planet that turns as `earth` says.
+    /// Returns the field of a planet, including its point mass (the model's `mu`), that rotates like `earth`.
     ///
-    /// A field of order 0 may do without an `earth`: its axis is then z of `I`.
+    /// `earth` may be omitted for a field of order 0; its axis is then z of `I`.
     ///
     /// # Errors
     /// [`GravityError::NeedsEarth`] for a field that is not symmetric about its axis.
@@ -65,17 +66,17 @@ impl Gravity {
         Ok(Self { field: Some(Arc::clone(&field)), earth, ..Self::point_mass(field.mu()) })
     }
 
-    /// With one more third body.
+    /// Returns this gravity with an additional third body.
     #[must_use]
     pub fn and(mut self, body: Arc<dyn ThirdBody>) -> Self {
         self.third_bodies.push(body);
         self
     }
 
-    /// With the Sun or the Moon of this Earth.
+    /// Returns this gravity with the Sun or the Moon.
     ///
     /// # Errors
-    /// [`GravityError::Earth`] where it has no epoch, [`GravityError::BodyTwice`].
+    /// [`GravityError::Earth`] without an epoch, [`GravityError::BodyTwice`].
     pub fn with(self, body: Luminary, earth: &Arc<Earth>) -> Result<Self, GravityError> {
         let name = body.name();
         if self.third_bodies.iter().any(|known| known.name() == name) {
@@ -86,32 +87,32 @@ impl Gravity {
         Ok(Self { earth, ..gravity })
     }
 
-    /// Gravitational parameter of the planet, m³/s².
+    /// Returns the gravitational parameter of the planet, m³/s².
     pub fn mu(&self) -> f64 {
         self.mu
     }
 
-    /// Whether there is nothing but the planet's point mass.
+    /// Returns true if the field is only the point mass of the planet.
     pub fn is_point_mass(&self) -> bool {
         self.field.is_none() && self.third_bodies.is_empty()
     }
 
-    /// The part that is not that of the point mass, where there is one.
+    /// Returns the planet's field without its point mass, if the gravity has one.
     pub fn field(&self) -> Option<&Arc<GravityField>> {
         self.field.as_ref()
     }
 
-    /// The bodies beyond the planet.
+    /// Returns the third bodies.
     pub fn third_bodies(&self) -> &[Arc<dyn ThirdBody>] {
         &self.third_bodies
     }
 
-    /// Instant of time zero, where the field or the bodies know it.
+    /// Returns the epoch at time zero, if field or third bodies have one.
     pub fn epoch(&self) -> Option<Epoch> {
         self.earth.as_ref().and_then(|earth| earth.epoch())
     }
 
-    /// Whether an orbit around `mu`, m³/s², is one around this planet: values in use for one differ by parts in a million.
+    /// Checks that an orbit with this `mu`, m³/s², is around this planet; published values of a planet differ by some 1e-6.
     ///
     /// # Errors
     /// [`GravityError::OtherPlanet`] where they differ by more than 1e-5.
@@ -122,10 +123,10 @@ impl Gravity {
         Err(GravityError::OtherPlanet { field: self.mu, orbit: mu })
     }
 
-    /// Acceleration at `r` from the planet's centre, m, axes of `I`, at `t` seconds of simulation: m/s².
+    /// Returns the acceleration at `r` from the planet's centre, m, axes of `I`, at `t` s of simulation, in m/s².
     ///
     /// # Errors
-    /// [`GravityError`] below the surface of a planet with a field, and what a third body says.
+    /// [`GravityError`] below the surface of a planet with a field, and errors of third bodies.
     #[inline]
     pub fn acceleration(&self, t: f64, r: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
         let mut g = point_mass(self.mu, r);
@@ -141,10 +142,10 @@ impl Gravity {
         Ok(g)
     }
 
-    /// Its gradient `∂g/∂r`, symmetric and without trace, axes of `I`, 1/s².
+    /// Returns the gradient `∂g/∂r`, symmetric and with zero trace, axes of `I`, 1/s².
     ///
     /// # Errors
-    /// As [`Gravity::acceleration`].
+    /// Those of [`Gravity::acceleration`].
     pub fn gradient(&self, t: f64, r: &Vector3<f64>) -> Result<Matrix3<f64>, GravityError> {
         let mut tensor = point_mass_gradient(self.mu, r);
         if let Some(field) = &self.field {
@@ -159,7 +160,7 @@ impl Gravity {
         Ok(tensor)
     }
 
-    /// How the planet stands, where it is known and matters.
+    /// Returns the rotation from `I` to the planet, if a field requires it.
     #[inline]
     fn rot_fi(&self, t: f64) -> Option<Matrix3<f64>> {
         self.field.as_ref().and(self.earth.as_ref()).map(|earth| earth.rot_fi(t))

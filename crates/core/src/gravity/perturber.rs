@@ -1,13 +1,14 @@
-//! Sun and Moon as bodies that pull from afar.
+//! Sun and Moon as third bodies.
 
 use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::{GravityError, ThirdBody};
+use super::error::GravityError;
+use super::third_body::ThirdBody;
 use crate::earth::Earth;
 
-/// A body of the sky that pulls.
+/// Luminary: the Sun or the Moon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Luminary {
     /// The Sun.
@@ -17,10 +18,10 @@ pub enum Luminary {
 }
 
 impl Luminary {
-    /// Both.
+    /// Both luminaries.
     pub const ALL: [Self; 2] = [Self::Sun, Self::Moon];
 
-    /// `sun` or `moon`.
+    /// Returns `sun` or `moon`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sun => "sun",
@@ -28,7 +29,7 @@ impl Luminary {
         }
     }
 
-    /// Its gravitational parameter, m³/s².
+    /// Returns the gravitational parameter, m³/s².
     ///
     /// Source: DE440; Park, Folkner, Williams and Boggs, Astronomical Journal 161:105, 2021, table 2.
     pub fn mu(self) -> f64 {
@@ -39,7 +40,7 @@ impl Luminary {
     }
 }
 
-/// The Sun or the Moon of an Earth: what it does to a robot is its pull there less its pull on the Earth.
+/// Sun or Moon as a third body, with its position relative to an Earth.
 #[derive(Clone, Debug)]
 pub struct Perturber {
     body: Luminary,
@@ -47,10 +48,10 @@ pub struct Perturber {
 }
 
 impl Perturber {
-    /// The body above this Earth.
+    /// Returns the body with its position relative to `earth`.
     ///
     /// # Errors
-    /// [`GravityError::Earth`] where the Earth has no epoch.
+    /// [`GravityError::Earth`] without an epoch.
     pub fn new(body: Luminary, earth: Arc<Earth>) -> Result<Self, GravityError> {
         let perturber = Self { body, earth };
         perturber.position(0.0).map(|_| perturber)

@@ -1,16 +1,16 @@
-//! Series of solid harmonics, and their derivatives, which are series of solid harmonics.
+//! Series of solid harmonics and their derivatives.
 
-/// `Σ (c V + s W)` over degrees `n` and orders `m ≤ n`, fully normalised.
+/// Fully normalised series `Σ (c V + s W)` over degrees `n` and orders `m ≤ n`.
 ///
 /// `V + i W = (R/r)ⁿ⁺¹ P̄nm(sin φ) exp(i m λ)`, lengths in units of `R`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Series {
     degree: usize,
-    /// `(c, s)`, degree after degree, each from order 0 to its own.
+    /// `(c, s)` sorted by degree, then by order.
     terms: Vec<[f64; 2]>,
 }
 
-/// A direction to differentiate along.
+/// Axis of a derivative.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Axis {
     X,
@@ -19,7 +19,7 @@ pub(super) enum Axis {
 }
 
 impl Series {
-    /// All zeros up to this degree.
+    /// Returns a series of zeros up to this degree.
     pub(super) fn zeros(degree: usize) -> Self {
         Self { degree, terms: vec![[0.0; 2]; (degree + 1) * (degree + 2) / 2] }
     }
@@ -28,32 +28,33 @@ impl Series {
         self.degree
     }
 
-    /// `(c, s)` of a term; zeros beyond the series.
+    /// Returns `(c, s)` of a term; zeros beyond the series.
     pub(super) fn get(&self, n: usize, m: usize) -> [f64; 2] {
         if n > self.degree || m > n { [0.0; 2] } else { self.terms[n * (n + 1) / 2 + m] }
     }
 
+    /// Returns a mutable reference to `(c, s)` of a term.
     pub(super) fn at(&mut self, n: usize, m: usize) -> &mut [f64; 2] {
         &mut self.terms[n * (n + 1) / 2 + m]
     }
 
-    /// All terms divided by one number.
-    pub(super) fn over(mut self, divisor: f64) -> Self {
+    /// Returns the series divided by a number.
+    pub(super) fn divided_by(mut self, divisor: f64) -> Self {
         self.terms.iter_mut().flatten().for_each(|x| *x /= divisor);
         self
     }
 
-    /// Highest order with a term that is not zero.
+    /// Returns the highest order with a non-zero term.
     pub(super) fn order(&self) -> usize {
         let all = (0..=self.degree).flat_map(|n| (0..=n).map(move |m| (n, m)));
         all.filter(|&(n, m)| self.get(n, m) != [0.0; 2]).map(|(_, m)| m).max().unwrap_or(0)
     }
 
-    /// The series of the derivative along an axis, one degree higher.
+    /// Returns the derivative along an axis, a series of one degree more.
     ///
     /// `∂z Vnm = -(n-m+1) Vn+1,m`, and with `Z = V + i W` for the others
-    /// `(∂x + i ∂y) Znm = -Zn+1,m+1`, `(∂x - i ∂y) Znm = (n-m+2)(n-m+1) Zn+1,m-1`; normalised, the
-    /// factorials leave square roots of integers.
+    /// `(∂x + i ∂y) Znm = -Zn+1,m+1`, `(∂x - i ∂y) Znm = (n-m+2)(n-m+1) Zn+1,m-1`; in normalised
+    /// form the factors are square roots of rational numbers.
     ///
     /// Source: Cunningham, Celestial Mechanics 2, 207-216, 1970; Montenbruck and Gill, Satellite Orbits,
     /// Springer 2000, equation 3.33.
@@ -62,7 +63,7 @@ impl Series {
         for n in 0..=self.degree {
             for m in 0..=n {
                 let [c, s] = self.get(n, m);
-                let s = if m == 0 { 0.0 } else { s }; // there is no Wn0
+                let s = if m == 0 { 0.0 } else { s }; // Wn0 = 0
                 let (i, j) = (n as f64, m as f64);
                 let k = (2.0 * i + 1.0) / (2.0 * i + 3.0);
                 if axis == Axis::Z {

@@ -1,21 +1,21 @@
-//! Bodies beyond the planet.
+//! Interface of third bodies.
 
-use super::GravityError;
+use super::error::GravityError;
 use nalgebra::Vector3;
 
-/// A body that pulls from afar, on planet and robot alike: the Sun, the Moon.
+/// A distant body that attracts planet and robot, such as the Sun or the Moon.
 pub trait ThirdBody: Send + Sync + std::fmt::Debug {
-    /// Its name, for messages.
+    /// Returns the name for messages.
     fn name(&self) -> &str;
 
-    /// Its gravitational parameter, m³/s².
+    /// Returns the gravitational parameter, m³/s².
     fn mu(&self) -> f64;
 
-    /// Where it is at `t` seconds of simulation, from the planet's centre, axes of `I`: m.
+    /// Returns the position at `t` s of simulation from the planet's centre, axes of `I`, m.
     ///
-    /// The same answer at every call, cheap (below 100 ns) and without allocating.
+    /// Must be a pure function of `t`, fast (below 100 ns), and must not allocate.
     ///
     /// # Errors
-    /// [`GravityError`] where its place is not known.
+    /// [`GravityError`] where the position is not known.
     fn position(&self, t: f64) -> Result<Vector3<f64>, GravityError>;
 }

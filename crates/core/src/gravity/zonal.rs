@@ -1,4 +1,4 @@
-//! Zonal harmonics up to the sixth, in closed form.
+//! Zonal harmonics up to degree 6 in closed form.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -16,9 +16,7 @@ pub(super) const EARTH: [f64; 5] = [
     5.406_665_762_838_132e-7,
 ];
 
-/// The part of a planet's field that is symmetric about its axis z.
-///
-/// `U = -(μ/r) Σ Jn (R/r)ⁿ Pn(u)`, `u = z/r`
+/// Part of a planet's field that is symmetric about its z axis: `U = -(μ/r) Σ Jn (R/r)ⁿ Pn(u)`, `u = z/r`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Zonal {
     pub(super) mu: f64,
@@ -28,7 +26,7 @@ pub(super) struct Zonal {
 }
 
 impl Zonal {
-    /// `cn = Jn (R/r)ⁿ`, the direction `r̂`, `u` and `r`.
+    /// Returns `cn = Jn (R/r)ⁿ`, the direction `r̂`, `u` and `r`.
     #[inline]
     fn at(&self, r: &Vector3<f64>) -> ([f64; 5], Vector3<f64>, f64, f64) {
         let distance = r.norm();
@@ -41,15 +39,15 @@ impl Zonal {
         (c, r * inverse, r.z * inverse, distance)
     }
 
-    /// `g = (μ/r²) Σ cn (P'n+1 r̂ - P'n ẑ)`, m/s².
+    /// Returns `g = (μ/r²) Σ cn (P'n+1 r̂ - P'n ẑ)`, m/s².
     pub(super) fn acceleration(&self, r: &Vector3<f64>) -> Vector3<f64> {
         let (c, up, u, distance) = self.at(r);
         let p = first(u);
-        let pull = Vector3::new(0.0, 0.0, dot(&c, &p[..5]));
-        (up * dot(&c, &p[1..]) - pull) * (self.mu / (distance * distance))
+        let axial = Vector3::new(0.0, 0.0, dot(&c, &p[..5]));
+        (up * dot(&c, &p[1..]) - axial) * (self.mu / (distance * distance))
     }
 
-    /// `g`, and `∂g/∂r = (μ/r³) Σ cn [P'n+1 1 + P''n+1 (r̂ ẑᵀ + ẑ r̂ᵀ) - P''n+2 r̂ r̂ᵀ - P''n ẑ ẑᵀ]`, 1/s².
+    /// Returns `g` and `∂g/∂r = (μ/r³) Σ cn [P'n+1 1 + P''n+1 (r̂ ẑᵀ + ẑ r̂ᵀ) - P''n+2 r̂ r̂ᵀ - P''n ẑ ẑᵀ]`, 1/s².
     pub(super) fn gradient(&self, r: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
         let (c, up, u, distance) = self.at(r);
         let (p, pp) = (first(u), second(u));
@@ -69,7 +67,7 @@ fn dot(a: &[f64; 5], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// `P'2` to `P'7`, derivatives of Legendre's polynomials.
+/// Returns `P'2` to `P'7`, derivatives of the Legendre polynomials.
 fn first(u: f64) -> [f64; 6] {
     let v = u * u;
     [
@@ -82,7 +80,7 @@ fn first(u: f64) -> [f64; 6] {
     ]
 }
 
-/// `P''2` to `P''8`.
+/// Returns `P''2` to `P''8`, second derivatives of the Legendre polynomials.
 fn second(u: f64) -> [f64; 7] {
     let v = u * u;
     [

@@ -1,10 +1,10 @@
-//! Axes whose z is a joint's axis.
+//! Rotations that align the z axis with the axis of a joint.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
-/// Takes components in axes whose z is `axis` to link components.
+/// Returns the rotation from axes whose z is `axis` to link axes.
 ///
-/// Exact for the coordinate axes: a joint about x, y or z brings no rounding.
+/// Exact for the coordinate axes: joints about x, y or z add no rounding error.
 pub(super) fn rotation_to_axis(axis: &Vector3<f64>) -> Matrix3<f64> {
     let axis = axis.normalize();
     let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
@@ -15,7 +15,7 @@ pub(super) fn rotation_to_axis(axis: &Vector3<f64>) -> Matrix3<f64> {
     } else if axis == x {
         Matrix3::from_columns(&[y, z, x])
     } else if axis.z < -0.9 {
-        // turn x about, so that the shortest arc below stays away from the half turn
+        // start from the axes turned about x, so that the shortest arc below is far from a half turn
         let flip = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
         flip * rotation_to_axis(&(flip * axis))
     } else {

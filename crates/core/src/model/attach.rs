@@ -1,4 +1,4 @@
-//! Attaches one robot to another, such as an arm to a bus.
+//! Attachment of one robot to another, such as an arm to a bus.
 
 use super::builder::ModelBuilder;
 use super::description::{Joint, JointKind};
@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Rotation3};
 /// Placement of a robot on a frame of another robot.
 #[derive(Clone, Debug, Default)]
 pub struct Mount {
-    /// Mounting frame of the attached robot, fixed to its base; its root link if `None`.
+    /// Mounting frame of the attached robot, fixed to its base; `None` selects its root link.
     pub frame: Option<String>,
     /// Pose of the mounting frame in the frame that it is attached to.
     pub pose: Isometry3<f64>,
@@ -25,7 +25,8 @@ impl Model {
     /// base, otherwise after the joints beyond the body of `frame`.
     ///
     /// # Errors
-    /// Unknown frame, a mounting frame that is moved by joints, a name that both robots have, or too many joints.
+    /// [`ModelError`] for an unknown frame, a mounting frame that is moved by joints, a name that both robots
+    /// have, or too many joints.
     pub fn attach(&self, frame: &str, other: &Self, mount: &Mount) -> Result<Self, ModelError> {
         let carrier = &self.frames[self.frame(frame)?];
         // on the body's own link, whose other joints come first: joints of the base keep their order
@@ -40,14 +41,14 @@ impl Model {
         builder.keep_notes(self).keep_notes(other);
         let mut name = format!("{frame}_to_{}", robot.links[0].name);
         while builder.has_joint(&name) {
-            name.push('_'); // this name is generated, so it must never be the reason for a refusal
+            name.push('_'); // the generated name must not collide with one of the robot
         }
         let joint = Joint::new(&name, JointKind::Fixed, on_link * mount.pose * in_root.inverse());
         builder.add_robot(link, joint, robot).map_err(|error| error.suggest_prefix(&mount.prefix))?;
         builder.build()
     }
 
-    /// Pose of a frame of the base in the root link's frame.
+    /// Returns the pose of a frame of the base in the frame of the root link.
     fn pose_in_root(&self, name: &str) -> Result<Isometry3<f64>, ModelError> {
         let frame = &self.frames[self.frame(name)?];
         if frame.body != 0 {

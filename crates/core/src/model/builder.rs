@@ -1,4 +1,4 @@
-//! Building a robot link by link.
+//! Builder of robots, link by link.
 
 use super::compile::{check_parts, compile};
 use super::description::{Description, Inertial, Joint, JointKind, Link};
@@ -9,18 +9,18 @@ use super::well_posed::check_well_posed;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
 
-/// Most moving joints of a robot: its mass matrix takes 32 MB then, its derivatives three times that.
+/// Largest number of moving joints: the mass matrix then requires 32 MB, its derivatives three times as much.
 const MOST_JOINTS: usize = 2000;
 
-/// Collects links and joints, then [`build`](ModelBuilder::build)s the tree.
+/// Builder of a model from links and joints; [`build`](ModelBuilder::build) returns the model.
 ///
-/// The first link floats; every further link hangs by a joint on one that is there already, so a
-/// loop cannot be described.
+/// The first link is the floating base. Each further link is connected by a joint to a link that was added
+/// before, which excludes closed loops.
 #[derive(Clone, Debug)]
 pub struct ModelBuilder {
     description: Description,
     warnings: Vec<ModelWarning>,
-    /// Links by name.
+    /// Index of each link by name.
     link_index: HashMap<String, usize>,
     joint_names: HashSet<String>,
     moving_joints: usize,
@@ -28,10 +28,10 @@ pub struct ModelBuilder {
 }
 
 impl ModelBuilder {
-    /// A robot whose base is `base`.
+    /// Returns a builder for a robot with this base.
     ///
     /// # Errors
-    /// What is wrong with the base's name or inertia.
+    /// [`ModelError`] for an empty name or an invalid inertia of the base.
     pub fn new(name: &str, base: Link) -> Result<Self, ModelError> {
         let mut builder = Self {
             description: Description { name: name.to_owned(), ..Description::default() },
@@ -45,11 +45,11 @@ impl ModelBuilder {
         Ok(builder)
     }
 
-    /// Hangs `child` on the link `parent` by `joint`.
+    /// Adds the link `child`, connected to the link `parent` by `joint`.
     ///
     /// # Errors
-    /// Unknown parent, a name used twice, a zero axis, negative damping, reversed limits, or what
-    /// is wrong with the child's inertia.
+    /// [`ModelError`] for an unknown parent, a name used twice, an axis of length zero, negative damping,
+    /// reversed limits, or an invalid inertia of the child.
     pub fn add(&mut self, parent: &str, joint: Joint, child: Link) -> Result<&mut Self, ModelError> {
         let parent = self.link(parent)?;
         if self.has_joint(&joint.name) {
@@ -67,10 +67,10 @@ impl ModelBuilder {
         Ok(self)
     }
 
-    /// Starts from the description of an existing robot.
+    /// Returns a builder with the links and joints of an existing robot.
     ///
     /// # Errors
-    /// As [`ModelBuilder::new`] and [`ModelBuilder::add`].
+    /// Those of [`ModelBuilder::new`] and [`ModelBuilder::add`].
     pub fn from_description(description: Description) -> Result<Self, ModelError> {
         let base = description.links.first().cloned().ok_or(ModelError::NoMass)?;
         let mut builder = Self::new(&description.name, base)?;
@@ -81,7 +81,7 @@ impl ModelBuilder {
     /// Attaches a whole robot to the link `parent`; `joint` carries the robot's root link.
     ///
     /// # Errors
-    /// As [`ModelBuilder::add`].
+    /// Those of [`ModelBuilder::add`].
     pub fn add_robot(
         &mut self,
         parent: &str,
@@ -93,7 +93,7 @@ impl ModelBuilder {
         self.add_below_root(robot)
     }
 
-    /// Adds all of a robot except its root link, which must have been added before.
+    /// Adds all links and joints of a robot except its root link, which must have been added before.
     fn add_below_root(&mut self, robot: Description) -> Result<&mut Self, ModelError> {
         let names: Vec<String> = robot.links.iter().map(|link| link.name.clone()).collect();
         for ((parent, joint), link) in robot.joints.into_iter().zip(robot.links.into_iter().skip(1)) {
@@ -105,10 +105,10 @@ impl ModelBuilder {
         Ok(self)
     }
 
-    /// Names a frame fixed to the link `link`, at `pose` in its frame.
+    /// Adds a frame fixed to the link `link`, at `pose` in its frame.
     ///
     /// # Errors
-    /// Unknown link, or a name that a link or frame already has.
+    /// [`ModelError`] for an unknown link, or a name that a link or frame already has.
     pub fn add_frame(
         &mut self,
         name: &str,
@@ -125,7 +125,7 @@ impl ModelBuilder {
         Ok(self)
     }
 
-    /// Keeps a remark for the reader of the model.
+    /// Adds a warning to the model.
     pub fn warn(&mut self, warning: ModelWarning) -> &mut Self {
         self.warnings.push(warning);
         self
@@ -138,10 +138,10 @@ impl ModelBuilder {
         self
     }
 
-    /// The finished robot: fixed joints folded, axes aligned, proved to be well posed.
+    /// Returns the model after checks, with links on fixed joints merged into bodies and joint axes aligned.
     ///
     /// # Errors
-    /// A robot without mass, or one whose motion something does not resist.
+    /// [`ModelError`] for a robot without mass, or with a direction of motion without inertia.
     pub fn build(self) -> Result<Model, ModelError> {
         let model = self.build_part()?;
         check_parts(&model)?;
@@ -149,13 +149,14 @@ impl ModelBuilder {
         Ok(model)
     }
 
-    /// The robot as a part that is to be attached to another: it need not be able to float by itself, and its dynamics
-    /// must not be evaluated.
+    /// Returns the model of a part that will be attached to another robot. The dynamics of a part may be
+    /// singular and must not be evaluated.
     pub(super) fn build_part(self) -> Result<Model, ModelError> {
         compile(self.description, self.warnings)
     }
 
-    /// `is_part` where the link is folded into another: then the sum must make sense, not the link.
+    /// Checks the inertial of a link. With `is_part` the link is merged into another body, and the sum is
+    /// checked instead.
     fn add_link(&mut self, link: Link, is_part: bool) -> Result<(), ModelError> {
         self.check_new_frame_name(&link.name)?;
         if let Some(inertial) = &link.inertial {
@@ -208,10 +209,10 @@ impl ModelBuilder {
 }
 
 impl Model {
-    /// A spacecraft without joints; its one body is `base`, its origin the centre of mass.
+    /// Returns a spacecraft without joints; its only body is `base`, with the centre of mass at the origin.
     ///
     /// # Errors
-    /// A mass that is not positive, an inertia that is not symmetric positive definite.
+    /// [`ModelError`] for a mass that is not positive, or an inertia that is not symmetric positive definite.
     pub fn rigid_body(mass: f64, inertia: Matrix3<f64>) -> Result<Self, ModelError> {
         if mass == 0.0 {
             return Err(ModelError::MassNotPositive { link: "base".to_owned(), mass });

@@ -1,4 +1,5 @@
-//! From a description to the tree: fixed joints folded, axes aligned, bodies numbered.
+//! Compilation of a description into a tree of bodies, with fixed joints merged, axes aligned and bodies
+//! numbered.
 
 use super::align::rotation_to_axis;
 use super::description::{Description, Inertial, Joint, JointKind};
@@ -10,7 +11,7 @@ use crate::spatial::{Mat3, Sym3, Vec3};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::sync::Arc;
 
-/// Where a link ended up: the body it is part of, and its pose in that body's axes.
+/// Body of a link, and the pose of the link in the axes of the body.
 #[derive(Clone)]
 struct Placed {
     body: usize,
@@ -63,8 +64,8 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
     Ok(model)
 }
 
-/// A link with an indefinite inertia, or with an inertia but no mass, is accepted only if the inertia of its whole
-/// body is valid.
+/// Checks the bodies of links with an indefinite inertia, or with an inertia but no mass: such a link is
+/// accepted only if the inertia of its whole body is valid.
 pub(super) fn check_parts(model: &Model) -> Result<(), ModelError> {
     for warning in &model.warnings {
         let (ModelWarning::IndefinitePart { link, .. } | ModelWarning::InertiaWithoutMass { link }) = warning
@@ -83,7 +84,7 @@ pub(super) fn check_parts(model: &Model) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Links that hang on each link, in the order they were added.
+/// Returns the child links of each link, in the order in which they were added.
 fn children(description: &Description) -> Vec<Vec<usize>> {
     let mut children = vec![Vec::new(); description.links.len()];
     for (j, (parent, _)) in description.joints.iter().enumerate() {
@@ -92,7 +93,8 @@ fn children(description: &Description) -> Vec<Vec<usize>> {
     children
 }
 
-/// Links from the root on, parents before children, branches in the order they were added.
+/// Returns the links from the root on, parents before children, branches in the order in which they were
+/// added.
 fn depth_first(children: &[Vec<usize>]) -> Vec<usize> {
     let (mut order, mut stack) = (Vec::new(), vec![0]);
     while let Some(link) = stack.pop() {
@@ -102,7 +104,7 @@ fn depth_first(children: &[Vec<usize>]) -> Vec<usize> {
     order
 }
 
-/// Hangs a link on `parent`: on the same body by a fixed joint, else as a new body.
+/// Places a link below `parent`: in the same body if the joint is fixed, otherwise as a new body.
 fn place_link(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
     let origin = &joint.origin;
     let rot = parent.rot * origin.rotation.to_rotation_matrix().matrix();
@@ -156,13 +158,13 @@ fn empty_node() -> Node {
     }
 }
 
-/// Adds a link's mass to its body: inertias add about the common centre of mass.
+/// Adds the mass of a link to its body. Inertias are added about the common centre of mass.
 fn merge(node: &mut Node, inertial: &Inertial, place: &Placed) {
     let com: Vec3<f64> = (place.rot * inertial.com + place.pos).into();
     let about_com = Sym3::from(place.rot * usable_inertia(inertial) * place.rot.transpose());
     let mass = node.mass + inertial.mass;
     if inertial.mass == 0.0 {
-        node.about_com += about_com; // without mass, the point it is given about does not matter
+        node.about_com += about_com; // without mass, the reference point of the inertia does not matter
         return;
     }
     let common = (node.com * node.mass + com * inertial.mass) * (1.0 / mass);

@@ -1,16 +1,16 @@
-//! Moving about in configuration space: `q ⊕ δ` and `q₂ ⊖ q₁`.
+//! Operations on configurations: integration `q ⊕ δ` and difference `q₂ ⊖ q₁`.
 
 use super::tree::Model;
 use crate::spatial::{Quat, Real, Vec3, exp_so3, log_so3};
 
-/// The configuration at the origin, unrotated, joints at zero: `(nq,)`.
+/// Returns the configuration with the base at the origin, unrotated, and all joints at zero: `(nq,)`.
 pub fn neutral(model: &Model) -> Vec<f64> {
     let mut q = vec![0.0; model.nq()];
     q[6] = 1.0;
     q
 }
 
-/// `q ⊕ δ`: the base follows the constant body twist `δ[..6]` for unit time, joints add.
+/// Computes `q ⊕ δ`: the base moves with the constant body twist `δ[..6]` for unit time; joint positions add.
 ///
 /// `p' = p + R V(θ) ρ`, `R' = R exp(θ)`, with `V = 1 + (1−cos φ)/φ² θ× + (φ−sin φ)/φ³ θ×²`.
 /// `q`, `out`: `(nq,)`; `delta`: `(nv,)`, m and rad, linear first.
@@ -28,7 +28,7 @@ pub fn integrate<S: Real>(q: &[S], delta: &[S], out: &mut [S]) {
     }
 }
 
-/// `q₂ ⊖ q₁`: the `δ` with `q₁ ⊕ δ = q₂`, the base turning the shorter way.
+/// Computes `q₂ ⊖ q₁`: the `δ` with `q₁ ⊕ δ = q₂` and the smaller rotation of the base.
 ///
 /// `q1`, `q2`: `(nq,)`; `out`: `(nv,)`, m and rad, linear first.
 #[inline(always)]
@@ -46,14 +46,14 @@ pub fn difference<S: Real>(q1: &[S], q2: &[S], out: &mut [S]) {
     }
 }
 
-/// `((1 − cos φ)/φ², (φ − sin φ)/φ³)`, by series below 0.1 rad.
+/// Returns `((1 − cos φ)/φ², (φ − sin φ)/φ³)`, by series below 0.1 rad.
 #[inline(always)]
 fn left_coefficients<S: Real>(theta: Vec3<S>) -> (S, S) {
     let squared = theta.dot(theta);
     let is_small = S::less(squared, S::of(1e-2));
     let safe = S::select(is_small, S::of(1.0), squared);
     let angle = safe.sqrt();
-    // 1 − cos φ = 2 sin²(φ/2) keeps its digits
+    // 1 − cos φ = 2 sin²(φ/2) avoids cancellation
     let (half, _) = (angle * S::of(0.5)).sin_cos();
     let (s, _) = angle.sin_cos();
     let a = S::of(2.0) * half * half / safe;
@@ -71,7 +71,7 @@ fn left_coefficients<S: Real>(theta: Vec3<S>) -> (S, S) {
     )
 }
 
-/// `c` in `V⁻¹ = 1 − θ×/2 + c θ×²`: `c = 1/φ² − cot(φ/2)/(2φ)`, by series below 0.1 rad.
+/// Returns `c` in `V⁻¹ = 1 − θ×/2 + c θ×²`: `c = 1/φ² − cot(φ/2)/(2φ)`, by series below 0.1 rad.
 #[inline(always)]
 fn inverse_coefficient<S: Real>(theta: Vec3<S>) -> S {
     let squared = theta.dot(theta);

@@ -1,8 +1,8 @@
-//! What a robot is described with: links, joints, shapes.
+//! Description of a robot: links, joints, shapes.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
-/// Links, joints and frames that a [`Model`](super::Model) is compiled from.
+/// Description of a robot: links, joints and frames from which a [`Model`](super::Model) is compiled.
 #[derive(Clone, Debug, Default)]
 pub struct Description {
     /// Name of the robot.
@@ -38,93 +38,93 @@ pub struct Inertial {
     pub inertia: Matrix3<f64>,
 }
 
-/// A link; without an [`Inertial`] it is massless.
+/// Link of a robot; without an [`Inertial`] it is massless.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// Its name, unique in the robot.
+    /// Name, unique in the robot.
     pub name: String,
     /// Mass and inertia, if any.
     pub inertial: Option<Inertial>,
-    /// What it looks like.
+    /// Visual shapes.
     pub visuals: Vec<Visual>,
-    /// Collision shapes; meshes only if their file exists. They are drawn if a visual cannot be.
+    /// Collision shapes; meshes only if their file exists. They are drawn in place of missing visual shapes.
     pub collisions: Vec<Visual>,
 }
 
 impl Link {
-    /// A link that looks like nothing.
+    /// Returns a link without shapes.
     pub fn new(name: &str, inertial: Option<Inertial>) -> Self {
         Self { name: name.to_owned(), inertial, visuals: Vec::new(), collisions: Vec::new() }
     }
 }
 
-/// A shape fixed to a link.
+/// Shape fixed to a link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visual {
     /// Pose in the link's frame.
     pub pose: Isometry3<f64>,
-    /// Its shape.
+    /// Geometry of the shape.
     pub geometry: Geometry,
-    /// Red, green, blue, opacity, 0 to 1.
+    /// Color: red, green, blue and opacity, 0 to 1.
     pub rgba: Option<[f64; 4]>,
 }
 
-/// Shapes that URDF knows; lengths in m.
+/// Geometry of a shape as in URDF; lengths in m.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Geometry {
-    /// Full edge lengths.
+    /// Box with full edge lengths.
     Box([f64; 3]),
-    /// Along z.
+    /// Cylinder along z.
     Cylinder {
         /// Radius.
         radius: f64,
         /// Full length.
         length: f64,
     },
-    /// Along z; the length is that between the centres of its caps.
+    /// Capsule along z; its length is the distance between the centres of the caps.
     Capsule {
         /// Radius.
         radius: f64,
         /// Length of the straight part.
         length: f64,
     },
-    /// A ball.
+    /// Sphere.
     Sphere {
         /// Radius.
         radius: f64,
     },
-    /// A file.
+    /// Mesh file.
     Mesh {
-        /// Path with `package://` resolved where it could be.
+        /// Path, with `package://` resolved if the package was found.
         filename: String,
         /// Scale along each axis.
         scale: [f64; 3],
     },
 }
 
-/// A joint between a link that exists and a new one.
+/// Joint that connects a new link to an existing one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Its name, unique in the robot.
+    /// Name, unique in the robot.
     pub name: String,
-    /// How it moves.
+    /// Kind of motion.
     pub kind: JointKind,
-    /// Pose of the child's frame at position zero in the parent link's frame.
+    /// Pose of the child's frame in the frame of the parent link, at position zero.
     pub origin: Isometry3<f64>,
-    /// Limits, if any.
+    /// Limits of position, velocity and effort.
     pub limits: Limits,
     /// Viscous friction, N m s/rad (N s/m).
     pub damping: f64,
     /// Coulomb friction while the joint moves (kinetic), N m (N).
     pub friction: f64,
-    /// Largest torque (force) that friction holds at rest, N m (N); `None` where it equals `friction`.
+    /// Largest torque (force) that friction holds at rest, N m (N); `None` if it equals `friction`.
     pub static_friction: Option<f64>,
     /// Rotor inertia seen at the joint (times gear ratio squared), kg m² (kg).
     pub rotor_inertia: f64,
 }
 
 impl Joint {
-    /// A joint without friction, rotor or limits.
+    /// Returns a joint without friction, rotor or limits.
     pub fn new(name: &str, kind: JointKind, origin: Isometry3<f64>) -> Self {
         Self {
             name: name.to_owned(),
@@ -139,18 +139,18 @@ impl Joint {
     }
 }
 
-/// How a joint moves; axes in the child's frame, of any length but zero.
+/// Kind of motion of a joint. Axes are in the child's frame, of any length but zero.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JointKind {
-    /// Not at all.
+    /// No motion.
     Fixed,
-    /// Rotates about an axis (URDF's `revolute` and `continuous`).
+    /// Rotation about an axis (URDF's `revolute` and `continuous`).
     Revolute(Vector3<f64>),
-    /// Slides along an axis.
+    /// Translation along an axis.
     Prismatic(Vector3<f64>),
 }
 
-/// Bounds of a joint; `None` is unbounded.
+/// Limits of a joint; `None` means unlimited.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
     /// Lowest and highest position, rad (m).

@@ -1,14 +1,14 @@
-//! What can be wrong with a robot.
+//! Errors and warnings of robot models.
 
 use crate::number_text::{list, short, unlike};
 use std::fmt;
 use thiserror::Error;
 
-/// A robot that cannot be simulated.
+/// Errors of robots that cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ModelError {
-    #[error("link '{link}' has a mass of {mass} kg, it must be positive", mass = short(*mass))]
+    #[error("link '{link}' has a mass of {mass} kg; it must be positive", mass = short(*mass))]
     MassNotPositive { link: String, mass: f64 },
     #[error(
         "the inertia of link '{link}' is not positive definite: its principal moments are {moments} kg m2",
@@ -16,97 +16,98 @@ pub enum ModelError {
     )]
     IndefiniteInertia { link: String, moments: [f64; 3] },
     #[error(
-        "the inertia of link '{link}' is not symmetric: entries differ by {difference} kg m2",
+        "the inertia of link '{link}' is not symmetric: entries differ by {difference} kg m2; make them equal",
         difference = short(*difference)
     )]
     AsymmetricInertia { link: String, difference: f64 },
     #[error("{what} of '{name}' is not finite")]
     NotFinite { what: &'static str, name: String },
-    #[error("{what} of '{name}' is {value}, {expected} are accepted; check the units", value = short(*value))]
+    #[error("{what} of '{name}' is {value}; expected {expected} (check the units)", value = short(*value))]
     OutOfRange { what: &'static str, name: String, value: f64, expected: &'static str },
     #[error(
-        "the robot has more than {most} moving joints: matrices over all of them would take too much memory; make \
-         joints that do not move fixed"
+        "the robot has more than {most} moving joints: matrices over all of them would require too much \
+         memory; make joints that do not move fixed"
     )]
     TooManyJoints { most: usize },
     #[error(
-        "the robot has no mass: a floating base needs some; give a link an inertial, or a mass by 'links'"
+        "the robot has no mass: a floating base requires mass; give a link an inertial, or a mass with 'links'"
     )]
     NoMass,
     #[error(
-        "nothing resists the motion of joint '{joint}': link '{link}' and what hangs on it have no inertia about \
+        "nothing resists the motion of joint '{joint}': link '{link}' and its descendants have no inertia \
+         about \
          its axis; give one of them an inertial, or make the joint fixed"
     )]
     MasslessSubtree { joint: String, link: String },
-    #[error("the base '{link}' can be moved without resistance: {}", base_advice(.joints))]
+    #[error("nothing resists the motion of the base '{link}': {}", base_advice(.joints))]
     SingularBase { link: String, joints: Vec<String> },
-    #[error("the {what} name '{name}' is used twice")]
+    #[error("the {what} name '{name}' is used twice; give each {what} a different name")]
     DuplicateName { what: &'static str, name: String },
-    #[error("both robots have a {what} '{name}': give the one that is attached a prefix, such as 'left_'")]
+    #[error("both robots have a {what} '{name}'; give the attached one a prefix, such as 'left_'")]
     NameOfBoth { what: &'static str, name: String },
     #[error(
-        "with the prefix '{prefix}' the robot that is attached has a {what} '{name}', as the other has; take another \
-         prefix"
+        "with the prefix '{prefix}' the attached robot has a {what} '{name}', and so has the other; choose \
+         a different prefix"
     )]
     PrefixTaken { what: &'static str, name: String, prefix: String },
     #[error(
-        "joints move the frame '{name}': a robot is attached by a frame that is fixed to its base: {}",
+        "the frame '{name}' moves with joints; attach a robot by a frame that is fixed to its base: {}",
         .candidates.join(", ")
     )]
     FrameMoves { name: String, candidates: Vec<String> },
     #[error("link '{link}' has no mass; give it one with its centre of mass or inertia")]
     ChangeWithoutMass { link: String },
-    #[error("a {what} has an empty name")]
+    #[error("a {what} has an empty name; give it one")]
     EmptyName { what: &'static str },
     #[error("there is no {what} '{name}'{}", nearest(.candidates, .name))]
     UnknownName { what: &'static str, name: String, candidates: Vec<String> },
-    #[error("joint '{joint}' has an axis of length zero")]
+    #[error("joint '{joint}' has an axis of length zero; give it a direction")]
     ZeroAxis { joint: String },
-    #[error("joint '{joint}': {what} is {value}, it must not be negative", value = short(*value))]
+    #[error("joint '{joint}': {what} is {value}; it must not be negative", value = short(*value))]
     Negative { joint: String, what: &'static str, value: f64 },
     #[error(
-        "joint '{joint}': its static friction {at_rest} is below its kinetic friction {moving}; give at least \
-         {moving}, or leave it out",
+        "joint '{joint}': its static friction {at_rest} is below its kinetic friction {moving}; give at \
+         least {moving}, or omit it",
         at_rest = unlike(*at_rest, &[*moving]), moving = short(*moving)
     )]
     StaticBelowKinetic { joint: String, at_rest: f64, moving: f64 },
     #[error(
-        "joint '{joint}': lower limit {lower} is above upper limit {upper}",
+        "joint '{joint}': lower limit {lower} is above upper limit {upper}; exchange them",
         lower = unlike(*lower, &[*upper]), upper = short(*upper)
     )]
     LimitsReversed { joint: String, lower: f64, upper: f64 },
 }
 
-/// Something odd that the model lives with.
+/// Problems of a model that do not prevent a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelWarning {
-    /// Principal moments that no body of positive density has.
+    /// Principal moments that violate the triangle inequality.
     TriangleInequality {
-        /// The link.
+        /// Name of the link.
         link: String,
-        /// Its principal moments, kg m², ascending.
+        /// Principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
-    /// A link that no body can be, fixed to others with which it makes one that can.
+    /// A link with a non-physical inertia that is fixed to others, with which it forms a valid body.
     IndefinitePart {
-        /// The link.
+        /// Name of the link.
         link: String,
-        /// Its principal moments, kg m², ascending.
+        /// Principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
-    /// Principal moments that are negative by less than rounding; they are read as zero.
+    /// Principal moments that are negative by less than the rounding tolerance; they are used as zero.
     RoundedInertia {
-        /// The link.
+        /// Name of the link.
         link: String,
-        /// Its principal moments as given, kg m², ascending.
+        /// Given principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
     /// A link without mass but with a rotational inertia, which is added to that of its body.
     InertiaWithoutMass {
-        /// The link.
+        /// Name of the link.
         link: String,
     },
-    /// Anything else a reader of a file met.
+    /// Other problems found when a file was read.
     Note(String),
 }
 
@@ -115,27 +116,27 @@ impl fmt::Display for ModelWarning {
         match self {
             Self::TriangleInequality { link, moments: [a, b, c] } => write!(
                 f,
-                "the inertia of link '{link}' breaks the triangle inequality: {} + {} < {} kg m2; no real body has such \
-                 principal moments (used as it is)",
-                short(a.max(0.0)), // a negative moment is rounding here
+                "the inertia of link '{link}' breaks the triangle inequality: {} + {} < {} kg m2; no rigid \
+                 body has such principal moments (it is used unchanged)",
+                short(a.max(0.0)), // a moment below zero is within the rounding tolerance here
                 short(b.max(0.0)),
                 unlike(*c, &[a + b])
             ),
             Self::IndefinitePart { link, moments } => write!(
                 f,
-                "the inertia of link '{link}' is not positive definite: principal moments {} kg m2 (used as it \
-                 is: with the links it is fixed to, the sum is)",
+                "the inertia of link '{link}' is not positive definite: principal moments {} kg m2 (it is \
+                 used unchanged, since the sum with the links it is fixed to is positive definite)",
                 list(moments)
             ),
             Self::RoundedInertia { link, moments } => write!(
                 f,
-                "the inertia of link '{link}' is negative by rounding: principal moments {} kg m2 (those below zero \
-                 are read as zero)",
+                "the inertia of link '{link}' has negative principal moments, within rounding: {} kg m2 \
+                 (they are read as zero)",
                 list(moments)
             ),
             Self::InertiaWithoutMass { link } => write!(
                 f,
-                "link '{link}' has no mass but a rotational inertia, which is added to that of the body that it is part of"
+                "link '{link}' has no mass but a rotational inertia, which is added to that of its body"
             ),
             Self::Note(text) => f.write_str(text),
         }
@@ -143,7 +144,7 @@ impl fmt::Display for ModelWarning {
 }
 
 impl ModelError {
-    /// The name that was probably meant, for a name that does not exist.
+    /// Returns the closest existing name for an unknown name.
     pub fn suggestion(&self) -> Option<&str> {
         match self {
             Self::UnknownName { name, candidates, .. } => closest(candidates, name),
@@ -165,14 +166,17 @@ impl ModelError {
 fn base_advice(joints: &[String]) -> String {
     let names: Vec<String> = joints.iter().map(|joint| format!("'{joint}'")).collect();
     match joints.len() {
-        0 => "the robot's inertia is singular about some axis; give the base an inertial, or fix what hangs on it"
+        0 => "the robot's inertia is singular about some axis; give the base an inertial, or make its \
+        joints fixed"
             .to_owned(),
         1 => format!("give it an inertial, or remove the joint {}: the base floats anyway", names[0]),
-        _ => format!("give it an inertial, or remove the joints {}: the base floats anyway", names.join(", ")),
+        _ => {
+            format!("give it an inertial, or remove the joints {}: the base floats anyway", names.join(", "))
+        }
     }
 }
 
-/// `; did you mean 'x'?` for the closest candidate, or the list when there are few.
+/// Returns `; did you mean 'x'?` for the closest candidate, or the list of candidates if there are few.
 pub(super) fn nearest(candidates: &[String], name: &str) -> String {
     match closest(candidates, name) {
         Some(meant) => format!("; did you mean '{meant}'?"),
@@ -181,9 +185,9 @@ pub(super) fn nearest(candidates: &[String], name: &str) -> String {
     }
 }
 
-/// The candidate a few letters away, or else one that contains the name.
+/// Returns the candidate with the smallest edit distance, or else one that contains the name.
 pub(super) fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a str> {
-    const LONGEST: usize = 100; // comparing takes the product of the lengths
+    const LONGEST: usize = 100; // the cost is the product of the lengths
     let is_name = |c: &&String| c.len() <= LONGEST && name.len() <= LONGEST;
     let best = candidates.iter().filter(is_name).min_by_key(|c| distance(c, name));
     let near = best.filter(|c| distance(c, name) <= 2 + name.len() / 3);
@@ -191,7 +195,7 @@ pub(super) fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a st
     near.or_else(part).map(String::as_str)
 }
 
-/// Levenshtein distance, case ignored.
+/// Returns the Levenshtein distance, ignoring case.
 fn distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) =
         (a.to_lowercase().chars().collect(), b.to_lowercase().chars().collect());

@@ -1,36 +1,36 @@
-//! Physical sense of a link's mass and inertia.
+//! Validation of the mass and inertia of a link.
 
 use super::description::Inertial;
 use super::error::ModelError;
 use crate::spatial::Sym3;
 use nalgebra::Matrix3;
 
-/// Principal moments may miss the triangle inequality, and matrices their symmetry, by this share
-/// of the largest entry: what six printed digits leave.
+/// Tolerance of the triangle inequality and of the symmetry of a matrix, relative to the largest entry: the
+/// error of six printed digits.
 const PRINTED_DIGITS: f64 = 1e-6;
 
-/// Squared radius of gyration, m², below which a moment of inertia is rounding: 10 nm. CAD programs print moments of
-/// small parts as 0 or as ±1e-20.
+/// Squared radius of gyration, m², below which a moment of inertia is treated as rounding error: 10 nm. CAD
+/// programs print moments of small parts as 0 or as ±1e-20.
 const LEAST_GYRATION: f64 = 1e-16;
 
 /// Largest coordinate of anything in a robot, m: seven astronomical units.
 pub(super) const LONGEST: f64 = 1e12;
 
-/// What kind of body has such an inertia; principal moments in kg m², ascending.
+/// Classification of an inertia by its principal moments in kg m², ascending.
 pub(super) enum Sense {
-    /// A real one.
+    /// Inertia of a real body.
     Physical,
-    /// None with a density that is positive everywhere.
+    /// Inertia that violates the triangle inequality, so that no body with positive density has it.
     BreaksTriangle([f64; 3]),
-    /// Negative by rounding only.
+    /// Inertia with a negative principal moment within the rounding tolerance.
     Rounded([f64; 3]),
-    /// None: it could turn with negative energy.
+    /// Indefinite inertia: some rotation would have negative energy.
     Indefinite([f64; 3]),
     /// An inertia without a mass, which is valid as part of a body that has mass.
     Massless,
 }
 
-/// Refuses an inertial that means nothing, and says what sense the others make.
+/// Checks an inertial and classifies its inertia.
 pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, ModelError> {
     let link = || link.to_owned();
     let Inertial { mass, com, inertia } = inertial;
@@ -67,7 +67,7 @@ fn without_negative_moments(inertia: &Matrix3<f64>) -> Matrix3<f64> {
     (result + result.transpose()) * 0.5
 }
 
-/// Refuses numbers whose products over a robot could overflow, or vanish beside each other.
+/// Checks that products of the numbers over a robot neither overflow nor underflow.
 fn check_ranges(name: String, inertial: &Inertial) -> Result<(), ModelError> {
     let Inertial { mass, com, inertia } = inertial;
     let is_mass = *mass <= 0.0 || (1e-20..=1e20).contains(mass);
@@ -83,12 +83,12 @@ fn check_ranges(name: String, inertial: &Inertial) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Whether a body made of several links turns with positive energy, whatever its parts do.
+/// Returns true if the inertia of a body made of several links is positive definite, regardless of its parts.
 pub(super) fn is_definite(about_com: &Sym3<f64>, mass: f64) -> bool {
     !matches!(sense(&about_com.to_nalgebra(), mass), Sense::Indefinite(_))
 }
 
-/// Eigenvalues, ascending.
+/// Returns the eigenvalues, ascending.
 pub(super) fn principal_moments(inertia: &Matrix3<f64>) -> [f64; 3] {
     let mut moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
     moments.sort_by(f64::total_cmp);

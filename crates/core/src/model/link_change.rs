@@ -1,4 +1,4 @@
-//! Replaces the mass, centre of mass or inertia of a link.
+//! Replacement of the mass, centre of mass or inertia of a link.
 
 use super::builder::ModelBuilder;
 use super::description::{Inertial, Link};
@@ -6,7 +6,7 @@ use super::error::ModelError;
 use super::tree::Model;
 use nalgebra::{Matrix3, Vector3};
 
-/// New inertial values of a link; `None` keeps the present value.
+/// New inertial values of a link; `None` keeps the current value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinkChange {
     /// Name of the link.
@@ -20,7 +20,8 @@ pub struct LinkChange {
 }
 
 impl LinkChange {
-    /// Applies the change if `link` is the link it names. A link without inertial starts as a point mass at its origin.
+    /// Applies the change if `link` is the link it names. A link without inertial is treated as a point mass
+    /// at its origin.
     ///
     /// # Errors
     /// [`ModelError::ChangeWithoutMass`] if the link has no inertial and no mass is given.
@@ -58,7 +59,7 @@ impl Model {
     /// Returns this robot with the values of one link replaced.
     ///
     /// # Errors
-    /// Unknown link, or values that are not physical.
+    /// [`ModelError`] for an unknown link or values that are not physical.
     pub fn with_link(&self, change: &LinkChange) -> Result<Self, ModelError> {
         let mut description = self.description().clone();
         change.check_is_one_of(description.links.iter().map(|link| link.name.as_str()))?;

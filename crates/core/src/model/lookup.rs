@@ -1,10 +1,10 @@
-//! Names to indices.
+//! Lookup of frames, joints and bodies by name.
 
 use super::error::ModelError;
 use super::tree::Model;
 
 impl Model {
-    /// Index of a frame.
+    /// Returns the index of a frame.
     ///
     /// # Errors
     /// [`ModelError::UnknownName`] with the nearest name.
@@ -12,7 +12,7 @@ impl Model {
         find("frame", name, self.frame_names())
     }
 
-    /// Index of a joint in the order of `v` (0 is the first after the base).
+    /// Returns the index of a joint in the order of `v` (0 is the first after the base).
     ///
     /// # Errors
     /// [`ModelError::UnknownName`] with the nearest name.
@@ -20,7 +20,7 @@ impl Model {
         find("joint", name, self.joint_names())
     }
 
-    /// Index of a body.
+    /// Returns the index of a body.
     ///
     /// # Errors
     /// [`ModelError::UnknownName`] with the nearest name.
@@ -28,23 +28,23 @@ impl Model {
         find("body", name, self.body_names())
     }
 
-    /// Whether another robot has the same frames and joints, by name and order: what was made for one
-    /// fits the other.
+    /// Returns true if another robot has the same frames and joints, by name and order, so that objects
+    /// created for one are valid for the other.
     pub fn is_like(&self, other: &Self) -> bool {
         self.frame_names().eq(other.frame_names()) && self.joint_names().eq(other.joint_names())
     }
 
-    /// Names of the frames: every link, and what the user added.
+    /// Returns the names of the frames: those of all links and those that were added.
     pub fn frame_names(&self) -> impl Iterator<Item = &str> + Clone {
         self.frames.iter().map(|frame| frame.name.as_str())
     }
 
-    /// Names of the moving joints, in the order of `v`.
+    /// Returns the names of the moving joints, in the order of `v`.
     pub fn joint_names(&self) -> impl Iterator<Item = &str> + Clone {
         self.joints.iter().map(|joint| joint.name.as_str())
     }
 
-    /// Names of the bodies: links that move on their own, base first.
+    /// Returns the names of the bodies, base first.
     pub fn body_names(&self) -> impl Iterator<Item = &str> + Clone {
         self.body_frames.iter().map(|&frame| self.frames[frame].name.as_str())
     }

@@ -1,10 +1,11 @@
-//! The robot: an immutable tree of bodies on one free base.
+//! Robot models: immutable trees of bodies on one free base.
 
 mod align;
 mod attach;
 mod builder;
 mod compile;
 mod configuration;
+mod coordinates;
 mod description;
 mod error;
 mod inertia_check;
@@ -20,6 +21,7 @@ use align::rotation_to_axis;
 pub use attach::Mount;
 pub use builder::ModelBuilder;
 pub use configuration::{difference, integrate, neutral};
+pub use coordinates::{ANGULAR, BASE_NQ, BASE_NV, QUATERNION};
 pub use description::{Description, Geometry, Inertial, Joint, JointKind, Limits, Link, Visual};
 pub use error::{ModelError, ModelWarning};
 pub use link_change::LinkChange;

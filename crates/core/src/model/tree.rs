@@ -1,34 +1,34 @@
-//! The compiled tree that the kernels run on.
+//! Compiled tree of bodies.
 
 use super::description::{Description, Limits, Visual};
 use super::error::ModelWarning;
 use crate::spatial::{Mat3, Sym3, Vec3};
 use std::sync::Arc;
 
-/// How a joint moves its body: about or along the *z axis of the body's own axes*.
+/// Kind of a joint: motion about or along the *z axis of the body*.
 ///
-/// Bodies are given axes whose z is the joint's axis when the model is built, so one path serves
-/// every direction; the link's own axes are kept as its [`Frame`].
+/// The axes of a body are chosen so that z is the joint's axis; the axes of its link are kept as a [`Frame`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// Rotates about z.
+    /// Rotation about z.
     Revolute,
-    /// Slides along z.
+    /// Translation along z.
     Prismatic,
 }
 
-/// One body and the joint that carries it. Node 0 is the base, which nothing carries.
+/// Node of the tree: a body and the joint that connects it to its parent. Node 0 is the base, which has no
+/// parent.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// Index of the body it hangs on; always smaller than its own.
+    /// Index of the parent body; always smaller than the index of the body.
     pub parent: usize,
-    /// Whether bodies beside the next one hang on it.
+    /// True if the body has children other than the next body.
     pub is_fork: bool,
-    /// One past the last body of its subtree: bodies are numbered depth first.
+    /// Index after the last body of the subtree; bodies are numbered depth first.
     pub end: usize,
-    /// What its joint does (of no meaning for the base).
+    /// Kind of the joint (unused for the base).
     pub axis: Axis,
-    /// Axes of this body at joint position zero, in the parent's axes.
+    /// Rotation from the axes of this body, at joint position zero, to those of the parent.
     pub rot_pk: Mat3<f64>,
     /// Origin of this body at joint position zero, in the parent's axes, m.
     pub pos_pk: Vec3<f64>,
@@ -38,27 +38,28 @@ pub struct Node {
     pub com: Vec3<f64>,
     /// Inertia about the centre of mass in the body's axes, kg m².
     pub about_com: Sym3<f64>,
-    /// Rotor inertia seen at the joint, kg m² (kg for a slider).
+    /// Rotor inertia seen at the joint, kg m² (kg for a prismatic joint).
     pub rotor_inertia: f64,
 }
 
-/// A named frame fixed to a body.
+/// Named frame fixed to a body.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Its name: a link's, or one the user gave.
+    /// Name: that of a link, or of a frame that was added.
     pub name: String,
-    /// Index of the body it is fixed to.
+    /// Index of the body.
     pub body: usize,
-    /// Takes frame components to the body's.
+    /// Rotation from frame axes to body axes.
     pub rot_kf: Mat3<f64>,
-    /// Origin in the body's axes, m.
+    /// Origin in body axes, m.
     pub pos_kf: Vec3<f64>,
 }
 
-/// What a joint has besides its geometry. Torques of the simulated plant, not of the kernels.
+/// Parameters of a joint other than its geometry. They are used by the simulation but not by the dynamics
+/// kernels.
 #[derive(Clone, Debug)]
 pub struct JointProperties {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Viscous friction, N m s/rad (N s/m).
     pub damping: f64,
@@ -72,7 +73,7 @@ pub struct JointProperties {
     pub axis: Vec3<f64>,
 }
 
-/// A robot with a free base: joint `j` moves body `j + 1`, parents come before children.
+/// Model of a robot with a free base: joint `j` moves body `j + 1`, parents come before children.
 ///
 /// `q = [p(3), quat_xyzw(4), joints]`, `v = [v_body(3), w_body(3), joint rates]`.
 #[derive(Clone, Debug)]
@@ -81,7 +82,7 @@ pub struct Model {
     pub(super) nodes: Vec<Node>,
     pub(super) joints: Vec<JointProperties>,
     pub(super) frames: Vec<Frame>,
-    /// Frame of each body's link.
+    /// Index of the frame of each body's link.
     pub(super) body_frames: Vec<usize>,
     pub(super) visuals: Vec<(usize, Visual)>,
     pub(super) collisions: Vec<(usize, Visual)>,
@@ -91,95 +92,96 @@ pub struct Model {
 }
 
 impl Model {
-    /// Its name.
+    /// Returns the name of the robot.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The description it was compiled from.
+    /// Returns the description that the model was compiled from.
     pub fn description(&self) -> &Description {
         &self.description
     }
 
-    /// Number of joints, `n`.
+    /// Returns the number of joints, `n`.
     #[inline(always)]
     pub fn joint_count(&self) -> usize {
         self.nodes.len() - 1
     }
 
-    /// Length of a configuration, `7 + n`.
+    /// Returns the length of a configuration, `7 + n`.
     #[inline(always)]
     pub fn nq(&self) -> usize {
         self.nodes.len() + 6
     }
 
-    /// Length of a velocity, `6 + n`.
+    /// Returns the length of a velocity, `6 + n`.
     #[inline(always)]
     pub fn nv(&self) -> usize {
         self.nodes.len() + 5
     }
 
-    /// Bodies, base first, with the joints that carry them.
+    /// Returns the bodies, base first, with their joints.
     #[inline(always)]
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 
-    /// Whether any joint has Coulomb friction.
+    /// Returns true if a joint has Coulomb friction.
     pub fn has_friction(&self) -> bool {
         self.joints.iter().any(|joint| joint.static_friction > 0.0)
     }
 
-    /// Joints in the order of `v`.
+    /// Returns the joints in the order of `v`.
     pub fn joints(&self) -> &[JointProperties] {
         &self.joints
     }
 
-    /// All named frames.
+    /// Returns all named frames.
     pub fn frames(&self) -> &[Frame] {
         &self.frames
     }
 
-    /// The frame of each body's link.
+    /// Returns the frame of each body's link.
     pub fn body_frame(&self, body: usize) -> &Frame {
         &self.frames[self.body_frames[body]]
     }
 
-    /// Visual shapes with the frame (index) each is fixed to.
+    /// Returns the visual shapes with the index of the frame that each is fixed to.
     pub fn visuals(&self) -> &[(usize, Visual)] {
         &self.visuals
     }
 
-    /// Collision shapes, likewise, with meshes whose file exists. They are drawn if a visual cannot be.
+    /// Returns the collision shapes with the index of the frame that each is fixed to; meshes only if their
+    /// file exists. They are drawn in place of missing visual shapes.
     pub fn collisions(&self) -> &[(usize, Visual)] {
         &self.collisions
     }
 
-    /// What was odd in the description.
+    /// Returns the warnings found when the model was built.
     pub fn warnings(&self) -> &[ModelWarning] {
         &self.warnings
     }
 
-    /// Keeps a remark for the reader of the model.
+    /// Adds a warning.
     pub fn warn(&mut self, warning: ModelWarning) {
         self.warnings.push(warning);
     }
 
-    /// Pose of a frame of body `k` in the axes of `k`'s link: where the user knows it.
+    /// Returns the pose of a frame of body `k` in the axes of the link of `k`.
     pub fn pose_in_link(&self, frame: &Frame) -> (Mat3<f64>, Vec3<f64>) {
         let link = self.body_frame(frame.body);
         let to_link = link.rot_kf.transpose();
         (to_link * frame.rot_kf, to_link * (frame.pos_kf - link.pos_kf))
     }
 
-    /// Whether some body carries one of more than 10⁵ times its own inertia: articulated inertias cancel there, and forward
-    /// dynamics uses the mass matrix.
+    /// Returns true if a body supports one of more than 10⁵ times its own inertia. The recursion of
+    /// articulated inertias then loses digits, and forward dynamics uses the mass matrix.
     #[inline(always)]
     pub fn is_heavy_on_light(&self) -> bool {
         self.is_heavy_on_light
     }
 
-    /// Total mass, kg.
+    /// Returns the total mass, kg.
     pub fn mass(&self) -> f64 {
         self.nodes.iter().map(|node| node.mass).sum()
     }

@@ -1,19 +1,19 @@
-//! Proof that every motion of a robot is resisted by some inertia.
+//! Check that inertia resists every motion of a robot.
 
 use super::error::ModelError;
 use super::tree::{Axis, Model, Node};
 use nalgebra::{Matrix3, Matrix6, Rotation3, Vector3};
 
-/// A pivot of the mass matrix below this share of its diagonal entry is rounding.
+/// Fraction of its diagonal entry below which a pivot of the mass matrix is rounding error.
 const PIVOT_SHARE: f64 = 1e-12;
-/// So is one below this share of the largest inertia that moves with it: a point mass on the axis
-/// leaves a diagonal entry that is itself rounding.
+/// Fraction of the largest inertia that moves with it below which a pivot is rounding error: for a point mass
+/// on the axis, the diagonal entry itself is rounding error.
 const ROUNDING_SHARE: f64 = 1e-14;
 
-/// Refuses a robot whose mass matrix is singular wherever its joints stand.
+/// Returns an error if the mass matrix is singular in every configuration.
 ///
-/// Eliminating joints from the leaves inward leaves, as pivots, the articulated inertia that each
-/// joint feels. A pivot that vanishes in several configurations drawn once vanishes in all.
+/// Eliminating the joints from the leaves to the root gives as pivots the articulated inertias along each
+/// joint. A pivot that vanishes in three fixed, arbitrary configurations vanishes in all.
 pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     if model.mass() <= 0.0 {
         return Err(ModelError::NoMass);
@@ -45,8 +45,8 @@ fn massless_chain(model: &Model) -> Vec<String> {
     model.joints.iter().take(count).map(|joint| joint.name.clone()).collect()
 }
 
-/// Marks the motions whose pivot is more than rounding: dense 6 × 6 inertias in body axes, slow,
-/// plain, and independent of the kernels.
+/// Marks the motions whose pivot exceeds rounding error. Uses dense 6 × 6 inertias in body axes and none of
+/// the kernels.
 fn eliminate(model: &Model, angle: impl Fn(usize) -> f64, is_resisted: &mut [bool]) {
     let mut composite: Vec<_> = model.nodes.iter().map(inertia_about_origin).collect();
     let mut articulated = composite.clone();
@@ -60,7 +60,7 @@ fn eliminate(model: &Model, angle: impl Fn(usize) -> f64, is_resisted: &mut [boo
             let u = articulated[i].column(k).into_owned();
             articulated[i] -= u * u.transpose() / pivot;
         }
-        // the parent feels Xᵀ I X, X taking its motions to the body's
+        // the parent's inertia increases by Xᵀ I X, where X transforms motions of the parent to the body
         let x = motion_transform(node, angle(i - 1));
         let (whole, rest) = (x.transpose() * composite[i] * x, x.transpose() * articulated[i] * x);
         composite[node.parent] += whole;
@@ -81,20 +81,21 @@ fn is_more_than_rounding(pivot: f64, diagonal: f64, scale: f64) -> bool {
     pivot > PIVOT_SHARE * diagonal && pivot > ROUNDING_SHARE * scale
 }
 
-/// Largest entry among those of the unit of entry `k`: masses, or moments of inertia.
+/// Returns the largest entry with the unit of entry `k`: of the masses, or of the moments of inertia.
 fn scale(inertia: &Matrix6<f64>, k: usize) -> f64 {
     let start = if k < 3 { 0 } else { 3 };
     inertia.fixed_view::<3, 3>(start, start).amax()
 }
 
-/// `[[m 1, −m c×], [m c×, I − m c× c×]]`, linear before angular.
+/// Returns `[[m 1, −m c×], [m c×, I − m c× c×]]`, linear before angular.
 fn inertia_about_origin(node: &Node) -> Matrix6<f64> {
     let c = node.com.to_nalgebra().cross_matrix();
     let about_origin = node.about_com.to_nalgebra() - c * c * node.mass;
     blocks(Matrix3::identity() * node.mass, c * -node.mass, c * node.mass, about_origin)
 }
 
-/// Takes motions in the parent's axes, about its origin, to the body's: `[[Rᵀ, −Rᵀ p×], [0, Rᵀ]]`.
+/// Returns the transform of motions in the parent's axes, about its origin, to those of the body: `[[Rᵀ, −Rᵀ
+/// p×], [0, Rᵀ]]`.
 fn motion_transform(node: &Node, angle: f64) -> Matrix6<f64> {
     let (mut rot, mut pos) = (node.rot_pk.to_nalgebra(), node.pos_pk.to_nalgebra());
     match node.axis {

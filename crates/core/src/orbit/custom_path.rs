@@ -1,87 +1,42 @@
-//! A path through given points: any motion, of nature or not.
+//! Orbit through given points, which need not follow any law of motion.
 
-use crate::number_text::{count, short, unlike};
 use nalgebra::{Vector3, Vector4};
 
 use super::error::LARGEST;
-use super::{Orbit, OrbitError, OrbitState, PathFrame};
-use crate::spatial::{self, Quat, RotationSpline, Spline, SplineError, exp_so3};
+use super::{Orbit, OrbitError, OrbitState, PathError, PathFrame};
+use crate::spatial::{self, Quat, RotationSpline, Spline, exp_so3};
 
-/// A path that cannot be built, or that has no state at some time.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-#[allow(missing_docs)] // the fields are what the messages say
-pub enum PathError {
-    #[error("a path of {got}: at least 2 are needed", got = count(*got, "point"))]
-    TooFewPoints { got: usize },
-    #[error("{name} has {got}, times has {expected}: one row per time is needed", got = count(*got, "row"))]
-    WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error(
-        "{name}[{index}] holds {value}, finite numbers up to 1e60 (SI units) are needed",
-        value = short(*value)
-    )]
-    NotFinite { name: &'static str, index: usize, value: f64 },
-    #[error(
-        "times[{index}] is {time} s after {before} s: times must increase, by 1e-9 s at least; sort the rows and \
-         leave out those given twice",
-        before = short(*before), time = unlike(*time, &[*before])
-    )]
-    NotIncreasing { index: usize, before: f64, time: f64 },
-    #[error("accelerations are given without velocities: give both, or velocities alone, or neither")]
-    AccelerationsAlone,
-    #[error(
-        "attitudes[{index}] has norm {norm}, at most 1e-6 off 1 is accepted; it is x, y, z, w: normalise it first",
-        norm = unlike(*norm, &[1.0])
-    )]
-    QuaternionNorm { index: usize, norm: f64 },
-    #[error(
-        "the attitude turns by {angle} rad from point {before} to the next, at most 2.0 rad are told apart from \
-         a turn the other way: give points closer in time",
-        before = index - 1,
-        angle = short(*angle)
-    )]
-    TurnTooFar { index: usize, angle: f64 },
-    #[error(
-        "the path has no point at t = {time} s, it goes from {start} s to {end} s: give times that cover the run, or let \
-         it coast on beyond them with ends=\"coast\"",
-        time = unlike(*time, &[*start, *end]), start = short(*start), end = short(*end)
-    )]
-    TimeOutOfPath { time: f64, start: f64, end: f64 },
-    #[error(transparent)]
-    Spline(#[from] SplineError),
-}
-
-/// What happens before the first point and after the last.
+/// Behaviour before the first point and after the last.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ends {
-    /// There is no state: [`PathError::TimeOutOfPath`].
+    /// [`PathError::TimeOutOfPath`] is returned.
     #[default]
     Error,
-    /// On along a straight line at the last velocity, turning at the last rate: the velocity goes on without
-    /// a jump, the acceleration drops to zero.
+    /// The path continues along a straight line with the last velocity and the last angular velocity. The
+    /// velocity is continuous; the acceleration drops to zero.
     Coast,
 }
 
-/// What a path goes through, one row per time; axes of `I`.
+/// Points of a path, one row per time; axes of `I`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathPoints {
-    /// Increasing, s of simulation.
+    /// Times, increasing, s of simulation.
     pub times: Vec<f64>,
-    /// From the planet's centre, m.
+    /// Positions from the planet's centre, m.
     pub positions: Vec<Vector3<f64>>,
-    /// m/s.
+    /// Velocities, m/s.
     pub velocities: Option<Vec<Vector3<f64>>>,
-    /// m/s².
+    /// Accelerations, m/s².
     pub accelerations: Option<Vec<Vector3<f64>>>,
-    /// Unit quaternions x, y, z, w, which take components of the path's frame to `I`.
+    /// Attitudes: unit quaternions x, y, z, w from axes of the path's frame to `I`.
     pub attitudes: Option<Vec<Vector4<f64>>>,
 }
 
-/// A C² path exactly through the given points.
+/// C² path that interpolates the given points.
 ///
-/// Positions alone: cubic spline, of order 4. With velocities: quintic spline whose third derivative goes on
-/// across the points too, order 6. With accelerations: quintic pieces, order 6. Attitudes: [`RotationSpline`],
-/// of order 4.
+/// Positions only: cubic spline, of order 4. With velocities: quintic spline with a continuous third
+/// derivative, order 6. With accelerations: quintic pieces, order 6. Attitudes: [`RotationSpline`], of order
+/// 4.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CustomPath {
     mu: Option<f64>,
@@ -90,14 +45,14 @@ pub struct CustomPath {
     attitude: Option<RotationSpline>,
 }
 
-/// Largest turn between two points, rad.
+/// Largest rotation between two points, rad.
 const LARGEST_TURN: f64 = 2.0;
 
 impl CustomPath {
-    /// A path around a planet of parameter `mu`, m³/s², or around none.
+    /// Builds a path around a planet of parameter `mu`, m³/s², or without a planet.
     ///
     /// # Errors
-    /// [`PathError`] for points that make no path, [`OrbitError::NotPositive`] for `mu`.
+    /// [`PathError`] for invalid points, [`OrbitError::NotPositive`] for `mu`.
     pub fn new(points: PathPoints, mu: Option<f64>, ends: Ends) -> Result<Self, OrbitError> {
         if let Some(mu) = mu {
             super::error::positive("mu", mu)?;
@@ -106,42 +61,42 @@ impl CustomPath {
         let PathPoints { times, positions, velocities, accelerations, attitudes } = points;
         let attitude = attitudes.map(|given| {
             let given: Vec<_> = given.iter().map(|q| Quat::from_xyzw(q.normalize().as_slice())).collect();
-            RotationSpline::passing(&times, &given, spatial::Ends::Free)
+            RotationSpline::interpolating(&times, &given, spatial::Ends::Free)
         });
         let rows = |of: &[Vector3<f64>]| of.iter().flat_map(|x| [x.x, x.y, x.z]).collect::<Vec<_>>();
         let x = rows(&positions);
         let position = match (velocities, accelerations) {
             (Some(v), Some(a)) => Spline::new(&times, 3, &x, &rows(&v), &rows(&a)),
             (Some(v), None) => Spline::with_slopes(&times, 3, &x, &rows(&v)),
-            _ => Spline::passing(&times, 3, &x, spatial::Ends::Free),
+            _ => Spline::interpolating(&times, 3, &x, spatial::Ends::Free),
         };
         let (position, attitude) =
             (position.map_err(PathError::from)?, attitude.transpose().map_err(PathError::from)?);
         Ok(Self { mu, ends, position, attitude })
     }
 
-    /// First and last time, s.
+    /// Returns the first and the last time, s.
     pub fn span(&self) -> (f64, f64) {
         let times = self.position.times();
         (times[0], times[times.len() - 1])
     }
 
-    /// What happens outside the span.
+    /// Returns the behaviour outside the span.
     pub fn ends(&self) -> Ends {
         self.ends
     }
 
-    /// Whether attitudes were given.
+    /// Returns true if attitudes were given.
     pub fn has_attitudes(&self) -> bool {
         self.attitude.is_some()
     }
 
-    /// The nearest time of the path, and how far `t` lies beyond it.
+    /// Returns the nearest time of the path, and the signed distance of `t` from it.
     fn clamped(&self, t: f64) -> Result<(f64, f64), OrbitError> {
         super::error::finite("time", t)?;
         let (start, end) = self.span();
         let inside = t.clamp(start, end);
-        let rounding = 8.0 * f64::EPSILON * start.abs().max(end.abs()); // of a run's own instants
+        let rounding = 8.0 * f64::EPSILON * start.abs().max(end.abs()); // rounding of the times of a run
         match self.ends {
             Ends::Error if (t - inside).abs() > rounding => {
                 Err(PathError::TimeOutOfPath { time: t, start, end }.into())
@@ -161,7 +116,8 @@ impl Orbit for CustomPath {
         "derivative of the path's spline"
     }
 
-    /// Every point: the acceleration has a kink there, or jumps at the ends where it coasts.
+    /// Returns the times of all points: the jerk jumps there, and the acceleration where the path begins to
+    /// coast.
     fn event_times(&self) -> Vec<f64> {
         self.position.times().to_vec()
     }
@@ -186,7 +142,7 @@ impl Orbit for CustomPath {
         let (inside, beyond) = self.clamped(t)?;
         let (turn, rate, _) = attitude.sample(inside);
         let rot_ip = exp_so3(rate * beyond).product(turn).matrix();
-        let rate_p = rot_ip.transpose_mul(rate); // the axis of a steady turn stays where it is
+        let rate_p = rot_ip.transpose_mul(rate); // the angular velocity is parallel to the rotation axis, so both frames give the same
         Ok(PathFrame { rot_ip: rot_ip.to_nalgebra(), rate_p: rate_p.to_nalgebra() })
     }
 }
@@ -227,12 +183,12 @@ impl PathPoints {
     }
 }
 
-/// The first number of a row that is not finite or too large, else zero.
+/// Returns the first number of a row that is not finite or too large, else zero.
 fn worst(row: &[f64]) -> f64 {
     row.iter().copied().find(|x| !x.is_finite() || x.abs() > LARGEST).unwrap_or(0.0)
 }
 
-/// Checks that `column` has `n` rows of numbers that make sense; `worst` returns one that does not, else zero.
+/// Checks that `column` has `n` rows; `worst` returns an invalid number of a row, else zero.
 fn rows<T>(
     name: &'static str,
     n: usize,

@@ -1,13 +1,14 @@
-//! A reference that stands still in inertial axes.
+//! Reference at rest in inertial axes.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::error::{finite, positive};
 use super::{Orbit, OrbitError, OrbitState, PathFrame};
 
-/// A place and an attitude, both at rest in `I`: a laboratory, a frame far from everything.
+/// Frame at rest in `I`, such as a laboratory or a frame far from all bodies.
 ///
-/// Around a planet it does not fall, so gravity pulls the robot away from it, unless the robot is carried.
+/// The frame is not in free fall: around a planet, gravity accelerates the robot relative to it, except in
+/// `carried` mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedFrame {
     position: Vector3<f64>,
@@ -16,7 +17,8 @@ pub struct FixedFrame {
 }
 
 impl FixedFrame {
-    /// At `position` (m) with axes turned by `attitude`, around a planet of parameter `mu` (m³/s²) or none.
+    /// Returns the frame at `position` (m) with axes rotated by `attitude`, around a planet of parameter `mu`
+    /// (m³/s²), or without a planet.
     ///
     /// # Errors
     /// [`OrbitError::NotFinite`] and [`OrbitError::NotPositive`].

@@ -1,34 +1,34 @@
-//! Local orbital frames of a reference, and their rates.
+//! Local orbital frames and their angular velocities.
 //!
 //! | name | x | y | z |
 //! |-|-|-|-|
 //! | [`Lvlh`], letter `L`: Hill, RSW, OnOrbitROS | radial, outward | completes, along track | angular momentum |
-//! | [`Nadir`], letter `N`: what NASA and CCSDS call LVLH | completes, along track | against angular momentum | down |
+//! | [`Nadir`], letter `N`: called LVLH by NASA and CCSDS | completes, along track | against angular momentum | down |
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::{OrbitError, OrbitState};
 
-/// Below this sine between position and velocity their plane is lost to rounding.
+/// Sine of the angle between position and velocity below which the orbital plane is undefined.
 const SMALLEST_SINE: f64 = 1e-10;
 
 /// Local orbital frame in the Hill (RSW) sense: x outward, y along track, z along `r × v`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lvlh {
-    /// Takes `L` components to `I` components.
+    /// Rotation from `L` axes to `I` axes.
     pub rot_il: Matrix3<f64>,
     /// Angular velocity of `L` with respect to `I`, in `L` axes, rad/s.
     pub rate_l: Vector3<f64>,
 }
 
 impl Lvlh {
-    /// Frame of a reference with this state.
+    /// Returns the frame for a state of the reference.
     ///
     /// `x̂ = r/|r|`, `ẑ = h/|h|`, `ŷ = ẑ × x̂`, with `h = r × v`;
     /// `ω = (r aₙ/h) x̂ + (h/r²) ẑ`, with `aₙ` the acceleration along `ẑ` (zero on a Kepler orbit).
     ///
     /// # Errors
-    /// [`OrbitError::UndefinedFrame`] for a standing or rectilinear reference.
+    /// [`OrbitError::UndefinedFrame`] for a reference at rest or in rectilinear motion.
     ///
     /// Source: Kechichian, J. Astronautical Sciences 46(1), 1998, for the component along x.
     pub fn of(state: &OrbitState) -> Result<Self, OrbitError> {
@@ -49,20 +49,20 @@ impl Lvlh {
     }
 }
 
-/// Nadir-pointing orbital frame, which NASA and CCSDS call LVLH: z down, y against `r × v`.
+/// Nadir-pointing orbital frame, called LVLH by NASA and CCSDS: z down, y against `r × v`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nadir {
-    /// Takes `N` components to `I` components.
+    /// Rotation from `N` axes to `I` axes.
     pub rot_in: Matrix3<f64>,
     /// Angular velocity of `N` with respect to `I`, in `N` axes, rad/s.
     pub rate_n: Vector3<f64>,
 }
 
 impl Nadir {
-    /// Frame of a reference with this state: the axes `(y, -z, -x)` of [`Lvlh`].
+    /// Returns the frame for a state of the reference: the axes `(y, -z, -x)` of [`Lvlh`].
     ///
     /// # Errors
-    /// [`OrbitError::UndefinedFrame`] for a standing or rectilinear reference.
+    /// [`OrbitError::UndefinedFrame`] for a reference at rest or in rectilinear motion.
     pub fn of(state: &OrbitState) -> Result<Self, OrbitError> {
         Lvlh::of(state).map(|l| Self::from(&l))
     }
@@ -79,10 +79,10 @@ impl From<&Lvlh> for Nadir {
     }
 }
 
-/// A frame that rides on a reference, letter `P`: the attitude of a path, or its local orbital frame.
+/// Frame attached to a reference, letter `P`: the attitude of a path, or its local orbital frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathFrame {
-    /// Takes `P` components to `I` components.
+    /// Rotation from `P` axes to `I` axes.
     pub rot_ip: Matrix3<f64>,
     /// Angular velocity of `P` with respect to `I`, in `P` axes, rad/s.
     pub rate_p: Vector3<f64>,
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn standing_rectilinear_and_centred_references_have_no_frame() {
+    fn resting_rectilinear_and_centred_references_have_no_frame() {
         for s in [
             state([7e6, 0.0, 0.0], [0.0; 3]),
             state([7e6, 1e6, 0.0], [-700.0, -100.0, 0.0]),
@@ -115,14 +115,14 @@ mod tests {
     }
 
     #[test]
-    fn axes_point_where_their_names_say() {
+    fn axes_have_the_directions_of_their_definition() {
         let s = state([7e6, 0.0, 0.0], [0.0, 7e3, 0.0]);
         let (l, n) = (Lvlh::of(&s).expect("regular"), Nadir::of(&s).expect("regular"));
         assert_eq!(l.rot_il, Matrix3::identity());
         assert_eq!(n.rot_in * Vector3::z(), -Vector3::x());
         assert_eq!(n.rot_in * Vector3::y(), -Vector3::z());
         assert_eq!(n.rot_in * Vector3::x(), Vector3::y());
-        // Both describe one rotation of one triad.
+        // the angular velocity is that of one rotating triad
         assert_eq!(n.rot_in * n.rate_n, l.rot_il * l.rate_l);
     }
 }

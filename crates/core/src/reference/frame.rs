@@ -1,4 +1,4 @@
-//! Frames a reference may be given in.
+//! Frames in which references are given.
 
 use super::error::is_number;
 use super::{Hold, ReferenceError, TaskSample};
@@ -7,21 +7,21 @@ use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
-/// The frame whose axes and origin a path is given in.
+/// Frame that gives the axes and the origin of a path.
 #[derive(Clone, Debug, Default)]
 pub enum ReferenceFrame {
     /// W: inertial axes, origin on the reference orbit.
     #[default]
     World,
-    /// L, the local orbital frame (Hill) of an orbit; its origin is W's.
+    /// L, the local orbital frame (Hill) of an orbit; its origin is that of W.
     Lvlh(Arc<dyn Orbit>),
-    /// The robot's base: a law tracks the tool relative to it.
+    /// The robot's base: the tool is tracked relative to it.
     Base,
-    /// A spacecraft that moves by itself.
+    /// A second spacecraft.
     Target(Target),
 }
 
-/// A spacecraft that nothing acts on: constant velocity, constant spin.
+/// A spacecraft without forces: constant velocity and angular velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     start: Hold,
@@ -29,8 +29,8 @@ pub struct Target {
 }
 
 impl Target {
-    /// At the pose `(rot_wt, pos_w)`, m, at time zero of the simulation, with `velocity`, m/s, and
-    /// `spin`, rad/s, both in W axes.
+    /// Returns a target with the pose `(rot_wt, pos_w)`, m, at time zero of the simulation, with `velocity`,
+    /// m/s, and `spin`, rad/s, both in W axes.
     ///
     /// # Errors
     /// [`ReferenceError::NotFinite`], [`ReferenceError::NotARotation`].
@@ -43,7 +43,7 @@ impl Target {
         Self::at(Hold::new(rot_wt, pos_w)?, velocity, spin)
     }
 
-    /// As [`Target::new`], from a pose.
+    /// Returns a target as [`Target::new`] does, from a pose.
     ///
     /// # Errors
     /// [`ReferenceError::NotFinite`].
@@ -57,7 +57,7 @@ impl Target {
         Ok(Self { start, velocity })
     }
 
-    /// How the target moves at `t`, s of simulation.
+    /// Returns the motion of the target at `t`, s of simulation.
     pub fn sample(&self, t: f64) -> TaskSample<f64> {
         TaskSample {
             rot_wd: exp_so3(self.velocity.angular * t).matrix() * self.start.rot_fd,
@@ -68,7 +68,7 @@ impl Target {
     }
 }
 
-/// How L moves in W at `t`, s of simulation.
+/// Returns the motion of L in W at `t`, s of simulation.
 pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, ReferenceError> {
     let state = orbit.state(t)?;
     let lvlh = orbit.lvlh(t)?;
@@ -89,8 +89,8 @@ pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, 
     })
 }
 
-/// Rate of the component of L's rate along x: it holds the jerk of the orbit, so by differences over
-/// thousandths of a radian of it, or over less near the ends of what is known.
+/// Returns the rate of the x component of L's angular velocity. It depends on the jerk of the orbit and is
+/// computed by finite differences over 1e-3 rad of the orbit, or less near the ends of its time span.
 ///
 /// `ẋ = [8 (x₁ − x₋₁) − (x₂ − x₋₂)]/12h`; at an end `ẋ = ±(4 x₁ − x₂ − 3 x₀)/2h`.
 fn turn_of_plane(orbit: &dyn Orbit, t: f64, rate: &Vector3<f64>) -> f64 {

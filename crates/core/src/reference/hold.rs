@@ -1,11 +1,11 @@
-//! Staying where one is.
+//! Constant pose.
 
 use super::error::is_number;
 use super::{ReferenceError, TaskPath, TaskSample};
 use crate::spatial::{Mat3, Vec3};
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-/// A pose that does not change.
+/// Constant pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hold {
     pub(super) rot_fd: Mat3<f64>,
@@ -13,7 +13,7 @@ pub struct Hold {
 }
 
 impl Hold {
-    /// Holds the pose `(rot_fd, pos_f)`, m, of the reference's frame.
+    /// Returns a reference at the pose `(rot_fd, pos_f)`, m, in the frame of the reference.
     ///
     /// # Errors
     /// [`ReferenceError::NotFinite`], [`ReferenceError::NotARotation`].

@@ -1,11 +1,11 @@
-//! What joints should follow.
+//! Reference motions of joints.
 
 use super::ReferenceError;
 use super::error::is_number;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// One instant of a joint reference, `(n,)` each: rad or m, and rates.
+/// Sample of a joint reference, `(n,)` each: positions, rates and accelerations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointSample {
     /// Positions, rad or m.
@@ -17,42 +17,44 @@ pub struct JointSample {
 }
 
 impl JointSample {
-    /// Room for `n` joints.
+    /// Returns a sample of zeros for `n` joints.
     pub fn new(n: usize) -> Self {
         Self { q: vec![0.0; n], v: vec![0.0; n], a: vec![0.0; n] }
     }
 }
 
-/// Positions, rates and accelerations of joints as functions of time, from zero on.
+/// Positions, rates and accelerations of joints as functions of time, which starts at zero.
 pub trait JointPath: Send + Sync + Debug {
-    /// Number of joints.
+    /// Returns the number of joints.
     fn count(&self) -> usize;
 
-    /// Where the joints should be at `t`, s since the path began; the ends are held outside.
+    /// Computes the desired motion at `t`, s since the start of the path; outside `0..duration` the first or
+    /// last positions are held.
     fn sample(&self, t: f64, out: &mut JointSample);
 
-    /// When it comes to rest, s; 0 for one that never moves, infinite for one that never rests.
+    /// Returns the time at which the path comes to rest, s: 0 if it never moves, infinity if it never comes
+    /// to rest.
     fn duration(&self) -> f64;
 }
 
-/// A joint path, shared.
+/// Shared joint path.
 pub type JointReference = Arc<dyn JointPath>;
 
-/// Largest distance, rad or m, of joints at `q` from the first instant of `path`.
+/// Returns the largest distance, rad or m, of joints at `q` from the start of `path`.
 pub fn joint_start_offset(path: &dyn JointPath, q: &[f64]) -> f64 {
     let mut first = JointSample::new(path.count());
     path.sample(0.0, &mut first);
     first.q.iter().zip(q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Joints that stay where they are.
+/// Constant joint positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointHold {
     q: Vec<f64>,
 }
 
 impl JointHold {
-    /// At `q`, rad or m.
+    /// Returns a reference at `q`, rad or m.
     ///
     /// # Errors
     /// [`ReferenceError::NotFinite`].

@@ -1,25 +1,27 @@
-//! Joints through given positions.
+//! Splines through joint positions.
 
 use super::limits::joint_stretch;
 use super::pose_spline::rest_times;
 use super::{JointPath, JointSample, RateLimit, ReferenceError, Timing};
 use crate::spatial::{Ends, Spline};
 
-/// Quintics through joint positions: waypoints, or samples of a motion; all joints arrive together.
+/// Quintic splines through joint positions: waypoints, or samples of a motion. All joints reach a point at
+/// the same time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointSpline {
     spline: Spline,
 }
 
 impl JointSpline {
-    /// From rest to rest through `points` (K, n), rad or m, stopping at each or passing through.
+    /// Returns the motion from rest to rest through `points` (K, n), rad or m, with or without stops at the
+    /// inner points.
     ///
-    /// Limits, one per joint, are kept everywhere and reached somewhere: in each piece when it stops,
-    /// over all when it passes.
+    /// If limits are given, one per joint, times are the shortest that respect them: for each piece with
+    /// stops, for the whole path without.
     ///
     /// # Errors
-    /// [`ReferenceError`] for less than two points, wrong lengths, times that do not increase, limits that
-    /// give no time.
+    /// [`ReferenceError`] for fewer than two points, wrong lengths, times that do not increase, or limits
+    /// that do not determine the times.
     pub fn waypoints(
         count: usize,
         points: &[f64],
@@ -29,7 +31,7 @@ impl JointSpline {
         let through = |times: &[f64]| {
             let spline = match stops {
                 true => Spline::resting(times, count, points),
-                false => Spline::passing(times, count, points, Ends::Rest),
+                false => Spline::interpolating(times, count, points, Ends::Rest),
             };
             Ok(Self { spline: spline? })
         };
@@ -57,11 +59,11 @@ impl JointSpline {
         }
     }
 
-    /// From `start` (n,) one joint after the other: each of `moves` brings one joint to a position, rad or
-    /// m, from rest to rest, all others held.
+    /// Returns the motion from `start` (n,) of one joint after the other: each of `moves` moves one joint to
+    /// a position, rad or m, from rest to rest, while the others are held.
     ///
     /// # Errors
-    /// As [`JointSpline::waypoints`]; [`ReferenceError::NoJoint`] for a joint that is none.
+    /// Those of [`JointSpline::waypoints`]; [`ReferenceError::NoJoint`] for a joint that does not exist.
     pub fn one_by_one(
         start: &[f64],
         moves: &[(usize, f64)],
@@ -75,11 +77,11 @@ impl JointSpline {
         Self::waypoints(start.len(), &points, timing, true)
     }
 
-    /// Through samples of a motion at `times`, s, of `positions` (K, n), with their `rates` (K, n) where
-    /// known. Before and after, the ends are held.
+    /// Returns the spline through samples of a motion at `times`, s, of `positions` (K, n), with their
+    /// `rates` (K, n) if known. Before and after, the first and last positions are held.
     ///
     /// # Errors
-    /// [`ReferenceError`] for less than two samples, wrong lengths, times that do not increase.
+    /// [`ReferenceError`] for fewer than two samples, wrong lengths, or times that do not increase.
     pub fn sampled(
         count: usize,
         times: &[f64],
@@ -87,7 +89,7 @@ impl JointSpline {
         rates: Option<&[f64]>,
     ) -> Result<Self, ReferenceError> {
         let spline = match rates {
-            None => Spline::passing(times, count, positions, Ends::Free),
+            None => Spline::interpolating(times, count, positions, Ends::Free),
             Some(rates) => Spline::with_slopes(times, count, positions, rates),
         };
         Ok(Self { spline: spline? })

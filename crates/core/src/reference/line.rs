@@ -1,9 +1,9 @@
-//! Straight from one pose to another.
+//! Straight line between two poses.
 
 use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw};
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3, log_rotation};
 
-/// `p(t) = p₀ + s d`, `R(t) = exp(s θ) R₀`: a straight line, the attitude on the geodesic of SO(3).
+/// Straight line `p(t) = p₀ + s d`, `R(t) = exp(s θ) R₀`, with the attitude on the geodesic of SO(3).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     start: Hold,
@@ -14,16 +14,18 @@ pub struct Line {
 }
 
 impl Line {
-    /// From `start` to `end` as `law` says; the attitude turns the shorter way.
+    /// Returns the line from `start` to `end` with the time law `law`; the attitude rotates by the smaller
+    /// angle.
     pub fn new(start: Hold, end: &Hold, law: TimeLaw) -> Self {
         let turn = log_rotation(&(end.rot_fd * start.rot_fd.transpose()));
         Self { displacement: end.pos_f - start.pos_f, turn, start, law }
     }
 
-    /// From `start` to `end` at rest to rest, as fast as `limits` allow.
+    /// Returns the line from `start` to `end`, from rest to rest, in the shortest time that respects
+    /// `limits`.
     ///
     /// # Errors
-    /// [`ReferenceError::LimitNotPositive`]; [`ReferenceError::NoLimit`] where it would take no time.
+    /// [`ReferenceError::LimitNotPositive`]; [`ReferenceError::NoLimit`] if the limits determine no time.
     pub fn within(start: Hold, end: &Hold, limits: &TaskLimits) -> Result<Self, ReferenceError> {
         limits.check()?;
         let mut line = Self::new(start, end, TimeLaw::quintic(1.0)?);

@@ -1,13 +1,14 @@
-//! The paper's trajectory: straight ahead, with a parabola to the side so that the arm can follow.
+//! Line with a lateral parabola, the trajectory of the OnOrbitROS paper.
 
 use super::error::is_number;
 use super::{Hold, ReferenceError, TaskPath, TaskSample, TimeLaw};
 use crate::spatial::{Motion, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
-/// `p(t) = p₀ + s d + s(1 − s) h`, attitude held; `s` is the quintic from 0 to 1 over the duration.
+/// Line with a parabola, `p(t) = p₀ + s d + s(1 − s) h`, with constant attitude; `s` is the quintic from 0 to
+/// 1.
 ///
-/// Starts and ends at rest without acceleration; before and after it holds the ends.
+/// The motion starts and ends at rest with zero acceleration; the end poses are held before and after.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineParabola {
     start: Hold,
@@ -17,12 +18,12 @@ pub struct LineParabola {
 }
 
 impl LineParabola {
-    /// From the pose `(rot_fd, pos_f)` by `displacement` (m), with `height` (m) whose quarter is
-    /// reached half way, in `duration`, s; all in the axes of the reference's frame.
+    /// Returns the motion from the pose `(rot_fd, pos_f)` by `displacement` (m), with `height` (m), a quarter
+    /// of which is reached half way, in `duration`, s; all in the axes of the reference's frame.
     ///
     /// # Errors
-    /// [`ReferenceError`] for a pose that is none, numbers that are not finite, or a duration
-    /// that is not positive.
+    /// [`ReferenceError`] for an invalid pose, numbers that are not finite, or a duration that is not
+    /// positive.
     pub fn new(
         rot_fd: Matrix3<f64>,
         pos_f: Vector3<f64>,
@@ -33,10 +34,10 @@ impl LineParabola {
         Self::from_pose(Hold::new(rot_fd, pos_f)?, displacement, height, duration)
     }
 
-    /// As [`LineParabola::new`], from a pose.
+    /// Returns the motion as [`LineParabola::new`] does, from a pose.
     ///
     /// # Errors
-    /// As [`LineParabola::new`].
+    /// Those of [`LineParabola::new`].
     pub fn from_pose(
         start: Hold,
         displacement: Vector3<f64>,

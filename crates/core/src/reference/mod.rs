@@ -1,8 +1,8 @@
-//! What a tool or the joints should follow: positions, velocities and accelerations that agree, as
-//! functions of time.
+//! Reference motions of a tool or of joints: consistent positions, velocities and accelerations as functions
+//! of time.
 //!
-//! All lanes share the time, so that references are evaluated in `f64`, once per instant, and
-//! [lifted](TaskSample::lift). A path of a frame is a [`TaskPath`], in one of four
+//! References are evaluated in `f64`, once per instant, since all lanes share the time, and then
+//! [copied](TaskSample::lift) to the lanes. A path of a frame is a [`TaskPath`], given in one of four
 //! [frames](ReferenceFrame); a path of joints is a [`JointPath`].
 
 mod error;
@@ -18,6 +18,7 @@ mod sample;
 mod screw;
 mod table;
 mod task;
+mod task_path;
 mod time_law;
 
 pub use error::ReferenceError;
@@ -32,5 +33,6 @@ pub use pose_spline::PoseSpline;
 pub use sample::TaskSample;
 pub use screw::Screw;
 pub use table::{joint_table, task_table};
-pub use task::{TaskPath, TaskReference};
+pub use task::TaskReference;
+pub use task_path::TaskPath;
 pub use time_law::TimeLaw;

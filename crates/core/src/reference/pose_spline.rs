@@ -1,9 +1,9 @@
-//! Through given poses.
+//! Splines through poses.
 
 use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, Timing};
 use crate::spatial::{Ends, Motion, Quat, RotationSpline, Spline, Vec3, log_rotation};
 
-/// Quintics through poses: waypoints, or samples of a motion. Twice continuously differentiable.
+/// Quintic C² splines through poses: waypoints, or samples of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseSpline {
     position: Spline,
@@ -11,13 +11,14 @@ pub struct PoseSpline {
 }
 
 impl PoseSpline {
-    /// From rest to rest through `poses`, stopping at each or passing through.
+    /// Returns the motion from rest to rest through `poses`, with or without stops at the inner poses.
     ///
-    /// Stopping, each piece is a straight line with the attitude on its geodesic. Limits are kept
-    /// everywhere and reached somewhere: in each piece when it stops, over all when it passes.
+    /// With stops, each piece is a straight line with the attitude on its geodesic. If limits are given,
+    /// times are the shortest that respect them: for each piece with stops, for the whole path without.
     ///
     /// # Errors
-    /// [`ReferenceError`] for less than two poses, times that do not increase, limits that give no time.
+    /// [`ReferenceError`] for fewer than two poses, times that do not increase, or limits that do not
+    /// determine the times.
     pub fn waypoints(
         poses: &[Hold],
         timing: &Timing<Vec<f64>, TaskLimits>,
@@ -29,8 +30,8 @@ impl PoseSpline {
                 let attitude = RotationSpline::resting(times, &attitudes)?;
                 Self { position: Spline::resting(times, 3, &positions)?, attitude }
             } else {
-                let attitude = RotationSpline::passing(times, &attitudes, Ends::Rest)?;
-                Self { position: Spline::passing(times, 3, &positions, Ends::Rest)?, attitude }
+                let attitude = RotationSpline::interpolating(times, &attitudes, Ends::Rest)?;
+                Self { position: Spline::interpolating(times, 3, &positions, Ends::Rest)?, attitude }
             })
         };
         match timing {
@@ -52,11 +53,11 @@ impl PoseSpline {
         }
     }
 
-    /// Through samples of a motion at `times`, s, with their `velocities` where known (K, 6): linear
-    /// then angular, in the axes the poses are given in. Before and after, the ends are held.
+    /// Returns the spline through samples of a motion at `times`, s, with their `velocities` (K, 6) if known:
+    /// linear, then angular, in the axes of the poses. Before and after, the first and last poses are held.
     ///
     /// # Errors
-    /// [`ReferenceError`] for less than two samples, wrong lengths, times that do not increase.
+    /// [`ReferenceError`] for fewer than two samples, wrong lengths, or times that do not increase.
     pub fn sampled(
         times: &[f64],
         poses: &[Hold],
@@ -64,8 +65,8 @@ impl PoseSpline {
     ) -> Result<Self, ReferenceError> {
         let (positions, attitudes) = rows(poses);
         let Some(velocities) = velocities else {
-            let attitude = RotationSpline::passing(times, &attitudes, Ends::Free)?;
-            return Ok(Self { position: Spline::passing(times, 3, &positions, Ends::Free)?, attitude });
+            let attitude = RotationSpline::interpolating(times, &attitudes, Ends::Free)?;
+            return Ok(Self { position: Spline::interpolating(times, 3, &positions, Ends::Free)?, attitude });
         };
         if velocities.len() != 6 * poses.len() {
             let (expected, got) = (6 * poses.len(), velocities.len());
@@ -82,7 +83,7 @@ impl PoseSpline {
     }
 }
 
-/// Times of waypoints from zero on, `time_for` the duration of each piece.
+/// Returns the times of waypoints, from zero on; `time_for` returns the duration of a piece.
 pub(super) fn rest_times<P>(
     points: &[P],
     time_for: impl Fn(&P, &P) -> f64,

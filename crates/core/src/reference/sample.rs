@@ -1,12 +1,12 @@
-//! One instant of a reference.
+//! Sample of a task reference.
 
 use crate::spatial::{Mat3, Motion, Real, Vec3, pose_rows};
 
-/// Desired pose, velocity and acceleration of a frame D, in the axes of the frame it is given in (W
-/// unless a reference says otherwise), at D's origin.
+/// Desired pose, velocity and acceleration of a frame D, at its origin, in the axes of the frame in which the
+/// reference is given (W by default).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaskSample<S> {
-    /// Takes the desired frame's components to W.
+    /// Rotation from D axes to W axes.
     pub rot_wd: Mat3<S>,
     /// Origin, m.
     pub pos_w: Vec3<S>,
@@ -17,7 +17,7 @@ pub struct TaskSample<S> {
 }
 
 impl<S: Real> TaskSample<S> {
-    /// At rest at a pose.
+    /// Returns a sample at rest.
     #[inline(always)]
     pub fn at_rest(rot_wd: Mat3<S>, pos_w: Vec3<S>) -> Self {
         Self { rot_wd, pos_w, velocity: Motion::zero(), acceleration: Motion::zero() }
@@ -25,7 +25,7 @@ impl<S: Real> TaskSample<S> {
 }
 
 impl TaskSample<f64> {
-    /// The same in every lane.
+    /// Returns the sample in every lane.
     #[inline(always)]
     pub fn lift<S: Real>(&self) -> TaskSample<S> {
         let motion = |m: &Motion<f64>| Motion::new(Vec3::of(&m.linear), Vec3::of(&m.angular));
@@ -37,7 +37,7 @@ impl TaskSample<f64> {
         }
     }
 
-    /// What moves like `inner` in a frame that itself moves like `self`, in the axes of `self`'s frame.
+    /// Returns the motion of a frame that moves as `inner` relative to a frame that moves as `self`.
     ///
     /// `p = p_f + R x`, `v = v_f + ω × Rx + R ẋ`, `a = a_f + α × Rx + ω × (ω × Rx) + 2 ω × R ẋ + R ẍ`;
     /// rates `ω + R ω'`, `α + ω × R ω' + R α'`.
@@ -61,7 +61,7 @@ impl TaskSample<f64> {
         }
     }
 
-    /// The pose as a row-major `(4, 4)` matrix.
+    /// Returns the pose as a row-major `(4, 4)` matrix.
     pub fn pose_rows(&self) -> [f64; 16] {
         pose_rows(&self.rot_wd, self.pos_w)
     }

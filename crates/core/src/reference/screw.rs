@@ -1,13 +1,13 @@
-//! Round an axis, and along it: circles and screws.
+//! Circles and screw motions.
 
 use super::error::is_number;
 use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw, Timing};
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
 use nalgebra::Vector3;
 
-/// `p(t) = c + exp(s θ u)(p₀ − c) + s d u`, `R(t) = exp(s θ u) R₀` or held.
+/// Screw motion `p(t) = c + exp(s θ u)(p₀ − c) + s d u`, with `R(t) = exp(s θ u) R₀` or constant attitude.
 ///
-/// With attitude turning this is the exponential of a twist on SE(3); without advance, a circle.
+/// With rotating attitude this is the exponential of a twist on SE(3); without advance it is a circle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Screw {
     start: Hold,
@@ -20,9 +20,9 @@ pub struct Screw {
 }
 
 impl Screw {
-    /// From `start` about the line through `center` (m) along `axis` (any length) by `angle` (rad,
-    /// right-handed, any size), while it advances along it by `advance` (m); whether the attitude
-    /// `turns` along.
+    /// Returns the motion from `start` about the line through `center` (m) along `axis` (any length) by
+    /// `angle` (rad, right-handed, any size), with an advance along the axis by `advance` (m). `turns`:
+    /// whether the attitude rotates.
     ///
     /// # Errors
     /// [`ReferenceError::NotFinite`], [`ReferenceError::NoAxis`].
@@ -50,11 +50,11 @@ impl Screw {
         Ok(Self { start, center: center.into(), axis, angle, advance, turns, law })
     }
 
-    /// As [`Screw::new`] in a given duration, s, or as fast as limits allow; `ramp` as in
-    /// [`TimeLaw::ramped`], the quintic without.
+    /// Returns the motion as [`Screw::new`] does, in a given duration, s, or in the shortest time that
+    /// respects limits; `ramp` as in [`TimeLaw::ramped`], or `None` for the quintic.
     ///
     /// # Errors
-    /// As [`Screw::new`] and [`TimeLaw`]'s constructors.
+    /// Those of [`Screw::new`] and of the constructors of [`TimeLaw`].
     pub fn timed(
         start: Hold,
         center: Vector3<f64>,
@@ -74,7 +74,7 @@ impl Screw {
         Ok(screw)
     }
 
-    /// The same path under another law.
+    /// Returns the same path with another time law.
     #[must_use]
     pub fn with_law(&self, law: TimeLaw) -> Self {
         Self { law, ..self.clone() }

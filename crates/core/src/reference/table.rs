@@ -1,13 +1,13 @@
-//! References and poses as rows of numbers.
+//! Samples of references at many times, and poses from arrays.
 
 use super::{Hold, JointPath, JointSample, ReferenceError, TaskReference};
 use nalgebra::{Matrix4, Vector4};
 
 impl Hold {
-    /// Poses from row-major `(4, 4)` matrices, one after the other.
+    /// Returns poses from row-major `(4, 4)` matrices.
     ///
     /// # Errors
-    /// [`ReferenceError::LastRow`] for a last row other than 0, 0, 0, 1; as [`Hold::new`].
+    /// [`ReferenceError::LastRow`] for a last row other than 0, 0, 0, 1; those of [`Hold::new`].
     pub fn from_rows(rows: &[[f64; 16]]) -> Result<Vec<Self>, ReferenceError> {
         let pose = |row: &[f64; 16]| {
             let pose = Matrix4::from_row_slice(row);
@@ -21,11 +21,11 @@ impl Hold {
     }
 }
 
-/// Samples at many `times` (T,), s: poses (T, 4, 4), velocities and accelerations (T, 6), in W axes, or in
-/// those of the path's own frame where `in_own_frame`.
+/// Samples a reference at many `times` (T,), s: poses (T, 4, 4), velocities and accelerations (T, 6), in W
+/// axes, or in those of the reference's frame if `in_own_frame`.
 ///
 /// # Errors
-/// [`ReferenceError::WrongLength`]; as [`TaskReference::sample`], rows before it being written.
+/// [`ReferenceError::WrongLength`]; those of [`TaskReference::sample`]. Rows before the error are written.
 pub fn task_table(
     reference: &TaskReference,
     in_own_frame: bool,
@@ -49,7 +49,7 @@ pub fn task_table(
     Ok(())
 }
 
-/// Samples at many `times` (T,), s: positions, rates and accelerations (T, n).
+/// Samples a joint path at many `times` (T,), s: positions, rates and accelerations (T, n).
 ///
 /// # Errors
 /// [`ReferenceError::WrongLength`].
@@ -72,7 +72,7 @@ pub fn joint_table(
     Ok(())
 }
 
-/// Refuses an output that has other room than it needs.
+/// Returns an error for an output of the wrong length.
 fn check_room(name: &'static str, expected: usize, out: &[f64]) -> Result<(), ReferenceError> {
     let got = out.len();
     if got == expected { Ok(()) } else { Err(ReferenceError::WrongLength { name, expected, got }) }

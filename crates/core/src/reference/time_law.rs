@@ -1,18 +1,18 @@
-//! How fast a path is gone along.
+//! Time laws: progress along a path as a function of time.
 
 use super::error::{SHORTEST, is_number};
 use super::{ReferenceError, TaskLimits, TaskPath};
 
-/// `s(t)` from 0 to 1, at rest and without acceleration at both ends; 0 before, 1 after.
+/// Time law `s(t)` from 0 to 1, with zero rate and acceleration at both ends; 0 before, 1 after.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeLaw {
     duration: f64,
-    /// Share of the duration until the constant rate is reached; the quintic where there is none.
+    /// Fraction of the duration until the constant rate is reached; `None` for the quintic.
     ramp: Option<f64>,
 }
 
 impl TimeLaw {
-    /// The quintic over `duration`, s.
+    /// Returns the quintic time law over `duration`, s.
     ///
     /// # Errors
     /// [`ReferenceError::NotFinite`], [`ReferenceError::DurationNotPositive`].
@@ -26,10 +26,11 @@ impl TimeLaw {
         Ok(Self { duration, ramp: None })
     }
 
-    /// A constant rate between two ramps that take the share `ramp` of `duration` (s) each.
+    /// Returns a law with a constant rate between two ramps, each of which lasts the fraction `ramp` of
+    /// `duration` (s).
     ///
     /// # Errors
-    /// As [`TimeLaw::quintic`]; [`ReferenceError::Ramp`] for a share that is not in 0..½.
+    /// Those of [`TimeLaw::quintic`]; [`ReferenceError::Ramp`] for a fraction that is not in 0..½.
     pub fn ramped(duration: f64, ramp: f64) -> Result<Self, ReferenceError> {
         let law = Self::quintic(duration)?;
         if !(ramp > 0.0 && ramp <= 0.5) {
@@ -38,12 +39,13 @@ impl TimeLaw {
         Ok(Self { ramp: Some(ramp), ..law })
     }
 
-    /// The law with which `path_with` makes a path as fast as `limits` allow; `ramp` as in
-    /// [`TimeLaw::ramped`], the quintic without.
+    /// Returns the time law for which the path returned by `path_with` has the shortest duration within
+    /// `limits`;
+    /// `ramp` as in [`TimeLaw::ramped`], or `None` for the quintic.
     ///
     /// # Errors
-    /// [`ReferenceError::LimitNotPositive`], [`ReferenceError::Ramp`]; [`ReferenceError::NoLimit`] where the
-    /// limits let the path take no time.
+    /// [`ReferenceError::LimitNotPositive`], [`ReferenceError::Ramp`]; [`ReferenceError::NoLimit`] if the
+    /// limits do not determine the duration.
     pub fn within<P: TaskPath>(
         limits: &TaskLimits,
         ramp: Option<f64>,
@@ -56,12 +58,12 @@ impl TimeLaw {
         if duration > 0.0 { Ok(Self { duration, ..law }) } else { Err(ReferenceError::NoLimit) }
     }
 
-    /// When it comes to rest, s.
+    /// Returns the duration, s.
     pub fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// `s` and its first two derivatives in time.
+    /// Returns `s` and its first two derivatives.
     pub fn at(&self, t: f64) -> (f64, f64, f64) {
         match self.ramp {
             None => quintic(t, self.duration),
@@ -70,7 +72,7 @@ impl TimeLaw {
     }
 }
 
-/// `s = 10u³ − 15u⁴ + 6u⁵` with `u = t/T` kept in 0..1.
+/// Returns `s = 10u³ − 15u⁴ + 6u⁵` with `u = t/T` clamped to 0..1, and its derivatives in `u`.
 fn quintic(t: f64, duration: f64) -> (f64, f64, f64) {
     let per_s = 1.0 / duration;
     let u = (t * per_s).clamp(0.0, 1.0);
@@ -81,7 +83,8 @@ fn quintic(t: f64, duration: f64) -> (f64, f64, f64) {
     (s, rate, acceleration)
 }
 
-/// `ṡ = c (3u² − 2u³)` with `u = t/r` on the ramp, `ṡ = c = 1/(T − r)` between the ramps.
+/// Returns the ramped law: `ṡ = c (3u² − 2u³)` with `u = t/r` on a ramp, `ṡ = c = 1/(T − r)` between the
+/// ramps.
 fn ramped(t: f64, duration: f64, ramp: f64) -> (f64, f64, f64) {
     let t = t.clamp(0.0, duration);
     let cruise = 1.0 / (duration - ramp);

@@ -1,20 +1,18 @@
-//! What can be known to be wrong before a run.
+//! Checks of a simulation before it runs.
 
-use super::contacts::AT_LIMIT;
+use super::check_references::{check_control_references, check_reference};
 use super::error::SimulationError;
+use super::modes::AT_LIMIT;
 use super::settings::Simulation;
-use super::start::{check_control_starts, check_start};
-use super::state_range::check_range;
-use crate::control::{Control, ControlLaw, check_controls};
-use crate::model::Model;
+use super::state_range::{UNIT_NORM, attitude_norm, check_range};
+use crate::control::check_controls;
+use crate::model::{BASE_NQ, Model};
 
-/// Largest deviation of a given quaternion from unit norm.
-const UNIT_NORM: f64 = 1e-6;
-/// Time steps that are believed, s: light passes a third of a millimetre in the shortest, the longest are thirty years.
+/// Accepted time steps, s; outside of them, an error of the unit is likely.
 const STEPS: std::ops::RangeInclusive<f64> = 1e-12..=1e9;
 
 impl Simulation {
-    /// Checks everything that can be known before a run.
+    /// Checks everything that is known before a run.
     ///
     /// # Errors
     /// Wrong lengths, numbers that are not finite, a quaternion off unit norm, steps that are not
@@ -25,9 +23,7 @@ impl Simulation {
         check_state(&self.model, &self.q, &self.v)?;
         let periods = [("time_step", Some(self.time_step)), ("control_period", self.control_period)];
         for (name, value) in periods {
-            if let Some(value) = value.filter(|x| !(x.is_finite() && *x > 0.0)) {
-                return Err(SimulationError::NotPositive { name, value });
-            }
+            value.map_or(Ok(()), |value| SimulationError::check_positive(name, value))?;
         }
         if !STEPS.contains(&self.time_step) {
             return Err(SimulationError::TimeStep { value: self.time_step });
@@ -51,59 +47,48 @@ impl Simulation {
         if let Some(effect) = self.effects.iter().find(|effect| effect.requires_orbit() && !has_planet) {
             return Err(SimulationError::NeedsOrbit { effect: effect.name().to_owned() });
         }
-        self.check_that_none_counts_twice()?;
+        self.check_duplicate_effects()?;
         if let (Some(orbit), Some(earth)) = (&self.orbit, &self.earth) {
-            earth.fits(orbit.axes(), orbit.epoch())?;
+            earth.check_orbit(orbit.axes(), orbit.epoch())?;
         }
-        self.check_control()?;
+        self.check_controls()?;
         match (self.tool, &self.reference) {
             (None, Some(_)) => Err(SimulationError::NeedsTool),
             (Some(tool), Some(reference)) => {
-                check_start(&self.model, &self.q, tool, reference, self.reference_start_tolerance)
+                check_reference(&self.model, &self.q, tool, reference, self.reference_start_tolerance)
             }
             _ => Ok(()),
         }
     }
 
-    /// The frames that are followed, and whether the law can work on this robot.
-    fn check_control(&self) -> Result<(), SimulationError> {
-        let tracked = match &self.control {
-            ControlLaw::ComputedTorque(law) => Some(law.frame),
-            _ => None,
-        };
+    /// Checks the controls, the frames they track and the starts of their references.
+    fn check_controls(&self) -> Result<(), SimulationError> {
         let count = self.model.frames().len();
-        if let Some(frame) = [self.tool, tracked].into_iter().flatten().find(|&frame| frame >= count) {
+        let tracked = || self.controls.iter().filter_map(|control| Some((control, control.law.task()?.0)));
+        let frames = tracked().map(|(_, frame)| frame);
+        if let Some(frame) = self.tool.into_iter().chain(frames).find(|&frame| frame >= count) {
             return Err(SimulationError::UnknownFrame { frame, count });
         }
-        if let ControlLaw::ComputedTorque(law) = &self.control {
-            law.check(&self.model)?;
-            if let Some(tool) = self.tool.filter(|tool| *tool != law.frame) {
+        check_controls(&self.controls, &self.model)?;
+        for (_, frame) in tracked().filter(|(control, _)| !control.has_column) {
+            let tool = self.tool.ok_or(SimulationError::NeedsTool)?;
+            if tool != frame {
                 let name = |frame: usize| self.model.frames()[frame].name.clone();
-                return Err(SimulationError::OtherTool { controller: name(law.frame), tool: name(tool) });
-            }
-            if self.reference.is_none() {
-                return Err(SimulationError::NeedsReference);
+                return Err(SimulationError::OtherTool { controller: name(frame), tool: name(tool) });
             }
         }
-        if let ControlLaw::Stack(controls) = &self.control {
-            let known = |control: &Control| control.task().is_none_or(|(frame, _)| frame < count);
-            if let Some(frame) = controls.iter().find(|c| !known(c)).and_then(|c| c.task()) {
-                return Err(SimulationError::UnknownFrame { frame: frame.0, count });
-            }
-            check_controls(controls, &self.model)?;
-            let tolerance = self.reference_start_tolerance;
-            check_control_starts(&self.model, &self.q, controls, tolerance)?;
-        }
-        Ok(())
+        check_control_references(&self.model, &self.q, &self.controls, self.reference_start_tolerance)
     }
 
-    /// Refuses two effects that do the same to a body; gravity is always there around a planet.
-    fn check_that_none_counts_twice(&self) -> Result<(), SimulationError> {
+    /// Rejects two effects that would count twice on a body; gravity is always present around a planet.
+    fn check_duplicate_effects(&self) -> Result<(), SimulationError> {
         let effects = self.all_effects();
         for (k, effect) in effects.iter().enumerate() {
             let before = effects[..k].iter().filter(|before| before.name() == effect.name());
             for before in before {
-                let both = |body: &usize| before.counts_once_on(*body) && effect.counts_once_on(*body);
+                let both = |body: &usize| {
+                    before.counts_once_on((*body).into()) && effect.counts_once_on((*body).into())
+                };
                 if let Some(body) = (0..self.model.nodes().len()).find(both) {
                     let (effect, body) = (effect.name().to_owned(), self.model.body_frame(body).name.clone());
                     return Err(SimulationError::EffectTwice { effect, body });
@@ -113,13 +98,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// Restitution, and whether the joints start within their limits.
+    /// Checks the restitution, and that the joints start within their limits.
     fn check_stops(&self) -> Result<(), SimulationError> {
         let Some(restitution) = self.stops else { return Ok(()) };
         if !(0.0..=1.0).contains(&restitution) {
             return Err(SimulationError::Restitution { value: restitution });
         }
-        for (joint, &value) in self.model.joints().iter().zip(&self.q[7..]) {
+        for (joint, &value) in self.model.joints().iter().zip(&self.q[BASE_NQ..]) {
             let Some((lower, upper)) = joint.limits.position else { continue };
             if value < lower - AT_LIMIT || value > upper + AT_LIMIT {
                 let joint = joint.name.clone();
@@ -140,6 +125,6 @@ fn check_state(model: &Model, q: &[f64], v: &[f64]) -> Result<(), SimulationErro
         }
     }
     check_range(model, q, v)?;
-    let norm = q[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
+    let norm = attitude_norm(q);
     if (norm - 1.0).abs() > UNIT_NORM { Err(SimulationError::QuaternionNorm { norm }) } else { Ok(()) }
 }

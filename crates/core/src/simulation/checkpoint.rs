@@ -1,170 +1,133 @@
-//! Where a run stands between two steps, kept so that it goes on with the same bits.
+//! Checkpoints: the state of a run between two steps, from which it resumes with the same bits.
 
-use super::pair::Memory;
-use super::probe::Found;
-use super::rereference::OwnReference;
-use super::schedule::Schedule;
+use super::checkpoint_error::CheckpointError;
+use super::every_step::SavedChecks;
+use super::integrator::StepControl;
+use super::layout::{Layout, SystemPlace};
+use super::local_reference::LocalReference;
+use super::modes::SavedModes;
+use super::schedule::{Cursor, Schedule};
 use super::state::State;
-use crate::dynamics::Momentum;
-use crate::model::Model;
-use crate::number_text::short;
-use crate::spatial::{InstructionSet, Scalar, Vec3};
+use super::state_range::{UNIT_NORM, attitude_norm};
+use super::step_doubling::Errors;
+use super::system_state::SystemState;
+use crate::control::ControlMemory;
+use crate::spatial::InstructionSet;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
-/// Steps that no run takes; so many more can be counted without overflow.
+/// Largest number of steps of a run; twice as many can be counted without overflow.
 const MOST_STEPS: usize = usize::MAX / 2;
 
-/// Everything of a run that its trace does not hold: continued from here with the rows so far, it
-/// leaves the bits of one that was never stopped.
+/// State of a run that its trace does not contain. With the rows so far, a run that resumes from it has the bits of
+/// one that was not interrupted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
-    /// Version of this library; the next one may round otherwise.
+    /// Version of this library; another one may round differently.
     version: String,
-    /// Instruction set the run used: another one rounds otherwise.
+    /// Instruction set of the run; another one rounds differently.
     instruction_set: String,
-    /// Rows recorded so far.
-    pub(super) rows: usize,
+    /// Present time, s.
+    time: f64,
+    schedule: Schedule,
+    progress: Progress,
+    local_reference: Option<LocalReference>,
+    controllers: SavedControllers,
+}
+
+/// Everything that a step changes, except the controllers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Progress {
     /// Steps taken so far.
     pub(super) steps: usize,
-    pub(super) schedule: Schedule,
-    state: StateNumbers,
-    /// Torques held, `(n,)`, N m.
-    pub(super) command: Vec<f64>,
-    /// Accelerations asked for where friction is compensated, `(n,)`, rad/s².
-    pub(super) asked: Vec<Option<f64>>,
-    /// What the control of an adaptive step remembers.
-    pub(super) memory: Memory,
-    /// Cuts in a row that got nowhere.
-    pub(super) cuts: usize,
-    /// What the step-doubling probe found.
-    pub(super) probe: Found,
-    /// Running checks of every step, where rows are sparse: the bits of their numbers.
-    pub(super) follower: Option<Vec<u64>>,
-    /// Work of every step so far, whatever its sign, J.
-    pub(super) work_done: f64,
-    /// What the robot is integrated about, where it drifted far.
-    pub(super) own_reference: Option<OwnReference>,
-    pub(super) controls: ControlMemory,
+    pub(super) cursor: Cursor,
+    pub(super) state: State<f64>,
+    pub(super) step_control: Option<StepControl>,
+    /// Idle steps in a row.
+    pub(super) idle_steps: usize,
+    /// One entry per system.
+    pub(super) systems: Vec<SystemProgress>,
 }
 
-/// What controllers remember between calls.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct ControlMemory {
-    /// Of those built in: the bits of numbers, which may be infinite.
-    pub(super) bits: Vec<u64>,
-    /// Of the user's own, in their order.
-    pub(super) users: Vec<Vec<u8>>,
-}
-
+/// Everything of one system that a step changes, except its state and its controllers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct StateNumbers {
-    q: Vec<f64>,
-    v: Vec<f64>,
-    /// Momentum at the start of the run, then what was added.
-    momentum: [f64; 12],
-    work: f64,
-    dissipated: f64,
+pub(super) struct SystemProgress {
+    /// Rows recorded so far.
+    pub(super) rows: usize,
+    pub(super) modes: SavedModes,
+    pub(super) errors: Option<Errors>,
+    pub(super) checks: Option<SavedChecks>,
+    /// Sum of the magnitudes of the work of each step, J.
+    pub(super) work_done: f64,
 }
 
-/// A checkpoint that cannot be continued from.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[allow(missing_docs)] // the fields are what the messages say
-pub enum CheckpointError {
-    #[error("the checkpoint is broken: {reason}; run the scenario again")]
-    Unreadable { reason: String },
-    #[error(
-        "the checkpoint was left by version {found} of onorbit_rs, this is {own}, which may round otherwise: continue \
-         with that version or run the scenario again"
-    )]
-    OtherVersion { found: String, own: String },
-    #[error(
-        "the checkpoint was left by a run on the instruction set {found}, this one uses {own}, which rounds otherwise: set \
-         ONORBIT_INSTRUCTION_SET={found}, or run the scenario again"
-    )]
-    OtherInstructionSet { found: String, own: String },
-    #[error("the checkpoint has {got} {name}, the simulation has {expected}: it is of another scenario")]
-    OtherSize { name: &'static str, got: usize, expected: usize },
-    #[error(
-        "the checkpoint is of a run of {found} s with steps of {step} s, this one differs: it is of another scenario",
-        found = short(*found), step = short(*step)
-    )]
-    OtherSchedule { found: f64, step: f64 },
+/// Controllers and torques of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct SavedControllers {
+    /// Whether the controllers were updated at the present cut.
+    pub(super) is_updated: bool,
+    /// One entry per system.
+    pub(super) systems: Vec<SystemControllers>,
 }
 
-/// What one state is computed with: there are no lanes to widen.
+/// Controllers and torques of one system.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct SystemControllers {
+    /// Torques held, `(n,)`, N m (N).
+    pub(super) command: Vec<f64>,
+    /// Torques commanded from outside, `(n,)`, N m (N).
+    pub(super) commanded: Vec<Option<f64>>,
+    /// Accelerations requested of joints whose friction is compensated, `(n,)`, rad/s² (m/s²).
+    pub(super) requested: Vec<Option<f64>>,
+    pub(super) controls: Vec<ControlMemory>,
+}
+
+/// Returns the instruction set with which one state is computed: there are no lanes to widen.
 fn own_instruction_set() -> &'static str {
     InstructionSet::current().min(InstructionSet::Fused).name()
 }
 
 impl Checkpoint {
-    pub(super) fn new<S: Scalar>(
-        state: &State<S>,
-        (command, asked): (&[S], &[Option<f64>]),
-        schedule: &Schedule,
-        (rows, steps): (usize, usize),
-        (memory, cuts): (Memory, usize),
-        (probe, follower): (Found, Option<Vec<u64>>),
-        work_done: f64,
-        own_reference: Option<&OwnReference>,
-        controls: ControlMemory,
+    pub(super) fn new(
+        time: f64,
+        schedule: Schedule,
+        progress: Progress,
+        local_reference: Option<LocalReference>,
+        controllers: SavedControllers,
     ) -> Self {
-        let numbers = |x: &[S]| x.iter().map(|x| x.value()).collect();
-        let mut momentum = [0.0; 12];
-        let parts = [&state.start, &state.impulse].into_iter().flat_map(|h| [h.linear, h.angular]);
-        for (to, v) in momentum.chunks_exact_mut(3).zip(parts) {
-            to.copy_from_slice(&[v.x.value(), v.y.value(), v.z.value()]);
-        }
-        let [q, v] = [&state.q, &state.v].map(|x| numbers(x));
-        Self {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            instruction_set: own_instruction_set().to_owned(),
-            rows,
-            steps,
-            schedule: schedule.clone(),
-            state: StateNumbers {
-                q,
-                v,
-                momentum,
-                work: state.work.value(),
-                dissipated: state.dissipated.value(),
-            },
-            command: numbers(command),
-            asked: asked.to_vec(),
-            memory,
-            cuts,
-            probe,
-            follower,
-            work_done,
-            own_reference: own_reference.cloned(),
-            controls,
-        }
+        let (version, instruction_set) =
+            (env!("CARGO_PKG_VERSION").to_owned(), own_instruction_set().to_owned());
+        Self { version, instruction_set, time, schedule, progress, local_reference, controllers }
     }
 
-    /// Time reached, s.
+    /// Returns the present time, s.
     pub fn time(&self) -> f64 {
-        self.schedule.now()
+        self.time
     }
 
-    /// Number of rows of the trace that belong to it.
+    /// Returns the planned end of the run, s.
+    pub fn duration(&self) -> Option<f64> {
+        self.schedule.duration()
+    }
+
+    /// Returns the number of rows of the trace that belong to it.
     pub fn rows(&self) -> usize {
-        self.rows
+        self.progress.systems.first().map_or(0, |system| system.rows)
     }
 
-    /// As text; every number is read back to the same bits.
+    /// Returns it as JSON, from which every number is read back to the same bits.
     pub fn to_json(&self) -> String {
-        serde_json::to_string(self).expect("plain numbers and strings")
+        serde_json::to_string(self).expect("numbers, strings and lists can be written")
     }
 
-    /// From [`Checkpoint::to_json`].
+    /// Reads the output of [`Checkpoint::to_json`].
     ///
     /// # Errors
     /// [`CheckpointError::Unreadable`], and [`CheckpointError::OtherVersion`].
     pub fn from_json(text: &str) -> Result<Self, CheckpointError> {
         let own = env!("CARGO_PKG_VERSION");
         let unreadable = |error: serde_json::Error| CheckpointError::Unreadable { reason: error.to_string() };
-        let loose: serde_json::Value = serde_json::from_str(text).map_err(unreadable)?;
-        match loose.get("version").and_then(|version| version.as_str()) {
+        let value: serde_json::Value = serde_json::from_str(text).map_err(unreadable)?;
+        match value.get("version").and_then(|version| version.as_str()) {
             Some(version) if version != own => {
                 Err(CheckpointError::OtherVersion { found: version.to_owned(), own: own.to_owned() })
             }
@@ -172,10 +135,15 @@ impl Checkpoint {
         }
     }
 
-    /// Whether a run of this robot on this machine can go on from here.
+    /// Returns its parts, for a run that resumes.
+    pub(super) fn into_parts(self) -> (f64, Progress, Option<LocalReference>, SavedControllers) {
+        (self.time, self.progress, self.local_reference, self.controllers)
+    }
+
+    /// Checks that a run of these systems on this machine can resume from here; `schedule` and `rows` are its own.
     pub(super) fn check(
         &self,
-        model: &Model,
+        layout: &Layout,
         schedule: &Schedule,
         rows: usize,
     ) -> Result<(), CheckpointError> {
@@ -184,48 +152,108 @@ impl Checkpoint {
             let (found, own) = (self.instruction_set.clone(), own.to_owned());
             return Err(CheckpointError::OtherInstructionSet { found, own });
         }
-        for (name, got, expected) in [
-            ("coordinates", self.state.q.len(), model.nq()),
-            ("velocities", self.state.v.len(), model.nv()),
-            ("torques", self.command.len(), model.joint_count()),
-            ("accelerations", self.asked.len(), model.joint_count()),
-            ("drifts", self.probe.drifts.len(), model.joint_count() + 1),
-            ("rows", self.rows, rows),
-        ]
-        .into_iter()
-        .chain(self.probe.watch.joints().map(|got| ("watched joints", got, model.joint_count())))
+        if let Some(got) = self.progress.systems.iter().map(|system| system.rows).find(|got| *got != rows) {
+            return Err(CheckpointError::MissingRows { got: rows, expected: got });
+        }
+        self.check_sizes(layout)?;
+        self.check_counts()?;
+        self.check_state()?;
+        if !self.schedule.has_cuts_of(schedule) {
+            let (duration, step) = (self.schedule.duration(), self.schedule.time_step());
+            return Err(CheckpointError::OtherSchedule { duration, step });
+        }
+        let mut there = schedule.clone();
+        there.set_cursor(self.progress.cursor);
+        if there.is_consistent(self.time) {
+            Ok(())
+        } else {
+            let reason = format!("its time, {} s, does not belong to its place in the schedule", self.time);
+            Err(CheckpointError::Unreadable { reason })
+        }
+    }
+
+    /// Checks that the numbers from which the run continues can occur in a run.
+    fn check_state(&self) -> Result<(), CheckpointError> {
+        let Progress { state, step_control, .. } = &self.progress;
+        let has_unit_attitude = |state: &SystemState<f64>| (attitude_norm(&state.q) - 1.0).abs() <= UNIT_NORM;
+        let is_step = |step: f64| step == 0.0 || step.is_normal() && step > 0.0;
+        let has_step = step_control.as_ref().is_none_or(|control| {
+            is_step(control.step) && control.systems.iter().all(|system| system.size >= 0.0)
+        });
+        if state.is_finite() && state.systems.iter().all(has_unit_attitude) && has_step {
+            return Ok(());
+        }
+        let reason = "its state is not finite, or its attitude not a unit quaternion".to_owned();
+        Err(CheckpointError::Unreadable { reason })
+    }
+
+    fn check_sizes(&self, layout: &Layout) -> Result<(), CheckpointError> {
+        let Self { progress, controllers, .. } = self;
+        let count = layout.systems().len();
+        let scales = progress.step_control.as_ref().map(|control| control.systems.len());
+        check_each([
+            ("systems", progress.state.systems.len(), count),
+            ("systems with modes", progress.systems.len(), count),
+            ("systems with controllers", controllers.systems.len(), count),
+            ("systems with scales of errors", scales.unwrap_or(count), count),
+        ])?;
+        let systems = progress.systems.iter().zip(&controllers.systems);
+        for ((place, state), (progress, controllers)) in
+            layout.systems().iter().zip(&progress.state.systems).zip(systems)
         {
-            if got != expected {
-                return Err(CheckpointError::OtherSize { name, got, expected });
-            }
-        }
-        if self.probe.step > self.steps || self.steps.max(self.cuts) > MOST_STEPS {
-            let (steps, cuts, probed) = (self.steps, self.cuts, self.probe.step);
-            let reason =
-                format!("no run counts {steps} steps, {cuts} cuts and a last probe at step {probed}");
-            return Err(CheckpointError::Unreadable { reason });
-        }
-        if !self.schedule.cuts_like(schedule) {
-            let (found, step) = self.schedule.duration_and_step();
-            return Err(CheckpointError::OtherSchedule { found, step });
+            check_each([
+                ("coordinates", state.q.len(), place.q.len()),
+                ("velocities", state.v.len(), place.v.len()),
+            ])?;
+            controllers.check_sizes(place)?;
+            progress.check_sizes(place)?;
         }
         Ok(())
     }
 
-    /// The state, bit for bit.
-    pub(super) fn state<S: Scalar>(&self) -> State<S> {
-        let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect();
-        let vector = |i: usize| {
-            let m = &self.state.momentum[3 * i..];
-            Vec3::new(S::of(m[0]), S::of(m[1]), S::of(m[2]))
-        };
-        State {
-            q: numbers(&self.state.q),
-            v: numbers(&self.state.v),
-            start: Momentum { linear: vector(0), angular: vector(1) },
-            impulse: Momentum { linear: vector(2), angular: vector(3) },
-            work: S::of(self.state.work),
-            dissipated: S::of(self.state.dissipated),
+    fn check_counts(&self) -> Result<(), CheckpointError> {
+        let Progress { steps, idle_steps, systems, .. } = &self.progress;
+        let errors = systems.iter().filter_map(|system| system.errors.as_ref());
+        let probed = errors.map(|errors| errors.step).max().unwrap_or(0);
+        if probed > *steps || *steps.max(idle_steps) > MOST_STEPS {
+            let reason = format!(
+                "no run counts {steps} steps, {idle_steps} idle steps and a last probe at step {probed}"
+            );
+            return Err(CheckpointError::Unreadable { reason });
         }
+        Ok(())
+    }
+}
+
+impl SystemProgress {
+    fn check_sizes(&self, place: &SystemPlace) -> Result<(), CheckpointError> {
+        let n = place.tau.len();
+        check_each([
+            ("locked joints", self.modes.locked.len(), n),
+            ("directions of slip", self.modes.direction.len(), n),
+        ])?;
+        check_each(self.errors.iter().flat_map(|errors| {
+            let jumps = errors.jumps.joints().map(|got| ("joints with jumps of acceleration", got, n));
+            [("drifts", errors.drifts.len(), n + 1)].into_iter().chain(jumps)
+        }))
+    }
+}
+
+impl SystemControllers {
+    fn check_sizes(&self, place: &SystemPlace) -> Result<(), CheckpointError> {
+        let n = place.tau.len();
+        check_each([
+            ("torques", self.command.len(), n),
+            ("commands", self.commanded.len(), n),
+            ("accelerations", self.requested.len(), n),
+        ])
+    }
+}
+
+/// Returns an error for the first of these names whose number differs from the one expected.
+fn check_each(sizes: impl IntoIterator<Item = (&'static str, usize, usize)>) -> Result<(), CheckpointError> {
+    match sizes.into_iter().find(|(_, got, expected)| got != expected) {
+        Some((name, got, expected)) => Err(CheckpointError::OtherSize { name, got, expected }),
+        None => Ok(()),
     }
 }

@@ -1,14 +1,15 @@
-//! Writing rows of the trace.
+//! The recorder, which adds rows to the trace of one system.
 
-use super::checkpoint::CheckpointError;
+use super::checkpoint_error::CheckpointError;
+use super::columns::{COLUMNS, Column, Condition, WRENCHES};
+use super::environment_loads::EnvironmentLoads;
 use super::error::SimulationError;
-use super::plant::Plant;
-use super::rereference::Shift;
-use super::state::State;
-use super::surroundings::Surroundings;
+use super::local_reference::Shift;
+use super::system::System;
+use super::system_state::SystemState;
 use super::trace::{NamedColumn, Trace};
-use crate::control::{Control, Stack, task_error};
-use crate::dynamics::{FramePose, base_rotation, frame_pose, motion_of_whole};
+use crate::control::{Control, ControllerSet, task_error};
+use crate::dynamics::{FramePose, base_rotation, frame_pose, momentum_energy_com};
 use crate::model::Model;
 use crate::orbit::OrbitState;
 use crate::reference::TaskSample;
@@ -16,81 +17,65 @@ use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
 use nalgebra::Vector3;
 use std::borrow::Cow;
 
-/// What a run has to record beside its state.
-#[derive(Clone)]
-pub(super) struct Extras {
-    /// Index of the frame to record.
+/// Quantities that a run records in addition to its state.
+#[derive(Clone, Default)]
+pub(super) struct RecordOptions {
+    /// Index of the tool's frame.
     pub(super) tool: Option<usize>,
-    /// Whether something leads it.
+    /// Whether the tool has a reference.
     pub(super) has_reference: bool,
     /// Names of the effects whose wrenches are recorded.
     pub(super) effects: Vec<String>,
-    /// Whether there is an orbit.
+    /// Whether the run has an orbit.
     pub(super) has_orbit: bool,
-    /// Whether drives compensate Coulomb friction.
+    /// Whether a controller compensates Coulomb friction.
     pub(super) compensates_friction: bool,
-    /// Whether the reference carries the robot along, through a field that it may not obey.
-    pub(super) is_carried: bool,
+    /// Whether gravity that the reference orbit does not follow is left out.
+    pub(super) records_residual: bool,
 }
 
-impl Extras {
-    /// Nothing beside the state.
-    pub(super) fn none() -> Self {
-        Self {
-            tool: None,
-            has_reference: false,
-            effects: Vec::new(),
-            has_orbit: false,
-            is_carried: false,
-            compensates_friction: false,
-        }
-    }
-
-    /// Numbers per row of a column; none where the run does not have it.
-    fn width(&self, column: &str, model: &Model) -> usize {
-        let given = |is_given: bool, width: usize| if is_given { width } else { 0 };
-        match column {
-            "q" => model.nq(),
-            "v" | "acceleration" => model.nv(),
-            "tau" => model.joint_count(),
-            "friction_compensation" => given(self.compensates_friction, model.joint_count()),
-            "momentum" | "impulse" => 6,
-            "center_of_mass" => 3,
-            "tool_pose" => given(self.tool.is_some(), 16),
-            "reference_pose" => given(self.has_reference, 16),
-            "position_error" | "attitude_error" => given(self.has_reference, 3),
-            "position_eci" | "velocity_eci" => given(self.has_orbit, 3),
-            "reference_residual" => given(self.is_carried, 3),
-            _ => 1,
-        }
+impl RecordOptions {
+    /// Returns how many numbers per row the run records of a column; 0 where it does not apply.
+    fn width(&self, column: &Column, model: &Model) -> usize {
+        let is_recorded = match column.condition {
+            Condition::Always => true,
+            Condition::FrictionCompensation => self.compensates_friction,
+            Condition::Tool => self.tool.is_some(),
+            Condition::Reference => self.has_reference,
+            Condition::Orbit => self.has_orbit,
+            Condition::Carried => self.records_residual,
+            Condition::Controls | Condition::Wrenches => false,
+        };
+        if is_recorded { column.row_width(model) } else { 0 }
     }
 }
 
-/// Fills a trace, row by row, without allocating.
+/// Adds rows to a trace without allocating.
 pub(super) struct Recorder {
     pub(super) trace: Trace,
-    extras: Extras,
-    /// What takes the last row to W, where it was integrated elsewhere.
+    /// Number of the system in the run.
+    number: usize,
+    options: RecordOptions,
+    /// Transformation of the last row to W, where it was integrated about a local reference.
     shift: Option<Shift>,
-    /// Numbers per row of each column.
+    /// How many numbers each column has per row.
     widths: Vec<usize>,
 }
 
 impl Recorder {
     pub(super) fn new(
         rows: usize,
-        model: &Model,
-        extras: Extras,
+        (number, model): (usize, &Model),
+        options: RecordOptions,
         controls: &[Control],
         has_every_step: bool,
     ) -> Result<Self, SimulationError> {
-        let tracked = controls.iter().filter(|control| control.width() > 0);
+        let tracked = controls.iter().filter(|control| control.has_column && control.width() > 0);
         let column = |name: &str, width| NamedColumn { name: name.to_owned(), width, values: Vec::new() };
         let tracking: Vec<_> = tracked.map(|control| column(&control.name, control.width())).collect();
         let wrenches: Vec<_> =
-            extras.effects.iter().map(|name| column(name, 6 * model.nodes().len())).collect();
-        let bare = Trace::default();
-        let widths = bare.columns().map(|(name, _)| extras.width(&name, model));
+            options.effects.iter().map(|name| column(name, WRENCHES.row_width(model))).collect();
+        let widths = COLUMNS.iter().map(|column| options.width(column, model));
         let widths: Vec<usize> =
             widths.chain(tracking.iter().chain(&wrenches).map(|column| column.width)).collect();
         let mut trace = Trace { has_every_step, tracking, wrenches, ..Trace::default() };
@@ -98,19 +83,22 @@ impl Recorder {
             let numbers = rows.checked_mul(*width).ok_or(SimulationError::TooManyRows { rows })?;
             column.try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })?;
         }
-        Ok(Self { trace, extras, shift: None, widths })
+        Ok(Self { trace, number, options, shift: None, widths })
     }
 
-    /// Goes on after the rows of an earlier part of the run.
-    pub(super) fn go_on_from(&mut self, mut rows: Trace) -> Result<(), CheckpointError> {
+    /// Puts the rows of an earlier part of the run before those to come.
+    pub(super) fn resume(&mut self, mut rows: Trace) -> Result<(), CheckpointError> {
         let count = rows.rows();
+        if count == 0 && rows.columns().all(|(_, column)| column.is_empty()) {
+            return Ok(());
+        }
         let names = |trace: &Trace| trace.columns().map(|(name, _)| name.into_owned()).collect::<Vec<_>>();
-        let (own, given) = (names(&self.trace), names(&rows));
-        if own != given {
+        let (expected, got) = (names(&self.trace), names(&rows));
+        if expected != got {
             return Err(CheckpointError::OtherSize {
                 name: "columns",
-                got: given.len(),
-                expected: own.len(),
+                got: got.len(),
+                expected: expected.len(),
             });
         }
         for (((name, from), (_, to)), width) in
@@ -127,51 +115,53 @@ impl Recorder {
         Ok(())
     }
 
-    /// Adds a row for a state whose kinematics are in the plant; the acceleration follows with
-    /// [`Recorder::accelerated`].
-    pub(super) fn row<S: Scalar>(
+    /// Adds a row for a state whose kinematics are in `system`. [`Recorder::record_acceleration`] completes
+    /// it.
+    pub(super) fn record_state<S: Scalar>(
         &mut self,
         t: f64,
-        state: &State<S>,
-        plant: &Plant<'_, S, Surroundings>,
+        state: &SystemState<S>,
+        system: &System<'_, S>,
         orbit: Option<OrbitState>,
         desired: Option<(TaskSample<f64>, bool)>,
     ) {
         S::enter(
             #[inline(always)]
-            || self.row_kernel(t, state, plant, orbit, desired),
+            || self.record_state_kernel(t, state, system, orbit, desired),
         );
     }
 
-    /// Adds the tracking errors of several controls to the row.
-    pub(super) fn tracked<S: Scalar>(&mut self, stack: &Stack<'_, S>) {
-        let tracked = (0..stack.controls().len()).filter(|&i| stack.controls()[i].width() > 0);
-        for (column, control) in self.trace.tracking.iter_mut().zip(tracked) {
-            column.values.extend_from_slice(stack.error(control));
+    /// Adds the tracking errors of the controls to the last row.
+    pub(super) fn record_tracking<S: Scalar>(&mut self, set: &ControllerSet<'_, S>) {
+        let controls = set.controls().iter().enumerate();
+        let tracked = controls.filter(|(_, control)| control.has_column && control.width() > 0);
+        for (column, (i, _)) in self.trace.tracking.iter_mut().zip(tracked) {
+            column.values.extend_from_slice(set.error(i));
         }
     }
 
-    /// Adds the wrench of every effect on every body to the row, and puts the row in W.
-    pub(super) fn felt<S: Scalar>(
+    /// Adds the wrench of every effect on every body to the last row, and transforms the row to W.
+    pub(super) fn record_wrenches(
         &mut self,
-        plant: &mut Plant<'_, S, Surroundings>,
+        model: &Model,
+        loads: &mut EnvironmentLoads,
         t: f64,
     ) -> Result<(), SimulationError> {
-        let (model, surroundings) = (plant.model, &mut plant.surroundings);
-        self.shift = surroundings.shift(t, model.mass())?;
+        self.shift = loads.shift(t, model.mass())?;
         let trace = &mut self.trace;
-        if self.extras.is_carried {
-            let residual = surroundings.residual(t)?;
+        if self.options.records_residual {
+            let residual = loads.reference_residual(t)?;
             trace.reference_residual.extend(residual.iter().flat_map(|residual| residual.iter()));
         }
         if let Some(shift) = &self.shift {
-            shift.row(trace, model);
+            shift.transform_row(trace, model);
         }
-        let gravity = trace.wrenches.len().wrapping_sub(1); // the last of the effects
+        let gravity = trace.wrenches.len().wrapping_sub(1); // the effect in the last place
         for (effect, column) in trace.wrenches.iter_mut().enumerate() {
             let shift = self.shift.as_ref().filter(|_| effect == gravity);
-            for (wrench, node) in surroundings.wrenches_of(effect, t)?.iter().zip(model.nodes()) {
-                let force = wrench.force + shift.map_or_else(Vector3::zeros, |shift| shift.pull(node.mass));
+            for (wrench, node) in loads.wrenches_of(effect, t)?.of_system(self.number).zip(model.nodes()) {
+                let force =
+                    wrench.force + shift.map_or_else(Vector3::zeros, |shift| shift.inertial_force(node.mass));
                 column.values.extend(force.iter().chain(wrench.torque.iter()));
             }
         }
@@ -179,24 +169,24 @@ impl Recorder {
     }
 
     #[inline(always)]
-    fn row_kernel<S: Scalar>(
+    fn record_state_kernel<S: Scalar>(
         &mut self,
         t: f64,
-        state: &State<S>,
-        plant: &Plant<'_, S, Surroundings>,
+        state: &SystemState<S>,
+        system: &System<'_, S>,
         orbit: Option<OrbitState>,
         desired: Option<(TaskSample<f64>, bool)>,
     ) {
-        let (trace, data, q, v) = (&mut self.trace, &plant.data, &state.q, &state.v);
+        let (trace, data, q, v) = (&mut self.trace, &system.data, &state.q, &state.v);
         trace.time.push(t);
         push(&mut trace.q, q);
         push(&mut trace.v, v);
-        let joints = 0..plant.model.joint_count();
-        trace.tau.extend(joints.clone().map(|j| plant.torque(j).value()));
-        if self.extras.compensates_friction {
-            trace.friction_compensation.extend(joints.map(|j| plant.compensation(j)));
+        let joints = 0..system.model.joint_count();
+        trace.tau.extend(joints.clone().map(|j| system.torque(j).value()));
+        if self.options.compensates_friction {
+            trace.friction_compensation.extend(joints.map(|j| system.compensation(j)));
         }
-        let (h, energy, com) = motion_of_whole(plant.model, data, q, v);
+        let (h, energy, com) = momentum_energy_com(system.model, data, q, v);
         push_vector(&mut trace.momentum, h.linear);
         push_vector(&mut trace.momentum, h.angular);
         push_vector(&mut trace.impulse, state.impulse.linear);
@@ -205,17 +195,17 @@ impl Recorder {
         trace.work.push(state.work.value());
         trace.dissipated.push(state.dissipated.value());
         push_vector(&mut trace.center_of_mass, com);
-        if let Some(tool) = self.extras.tool {
-            let pose = frame_pose(plant.model, data, q, tool);
+        if let Some(tool) = self.options.tool {
+            let pose = frame_pose(system.model, data, q, tool);
             push_pose(&mut trace.tool_pose, &pose.rot_wf, pose.pos_w);
-            if self.extras.has_reference {
+            if self.options.has_reference {
                 let desired = desired.map(|(desired, is_relative)| {
                     let desired = desired.lift();
-                    if is_relative { carried_by_base(q, &desired) } else { desired }
+                    if is_relative { relative_to_base(q, &desired) } else { desired }
                 });
-                // a tool that nothing leads for a while is where it should be
-                let here = || TaskSample::at_rest(pose.rot_wf, pose.pos_w);
-                push_tracking(trace, &desired.unwrap_or_else(here), &pose);
+                // without an active reference the desired pose is the actual one
+                let actual = || TaskSample::at_rest(pose.rot_wf, pose.pos_w);
+                push_tracking(trace, &desired.unwrap_or_else(actual), &pose);
             }
         }
         if let Some(orbit) = orbit {
@@ -223,34 +213,35 @@ impl Recorder {
             let velocity = orbit.velocity + (base_rotation(q) * Vec3::from_slice(v)).to_nalgebra();
             trace.position_eci.extend_from_slice(origin.as_slice());
             trace.velocity_eci.extend_from_slice(velocity.as_slice());
+            trace.reference_position_eci.extend_from_slice(orbit.position.as_slice());
+            trace.reference_velocity_eci.extend_from_slice(orbit.velocity.as_slice());
         }
     }
 
-    /// Takes a row back that is not complete.
-    pub(super) fn drop_last(&mut self) {
-        let rows = self.trace.rows().saturating_sub(1);
+    /// Removes the last row, which is not complete.
+    pub(super) fn drop_last_row(&mut self) {
+        self.truncate(self.trace.rows().saturating_sub(1));
+    }
+
+    /// Removes the rows after the first `rows`.
+    pub(super) fn truncate(&mut self, rows: usize) {
         for ((_, column), width) in self.trace.columns_mut().zip(&self.widths) {
             column.truncate(rows * width);
         }
     }
 
-    /// Takes all rows back.
-    pub(super) fn clear(&mut self) {
-        self.trace.columns_mut().for_each(|(_, column)| column.clear());
-    }
-
     /// Completes the last row.
-    pub(super) fn accelerated<S: Scalar>(&mut self, model: &Model, a: &[S]) {
+    pub(super) fn record_acceleration<S: Scalar>(&mut self, model: &Model, a: &[S]) {
         push(&mut self.trace.acceleration, a);
         if let Some(shift) = &self.shift {
-            shift.acceleration(&mut self.trace, model);
+            shift.transform_acceleration(&mut self.trace, model);
         }
     }
 }
 
-/// The pose of a sample relative to the base, in W.
+/// Returns the pose in W of a sample that is relative to the base.
 #[inline(always)]
-fn carried_by_base<S: Scalar>(q: &[S], relative: &TaskSample<S>) -> TaskSample<S> {
+fn relative_to_base<S: Scalar>(q: &[S], relative: &TaskSample<S>) -> TaskSample<S> {
     let rot_wb = base_rotation(q);
     TaskSample::at_rest(rot_wb * relative.rot_wd, rot_wb * relative.pos_w + Vec3::from_slice(q))
 }

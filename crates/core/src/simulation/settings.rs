@@ -1,70 +1,69 @@
-//! What a run is made of.
+//! Settings of a simulation.
 
 use super::engine::Engine;
 use super::integrator::Integrator;
-use crate::control::ControlLaw;
+use crate::control::Control;
 use crate::earth::Earth;
-use crate::environment::{Effect, ReferenceMotion};
+use crate::environment::{Effect, GravityMode};
 use crate::gravity::Gravity;
 use crate::model::Model;
 use crate::orbit::Orbit;
 use crate::reference::TaskReference;
 use std::sync::Arc;
 
-/// A robot, where it starts, what acts on it and how time is cut.
+/// Simulation of one robot: model, initial state, environment, controls and integrator.
 ///
-/// An orbit brings gravity: the differential pull on every body is always on around a planet.
+/// An orbit around a planet adds differential gravity on every body.
 pub struct Simulation {
     /// The robot.
     pub model: Arc<Model>,
-    /// Configuration at the start, `(nq,)`.
+    /// Initial configuration, `(nq,)`.
     pub q: Vec<f64>,
-    /// Velocity at the start, `(nv,)`.
+    /// Initial velocity, `(nv,)`.
     pub v: Vec<f64>,
-    /// Reference orbit; W's origin rides on it.
+    /// Reference orbit, on which the origin of W moves.
     pub orbit: Option<Arc<dyn Orbit>>,
-    /// Gravity on robot and reference; the orbit's point mass if none.
+    /// Gravity field for robot and reference; default: that of the orbit, else a point mass.
     pub gravity: Option<Arc<Gravity>>,
-    /// How the Earth turns; effects that need to know refuse to act if none.
+    /// Orientation of the Earth; effects that depend on it require it.
     pub earth: Option<Arc<Earth>>,
-    /// Whether the robot falls away from a reference that does not fall freely, or is carried along.
-    pub reference_motion: ReferenceMotion,
-    /// Effects beside gravity.
+    /// Whether the robot moves away from a reference that is not in free fall, or along with it.
+    pub gravity_mode: GravityMode,
+    /// Effects in addition to gravity.
     pub effects: Vec<Arc<dyn Effect>>,
-    /// What drives the joints.
-    pub control: ControlLaw,
-    /// Index of the frame to record, and to compare with the reference.
+    /// Controls of the joints; joints without an active control move freely.
+    pub controls: Vec<Control>,
+    /// Index of the frame that is recorded and compared with the reference.
     pub tool: Option<usize>,
-    /// What the tool should do.
+    /// Reference of the tool that is recorded if no control tracks the tool.
     pub reference: Option<TaskReference>,
-    /// How far from the tool the reference may start: m, rad.
+    /// Largest distance and angle between the tool and the start of its reference, m and rad.
     pub reference_start_tolerance: [f64; 2],
-    /// Step, s.
+    /// Length of fixed steps and spacing of the grid, s.
     pub time_step: f64,
-    /// Time between two calls of the controller, s; every step if none.
+    /// Time between two updates of the controllers, s; default: every step.
     pub control_period: Option<f64>,
-    /// Another engine that moves the robot in the place of our own equations; it has its own integrator, friction and
-    /// stops, and stays about the reference of the run.
+    /// External engine in place of the native equations of motion. It has its own integrator, friction and stops, and
+    /// no local reference.
     pub engine: Option<Box<dyn Engine>>,
-    /// How to step.
+    /// Integrator of the native equations of motion.
     pub integrator: Integrator,
-    /// Error that a step of the adaptive integrator may make, as a share: of a radian in attitude and
-    /// joints, of the robot's size (or distance from W's origin) in lengths, of themselves in rates.
+    /// Permitted error of a step of the adaptive integrator, relative to one radian (attitude and joints), to the
+    /// robot's size or distance from the origin of W (lengths), and to the rates.
     pub tolerance: f64,
-    /// Keeps the joints within their position limits by rigid stops, which give back this share of the
-    /// rate; joints pass them if none.
+    /// Coefficient of restitution of rigid stops at the position limits of joints; `None` for no stops.
     pub stops: Option<f64>,
-    /// How far the base may drift from the reference before it gets one of its own, m: where gravity pulls, nothing
-    /// carries the robot and no control looks at W.
+    /// Distance of the base from the reference orbit, m, beyond which integration continues about a local reference in
+    /// free fall; not in `Carried` mode, without gravity, or if a control depends on the position in W.
     pub rereference_beyond: f64,
-    /// Whether rows hold the wrench of every effect on every body.
+    /// Whether the wrench of every effect on every body is recorded.
     pub record_wrenches: bool,
-    /// Every how many steps a row is recorded.
+    /// Number of steps per recorded row.
     pub record_every: usize,
 }
 
 impl Simulation {
-    /// A robot alone in W, no control, RK4 with a step of 1 ms, every step recorded.
+    /// Returns a simulation without environment and controls: RK4 with steps of 1 ms, each of which is recorded.
     pub fn new(model: Arc<Model>, q: Vec<f64>, v: Vec<f64>) -> Self {
         Self {
             model,
@@ -73,9 +72,9 @@ impl Simulation {
             orbit: None,
             gravity: None,
             earth: None,
-            reference_motion: ReferenceMotion::True,
+            gravity_mode: GravityMode::True,
             effects: Vec::new(),
-            control: ControlLaw::None,
+            controls: Vec::new(),
             tool: None,
             reference: None,
             reference_start_tolerance: [0.05, 0.1],

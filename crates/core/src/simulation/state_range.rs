@@ -1,25 +1,27 @@
-//! How far and how fast a robot may be at the start of a run.
+//! Range of the initial state.
 
 use super::error::SimulationError;
-use crate::model::{Axis, Model};
+use crate::model::{Axis, BASE_NV, Model, QUATERNION};
 
+/// Largest deviation of a given quaternion from unit norm.
+pub(super) const UNIT_NORM: f64 = 1e-6;
 /// Largest distance from the reference, m, a tenth of a light year, and largest angle of a joint, rad.
 const FARTHEST: f64 = 1e15;
-/// The speed of light, m/s: mechanics here is Newton's.
+/// Speed of light, m/s; the mechanics is Newtonian.
 const LIGHT: f64 = 299_792_458.0;
-/// Largest angular velocity and joint rate, rad/s: squares of those of absurd inputs overflow.
+/// Largest angular velocity and joint rate, rad/s; squares of larger ones may overflow.
 const FASTEST: f64 = 1e9;
 
-/// Refuses positions and rates that no robot has, whose products would overflow in the first step.
+/// Rejects positions and rates whose products would overflow in the first step.
 pub(super) fn check_range(model: &Model, q: &[f64], v: &[f64]) -> Result<(), SimulationError> {
     let slides = |index: usize| match index {
         0..3 => true,
-        3..6 => false,
-        _ => matches!(model.nodes()[index - 5].axis, Axis::Prismatic), // the base is the first of the nodes
+        3..BASE_NV => false,
+        joint => matches!(model.nodes()[joint - BASE_NV + 1].axis, Axis::Prismatic),
     };
     let what = |index: usize, quantity: &str| match index {
-        0..6 => format!("{quantity} of the base along {}", ["x", "y", "z"][index % 3]),
-        joint => format!("joint '{}'", model.joints()[joint - 6].name),
+        0..BASE_NV => format!("{quantity} of the base along {}", ["x", "y", "z"][index % 3]),
+        joint => format!("joint '{}'", model.joints()[joint - BASE_NV].name),
     };
     for (index, &value) in v.iter().enumerate() {
         let (unit, limit) = if slides(index) { ("m/s", LIGHT) } else { ("rad/s", FASTEST) };
@@ -29,7 +31,7 @@ pub(super) fn check_range(model: &Model, q: &[f64], v: &[f64]) -> Result<(), Sim
         }
     }
     // behind the quaternion, q[7] is the joint of v[6]
-    for (index, &value) in q.iter().enumerate().filter(|(index, _)| !(3..7).contains(index)) {
+    for (index, &value) in q.iter().enumerate().filter(|(index, _)| !QUATERNION.contains(index)) {
         if value.abs() >= FARTHEST {
             let same = if index < 3 { index } else { index - 1 };
             let (what, unit) = (what(same, "position"), if slides(same) { "m" } else { "rad" });
@@ -37,4 +39,9 @@ pub(super) fn check_range(model: &Model, q: &[f64], v: &[f64]) -> Result<(), Sim
         }
     }
     Ok(())
+}
+
+/// Returns the norm of the quaternion of a configuration.
+pub(super) fn attitude_norm(q: &[f64]) -> f64 {
+    q[QUATERNION].iter().map(|x| x * x).sum::<f64>().sqrt()
 }

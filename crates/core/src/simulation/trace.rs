@@ -1,101 +1,66 @@
-//! What a run leaves behind.
+//! The trace of a run.
 
 use super::certificate::PairChecks;
+use super::columns::{Column, TRACKING, WRENCHES};
 use crate::control::Outcome;
-use crate::model::Model;
+use crate::model::{BASE_NQ, Model};
 use std::borrow::Cow;
 
-/// Columns of a run, one row per recorded step, row major; the first row is the initial state, the
-/// last the end. W axes unless said; empty columns are those the run did not have.
-#[derive(Clone, Debug, Default)]
-pub struct Trace {
-    /// Time, s, `(T,)`.
-    pub time: Vec<f64>,
-    /// Configuration, `(T, nq)`.
-    pub q: Vec<f64>,
-    /// Velocity, `(T, nv)`.
-    pub v: Vec<f64>,
-    /// Joint torque held from this row's time to the next step, N m, `(T, n)`.
-    pub tau: Vec<f64>,
-    /// Share of `tau` that compensates Coulomb friction, N m, `(T, n)`; only where a law compensates it
-    /// and our own equations of motion move the robot.
-    pub friction_compensation: Vec<f64>,
-    /// Acceleration just after this row's time, `(T, nv)`.
-    pub acceleration: Vec<f64>,
-    /// Linear momentum and angular momentum about the system's centre of mass, `(T, 6)`.
-    pub momentum: Vec<f64>,
-    /// Integral of the external forces and of their moments about the centre of mass, `(T, 6)`.
-    pub impulse: Vec<f64>,
-    /// Kinetic energy in W, J, `(T,)`.
-    pub kinetic_energy: Vec<f64>,
-    /// Work on the robot in W, J, `(T,)`: of motors and external wrenches, less `dissipated`.
-    pub work: Vec<f64>,
-    /// Energy that damping, friction and stops of the joints took, J, `(T,)`.
-    pub dissipated: Vec<f64>,
-    /// Centre of mass in W, m, `(T, 3)`.
-    pub center_of_mass: Vec<f64>,
-    /// Pose of the tool in W, `(T, 4, 4)`; only with a tool.
-    pub tool_pose: Vec<f64>,
-    /// Desired pose of the tool in W, `(T, 4, 4)`; only with a reference.
-    pub reference_pose: Vec<f64>,
-    /// Desired less actual position, m, `(T, 3)`; only with a reference.
-    pub position_error: Vec<f64>,
-    /// Rotation vector from actual to desired attitude, rad, `(T, 3)`; only with a reference.
-    pub attitude_error: Vec<f64>,
-    /// Position of the base's origin from the planet's centre, axes of I, m, `(T, 3)`; only with an orbit.
-    pub position_eci: Vec<f64>,
-    /// Its velocity, m/s, `(T, 3)`; only with an orbit.
-    pub velocity_eci: Vec<f64>,
-    /// Gravity that the reference does not follow and that was left out, `g - r̈_ref`, axes of I, m/s²,
-    /// `(T, 3)`; only around a planet with the robot carried along.
-    pub reference_residual: Vec<f64>,
-    /// Tracking errors of several controls, each on its own: desired less actual, of a task 6 numbers (m and rad, in the
-    /// axes of W, or of B where its reference is relative to the base), else one per joint of the group; zeros while the
-    /// control does not run.
-    pub tracking: Vec<NamedColumn>,
-    /// Wrench of every effect on every body: force, N, and torque about the body's centre of mass, N m, `(T, bodies, 6)`;
-    /// only on request.
-    pub wrenches: Vec<NamedColumn>,
-    /// What came of the goals of several controls.
-    pub results: Vec<GoalResult>,
-    /// When the robot had drifted so far that it was given a reference of its own to be integrated about, s, `(K,)`;
-    /// its rows stay in W.
-    pub rereferenced: Vec<f64>,
-    /// Sum of the work of every step, whatever its sign, J: what rows far apart would miss.
-    pub work_done: f64,
-    /// Sum of what steps and halved steps differ by in attitude, rad (of an embedded pair: its two
-    /// solutions): an estimate of its error at the end, but for what the motion amplifies.
-    pub attitude_step_doubling: Option<f64>,
-    /// Sums of what steps and halved steps differ by, of the base's origin, then of each joint; empty where an
-    /// integrator adapts its steps, and of another engine.
-    pub step_doubling: Vec<CoordinateDrift>,
-    /// Checks that need every step, where rows are sparse: evaluated during the run.
-    pub pair_checks: Option<PairChecks>,
-    /// Whether every step of the run is a row.
-    pub has_every_step: bool,
-}
+/// Declares the trace with a field for each row of the table of columns.
+macro_rules! define_trace {
+    ($($name:ident ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident, $parts:ident,
+        $meaning:literal;)+) => {
+        /// Result of a run: one row per recorded step, row major; the first row is the initial state, the
+        /// last the end. Columns that do not apply to the run are empty.
+        #[derive(Clone, Debug, Default)]
+        pub struct Trace {
+            $(
+                #[doc = concat!($meaning, " Shape ", stringify!(($($axis),+)), ", unit ", $unit, ".")]
+                pub $name: Vec<f64>,
+            )+
+            /// Tracking errors of several controls, one column each; see [`TRACKING`].
+            pub tracking: Vec<NamedColumn>,
+            /// Wrenches of the effects on every body, one column each; see [`WRENCHES`].
+            pub wrenches: Vec<NamedColumn>,
+            /// Outcomes of the goals of several controls.
+            pub results: Vec<GoalResult>,
+            /// See [`REREFERENCED`](super::columns::REREFERENCED).
+            pub rereferenced: Vec<f64>,
+            /// Sum over all steps of the magnitude of the work of each, J. Sparse rows would miss work that
+            /// changes sign.
+            pub work_done: f64,
+            /// Accumulated attitude difference between steps and halved steps, rad (of an embedded pair:
+            /// between its two solutions): an estimate of the error at the end, apart from amplification by
+            /// the motion.
+            pub attitude_step_doubling: Option<f64>,
+            /// Accumulated differences between steps and halved steps, of the base's origin, then of each
+            /// joint; empty for an integrator that adapts its steps and for an external engine.
+            pub step_doubling: Vec<CoordinateDrift>,
+            /// Checks that need every step, evaluated during the run where rows are sparse.
+            pub pair_checks: Option<PairChecks>,
+            /// Whether every step of the run is a row.
+            pub has_every_step: bool,
+        }
 
-macro_rules! columns {
-    ($($name:ident),* $(,)?) => {
         impl Trace {
-            /// Every column with its name, empty ones too, then `tracking_<name>` of every control and
-            /// `wrench_<name>` of every effect; row major.
+            /// Returns every column with its path, including empty ones, then those of every control and
+            /// every effect.
             pub fn columns(&self) -> impl Iterator<Item = (Cow<'static, str>, &Vec<f64>)> {
-                let tracking = self.tracking.iter().map(|column| (column.named("tracking"), &column.values));
-                let wrenches = self.wrenches.iter().map(|column| (column.named("wrench"), &column.values));
-                [$((Cow::Borrowed(stringify!($name)), &self.$name)),*]
+                let tracking = self.tracking.iter().map(|column| (column.path(&TRACKING), &column.values));
+                let wrenches = self.wrenches.iter().map(|column| (column.path(&WRENCHES), &column.values));
+                [$((Cow::Borrowed(stringify!($name)), &self.$name)),+]
                     .into_iter()
                     .chain(tracking)
                     .chain(wrenches)
             }
 
-            /// As [`Trace::columns`], to fill.
+            /// Returns the same as [`Trace::columns`], mutable.
             pub fn columns_mut(&mut self) -> impl Iterator<Item = (Cow<'static, str>, &mut Vec<f64>)> {
                 let tracking =
-                    self.tracking.iter_mut().map(|column| (column.named("tracking"), &mut column.values));
+                    self.tracking.iter_mut().map(|column| (column.path(&TRACKING), &mut column.values));
                 let wrenches =
-                    self.wrenches.iter_mut().map(|column| (column.named("wrench"), &mut column.values));
-                [$((Cow::Borrowed(stringify!($name)), &mut self.$name)),*]
+                    self.wrenches.iter_mut().map(|column| (column.path(&WRENCHES), &mut column.values));
+                [$((Cow::Borrowed(stringify!($name)), &mut self.$name)),+]
                     .into_iter()
                     .chain(tracking)
                     .chain(wrenches)
@@ -104,32 +69,12 @@ macro_rules! columns {
     };
 }
 
-columns!(
-    time,
-    q,
-    v,
-    tau,
-    friction_compensation,
-    acceleration,
-    momentum,
-    impulse,
-    kinetic_energy,
-    work,
-    dissipated,
-    center_of_mass,
-    tool_pose,
-    reference_pose,
-    position_error,
-    attitude_error,
-    position_eci,
-    velocity_eci,
-    reference_residual,
-);
+crate::trace_columns!(define_trace);
 
-/// A column that belongs to a control or to an effect.
+/// Column of one control or of one effect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NamedColumn {
-    /// Whose it is.
+    /// Name of the control or of the effect.
     pub name: String,
     /// Numbers per row.
     pub width: usize,
@@ -138,47 +83,50 @@ pub struct NamedColumn {
 }
 
 impl NamedColumn {
-    /// Name among all columns.
-    fn named(&self, kind: &str) -> Cow<'static, str> {
-        Cow::Owned(format!("{kind}_{}", self.name))
+    /// Returns its path among all columns.
+    fn path(&self, column: &Column) -> Cow<'static, str> {
+        Cow::Owned(column.path_of(&self.name))
     }
 }
 
-/// What the steps of a coordinate and halved steps differ by, summed over a run; m, or rad of a joint that turns.
+/// Difference between steps and halved steps of a coordinate, summed over a run; m, or rad of a revolute
+/// joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CoordinateDrift {
     /// Of its position.
     pub position: f64,
     /// Of its rate (of the base's origin: of the centre of mass).
     pub rate: f64,
-    /// Largest rate of it that was seen.
+    /// Largest magnitude of its rate.
     pub fastest: f64,
-    /// `Σ (h |Δq̈|/6)^(5/4)` with the jump of a joint's acceleration from the end of a step of `h` to the next step.
+    /// `Σ (h |Δq̈|/6)^(5/4)`, with the jump `Δq̈` of a joint's acceleration from the end of a step of length
+    /// `h` to the start of the next.
     pub jumps: f64,
 }
 
-/// What came of a goal.
+/// Outcome of a goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoalResult {
     /// The control's name.
     pub name: String,
     /// The outcome.
     pub outcome: Outcome,
-    /// Whose error was too large: a joint, `position` or `attitude`.
+    /// The component whose error was too large: a joint, `position` or `attitude`.
     pub component: Option<String>,
 }
 
 impl Trace {
-    /// Number of rows, `T`.
+    /// Returns the number of rows, `T`.
     pub fn rows(&self) -> usize {
         self.time.len()
     }
 
-    /// Names of the joints that some row sees more than rounding past their position limits.
+    /// Returns the names of the joints that are beyond their position limits by more than rounding in some
+    /// row.
     pub fn limits_exceeded<'m>(&self, model: &'m Model) -> Vec<&'m str> {
         const ROUNDING: f64 = 1e-9;
         let is_past = |j: usize, (lower, upper): (f64, f64)| {
-            let mut values = self.q.chunks_exact(model.nq()).map(|q| q[7 + j]);
+            let mut values = self.q.chunks_exact(model.nq()).map(|q| q[BASE_NQ + j]);
             values.any(|q| q < lower - ROUNDING || q > upper + ROUNDING)
         };
         let joints = model.joints().iter().enumerate();
@@ -188,7 +136,7 @@ impl Trace {
             .collect()
     }
 
-    /// Row `k` of a column with `width` numbers per row.
+    /// Returns row `k` of a column with `width` numbers per row.
     pub(super) fn row(column: &[f64], k: usize, width: usize) -> &[f64] {
         &column[k * width..(k + 1) * width]
     }

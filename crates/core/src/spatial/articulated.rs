@@ -1,4 +1,4 @@
-//! Articulated-body inertia: what a body feels like with its subtree hanging on it.
+//! Articulated-body inertia: the inertia of a body together with its subtree.
 
 use super::inertia::SpatialInertia;
 use super::mat3::Mat3;
@@ -8,7 +8,8 @@ use super::sym3::Sym3;
 use super::vec3::Vec3;
 use std::ops::Add;
 
-/// A symmetric 6 × 6 operator `[[A, H], [Hᵀ, I]]`, linear first: twenty-one numbers.
+/// Articulated-body inertia: a symmetric 6 × 6 operator `[[A, H], [Hᵀ, I]]`, linear first: twenty-one
+/// numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ArticulatedInertia<S> {
     /// Linear block, kg.
@@ -20,14 +21,14 @@ pub struct ArticulatedInertia<S> {
 }
 
 impl<S: Real> ArticulatedInertia<S> {
-    /// No inertia.
+    /// Returns the zero operator.
     #[inline(always)]
     pub fn zero() -> Self {
         let o = Sym3::diagonal(S::of(0.0));
         Self { linear: o, coupling: Mat3::zero(), angular: o }
     }
 
-    /// Adds that of a rigid body: `A = m 1`, `H = −h×`.
+    /// Adds the inertia of a rigid body: `A = m 1`, `H = −h×`.
     #[inline(always)]
     pub fn add_rigid(&mut self, i: &SpatialInertia<S>) {
         let (a, c, h) = (&mut self.linear, &mut self.coupling, i.moment);
@@ -38,7 +39,7 @@ impl<S: Real> ArticulatedInertia<S> {
         self.angular += i.about_origin;
     }
 
-    /// `IA a`.
+    /// Returns `IA a`.
     #[inline(always)]
     pub fn apply(&self, a: Motion<S>) -> Force<S> {
         Force::new(
@@ -47,7 +48,7 @@ impl<S: Real> ArticulatedInertia<S> {
         )
     }
 
-    /// An operator about the point `r`, about the origin instead.
+    /// Returns the operator shifted from the point `r` to the origin.
     ///
     /// `H' = H − A r×` and, with `Z = H + H'`, `I' = I + ½ (r× Z + (r× Z)ᵀ)`.
     #[inline(always)]
@@ -75,7 +76,7 @@ impl<S: Real> ArticulatedInertia<S> {
         Self { linear: *a, coupling, angular }
     }
 
-    /// `IA + U Wᵀ`, of which `W` must be a multiple of `U`.
+    /// Returns `IA + U Wᵀ`, where `W` is a multiple of `U`.
     #[inline(always)]
     #[must_use]
     pub fn add_parallel(&self, u: Force<S>, w: Force<S>) -> Self {
@@ -86,7 +87,7 @@ impl<S: Real> ArticulatedInertia<S> {
         }
     }
 
-    /// Prepares `IA⁻¹` by block elimination: `A⁻¹`, `A⁻¹ H`, `(I − Hᵀ A⁻¹ H)⁻¹`.
+    /// Computes the factors of `IA⁻¹` by block elimination: `A⁻¹`, `A⁻¹ H`, `(I − Hᵀ A⁻¹ H)⁻¹`.
     #[inline(always)]
     pub fn inverse(&self) -> InverseArticulated<S> {
         let a = self.linear.inverse();
@@ -100,33 +101,33 @@ impl<S: Real> ArticulatedInertia<S> {
             self.angular.xz - h.x.dot(z),
             self.angular.yz - h.y.dot(z),
         );
-        InverseArticulated { linear: a, carried: Mat3::from_columns(x, y, z), angular: schur.inverse() }
+        InverseArticulated { linear: a, a_inv_h: Mat3::from_columns(x, y, z), angular: schur.inverse() }
     }
 
-    /// `IA⁻¹ f`.
+    /// Returns `IA⁻¹ f`.
     #[inline(always)]
     pub fn solve(&self, f: Force<S>) -> Motion<S> {
         self.inverse().apply(f)
     }
 }
 
-/// `IA⁻¹` prepared once for many right-hand sides.
+/// Factors of `IA⁻¹` for several right-hand sides.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InverseArticulated<S> {
     /// `A⁻¹`.
     linear: Sym3<S>,
     /// `A⁻¹ H`.
-    carried: Mat3<S>,
+    a_inv_h: Mat3<S>,
     /// `(I − Hᵀ A⁻¹ H)⁻¹`.
     angular: Sym3<S>,
 }
 
 impl<S: Real> InverseArticulated<S> {
-    /// `IA⁻¹ f`: `ω = (I − Hᵀ A⁻¹ H)⁻¹ (n − (A⁻¹ H)ᵀ f)`, `v = A⁻¹ f − A⁻¹ H ω`.
+    /// Returns `IA⁻¹ f`: `ω = (I − Hᵀ A⁻¹ H)⁻¹ (n − (A⁻¹ H)ᵀ f)`, `v = A⁻¹ f − A⁻¹ H ω`.
     #[inline(always)]
     pub fn apply(&self, f: Force<S>) -> Motion<S> {
-        let angular = self.angular * (f.angular - self.carried.transpose_mul(f.linear));
-        Motion::new(self.linear * f.linear - self.carried * angular, angular)
+        let angular = self.angular * (f.angular - self.a_inv_h.transpose_mul(f.linear));
+        Motion::new(self.linear * f.linear - self.a_inv_h * angular, angular)
     }
 }
 

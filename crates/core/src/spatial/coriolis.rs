@@ -1,4 +1,4 @@
-//! How a body's force changes when a motion is added under it.
+//! Derivative of the bias force of a body by the motion of its parent.
 
 use super::inertia::SpatialInertia;
 use super::mat3::Mat3;
@@ -7,10 +7,10 @@ use super::scalar::Real;
 use super::vec3::Vec3;
 use std::ops::AddAssign;
 
-/// `2B = v×* I − I v× + (I v) ×̄*` of a body or of several that move along, `f ×̄* m = m ×* f`.
+/// Coriolis operator `2B = v×* I − I v× + (I v) ×̄*` of one or several bodies, where `f ×̄* m = m ×* f`.
 ///
-/// Twice the Coriolis force of every point of the body: with `p = ∫ ṙ dm` and `N = ∫ ṙ rᵀ dm`,
-/// `2B m = (2 ω × p, 2 (tr N ω − N ω))`. Only the angular half `ω` of `m` counts.
+/// This is twice the Coriolis force of all points of the body: with `p = ∫ ṙ dm` and `N = ∫ ṙ rᵀ dm`, `2B m =
+/// (2 ω × p, 2 (tr N ω − N ω))`. It depends only on the angular half `ω` of `m`.
 ///
 /// Source: Singh, Russell and Wensing, IEEE Robotics and Automation Letters 7(2), 2022.
 #[derive(Clone, Copy, Debug, Default)]
@@ -22,11 +22,11 @@ pub struct Coriolis<S> {
 }
 
 impl<S: Real> Coriolis<S> {
-    /// That of a body with its inertia, its twist `v = (u, ω)` and its momentum `I v`.
+    /// Returns the operator of a body with its inertia, its twist `v = (u, ω)` and its momentum `I v`.
     #[inline(always)]
     pub fn of(i: &SpatialInertia<S>, v: Motion<S>, momentum: Force<S>) -> Self {
         let (j, w, two) = (&i.about_origin, v.angular, S::of(2.0));
-        // ∫ r rᵀ dm = ½ tr(J) 1 − J, by columns and doubled
+        // ∫ r rᵀ dm = ½ tr(J) 1 − J, doubled, by columns
         let trace = j.xx + j.yy + j.zz;
         let x = Vec3::new(trace - two * j.xx, -(two * j.xy), -(two * j.xz));
         let y = Vec3::new(-(two * j.xy), trace - two * j.yy, -(two * j.yz));
@@ -45,7 +45,7 @@ impl<S: Real> Coriolis<S> {
         }
     }
 
-    /// An operator about the point `r`, about the origin instead: `N' = N + p rᵀ`.
+    /// Returns the operator shifted from the point `r` to the origin: `N' = N + p rᵀ`.
     #[inline(always)]
     #[must_use]
     pub fn from_point(&self, r: Vec3<S>) -> Self {
@@ -59,13 +59,13 @@ impl<S: Real> Coriolis<S> {
         Self { momentum: p, moment }
     }
 
-    /// `2B m` for the angular half `ω` of `m`.
+    /// Returns `2B m` for the angular half `ω` of `m`.
     #[inline(always)]
     pub fn apply(&self, omega: Vec3<S>) -> Force<S> {
         Force::new(omega.cross(self.momentum), self.moment * omega)
     }
 
-    /// Angular half of `2Bᵀ m`; the linear one is zero.
+    /// Returns the angular half of `2Bᵀ m`; the linear half is zero.
     #[inline(always)]
     pub fn transpose_apply(&self, m: Motion<S>) -> Vec3<S> {
         self.momentum.cross(m.linear) + self.moment.transpose_mul(m.angular)

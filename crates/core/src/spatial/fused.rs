@@ -1,35 +1,30 @@
-//! One number whose multiply-adds are fused: the scalar of processors with AVX2 and FMA.
+//! Scalar with fused multiply-add, for processors with AVX2 and FMA.
 
+use super::cpu_features::has_fma;
 use super::lanes::Lanes4;
-use super::scalar::{FAST_SINE_LIMIT, Real, Scalar};
+use super::scalar::{Real, Scalar};
+use super::sine::{FAST_SINE_LIMIT, sin_cos};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// An `f64` whose [`mul_add`](Real::mul_add) is one instruction.
+/// Scalar `f64` whose [`mul_add`](Real::mul_add) is one instruction.
 ///
-/// Compute with it inside [`Real::enter`] on a processor for which [`Fused::is_available`] holds: elsewhere it is right
-/// but slow, and `enter` panics.
+/// Use it inside [`Real::enter`] on a processor for which [`Fused::is_available`] returns true. Elsewhere
+/// results are the same, but slow, and `enter` panics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[repr(transparent)]
 pub struct Fused(pub f64);
 
 impl Fused {
-    /// Whether this processor has the instructions that [`Real::enter`] uses.
+    /// Returns true if this processor has the instructions that [`Real::enter`] uses.
     #[inline(always)]
     pub fn is_available() -> bool {
-        #[cfg(target_arch = "x86_64")]
-        {
-            std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        {
-            cfg!(target_arch = "aarch64") // fused multiply-add is part of the baseline there
-        }
+        has_fma()
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn enter_avx2<R>(kernel: impl FnOnce() -> R) -> R {
+fn enter_fused<R>(kernel: impl FnOnce() -> R) -> R {
     kernel()
 }
 
@@ -102,7 +97,7 @@ impl Real for Fused {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         if self.0.abs() < FAST_SINE_LIMIT {
-            super::sine::sin_cos(self)
+            sin_cos(self)
         } else {
             let (s, c) = self.0.sin_cos();
             (Self(s), Self(c))
@@ -142,8 +137,8 @@ impl Real for Fused {
         #[cfg(target_arch = "x86_64")]
         {
             assert!(Self::is_available(), "fused kernels entered on a processor without AVX2 and FMA");
-            // SAFETY: the processor has both features, checked on the line above.
-            unsafe { enter_avx2(kernel) }
+            // SAFETY: the line above checks that the processor has both features.
+            unsafe { enter_fused(kernel) }
         }
         #[cfg(not(target_arch = "x86_64"))]
         {

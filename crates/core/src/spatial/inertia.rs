@@ -1,4 +1,4 @@
-//! Inertia of a rigid body, about its centre of mass and about any other point.
+//! Inertia of a rigid body about its centre of mass and about other points.
 
 use super::motion::{Force, Motion};
 use super::scalar::Real;
@@ -6,10 +6,10 @@ use super::sym3::Sym3;
 use super::vec3::Vec3;
 use std::ops::{Add, AddAssign};
 
-/// One rigid body: mass, centre of mass `c` and inertia `I_c` about it.
+/// Inertia of a rigid body: mass, centre of mass `c` and inertia `I_c` about it.
 ///
-/// Twist, momentum and force are referred to the origin, but the products are formed at the centre of mass: a small
-/// body keeps its digits however far the origin is.
+/// Twist, momentum and force are referred to the origin, but products are formed at the centre of mass, which
+/// avoids cancellation for small bodies far from the origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigidInertia<S> {
     /// Mass, kg.
@@ -21,19 +21,19 @@ pub struct RigidInertia<S> {
 }
 
 impl<S: Real> RigidInertia<S> {
-    /// The same inertia about the origin.
+    /// Returns the inertia about the origin.
     #[inline(always)]
     pub fn about_origin(&self) -> SpatialInertia<S> {
         SpatialInertia::at_com(self.mass, self.com, self.about_com)
     }
 
-    /// Momentum `I v`: `p = m (v + ω × c)`, `L = I_c ω + c × p`.
+    /// Returns the momentum `I v`: `p = m (v + ω × c)`, `L = I_c ω + c × p`.
     #[inline(always)]
     pub fn momentum(&self, v: Motion<S>) -> Force<S> {
         Force::at(v.at(self.com) * self.mass, self.about_com * v.angular, self.com)
     }
 
-    /// Rate of the momentum, `I a + v ×* I v`, with the spatial acceleration `a = (a, α)`:
+    /// Returns the rate of the momentum, `I a + v ×* I v`, for the spatial acceleration `a = (a, α)`:
     ///
     /// `f = m (a + α × c + ω × (v + ω × c))`, `n = I_c α + ω × I_c ω + c × f`.
     #[inline(always)]
@@ -46,7 +46,7 @@ impl<S: Real> RigidInertia<S> {
 
 /// Inertia about the origin: mass `m`, first moment `h = m c`, second moment `I_o`.
 ///
-/// As a 6 × 6 matrix, linear first: `[[m 1, −h×], [h×, I_o]]`.
+/// The 6 × 6 matrix, linear first, is `[[m 1, −h×], [h×, I_o]]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpatialInertia<S> {
     /// Mass, kg.
@@ -58,20 +58,20 @@ pub struct SpatialInertia<S> {
 }
 
 impl<S: Real> SpatialInertia<S> {
-    /// No mass.
+    /// Returns the zero inertia.
     #[inline(always)]
     pub fn zero() -> Self {
         Self { mass: S::of(0.0), moment: Vec3::zero(), about_origin: Sym3::diagonal(S::of(0.0)) }
     }
 
-    /// From the centre of mass `c` and the inertia about it.
+    /// Returns the inertia from the centre of mass `c` and the inertia about it.
     #[inline(always)]
     pub fn at_com(mass: S, c: Vec3<S>, about_com: Sym3<S>) -> Self {
         let moment = c * mass;
         Self { mass, moment, about_origin: about_com.shift(moment, c) }
     }
 
-    /// Momentum `I v`: `p = m v + ω × h`, `L = I_o ω + h × v`.
+    /// Returns the momentum `I v`: `p = m v + ω × h`, `L = I_o ω + h × v`.
     #[inline(always)]
     pub fn momentum(&self, v: Motion<S>) -> Force<S> {
         Force::new(
@@ -80,7 +80,7 @@ impl<S: Real> SpatialInertia<S> {
         )
     }
 
-    /// An inertia about the point `r`, about the origin instead: with `h' = h + m r`,
+    /// Returns the inertia shifted from the point `r` to the origin: with `h' = h + m r`,
     ///
     /// `I_o' = I_o + 2 (h · r) 1 − (h rᵀ + r hᵀ) + m (r² 1 − r rᵀ)`.
     #[inline(always)]
@@ -104,20 +104,20 @@ impl<S: Real> SpatialInertia<S> {
         Self { mass: self.mass, moment: h + mr, about_origin }
     }
 
-    /// Centre of mass, m. The mass must not be zero.
+    /// Returns the centre of mass, m. The mass must not be zero.
     #[inline(always)]
     pub fn com(&self) -> Vec3<S> {
         self.moment * (S::of(1.0) / self.mass)
     }
 
-    /// Inertia about the centre of mass, kg m².
+    /// Returns the inertia about the centre of mass, kg m².
     #[inline(always)]
     pub fn about_com(&self) -> Sym3<S> {
         self.about_origin.shift(-self.moment, self.com())
     }
 }
 
-/// `I⁻¹` prepared once for many right-hand sides.
+/// Factors of `I⁻¹` for several right-hand sides.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InverseInertia<S> {
     inverse_mass: S,
@@ -127,7 +127,7 @@ pub struct InverseInertia<S> {
 }
 
 impl<S: Real> SpatialInertia<S> {
-    /// Prepares `I⁻¹`.
+    /// Computes the factors of `I⁻¹`.
     #[inline(always)]
     pub fn inverse(&self) -> InverseInertia<S> {
         let inverse_mass = S::of(1.0) / self.mass;
@@ -138,13 +138,14 @@ impl<S: Real> SpatialInertia<S> {
 }
 
 impl<S: Real> InverseInertia<S> {
-    /// `I⁻¹ f` with both about the centre of mass, where the two halves separate: `ω = I_c⁻¹ n`, `v = f/m`.
+    /// Returns `I⁻¹ f`, both about the centre of mass, where the two halves decouple: `ω = I_c⁻¹ n`, `v =
+    /// f/m`.
     #[inline(always)]
     pub fn at_com(&self, f: Force<S>) -> Motion<S> {
         Motion::new(f.linear * self.inverse_mass, self.inverse_about_com * f.angular)
     }
 
-    /// `I⁻¹ f`: `ω = I_c⁻¹ (n − c × f)`, `v = f/m − ω × c`.
+    /// Returns `I⁻¹ f`: `ω = I_c⁻¹ (n − c × f)`, `v = f/m − ω × c`.
     #[inline(always)]
     pub fn apply(&self, f: Force<S>) -> Motion<S> {
         let angular = self.inverse_about_com * (f.angular - self.com.cross(f.linear));

@@ -1,14 +1,14 @@
-//! Which of the processor's instructions the kernels use.
+//! Instruction sets of the kernels.
 
 use super::fused::Fused;
 use super::lanes::Lanes8;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Levels of arithmetic that the kernels are compiled for.
+/// Instruction sets that the kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum InstructionSet {
-    /// What every processor of the family has.
+    /// Instructions that all processors of the family have.
     Baseline = 0,
     /// Fused multiply-add (x86-64: AVX2 and FMA).
     Fused = 1,
@@ -20,10 +20,10 @@ pub enum InstructionSet {
 static ALLOWED: AtomicU8 = AtomicU8::new(u8::MAX);
 
 impl InstructionSet {
-    /// All levels, the lowest first.
+    /// All levels, lowest first.
     pub const ALL: [Self; 3] = [Self::Baseline, Self::Fused, Self::Wide];
 
-    /// The highest level that the processor has and [`InstructionSet::limit`] allows.
+    /// Returns the highest level that the processor has and [`InstructionSet::limit`] allows.
     pub fn current() -> Self {
         let allowed = ALLOWED.load(Ordering::Relaxed);
         if allowed >= Self::Wide as u8 && Lanes8::is_available() {
@@ -35,17 +35,17 @@ impl InstructionSet {
         }
     }
 
-    /// Uses nothing above `level` from now on, in all threads.
+    /// Limits all threads to `level` from now on.
     pub fn limit(level: Self) {
         ALLOWED.store(level as u8, Ordering::Relaxed);
     }
 
-    /// The level with this [`name`](Self::name).
+    /// Returns the level with this [`name`](Self::name).
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|level| level.name() == name)
     }
 
-    /// Its name.
+    /// Returns the name of the level.
     pub fn name(self) -> &'static str {
         match self {
             Self::Baseline => "baseline",

@@ -1,11 +1,11 @@
-//! Three by three matrices, by columns.
+//! 3 × 3 matrices, stored by columns.
 
 use super::scalar::{Real, Scalar};
 use super::vec3::Vec3;
 use nalgebra::Matrix3;
 use std::ops::{Add, AddAssign, Mul};
 
-/// A 3 × 3 matrix; as `rot_ab` it takes B components to A components.
+/// 3 × 3 matrix; `rot_ab` converts B components to A components.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mat3<S> {
     /// First column.
@@ -17,7 +17,7 @@ pub struct Mat3<S> {
 }
 
 impl<S> Mat3<S> {
-    /// `f` of each entry.
+    /// Returns the matrix with `f` applied to each entry.
     #[inline(always)]
     pub fn map<T>(&self, f: impl Fn(&S) -> T) -> Mat3<T> {
         Mat3 { x: self.x.map(&f), y: self.y.map(&f), z: self.z.map(&f) }
@@ -25,32 +25,32 @@ impl<S> Mat3<S> {
 }
 
 impl<S: Real> Mat3<S> {
-    /// The matrix with these columns.
+    /// Returns the matrix with these columns.
     #[inline(always)]
     pub fn from_columns(x: Vec3<S>, y: Vec3<S>, z: Vec3<S>) -> Self {
         Self { x, y, z }
     }
 
-    /// The unit matrix.
+    /// Returns the identity matrix.
     #[inline(always)]
     pub fn identity() -> Self {
         let (o, l) = (S::of(0.0), S::of(1.0));
         Self::from_columns(Vec3::new(l, o, o), Vec3::new(o, l, o), Vec3::new(o, o, l))
     }
 
-    /// The null matrix.
+    /// Returns the zero matrix.
     #[inline(always)]
     pub fn zero() -> Self {
         Self::from_columns(Vec3::zero(), Vec3::zero(), Vec3::zero())
     }
 
-    /// A constant of the model, in every lane.
+    /// Returns a matrix with the same entries in every lane.
     #[inline(always)]
     pub fn of(m: &Mat3<f64>) -> Self {
         Self::from_columns(Vec3::of(&m.x), Vec3::of(&m.y), Vec3::of(&m.z))
     }
 
-    /// `Aᵀ`.
+    /// Returns `Aᵀ`.
     #[inline(always)]
     #[must_use]
     pub fn transpose(&self) -> Self {
@@ -61,13 +61,13 @@ impl<S: Real> Mat3<S> {
         )
     }
 
-    /// `Aᵀ v`.
+    /// Returns `Aᵀ v`.
     #[inline(always)]
     pub fn transpose_mul(&self, v: Vec3<S>) -> Vec3<S> {
         Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
     }
 
-    /// `A + u vᵀ`.
+    /// Returns `A + u vᵀ`.
     #[inline(always)]
     #[must_use]
     pub fn add_outer(&self, u: Vec3<S>, v: Vec3<S>) -> Self {
@@ -76,7 +76,7 @@ impl<S: Real> Mat3<S> {
 }
 
 impl<S: Scalar> Mat3<S> {
-    /// As a nalgebra matrix.
+    /// Returns the nalgebra matrix.
     #[inline(always)]
     pub fn to_nalgebra(self) -> Matrix3<f64> {
         Matrix3::from_columns(&[self.x.to_nalgebra(), self.y.to_nalgebra(), self.z.to_nalgebra()])
@@ -118,7 +118,7 @@ impl<S: Real> AddAssign for Mat3<S> {
     }
 }
 
-/// A pose as a row-major `(4, 4)` matrix.
+/// Returns a pose as a row-major `(4, 4)` matrix.
 #[inline(always)]
 pub fn pose_rows<S: Real>(r: &Mat3<S>, p: Vec3<S>) -> [S; 16] {
     let (o, l) = (S::of(0.0), S::of(1.0));

@@ -1,10 +1,11 @@
 //! Spatial algebra on a generic scalar: vectors, rotations, motions, forces, inertias.
 //!
-//! Everything here is plain data and `#[inline(always)]`, so that a kernel compiled for one
-//! instruction set takes its arithmetic with it. Linear parts come before angular ones.
+//! All types are plain data with `#[inline(always)]` methods, so that the arithmetic is compiled for the
+//! instruction set of the kernel that uses it. Linear parts precede angular parts.
 
 mod articulated;
 mod coriolis;
+mod cpu_features;
 mod fused;
 mod inertia;
 mod instruction_set;
@@ -12,6 +13,7 @@ mod lanes;
 mod mat3;
 mod motion;
 mod quintic_spline;
+mod real_f64;
 mod rotation;
 mod rotation_spline;
 mod scalar;

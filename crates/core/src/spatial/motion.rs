@@ -4,8 +4,8 @@ use super::scalar::Real;
 use super::vec3::Vec3;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-/// Twist or spatial acceleration: `linear` is that of the point at the origin, `angular` the
-/// rotation rate.
+/// Twist or spatial acceleration: `linear` is that of the body-fixed point at the origin, `angular` that of
+/// the rotation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<S> {
     /// Velocity of the body-fixed point at the origin, m/s.
@@ -26,32 +26,32 @@ pub struct Force<S> {
 macro_rules! pair {
     ($name:ident) => {
         impl<S: Real> $name<S> {
-            /// The pair of these halves.
+            /// Returns the pair of these halves.
             #[inline(always)]
             pub fn new(linear: Vec3<S>, angular: Vec3<S>) -> Self {
                 Self { linear, angular }
             }
 
-            /// Nothing.
+            /// Returns the zero pair.
             #[inline(always)]
             pub fn zero() -> Self {
                 Self::new(Vec3::zero(), Vec3::zero())
             }
 
-            /// The first six numbers of a slice, linear before angular.
+            /// Returns the pair with the first six numbers of a slice, linear before angular.
             #[inline(always)]
             pub fn from_slice(s: &[S]) -> Self {
                 Self::new(Vec3::from_slice(s), Vec3::from_slice(&s[3..]))
             }
 
-            /// Writes six numbers, linear before angular.
+            /// Writes the six components to a slice, linear before angular.
             #[inline(always)]
             pub fn write(self, out: &mut [S]) {
                 self.linear.write(out);
                 self.angular.write(&mut out[3..]);
             }
 
-            /// `self · s + o`.
+            /// Returns `self · s + o`.
             #[inline(always)]
             pub fn scale_add(self, s: S, o: Self) -> Self {
                 Self::new(self.linear.scale_add(s, o.linear), self.angular.scale_add(s, o.angular))
@@ -103,37 +103,37 @@ pair!(Motion);
 pair!(Force);
 
 impl<S: Real> Motion<S> {
-    /// Power `vᵀ f`, W.
+    /// Returns the power `vᵀ f`, W.
     #[inline(always)]
     pub fn dot(self, f: Force<S>) -> S {
         self.linear.dot(f.linear) + self.angular.dot(f.angular)
     }
 
-    /// `vᵀ f + s`.
+    /// Returns `vᵀ f + s`.
     #[inline(always)]
     pub fn dot_add(self, f: Force<S>, s: S) -> S {
         self.linear.dot_add(f.linear, s) + self.angular.dot(f.angular)
     }
 
-    /// `v × m = (ω × m_lin + v × m_ang, ω × m_ang)`: the rate of `m` carried by `v`.
+    /// Returns `v × m = (ω × m_lin + v × m_ang, ω × m_ang)`: the rate of `m` in a frame that moves with `v`.
     #[inline(always)]
     pub fn cross(self, m: Self) -> Self {
         Self::new(self.angular.cross(m.linear) + self.linear.cross(m.angular), self.angular.cross(m.angular))
     }
 
-    /// `v ×* f = (ω × f_lin, ω × f_ang + v × f_lin)`: the rate of `f` carried by `v`.
+    /// Returns `v ×* f = (ω × f_lin, ω × f_ang + v × f_lin)`: the rate of `f` in a frame that moves with `v`.
     #[inline(always)]
     pub fn cross_force(self, f: Force<S>) -> Force<S> {
         Force::new(self.angular.cross(f.linear), self.angular.cross(f.angular) + self.linear.cross(f.linear))
     }
 
-    /// Velocity of the body-fixed point at `p`: `v + ω × p`.
+    /// Returns the velocity of the body-fixed point at `p`: `v + ω × p`.
     #[inline(always)]
     pub fn at(self, p: Vec3<S>) -> Vec3<S> {
         self.linear + self.angular.cross(p)
     }
 
-    /// The same motion with its linear part taken at the point `p`.
+    /// Returns this motion with the linear part at the point `p`.
     #[inline(always)]
     #[must_use]
     pub fn referred_to(self, p: Vec3<S>) -> Self {
@@ -142,21 +142,21 @@ impl<S: Real> Motion<S> {
 }
 
 impl<S: Real> Force<S> {
-    /// The wrench of `force` acting at `p` plus a free `moment`, about the origin.
+    /// Returns the wrench about the origin of `force` acting at `p` and of a free `moment`.
     #[inline(always)]
     pub fn at(force: Vec3<S>, moment: Vec3<S>, p: Vec3<S>) -> Self {
         Self::new(force, moment + p.cross(force))
     }
 
-    /// A wrench whose moment is about the point `p`, with its moment about the origin instead.
+    /// Returns this wrench, whose moment is about the point `p`, with the moment about the origin.
     #[inline(always)]
     #[must_use]
     pub fn from_point(self, p: Vec3<S>) -> Self {
         Self::new(self.linear, p.cross_add(self.linear, self.angular))
     }
 
-    /// [`from_point`](Self::from_point) with the product formed first: three operations more, but a moment that is known
-    /// late, at the end of a recursion's chain, waits for one sum alone.
+    /// Computes [`from_point`](Self::from_point) with the product formed first: three more operations, but a
+    /// shorter dependency chain if the moment is the last result of a recursion.
     #[inline(always)]
     #[must_use]
     pub fn from_point_late(self, p: Vec3<S>) -> Self {

@@ -1,23 +1,27 @@
-//! Curvatures that let a quintic spline through values and slopes go on as smoothly as it can.
+//! Curvatures at the knots of quintic splines with given values and slopes.
 
-/// Curvatures (K, n) at the knots: the third derivative goes on across inner knots, the fourth across the first
-/// and the last of them (not-a-knot); order 6. Up to three points take the one polynomial through them all.
+/// Returns curvatures (K, n) for which the third derivative is continuous at inner knots and the fourth at
+/// the first and last inner knot (not-a-knot); order 6. Up to three points define a single polynomial.
 pub(super) fn curvatures(times: &[f64], width: usize, values: &[f64], slopes: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; values.len()];
     for i in 0..width {
         let column = |rows: &[f64]| -> Vec<f64> { rows.iter().skip(i).step_by(width).copied().collect() };
         let (x, v) = (column(values), column(slopes));
-        let a = if times.len() > 3 { smoothest(times, &x, &v) } else { through_all(times, &x, &v) };
+        let a = if times.len() > 3 {
+            spline_curvatures(times, &x, &v)
+        } else {
+            hermite_curvatures(times, &x, &v)
+        };
         a.into_iter().enumerate().for_each(|(k, a)| out[k * width + i] = a);
     }
     out
 }
 
-/// Hermite's polynomial through all points.
+/// Returns the curvatures of the Hermite polynomial through all points.
 ///
-/// `aᵢ = Σⱼ 2 cᵢⱼ² [(1 - 2 cⱼⱼ (tᵢ - tⱼ)) (xⱼ - xᵢ) + (tᵢ - tⱼ) vⱼ] + 4 cᵢᵢ vᵢ` over `j ≠ i`, where `cᵢⱼ` is the slope
-/// at `tᵢ` of Lagrange's polynomial that is 1 at `tⱼ`.
-fn through_all(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
+/// `aᵢ = Σⱼ 2 cᵢⱼ² [(1 - 2 cⱼⱼ (tᵢ - tⱼ)) (xⱼ - xᵢ) + (tᵢ - tⱼ) vⱼ] + 4 cᵢᵢ vᵢ` over `j ≠ i`, where `cᵢⱼ` is
+/// the slope at `tᵢ` of the Lagrange polynomial that is 1 at `tⱼ`.
+fn hermite_curvatures(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
     let others = |i: usize, j: usize| (0..t.len()).filter(move |&m| m != i && m != j);
     let own = |j: usize| -> f64 { others(j, j).map(|m| 1.0 / (t[j] - t[m])).sum() };
     let at = |i: usize| {
@@ -31,36 +35,37 @@ fn through_all(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
     (0..t.len()).map(at).collect()
 }
 
-/// Four points and more.
-fn smoothest(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
+/// Returns the curvatures of the spline through four points or more.
+fn spline_curvatures(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
     let last = t.len() - 1;
     let gap = |i: usize| t[i + 1] - t[i];
     let chord = |i: usize| (x[i + 1] - x[i]) / gap(i);
-    // jumps of the third and fourth derivative at a knot, less what the unknown curvatures add to them
-    let jerk = |i: usize| {
+    // jumps of the third and fourth derivative at a knot for zero curvatures
+    let jerk_jump = |i: usize| {
         let (k, l) = (1.0 / gap(i - 1), 1.0 / gap(i));
         (chord(i) * 60.0 - v[i + 1] * 24.0 - v[i] * 36.0) * (l * l)
             - (chord(i - 1) * 60.0 - v[i] * 36.0 - v[i - 1] * 24.0) * (k * k)
     };
-    let snap = |i: usize| {
+    let snap_jump = |i: usize| {
         let (k, l) = (1.0 / gap(i - 1), 1.0 / gap(i));
         (v[i + 1] * 168.0 + v[i] * 192.0 - chord(i) * 360.0) * (l * l * l)
             + (v[i] * 192.0 + v[i - 1] * 168.0 - chord(i - 1) * 360.0) * (k * k * k)
     };
-    // -3k aᵢ₋₁ + 9 (k + l) aᵢ - 3l aᵢ₊₁ = jerk,  k = 1/hᵢ₋₁, l = 1/hᵢ
+    // -3k aᵢ₋₁ + 9 (k + l) aᵢ - 3l aᵢ₊₁ = j,  k = 1/hᵢ₋₁, l = 1/hᵢ, j the jump of the third derivative
     let mut rows: Vec<[f64; 4]> = (1..last)
         .map(|i| {
             let (k, l) = (1.0 / gap(i - 1), 1.0 / gap(i));
-            [-3.0 * k, 9.0 * (k + l), -3.0 * l, jerk(i)]
+            [-3.0 * k, 9.0 * (k + l), -3.0 * l, jerk_jump(i)]
         })
         .collect();
-    // -24k² a₀ + 36 (k² - l²) a₁ + 24l² a₂ = snap, from which a₀ = α a₁ + β a₂ - snap/24k²; so at the end
-    let end = |own: f64, next: f64, snap: f64| {
+    // -24k² a₀ + 36 (k² - l²) a₁ + 24l² a₂ = s, the jump of the fourth: a₀ = α a₁ + β a₂ - s/24k²; likewise
+    // at the end
+    let end = |own: f64, next: f64, snap_jump: f64| {
         let r2 = (own / next) * (own / next);
-        (1.5 * (1.0 - r2), r2, snap * own * own / 24.0)
+        (1.5 * (1.0 - r2), r2, snap_jump * own * own / 24.0)
     };
-    let start = end(gap(0), gap(1), snap(1));
-    let stop = end(gap(last - 1), gap(last - 2), -snap(last - 1));
+    let start = end(gap(0), gap(1), snap_jump(1));
+    let stop = end(gap(last - 1), gap(last - 2), -snap_jump(last - 1));
     let (k, l) = (3.0 / gap(0), 3.0 / gap(last - 1));
     rows[0][1] -= k * start.0;
     rows[0][2] -= k * start.1;
@@ -75,7 +80,7 @@ fn smoothest(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
     a
 }
 
-/// Solves `below xᵢ₋₁ + middle xᵢ + above xᵢ₊₁ = right`, the middle outweighing the others.
+/// Solves the diagonally dominant tridiagonal system `below xᵢ₋₁ + middle xᵢ + above xᵢ₊₁ = right`.
 fn solve(mut rows: Vec<[f64; 4]>) -> Vec<f64> {
     for i in 1..rows.len() {
         let factor = rows[i][0] / rows[i - 1][1];

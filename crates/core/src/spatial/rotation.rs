@@ -1,11 +1,12 @@
-//! Rotations: unit quaternions, exponential, logarithm and its differential.
+//! Rotations: unit quaternions, exponential, logarithm and the differential of the exponential.
 
 use super::mat3::Mat3;
 use super::scalar::Real;
 use super::vec3::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// Unit quaternion, stored x, y, z, w.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quat<S> {
     /// Vector part.
     pub v: Vec3<S>,
@@ -14,7 +15,7 @@ pub struct Quat<S> {
 }
 
 impl<S: Real> Quat<S> {
-    /// From the slice `[x, y, z, w]`.
+    /// Returns the quaternion of the slice `[x, y, z, w]`.
     #[inline(always)]
     pub fn from_xyzw(s: &[S]) -> Self {
         Self { v: Vec3::from_slice(s), w: s[3] }
@@ -27,7 +28,7 @@ impl<S: Real> Quat<S> {
         out[3] = self.w;
     }
 
-    /// Hamilton product: the rotation `o` first, then `self`.
+    /// Returns the Hamilton product: the rotation `o` first, then `self`.
     #[inline(always)]
     #[must_use]
     pub fn product(self, o: Self) -> Self {
@@ -37,14 +38,14 @@ impl<S: Real> Quat<S> {
         }
     }
 
-    /// The opposite rotation.
+    /// Returns the inverse rotation.
     #[inline(always)]
     #[must_use]
     pub fn conjugate(self) -> Self {
         Self { v: -self.v, w: self.w }
     }
 
-    /// The same rotation at unit length.
+    /// Returns the quaternion scaled to unit length.
     #[inline(always)]
     #[must_use]
     pub fn normalized(self) -> Self {
@@ -52,7 +53,8 @@ impl<S: Real> Quat<S> {
         Self { v: self.v * s, w: self.w * s }
     }
 
-    /// [`normalized`](Self::normalized) where rounding alone took the length from one: a step of Newton's for `1/|q|`.
+    /// Returns [`normalized`](Self::normalized) for a length that differs from one by rounding, with one
+    /// Newton step for `1/|q|`.
     #[inline(always)]
     #[must_use]
     pub fn renormalized(self) -> Self {
@@ -61,10 +63,9 @@ impl<S: Real> Quat<S> {
         Self { v: self.v * s, w: self.w * s }
     }
 
-    /// The rotation of a matrix, either of its two quaternions.
+    /// Returns a quaternion of the rotation matrix.
     ///
-    /// Of the four candidates, each free of cancellation where its own square is large, the one
-    /// with the largest square.
+    /// The largest component in magnitude is computed first, which avoids cancellation.
     ///
     /// Source: Shepperd, J. Guidance and Control 1(3), 1978.
     #[inline(always)]
@@ -93,7 +94,7 @@ impl<S: Real> Quat<S> {
         q.normalized()
     }
 
-    /// Rotation matrix.
+    /// Returns the rotation matrix.
     #[inline(always)]
     pub fn matrix(self) -> Mat3<S> {
         let (v, w, one) = (self.v, self.w, S::of(1.0));
@@ -109,11 +110,11 @@ impl<S: Real> Quat<S> {
     }
 }
 
-/// `exp(θ)`: the rotation by the angle `|θ|`, rad, about `θ`.
+/// Returns `exp(θ)`: the rotation by the angle `|θ|`, rad, about `θ`.
 #[inline(always)]
 pub fn exp_so3<S: Real>(theta: Vec3<S>) -> Quat<S> {
-    // q = (sin(φ/2)/φ θ, cos(φ/2)); below a quarter of a radian, every step of a simulation, the series in
-    // z = (φ/2)², exact to 3e-17
+    // q = (sin(φ/2)/φ θ, cos(φ/2)); below 0.25 rad, as in every step of a simulation, the series in z =
+    // (φ/2)², exact to 3e-17
     let of = S::of;
     let z = theta.dot(theta) * of(0.25);
     let s = z.mul_add(
@@ -143,16 +144,16 @@ pub fn exp_so3<S: Real>(theta: Vec3<S>) -> Quat<S> {
     Quat { v: theta * s, w: c }
 }
 
-/// `log(q)`: rotation vector of the shorter turn, rad.
+/// Returns `log(q)`: the rotation vector of the smaller angle, rad.
 #[inline(always)]
 pub fn log_so3<S: Real>(q: Quat<S>) -> Vec3<S> {
-    // θ = 2 atan2(|v|, w) v/|v|, on the half with w ≥ 0
+    // θ = 2 atan2(|v|, w) v/|v|, with the sign of q chosen for w ≥ 0
     let of = S::of;
     let sign = S::select(S::less(q.w, of(0.0)), of(-1.0), of(1.0));
     let (v, w) = (q.v * sign, q.w * sign);
     let squared = v.dot(v);
     let is_large = S::less(of(1e-4), squared);
-    // atan(x)/x with x = |v|/w below a hundredth, where x¹⁰/11 is rounding
+    // series of atan(x)/x with x = |v|/w below 0.01, where x¹⁰/11 is below rounding
     let inverse_w = of(1.0) / S::select(is_large, of(1.0), w);
     let y = squared * inverse_w * inverse_w;
     let series = y.mul_add(
@@ -167,17 +168,18 @@ pub fn log_so3<S: Real>(q: Quat<S>) -> Vec3<S> {
     v * scale
 }
 
-/// `log(R)`: rotation vector of the shorter turn, rad, accurate up to the half turn.
+/// Returns `log(R)`: the rotation vector of the smaller angle, rad, accurate up to half a turn.
 #[inline(always)]
 pub fn log_rotation<S: Real>(r: &Mat3<S>) -> Vec3<S> {
     log_so3(Quat::from_matrix(r))
 }
 
-/// Rate of the rotation vector: `θ̇ = ω + ½ θ×ω + b θ×(θ×ω)`, for `R = R₀ exp(θ)` and the
-/// angular velocity `ω` in body axes.
+/// Returns the rate of the rotation vector: `θ̇ = ω + ½ θ×ω + b θ×(θ×ω)`, for `R = R₀ exp(θ)` and the angular
+/// velocity `ω` in body axes.
 ///
-/// `b = 1/12 + |θ|²/720`: the inverse differential of the exponential up to terms of sixth order
-/// in `θ`, which is beyond every integrator here (its `θ` is one step's turn).
+/// `b = 1/12 + |θ|²/720`: the inverse differential of the exponential with an error of sixth order in `θ`, which is
+/// below that of the integrators, whose `θ` is the rotation of one step. It is `dexp⁻¹` of `−θ` in the convention of
+/// Hairer, Lubich and Wanner (section III.4.1), since `ω` is in body axes.
 ///
 /// Source: Munthe-Kaas, BIT 38, 1998.
 #[inline(always)]
@@ -187,7 +189,8 @@ pub fn dexp_inv<S: Real>(theta: Vec3<S>, omega: Vec3<S>) -> Vec3<S> {
     theta.cross(first).scale_add(b, first.scale_add(S::of(0.5), omega))
 }
 
-/// [`dexp_inv`] in closed form, for turns up to a whole one: `b = (1 − φ/2 cot φ/2)/φ²`, `φ = |θ|`.
+/// Returns [`dexp_inv`] in closed form, for rotations of up to one turn: `b = (1 − φ/2 cot φ/2)/φ²`,
+/// `φ = |θ|`.
 #[inline(always)]
 pub fn dexp_inv_exact<S: Real>(theta: Vec3<S>, omega: Vec3<S>) -> Vec3<S> {
     let squared = theta.dot(theta);

@@ -1,82 +1,83 @@
-//! Curves through given attitudes, twice continuously differentiable.
+//! C² curves through given attitudes.
 
 use super::rotation::{Quat, exp_so3, log_so3};
-use super::spline::{Ends, Place, Spline, SplineError, check_rows, check_times};
+use super::spline::{Ends, KnotInterval, Spline, SplineError, check_rows, check_times};
 use super::vec3::Vec3;
 use nalgebra::{Matrix3, Vector3};
 
-/// Angle, rad, this near to a half turn the shorter way is chance.
+/// Distance from half a turn, rad, within which the direction of rotation between two attitudes is ambiguous.
 const HALF_TURN_MARGIN: f64 = 1e-6;
 
-/// `R(t) = Rk exp(φ(t))` from attitude to attitude, `φ` the quintic whose rates fit at the knots.
+/// Spline `R(t) = Rk exp(φ(t))` between attitudes, where `φ` is the quintic with the given rates and
+/// accelerations at the knots.
 ///
-/// Resting at every knot, each piece is the geodesic. Outside the knots it holds its ends.
+/// With zero rates at the knots each piece is a geodesic. Outside the knots the end attitudes are held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RotationSpline {
     times: Vec<f64>,
     pieces: Vec<Piece>,
 }
 
-/// From one attitude to the next.
+/// Curve between two attitudes.
 #[derive(Clone, Debug, PartialEq)]
 struct Piece {
     start: Quat<f64>,
-    /// `φ` and its first two derivatives at the start.
+    /// `φ` and its first two derivatives at the start of the piece.
     from: [Vec3<f64>; 3],
-    /// The same at the end.
+    /// `φ` and its first two derivatives at the end of the piece.
     to: [Vec3<f64>; 3],
 }
 
 impl RotationSpline {
-    /// Rests at every attitude (K,).
+    /// Returns the spline that is at rest at every attitude (K,).
     ///
     /// # Errors
-    /// [`SplineError`] for less than two points, wrong lengths, times that do not increase, two
-    /// neighbours half a turn apart.
+    /// [`SplineError`] for fewer than two points, wrong lengths, times that do not increase, or neighbours
+    /// half a turn apart.
     pub fn resting(times: &[f64], attitudes: &[Quat<f64>]) -> Result<Self, SplineError> {
         let zeros = vec![Vec3::zero(); attitudes.len()];
         Self::new(times, attitudes, &zeros, &zeros)
     }
 
-    /// Passes through the attitudes, rates and accelerations being those of the C² cubic spline
-    /// through their quaternions.
+    /// Returns the spline through the attitudes, with rates and accelerations of the C² cubic spline through
+    /// their quaternions.
     ///
     /// # Errors
-    /// As [`RotationSpline::resting`].
-    pub fn passing(times: &[f64], attitudes: &[Quat<f64>], ends: Ends) -> Result<Self, SplineError> {
+    /// Those of [`RotationSpline::resting`].
+    pub fn interpolating(times: &[f64], attitudes: &[Quat<f64>], ends: Ends) -> Result<Self, SplineError> {
         let attitudes = continuous(attitudes);
         let mut rows = vec![0.0; 4 * attitudes.len()];
         attitudes.iter().zip(rows.chunks_exact_mut(4)).for_each(|(q, row)| q.write_xyzw(row));
-        let spline = Spline::passing(times, 4, &rows, ends)?;
+        let spline = Spline::interpolating(times, 4, &rows, ends)?;
         let knot = |k: usize| -> (Vec3<f64>, Vec3<f64>) {
             // ω = 2 vec(q* q̇) and α = 2 vec(q* q̈) for q = s/|s|, where |s| = 1 and d|s|/dt = s·ṡ
             let [s, s1, s2] = [0, 4, 8].map(|i| Quat::from_xyzw(&spline.knot(k)[i..i + 4]));
-            let (turn, bend) = (s.conjugate().product(s1).v, s.conjugate().product(s2).v);
-            let growth = s.v.dot(s1.v) + s.w * s1.w;
-            (turn * 2.0, (bend - turn * (2.0 * growth)) * 2.0)
+            let (turn, phi_acceleration) = (s.conjugate().product(s1).v, s.conjugate().product(s2).v);
+            let norm_squared_rate = s.v.dot(s1.v) + s.w * s1.w;
+            (turn * 2.0, (phi_acceleration - turn * (2.0 * norm_squared_rate)) * 2.0)
         };
         let (rates, accelerations): (Vec<_>, Vec<_>) = (0..times.len()).map(knot).unzip();
         Self::new(times, &attitudes, &rates, &accelerations)
     }
 
-    /// Passes through the attitudes with the given `rates` (K,), rad/s in body axes, whose own cubic
-    /// spline has the accelerations.
+    /// Returns the spline through the attitudes with the given `rates` (K,), rad/s in body axes. The
+    /// accelerations are those of the cubic spline through the rates.
     ///
     /// # Errors
-    /// As [`RotationSpline::resting`].
+    /// Those of [`RotationSpline::resting`].
     pub fn with_rates(
         times: &[f64],
         attitudes: &[Quat<f64>],
         rates: &[Vec3<f64>],
     ) -> Result<Self, SplineError> {
         let rows: Vec<f64> = rates.iter().flat_map(|w| [w.x, w.y, w.z]).collect();
-        let spline = Spline::passing(times, 3, &rows, Ends::Free)?;
+        let spline = Spline::interpolating(times, 3, &rows, Ends::Free)?;
         let accelerations: Vec<_> =
             (0..times.len()).map(|k| Vec3::from_slice(&spline.knot(k)[3..])).collect();
         Self::new(times, attitudes, rates, &accelerations)
     }
 
-    /// From attitudes with rates and accelerations in body axes.
+    /// Returns the spline from attitudes with rates and accelerations in body axes.
     fn new(
         times: &[f64],
         attitudes: &[Quat<f64>],
@@ -93,30 +94,36 @@ impl RotationSpline {
                 return Err(SplineError::HalfTurn { point: k });
             }
             // φ̇ = J⁻¹ ω, φ̈ = J⁻¹ (α − J̇ φ̇); J is 1 where φ is 0
-            let rate = undo_differential(turn, rates[k + 1]);
-            let (_, leftover) = differential(turn, rate, Vec3::zero());
-            let bend = undo_differential(turn, accelerations[k + 1] - leftover);
-            Ok(Piece { start, from: [Vec3::zero(), rates[k], accelerations[k]], to: [turn, rate, bend] })
+            let rate = inverse_differential(turn, rates[k + 1]);
+            let (_, bias) = differential(turn, rate, Vec3::zero());
+            let phi_acceleration = inverse_differential(turn, accelerations[k + 1] - bias);
+            Ok(Piece {
+                start,
+                from: [Vec3::zero(), rates[k], accelerations[k]],
+                to: [turn, rate, phi_acceleration],
+            })
         };
         let pieces = (0..times.len() - 1).map(piece).collect::<Result<_, _>>()?;
         Ok(Self { times: times.to_vec(), pieces })
     }
 
-    /// Attitude at `t`, and its rate (rad/s) and acceleration (rad/s²) in the axes it is given in.
+    /// Returns the attitude at `t`, its angular velocity (rad/s) and acceleration (rad/s²) in the reference
+    /// axes.
     pub fn sample(&self, t: f64) -> (Quat<f64>, Vec3<f64>, Vec3<f64>) {
-        let at = Place::of(&self.times, t);
+        let at = KnotInterval::of(&self.times, t);
         let Piece { start, from, to } = &self.pieces[at.segment];
-        let component = |pick: fn(&Vec3<f64>) -> f64| at.blend(from.map(|x| pick(&x)), to.map(|x| pick(&x)));
+        let component =
+            |pick: fn(&Vec3<f64>) -> f64| at.interpolate(from.map(|x| pick(&x)), to.map(|x| pick(&x)));
         let (x, y, z) = (component(|v| v.x), component(|v| v.y), component(|v| v.z));
-        let [phi, rate, bend] = [0, 1, 2].map(|i| Vec3::new(x[i], y[i], z[i]));
-        let (omega, alpha) = differential(phi, rate, bend);
+        let [phi, rate, phi_acceleration] = [0, 1, 2].map(|i| Vec3::new(x[i], y[i], z[i]));
+        let (omega, alpha) = differential(phi, rate, phi_acceleration);
         let attitude = start.product(exp_so3(phi));
         let rot = attitude.matrix();
         (attitude, rot * omega, rot * alpha) // d/dt (R ω) = R (ω × ω + ω̇)
     }
 }
 
-/// The same attitudes with signs that make neighbours near.
+/// Returns the attitudes with the signs chosen such that neighbouring quaternions are close.
 fn continuous(attitudes: &[Quat<f64>]) -> Vec<Quat<f64>> {
     let mut out: Vec<Quat<f64>> = Vec::with_capacity(attitudes.len());
     for q in attitudes {
@@ -126,33 +133,33 @@ fn continuous(attitudes: &[Quat<f64>]) -> Vec<Quat<f64>> {
     out
 }
 
-/// Rate and acceleration in body axes of `exp(φ)`.
+/// Returns angular velocity and acceleration of `exp(φ)` in body axes.
 ///
 /// `ω = φ̇ − B φ×φ̇ + C φ×(φ×φ̇)` and its derivative, `B = (1 − cos|φ|)/|φ|²`, `C = (|φ| − sin|φ|)/|φ|³`.
 ///
 /// Source: Iserles et al., Acta Numerica 9, 2000, eq. B.11.
-fn differential(phi: Vec3<f64>, rate: Vec3<f64>, bend: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>) {
+fn differential(phi: Vec3<f64>, rate: Vec3<f64>, phi_acceleration: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>) {
     let ([b, c], [b1, c1]) = coefficients(phi.dot(phi));
-    let growth = 2.0 * phi.dot(rate); // d|φ|²/dt
-    let (once, bent) = (phi.cross(rate), phi.cross(bend));
+    let norm_squared_rate = 2.0 * phi.dot(rate); // d|φ|²/dt
+    let (once, phi_cross_acceleration) = (phi.cross(rate), phi.cross(phi_acceleration));
     let twice = phi.cross(once);
     let omega = rate - once * b + twice * c;
-    let alpha = bend - bent * b - once * (b1 * growth)
-        + (rate.cross(once) + phi.cross(bent)) * c
-        + twice * (c1 * growth);
+    let alpha = phi_acceleration - phi_cross_acceleration * b - once * (b1 * norm_squared_rate)
+        + (rate.cross(once) + phi.cross(phi_cross_acceleration)) * c
+        + twice * (c1 * norm_squared_rate);
     (omega, alpha)
 }
 
-/// `φ̇` that turns at `ω` in body axes.
-fn undo_differential(phi: Vec3<f64>, omega: Vec3<f64>) -> Vec3<f64> {
+/// Returns the `φ̇` for the angular velocity `ω` in body axes.
+fn inverse_differential(phi: Vec3<f64>, omega: Vec3<f64>) -> Vec3<f64> {
     let column = |axis: Vector3<f64>| differential(phi, axis.into(), Vec3::zero()).0.to_nalgebra();
     let jacobian = Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(column));
     let inverse = jacobian.try_inverse().expect("det J = 2(1 − cos|φ|)/|φ|² > 0 below a full turn");
     (inverse * omega.to_nalgebra()).into()
 }
 
-/// `B` and `C` as functions of `x = |φ|²`, and their derivatives in `x`, by their series
-/// `Σ (−x)ᵏ/(2k+2)!` and `Σ (−x)ᵏ/(2k+3)!`: no cancellation at zero, 1e-16 up to a full turn.
+/// Returns `B` and `C` as functions of `x = |φ|²`, and their derivatives in `x`, by the series `Σ
+/// (−x)ᵏ/(2k+2)!` and `Σ (−x)ᵏ/(2k+3)!`: no cancellation at zero, 1e-16 up to a full turn.
 fn coefficients(x: f64) -> ([f64; 2], [f64; 2]) {
     let (mut value, mut slope) = ([0.0; 2], [0.0; 2]);
     let mut term = 0.5; // 1/(2k+2)! times (−1)ᵏ

@@ -1,11 +1,11 @@
-//! Small dense solvers on slices, row major.
+//! Small dense solvers on row-major slices.
 
 use super::scalar::Real;
 
-/// Scalar product of two rows.
+/// Returns the scalar product of two rows.
 #[inline(always)]
 pub fn dot<S: Real>(a: &[S], b: &[S]) -> S {
-    // a loop, not a fold: what the library leaves out of line loses the instruction set
+    // a loop instead of a fold, which would not be inlined and lose the instruction set
     let mut sum = S::of(0.0);
     for i in 0..a.len().min(b.len()) {
         sum = a[i].mul_add(b[i], sum);
@@ -13,15 +13,16 @@ pub fn dot<S: Real>(a: &[S], b: &[S]) -> S {
     sum
 }
 
-/// Cholesky's factors without roots, `A = L D Lᵀ`, of a positive definite `n × n` matrix, in place.
+/// Computes the square-root-free Cholesky factors `A = L D Lᵀ` of a positive definite `n × n` matrix in
+/// place.
 ///
-/// Reads the lower triangle and replaces it by `L`, whose diagonal of ones gives way to the *inverse* pivots `1/D_ii`
-/// (what the solves multiply by). The upper triangle is used up.
+/// Reads the lower triangle and replaces it by `L`, with the *inverse* pivots `1/D_ii` in place of its unit
+/// diagonal, since the solves multiply by them. The upper triangle is workspace.
 #[inline(always)]
 pub fn cholesky_factor<S: Real>(a: &mut [S], n: usize) {
     for j in 0..n {
         for i in j..n {
-            // D_j L_ij = A_ij − Σ L_ik (D_k L_jk), what is in brackets from the upper triangle
+            // D_j L_ij = A_ij − Σ L_ik (D_k L_jk); the products in brackets are in the upper triangle
             let mut sum = a[i * n + j];
             for k in 0..j {
                 sum = (-a[i * n + k]).mul_add(a[k * n + j], sum);
@@ -36,7 +37,7 @@ pub fn cholesky_factor<S: Real>(a: &mut [S], n: usize) {
     }
 }
 
-/// `x ← A⁻¹ x` with the factors of [`cholesky_factor`].
+/// Computes `x ← A⁻¹ x` with the factors of [`cholesky_factor`].
 #[inline(always)]
 pub fn cholesky_solve<S: Real>(l: &[S], n: usize, x: &mut [S]) {
     for i in 1..n {

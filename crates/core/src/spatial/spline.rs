@@ -1,57 +1,57 @@
-//! Curves through given points, twice continuously differentiable.
+//! C² curves through given points.
 
 use super::quintic_spline::curvatures;
 use crate::number_text::{count, short, unlike};
 use thiserror::Error;
 
-/// Points that no curve can be laid through.
+/// Errors of points that do not define a curve.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum SplineError {
     #[error(
-        "{name} holds {value} at point {point}, it must be finite and within ±1e60 (SI units)",
+        "{name} holds {value} at point {point}; it must be finite and within ±1e60 (SI units)",
         value = short(*value)
     )]
     NotFinite { name: &'static str, point: usize, value: f64 },
-    #[error("{name} holds {got}, expected {expected}: one row per time", got = count(*got, "number"))]
+    #[error("{name} holds {got}; expected {expected}, one row per time", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("{got} points are given, at least {least} are needed")]
+    #[error("{got} points are given; expected at least {least}")]
     TooFew { got: usize, least: usize },
     #[error(
-        "times[{index}] is {after} s after {before} s: times must increase",
+        "times[{index}] is {after} s after {before} s; times must increase",
         before = short(*before), after = unlike(*after, &[*before])
     )]
     NotIncreasing { index: usize, before: f64, after: f64 },
-    #[error("the attitudes at points {point} and {next} are half a turn apart, so either way round is as short: \
-             put another between them", next = point + 1)]
+    #[error("the attitudes at points {point} and {next} are half a turn apart, so the direction of rotation \
+    is ambiguous; add a point between them", next = point + 1)]
     HalfTurn { point: usize },
 }
 
-/// How a curve begins and ends.
+/// End conditions of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
-    /// At rest, without acceleration.
+    /// Zero velocity and zero acceleration.
     Rest,
-    /// With the slope of the cubic through the four points nearest to the end.
+    /// Slope equal to that of the cubic through the four points nearest to the end.
     Free,
 }
 
-/// Quintics between knots with given value, slope and curvature: C² by construction.
+/// Spline of quintics between knots with given value, slope and curvature, and hence C².
 ///
-/// A cubic is one of them, so this is also the C² cubic spline. Outside the knots it holds its ends.
+/// The C² cubic spline is a special case. Outside the knots the end values are held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     times: Vec<f64>,
     width: usize,
-    /// (K, 3, n): value, slope and curvature of each knot.
+    /// Value, slope and curvature of each knot, (K, 3, n).
     knots: Vec<f64>,
 }
 
 impl Spline {
-    /// From `times` (K,), s, and `values`, `slopes`, `curvatures` (K, n).
+    /// Returns the spline with `times` (K,), s, and `values`, `slopes`, `curvatures` (K, n).
     ///
     /// # Errors
-    /// [`SplineError`] for less than two points, wrong lengths, numbers that are not finite, times that
+    /// [`SplineError`] for fewer than two points, wrong lengths, numbers that are not finite, or times that
     /// do not increase.
     pub fn new(
         times: &[f64],
@@ -73,20 +73,25 @@ impl Spline {
         Ok(Self { times: times.to_vec(), width, knots })
     }
 
-    /// Rests at every point.
+    /// Returns the spline that is at rest at every point.
     ///
     /// # Errors
-    /// As [`Spline::new`].
+    /// Those of [`Spline::new`].
     pub fn resting(times: &[f64], width: usize, values: &[f64]) -> Result<Self, SplineError> {
         let zeros = vec![0.0; values.len()];
         Self::new(times, width, values, &zeros, &zeros)
     }
 
-    /// Passes through the points with the slopes and curvatures of the C² cubic spline through them.
+    /// Returns the spline through the points with slopes and curvatures of their C² cubic spline.
     ///
     /// # Errors
-    /// As [`Spline::new`].
-    pub fn passing(times: &[f64], width: usize, values: &[f64], ends: Ends) -> Result<Self, SplineError> {
+    /// Those of [`Spline::new`].
+    pub fn interpolating(
+        times: &[f64],
+        width: usize,
+        values: &[f64],
+        ends: Ends,
+    ) -> Result<Self, SplineError> {
         check_times(times)?;
         check_rows("values", values, times.len(), width)?;
         let slopes = cubic_slopes(times, width, values, ends);
@@ -94,10 +99,11 @@ impl Spline {
         Self::new(times, width, values, &slopes, &curvatures)
     }
 
-    /// Passes through the points with the given `slopes`, its third derivative continuous too; order 6.
+    /// Returns the spline through the points with the given `slopes` and a continuous third derivative; order
+    /// 6.
     ///
     /// # Errors
-    /// As [`Spline::new`].
+    /// Those of [`Spline::new`].
     pub fn with_slopes(
         times: &[f64],
         width: usize,
@@ -110,43 +116,43 @@ impl Spline {
         Self::new(times, width, values, slopes, &curvatures(times, width, values, slopes))
     }
 
-    /// Times of the knots, (K,) s.
+    /// Returns the times of the knots, (K,) s.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// Components of a value.
+    /// Returns the number of components.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Value, slope and curvature of knot `k`, (3, n).
+    /// Returns value, slope and curvature of knot `k`, (3, n).
     pub fn knot(&self, k: usize) -> &[f64] {
         &self.knots[3 * self.width * k..][..3 * self.width]
     }
 
-    /// Value, slope and curvature at `t`, (n,) each.
+    /// Computes value, slope and curvature at `t`, (n,) each.
     pub fn sample(&self, t: f64, value: &mut [f64], slope: &mut [f64], curvature: &mut [f64]) {
-        let (n, at) = (self.width, Place::of(&self.times, t));
+        let (n, at) = (self.width, KnotInterval::of(&self.times, t));
         let (start, end) = (self.knot(at.segment), self.knot(at.segment + 1));
         for i in 0..n {
             let pick = |knot: &[f64]| [knot[i], knot[n + i], knot[2 * n + i]];
-            [value[i], slope[i], curvature[i]] = at.blend(pick(start), pick(end));
+            [value[i], slope[i], curvature[i]] = at.interpolate(pick(start), pick(end));
         }
     }
 }
 
-/// Where a time falls between knots.
+/// Position of a time between knots.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct KnotInterval {
     pub(super) segment: usize,
     length: f64,
-    /// Share of the segment, 0..1.
+    /// Normalized time in the segment, 0 to 1.
     u: f64,
     is_outside: bool,
 }
 
-impl Place {
+impl KnotInterval {
     pub(super) fn of(times: &[f64], t: f64) -> Self {
         let last = times.len() - 2;
         let segment = times.partition_point(|knot| *knot <= t).saturating_sub(1).min(last);
@@ -155,8 +161,8 @@ impl Place {
         Self { segment, length, u: ((t - times[segment]) / length).clamp(0.0, 1.0), is_outside }
     }
 
-    /// The quintic between two knots, each `[value, slope, curvature]`; at rest outside.
-    pub(super) fn blend(&self, start: [f64; 3], end: [f64; 3]) -> [f64; 3] {
+    /// Evaluates the quintic between two knots, each `[value, slope, curvature]`; at rest outside.
+    pub(super) fn interpolate(&self, start: [f64; 3], end: [f64; 3]) -> [f64; 3] {
         let (h, u) = (self.length, self.u);
         if self.is_outside {
             return [if u > 0.5 { end[0] } else { start[0] }, 0.0, 0.0];
@@ -164,22 +170,22 @@ impl Place {
         if u <= 0.5 {
             return quintic(h, u, start, end);
         }
-        // the later half backwards in time, so that the end is met exactly too
+        // the second half is evaluated backwards in time, so that the end is also met exactly
         let back = |[p, v, a]: [f64; 3]| [p, -v, a];
         back(quintic(h, 1.0 - u, back(end), back(start)))
     }
 }
 
-/// The six conditions at both ends, solved for `p + v s + a s²/2 + c₃s³ + c₄s⁴ + c₅s⁵`, `s = u h`; what is
-/// known at `s = 0` comes back to the bit.
+/// Evaluates `p + v s + a s²/2 + c₃s³ + c₄s⁴ + c₅s⁵`, `s = u h`, with the conditions at both ends; those at
+/// `s = 0` are met to the bit.
 fn quintic(h: f64, u: f64, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 3] {
-    // what position, velocity and acceleration lack at the far end, per h³, h² and h
-    let lack_p = ((p1 - p) / h - v - a * (0.5 * h)) / (h * h);
-    let lack_v = (v1 - v - a * h) / (h * h);
-    let lack_a = (a1 - a) / h;
-    let c3 = 10.0 * lack_p - 4.0 * lack_v + 0.5 * lack_a;
-    let c4 = (-15.0 * lack_p + 7.0 * lack_v - lack_a) / h;
-    let c5 = (6.0 * lack_p - 3.0 * lack_v + 0.5 * lack_a) / (h * h);
+    // differences of position, velocity and acceleration at the far end, over h³, h² and h
+    let difference_p = ((p1 - p) / h - v - a * (0.5 * h)) / (h * h);
+    let difference_v = (v1 - v - a * h) / (h * h);
+    let difference_a = (a1 - a) / h;
+    let c3 = 10.0 * difference_p - 4.0 * difference_v + 0.5 * difference_a;
+    let c4 = (-15.0 * difference_p + 7.0 * difference_v - difference_a) / h;
+    let c5 = (6.0 * difference_p - 3.0 * difference_v + 0.5 * difference_a) / (h * h);
     let s = u * h;
     let value = p + s * (v + s * (0.5 * a + s * (c3 + s * (c4 + s * c5))));
     let slope = v + s * (a + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)));
@@ -187,7 +193,7 @@ fn quintic(h: f64, u: f64, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64;
     [value, slope, curvature]
 }
 
-/// Two or more times that increase.
+/// Checks that there are two or more times and that they increase.
 pub(super) fn check_times(times: &[f64]) -> Result<(), SplineError> {
     if times.len() < 2 {
         return Err(SplineError::TooFew { got: times.len(), least: 2 });
@@ -199,7 +205,7 @@ pub(super) fn check_times(times: &[f64]) -> Result<(), SplineError> {
     }
 }
 
-/// `points` rows of `width` finite numbers.
+/// Checks that there are `points` rows of `width` finite numbers.
 pub(super) fn check_rows(
     name: &'static str,
     rows: &[f64],
@@ -218,15 +224,16 @@ pub(super) fn check_rows(
     }
 }
 
-/// Slopes of the C² cubic through the points.
+/// Returns the slopes of the C² cubic spline through the points.
 ///
-/// `m₋/h₋ + 2 (1/h₋ + 1/h) m + m₊/h = 3 (Δ₋/h₋ + Δ/h)` at every inner point, `Δ` the slope of a chord.
+/// `m₋/h₋ + 2 (1/h₋ + 1/h) m + m₊/h = 3 (Δ₋/h₋ + Δ/h)` at each inner point, where `Δ` is the slope of a
+/// chord.
 ///
 /// Source: de Boor, A Practical Guide to Splines, 1978, ch. IV.
 fn cubic_slopes(times: &[f64], width: usize, values: &[f64], ends: Ends) -> Vec<f64> {
     let (last, mut m) = (times.len() - 1, vec![0.0; values.len()]);
     let inverse = |k: usize| 1.0 / (times[k + 1] - times[k]);
-    let mut carried = vec![0.0; times.len()]; // the upper diagonal over the pivot
+    let mut upper = vec![0.0; times.len()]; // upper diagonal divided by the pivot
     for i in 0..width {
         let at = |k: usize| k * width + i;
         if ends == Ends::Free {
@@ -234,28 +241,28 @@ fn cubic_slopes(times: &[f64], width: usize, values: &[f64], ends: Ends) -> Vec<
             m[at(last)] = end_slope(times, |k| values[at(k)], |k| last - k);
         }
         // forward elimination and back substitution (Thomas)
-        carried[0] = 0.0;
+        upper[0] = 0.0;
         for k in 1..last {
             let (before, after) = (inverse(k - 1), inverse(k));
             let chord = |k: usize, h: f64| (values[at(k + 1)] - values[at(k)]) * h * h;
-            let pivot = 2.0 * (before + after) - before * carried[k - 1];
-            carried[k] = after / pivot;
+            let pivot = 2.0 * (before + after) - before * upper[k - 1];
+            upper[k] = after / pivot;
             m[at(k)] = (3.0 * (chord(k - 1, before) + chord(k, after)) - before * m[at(k - 1)]) / pivot;
         }
         for k in (1..last).rev() {
-            m[at(k)] -= carried[k] * m[at(k + 1)];
+            m[at(k)] -= upper[k] * m[at(k + 1)];
         }
     }
     m
 }
 
-/// Slope at one end of the polynomial through the (at most four) points nearest to it.
+/// Returns the slope at one end of the polynomial through the (at most four) points nearest to it.
 fn end_slope(times: &[f64], value: impl Fn(usize) -> f64, index: impl Fn(usize) -> usize) -> f64 {
     let count = times.len().min(4);
     let t = |k: usize| times[index(k)];
     let mut slope = 0.0;
     for j in 1..count {
-        // derivative at t₀ of Lagrange's polynomial that is 1 at t_j
+        // derivative at t₀ of the Lagrange polynomial that is 1 at t_j
         let others = (1..count).filter(|&k| k != j);
         let weight: f64 = others.map(|k| (t(0) - t(k)) / (t(j) - t(k))).product();
         slope += (value(index(j)) - value(index(0))) * weight / (t(j) - t(0));
@@ -263,7 +270,7 @@ fn end_slope(times: &[f64], value: impl Fn(usize) -> f64, index: impl Fn(usize) 
     slope
 }
 
-/// Curvatures of the cubics with these values and slopes.
+/// Returns the curvatures of the cubics with these values and slopes.
 fn cubic_curvatures(times: &[f64], width: usize, values: &[f64], slopes: &[f64], ends: Ends) -> Vec<f64> {
     let last = times.len() - 1;
     let mut out = vec![0.0; values.len()];

@@ -1,4 +1,4 @@
-//! Symmetric three by three matrices: six numbers.
+//! Symmetric 3 × 3 matrices.
 
 use super::mat3::Mat3;
 use super::scalar::{Real, Scalar};
@@ -6,10 +6,10 @@ use super::vec3::Vec3;
 use nalgebra::Matrix3;
 use std::ops::{Add, AddAssign, Mul, Sub};
 
-/// A symmetric 3 × 3 matrix.
+/// Symmetric 3 × 3 matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sym3<S> {
-    /// Diagonal entries.
+    /// First diagonal entry.
     pub xx: S,
     /// Second diagonal entry.
     pub yy: S,
@@ -24,7 +24,7 @@ pub struct Sym3<S> {
 }
 
 impl<S> Sym3<S> {
-    /// `f` of each entry.
+    /// Returns the matrix with `f` applied to each entry.
     #[inline(always)]
     pub fn map<T>(&self, f: impl Fn(&S) -> T) -> Sym3<T> {
         let Self { xx, yy, zz, xy, xz, yz } = self;
@@ -33,40 +33,40 @@ impl<S> Sym3<S> {
 }
 
 impl<S: Real> Sym3<S> {
-    /// The matrix with these entries.
+    /// Returns the matrix with these entries.
     #[inline(always)]
     pub fn new(xx: S, yy: S, zz: S, xy: S, xz: S, yz: S) -> Self {
         Self { xx, yy, zz, xy, xz, yz }
     }
 
-    /// `s 1`.
+    /// Returns the multiple `s 1` of the identity matrix.
     #[inline(always)]
     pub fn diagonal(s: S) -> Self {
         let o = S::of(0.0);
         Self::new(s, s, s, o, o, o)
     }
 
-    /// A constant of the model, in every lane.
+    /// Returns a matrix with the same entries in every lane.
     #[inline(always)]
     pub fn of(m: &Sym3<f64>) -> Self {
         Self::new(S::of(m.xx), S::of(m.yy), S::of(m.zz), S::of(m.xy), S::of(m.xz), S::of(m.yz))
     }
 
-    /// The three columns.
+    /// Returns the three columns.
     #[inline(always)]
     pub fn columns(&self) -> [Vec3<S>; 3] {
         let Self { xx, yy, zz, xy, xz, yz } = *self;
         [Vec3::new(xx, xy, xz), Vec3::new(xy, yy, yz), Vec3::new(xz, yz, zz)]
     }
 
-    /// `A + u uᵀ s`.
+    /// Returns `A + u uᵀ s`.
     #[inline(always)]
     #[must_use]
     pub fn add_outer(&self, u: Vec3<S>, s: S) -> Self {
         self.add_parallel(u, u * s)
     }
 
-    /// `A + u wᵀ`, of which `w` must be a multiple of `u`.
+    /// Returns `A + u wᵀ`, where `w` is a multiple of `u`.
     #[inline(always)]
     #[must_use]
     pub fn add_parallel(&self, u: Vec3<S>, w: Vec3<S>) -> Self {
@@ -80,11 +80,11 @@ impl<S: Real> Sym3<S> {
         )
     }
 
-    /// `R A Rᵀ`: the same tensor in other axes.
+    /// Returns `R A Rᵀ`: the same tensor in other axes.
     #[inline(always)]
     #[must_use]
     pub fn rotate(&self, r: &Mat3<S>) -> Self {
-        // columns of R A, then the six products with the rows of R that are needed
+        // columns of R A, then the six required products with rows of R
         let (p, q, s) = (
             r.x.scale_add(self.xx, r.y.scale_add(self.xy, r.z * self.xz)),
             r.x.scale_add(self.xy, r.y.scale_add(self.yy, r.z * self.yz)),
@@ -101,7 +101,7 @@ impl<S: Real> Sym3<S> {
         )
     }
 
-    /// `A + m (c² 1 − c cᵀ)`: the parallel-axis shift by `c`, with `h = m c`.
+    /// Returns `A + m (c² 1 − c cᵀ)`: the parallel-axis shift by `c`, with `h = m c`.
     #[inline(always)]
     #[must_use]
     pub fn shift(&self, h: Vec3<S>, c: Vec3<S>) -> Self {
@@ -116,7 +116,7 @@ impl<S: Real> Sym3<S> {
         )
     }
 
-    /// `A⁻¹` by cofactors, for a positive definite matrix.
+    /// Returns `A⁻¹` by cofactors, for a positive definite matrix.
     #[inline(always)]
     #[must_use]
     pub fn inverse(&self) -> Self {
@@ -133,7 +133,7 @@ impl<S: Real> Sym3<S> {
 }
 
 impl<S: Scalar> Sym3<S> {
-    /// As a nalgebra matrix.
+    /// Returns the nalgebra matrix.
     #[inline(always)]
     pub fn to_nalgebra(self) -> Matrix3<f64> {
         let [xx, yy, zz, xy, xz, yz] =
@@ -143,7 +143,7 @@ impl<S: Scalar> Sym3<S> {
 }
 
 impl From<Matrix3<f64>> for Sym3<f64> {
-    /// The symmetric part.
+    /// Returns the symmetric part of a matrix.
     fn from(m: Matrix3<f64>) -> Self {
         let mean = |i, j| 0.5 * (m[(i, j)] + m[(j, i)]);
         Self::new(m[(0, 0)], m[(1, 1)], m[(2, 2)], mean(0, 1), mean(0, 2), mean(1, 2))

@@ -1,11 +1,12 @@
-//! Three components.
+//! Vectors of three components.
 
 use super::scalar::{Real, Scalar};
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-/// A vector in three dimensions.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Vector in three dimensions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vec3<S> {
     /// First component.
     pub x: S,
@@ -16,7 +17,7 @@ pub struct Vec3<S> {
 }
 
 impl<S> Vec3<S> {
-    /// `f` of each component.
+    /// Returns the vector with `f` applied to each component.
     #[inline(always)]
     pub fn map<T>(&self, f: impl Fn(&S) -> T) -> Vec3<T> {
         Vec3 { x: f(&self.x), y: f(&self.y), z: f(&self.z) }
@@ -24,43 +25,43 @@ impl<S> Vec3<S> {
 }
 
 impl<S: Real> Vec3<S> {
-    /// The vector `(x, y, z)`.
+    /// Returns the vector `(x, y, z)`.
     #[inline(always)]
     pub fn new(x: S, y: S, z: S) -> Self {
         Self { x, y, z }
     }
 
-    /// The null vector.
+    /// Returns the zero vector.
     #[inline(always)]
     pub fn zero() -> Self {
         Self::new(S::of(0.0), S::of(0.0), S::of(0.0))
     }
 
-    /// A constant of the model, in every lane.
+    /// Returns a vector with the same components in every lane.
     #[inline(always)]
     pub fn of(v: &Vec3<f64>) -> Self {
         Self::new(S::of(v.x), S::of(v.y), S::of(v.z))
     }
 
-    /// A vector per lane.
+    /// Returns the vector `f(i)` in lane `i`.
     #[inline(always)]
     pub fn from_lanes(f: impl Fn(usize) -> Vec3<f64>) -> Self {
         Self::new(S::from_lanes(|i| f(i).x), S::from_lanes(|i| f(i).y), S::from_lanes(|i| f(i).z))
     }
 
-    /// The vector in lane `i`.
+    /// Returns the vector in lane `i`.
     #[inline(always)]
     pub fn lane(self, i: usize) -> Vec3<f64> {
         Vec3::new(self.x.lane(i), self.y.lane(i), self.z.lane(i))
     }
 
-    /// The first three numbers of a slice.
+    /// Returns the first three numbers of a slice.
     #[inline(always)]
     pub fn from_slice(s: &[S]) -> Self {
         Self::new(s[0], s[1], s[2])
     }
 
-    /// Writes the components into the first three places of a slice.
+    /// Writes the components to the first three places of a slice.
     #[inline(always)]
     pub fn write(self, out: &mut [S]) {
         out[0] = self.x;
@@ -68,19 +69,19 @@ impl<S: Real> Vec3<S> {
         out[2] = self.z;
     }
 
-    /// Scalar product.
+    /// Returns the scalar product `self · o`.
     #[inline(always)]
     pub fn dot(self, o: Self) -> S {
         self.x.mul_add(o.x, self.y.mul_add(o.y, self.z * o.z))
     }
 
-    /// `self · o + s`.
+    /// Returns `self · o + s`.
     #[inline(always)]
     pub fn dot_add(self, o: Self, s: S) -> S {
         self.x.mul_add(o.x, self.y.mul_add(o.y, self.z.mul_add(o.z, s)))
     }
 
-    /// Vector product.
+    /// Returns the vector product `self × o`.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
         Self::new(
@@ -90,7 +91,7 @@ impl<S: Real> Vec3<S> {
         )
     }
 
-    /// `self × o + s`.
+    /// Returns `self × o + s`.
     #[inline(always)]
     pub fn cross_add(self, o: Self, s: Self) -> Self {
         Self::new(
@@ -100,13 +101,13 @@ impl<S: Real> Vec3<S> {
         )
     }
 
-    /// `self · s + o`.
+    /// Returns `self · s + o`.
     #[inline(always)]
     pub fn scale_add(self, s: S, o: Self) -> Self {
         Self::new(self.x.mul_add(s, o.x), self.y.mul_add(s, o.y), self.z.mul_add(s, o.z))
     }
 
-    /// Euclidean length.
+    /// Returns the Euclidean norm.
     #[inline(always)]
     pub fn norm(self) -> S {
         self.dot(self).sqrt()
@@ -114,7 +115,7 @@ impl<S: Real> Vec3<S> {
 }
 
 impl<S: Scalar> Vec3<S> {
-    /// As a nalgebra vector.
+    /// Returns the nalgebra vector.
     #[inline(always)]
     pub fn to_nalgebra(self) -> Vector3<f64> {
         Vector3::new(self.x.value(), self.y.value(), self.z.value())

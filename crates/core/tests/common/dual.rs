@@ -1,4 +1,4 @@
-//! Numbers with a derivative: `x + ε x'`, `ε² = 0`. What a kernel does to them is its exact derivative.
+//! Dual numbers `x + ε x'`, `ε² = 0`: a kernel evaluated on them returns its exact derivative.
 
 use onorbit_core::spatial::Real;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -15,7 +15,7 @@ impl<S: Real> Dual<S> {
     }
 }
 
-/// These numbers, with a derivative of one in the place `j` (or nowhere).
+/// Returns these numbers, with a derivative of one at place `j` (or nowhere).
 pub fn seeded(x: &[f64], j: Option<usize>) -> Vec<Dual<f64>> {
     x.iter().enumerate().map(|(i, x)| Dual::new(*x, f64::from(u8::from(Some(i) == j)))).collect()
 }

@@ -44,8 +44,23 @@ fn inertial((mass, i): (f64, [f64; 6]), com: [f64; 3]) -> Option<Inertial> {
     Some(Inertial { mass, com: Vector3::from(com), inertia })
 }
 
-/// Base `torso`, joints `arm_1` to `arm_7`, frame `tool`; `change` may alter each joint.
+/// Returns the robot with base `torso`, joints `arm_1` to `arm_7` and frame `tool`; `change` may alter each
+/// joint.
 pub fn humanoid_with(change: impl Fn(&mut Joint)) -> Model {
+    builder(change).build().unwrap()
+}
+
+/// Returns the robot with an eighth joint that no law drives and whose link of 1e-12 kg is negligible, so
+/// that laws on the arm are laws on a group of joints.
+pub fn humanoid_with_idle_joint(change: impl Fn(&mut Joint)) -> Model {
+    let mut builder = builder(change);
+    let idle = Joint::new("idle", JointKind::Revolute(Vector3::z()), Isometry3::identity());
+    let link = Inertial { mass: 1e-12, com: Vector3::zeros(), inertia: Matrix3::identity() * 1e-12 };
+    builder.add("torso", idle, Link::new("idle_link", Some(link))).unwrap();
+    builder.build().unwrap()
+}
+
+fn builder(change: impl Fn(&mut Joint)) -> ModelBuilder {
     let mut builder = ModelBuilder::new("humanoid", Link::new("torso", inertial(BODY, [0.0; 3]))).unwrap();
     let mut parent = "torso".to_owned();
     for i in 0..7 {
@@ -63,7 +78,7 @@ pub fn humanoid_with(change: impl Fn(&mut Joint)) -> Model {
         parent = name;
     }
     builder.add_frame("tool", &parent, Isometry3::translation(0.0, 0.0, -0.1)).unwrap();
-    builder.build().unwrap()
+    builder
 }
 
 /// The robot of the paper.
@@ -71,9 +86,9 @@ pub fn humanoid() -> Model {
     humanoid_with(|_| {})
 }
 
-/// At the origin, unrotated, the arm at [`START`].
+/// Returns the state at the origin, unrotated, with the arm at [`START`].
 pub fn start(model: &Model) -> Vec<f64> {
     let mut q = onorbit_core::model::neutral(model);
-    q[7..].copy_from_slice(&START);
+    q[7..14].copy_from_slice(&START);
     q
 }

@@ -1,9 +1,9 @@
-//! Two thin links far lighter than the base that carries them.
+//! Two thin links that are far lighter than the base.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};
 
-/// A base of 100 kg and two links of `mass`, kg, and 0.2 m each, turning about y and about z.
+/// Returns a base of 100 kg with two links of `mass`, kg, and 0.2 m each, that rotate about y and about z.
 pub fn light_links(mass: f64) -> Model {
     let part = |mass: f64, moment: f64, x: f64| {
         Some(Inertial { mass, com: Vector3::x() * x, inertia: Matrix3::identity() * moment })

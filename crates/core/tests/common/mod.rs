@@ -1,4 +1,4 @@
-//! Random robots and states; the seed of each is in the name of the test that fails.
+//! Random robots and states; a failing test prints the seed.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)] // each test binary uses its own part
 
 pub mod dual;
@@ -7,12 +7,13 @@ pub mod light;
 pub mod slider;
 pub mod spacecraft;
 pub mod stepper;
+pub mod stepping;
 pub mod stream;
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};
 
-/// A small generator (splitmix64), so that a seed means the same robot for ever.
+/// A small generator (splitmix64), so that a seed always gives the same robot.
 pub struct Random(u64);
 
 impl Random {
@@ -20,7 +21,7 @@ impl Random {
         Self(seed)
     }
 
-    /// Uniform in -1..1.
+    /// Returns a number uniform in -1..1.
     pub fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -47,7 +48,7 @@ impl Random {
     }
 
     pub fn inertial(&mut self) -> Inertial {
-        // three point-symmetric extents give moments that obey the triangle inequality
+        // three orthogonal extents give moments that satisfy the triangle inequality
         let mass = 1.0 + 2.0 * self.unit().abs();
         let e: Vec<f64> = (0..3).map(|_| 0.02 + 0.1 * self.unit().abs()).collect();
         let moments = Vector3::new(e[1] + e[2], e[0] + e[2], e[0] + e[1]) * mass;
@@ -57,7 +58,7 @@ impl Random {
     }
 }
 
-/// A tree of `links` links: branches, skew axes, every joint type, rotors, a frame on the last.
+/// Returns a tree of `links` links: branches, skew axes, every joint type, rotors, a frame on the last link.
 pub fn random_model(seed: u64, links: usize) -> Model {
     let mut random = Random::new(seed);
     let base = Link::new("link0", Some(random.inertial()));
@@ -78,7 +79,7 @@ pub fn random_model(seed: u64, links: usize) -> Model {
     builder.build().unwrap()
 }
 
-/// A configuration and a velocity, `(nq,)` and `(nv,)`.
+/// Returns a configuration and a velocity, `(nq,)` and `(nv,)`.
 pub fn random_state(model: &Model, random: &mut Random) -> (Vec<f64>, Vec<f64>) {
     let mut q = random.numbers(model.nq());
     let norm = q[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -86,7 +87,7 @@ pub fn random_state(model: &Model, random: &mut Random) -> (Vec<f64>, Vec<f64>) 
     (q, random.numbers(model.nv()))
 }
 
-/// Largest difference, relative to the largest entry (or one).
+/// Returns the largest difference, relative to the largest entry (or one).
 pub fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let scale = b.iter().fold(1.0_f64, |m, x| m.max(x.abs()));

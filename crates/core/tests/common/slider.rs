@@ -1,25 +1,24 @@
-//! A mass that slides on a free base along x, all centres of mass on that line: closed forms hold.
+//! A mass on a prismatic joint along x, with all centres of mass on that line, for which closed forms exist.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
-use onorbit_core::control::{ControlError, ControlLaw, Controller, Observation};
+use onorbit_core::control::{Control, ControlError, Controller, Law, Observation};
 use onorbit_core::model::{
     Inertial, Joint, JointKind, Limits, Link, Model, ModelBuilder, ModelError, neutral,
 };
 use onorbit_core::simulation::{Integrator, Simulation, Trace};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Masses of base and slider, kg.
 pub const BASE: f64 = 20.0;
 pub const SLIDER: f64 = 5.0;
-/// What the joint feels of them: `M m/(M + m)`, kg.
+/// Reduced mass `M m/(M + m)` at the joint, kg.
 pub const REDUCED: f64 = BASE * SLIDER / (BASE + SLIDER);
 
 fn inertial(mass: f64) -> Option<Inertial> {
     Some(Inertial { mass, com: Vector3::zeros(), inertia: Matrix3::identity() * (0.1 * mass) })
 }
 
-/// Joint `slide` with friction, N, damping, N s/m, and limits, m; at `offset` along x, m.
+/// Returns joint `slide` with friction, N, damping, N s/m, and limits, m; at `offset` along x, m.
 pub fn slider(friction: f64, damping: f64, limits: Option<(f64, f64)>, offset: f64) -> Model {
     slider_with(
         |joint| {
@@ -30,12 +29,12 @@ pub fn slider(friction: f64, damping: f64, limits: Option<(f64, f64)>, offset: f
     )
 }
 
-/// Joint `slide`, which `change` may alter, at `offset` along x, m.
+/// Returns joint `slide`, which `change` may alter, at `offset` along x, m.
 pub fn slider_with(change: impl Fn(&mut Joint), offset: f64) -> Model {
     try_slider_with(change, offset).unwrap()
 }
 
-/// As [`slider_with`], with what is wrong.
+/// As [`slider_with`], or the error.
 pub fn try_slider_with(change: impl Fn(&mut Joint), offset: f64) -> Result<Model, ModelError> {
     let mut builder = ModelBuilder::new("slider", Link::new("base", inertial(BASE)))?;
     let origin = Isometry3::translation(offset, 0.0, 0.0);
@@ -45,7 +44,7 @@ pub fn try_slider_with(change: impl Fn(&mut Joint), offset: f64) -> Result<Model
     builder.build()
 }
 
-/// At rest but for the slider's rate, m/s.
+/// Returns a simulation at rest except for the slider's rate, m/s.
 pub fn moving(model: Model, rate: f64, integrator: Integrator, time_step: f64) -> Simulation {
     let (q, mut v) = (neutral(&model), vec![0.0; model.nv()]);
     v[6] = rate;
@@ -55,10 +54,10 @@ pub fn moving(model: Model, rate: f64, integrator: Integrator, time_step: f64) -
 }
 
 pub fn run(simulation: &mut Simulation, duration: f64) -> Trace {
-    simulation.run(duration, &mut |_| ControlFlow::Continue(())).unwrap()
+    simulation.run(duration).unwrap()
 }
 
-/// A force at the joint, N, as a function of time.
+/// Controller with a force at the joint, N, as a function of time.
 pub struct Force(pub fn(f64) -> f64);
 
 impl Controller for Force {
@@ -69,7 +68,8 @@ impl Controller for Force {
 }
 
 pub fn driven(mut simulation: Simulation, force: fn(f64) -> f64) -> Simulation {
-    simulation.control = ControlLaw::User(Box::new(Force(force)));
+    simulation.controls =
+        vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Force(force)), None))];
     simulation
 }
 

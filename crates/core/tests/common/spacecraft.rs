@@ -1,4 +1,4 @@
-//! One rigid body in the field of a point mass, in absolute coordinates: independent of the engine.
+//! Independent integration of one rigid body in the field of a point mass, in absolute coordinates.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
@@ -8,7 +8,7 @@ pub struct Craft {
     pub inertia: Matrix3<f64>,
 }
 
-/// What acts besides gravity: a wrench in body axes while `during`, the gravity-gradient torque.
+/// Loads besides gravity: a wrench in body axes during `during`, and the gravity-gradient torque.
 #[derive(Default)]
 pub struct Pull {
     pub force: Vector3<f64>,
@@ -27,7 +27,7 @@ pub struct State {
 }
 
 impl State {
-    /// Takes body components to inertial ones.
+    /// Rotation from body to inertial axes.
     pub fn attitude_matrix(&self) -> Matrix3<f64> {
         UnitQuaternion::from_quaternion(self.attitude).to_rotation_matrix().into_inner()
     }
@@ -49,7 +49,7 @@ pub struct Independent<'a> {
 }
 
 impl Independent<'_> {
-    /// Classical Runge-Kutta, quaternion components as four numbers, steps cut at the switches.
+    /// Classical Runge-Kutta with the quaternion as four numbers and steps that end at the switches.
     pub fn run(&self, mut state: State, duration: f64, step: f64) -> State {
         let mut cuts: Vec<f64> = (0..=(duration / step).round() as usize).map(|k| k as f64 * step).collect();
         cuts.extend([self.pull.during.0, self.pull.during.1]);

@@ -1,23 +1,23 @@
-//! A second integrator, written with the public kernels alone: Runge-Kutta whose attitude is right
-//! or, as a negative control, composed from averaged rates.
+//! A second integrator, written with the public kernels only: Runge-Kutta with correct attitude or, as a
+//! negative control, with attitude from averaged rates.
 
 use onorbit_core::dynamics::{
-    Data, base_twist, center_of_mass, forward_dynamics, kinematics, kinetic_energy, momentum,
+    Data, center_of_mass, forward_dynamics, kinematics, kinetic_energy, momentum, projected_base_twist,
 };
 use onorbit_core::model::Model;
 use onorbit_core::simulation::Trace;
 use onorbit_core::spatial::{Quat, Vec3, dexp_inv, exp_so3};
 
-/// How a step turns the base.
+/// Method of integrating the attitude.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Turning {
-    /// `R exp(h Σ b ω)`: rates averaged as if rotations commuted.
+    /// `R exp(h Σ b ω)`: averages the rates as if rotations commuted.
     Averaged,
-    /// The same with each rate pulled back by the inverse differential of the exponential.
+    /// The same, with each rate transformed by the inverse differential of the exponential.
     OnTheGroup,
 }
 
-/// Free motion in W, every step a row; momentum is put right at every step, as the engine does.
+/// Returns every step of a free motion in W; momentum is projected at each step, as in the engine.
 pub fn free_motion(model: &Model, q: &[f64], v: &[f64], h: f64, steps: usize, turning: Turning) -> Trace {
     let mut data = Data::new(model);
     let (mut q, mut v) = (q.to_vec(), v.to_vec());
@@ -27,7 +27,7 @@ pub fn free_motion(model: &Model, q: &[f64], v: &[f64], h: f64, steps: usize, tu
     let mut trace = Trace { has_every_step: true, ..Trace::default() };
     for k in 0..=steps {
         kinematics(model, &mut data, &q, &v);
-        base_twist(&data, &q, &v, start).write(&mut v);
+        projected_base_twist(&data, &q, &v, start).write(&mut v);
         let mut a = zeros.clone();
         forward_dynamics(model, &mut data, &q, &v, &zeros, &[], &mut a);
         let h_now = momentum(&data, &q);
@@ -49,7 +49,7 @@ pub fn free_motion(model: &Model, q: &[f64], v: &[f64], h: f64, steps: usize, tu
     trace
 }
 
-/// Classical Runge-Kutta on positions, joints and velocities; the attitude as `turning` says.
+/// Classical Runge-Kutta on positions, joints and velocities; the attitude as in `turning`.
 fn step(model: &Model, data: &mut Data<f64>, q: &mut [f64], v: &mut [f64], h: f64, turning: Turning) {
     let (q0, v0) = (q.to_vec(), v.to_vec());
     let zeros = vec![0.0; v.len()];
@@ -74,7 +74,7 @@ fn step(model: &Model, data: &mut Data<f64>, q: &mut [f64], v: &mut [f64], h: f6
     place(q, v, (&q0, &v0), &sum, h);
 }
 
-/// `(q, v)` = start moved by `h` at `rate`.
+/// Returns `(q, v)`: `start` moved by `h` at `rate`.
 fn place(q: &mut [f64], v: &mut [f64], from: (&[f64], &[f64]), rate: &(Vec<f64>, Vec<f64>), h: f64) {
     let (q0, v0) = from;
     for i in 0..3 {

@@ -1,4 +1,4 @@
-//! A body in a stream of air or light, and streams summed over many small plates.
+//! A body in a stream of air or light, and forces summed over many small plates.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::earth::Earth;
@@ -12,7 +12,7 @@ use onorbit_core::orbit::{MU_EARTH, OrbitState};
 /// Area, m², outward normal, centroid, m.
 pub type Plate = (f64, Vector3<f64>, Vector3<f64>);
 
-/// A body that moves through `W`.
+/// A body that moves in `W`.
 pub fn body(rot_wk: Matrix3<f64>, velocity: Vector3<f64>, angular_velocity: Vector3<f64>) -> BodyState {
     BodyState {
         mass: 1.0,
@@ -25,12 +25,13 @@ pub fn body(rot_wk: Matrix3<f64>, velocity: Vector3<f64>, angular_velocity: Vect
     }
 }
 
-/// The surface on the only body of a robot.
+/// Returns the surface as that of the only body of a robot.
 pub fn alone(surface: Surface) -> Surfaces {
-    Surfaces::new(vec![Covering { body: 0, surface }], 1).expect("one body")
+    Surfaces::new(vec![Covering { body: 0.into(), surface }], &[1]).expect("one body")
 }
 
-/// What an effect does to `bodies` around a reference at `r` with velocity `v`, `time` s after the step began there.
+/// Returns the wrench of an effect on `bodies` around a reference at `r` with velocity `v`, `time` s after
+/// the start of the step.
 pub fn wrenches(
     effect: &dyn Effect,
     earth: Option<&Earth>,
@@ -39,14 +40,14 @@ pub fn wrenches(
 ) -> Result<Vec<Wrench>, EnvironmentError> {
     let gravity = Gravity::point_mass(MU_EARTH);
     let state = OrbitState { position: r, velocity: v, acceleration: Vector3::zeros() };
-    let (mut wrenches, bodies) = (Wrenches::new(bodies.len()), bodies.iter().copied().collect::<Bodies>());
-    let reference = Some(Reference { state, gravity: Some(&gravity), falls_freely: true });
+    let (mut wrenches, bodies) = (Wrenches::new(&[bodies.len()]), bodies.iter().copied().collect::<Bodies>());
+    let reference = Some(Reference { state, gravity: Some(&gravity), in_free_fall: true });
     let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
-    Scene::show((0.0, 1.0), 0.0, &bodies, reference, earth, act)?;
+    Scene::with((0.0, 1.0), 0.0, &bodies, reference, earth, act)?;
     Ok(wrenches.iter().collect())
 }
 
-/// `Σ f(plate)` where `f` is the force on a plate at its centroid: force and torque about the origin.
+/// Returns `Σ f(plate)` where `f` is the force on a plate at its centroid: force and torque about the origin.
 pub fn summed(
     plates: &[Plate],
     force: impl Fn(f64, &Vector3<f64>, &Vector3<f64>) -> Vector3<f64>,
@@ -57,7 +58,7 @@ pub fn summed(
     })
 }
 
-/// The side of a cylinder along z about `centre`, as strips and slices.
+/// Returns the side of a cylinder along z about `centre`, divided into strips and slices.
 pub fn strips(radius: f64, length: f64, centre: Vector3<f64>, count: usize) -> Vec<Plate> {
     let step = std::f64::consts::TAU / count as f64;
     (0..count)
@@ -69,7 +70,7 @@ pub fn strips(radius: f64, length: f64, centre: Vector3<f64>, count: usize) -> V
         .collect()
 }
 
-/// A ball about `centre`, as small plates.
+/// Returns a sphere about `centre`, divided into small plates.
 pub fn ball(radius: f64, centre: Vector3<f64>, count: usize) -> Vec<Plate> {
     let (dz, step) = (2.0 / count as f64, std::f64::consts::TAU / count as f64);
     let mut plates = Vec::new();
@@ -85,7 +86,7 @@ pub fn ball(radius: f64, centre: Vector3<f64>, count: usize) -> Vec<Plate> {
     plates
 }
 
-/// Some attitudes without symmetry.
+/// Returns attitudes without symmetry.
 pub fn attitudes() -> Vec<Matrix3<f64>> {
     let turn = |k: f64| Rotation3::from_euler_angles(0.3 + 1.7 * k, -1.1 + 0.9 * k, 2.2 * k).into_inner();
     (0..6).map(|k| turn(f64::from(k))).collect()

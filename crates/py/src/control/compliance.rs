@@ -1,25 +1,42 @@
-//! A tool on a spring and a damper.
+//! Compliance of a tool.
 
-use super::computed_torque::gains;
+use super::gains::gains;
+use super::native_law::{Group, NativeLaw, same_robot};
 use crate::errors::IntoPython;
 use crate::model::PyModel;
-use onorbit_core::control::Compliance;
+use onorbit_core::control::{Compliance, Law};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// The tool hangs on a spring and a damper: ``tau = Jg^T (K e + D e') - k N qdot``. Nothing weighs anything in orbit, so
-/// nothing is compensated and the law is passive. Nor is friction compensated, which may hold the tool off its goal.
+/// Compliance of a tool by a virtual spring and damper: ``tau = Jg^T (K e + D e') - k N qdot``.
 ///
-/// ``stiffness`` (N/m, N m/rad) and ``damping`` (N s/m, N m s/rad) are numbers, (6,) or (6, 6), position rows first;
-/// ``null_space_damping`` (N m s/rad) brakes what the tool does not feel. Held torques bear a damping of about twice the
-/// tool's inertia over the control period. Raises ``ControlError``, ``FrameError`` or ``ShapeError``.
+/// The law is passive; in free fall there is no gravity load to compensate. Friction is not compensated and
+/// may hold the tool away from its goal. Because torques are held between control ticks, the damping is
+/// limited to about twice the inertia of the tool divided by the control period.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     Robot.
+/// tool : str
+///     Frame of the robot.
+/// stiffness : float, (6,) or (6, 6) array
+///     ``K``, linear rows first, N/m and N m/rad.
+/// damping : float, (6,) or (6, 6) array
+///     ``D``, linear rows first, N s/m and N m s/rad.
+/// null_space_damping : float
+///     ``k``, damping of joint motion that does not move the tool, N m s/rad.
+///
+/// Raises
+/// ------
+/// ControlError, FrameError, ShapeError
 #[pyclass(name = "Compliance", frozen, module = "onorbit_rs")]
 pub(crate) struct PyCompliance {
-    pub(super) law: Compliance,
-    pub(super) model: Arc<Model>,
+    law: Compliance,
+    model: Arc<Model>,
 }
 
 #[pymethods]
@@ -39,5 +56,12 @@ impl PyCompliance {
         let law = Compliance { frame, stiffness, damping, null_space_damping };
         law.check().map_err(|error| error.into_python(py))?;
         Ok(Self { law, model: Arc::clone(&model.model) })
+    }
+}
+
+impl NativeLaw for PyCompliance {
+    fn law(&self, py: Python<'_>, group: &Group<'_, '_>) -> PyResult<Law> {
+        same_robot(py, &self.model, group.robot.model)?;
+        Ok(Law::Compliance(Box::new(self.law.clone()), group.task(py)?))
     }
 }

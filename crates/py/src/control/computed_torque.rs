@@ -1,23 +1,42 @@
 //! Task-space computed torque.
 
-use crate::arrays::{Input, fixed, wrong_shape};
-use crate::errors::{IntoPython, plain};
+use super::gains::gains;
+use super::native_law::{Group, NativeLaw, same_robot};
+use crate::errors::IntoPython;
 use crate::model::PyModel;
-use onorbit_core::control::ComputedTorque;
+use onorbit_core::control::{ComputedTorque, Law};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Computed torque on the generalized Jacobian, Eq. (6)-(8) of the OnOrbitROS paper with the exact drift.
+/// Computed torque on the generalized Jacobian: Eq. (6)-(8) of the OnOrbitROS paper with the exact drift.
 ///
-/// ``tool`` is a frame of ``model``; ``kp`` (1/s²) and ``kd`` (1/s) are numbers, (6,) or (6, 6), position rows first;
-/// ``damping`` the singular value of the generalized Jacobian below which its inverse is damped, ``null_space_damping``
-/// (1/s) brakes self-motion. With ``compensate_environment`` the law knows the external wrenches. With
-/// ``compensate_friction`` it knows the joints' damping, and their drives compensate Coulomb friction at every instant:
-/// joints move as if they had none, from rest and through reversals, and those at their goal (2e-8 rad or m) stay at rest.
-/// Raises ``ControlError``, ``FrameError`` or ``ShapeError``.
+/// Parameters
+/// ----------
+/// model : Model
+///     Robot.
+/// tool : str
+///     Frame of the robot that tracks the reference.
+/// kp : float, (6,) or (6, 6) array, optional
+///     Position gain, linear rows first, 1/s².
+/// kd : float, (6,) or (6, 6) array, optional
+///     Velocity gain, linear rows first, 1/s.
+/// damping : float
+///     Singular value of the generalized Jacobian below which its inverse is damped.
+/// null_space_damping : float
+///     Damping of the self-motion, 1/s.
+/// compensate_environment : bool
+///     If True, the external wrenches are compensated.
+/// compensate_friction : bool
+///     If True, the damping of the joints is compensated, and the joint drives compensate Coulomb friction at
+///     every instant: joints move as if they had no friction, from rest and through reversals, and joints at
+///     their goal (within 2e-8 rad or m) stay at rest.
+///
+/// Raises
+/// ------
+/// ControlError, FrameError, ShapeError
 #[pyclass(name = "ComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyComputedTorque {
     pub(crate) law: ComputedTorque,
@@ -25,21 +44,10 @@ pub(crate) struct PyComputedTorque {
 }
 
 impl PyComputedTorque {
-    /// Refuses a robot that the law was not made for.
+    /// Returns an error for a robot other than that of the law.
     pub(crate) fn check_model(&self, py: Python<'_>, model: &Arc<Model>) -> PyResult<()> {
         same_robot(py, &self.model, model)
     }
-}
-
-/// Refuses a robot that a law was not made for.
-pub(super) fn same_robot(py: Python<'_>, own: &Arc<Model>, model: &Arc<Model>) -> PyResult<()> {
-    if Arc::ptr_eq(own, model) || own.is_like(model) {
-        return Ok(());
-    }
-    let (own, other) = (own.name(), model.name());
-    let message =
-        format!("the controller was made for robot '{own}', not for '{other}': make it from the same model");
-    Err(plain(py, "ControlError", &message))
 }
 
 #[pymethods]
@@ -76,14 +84,9 @@ impl PyComputedTorque {
     }
 }
 
-/// A number, (6,) or (6, 6).
-pub(super) fn gains(value: Any<'_, '_>, name: &str) -> PyResult<[f64; 36]> {
-    if let Ok(gain) = value.extract::<f64>() {
-        return Ok(ComputedTorque::diagonal([gain; 6]));
-    }
-    match Input::new(value, name)?.shape() {
-        [6] => Ok(ComputedTorque::diagonal(fixed(value, name, &[6])?)),
-        [6, 6] => fixed(value, name, &[6, 6]),
-        other => Err(wrong_shape(value.py(), name, "a number, (6,) or (6, 6)", other)),
+impl NativeLaw for PyComputedTorque {
+    fn law(&self, py: Python<'_>, group: &Group<'_, '_>) -> PyResult<Law> {
+        same_robot(py, &self.model, group.robot.model)?;
+        Ok(Law::TaskComputedTorque(Box::new(self.law.clone()), group.task(py)?))
     }
 }

@@ -1,22 +1,41 @@
-//! Controllers: the native laws, Python's own, and which joints each drives.
+//! Controllers: native laws, Python controllers, and controls of groups of joints.
+//!
+//! `docs/howto/controller.md`, "Add a law to the engine", lists all places of a law.
 
 mod compliance;
 mod computed_torque;
-mod group;
-mod joint;
+#[allow(clippy::module_inception)] // the file of `Control`
+mod control;
+mod gains;
+mod joint_computed_torque;
+mod joint_pid;
+mod native_law;
 mod user;
 
 use pyo3::prelude::*;
 
+use compliance::PyCompliance;
 pub(crate) use computed_torque::PyComputedTorque;
-pub(crate) use group::{Robot, control_law};
+pub(crate) use control::controls_of;
+use joint_computed_torque::PyJointComputedTorque;
+use joint_pid::PyJointPid;
+pub(crate) use native_law::Robot;
+use native_law::{LawOf, law_of};
+
+/// Control laws of the core. A new law requires a file, an entry in this list and a class in this module.
+const LAWS: [LawOf; 4] = [
+    law_of::<PyComputedTorque>,
+    law_of::<PyJointComputedTorque>,
+    law_of::<PyJointPid>,
+    law_of::<PyCompliance>,
+];
 
 pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyComputedTorque>()?;
-    m.add_class::<joint::PyJointComputedTorque>()?;
-    m.add_class::<joint::PyJointPid>()?;
-    m.add_class::<compliance::PyCompliance>()?;
-    m.add_class::<group::PyControl>()?;
-    m.add_class::<group::PyGoal>()?;
+    m.add_class::<PyJointComputedTorque>()?;
+    m.add_class::<PyJointPid>()?;
+    m.add_class::<PyCompliance>()?;
+    m.add_class::<control::PyControl>()?;
+    m.add_class::<control::PyGoal>()?;
     m.add_class::<user::PyState>()
 }

@@ -6,14 +6,14 @@ use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-/// What a Python controller is given: fresh arrays, its own to keep.
+/// State that a Python controller receives; its arrays are copies.
 #[pyclass(name = "State", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyState {
     /// Configuration, (nq,).
     q: Py<PyAny>,
     /// Velocity, (nv,).
     v: Py<PyAny>,
-    /// Names of the joints to drive, in the order of the torques.
+    /// Names of the joints of the control, in the order of the torques.
     joints: Vec<String>,
     /// Desired pose of the tool in W, (4, 4), or None without a reference.
     reference_pose: Option<Py<PyAny>>,
@@ -24,9 +24,9 @@ pub(crate) struct PyState {
 }
 
 impl PyState {
-    fn new(py: Python<'_>, now: &Observation<'_>) -> Self {
+    fn new(py: Python<'_>, observation: &Observation<'_>) -> Self {
         let array = |shape: &[usize], data: &[f64]| array_of(py, shape, data).into_any().unbind();
-        let desired = now.desired.as_ref();
+        let desired = observation.desired.as_ref();
         let pose = |d: &onorbit_core::reference::TaskSample<f64>| d.pose_rows();
         let six = |m: &onorbit_core::spatial::Motion<f64>| {
             let mut out = [0.0; 6];
@@ -34,9 +34,9 @@ impl PyState {
             out
         };
         Self {
-            q: array(&[now.q.len()], now.q),
-            v: array(&[now.v.len()], now.v),
-            joints: now.joints.iter().map(|&i| now.model.joints()[i].name.clone()).collect(),
+            q: array(&[observation.q.len()], observation.q),
+            v: array(&[observation.v.len()], observation.v),
+            joints: observation.joints.iter().map(|&i| observation.model.joints()[i].name.clone()).collect(),
             reference_pose: desired.map(|d| array(&[4, 4], &pose(d))),
             reference_velocity: desired.map(|d| array(&[6], &six(&d.velocity))),
             reference_acceleration: desired.map(|d| array(&[6], &six(&d.acceleration))),
@@ -44,7 +44,7 @@ impl PyState {
     }
 }
 
-/// A Python object with ``update(t, state) -> tau``, in the native loop.
+/// Python object with `update(t, state)` as a controller of the core.
 pub(crate) struct PythonController {
     pub(crate) object: Py<PyAny>,
 }
@@ -59,10 +59,10 @@ impl Controller for PythonController {
         .map_err(raised)
     }
 
-    fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError> {
+    fn update(&mut self, observation: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError> {
         Python::attach(|py| {
-            let state = Bound::new(py, PyState::new(py, now))?;
-            let result = self.object.bind(py).call_method1("update", (now.time, state))?;
+            let state = Bound::new(py, PyState::new(py, observation))?;
+            let result = self.object.bind(py).call_method1("update", (observation.time, state))?;
             let torques = Input::new(&result, "the torque returned by update")?;
             if torques.shape() != [tau.len()] {
                 let expected = format!("({},), one torque per joint", tau.len());
@@ -92,13 +92,14 @@ impl Controller for PythonController {
 }
 
 impl PythonController {
-    /// Its own method, or that of the base class for an object that merely has `update`.
+    /// Calls a method of the object, or that of the base class for an object that only has `update`.
     fn call<'py>(&self, py: Python<'py>, name: &str, arguments: impl PyCallArgs<'py>) -> PyResult<Py<PyAny>> {
         let object = self.object.bind(py);
         let method = match object.getattr_opt(name)? {
             Some(method) => method,
             None => {
-                let base = py.import("onorbit_rs.control")?.getattr("Controller")?.getattr(name)?;
+                let base =
+                    py.import("onorbit_rs.simulation.controller")?.getattr("Controller")?.getattr(name)?;
                 base.call_method1("__get__", (object,))?
             }
         };
@@ -106,12 +107,12 @@ impl PythonController {
     }
 }
 
-/// The module that turns plain data, and nothing else, into text and back.
+/// Returns the module that converts plain data to text and back.
 fn plain_data(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
-    py.import("onorbit_rs.plain_data")
+    py.import("onorbit_rs.simulation.controller_state")
 }
 
-/// What Python raised, to be raised again as that very object.
+/// Returns a Python exception as an error, so that the same object is raised again.
 fn raised(error: PyErr) -> ControlError {
     ControlError::User(Box::new(error))
 }

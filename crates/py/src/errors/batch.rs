@@ -1,4 +1,4 @@
-//! Inputs of calls over many states.
+//! Errors of calls with many states.
 
 use super::{IntoPython, fields, plain, raise, shape_error};
 use onorbit_core::batch::InputError;
@@ -14,7 +14,7 @@ impl IntoPython for InputError {
             }
             Self::Ragged { name, width, got } => shape_error(py, &message, name, width, got),
             Self::WrongCount { what, expected, got } => shape_error(py, &message, what, expected, got),
-            Self::WrongRoom { expected, got, .. } => shape_error(py, &message, "out", expected, got),
+            Self::WrongOutput { expected, got, .. } => shape_error(py, &message, "out", expected, got),
             Self::NotSingle { got } => shape_error(py, &message, "states", 1, got),
             Self::UnknownFrame { frame, count } => raise(
                 py,
@@ -40,7 +40,7 @@ impl IntoPython for InputError {
                 }
                 error
             }
-            Self::NoEllipse { name, value, expected, .. } => {
+            Self::NotAnEllipse { name, value, expected, .. } => {
                 let fields = fields!(py, "name": name, "got": value, "expected": expected);
                 raise(py, "InputError", &message, &fields)
             }

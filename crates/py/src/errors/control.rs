@@ -1,4 +1,4 @@
-//! Controllers, and what they follow.
+//! Errors of controllers and references.
 
 use super::{IntoPython, fields, plain, raise, shape_error};
 use onorbit_core::control::ControlError;
@@ -39,7 +39,7 @@ impl IntoPython for ControlError {
         let message = self.to_string();
         match self {
             Self::User(error) => match error.downcast::<PyErr>() {
-                Ok(raised) => *raised, // that very object, traceback included
+                Ok(raised) => *raised, // the same object, including its traceback
                 Err(other) => plain(py, "ControlError", &other.to_string()),
             },
             Self::WrongLength { name, expected, got } => shape_error(py, &message, name, expected, got),
@@ -48,6 +48,7 @@ impl IntoPython for ControlError {
             | Self::TooLarge { name, value, .. } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": name, "got": value))
             }
+            Self::OtherControls { .. } | Self::OtherMemory { .. } => plain(py, "CheckpointError", &message),
             _ => plain(py, "ControlError", &message),
         }
     }

@@ -1,4 +1,4 @@
-//! Epochs, how the Earth is turned, Sun and Moon.
+//! Errors of epochs, Earth orientation, Sun and Moon.
 
 use super::{IntoPython, fields, raise};
 use onorbit_core::earth::EarthError;

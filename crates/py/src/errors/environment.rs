@@ -1,4 +1,4 @@
-//! What acts on a robot from outside.
+//! Errors of environment effects.
 
 use super::{IntoPython, fields, plain, raise};
 use onorbit_core::environment::EnvironmentError;

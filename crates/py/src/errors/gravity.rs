@@ -1,4 +1,4 @@
-//! Fields of gravity and their files.
+//! Errors of gravity fields and their files.
 
 use super::{IntoPython, fields, raise};
 use onorbit_core::gravity::GravityError;

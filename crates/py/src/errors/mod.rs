@@ -1,4 +1,4 @@
-//! The one bridge from errors of the core to the classes of `onorbit_rs.exceptions`.
+//! Conversion of the core's errors to the classes of `onorbit_rs.exceptions`, the only place that does this.
 
 mod batch;
 mod control;
@@ -17,22 +17,23 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::Path;
 
-/// An error of the core that knows its Python class.
+/// Error of the core that has a Python class.
 pub(crate) trait IntoPython {
+    /// Returns the exception, with the fields of the error as attributes.
     fn into_python(self, py: Python<'_>) -> PyErr;
 }
 
-/// `onorbit_rs.exceptions.<class>(message, **fields)`.
+/// Returns `onorbit_rs.exceptions.<class>(message, **fields)`.
 pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'_, PyDict>) -> PyErr {
-    let make = || -> PyResult<Bound<'_, PyAny>> {
+    let construct = || -> PyResult<Bound<'_, PyAny>> {
         let module = py.import("onorbit_rs.exceptions")?;
         module.getattr(class)?.call((message,), Some(fields))
     };
-    match make() {
+    match construct() {
         Ok(error) => PyErr::from_value(error),
         Err(interrupt) if is_interrupt(py, &interrupt) => {
-            // a Ctrl-C was pending: it is raised, and the error is what it came during
-            let context = make().map(PyErr::from_value).ok();
+            // a pending Ctrl-C is raised, with the error as its context
+            let context = construct().map(PyErr::from_value).ok();
             interrupt.set_context(py, context);
             interrupt
         }
@@ -40,25 +41,25 @@ pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'
     }
 }
 
-/// Whether this is a Ctrl-C, or what else ends a program: no error of a call.
+/// Returns true for a Ctrl-C or another exception that ends a program.
 pub(crate) fn is_interrupt(py: Python<'_>, error: &PyErr) -> bool {
     !error.is_instance_of::<PyException>(py)
 }
 
-/// The error, with the file that it is about before its message.
+/// Returns the error with the name of the file before its message.
 pub(crate) fn in_file(py: Python<'_>, path: &Path, error: impl IntoPython) -> PyErr {
     let error = error.into_python(py);
     let value = error.value(py);
-    let told = value.getattr("message").and_then(|message| message.extract::<String>());
-    let message = format!("{}: {}", path.display(), told.unwrap_or_else(|_| value.to_string()));
-    let _ = value.setattr("message", message); // without it the message stays as it was
+    let original = value.getattr("message").and_then(|message| message.extract::<String>());
+    let message = format!("{}: {}", path.display(), original.unwrap_or_else(|_| value.to_string()));
+    let _ = value.setattr("message", message); // if this fails, the message is unchanged
     error
 }
 
-/// Bytes of a table of the Earth's orientation or of space weather, which take ten million.
+/// Largest size of a table of Earth orientation or space weather, bytes; real tables have up to ten million.
 pub(crate) const LARGEST_TABLE: usize = 100_000_000;
 
-/// A text file that cannot be read; `what` it was to be.
+/// Returns the error for a text file that cannot be read; `what` names its content.
 pub(crate) fn unreadable(py: Python<'_>, path: &Path, what: &str, error: &TextFileError) -> PyErr {
     let file = path.display();
     let (class, message) = match error {
@@ -68,12 +69,12 @@ pub(crate) fn unreadable(py: Python<'_>, path: &Path, what: &str, error: &TextFi
     raise(py, class, &message, &fields!(py, "path": file.to_string(), "kind": what))
 }
 
-/// An error without fields.
+/// Returns an error without fields.
 pub(crate) fn plain(py: Python<'_>, class: &str, message: &str) -> PyErr {
     raise(py, class, message, &PyDict::new(py))
 }
 
-/// An array whose shape is not the one expected.
+/// Returns the error for an array with an unexpected shape.
 pub(crate) fn shape_error<'py>(
     py: Python<'py>,
     message: &str,
@@ -84,7 +85,7 @@ pub(crate) fn shape_error<'py>(
     raise(py, "ShapeError", message, &fields!(py, "name": name, "expected": expected, "got": got))
 }
 
-/// Collects the fields of an error; what cannot be converted is left out of them.
+/// Collects the fields of an error, except those that cannot be converted.
 macro_rules! fields {
     ($py:expr, $($name:literal: $value:expr),* $(,)?) => {{
         let fields = pyo3::types::PyDict::new($py);

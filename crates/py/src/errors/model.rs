@@ -1,4 +1,4 @@
-//! Robots and their files.
+//! Errors of robots and their files.
 
 use super::{IntoPython, fields, plain, raise};
 use onorbit_core::model::ModelError;

@@ -1,4 +1,4 @@
-//! Orbits: what is not one, and times at which there is none.
+//! Errors of orbits: invalid definitions and times outside their span.
 
 use super::{IntoPython, fields, plain, raise};
 use onorbit_core::orbit::sgp4::{ElementSetError, Sgp4Error};

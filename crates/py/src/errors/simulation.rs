@@ -1,4 +1,4 @@
-//! A run that cannot begin, or that ends before its time.
+//! Errors of runs, some with the partial trace.
 
 use super::{IntoPython, fields, plain, raise, shape_error};
 use crate::trace::PyTrace;
@@ -6,7 +6,7 @@ use onorbit_core::control::ControlError;
 use onorbit_core::simulation::SimulationError;
 use pyo3::prelude::*;
 
-/// Turns the error of a run into its class, the trace so far attached where there is one.
+/// Converts the error of a run to its class and attaches the partial trace, if there is one.
 pub(crate) trait SimulationErrorExt {
     fn into_python_with(self, py: Python<'_>, trace: Option<Py<PyTrace>>) -> PyErr;
 }
@@ -61,9 +61,7 @@ impl SimulationErrorExt for SimulationError {
                 raise(py, "EffectError", &message, &fields!(py, "name": effect, "got": body))
             }
             Self::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
-            Self::NeedsReference | Self::NeedsTool | Self::OtherTool { .. } => {
-                plain(py, "ControlError", &message)
-            }
+            Self::NeedsTool | Self::OtherTool { .. } => plain(py, "ControlError", &message),
             Self::ReferenceStartsAway { position, angle, tolerance } => raise(
                 py,
                 "ControlError",
@@ -83,8 +81,15 @@ impl SimulationErrorExt for SimulationError {
                 &message,
                 &fields!(py, "time": time, "q": q, "v": v, "trace": trace),
             ),
-            Self::Interrupted { time } => {
-                raise(py, "RunInterrupted", &message, &fields!(py, "time": time, "trace": trace))
+            Self::PastTime { t, time } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "t", "got": t, "expected": time))
+            }
+            Self::AfterEnd { t, end } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "t", "got": t, "expected": end))
+            }
+            Self::Ended => plain(py, "SimulationError", &message),
+            Self::CommandedJoint { joint, control } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": joint, "got": control))
             }
             Self::Orbit { time, source } => with_trace(py, source.into_python(py), time, trace),
             Self::Environment { time, source } => with_trace(py, source.into_python(py), time, trace),
@@ -93,18 +98,18 @@ impl SimulationErrorExt for SimulationError {
             Self::Reference { time, source } => with_trace(py, source.into_python(py), time, trace),
             Self::Control(source @ ControlError::User(_)) => {
                 let raised = source.into_python(py);
-                let _ = raised.value(py).setattr("trace", trace); // an object without attributes goes without
+                let _ = raised.value(py).setattr("trace", trace); // objects without attributes cannot have a trace
                 raised
             }
             Self::Control(source) => source.into_python(py),
             Self::EngineAttitude { time, length } => {
                 let fields = fields!(py, "name": "q", "got": length, "expected": 1.0);
-                with_trace(py, raise(py, "PlantError", &message, &fields), time, trace)
+                with_trace(py, raise(py, "EngineError", &message, &fields), time, trace)
             }
             Self::Engine(source) => match source.downcast::<PyErr>() {
                 Ok(raised) => {
                     let _ = raised.value(py).setattr("trace", trace);
-                    *raised // that very object, traceback included
+                    *raised // the same object, including its traceback
                 }
                 Err(other) => plain(py, "SimulationError", &other.to_string()),
             },
@@ -112,7 +117,7 @@ impl SimulationErrorExt for SimulationError {
     }
 }
 
-/// Adds the instant and the trace so far to an error.
+/// Adds the time and the partial trace to an error.
 fn with_trace(py: Python<'_>, error: PyErr, time: f64, trace: Option<Py<PyTrace>>) -> PyErr {
     let value = error.value(py);
     let _ = value.setattr("time", time);

@@ -7,28 +7,40 @@ use nalgebra::{SVector, Vector3, Vector4};
 use onorbit_core::number_text::short;
 use onorbit_core::orbit::{CustomPath, Ends, Orbit, PathPoints};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
-/// A path whose acceleration is continuous, exactly through what is given at ``times`` (T,), s of simulation.
+/// Path with continuous acceleration through given positions.
 ///
-/// ``positions`` (T, 3) m; ``velocities`` (T, 3) m/s, and with them ``accelerations`` (T, 3) m/s², inertial axes;
-/// ``attitudes`` (T, 4) quaternions xyzw, path axes to inertial ones, returned by :meth:`frame`. ``mu`` m³/s² brings
-/// gravity, None is around no planet. Outside of the times: ``ends`` is ``error`` (``PathError``) or ``coast`` (on at
-/// the last velocity and rate).
+/// Parameters
+/// ----------
+/// times : (T,) array
+///     Simulation times, s.
+/// positions : (T, 3) array
+///     Positions, inertial axes, m.
+/// velocities : (T, 3) array, optional
+///     Velocities, inertial axes, m/s.
+/// accelerations : (T, 3) array, optional
+///     Accelerations, inertial axes, m/s²; only together with ``velocities``.
+/// attitudes : (T, 4) array, optional
+///     Quaternions (x, y, z, w) from path axes to inertial axes, which :meth:`frame` returns.
+/// mu : float, optional
+///     Gravitational parameter, m³/s²; None means that there is no planet.
+/// ends : {"error", "coast"}
+///     Behaviour outside the times: ``PathError``, or motion at the last velocity and angular velocity.
 #[pyclass(name = "CustomPath", extends = PyOrbit, frozen, module = "onorbit_rs")]
-pub(crate) struct PyCustomPath {
+pub(super) struct PyCustomPath {
     path: Arc<CustomPath>,
 }
 
 type Rows<const D: usize> = Vec<SVector<f64, D>>;
 
-/// Rows of `D` numbers, remembered under their name.
-fn table<const D: usize>(value: Any<'_, '_>, name: &str, kept: &Bound<'_, PyDict>) -> PyResult<Rows<D>> {
+/// Returns the rows of a (T, D) array and stores the array in `keywords`.
+fn table<const D: usize>(value: Any<'_, '_>, name: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Rows<D>> {
     let input = Input::new(value, name)?;
     match input.shape() {
         [_, width] if *width == D => {
-            kept.set_item(name, array_of(value.py(), input.shape(), input.data()))?;
+            keywords.set_item(name, array_of(value.py(), input.shape(), input.data()))?;
             Ok(input.data().chunks_exact(D).map(SVector::from_column_slice).collect())
         }
         other => Err(wrong_shape(value.py(), name, &format!("(T, {D})"), other)),
@@ -51,12 +63,12 @@ impl PyCustomPath {
         mu: Option<f64>,
         ends: &str,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let kept = fields!(py, "mu": mu, "ends": ends);
+        let keywords = fields!(py, "mu": mu, "ends": ends);
         let behaviour = match ends {
             "error" => Ends::Error,
             "coast" => Ends::Coast,
             other => {
-                let message = format!("ends is '{other}'; there are 'error' and 'coast'");
+                let message = format!("ends is '{other}'; the choices are 'error' and 'coast'");
                 return Err(raise(py, "InputError", &message, &fields!(py, "name": "ends", "got": other)));
             }
         };
@@ -65,24 +77,23 @@ impl PyCustomPath {
             return Err(wrong_shape(py, "times", "(T,)", instants.shape()));
         }
         let instants = instants.data().to_vec();
-        kept.set_item("times", array_of(py, &[instants.len()], &instants))?;
+        keywords.set_item("times", array_of(py, &[instants.len()], &instants))?;
         let optional = |value: Option<Any<'_, '_>>, name| -> PyResult<Option<Vec<Vector3<f64>>>> {
-            value.map(|value| table::<3>(value, name, &kept)).transpose()
+            value.map(|value| table::<3>(value, name, &keywords)).transpose()
         };
         let points = PathPoints {
             times: instants,
-            positions: table(positions, "positions", &kept)?,
+            positions: table(positions, "positions", &keywords)?,
             velocities: optional(velocities, "velocities")?,
             accelerations: optional(accelerations, "accelerations")?,
             attitudes: attitudes
-                .map(|value| -> PyResult<Vec<Vector4<f64>>> { table(value, "attitudes", &kept) })
+                .map(|value| -> PyResult<Vec<Vector4<f64>>> { table(value, "attitudes", &keywords) })
                 .transpose()?,
         };
         let path =
             py.detach(|| CustomPath::new(points, mu, behaviour)).map_err(|error| error.into_python(py))?;
         let path = Arc::new(path);
-        let orbit =
-            base(Arc::clone(&path) as Arc<dyn Orbit>, "CustomPath", &pyo3::types::PyTuple::empty(py), &kept)?;
+        let orbit = base(Arc::clone(&path) as Arc<dyn Orbit>, "CustomPath", &PyTuple::empty(py), &keywords)?;
         Ok(PyClassInitializer::from(orbit).add_subclass(Self { path }))
     }
 
@@ -92,7 +103,7 @@ impl PyCustomPath {
         self.path.span()
     }
 
-    /// Whether attitudes were given.
+    /// True if attitudes were given.
     #[getter]
     fn has_attitudes(&self) -> bool {
         self.path.has_attitudes()

@@ -10,12 +10,21 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::Arc;
 
-/// A reference that stands still in inertial axes: ``position`` (3,) m, ``attitude`` (4,) quaternion xyzw.
+/// Reference at rest in inertial axes.
 ///
-/// Without ``mu`` (m³/s²) it is around no planet. With it gravity pulls the robot away from it, as the frame does not
-/// fall. It has no local orbital frame; :meth:`frame` gives its attitude.
+/// It has no local orbital frame; :meth:`frame` returns its attitude. With ``mu`` the robot falls away from
+/// it, because the reference does not fall.
+///
+/// Parameters
+/// ----------
+/// position : (3,) array, optional
+///     Position from the planet's centre, m.
+/// attitude : (4,) array, optional
+///     Quaternion (x, y, z, w) from its axes to inertial axes.
+/// mu : float, optional
+///     Gravitational parameter, m³/s²; None means that there is no planet.
 #[pyclass(name = "FixedFrame", extends = PyOrbit, frozen, module = "onorbit_rs")]
-pub(crate) struct PyFixedFrame;
+pub(super) struct PyFixedFrame;
 
 #[pymethods]
 impl PyFixedFrame {
@@ -33,7 +42,7 @@ impl PyFixedFrame {
         let norm = vector.norm();
         if (norm - 1.0).abs() > 1e-6 {
             let message = format!(
-                "attitude has norm {}, at most 1e-6 off 1 is accepted; it is x, y, z, w",
+                "attitude (x, y, z, w) has norm {}; it must be 1 within 1e-6; normalise it",
                 unlike(norm, &[1.0])
             );
             let fields = fields!(py, "name": "attitude", "got": norm, "expected": 1.0);

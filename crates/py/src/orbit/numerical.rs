@@ -1,4 +1,4 @@
-//! References integrated in the full gravity field.
+//! Orbits integrated in a gravity field.
 
 use super::{Any, PyOrbit, base, vector};
 use crate::arrays::{array_of, type_name};
@@ -14,13 +14,34 @@ use pyo3::prelude::*;
 use pyo3::types::PyList;
 use std::sync::Arc;
 
-/// An orbit integrated in the full gravity field: through ``r`` (3,) m with ``v`` (3,) m/s at ``t0`` s, inertial axes.
+/// Orbit integrated numerically in a gravity field.
 ///
-/// ``environment`` is a list with what of it is gravity (``GravityField``, ``ThirdBody``; a point mass ``mu``, m³/s², where
-/// there is none), ``earth`` how the planet turns, ``axes`` the inertial ones, ``GCRF`` or ``TEME``. Integrated as far as it is asked for, by collocation of order 16: a LEO day
-/// is good to a micrometre. Raises ``OrbitError`` from the time on at which it enters the planet.
+/// The integration uses collocation of order 16 and extends as far as states are requested; the error after a
+/// day in LEO is a micrometre.
+///
+/// Parameters
+/// ----------
+/// r : (3,) array
+///     Position at ``t0``, inertial axes, m.
+/// v : (3,) array
+///     Velocity at ``t0``, inertial axes, m/s.
+/// t0 : float
+///     Simulation time of the initial state, s.
+/// environment : list of Effect, optional
+///     Gravity effects (``GravityField``, ``ThirdBody``); other effects are rejected.
+/// earth : Earth, optional
+///     Orientation of the planet.
+/// mu : float, optional
+///     Gravitational parameter without a ``GravityField``, m³/s².
+/// axes : {"GCRF", "TEME"}
+///     Inertial axes.
+///
+/// Raises
+/// ------
+/// OrbitError
+///     For times after the orbit enters the planet.
 #[pyclass(name = "Numerical", extends = PyOrbit, frozen, module = "onorbit_rs")]
-pub(crate) struct PyNumerical;
+pub(super) struct PyNumerical;
 
 #[pymethods]
 impl PyNumerical {
@@ -41,14 +62,31 @@ impl PyNumerical {
             "GCRF" => Axes::Gcrf,
             "TEME" => Axes::Teme,
             other => {
-                let message = format!("axes is '{other}'; there are 'GCRF' and 'TEME'");
+                let message = format!("axes is '{other}'; the choices are 'GCRF' and 'TEME'");
                 return Err(raise(py, "InputError", &message, &fields!(py, "name": "axes", "got": other)));
             }
         };
-        made(py, start, axes, effects(environment)?, earth, mu)
+        wrap(py, start, axes, effects(environment)?, earth, mu)
     }
 
-    /// The orbit that leaves from where ``orbit`` is at ``t0`` s, in its axes; ``mu`` is its own where not given.
+    /// Return the orbit that starts from a state of another orbit, in its axes.
+    ///
+    /// Parameters
+    /// ----------
+    /// orbit : Orbit
+    ///     Orbit that provides the initial state.
+    /// t0 : float
+    ///     Simulation time of the initial state, s.
+    /// environment : list of Effect, optional
+    ///     Gravity effects, as in the constructor.
+    /// earth : Earth, optional
+    ///     Orientation of the planet.
+    /// mu : float, optional
+    ///     Gravitational parameter, m³/s²; default: that of ``orbit``.
+    ///
+    /// Returns
+    /// -------
+    /// Numerical
     #[staticmethod]
     #[pyo3(signature = (orbit, *, t0=0.0, environment=None, earth=None, mu=None))]
     fn from_orbit<'py>(
@@ -63,9 +101,9 @@ impl PyNumerical {
         prepare(py, &**orbit, &[t0])?;
         let (r, v) = orbit.position_velocity(t0).map_err(|error| error.into_python(py))?;
         let environment = effects(environment)?;
-        let brings_mu = environment.iter().any(|effect| effect.get().field().is_some());
-        let mu = mu.or_else(|| if brings_mu { None } else { orbit.mu() });
-        Bound::new(py, made(py, (r, v, t0), orbit.axes(), environment, earth, mu)?)
+        let has_field = environment.iter().any(|effect| effect.get().field().is_some());
+        let mu = mu.or_else(|| if has_field { None } else { orbit.mu() });
+        Bound::new(py, wrap(py, (r, v, t0), orbit.axes(), environment, earth, mu)?)
     }
 
     fn __repr__(&self) -> &'static str {
@@ -73,7 +111,8 @@ impl PyNumerical {
     }
 }
 
-fn made(
+/// Integrates from the state at `t0` in the gravity of the effects.
+fn wrap(
     py: Python<'_>,
     (r, v, t0): (Vector3<f64>, Vector3<f64>, f64),
     axes: Axes,
@@ -81,24 +120,25 @@ fn made(
     earth: Option<&Bound<'_, PyEarth>>,
     mu: Option<f64>,
 ) -> PyResult<PyClassInitializer<PyNumerical>> {
-    let turning = earth.map(|earth| Arc::new(earth.get().earth.in_axes(axes)));
+    let earth_in_axes = earth.map(|earth| Arc::new(earth.get().earth.in_axes(axes)));
     let others = environment.iter().filter(|effect| !effect.get().is_gravity());
     let others: Vec<_> = others.map(|effect| type_name(effect)).collect();
     if !others.is_empty() {
         let message = format!(
-            "{} would act on the robot, not on the reference, which falls freely: leave out what is no \
-             GravityField or ThirdBody, and give it to the simulation",
+            "the reference is in free fall, so {} cannot act on it; give the orbit only GravityField and \
+             ThirdBody, and \
+             the other effects to the simulation",
             others.join(", ")
         );
         return Err(raise(py, "OrbitError", &message, &fields!(py, "name": "environment", "got": others)));
     }
-    // a field brings its own
-    let brings_mu = environment.iter().any(|effect| effect.get().field().is_some());
-    let chosen = mu.or_else(|| (!brings_mu).then_some(MU_EARTH));
+    // the field defines mu
+    let has_field = environment.iter().any(|effect| effect.get().field().is_some());
+    let chosen = mu.or_else(|| (!has_field).then_some(MU_EARTH));
     if let Some(value) = chosen.filter(|mu| !(mu.is_finite() && *mu > 0.0)) {
         return Err(OrbitError::NotPositive { name: "mu", value }.into_python(py));
     }
-    let gravity = gravity_of(py, &environment, chosen, turning.as_ref())?
+    let gravity = gravity_of(py, &environment, chosen, earth_in_axes.as_ref())?
         .unwrap_or_else(|| Gravity::point_mass(chosen.unwrap_or(MU_EARTH)));
     let numerical = Numerical::new(r, v, t0, Arc::new(gravity)).map_err(|error| error.into_python(py))?;
     let numerical = Arc::new(numerical.with_axes(axes)) as Arc<dyn Orbit>;

@@ -1,6 +1,6 @@
-//! Calls the reference code of SGP4, PyPI's `sgp4`, from the engine.
+//! Propagation by the reference code of SGP4, PyPI's `sgp4`.
 
-use onorbit_core::orbit::sgp4::Reference;
+use onorbit_core::orbit::sgp4::ExternalSgp4;
 use pyo3::prelude::*;
 
 /// A `Satrec` of `sgp4.api`; each state requires a call of Python.
@@ -10,18 +10,18 @@ pub(super) struct Satrec {
 }
 
 impl Satrec {
-    /// Makes a `Satrec` with a function of `onorbit_rs.satrec`.
+    /// Constructs a `Satrec` with a function of `onorbit_rs.ephemeris.satrec`.
     pub(super) fn new<'py>(
         py: Python<'py>,
         function: &str,
         arguments: impl pyo3::call::PyCallArgs<'py>,
     ) -> PyResult<Self> {
-        let satrec = py.import("onorbit_rs.satrec")?.getattr(function)?.call1(arguments)?;
+        let satrec = py.import("onorbit_rs.ephemeris.satrec")?.getattr(function)?.call1(arguments)?;
         Ok(Self { tsince: satrec.getattr("sgp4_tsince")?.unbind() })
     }
 }
 
-impl Reference for Satrec {
+impl ExternalSgp4 for Satrec {
     fn at(&self, minutes: f64) -> Result<[[f64; 3]; 2], u8> {
         const NO_ANSWER: u8 = 255;
         const DECAYED: u8 = 6;

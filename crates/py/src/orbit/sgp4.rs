@@ -10,28 +10,44 @@ use pyo3::types::{PyDict, PyString, PyTuple};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The orbit of a two-line element set by SGP4 (improved mode); time zero is the epoch of the set.
+/// Orbit of a two-line element set by SGP4 (improved mode).
 ///
-/// ``gravity`` is ``wgs72`` (which published sets are fitted with), ``wgs72old`` or ``wgs84``. Axes are TEME; position
-/// and velocity are SGP4's own. A line that is not 69 columns of the right kind, or whose checksum is wrong, raises
-/// ``ElementSetError``, naming line and column; what SGP4 itself refuses raises ``Sgp4Error`` with its ``code``.
+/// Time zero is the epoch of the set. Axes are TEME; position and velocity are those of SGP4.
 ///
-/// ``Sgp4(satrec)`` accepts a ``Satrec`` of PyPI's ``sgp4`` in place of the two lines and copies its epoch, its elements
-/// (bit by bit) and its gravity constants. A ``Satrec`` with other gravity constants, or in AFSPC mode, raises
-/// ``ElementSetError``; ``propagator="reference"`` accepts that mode.
+/// Parameters
+/// ----------
+/// line1 : str or Satrec
+///     First line, or a ``Satrec`` of PyPI's ``sgp4``, of which the epoch, the elements (bit by bit) and the
+///     gravity constants are copied.
+/// line2 : str, optional
+///     Second line; not with a ``Satrec``.
+/// gravity : {"wgs72", "wgs72old", "wgs84"}, optional
+///     Gravity constants; published sets are fitted with ``wgs72``, the default.
+/// check_checksum : bool
+///     If True, a wrong checksum is an error.
+/// propagator : {"native", "reference"}
+///     With ``reference``, PyPI's ``sgp4`` reads and propagates the set in place of the engine's SGP4, as a
+///     cross-check; each state then requires calls of Python.
 ///
-/// With ``propagator="reference"`` PyPI's ``sgp4`` reads and propagates the set in place of the engine's SGP4, as a check;
-/// each state then requires calls of Python.
+/// Raises
+/// ------
+/// ElementSetError
+///     If a line does not have 69 valid columns or its checksum is wrong; the message names line and column.
+///     Also for a ``Satrec`` with other gravity constants, or in AFSPC mode unless ``propagator`` is
+///     ``reference``.
+/// Sgp4Error
+///     If SGP4 rejects a set or a time; ``code`` is its error code.
 #[pyclass(name = "Sgp4", extends = PyOrbit, frozen, module = "onorbit_rs")]
-pub(crate) struct PySgp4 {
+pub(super) struct PySgp4 {
     sgp4: Arc<Sgp4>,
 }
 
+/// Returns the gravity constants with this name.
 fn earth_model(py: Python<'_>, name: &str) -> PyResult<EarthModel> {
     match EarthModel::ALL.iter().find(|(known, _)| *known == name) {
         Some((_, model)) => Ok(*model),
         None => {
-            let message = format!("gravity is '{name}'; there are 'wgs72', 'wgs72old' and 'wgs84'");
+            let message = format!("gravity is '{name}'; the choices are 'wgs72', 'wgs72old' and 'wgs84'");
             Err(raise(py, "InputError", &message, &fields!(py, "name": "gravity", "got": name)))
         }
     }
@@ -43,27 +59,28 @@ fn is_reference(py: Python<'_>, propagator: &str) -> PyResult<bool> {
         "native" => Ok(false),
         "reference" => Ok(true),
         other => {
-            let message = format!("propagator is '{other}'; there are 'native' and 'reference'");
+            let message = format!("propagator is '{other}'; the choices are 'native' and 'reference'");
             Err(raise(py, "InputError", &message, &fields!(py, "name": "propagator", "got": other)))
         }
     }
 }
 
+/// Returns the initializer of an orbit; `reference` propagates in place of the engine if it is given.
 fn wrap(
     sgp4: Sgp4,
     reference: Option<Satrec>,
-    made: (&str, &Bound<'_, PyTuple>, &Bound<'_, PyDict>),
+    (constructor, arguments, keywords): (&str, &Bound<'_, PyTuple>, &Bound<'_, PyDict>),
 ) -> PyResult<PyClassInitializer<PySgp4>> {
     let sgp4 = match reference {
-        Some(satrec) => sgp4.by_reference(Arc::new(satrec)),
+        Some(satrec) => sgp4.with_external(Arc::new(satrec)),
         None => sgp4,
     };
     let sgp4 = Arc::new(sgp4);
-    let orbit = base(Arc::clone(&sgp4) as Arc<dyn Orbit>, made.0, made.1, made.2)?;
+    let orbit = base(Arc::clone(&sgp4) as Arc<dyn Orbit>, constructor, arguments, keywords)?;
     Ok(PyClassInitializer::from(orbit).add_subclass(PySgp4 { sgp4 }))
 }
 
-/// Returns the mean elements of a `Satrec`; `None` if its epoch is no date.
+/// Returns the mean elements of a `Satrec`; `None` if its epoch is not a date.
 fn mean_elements(satrec: &Bound<'_, PyAny>) -> PyResult<Option<MeanElements>> {
     let number = |name: &str| satrec.getattr(name)?.extract::<f64>();
     let Some(epoch) = Epoch::of_julian_date(number("jdsatepoch")?, number("jdsatepochF")?) else {
@@ -82,25 +99,25 @@ fn mean_elements(satrec: &Bound<'_, PyAny>) -> PyResult<Option<MeanElements>> {
     }))
 }
 
-/// Makes an orbit with the epoch, elements and gravity constants of a `Satrec`.
+/// Returns an orbit with the epoch, elements and gravity constants of a `Satrec`.
 fn of_satrec(
     satrec: &Bound<'_, PyAny>,
     propagator: &str,
     by_reference: bool,
 ) -> PyResult<PyClassInitializer<PySgp4>> {
     let py = satrec.py();
-    let read = py.import("onorbit_rs.satrec")?.getattr("read")?.call1((satrec, by_reference))?;
+    let read = py.import("onorbit_rs.ephemeris.satrec")?.getattr("read")?.call1((satrec, by_reference))?;
     let (elements, gravity): (Bound<'_, PyAny>, String) = read.extract()?;
     let model = earth_model(py, &gravity)?;
     let set = mean_elements(&elements)?.ok_or_else(|| {
-        plain(py, "ElementSetError", "the Satrec has no epoch: initialize it with twoline2rv or sgp4init")
+        plain(py, "ElementSetError", "the Satrec has no epoch; initialise it with twoline2rv or sgp4init")
     })?;
     let set = set.checked().map_err(|error| OrbitError::from(error).into_python(py))?;
     let reference =
         by_reference.then(|| Satrec::new(py, "of_elements", (&elements, &gravity))).transpose()?;
     let keywords = fields!(py, "propagator": propagator);
-    let made = ("Sgp4", &(&elements,).into_pyobject(py)?, &keywords);
-    wrap(Sgp4::new(set, model), reference, made)
+    let call = ("Sgp4", &(&elements,).into_pyobject(py)?, &keywords);
+    wrap(Sgp4::new(set, model), reference, call)
 }
 
 #[pymethods]
@@ -119,8 +136,8 @@ impl PySgp4 {
             (Ok(line1), Some(line2)) => (&*line1.to_cow()?, line2),
             (Err(_), None) if gravity.is_none() => return of_satrec(line1, propagator, by_reference),
             _ => {
-                let message =
-                    "give the two lines of an element set, or a Satrec alone, which has its own gravity";
+                let message = "give the two lines of an element set, or only a Satrec, which includes its gravity \
+                     constants";
                 return Err(raise(py, "InputError", message, &fields!(py, "name": "line1")));
             }
         };
@@ -136,7 +153,18 @@ impl PySgp4 {
         wrap(sgp4, satrec, ("Sgp4", &arguments, &keywords))
     }
 
-    /// Make an orbit from a CCSDS Orbit Mean-Elements Message: a mapping of its keywords, or its text (JSON, XML, CSV or KVN).
+    /// Return the orbit of a CCSDS Orbit Mean-Elements Message.
+    ///
+    /// Parameters
+    /// ----------
+    /// message : mapping or str
+    ///     Keywords of the message, or its text (JSON, XML, CSV or KVN).
+    /// gravity, propagator
+    ///     As in the constructor.
+    ///
+    /// Returns
+    /// -------
+    /// Sgp4
     #[staticmethod]
     #[pyo3(signature = (message, *, gravity="wgs72", propagator="native"))]
     fn from_omm<'py>(
@@ -147,13 +175,13 @@ impl PySgp4 {
     ) -> PyResult<Bound<'py, Self>> {
         let (model, by_reference) = (earth_model(py, gravity)?, is_reference(py, propagator)?);
         let entries = if message.is_instance_of::<PyString>() {
-            py.import("onorbit_rs.omm")?.getattr("entries")?.call1((message,))?
+            py.import("onorbit_rs.ephemeris.omm")?.getattr("entries")?.call1((message,))?
         } else {
             message.clone()
         };
         let mut texts = HashMap::new();
         for item in entries.call_method0("items").and_then(|items| items.try_iter()).map_err(|_| {
-            plain(py, "ElementSetError", "an OMM is a mapping of its keywords, or its text: this is neither")
+            plain(py, "ElementSetError", "message must be an OMM, as a mapping of its keywords or as text")
         })? {
             let (key, value): (String, Bound<'_, PyAny>) = item?.extract()?;
             if !value.is_none() {
@@ -167,8 +195,8 @@ impl PySgp4 {
         let satrec =
             by_reference.then(|| Satrec::new(py, "of_message", (&message, epoch, gravity))).transpose()?;
         let keywords = fields!(py, "gravity": gravity, "propagator": propagator);
-        let made = ("Sgp4.from_omm", &(message,).into_pyobject(py)?, &keywords);
-        Bound::new(py, wrap(sgp4, satrec, made)?)
+        let call = ("Sgp4.from_omm", &(message,).into_pyobject(py)?, &keywords);
+        Bound::new(py, wrap(sgp4, satrec, call)?)
     }
 
     /// Catalogue number.
@@ -183,7 +211,7 @@ impl PySgp4 {
         self.sgp4.elements().epoch.to_string()
     }
 
-    /// Epoch as a Julian date (UTC) of midnight and the part of the day since.
+    /// Epoch as a Julian date (UTC): that of midnight, and the fraction of the day.
     #[getter]
     fn julian_date(&self) -> (f64, f64) {
         self.sgp4.elements().epoch.julian_date()

@@ -1,4 +1,4 @@
-//! The frame a reference is given in.
+//! Frames in which references are expressed.
 
 use super::{Any, pose};
 use crate::arrays::fixed;
@@ -8,9 +8,18 @@ use onorbit_core::reference::{ReferenceFrame, Target};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// A spacecraft that nothing acts on, for references given relative to it.
+/// Uniformly moving and rotating spacecraft, which defines a frame for references.
 ///
-/// ``pose`` (4, 4) at time zero in W, ``velocity`` (3,) m/s and ``spin`` (3,) rad/s in W axes, both constant.
+/// No forces act on it.
+///
+/// Parameters
+/// ----------
+/// pose : (4, 4) array
+///     Pose in W at time zero, m.
+/// velocity : (3,) array, optional
+///     Constant velocity, W axes, m/s.
+/// spin : (3,) array, optional
+///     Constant angular velocity, W axes, rad/s.
 #[pyclass(name = "Target", frozen, module = "onorbit_rs")]
 pub(crate) struct PyTarget {
     target: Target,
@@ -36,7 +45,7 @@ impl PyTarget {
     }
 }
 
-/// A frame before it is known which orbit the simulation flies on.
+/// Frame of a reference before the orbit of the simulation is known.
 pub(super) enum Frame {
     World,
     Lvlh,
@@ -45,7 +54,7 @@ pub(super) enum Frame {
 }
 
 impl Frame {
-    /// From ``frame=``: a name or a target; W where not given.
+    /// Reads ``frame=``: a name or a target; W by default.
     pub(super) fn of(value: Option<Any<'_, '_>>) -> PyResult<Self> {
         let Some(value) = value else { return Ok(Self::World) };
         if let Ok(target) = value.cast::<PyTarget>() {
@@ -59,21 +68,22 @@ impl Frame {
             _ => {
                 let py = value.py();
                 let got = value.repr().map_or_else(|_| "?".to_owned(), |text| text.to_string());
-                let message = format!("frame is {got}; there are 'world', 'lvlh', 'base' and a Target");
+                let message = format!("frame is {got}; it must be 'world', 'lvlh', 'base' or a Target");
                 Err(raise(py, "ControlError", &message, &fields!(py, "name": "frame", "got": got)))
             }
         }
     }
 
+    /// Returns the frame of the core; `"lvlh"` requires the orbit.
     pub(super) fn bind(&self, py: Python<'_>, orbit: Option<&Arc<dyn Orbit>>) -> PyResult<ReferenceFrame> {
         Ok(match self {
             Self::World => ReferenceFrame::World,
             Self::Base => ReferenceFrame::Base,
             Self::Target(target) => ReferenceFrame::Target(target.clone()),
             Self::Lvlh => {
-                let needs = "the reference is given in the frame 'lvlh', which needs an orbit: give one";
+                let message = "a reference in the frame 'lvlh' requires an orbit; set orbit";
                 let orbit = orbit.ok_or_else(|| {
-                    raise(py, "ControlError", needs, &fields!(py, "name": "frame", "got": "lvlh"))
+                    raise(py, "ControlError", message, &fields!(py, "name": "frame", "got": "lvlh"))
                 })?;
                 ReferenceFrame::Lvlh(Arc::clone(orbit))
             }

@@ -1,4 +1,4 @@
-//! References for joints.
+//! References of joints.
 
 use super::{Any, PyJointReference, row, timing};
 use crate::arrays::{Input, wrong_shape};
@@ -13,14 +13,14 @@ pub(super) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyJointSampled>()
 }
 
-fn based<P: JointPath + 'static>(
-    py: Python<'_>,
-    path: Result<P, ReferenceError>,
-) -> PyResult<PyJointReference> {
-    Ok(PyJointReference { path: Arc::new(path.map_err(|error| error.into_python(py))?) })
+impl PyJointReference {
+    /// Returns the base object of a reference of any kind.
+    fn new<P: JointPath + 'static>(py: Python<'_>, path: Result<P, ReferenceError>) -> PyResult<Self> {
+        Ok(Self { path: Arc::new(path.map_err(|error| error.into_python(py))?) })
+    }
 }
 
-/// (K, n) numbers.
+/// Returns a (K, n) array and n.
 fn table<'py>(value: Any<'_, 'py>, name: &str) -> PyResult<(usize, Input<'py>)> {
     let input = Input::new(value, name)?;
     match *input.shape() {
@@ -29,7 +29,12 @@ fn table<'py>(value: Any<'_, 'py>, name: &str) -> PyResult<(usize, Input<'py>)> 
     }
 }
 
-/// Hold joint positions ``q`` (n,), rad or m.
+/// Constant joint positions.
+///
+/// Parameters
+/// ----------
+/// q : (n,) array
+///     Positions, rad or m.
 #[pyclass(name = "JointHold", extends = PyJointReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyJointHold;
 
@@ -37,14 +42,24 @@ pub(super) struct PyJointHold;
 impl PyJointHold {
     #[new]
     fn new(py: Python<'_>, q: Any<'_, '_>) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(based(py, JointHold::new(row(q, "q")?))?).add_subclass(Self))
+        Ok(PyClassInitializer::from(PyJointReference::new(py, JointHold::new(row(q, "q")?))?)
+            .add_subclass(Self))
     }
 }
 
-/// Quintics from rest to rest through joint positions ``points`` (K, n), rad or m, all joints together.
+/// Twice continuously differentiable path through joint positions, from rest to rest, all joints together.
 ///
-/// Either ``times`` (K,) s, or limits ``speed`` and ``acceleration``, one number or (n,), kept everywhere and reached by a
-/// joint in each piece (with ``stops=False``, which passes through the points, somewhere).
+/// Parameters
+/// ----------
+/// points : (K, n) array
+///     Positions, rad or m.
+/// times : (K,) array, optional
+///     Times of the points, s; otherwise the shortest within ``speed`` and ``acceleration``, which a joint
+///     reaches in each piece, or with ``stops=False`` somewhere on the path.
+/// speed, acceleration : float or (n,) array, optional
+///     Limits, rad/s or m/s, rad/s² or m/s².
+/// stops : bool
+///     If False, the path passes through the points without stopping.
 #[pyclass(name = "JointWaypoints", extends = PyJointReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyJointWaypoints;
 
@@ -62,12 +77,27 @@ impl PyJointWaypoints {
     ) -> PyResult<PyClassInitializer<Self>> {
         let (count, points) = table(points, "points")?;
         let timing = timing::of_joints(py, count, times, speed, acceleration)?;
-        Ok(PyClassInitializer::from(based(py, JointSpline::waypoints(count, points.data(), &timing, stops))?)
-            .add_subclass(Self))
+        Ok(PyClassInitializer::from(PyJointReference::new(
+            py,
+            JointSpline::waypoints(count, points.data(), &timing, stops),
+        )?)
+        .add_subclass(Self))
     }
 
-    /// From ``start`` (n,) one joint after the other: ``moves`` lists (joint's index, its new position), each from rest
-    /// to rest; ``times`` or limits as in the constructor.
+    /// Return a path in which one joint after the other moves, each from rest to rest.
+    ///
+    /// Parameters
+    /// ----------
+    /// start : (n,) array
+    ///     Initial positions, rad or m.
+    /// moves : list of tuple of int and float
+    ///     Index of a joint and its new position, in order.
+    /// times, speed, acceleration
+    ///     As in the constructor.
+    ///
+    /// Returns
+    /// -------
+    /// JointWaypoints
     #[staticmethod]
     #[pyo3(signature = (start, moves, *, times=None, speed=None, acceleration=None))]
     fn one_by_one<'py>(
@@ -80,14 +110,21 @@ impl PyJointWaypoints {
     ) -> PyResult<Bound<'py, Self>> {
         let start = row(start, "start")?;
         let timing = timing::of_joints(py, start.len(), times, speed, acceleration)?;
-        let base = based(py, JointSpline::one_by_one(&start, &moves, &timing))?;
+        let base = PyJointReference::new(py, JointSpline::one_by_one(&start, &moves, &timing))?;
         Bound::new(py, PyClassInitializer::from(base).add_subclass(Self))
     }
 }
 
-/// A motion of joints sampled at ``times`` (K,) s: ``positions`` (K, n), ``rates`` (K, n) where known.
+/// C² spline through joint positions at given times; before and after, the first and last positions are held.
 ///
-/// The C² spline through them; before and after, the ends are held.
+/// Parameters
+/// ----------
+/// times : (K,) array
+///     Times, s.
+/// positions : (K, n) array
+///     Positions, rad or m.
+/// rates : (K, n) array, optional
+///     Rates, rad/s or m/s.
 #[pyclass(name = "JointSampled", extends = PyJointReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyJointSampled;
 
@@ -104,7 +141,10 @@ impl PyJointSampled {
         let (times, (count, positions)) = (row(times, "times")?, table(positions, "positions")?);
         let rates = rates.map(|rates| table(rates, "rates")).transpose()?;
         let rates = rates.as_ref().map(|(_, rates)| rates.data());
-        Ok(PyClassInitializer::from(based(py, JointSpline::sampled(count, &times, positions.data(), rates))?)
-            .add_subclass(Self))
+        Ok(PyClassInitializer::from(PyJointReference::new(
+            py,
+            JointSpline::sampled(count, &times, positions.data(), rates),
+        )?)
+        .add_subclass(Self))
     }
 }

@@ -1,17 +1,22 @@
-//! References for a tool and for joints.
+//! References of a tool and of joints.
 
 mod frame;
+mod hold;
 mod joint;
-mod task;
+mod line;
+mod line_parabola;
+mod pose_spline;
+mod screw;
 mod timing;
 
 use crate::arrays::{Input, fixed, fresh, type_name, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use crate::orbit::{PyOrbit, times};
+use nalgebra::Vector3;
 use numpy::PyArrayDyn;
 use onorbit_core::orbit::Orbit;
 use onorbit_core::reference::{
-    Hold, JointPath, JointReference, TaskPath, TaskReference, joint_table, task_table,
+    Hold, JointPath, JointReference, ReferenceError, TaskPath, TaskReference, joint_table, task_table,
 };
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -23,12 +28,20 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyReference>()?;
     m.add_class::<PyJointReference>()?;
     m.add_class::<frame::PyTarget>()?;
-    task::add_classes(m)?;
+    m.add_class::<hold::PyHold>()?;
+    m.add_class::<line_parabola::PyLineParabola>()?;
+    m.add_class::<line::PyLine>()?;
+    m.add_class::<screw::PyCircle>()?;
+    m.add_class::<screw::PyScrew>()?;
+    m.add_class::<pose_spline::PyWaypoints>()?;
+    m.add_class::<pose_spline::PySampled>()?;
     joint::add_classes(m)
 }
 
-/// What a frame of the robot follows: a pose with its velocity and acceleration over time, in the axes of ``frame``:
-/// ``"world"``, ``"lvlh"`` (of the simulation's orbit), ``"base"`` (relative to the robot's base) or a :class:`Target`.
+/// Base class of references of a tool: a pose with velocity and acceleration as functions of time.
+///
+/// A reference is expressed in the axes of its ``frame``: ``"world"``, ``"lvlh"`` (of the simulation's
+/// orbit), ``"base"`` (relative to the robot's base) or a :class:`Target`.
 #[pyclass(name = "Reference", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyReference {
     path: Arc<dyn TaskPath>,
@@ -37,20 +50,45 @@ pub(crate) struct PyReference {
 
 #[pymethods]
 impl PyReference {
-    /// When it comes to rest in its frame, s since it began; 0 for one that never moves.
+    /// Time from its start until it comes to rest in its frame, s; 0 for a constant pose.
     #[getter]
     fn duration(&self) -> f64 {
         self.path.duration()
     }
 
-    /// Pose (4, 4), velocity (6,) and acceleration (6,) at ``t`` s in the axes of its own frame, linear first; for (T,)
-    /// times (T, 4, 4), (T, 6), (T, 6).
+    /// Return pose, velocity and acceleration in the reference's own frame.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Time since its start, s.
+    ///
+    /// Returns
+    /// -------
+    /// pose : (4, 4) or (T, 4, 4) array
+    ///     Homogeneous matrix, m.
+    /// velocity, acceleration : (6,) or (T, 6) array
+    ///     Linear, then angular, m/s, rad/s, m/s², rad/s².
     fn sample<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Arrays<'py>> {
         let reference = TaskReference { path: Arc::clone(&self.path), frame: Default::default() };
         table(py, &reference, true, t)
     }
 
-    /// As :meth:`sample` in W axes; ``orbit`` is needed in the frame of one. Not for one relative to the base.
+    /// Return pose, velocity and acceleration in W.
+    ///
+    /// This is not possible for a reference relative to the base.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Time since its start, s.
+    /// orbit : Orbit, optional
+    ///     Orbit of a reference in the frame ``"lvlh"``.
+    ///
+    /// Returns
+    /// -------
+    /// pose, velocity, acceleration
+    ///     As for :meth:`sample`.
     #[pyo3(signature = (t, *, orbit=None))]
     fn in_world<'py>(
         &self,
@@ -60,7 +98,8 @@ impl PyReference {
     ) -> PyResult<Arrays<'py>> {
         let reference = self.bind(py, orbit.map(|orbit| &orbit.get().orbit))?;
         if reference.is_relative_to_base() {
-            let message = "the reference is relative to the robot's base, W knows it only with a robot";
+            let message = "the reference is relative to the robot's base, so its pose in W depends on the \
+            state of the robot";
             return Err(raise(py, "ControlError", message, &fields!(py, "name": "frame", "got": "base")));
         }
         table(py, &reference, false, t)
@@ -68,12 +107,23 @@ impl PyReference {
 }
 
 impl PyReference {
+    /// Returns the base object of a reference of any kind.
+    fn new<P: TaskPath + 'static>(
+        py: Python<'_>,
+        path: Result<P, ReferenceError>,
+        frame: Option<Any<'_, '_>>,
+    ) -> PyResult<Self> {
+        let path = path.map_err(|error| error.into_python(py))?;
+        Ok(Self { path: Arc::new(path), frame: frame::Frame::of(frame)? })
+    }
+
+    /// Returns the reference of the core; one in the frame of the orbit moves on `orbit`.
     fn bind(&self, py: Python<'_>, orbit: Option<&Arc<dyn Orbit>>) -> PyResult<TaskReference> {
         Ok(TaskReference { path: Arc::clone(&self.path), frame: self.frame.bind(py, orbit)? })
     }
 }
 
-/// What joints follow: positions, rates and accelerations over time.
+/// Base class of references of joints: positions, rates and accelerations as functions of time.
 #[pyclass(name = "JointReference", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointReference {
     path: Arc<dyn JointPath>,
@@ -81,13 +131,23 @@ pub(crate) struct PyJointReference {
 
 #[pymethods]
 impl PyJointReference {
-    /// When it comes to rest, s since it began; 0 for one that never moves.
+    /// Time from its start until it comes to rest, s; 0 for constant positions.
     #[getter]
     fn duration(&self) -> f64 {
         self.path.duration()
     }
 
-    /// Positions, rates and accelerations (n,) at ``t`` s; for (T,) times (T, n) each.
+    /// Return positions, rates and accelerations.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Time since its start, s.
+    ///
+    /// Returns
+    /// -------
+    /// q, rates, accelerations : (n,) or (T, n) array
+    ///     rad or m, per s, per s².
     fn sample<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Arrays<'py>> {
         let (times, shape) = times(t)?;
         let dims: Vec<usize> = shape.into_iter().chain([self.path.count()]).collect();
@@ -98,6 +158,7 @@ impl PyJointReference {
     }
 }
 
+/// Samples a reference of a tool at one time or at many.
 fn table<'py>(
     py: Python<'py>,
     reference: &TaskReference,
@@ -112,7 +173,7 @@ fn table<'py>(
     Ok((poses, v, a))
 }
 
-/// The reference of a frame inside a Python object; one in the frame of the orbit flies on `orbit`.
+/// Returns the reference of a tool in a Python object; one in the frame of the orbit moves on `orbit`.
 pub(crate) fn extract(value: Any<'_, '_>, orbit: Option<&Arc<dyn Orbit>>) -> PyResult<TaskReference> {
     match value.cast::<PyReference>() {
         Ok(reference) => reference.get().bind(value.py(), orbit),
@@ -120,7 +181,7 @@ pub(crate) fn extract(value: Any<'_, '_>, orbit: Option<&Arc<dyn Orbit>>) -> PyR
     }
 }
 
-/// The reference of joints inside a Python object.
+/// Returns the reference of joints in a Python object.
 pub(crate) fn extract_joints(value: Any<'_, '_>) -> PyResult<JointReference> {
     match value.cast::<PyJointReference>() {
         Ok(reference) => Ok(Arc::clone(&reference.get().path)),
@@ -128,26 +189,27 @@ pub(crate) fn extract_joints(value: Any<'_, '_>) -> PyResult<JointReference> {
     }
 }
 
-/// Whether a Python object is the reference of joints.
-pub(crate) fn is_of_joints(value: Any<'_, '_>) -> bool {
-    value.is_instance_of::<PyJointReference>()
-}
-
+/// Returns the error for an object that is not a reference.
 fn no_reference(value: Any<'_, '_>, expected: &str) -> PyErr {
     let py = value.py();
     let got = type_name(value);
-    let message = format!("reference is of type {got}, a {expected} is needed");
+    let message = format!("reference is of type {got}; expected a {expected}");
     raise(py, "DtypeError", &message, &fields!(py, "name": "reference", "expected": expected, "got": got))
 }
 
-/// A (4, 4) pose.
+/// Returns a vector of three finite numbers.
+fn vector(value: Any<'_, '_>, name: &str) -> PyResult<Vector3<f64>> {
+    Ok(fixed::<3>(value, name, &[3])?.into())
+}
+
+/// Returns a (4, 4) pose.
 fn pose(value: Any<'_, '_>) -> PyResult<Hold> {
     let rows = fixed::<16>(value, "pose", &[4, 4])?;
     let mut poses = Hold::from_rows(&[rows]).map_err(|error| error.into_python(value.py()))?;
     Ok(poses.remove(0))
 }
 
-/// Poses (K, 4, 4).
+/// Returns (K, 4, 4) poses.
 fn poses(value: Any<'_, '_>) -> PyResult<Vec<Hold>> {
     let input = Input::new(value, "poses")?;
     let [_, 4, 4] = input.shape() else {
@@ -156,7 +218,7 @@ fn poses(value: Any<'_, '_>) -> PyResult<Vec<Hold>> {
     Hold::from_rows(input.data().as_chunks().0).map_err(|error| error.into_python(value.py()))
 }
 
-/// Numbers (K,).
+/// Returns (K,) numbers.
 fn row(value: Any<'_, '_>, name: &str) -> PyResult<Vec<f64>> {
     let input = Input::new(value, name)?;
     match input.shape() {

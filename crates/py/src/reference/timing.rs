@@ -1,4 +1,4 @@
-//! How long a reference takes: given, or as short as limits allow.
+//! Timing of references: a given duration, or the shortest within limits.
 
 use super::Any;
 use super::row;
@@ -7,7 +7,7 @@ use crate::errors::{IntoPython, plain};
 use onorbit_core::reference::{RateLimit, ReferenceError, TaskLimits, Timing};
 use pyo3::prelude::*;
 
-/// A duration, or the limits of a frame's motion; not both.
+/// Returns the given duration or times, or the limits of a frame's motion; both together are rejected.
 pub(super) fn of_task<T>(
     py: Python<'_>,
     given: Option<T>,
@@ -27,7 +27,7 @@ pub(super) fn of_task<T>(
     }
 }
 
-/// Times, or limits for each of `count` joints.
+/// Returns the given times, or limits for each of `count` joints; both together are rejected.
 pub(super) fn of_joints(
     py: Python<'_>,
     count: usize,
@@ -51,7 +51,7 @@ pub(super) fn of_joints(
     }
 }
 
-/// One number for all joints, or one each.
+/// Returns one value per joint, from one number for all joints or (n,).
 fn per_joint(value: Any<'_, '_>, name: &str, count: usize) -> PyResult<Vec<f64>> {
     if let Ok(one) = value.extract::<f64>() {
         return Ok(vec![one; count]);
@@ -63,6 +63,7 @@ fn per_joint(value: Any<'_, '_>, name: &str, count: usize) -> PyResult<Vec<f64>>
     }
 }
 
+/// Returns the error for a duration and limits.
 fn both(py: Python<'_>) -> PyErr {
-    plain(py, "ControlError", "the times of a reference are given and its limits too: give one of them")
+    plain(py, "ControlError", "both times (or a duration) and limits are given; give one of them")
 }

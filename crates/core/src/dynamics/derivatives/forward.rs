@@ -10,12 +10,11 @@ use crate::dynamics::jacobian::unit_axes;
 use crate::model::Model;
 use crate::spatial::{Real, Vec3};
 
-/// Derivatives of [`forward_dynamics`] with respect to `q`, `v` and `tau`, each row major `(nv, nv)`, row `i`
-/// that of `a_i`:
+/// Computes the derivatives of [`forward_dynamics`] with respect to `q`, `v` and `tau`.
 ///
-/// `∂a/∂τ = M⁻¹`,  `∂a/∂x = −M⁻¹ ∂τ/∂x` with `∂τ/∂x` that of inverse dynamics at `a`.
-///
-/// Tangent of `q` and what is held constant as said in [`derivatives`](super).
+/// Each is row major `(nv, nv)`, with the derivatives of `a_i` in row `i`: `∂a/∂τ = M⁻¹` and `∂a/∂x = −M⁻¹ ∂τ/∂x`,
+/// where `∂τ/∂x` is the derivative of inverse dynamics at `a`. The tangent of `q` and the quantities held constant are
+/// defined in [`derivatives`](super).
 pub fn forward_dynamics_derivatives<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -48,12 +47,13 @@ fn kernel<S: Real>(
     } else {
         inverse_mass(nodes, &data.bodies, &mut work.bodies, dtau);
     }
-    work.gather(nodes, data);
+    work.compute_bodies(nodes, data);
     for i in 0..nv {
         dq[i * nv..i * nv + 6].fill(S::of(0.0));
         dv[i * nv..i * nv + 3].fill(S::of(0.0));
     }
     for j in (1..nodes.len()).rev() {
+        // ∂a/∂q_j = −M⁻¹ ∂τ/∂q_j,  ∂a/∂q̇_j = −M⁻¹ ∂τ/∂q̇_j
         product(dtau, nv, work.joint_columns(nodes, &data.bodies, j), |i, x| {
             dq[i * nv + j + 5] = -x[0];
             dv[i * nv + j + 5] = -x[1];
@@ -71,22 +71,22 @@ fn kernel<S: Real>(
     subtract_cross(twist.angular, 3, 3, nv, dv);
 }
 
-/// Takes `v×` from a block of three rows and columns.
+/// Subtracts `v×` from a 3 × 3 block.
 #[inline(always)]
 fn subtract_cross<S: Real>(v: Vec3<S>, row: usize, column: usize, nv: usize, out: &mut [S]) {
     for j in 0..3 {
-        let turned = v.cross(unit_axes()[j]);
-        let rows = [turned.x, turned.y, turned.z];
+        let product = v.cross(unit_axes()[j]);
+        let rows = [product.x, product.y, product.z];
         for i in 0..3 {
             out[(row + i) * nv + column + j] -= rows[i];
         }
     }
 }
 
-/// Rows of a product that are computed side by side, to keep their sums in registers.
+/// Number of rows of a product that are computed together, so that their sums stay in registers.
 const TILE: usize = 4;
 
-/// `A b` for a symmetric `A`, `(nv, nv)` with `nv ≥ 6`, and columns `b` of which only some rows are not zero.
+/// Computes `A b` for a symmetric `A`, `(nv, nv)` with `nv ≥ 6`, and columns `b` given by their nonzero rows.
 #[inline(always)]
 fn product<S: Real, const N: usize>(
     a: &[S],
@@ -95,7 +95,7 @@ fn product<S: Real, const N: usize>(
     mut write: impl FnMut(usize, [S; N]),
 ) {
     for start in (0..nv).step_by(TILE) {
-        let start = start.min(nv - TILE); // the last tile may overlap the one before
+        let start = start.min(nv - TILE); // the last tile may overlap the previous one
         let mut sums = [[S::of(0.0); N]; TILE];
         for row in b {
             let a = &a[row.index * nv + start..][..TILE];

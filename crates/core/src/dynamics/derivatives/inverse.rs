@@ -9,10 +9,10 @@ use crate::dynamics::rnea::inverse_dynamics_recursion;
 use crate::model::Model;
 use crate::spatial::{Motion, Real};
 
-/// Derivatives of [`inverse_dynamics`](crate::dynamics::inverse_dynamics) with respect to `q`, `v` and `a`
-/// (the mass matrix), each row major `(nv, nv)`, row `i` that of `τ_i`.
+/// Computes the derivatives of [`inverse_dynamics`](crate::dynamics::inverse_dynamics) with respect to `q`, `v` and `a`.
 ///
-/// Tangent of `q` and what is held constant as said in [`derivatives`](super).
+/// Each is row major `(nv, nv)`, with the derivatives of `τ_i` in row `i`; the last is the mass matrix. The tangent of
+/// `q` and the quantities held constant are defined in [`derivatives`](super).
 pub fn inverse_dynamics_derivatives<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -36,7 +36,7 @@ pub fn inverse_dynamics_derivatives<S: Real>(
 #[inline(always)]
 fn kernel<S: Real>(model: &Model, data: &Data<S>, work: &mut Derivatives<S>, dq: &mut [S], dv: &mut [S]) {
     let (nodes, nv) = (model.nodes(), model.nv());
-    work.gather(nodes, data);
+    work.compute_bodies(nodes, data);
     dq.fill(S::of(0.0));
     dv.fill(S::of(0.0));
     for j in (1..nodes.len()).rev() {
@@ -53,13 +53,13 @@ fn kernel<S: Real>(model: &Model, data: &Data<S>, work: &mut Derivatives<S>, dq:
     for j in 0..6 {
         let mut unit = [S::of(0.0); 6];
         unit[j] = S::of(1.0);
-        let carried = velocity.cross(Motion::from_slice(&unit));
-        let force = components(work.bodies[0].inertia.momentum(carried));
+        let base_rate = velocity.cross(Motion::from_slice(&unit)); // v_b × e_m
+        let force = components(work.bodies[0].inertia.momentum(base_rate));
         for i in 0..6 {
             dv[i * nv + j] += force[i];
         }
         for k in 1..nodes.len() {
-            dv[(k + 5) * nv + j] += carried.dot(work.bodies[k].reach);
+            dv[(k + 5) * nv + j] += base_rate.dot(work.bodies[k].composite_force);
         }
     }
 }

@@ -1,18 +1,20 @@
-//! Air of one density everywhere.
+//! Atmosphere of constant density.
 
-use super::{AirPlace, Atmosphere, AtmosphereError};
+use super::error::AtmosphereError;
+use super::model::Atmosphere;
+use super::point::AtmospherePoint;
 
-/// The same density at every altitude.
+/// Atmosphere with the same density at every altitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConstantAtmosphere {
     density: f64,
 }
 
 impl ConstantAtmosphere {
-    /// `density` in kg/m³.
+    /// Returns an atmosphere with this density, kg/m³.
     ///
     /// # Errors
-    /// [`AtmosphereError::Value`] where it is negative or not finite.
+    /// [`AtmosphereError::Value`] if it is negative or not finite.
     pub fn new(density: f64) -> Result<Self, AtmosphereError> {
         if density.is_finite() && density >= 0.0 {
             return Ok(Self { density });
@@ -27,7 +29,7 @@ impl Atmosphere for ConstantAtmosphere {
         "constant density"
     }
 
-    fn density(&self, _place: &AirPlace<'_>) -> Result<f64, AtmosphereError> {
+    fn density(&self, _point: &AtmospherePoint<'_>) -> Result<f64, AtmosphereError> {
         Ok(self.density)
     }
 }

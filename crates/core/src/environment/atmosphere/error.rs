@@ -1,29 +1,29 @@
-//! Where a model of the air says nothing.
+//! Errors of atmosphere models.
 
 use crate::earth::EarthError;
 use crate::number_text::{short, unlike};
 
-/// Refusals of the models of the air; each carries the offending numbers.
+/// Errors of atmosphere models; each carries the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AtmosphereError {
-    /// A place is inside the Earth.
+    /// A position is inside the Earth.
     #[error(
-        "altitude is {altitude} m, below the surface: the air is known from 0 m on",
+        "altitude is {altitude} m, which is below the surface; it must be at least 0 m",
         altitude = short(*altitude)
     )]
     BelowSurface {
         /// Geodetic altitude, m.
         altitude: f64,
     },
-    /// A place is outside the layers that a model has.
+    /// An altitude is outside the range of a model.
     #[error(
-        "altitude is {altitude} m, {model} is defined from {lowest} m to {highest} m: an exponential atmosphere or \
-         NRLMSISE-00 goes on beyond",
+        "altitude is {altitude} m, but {model} is defined from {lowest} m to {highest} m; use an \
+         exponential atmosphere or NRLMSISE-00",
         altitude = unlike(*altitude, &[*lowest, *highest]), lowest = short(*lowest), highest = short(*highest)
     )]
     OutsideLayers {
-        /// The model.
+        /// Name of the model.
         model: &'static str,
         /// Geodetic altitude, m.
         altitude: f64,
@@ -32,52 +32,54 @@ pub enum AtmosphereError {
         /// Highest altitude of the model, m.
         highest: f64,
     },
-    /// A parameter makes no sense.
-    #[error("{name} is {value}, {expected} is needed", value = short(*value))]
+    /// A parameter is outside its range.
+    #[error("{name} is {value}; expected {expected}", value = short(*value))]
     Value {
-        /// Which parameter.
+        /// Name of the parameter.
         name: &'static str,
-        /// What was given.
+        /// Given value.
         value: f64,
-        /// What is accepted.
+        /// Accepted range.
         expected: &'static str,
     },
-    /// Layers do not follow each other upwards.
+    /// Layers are not in ascending order.
     #[error(
-        "layer {index} begins at {altitude} m, not above the one before it at {previous} m",
-        altitude = unlike(*altitude, &[*previous]), previous = short(*previous)
+        "layer {index} begins at {altitude} m; it must begin above layer {before}, which begins at \
+         {previous} m",
+        before = index - 1, altitude = unlike(*altitude, &[*previous]), previous = short(*previous)
     )]
     LayerOrder {
         /// Index of the layer.
         index: usize,
-        /// Where it begins, m.
+        /// Altitude of its base, m.
         altitude: f64,
-        /// Where the layer before begins, m.
+        /// Altitude of the base of the previous layer, m.
         previous: f64,
     },
-    /// There are no layers.
-    #[error("an exponential atmosphere needs at least one layer, none is given")]
+    /// The list of layers is empty.
+    #[error("the exponential atmosphere has no layers; give at least one")]
     NoLayers,
-    /// A table of space weather lacks a number that the day needs.
+    /// A table of space weather has no value that the run requires.
     #[error(
-        "space weather: {name} of {date} is missing from {table}, and the run needs it: give a table that holds it, or constants"
+        "space weather: {name} of {date} is missing from {table}, but the run requires it; give a complete \
+         table or constants"
     )]
     MissingSpaceWeather {
-        /// What the table is called.
+        /// Name of the table.
         table: String,
-        /// Which column.
+        /// Name of the column.
         name: &'static str,
-        /// Which day.
+        /// Date of the day.
         date: String,
     },
-    /// A run takes place on a day that a table of space weather does not have.
+    /// A day is outside the table of space weather.
     #[error(
-        "space weather: {date} is outside of {table}, which runs from {first} to {last}: give constants there"
+        "space weather: {date} is outside {table}, which covers {first} to {last}; give constants for this date"
     )]
     OutsideTable {
-        /// What the table is called.
+        /// Name of the table.
         table: String,
-        /// The day asked for.
+        /// Required day.
         date: String,
         /// First day of the table.
         first: String,
@@ -89,15 +91,15 @@ pub enum AtmosphereError {
     Table {
         /// Line, from 1.
         line: usize,
-        /// What is wrong.
+        /// Problem.
         problem: String,
     },
-    /// The Earth cannot say.
+    /// The time or the position of the Sun is unknown.
     #[error(transparent)]
     Earth(#[from] EarthError),
 }
 
-/// `value` if it is above zero and finite.
+/// Returns `value` if it is finite and positive.
 pub(super) fn positive(name: &'static str, value: f64) -> Result<f64, AtmosphereError> {
     if value.is_finite() && value > 0.0 {
         return Ok(value);

@@ -1,34 +1,35 @@
-//! Air that thins out by the same share every metre.
+//! Exponential atmosphere in layers.
 
-use super::error::positive;
-use super::{AirPlace, Atmosphere, AtmosphereError};
+use super::error::{AtmosphereError, positive};
+use super::model::Atmosphere;
+use super::point::AtmospherePoint;
 
-/// A layer: from `base` up, `ρ = density exp(-(h - base)/scale_height)`.
+/// Layer from altitude `base` upwards: `ρ = density exp(-(h - base)/scale_height)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
-    /// Altitude at which it begins, m.
+    /// Altitude of the base, m.
     pub base: f64,
-    /// Density there, kg/m³.
+    /// Density at the base, kg/m³.
     pub density: f64,
-    /// Rise over which the density falls by e, m.
+    /// Scale height, m.
     pub scale_height: f64,
 }
 
-/// `ρ = ρ₀ exp(-(h - h₀)/H)`, layer by layer; `h` is the geodetic altitude.
+/// Exponential atmosphere, `ρ = ρ₀ exp(-(h - h₀)/H)` in each layer; `h` is the geodetic altitude.
 ///
-/// The first layer goes on below its base, the last without end. A table's layers need not meet: Vallado's
-/// differ by up to 3 % where one ends and the next begins.
+/// The first layer extends below its base, the last one to infinity. The density may be discontinuous between layers: by
+/// up to 3 % in Vallado's table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExponentialAtmosphere {
     layers: Vec<Layer>,
 }
 
 impl ExponentialAtmosphere {
-    /// Layers from the lowest up.
+    /// Returns the atmosphere with these layers, the lowest first.
     ///
     /// # Errors
     /// [`AtmosphereError::NoLayers`], [`AtmosphereError::LayerOrder`], and [`AtmosphereError::Value`] for a density
-    /// or scale height that is not above zero.
+    /// or scale height that is not positive.
     pub fn new(layers: Vec<Layer>) -> Result<Self, AtmosphereError> {
         if layers.is_empty() {
             return Err(AtmosphereError::NoLayers);
@@ -45,7 +46,7 @@ impl ExponentialAtmosphere {
         Ok(Self { layers })
     }
 
-    /// The table from 0 to 1000 km and above, of moderate solar activity.
+    /// Returns the tabulated atmosphere for moderate solar activity, from 0 to above 1000 km.
     ///
     /// Source: Vallado, Fundamentals of Astrodynamics and Applications, 4th edition, 2013, table 8-4 (U.S.
     /// Standard Atmosphere to 25 km, CIRA-72 above).
@@ -58,10 +59,11 @@ impl ExponentialAtmosphere {
         Self { layers: TABLE.iter().map(layer).collect() }
     }
 
-    /// Density at a geodetic altitude, m: kg/m³.
+    /// Returns the density at a geodetic altitude, m, in kg/m³.
     pub fn at(&self, altitude: f64) -> f64 {
         let above = self.layers.partition_point(|layer| layer.base <= altitude);
         let layer = &self.layers[above.saturating_sub(1)];
+        // ρ = ρ₀ exp(-(h - h₀)/H)
         layer.density * ((layer.base - altitude) / layer.scale_height).exp()
     }
 }
@@ -71,8 +73,8 @@ impl Atmosphere for ExponentialAtmosphere {
         "exponential atmosphere"
     }
 
-    fn density(&self, place: &AirPlace<'_>) -> Result<f64, AtmosphereError> {
-        Ok(self.at(place.geodetic.altitude))
+    fn density(&self, point: &AtmospherePoint<'_>) -> Result<f64, AtmosphereError> {
+        Ok(self.at(point.geodetic.altitude))
     }
 }
 

@@ -1,14 +1,16 @@
-//! Harris and Priester's air: a bulge that lags behind the Sun.
+//! Harris-Priester atmosphere: a density bulge that lags behind the Sun.
 
-use super::{AirPlace, Atmosphere, AtmosphereError};
+use super::error::AtmosphereError;
+use super::model::Atmosphere;
+use super::point::AtmospherePoint;
 use crate::earth::Earth;
 use nalgebra::{Rotation3, Unit, Vector3};
 use std::f64::consts::PI;
 
-/// Density between a night profile `ρm` and a day profile `ρM` of mean solar activity.
+/// Harris-Priester atmosphere: density between a night profile `ρm` and a day profile `ρM` for mean solar activity.
 ///
-/// `ρ = ρm + (ρM - ρm) cosⁿ(ψ/2)`, `ψ` the angle between the place and the bulge, which follows the Sun `lag` to the
-/// east. From 100 to 1000 km of geodetic altitude; each profile is exponential between the altitudes of the table.
+/// `ρ = ρm + (ρM - ρm) cosⁿ(ψ/2)`, with the angle `ψ` between the position and the bulge, which is `lag` east of
+/// the Sun. Defined from 100 to 1000 km of geodetic altitude; profiles are exponential between the tabulated altitudes.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.2 and table 3.8.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,10 +20,10 @@ pub struct HarrisPriester {
 }
 
 impl HarrisPriester {
-    /// `exponent` is `n`: 2 for low inclinations to 6 for polar orbits; `lag` in rad, some 30°.
+    /// Returns the model with exponent `n`, from 2 (low inclinations) to 6 (polar orbits), and `lag`, rad, about 30°.
     ///
     /// # Errors
-    /// [`AtmosphereError::Value`] for an exponent outside of 2 to 6, a lag beyond π either way.
+    /// [`AtmosphereError::Value`] for an exponent outside 2 to 6 or a lag outside ±π.
     pub fn new(exponent: f64, lag: f64) -> Result<Self, AtmosphereError> {
         if !(2.0..=6.0).contains(&exponent) {
             let (name, expected) = ("exponent", "a number from 2 (low inclination) to 6 (polar orbit)");
@@ -34,14 +36,14 @@ impl HarrisPriester {
         Ok(Self { exponent, lag })
     }
 
-    /// Where the bulge is: the Sun's direction turned by the lag about the Earth's axis, axes of `I`.
+    /// Returns the direction of the bulge: that of the Sun rotated by the lag about the Earth's axis, axes of `I`.
     fn bulge(&self, earth: &Earth, time: f64) -> Result<Vector3<f64>, AtmosphereError> {
         let sun = earth.sun(time)?.normalize();
         let axis = Unit::try_new(earth.angular_velocity(time), 0.0).unwrap_or_else(Vector3::z_axis);
         Ok(Rotation3::from_axis_angle(&axis, self.lag) * sun)
     }
 
-    /// Density at an altitude, m, where `cos ψ` is that from the bulge: kg/m³.
+    /// Returns the density at an altitude, m, and `cos ψ` from the bulge, in kg/m³.
     ///
     /// # Errors
     /// [`AtmosphereError::OutsideLayers`].
@@ -49,7 +51,7 @@ impl HarrisPriester {
         let km = altitude * 1e-3;
         let [lowest, highest] = [TABLE[0][0], TABLE[TABLE.len() - 1][0]];
         if !(lowest..=highest).contains(&km) {
-            let (model, lowest, highest) = ("Harris-Priester's air", lowest * 1e3, highest * 1e3);
+            let (model, lowest, highest) = ("the Harris-Priester atmosphere", lowest * 1e3, highest * 1e3);
             return Err(AtmosphereError::OutsideLayers { model, altitude, lowest, highest });
         }
         let above = TABLE.partition_point(|row| row[0] <= km).clamp(1, TABLE.len() - 1);
@@ -57,14 +59,15 @@ impl HarrisPriester {
         // ρ(h) = ρ_i (ρ_{i+1}/ρ_i)^x,  x = (h - h_i)/(h_{i+1} - h_i)
         let x = (km - h0) / (h1 - h0);
         let (night, day) = (night0 * (night1 / night0).powf(x), day0 * (day1 / day0).powf(x));
-        // cos² ψ/2 = (1 + cos ψ)/2
+        // cosⁿ ψ/2 = ((1 + cos ψ)/2)^{n/2}
         let bulge = (0.5 + 0.5 * cos_psi).max(0.0).powf(0.5 * self.exponent);
+        // ρ = ρm + (ρM - ρm) cosⁿ(ψ/2)
         Ok((night + (day - night) * bulge) * G_PER_KM3)
     }
 }
 
 impl Default for HarrisPriester {
-    /// An exponent of 4, a lag of 30°.
+    /// Returns the model with an exponent of 4 and a lag of 30°.
     fn default() -> Self {
         Self { exponent: 4.0, lag: std::f64::consts::FRAC_PI_6 }
     }
@@ -72,18 +75,18 @@ impl Default for HarrisPriester {
 
 impl Atmosphere for HarrisPriester {
     fn name(&self) -> &'static str {
-        "Harris-Priester's air"
+        "the Harris-Priester atmosphere"
     }
 
-    fn density(&self, place: &AirPlace<'_>) -> Result<f64, AtmosphereError> {
-        let bulge = self.bulge(place.earth, place.time)?;
-        self.at(place.geodetic.altitude, place.position.normalize().dot(&bulge))
+    fn density(&self, point: &AtmospherePoint<'_>) -> Result<f64, AtmosphereError> {
+        let bulge = self.bulge(point.earth, point.time)?;
+        self.at(point.geodetic.altitude, point.position.normalize().dot(&bulge))
     }
 }
 
 const G_PER_KM3: f64 = 1e-12;
 
-/// Altitude, km; density at night and at day, g/km³.
+/// Altitude, km; night and day density, g/km³.
 const TABLE: [[f64; 3]; 50] = [
     [100.0, 497_400.0, 497_400.0],
     [120.0, 24_900.0, 24_900.0],

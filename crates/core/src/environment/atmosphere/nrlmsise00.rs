@@ -1,12 +1,16 @@
-//! NRLMSISE-00: the empirical model of the Naval Research Laboratory.
+//! NRLMSISE-00, the empirical atmosphere model of the Naval Research Laboratory.
 
-use super::{AirPlace, Atmosphere, AtmosphereError, MagneticActivity, SpaceIndices, SpaceWeather};
+use super::error::AtmosphereError;
+use super::model::Atmosphere;
+use super::point::AtmospherePoint;
+use super::space_indices::{MagneticActivity, SpaceIndices};
+use super::space_weather::SpaceWeather;
 use nrlmsise00::{Input, MagneticActivity as Magnetic, Model};
 
-/// Total density, anomalous oxygen included, under the given space weather; needs an epoch.
+/// NRLMSISE-00 atmosphere: total density including anomalous oxygen, for the given space weather; needs an epoch.
 ///
-/// From the surface up; fitted to 1000 km, above which its profiles of helium and hydrogen go on. The crate
-/// `nrlmsise00` computes it, in double precision. Indices of a table change at midnight UTC.
+/// Defined from the surface upwards and fitted up to 1000 km; the profiles of helium and hydrogen continue above. The
+/// crate `nrlmsise00` computes it in double precision. Indices of a table change at midnight UTC.
 ///
 /// Source: Picone, Hedin, Drob and Aikin, J. Geophysical Research 107(A12), 2002.
 #[derive(Debug)]
@@ -16,7 +20,7 @@ pub struct Nrlmsise00 {
 }
 
 impl Nrlmsise00 {
-    /// The model under this space weather.
+    /// Returns the model for this space weather.
     pub fn new(weather: SpaceWeather) -> Self {
         Self { model: Box::new(Model::new()), weather }
     }
@@ -27,8 +31,8 @@ impl Atmosphere for Nrlmsise00 {
         "NRLMSISE-00"
     }
 
-    fn density(&self, place: &AirPlace<'_>) -> Result<f64, AtmosphereError> {
-        let (day, seconds) = place.earth.utc(place.time)?;
+    fn density(&self, point: &AtmospherePoint<'_>) -> Result<f64, AtmosphereError> {
+        let (day, seconds) = point.earth.utc(point.time)?;
         let SpaceIndices { f107, f107a, activity } = match &self.weather {
             SpaceWeather::Constant(indices) => *indices,
             SpaceWeather::Table(table) => table.at(day, seconds)?,
@@ -37,13 +41,13 @@ impl Atmosphere for Nrlmsise00 {
             MagneticActivity::Daily(ap) => Magnetic::Daily { ap },
             MagneticActivity::History(ap) => Magnetic::History { ap },
         };
-        let at = &place.geodetic;
+        let geodetic = &point.geodetic;
         let output = self.model.gtd7d::<f64>(&Input::consistent(
             super::space_weather_table::day_of_year(day),
             seconds,
-            at.altitude * 1e-3,
-            at.latitude.to_degrees(),
-            at.longitude.to_degrees(),
+            geodetic.altitude * 1e-3,
+            geodetic.latitude.to_degrees(),
+            geodetic.longitude.to_degrees(),
             f107a,
             f107,
             magnetic,

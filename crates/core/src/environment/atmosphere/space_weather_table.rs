@@ -1,9 +1,11 @@
-//! Space weather day by day.
+//! Table of space weather with one row per day.
 
-use super::space_weather::{ACTIVITY, FLUX as A_FLUX, is_activity, is_flux};
-use super::{AtmosphereError, MagneticActivity, SpaceIndices};
+use super::error::AtmosphereError;
+use super::space_indices::{
+    ACTIVITY, FLUX as FLUX_RANGE, MagneticActivity, SpaceIndices, is_activity, is_flux,
+};
 
-/// Columns of a day, as CelesTrak names them; the eight `AP` of three hours each come after.
+/// Columns of a day under CelesTrak's names; the eight three-hourly `AP` come last.
 const COLUMNS: [&str; 11] =
     ["F10.7_OBS", "F10.7_OBS_CENTER81", "AP_AVG", "AP1", "AP2", "AP3", "AP4", "AP5", "AP6", "AP7", "AP8"];
 const FLUX: usize = 0;
@@ -11,25 +13,25 @@ const MEAN_FLUX: usize = 1;
 const DAILY: usize = 2;
 const THREE_HOURS: usize = 3;
 
-/// One day: a number per column, none where the table has a gap.
+/// One day: a number per column; `None` marks a gap.
 type Day = [Option<f64>; COLUMNS.len()];
 
-/// Observed solar flux and geomagnetic activity of every day from the first on.
+/// Observed solar flux and geomagnetic activity of consecutive days.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpaceWeatherTable {
     /// Modified Julian date of the first row.
     first: i64,
     days: Vec<Day>,
     has_history: bool,
-    /// What messages call it.
+    /// Name in messages.
     name: String,
 }
 
 impl SpaceWeatherTable {
     /// Reads CSV text with a header line that names `DATE` (`2024-03-01`), `F10.7_OBS`, `F10.7_OBS_CENTER81`,
-    /// `AP_AVG` and, where the three-hourly history is wanted, `AP1` to `AP8`; other columns are left alone.
-    /// CelesTrak's `SW-All.csv` is such a text. Rows are consecutive days; an empty field is a gap, refused
-    /// when a run needs it.
+    /// `AP_AVG` and, for the three-hourly history, `AP1` to `AP8`; other columns are ignored.
+    /// CelesTrak's `SW-All.csv` has this form. Rows are consecutive days. An empty field is a gap; a run that needs
+    /// its value raises an error.
     ///
     /// # Errors
     /// [`AtmosphereError::Table`] with the line.
@@ -38,14 +40,14 @@ impl SpaceWeatherTable {
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let (_, header) = lines.next().ok_or_else(|| wrong(0, "the table is empty".to_owned()))?;
         let names: Vec<&str> = header.split(',').map(str::trim).collect();
-        let place = |name: &str| names.iter().position(|n| *n == name);
+        let column = |name: &str| names.iter().position(|n| *n == name);
         let missing = |name: &str| wrong(0, format!("the header has no column {name}"));
-        let date = place("DATE").ok_or_else(|| missing("DATE"))?;
-        let has_history = place("AP1").is_some();
+        let date = column("DATE").ok_or_else(|| missing("DATE"))?;
+        let has_history = column("AP1").is_some();
         let needed = if has_history { COLUMNS.len() } else { THREE_HOURS };
-        let places: Vec<usize> = COLUMNS[..needed]
+        let columns: Vec<usize> = COLUMNS[..needed]
             .iter()
-            .map(|name| place(name).ok_or_else(|| missing(name)))
+            .map(|name| column(name).ok_or_else(|| missing(name)))
             .collect::<Result<_, _>>()?;
         let (mut first, mut days) = (0, Vec::new());
         for (line, row) in lines {
@@ -54,12 +56,15 @@ impl SpaceWeatherTable {
                 let (has, needed) = (fields.len(), names.len());
                 return Err(wrong(
                     line,
-                    format!("has {has} fields, the header {needed}: the file is cut short, fetch it again"),
+                    format!(
+                        "has {has} fields, but the header has {needed}: the file is truncated; download it \
+                         again"
+                    ),
                 ));
             }
             let field = |k: usize| fields.get(k).copied().unwrap_or("");
             let day = day_of(field(date))
-                .ok_or_else(|| wrong(line, format!("'{}' is no date like 2024-03-01", field(date))))?;
+                .ok_or_else(|| wrong(line, format!("'{}' is not a date such as 2024-03-01", field(date))))?;
             if days.is_empty() {
                 first = day;
             } else if day != first + days.len() as i64 {
@@ -67,15 +72,15 @@ impl SpaceWeatherTable {
                 return Err(wrong(line, format!("{} does not follow {before}", date_of(day))));
             }
             let mut numbers: Day = [None; COLUMNS.len()];
-            for (k, &place) in places.iter().enumerate() {
-                let text = field(place);
+            for (k, &column) in columns.iter().enumerate() {
+                let text = field(column);
                 if text.is_empty() {
                     continue;
                 }
-                let (is_one, expected): (fn(f64) -> bool, _) =
-                    if k < DAILY { (is_flux, A_FLUX) } else { (is_activity, ACTIVITY) };
-                let number = text.parse::<f64>().ok().filter(|x| is_one(*x));
-                let wrong = || wrong(line, format!("{} is '{text}', {expected} is needed", COLUMNS[k]));
+                let (is_valid, expected): (fn(f64) -> bool, _) =
+                    if k < DAILY { (is_flux, FLUX_RANGE) } else { (is_activity, ACTIVITY) };
+                let number = text.parse::<f64>().ok().filter(|x| is_valid(*x));
+                let wrong = || wrong(line, format!("{} is '{text}'; expected {expected}", COLUMNS[k]));
                 numbers[k] = Some(number.ok_or_else(wrong)?);
             }
             days.push(numbers);
@@ -86,24 +91,24 @@ impl SpaceWeatherTable {
         Ok(Self { first, days, has_history, name: "the table".to_owned() })
     }
 
-    /// The same without the three-hourly history: the mean of the day alone.
+    /// Returns the same table without the three-hourly history: only daily means are used.
     pub fn daily(self) -> Self {
         Self { has_history: false, ..self }
     }
 
-    /// The same under the name that messages call it by, such as its file's.
+    /// Returns the same table under this name in messages, such as that of its file.
     pub fn named(self, name: impl Into<String>) -> Self {
         Self { name: name.into(), ..self }
     }
 
-    /// Indices at `seconds` of the UTC day with this modified Julian date.
+    /// Returns the indices at `seconds` of the UTC day with this modified Julian date.
     ///
     /// # Errors
     /// [`AtmosphereError::OutsideTable`] and [`AtmosphereError::MissingSpaceWeather`].
     pub fn at(&self, day: i64, seconds: f64) -> Result<SpaceIndices, AtmosphereError> {
         let daily = self.number(day, DAILY)?;
         let activity = if self.has_history {
-            // intervals of three hours, from now back
+            // intervals of three hours, counted back from the current one
             let now = 8 * day + ((seconds / 10_800.0).floor() as i64).clamp(0, 7);
             let back = |k: i64| {
                 let interval = now - k;
@@ -117,6 +122,7 @@ impl SpaceWeatherTable {
         SpaceIndices::new(self.number(day - 1, FLUX)?, self.number(day, MEAN_FLUX)?, activity)
     }
 
+    /// Returns the value of a column on a day.
     fn number(&self, day: i64, column: usize) -> Result<f64, AtmosphereError> {
         let row = usize::try_from(day - self.first).ok().and_then(|k| self.days.get(k));
         let outside = || AtmosphereError::OutsideTable {
@@ -134,10 +140,10 @@ impl SpaceWeatherTable {
     }
 }
 
-/// Modified Julian date of 1 March 2000, from which days are counted: leap days end the years then.
+/// Modified Julian date of 1 March 2000. In years that start in March, the leap day is the last day.
 const MARCH_2000: i64 = 51_604;
 
-/// Year, month and day of a modified Julian date (Gregorian).
+/// Returns year, month and day of a modified Julian date (Gregorian).
 fn calendar(day: i64) -> (i64, i64, i64) {
     let since = day - MARCH_2000;
     let (cycle, in_cycle) = (since.div_euclid(146_097), since.rem_euclid(146_097));
@@ -153,7 +159,7 @@ fn calendar(day: i64) -> (i64, i64, i64) {
     if month < 10 { (year, month + 3, day) } else { (year + 1, month - 9, day) }
 }
 
-/// Modified Julian date of `2024-03-01`.
+/// Returns the modified Julian date of a text such as `2024-03-01`.
 fn day_of(text: &str) -> Option<i64> {
     let mut parts = text.split('-').map(|part| part.parse::<i64>().ok());
     let (year, month, day) = (parts.next()??, parts.next()??, parts.next()??);
@@ -161,25 +167,26 @@ fn day_of(text: &str) -> Option<i64> {
     if parts.next().is_some() || !is_date {
         return None;
     }
-    let date = julian(year, month, day);
+    let date = modified_julian_date(year, month, day);
     (calendar(date) == (year, month, day)).then_some(date)
 }
 
-/// Modified Julian date of a date of the calendar.
-fn julian(year: i64, month: i64, day: i64) -> i64 {
+/// Returns the modified Julian date of a calendar date.
+fn modified_julian_date(year: i64, month: i64, day: i64) -> i64 {
     let (year_of_march, from_march) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
     let years = year_of_march - 2000;
     let leaps = years.div_euclid(4) - years.div_euclid(100) + years.div_euclid(400);
     MARCH_2000 + 365 * years + leaps + (153 * from_march + 2) / 5 + day - 1
 }
 
+/// Returns a modified Julian date as text.
 fn date_of(day: i64) -> String {
     let (year, month, day) = calendar(day);
     format!("{year:04}-{month:02}-{day:02}")
 }
 
-/// Day of the year, from 1, of a modified Julian date.
+/// Returns the day of the year, from 1, of a modified Julian date.
 pub(super) fn day_of_year(day: i64) -> i32 {
     let (year, ..) = calendar(day);
-    (day - julian(year, 1, 1) + 1) as i32 // at most 366
+    (day - modified_julian_date(year, 1, 1) + 1) as i32 // at most 366
 }

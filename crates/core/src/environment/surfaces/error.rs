@@ -1,47 +1,55 @@
-//! What can be wrong with a surface.
+//! Errors of surfaces.
 
+use crate::environment::body_index::BodyIndex;
 use crate::number_text::short;
 
-/// Surfaces that cannot be; each error carries the offending value.
+/// Errors of surfaces; each carries the offending value.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceError {
-    /// An area, a length or a coefficient is negative, infinite or not a number.
-    #[error("{name} is {value}, {expected} is needed", value = short(*value))]
+    /// An area, a length or a coefficient is negative, infinite or NaN.
+    #[error("{name} is {value}; expected {expected}", value = short(*value))]
     Value {
-        /// Which input.
+        /// Name of the input.
         name: &'static str,
-        /// What was given.
+        /// Given value.
         value: f64,
-        /// What is accepted.
+        /// Accepted range.
         expected: &'static str,
     },
-    /// More light leaves a surface than meets it.
+    /// A surface reflects more light than it receives.
     #[error(
-        "specular {specular} and diffuse {diffuse} add up to more than 1: what is left is absorbed",
+        "specular {specular} and diffuse {diffuse} add up to more than 1; their sum is the reflected \
+         fraction and must be at most 1",
         specular = short(*specular), diffuse = short(*diffuse)
     )]
     Reflection {
-        /// Share reflected as by a mirror.
+        /// Fraction reflected like a mirror.
         specular: f64,
-        /// Share scattered.
+        /// Fraction reflected diffusely.
         diffuse: f64,
     },
-    /// Nothing is covered.
-    #[error("no body shows a surface, so that there would be no force: cover one, or leave the effect out")]
-    Nothing,
-    /// There are no plates.
-    #[error("no plates are given, so that there would be no force: give at least one, or leave the body out")]
+    /// No body has a surface.
+    #[error(
+        "no body has a surface, so the effect would exert no force; give a body a surface or remove the \
+    effect"
+    )]
+    NoSurfaces,
+    /// The list of plates is empty.
+    #[error(
+        "no plates are given, so the effect would exert no force; give at least one or remove the body \
+    from the surfaces"
+    )]
     NoPlates,
     /// A normal has no direction.
-    #[error("normal of plate {plate} is zero or not finite, a direction is needed")]
+    #[error("normal of plate {plate} is zero or not finite; expected a direction")]
     Normal {
         /// Index of the plate.
         plate: usize,
     },
-    /// Normals, areas and centroids do not come in equal numbers.
+    /// The numbers of areas, normals and centroids differ.
     #[error(
-        "{areas} areas, {normals} normals and {centroids} centroids are given, one of each per plate is needed"
+        "there are {areas} areas, {normals} normals and {centroids} centroids; give one of each per plate"
     )]
     WrongLength {
         /// Number of areas.
@@ -51,42 +59,43 @@ pub enum SurfaceError {
         /// Number of centroids.
         centroids: usize,
     },
-    /// A body has no shape from which faces could be taken.
+    /// A body has no visual geometry from which faces can be derived.
     #[error(
-        "{body} has no visual geometry to take faces from: give it plates or a cannonball, or leave it out"
+        "{body} has no visual geometry to derive faces from; give it plates or a cannonball, or remove it \
+         from the surfaces"
     )]
     NoShape {
         /// Name of the body, or `the robot`.
         body: String,
     },
-    /// A shape is a file.
+    /// The visual geometry is a mesh.
     #[error(
-        "link '{link}' looks like the mesh '{filename}', whose faces are not read: give the link plates or a \
-         cannonball"
+        "the visual geometry of link '{link}' is the mesh '{filename}', whose faces are not read; give the \
+         link plates or a cannonball"
     )]
     Mesh {
-        /// The link.
+        /// Name of the link.
         link: String,
-        /// The file.
+        /// Path of the file.
         filename: String,
     },
-    /// A body is given two surfaces.
-    #[error("body {body} is covered twice, one surface per body is needed")]
+    /// A body has two surfaces.
+    #[error("{body} has two surfaces; give each body at most one")]
     Twice {
-        /// Index of the body.
-        body: usize,
+        /// The body.
+        body: BodyIndex,
     },
-    /// A body that the robot does not have.
-    #[error("a surface is on body {body}, the robot has bodies 0 to {last}", last = count.saturating_sub(1))]
+    /// A surface belongs to a body that does not exist.
+    #[error("a surface is on {body}, but the robot has bodies 0 to {last}", last = count.saturating_sub(1))]
     UnknownBody {
-        /// Index given.
-        body: usize,
+        /// Given body.
+        body: BodyIndex,
         /// Number of bodies.
         count: usize,
     },
 }
 
-/// `value` if it is at least zero and finite.
+/// Returns `value` if it is finite and not negative.
 pub(in crate::environment) fn not_negative(name: &'static str, value: f64) -> Result<f64, SurfaceError> {
     if value.is_finite() && value >= 0.0 {
         return Ok(value);

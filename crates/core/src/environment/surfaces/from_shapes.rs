@@ -1,36 +1,36 @@
-//! Faces from the visual geometry of links.
+//! Conversion of the visual geometry of links to faces.
 
-use super::ball::Ball;
-use super::covering::Parts;
+use super::cylinder::Cylinder;
 use super::error::SurfaceError;
+use super::face::Face;
+use super::face_pair::FacePair;
 use super::optics::Optics;
-use super::plate::Plate;
-use super::slab::Slab;
-use super::tube::Tube;
+use super::parts::Parts;
+use super::sphere::Sphere;
 use crate::model::{Frame, Geometry, Model, Visual};
 use crate::spatial::{Mat3, Vec3};
 use std::f64::consts::PI;
 
-/// The parts of every shape fixed to a body, from its centre of mass.
+/// Returns the surface parts of all shapes fixed to a body, positions from its centre of mass.
 pub(super) fn parts_of_body(model: &Model, body: usize, optics: &Optics) -> Result<Parts, SurfaceError> {
     let mut parts = Parts::default();
     for (frame, visual) in model.visuals() {
         let frame = &model.frames()[*frame];
         if frame.body == body {
-            let place = Place::of(frame, visual, model.nodes()[body].com);
-            place.add(frame, &visual.geometry, optics, &mut parts)?;
+            let pose = ShapePose::of(frame, visual, model.nodes()[body].com);
+            pose.add(frame, &visual.geometry, optics, &mut parts)?;
         }
     }
     Ok(parts)
 }
 
-/// Where a shape is: takes its components to the body's; its origin from the body's centre of mass.
-struct Place {
+/// Pose of a shape: rotation from shape axes to body axes, origin from the centre of mass of the body.
+struct ShapePose {
     rot: Mat3<f64>,
     pos: Vec3<f64>,
 }
 
-impl Place {
+impl ShapePose {
     fn of(frame: &Frame, visual: &Visual, com: Vec3<f64>) -> Self {
         let rot: Mat3<f64> = visual.pose.rotation.to_rotation_matrix().into_inner().into();
         let pos: Vec3<f64> = visual.pose.translation.vector.into();
@@ -51,23 +51,23 @@ impl Place {
     ) -> Result<(), SurfaceError> {
         match geometry {
             Geometry::Box([x, y, z]) => {
-                self.pair(0, y * z, *x, parts);
-                self.pair(1, z * x, *y, parts);
-                self.pair(2, x * y, *z, parts);
+                self.add_face_pair(0, y * z, *x, parts);
+                self.add_face_pair(1, z * x, *y, parts);
+                self.add_face_pair(2, x * y, *z, parts);
             }
             Geometry::Cylinder { radius, length } => {
-                parts.tubes.push(self.tube(*radius, *length));
-                self.pair(2, PI * radius * radius, *length, parts);
+                parts.cylinders.push(self.cylinder(*radius, *length));
+                self.add_face_pair(2, PI * radius * radius, *length, parts);
             }
             Geometry::Capsule { radius, length } => {
-                parts.tubes.push(self.tube(*radius, *length));
+                parts.cylinders.push(self.cylinder(*radius, *length));
                 for end in [-1.0, 1.0] {
-                    self.dome(*radius, 0.5 * end * length, end, parts);
+                    self.add_dome(*radius, 0.5 * end * length, end, parts);
                 }
             }
             Geometry::Sphere { radius } => {
-                let (area, centre, reflectivity) = (PI * radius * radius, self.pos, optics.of_ball());
-                parts.balls.push(Ball { area, centre, reflectivity });
+                let (area, centre, reflectivity) = (PI * radius * radius, self.pos, optics.of_sphere());
+                parts.spheres.push(Sphere { area, centre, reflectivity });
             }
             Geometry::Mesh { filename, .. } => {
                 let (link, filename) = (frame.name.clone(), filename.clone());
@@ -77,35 +77,36 @@ impl Place {
         Ok(())
     }
 
-    /// The two faces across axis `k`, `distance` apart.
-    fn pair(&self, k: usize, area: f64, distance: f64, parts: &mut Parts) {
-        parts.slabs.push(Slab::new(area, distance, self.axis(k), self.pos));
+    /// Adds the two faces normal to axis `k`, `distance` apart.
+    fn add_face_pair(&self, k: usize, area: f64, distance: f64, parts: &mut Parts) {
+        parts.face_pairs.push(FacePair::new(area, distance, self.axis(k), self.pos));
     }
 
-    fn tube(&self, radius: f64, length: f64) -> Tube<f64> {
-        Tube { radius, length, axis: self.axis(2), centre: self.pos }
+    fn cylinder(&self, radius: f64, length: f64) -> Cylinder<f64> {
+        Cylinder { radius, length, axis: self.axis(2), centre: self.pos }
     }
 
-    /// Half a ball about `height` on z, as plates: right along z, to 2 % from elsewhere.
-    fn dome(&self, radius: f64, height: f64, end: f64, parts: &mut Parts) {
+    /// Adds a hemisphere about `height` on z as faces: exact along z, within 2 % from other directions.
+    fn add_dome(&self, radius: f64, height: f64, end: f64, parts: &mut Parts) {
         const RINGS: usize = 4;
         const SECTORS: usize = 12;
         for ring in 0..RINGS {
-            // latitudes b to c: area r² Δλ (sin c - sin b), shadow on the equator ½ r² Δλ (cos² b - cos² c)
+            // patch between latitudes b and c: projection on the equator ½ r² Δλ (cos² b - cos² c)
             let latitude = |ring: usize| ring as f64 / RINGS as f64 * 0.5 * PI;
             let (b, c, sector) = (latitude(ring), latitude(ring + 1), 2.0 * PI / SECTORS as f64);
-            let shadow = 0.5 * (b.cos().powi(2) - c.cos().powi(2));
+            let projection = 0.5 * (b.cos().powi(2) - c.cos().powi(2));
             let side = 0.5 * (c - b + c.sin() * c.cos() - b.sin() * b.cos());
             for k in 0..SECTORS {
-                // the vector area of the patch is exact: ∫ n dA
+                // the vector area ∫ n dA of the patch is exact
                 let longitude = (k as f64 + 0.5) * sector;
                 let wide = 2.0 * (0.5 * sector).sin() * side;
-                let vector = Vec3::new(wide * longitude.cos(), wide * longitude.sin(), end * sector * shadow);
+                let vector =
+                    Vec3::new(wide * longitude.cos(), wide * longitude.sin(), end * sector * projection);
                 let size = vector.norm();
                 let normal = self.rot * (vector * (1.0 / size));
                 let centre = self.pos + self.axis(2) * height;
                 let area = size * radius * radius;
-                parts.plates.push(Plate::new(area, normal, centre + normal * radius));
+                parts.faces.push(Face::new(area, normal, centre + normal * radius));
             }
         }
     }

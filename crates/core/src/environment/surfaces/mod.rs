@@ -1,19 +1,22 @@
-//! What the bodies of a robot show to wind and light.
+//! Surfaces of bodies, exposed to the atmosphere and to sunlight.
 //!
-//! No part shadows another: where faces overlap as the stream sees them, both are hit.
+//! Parts do not shadow each other: faces that overlap along the stream all contribute.
 
-mod ball;
 mod covering;
-mod eight_surfaces;
+mod cylinder;
 mod error;
+mod face;
+mod face_pair;
 mod from_shapes;
 mod optics;
-mod plate;
-mod slab;
+mod parts;
+mod sphere;
 mod sums;
-mod tube;
+mod surface;
+mod surface_block;
 
-pub use covering::{Covering, Surface, Surfaces};
+pub use covering::{Covering, Surfaces};
 pub use error::SurfaceError;
 pub(super) use error::not_negative;
 pub use optics::Optics;
+pub use surface::Surface;

@@ -1,10 +1,10 @@
-//! What a surface does with light.
+//! Optical coefficients of a surface.
 
 use super::error::{SurfaceError, not_negative};
-use crate::environment::eight::Eight;
+use crate::environment::soa::Column8;
 use crate::spatial::Real;
 
-/// Shares of the light that a surface sends back; the rest is absorbed.
+/// Optical coefficients of a surface: fractions of the light that it reflects; the remainder is absorbed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Optics<T = f64> {
     pub(super) specular: T,
@@ -12,7 +12,8 @@ pub struct Optics<T = f64> {
 }
 
 impl Optics {
-    /// `specular` as a mirror does, `diffuse` as a matt wall does (Lambert); 0 to 1.
+    /// Returns the coefficients for the fractions `specular` (mirror) and `diffuse` (Lambert's law), each 0
+    /// to 1.
     ///
     /// # Errors
     /// [`SurfaceError::Value`] and [`SurfaceError::Reflection`].
@@ -25,18 +26,18 @@ impl Optics {
         Ok(Self { specular, diffuse })
     }
 
-    /// Of eight bodies.
-    pub(super) fn eight(optics: impl Fn(usize) -> Self) -> Optics<Eight> {
-        Optics { specular: Eight::of(|i| optics(i).specular), diffuse: Eight::of(|i| optics(i).diffuse) }
+    /// Gathers the coefficients of eight bodies.
+    pub(super) fn block(optics: impl Fn(usize) -> Self) -> Optics<Column8> {
+        Optics { specular: Column8::of(|i| optics(i).specular), diffuse: Column8::of(|i| optics(i).diffuse) }
     }
 
-    /// `C_R` of a ball: of a mirror's push that of a black one, of a matt one's 4/9 more.
-    pub(super) fn of_ball(&self) -> f64 {
+    /// Returns `C_R` of a sphere: specular reflection does not change the force, diffuse reflection adds 4/9.
+    pub(super) fn of_sphere(&self) -> f64 {
         1.0 + 4.0 / 9.0 * self.diffuse
     }
 }
 
-impl Optics<Eight> {
+impl Optics<Column8> {
     #[inline(always)]
     pub(super) fn load<S: Real>(&self, offset: usize) -> Optics<S> {
         Optics { specular: self.specular.load(offset), diffuse: self.diffuse.load(offset) }
@@ -44,13 +45,13 @@ impl Optics<Eight> {
 }
 
 impl<S: Real> Optics<S> {
-    /// `1 - ρs`: what pushes along the light.
+    /// Returns `1 - ρs`, the factor of the force along the light: all of it except for specular reflection.
     #[inline(always)]
-    pub(super) fn absorbed(&self) -> S {
+    pub(super) fn along_light(&self) -> S {
         S::of(1.0) - self.specular
     }
 
-    /// `2 (ρs cos θ + ρd/3)`: what pushes against the normal.
+    /// Returns `2 (ρs cos θ + ρd/3)`, the factor of the force against the normal.
     #[inline(always)]
     pub(super) fn along_normal(&self, cosine: S) -> S {
         cosine.mul_add(S::of(2.0) * self.specular, S::of(2.0 / 3.0) * self.diffuse)

@@ -1,29 +1,29 @@
-//! Sums over the parts of a surface, and the push they make.
+//! Sums over the parts of a surface and the resulting wrenches.
 
-use crate::environment::wrenches::Push;
+use crate::environment::wrenches::WrenchLanes;
 use crate::spatial::{Real, Sym3, Vec3};
 
-/// What the wind meets: every part at `c` feels `-a u`, `u = v + w × c`, where it sweeps `a` (an area by a speed).
+/// Drag sums over the parts: the force on a part at `c` is `-½ ρ C_D a u` with `u = v + w × c`; `a` in m³/s.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Swept<S> {
-    /// `Σ a`
+pub(super) struct DragSums<S> {
+    /// Sum `Σ a`, m³/s.
     sum: S,
-    /// `Σ a c`
+    /// First moment `Σ a c`.
     first: Vec3<S>,
-    /// `Σ a c cᵀ`
+    /// Second moment `Σ a c cᵀ`.
     second: Sym3<S>,
-    /// Torque of parts whose push is not at `c`.
+    /// Torque of forces that do not act at `c`.
     pub(super) torque: Vec3<S>,
 }
 
-impl<S: Real> Swept<S> {
+impl<S: Real> DragSums<S> {
     #[inline(always)]
-    pub(super) fn nothing() -> Self {
+    pub(super) fn zero() -> Self {
         let o = S::of(0.0);
         Self { sum: o, first: Vec3::zero(), second: Sym3::diagonal(o), torque: Vec3::zero() }
     }
 
-    /// A part that sweeps `a` at `c`.
+    /// Adds the term `a` of a part at `c`.
     #[inline(always)]
     pub(super) fn add(&mut self, a: S, c: Vec3<S>) {
         let moment = c * a;
@@ -32,56 +32,58 @@ impl<S: Real> Swept<S> {
         self.second = self.second.add_parallel(c, moment);
     }
 
-    /// `F = -Σ a (v + w × c)`, `T = -Σ a c × (v + w × c)`.
+    /// Returns the wrench for `½ ρ C_D = 1`: `F = -Σ a (v + w × c)`, `T = T₀ - Σ a c × (v + w × c)`, with `T₀` the
+    /// field `torque`; `v` and `w` are the linear and angular velocity relative to the air.
     #[inline(always)]
-    pub(super) fn push(&self, v: Vec3<S>, w: Vec3<S>) -> Push<S> {
-        // c × (w × c) = (c·c) w - (c·w) c
+    pub(super) fn wrench(&self, v: Vec3<S>, w: Vec3<S>) -> WrenchLanes<S> {
+        // Σ a c × (w × c) = Σ a [(c·c) w - (c·w) c]
         let Sym3 { xx, yy, zz, .. } = self.second;
         let turning = w * (xx + yy + zz) - self.second * w;
-        Push {
+        WrenchLanes {
             force: -(v * self.sum + w.cross(self.first)),
             torque: self.torque - self.first.cross(v) - turning,
         }
     }
 }
 
-/// What light meets: every part at `c` feels `-a ŝ` for what it absorbs of it, and what it sends back pushes along its normal.
+/// Radiation-pressure sums over the parts: the force on a part at `c` is `-a ŝ` along the light and `-b n`
+/// against its normal.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pressed<S> {
-    /// `Σ a`
+pub(super) struct PressureSums<S> {
+    /// Sum `Σ a`, m².
     sum: S,
-    /// `Σ a c`
+    /// First moment `Σ a c`.
     first: Vec3<S>,
-    /// Force of what is sent back.
+    /// Force against the normals for a pressure of 1, m².
     pub(super) force: Vec3<S>,
-    /// Its torque, and that of parts whose push is not at `c`.
+    /// Torque of the forces against the normals and of forces that do not act at `c`.
     pub(super) torque: Vec3<S>,
 }
 
-impl<S: Real> Pressed<S> {
+impl<S: Real> PressureSums<S> {
     #[inline(always)]
-    pub(super) fn nothing() -> Self {
+    pub(super) fn zero() -> Self {
         let none = Vec3::zero();
         Self { sum: S::of(0.0), first: none, force: none, torque: none }
     }
 
-    /// A part that absorbs `a` of it at `c`.
+    /// Adds the force `-a ŝ` at `c`.
     #[inline(always)]
-    pub(super) fn absorb(&mut self, a: S, c: Vec3<S>) {
+    pub(super) fn push_along_light(&mut self, a: S, c: Vec3<S>) {
         self.sum += a;
         self.first = c.scale_add(a, self.first);
     }
 
-    /// A face that sends back `b` of it along its normal; `moment` is `c × n`.
+    /// Adds the force `-b n` at `c`; `moment` is `c × n`.
     #[inline(always)]
-    pub(super) fn send_back(&mut self, b: S, normal: Vec3<S>, moment: Vec3<S>) {
+    pub(super) fn push_against_normal(&mut self, b: S, normal: Vec3<S>, moment: Vec3<S>) {
         self.force = normal.scale_add(-b, self.force);
         self.torque = moment.scale_add(-b, self.torque);
     }
 
-    /// `F = -Σ a ŝ + …`, `T = -Σ a c × ŝ + …`.
+    /// Returns the wrench for a pressure of 1: `F = -Σ a ŝ - Σ b n`, `T = -Σ a c × ŝ - Σ b c × n`.
     #[inline(always)]
-    pub(super) fn push(&self, to_sun: Vec3<S>) -> Push<S> {
-        Push { force: self.force - to_sun * self.sum, torque: self.torque - self.first.cross(to_sun) }
+    pub(super) fn wrench(&self, to_sun: Vec3<S>) -> WrenchLanes<S> {
+        WrenchLanes { force: self.force - to_sun * self.sum, torque: self.torque - self.first.cross(to_sun) }
     }
 }

@@ -1,9 +1,10 @@
-//! From links and joints in any order to one tree.
+//! Assembly of links and joints, listed in any order, into one tree.
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
-use super::joint::{Hinge, read_joints};
-use super::link::{Surroundings, read_link};
+use super::joint::read_joints;
+use super::joint_element::JointElement;
+use super::link::{ReadContext, read_link};
 use crate::model::{Link, ModelBuilder, ModelError};
 use std::cell::LazyCell;
 use std::collections::{HashMap, HashSet};
@@ -11,73 +12,74 @@ use std::collections::{HashMap, HashSet};
 /// A link's element with its name.
 pub(super) type NamedLink<'a> = (&'a str, Element<'a>);
 
-/// Builds the robot from the root outward, branches in the order of the file.
+/// Builds the robot from the root outward, with branches in the order of the file.
 pub(super) fn assemble(
     name: &str,
     links: &[NamedLink<'_>],
-    hinges: &[Hinge<'_>],
-    around: &mut Surroundings<'_>,
+    joints: &[JointElement<'_>],
+    context: &mut ReadContext<'_>,
 ) -> Result<ModelBuilder, UrdfError> {
-    let tree = Tree::new(links, hinges)?;
-    let mut root = tree.root(links, hinges)?;
-    let read = |link: usize, around: &mut Surroundings<'_>| {
+    let tree = Tree::new(links, joints)?;
+    let mut root = tree.root(links, joints)?;
+    let read = |link: usize, context: &mut ReadContext<'_>| {
         let (name, element) = links[link];
-        read_link(element, name, around)
+        read_link(element, name, context)
     };
-    let mut base = read(root, around)?;
-    // a massless root over a floating joint is where the robot floats, no part of it
+    let mut base = read(root, context)?;
+    // a massless root above a floating joint represents the world: the robot begins at the joint's child
     let is_massless = base.inertial.as_ref().is_none_or(|inertial| inertial.mass == 0.0);
-    if let [only] = tree.hinges_below[root][..]
+    if let [only] = tree.joints_below[root][..]
         && is_massless
-        && hinges[only].kind == "floating"
+        && joints[only].kind == "floating"
     {
         root = tree.child[only];
-        base = read(root, around)?;
+        base = read(root, context)?;
     }
     let taken = LazyCell::new(|| {
-        let names = links.iter().map(|(name, _)| *name).chain(hinges.iter().map(|hinge| hinge.name));
+        let names = links.iter().map(|(name, _)| *name).chain(joints.iter().map(|joint| joint.name));
         names.collect::<HashSet<_>>()
     });
     let is_taken = |name: &str| taken.contains(name);
     let fail = |element: Element<'_>, error: ModelError| element.fail(UrdfProblem::Model(error));
     let mut builder = ModelBuilder::new(name, base).map_err(|e| fail(links[root].1, e))?;
-    let mut stack: Vec<usize> = tree.hinges_below[root].iter().rev().copied().collect();
+    let mut stack: Vec<usize> = tree.joints_below[root].iter().rev().copied().collect();
     while let Some(h) = stack.pop() {
-        let hinge = &hinges[h];
-        let mut joints = read_joints(hinge, is_taken, &mut around.warnings)?;
-        let child = read(tree.child[h], around)?;
-        // between joints that stand for one there are links of no mass, named like the joint above
-        let last = joints.pop().expect("a joint is at least one");
-        let mut parent = hinge.parent.to_owned();
-        for joint in joints {
-            let name = joint.name.clone();
+        let joint = &joints[h];
+        let mut chain = read_joints(joint, is_taken, &mut context.warnings)?;
+        let child = read(tree.child[h], context)?;
+        // the joints that replace one of several degrees of freedom are connected by massless links, each named
+        // after the joint above it
+        let last = chain.pop().expect("read_joints returns at least one joint");
+        let mut parent = joint.parent.to_owned();
+        for upper in chain {
+            let name = upper.name.clone();
             let link = Link::new(&name, None);
-            builder.add(&parent, joint, link).map_err(|e| fail(hinge.element, e))?;
+            builder.add(&parent, upper, link).map_err(|e| fail(joint.element, e))?;
             parent = name;
         }
-        builder.add(&parent, last, child).map_err(|e| fail(hinge.element, e))?;
-        stack.extend(tree.hinges_below[tree.child[h]].iter().rev());
+        builder.add(&parent, last, child).map_err(|e| fail(joint.element, e))?;
+        stack.extend(tree.joints_below[tree.child[h]].iter().rev());
     }
-    for warning in around.warnings.drain(..).chain(around.meshes.warnings()) {
+    for warning in context.warnings.drain(..).chain(context.meshes.warnings()) {
         builder.warn(warning);
     }
     Ok(builder)
 }
 
-/// Who hangs on whom, by index.
+/// Indices of the parents and children of links and joints.
 struct Tree {
     /// Parent link of every joint.
     parent: Vec<usize>,
     /// Child link of every joint.
     child: Vec<usize>,
     /// Joints below every link.
-    hinges_below: Vec<Vec<usize>>,
+    joints_below: Vec<Vec<usize>>,
     /// Joint above every link.
-    hinge_above: Vec<Option<usize>>,
+    joint_above: Vec<Option<usize>>,
 }
 
 impl Tree {
-    fn new(links: &[NamedLink<'_>], hinges: &[Hinge<'_>]) -> Result<Self, UrdfError> {
+    fn new(links: &[NamedLink<'_>], joints: &[JointElement<'_>]) -> Result<Self, UrdfError> {
         let mut index = HashMap::new();
         for (i, &(name, element)) in links.iter().enumerate() {
             if index.insert(name, i).is_some() {
@@ -85,68 +87,74 @@ impl Tree {
                 return Err(element.fail(UrdfProblem::Model(error)));
             }
         }
-        let find = |hinge: &Hinge<'_>, link: &str| {
+        let find = |joint: &JointElement<'_>, link: &str| {
             index.get(link).copied().ok_or_else(|| {
-                hinge.element.fail(UrdfProblem::UnknownLink {
-                    joint: hinge.name.to_owned(),
+                joint.element.fail(UrdfProblem::UnknownLink {
+                    joint: joint.name.to_owned(),
                     link: link.to_owned(),
                     candidates: links.iter().map(|(name, _)| (*name).to_owned()).collect(),
                 })
             })
         };
         let mut tree = Self {
-            parent: Vec::with_capacity(hinges.len()),
-            child: Vec::with_capacity(hinges.len()),
-            hinges_below: vec![Vec::new(); links.len()],
-            hinge_above: vec![None; links.len()],
+            parent: Vec::with_capacity(joints.len()),
+            child: Vec::with_capacity(joints.len()),
+            joints_below: vec![Vec::new(); links.len()],
+            joint_above: vec![None; links.len()],
         };
-        for (h, hinge) in hinges.iter().enumerate() {
-            let (parent, child) = (find(hinge, hinge.parent)?, find(hinge, hinge.child)?);
-            if let Some(other) = tree.hinge_above[child].replace(h) {
-                let joints = [hinges[other].name.to_owned(), hinge.name.to_owned()];
-                let problem = UrdfProblem::TwoParents { link: hinge.child.to_owned(), joints };
-                return Err(hinge.element.fail(problem));
+        for (h, joint) in joints.iter().enumerate() {
+            let (parent, child) = (find(joint, joint.parent)?, find(joint, joint.child)?);
+            if let Some(other) = tree.joint_above[child].replace(h) {
+                let both = [joints[other].name.to_owned(), joint.name.to_owned()];
+                let problem = UrdfProblem::TwoParents { link: joint.child.to_owned(), joints: both };
+                return Err(joint.element.fail(problem));
             }
             tree.parent.push(parent);
             tree.child.push(child);
-            tree.hinges_below[parent].push(h);
+            tree.joints_below[parent].push(h);
         }
         Ok(tree)
     }
 
-    /// The one link that hangs on nothing and carries all others.
-    fn root(&self, links: &[NamedLink<'_>], hinges: &[Hinge<'_>]) -> Result<usize, UrdfError> {
-        let roots: Vec<usize> = (0..links.len()).filter(|&link| self.hinge_above[link].is_none()).collect();
+    /// Returns the root: the only link that is no joint's child. All others must descend from it.
+    fn root(&self, links: &[NamedLink<'_>], joints: &[JointElement<'_>]) -> Result<usize, UrdfError> {
+        let roots: Vec<usize> = (0..links.len()).filter(|&link| self.joint_above[link].is_none()).collect();
         if roots.len() > 1 {
             let names = roots.iter().map(|&link| links[link].0.to_owned()).collect();
             return Err(links[roots[1]].1.fail(UrdfProblem::ManyRoots { roots: names }));
         }
-        let mut is_carried = vec![false; links.len()];
+        let mut is_reached = vec![false; links.len()];
         let mut stack = roots.clone();
         while let Some(link) = stack.pop() {
-            is_carried[link] = true;
-            stack.extend(self.hinges_below[link].iter().map(|&h| self.child[h]));
+            is_reached[link] = true;
+            stack.extend(self.joints_below[link].iter().map(|&h| self.child[h]));
         }
-        match is_carried.iter().position(|carried| !carried) {
+        match is_reached.iter().position(|reached| !reached) {
             None => Ok(roots[0]),
-            Some(lost) => Err(self.closed_loop(lost, links, hinges)),
+            Some(unreached) => Err(self.closed_loop(unreached, links, joints)),
         }
     }
 
-    /// Going up from a link that no root carries, one comes round in the end.
-    fn closed_loop(&self, lost: usize, links: &[NamedLink<'_>], hinges: &[Hinge<'_>]) -> UrdfError {
-        let hinge_above = |link: usize| self.hinge_above[link].expect("only a root hangs on nothing");
-        let above = |link: usize| self.parent[hinge_above(link)];
-        // as many steps as there are links lead into the loop, wherever one starts
-        let entry = (0..links.len()).fold(lost, |link, _| above(link));
-        let mut round: Vec<usize> =
+    /// Returns the error for a link that does not descend from the root: its ancestors form a closed loop.
+    fn closed_loop(
+        &self,
+        unreached: usize,
+        links: &[NamedLink<'_>],
+        joints: &[JointElement<'_>],
+    ) -> UrdfError {
+        let joint_above =
+            |link: usize| self.joint_above[link].expect("every link but the root has a joint above it");
+        let above = |link: usize| self.parent[joint_above(link)];
+        // after as many steps upward as there are links, the link is inside the loop
+        let entry = (0..links.len()).fold(unreached, |link, _| above(link));
+        let mut cycle: Vec<usize> =
             std::iter::successors(Some(entry), |&link| Some(above(link)).filter(|&next| next != entry))
                 .collect();
-        // downwards, the link that the file has first in front
-        round.reverse();
-        let first = (0..round.len()).min_by_key(|&k| round[k]).expect("a loop has links");
-        round.rotate_left(first);
-        let names = round.into_iter().map(|link| links[link].0.to_owned()).collect();
-        hinges[hinge_above(entry)].element.fail(UrdfProblem::Loop { links: names })
+        // from parent to child, beginning with the link that comes first in the file
+        cycle.reverse();
+        let first = (0..cycle.len()).min_by_key(|&k| cycle[k]).expect("a loop has links");
+        cycle.rotate_left(first);
+        let names = cycle.into_iter().map(|link| links[link].0.to_owned()).collect();
+        joints[joint_above(entry)].element.fail(UrdfProblem::Loop { links: names })
     }
 }

@@ -1,4 +1,4 @@
-//! An element of the file; its errors name the link or joint that it belongs to.
+//! Elements of the file, whose errors name the link or joint that they belong to.
 
 use super::error::{UrdfError, UrdfProblem};
 use roxmltree::Node;
@@ -6,7 +6,7 @@ use roxmltree::Node;
 /// Largest number of values in one attribute, as in a colour or a quaternion.
 pub(super) const MOST_NUMBERS: usize = 4;
 
-/// An element and the link or joint (`link 'hand'`) that it describes.
+/// Element of the file with the link or joint (`link 'hand'`) that it describes.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a> {
     pub(super) node: Node<'a, 'a>,
@@ -28,14 +28,15 @@ impl<'a> Element<'a> {
         self.node.tag_name().name()
     }
 
-    /// Returns the child elements of this name and the same prefix; elements with another prefix are extensions.
+    /// Returns the child elements with this name and the prefix of this element; elements with another prefix
+    /// are extensions.
     pub(super) fn children(self, name: &'static str) -> impl Iterator<Item = Self> {
         let is_ours =
             move |node: &Node<'a, 'a>| node.tag_name().name() == name && prefix(*node) == prefix(self.node);
         self.node.children().filter(Node::is_element).filter(is_ours).map(move |node| Self { node, ..self })
     }
 
-    /// Returns the first child element of this name, the one that urdfdom reads.
+    /// Returns the first child element with this name, as read by urdfdom.
     pub(super) fn child(self, name: &'static str) -> Option<Self> {
         self.children(name).next()
     }

@@ -1,4 +1,4 @@
-//! What can be wrong with a URDF file, where.
+//! Errors of URDF files, with their location.
 
 use crate::model::error::{ModelError, closest, nearest};
 use crate::number_text::short;
@@ -7,14 +7,14 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// A URDF that cannot be loaded: what is wrong, in which file and line where these are known.
+/// Error of a URDF that cannot be loaded, with file and line if they are known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UrdfError {
-    /// The file, where there is one.
+    /// File.
     pub file: Option<PathBuf>,
     /// Line, from 1.
     pub line: Option<u32>,
-    /// What is wrong.
+    /// Problem.
     pub problem: Box<UrdfProblem>,
 }
 
@@ -43,7 +43,7 @@ impl UrdfError {
         Self { file: None, line, problem: Box::new(problem) }
     }
 
-    /// A problem with what stands at `node`.
+    /// Returns the error for a problem of `node`.
     pub(super) fn at(node: Node<'_, '_>, problem: UrdfProblem) -> Self {
         let line = node.document().text_pos_at(node.range().start).row;
         Self::new(Some(line), problem)
@@ -54,77 +54,78 @@ impl UrdfError {
     }
 }
 
-/// What is wrong with a URDF. `owner` reads like `link 'hand'`.
+/// Problem of a URDF. `owner` is a phrase such as `link 'hand'`.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum UrdfProblem {
     #[error("there is no such file")]
     NotFound,
-    #[error("this is a folder, not a URDF file")]
+    #[error("the path is a directory; expected a URDF file")]
     IsFolder,
     #[error("cannot be read: {reason}")]
     Unreadable { reason: String },
     #[error("the file is empty")]
     Empty,
-    #[error("larger than {limit} bytes, the limit for robot descriptions")]
+    #[error("the file is larger than {limit} bytes, the limit for robot descriptions")]
     TooLarge { limit: usize },
-    #[error("XML elements nested deeper than {limit}, the limit for robot descriptions")]
+    #[error("XML elements are nested deeper than {limit}, the limit for robot descriptions")]
     TooDeep { limit: usize },
-    #[error("an XML tag with more than {limit} attributes, the limit for robot descriptions")]
+    #[error("an XML tag has more than {limit} attributes, the limit for robot descriptions")]
     TooManyAttributes { limit: usize },
-    #[error("not UTF-8 text (at byte {at}); save it as UTF-8")]
+    #[error("the file is not UTF-8 text (at byte {at}); save it as UTF-8")]
     NotUtf8 { at: usize },
     #[error("not XML: {reason}")]
     NotXml { reason: String },
     #[error("entity '&{name};' is not supported; replace it by its text in the document type (<!DOCTYPE>)")]
     Entity { name: String },
-    #[error("the outermost element is <{found}>, a URDF has <robot>{}", other_format(.found))]
+    #[error("the outermost element is <{found}>; expected <robot>{}", other_format(.found))]
     NotRobot { found: String },
     #[error(
-        "{found} is xacro, not URDF; expand it first: xacro FILE.xacro > FILE.urdf (Model.from_urdf of Python does \
-         so for files named .xacro, and for others with xacro=True, on the command line with --xacro)"
+        "{found} is xacro, not URDF; expand it first: xacro FILE.xacro > FILE.urdf (Model.from_urdf in \
+         Python expands files named .xacro, and others with xacro=True; the command line has --xacro)"
     )]
     Xacro { found: String },
     #[error(
         "<{element}> is not URDF and is ignored, which leaves the robot incomplete; write it without the prefix"
     )]
     ForeignElement { element: String },
-    #[error("the robot has no links")]
+    #[error("the robot has no links; add at least one")]
     NoLinks,
     #[error("the file defines xacro macros but no robot; expand the file that calls them")]
     OnlyMacros,
-    #[error("{owner} has no <{element}>")]
+    #[error("{owner} has no <{element}>; add it")]
     MissingElement { owner: String, element: &'static str },
-    #[error("<{element}> of {owner} has no attribute '{attribute}'")]
+    #[error("<{element}> of {owner} has no attribute '{attribute}'; add it")]
     MissingAttribute { owner: String, element: String, attribute: &'static str },
     #[error(
         "{owner}: {attribute}=\"{text}\" of <{element}> is not {}",
         amount_of_numbers(.expected)
     )]
     BadNumber { owner: String, element: String, attribute: &'static str, text: String, expected: usize },
-    #[error("{owner}: {attribute} of <{element}> is {value}, it must be positive", value = short(*value))]
+    #[error("{owner}: {attribute} of <{element}> is {value}; it must be positive", value = short(*value))]
     NotPositive { owner: String, element: String, attribute: &'static str, value: f64 },
     #[error("{owner}: <origin> has both rpy and quat_xyzw; keep one")]
     TwoOrientations { owner: String },
-    #[error("{owner}: the quaternion '{text}' has no length")]
+    #[error("{owner}: the quaternion '{text}' has norm zero")]
     ZeroQuaternion { owner: String, text: String },
     #[error(
-        "joint '{joint}' is of type '{kind}'; there are revolute, continuous, prismatic, fixed, planar, ball and \
-         floating{}",
+        "joint '{joint}' is of type '{kind}'; the types are revolute, continuous, prismatic, fixed, planar, \
+         ball and floating{}",
         way_out(.kind)
     )]
     JointType { joint: String, kind: String },
     #[error("joint '{joint}': there is no link '{link}'{}", nearest(.candidates, .link))]
     UnknownLink { joint: String, link: String, candidates: Vec<String> },
     #[error(
-        "link '{link}' hangs on two joints, '{}' and '{}': a kinematic loop; cut it at one of them",
+        "link '{link}' is the child of two joints, '{}' and '{}', but kinematic loops are not supported; \
+         remove one of the joints",
         .joints[0], .joints[1]
     )]
     TwoParents { link: String, joints: [String; 2] },
-    #[error("the links {} hang on one another in a loop; one of them must be the root", list(.links))]
+    #[error("the links {} form a closed loop; one of them must be the root", list(.links))]
     Loop { links: Vec<String> },
     #[error(
-        "{} links hang on no joint: {}; a robot has one root, join the others to it",
+        "{} links are not the child of a joint: {}; connect all but one, the root, by joints",
         .roots.len(), list(.roots)
     )]
     ManyRoots { roots: Vec<String> },
@@ -150,13 +151,13 @@ fn amount_of_numbers(expected: &usize) -> String {
 }
 
 fn way_out(kind: &str) -> String {
-    let told = match kind.to_lowercase().as_str() {
+    let advice = match kind.to_lowercase().as_str() {
         "revolute" | "continuous" | "prismatic" | "fixed" | "planar" | "spherical" | "ball" | "floating" => {
             "; write it in lower case"
         }
-        "universal" => "; build it of two revolute joints whose axes meet",
+        "universal" => "; replace it by two revolute joints with intersecting axes",
         "screw" | "helical" | "cylindrical" => {
-            "; build it of a prismatic and a revolute joint on one axis (nothing couples them)"
+            "; replace it by a prismatic and a revolute joint on one axis (they are not coupled)"
         }
         "rotational" | "hinge" => "; write revolute",
         "slide" | "slider" | "translational" => "; write prismatic",
@@ -168,10 +169,10 @@ fn way_out(kind: &str) -> String {
                 .map_or_else(String::new, |k| format!("; did you mean '{k}'?"));
         }
     };
-    told.to_owned()
+    advice.to_owned()
 }
 
-/// The names, the first of them if there are many.
+/// Returns a list of the names, shortened if there are many.
 pub(super) fn list(names: &[String]) -> String {
     const SHOWN: usize = 5;
     let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("'{name}'")).collect();

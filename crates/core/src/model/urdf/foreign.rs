@@ -1,13 +1,13 @@
-//! Elements that are not URDF: extensions of other tools and leftover xacro tags.
+//! Elements that are not URDF: extensions of other tools and xacro tags.
 
 use super::element::prefix;
 use super::error::{UrdfError, UrdfProblem, list};
 use crate::model::ModelWarning;
 use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
 
-/// Tags, texts and comments of a file; a large robot has 10⁴.
+/// Largest number of tags, texts and comments of a file; a large robot has 10⁴.
 const MAX_NODES: u32 = 1_000_000;
-/// Children of `<robot>` that files have beside links, joints and materials, and that a robot does without.
+/// Children of `<robot>`, besides links, joints and materials, that are ignored without a warning.
 const KNOWN: &[&str] = &[
     "gazebo",
     "transmission",
@@ -25,18 +25,18 @@ const KNOWN: &[&str] = &[
     "drake",
 ];
 
-/// Parses text that [`check`](super::first_look::check) has accepted.
+/// Parses text that [`check`](super::precheck::check) has accepted.
 pub(super) fn parse(xml: &str) -> Result<Document<'_>, XmlError> {
     Document::parse_with_options(xml, ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() })
 }
 
-/// The elements of a robot that are ignored.
+/// Elements of a robot that are ignored.
 pub(super) struct Ignored<'a> {
     /// Outermost tags of xacro, anywhere in the file.
     xacro: Vec<Node<'a, 'a>>,
     /// Children of the robot with another prefix.
     prefixed: Vec<Node<'a, 'a>>,
-    /// Children of the robot that URDF does not have.
+    /// Children of the robot that are not defined by URDF.
     unknown: Vec<Node<'a, 'a>>,
 }
 
@@ -61,39 +61,39 @@ impl<'a> Ignored<'a> {
         }
     }
 
-    /// One remark per kind of ignored element.
+    /// Returns one warning per kind of ignored element.
     pub(super) fn warnings(&self) -> Vec<ModelWarning> {
         let mut notes = Vec::new();
         if let Some(first) = self.xacro.first() {
             let (line, more) = (line(*first), others(self.xacro.len() - 1));
             notes.push(format!(
-                "line {line}: {} is a leftover xacro tag and ignored{more}; expand the file with xacro if the robot lacks parts",
+                "line {line}: {} is an xacro tag and is ignored{more}; expand the file with xacro if the \
+                 robot lacks parts",
                 tag(*first)
             ));
         }
-        for (nodes, what) in [
-            (&self.prefixed, "has a foreign prefix and is not part of URDF"),
-            (&self.unknown, "is no element of URDF"),
-        ] {
+        for (nodes, what) in
+            [(&self.prefixed, "has a foreign prefix"), (&self.unknown, "is not an element of URDF")]
+        {
             let Some(first) = nodes.first() else { continue };
             let mut names: Vec<String> = nodes.iter().skip(1).map(|node| tag(*node)).collect();
             names.sort();
             names.dedup();
             names.retain(|name| *name != tag(*first));
             let more = if names.is_empty() { String::new() } else { format!(" (so are {})", list(&names)) };
-            notes.push(format!("{} {what}: ignored{more}", tag(*first)));
+            notes.push(format!("{} {what} and is ignored{more}", tag(*first)));
         }
         notes.into_iter().map(ModelWarning::Note).collect()
     }
 
-    /// Whether what is there of xacro defines and makes nothing.
+    /// Returns true if the xacro elements of the file only define macros and instantiate none.
     fn is_macros(&self) -> bool {
         let defines = |name| matches!(name, "macro" | "property" | "arg" | "include");
         let mut names = self.xacro.iter().map(|node| node.tag_name().name());
         names.clone().all(defines) && names.any(|name| name == "macro")
     }
 
-    /// What made a robot incomplete, if ignored elements did: the error that names them instead.
+    /// Returns an error that names the ignored elements if they made the robot incomplete; otherwise `error`.
     pub(super) fn explain(&self, error: UrdfError) -> UrdfError {
         let is_incomplete = matches!(
             *error.problem,
@@ -120,7 +120,7 @@ fn is_xacro(node: Node<'_, '_>) -> bool {
     prefix(node) == Some("xacro")
 }
 
-/// `<prefix:name>` as in the file.
+/// Returns the tag of an element with its namespace prefix, such as `<xacro:macro>`.
 fn tag(node: Node<'_, '_>) -> String {
     let name = node.tag_name().name();
     match prefix(node) {

@@ -1,4 +1,4 @@
-//! Deserializes elements of the parsed tree into the types of urdf-rs, following the schema.
+//! Deserialization of elements of the parsed tree into the types of urdf-rs, following the schema.
 //!
 //! `urdf_rs::read_from_string` parses its text twice and takes nearly four times as long as loading the whole
 //! robot. Here its types are filled from the existing tree, and all values are checked on the way.

@@ -1,68 +1,53 @@
-//! `<joint>`: connects two links.
+//! Reader of `<joint>`: type, axis, limits, friction.
 
 use super::element::Element;
 use super::error::UrdfError;
+use super::joint_element::JointElement;
+use super::multi_dof::{MultiDof, split};
 use super::pose::pose;
-use super::several::{Several, split};
 use crate::model::{Joint, JointKind, Limits, ModelWarning};
 use crate::number_text::{short, unlike};
 use nalgebra::Vector3;
 use urdf_rs::{JointLimit, JointType};
 
-/// A joint and the links that it connects.
-pub(super) struct Hinge<'a> {
-    pub(super) element: Element<'a>,
-    pub(super) name: &'a str,
-    pub(super) kind: &'a str,
-    pub(super) parent: &'a str,
-    pub(super) child: &'a str,
-}
-
-/// Reads only the names, which suffice to check that the robot is a tree.
-pub(super) fn read_hinge<'a>(element: Element<'a>, name: &'a str) -> Result<Hinge<'a>, UrdfError> {
-    let link = |end| element.required_child(end)?.required_text("link");
-    let (parent, child) = (link("parent")?, link("child")?);
-    Ok(Hinge { element, name, kind: element.required_text("type")?, parent, child })
-}
-
-/// Reads the rest of a joint. A joint of several degrees of freedom becomes a chain of joints of one degree of
-/// freedom. `is_taken` returns true for names that occur in the file.
+/// Reads axis, limits and friction of a joint. A joint of several degrees of freedom becomes a chain of
+/// joints of one degree of freedom. `is_taken` returns true for names that occur in the file.
 pub(super) fn read_joints(
-    hinge: &Hinge<'_>,
+    joint: &JointElement<'_>,
     is_taken: impl Fn(&str) -> bool,
     warnings: &mut Vec<ModelWarning>,
 ) -> Result<Vec<Joint>, UrdfError> {
-    let element = Element { unread: unread(hinge.kind), ..hinge.element };
+    let element = Element { unread: unread(joint.kind), ..joint.element };
     let read: urdf_rs::Joint = element.read()?;
     let (axis, origin) = (Vector3::from(*read.axis.xyz), pose(element, &read.origin)?);
-    let several = |several, warnings| Ok(split(hinge, several, origin, is_taken, warnings));
+    let replaced = |kind, warnings| Ok(split(joint, kind, origin, is_taken, warnings));
     let kind = match read.joint_type {
         JointType::Revolute | JointType::Continuous => JointKind::Revolute(axis),
         JointType::Prismatic => JointKind::Prismatic(axis),
-        JointType::Fixed => return Ok(vec![Joint::new(hinge.name, JointKind::Fixed, origin)]),
-        JointType::Planar => return several(Several::Planar(axis), warnings),
-        JointType::Spherical => return several(Several::Ball, warnings),
-        JointType::Floating => return several(Several::Floating, warnings),
+        JointType::Fixed => return Ok(vec![Joint::new(joint.name, JointKind::Fixed, origin)]),
+        JointType::Planar => return replaced(MultiDof::Planar(axis), warnings),
+        JointType::Spherical => return replaced(MultiDof::Ball, warnings),
+        JointType::Floating => return replaced(MultiDof::Floating, warnings),
     };
-    let mut joint = Joint::new(hinge.name, kind, origin);
+    let mut result = Joint::new(joint.name, kind, origin);
     if let Some(limit) = element.child("limit") {
         let is_bounded = read.joint_type != JointType::Continuous;
-        joint.limits = limits(hinge.name, &read.limit, is_bounded.then_some(limit), warnings);
+        result.limits = limits(joint.name, &read.limit, is_bounded.then_some(limit), warnings);
     }
     if let (Some(given), Some(dynamics)) = (read.dynamics, element.child("dynamics")) {
-        (joint.damping, joint.friction) = (given.damping, given.friction);
-        // not in the standard: URDF has one friction
-        joint.static_friction = dynamics.number("static_friction")?;
-        // not in the standard: the rotor inertia seen at the joint, by MuJoCo's name or its plain one
-        joint.rotor_inertia = match dynamics.number("armature")? {
+        (result.damping, result.friction) = (given.damping, given.friction);
+        // extension: URDF has only one friction coefficient
+        result.static_friction = dynamics.number("static_friction")?;
+        // extension: the rotor inertia seen at the joint, as `armature` (MuJoCo) or `rotor_inertia`
+        result.rotor_inertia = match dynamics.number("armature")? {
             Some(armature) => armature,
             None => dynamics.number("rotor_inertia")?.unwrap_or(0.0),
         };
     }
     if let Some(mimic) = element.child("mimic") {
-        warnings.push(ModelWarning::Note(mimic_note(hinge.name, mimic)));
+        warnings.push(ModelWarning::Note(mimic_note(joint.name, mimic)));
     }
-    Ok(vec![joint])
+    Ok(vec![result])
 }
 
 /// Returns the child elements and attributes that do not apply to a kind of joint and are not read.
@@ -81,8 +66,8 @@ fn mimic_note(name: &str, mimic: Element<'_>) -> String {
     let factor = mimic.text("multiplier").unwrap_or("1");
     let offset = mimic.text("offset").unwrap_or("0");
     format!(
-        "joint '{name}' mimics joint '{leader}' ({name} = {factor} {leader} + {offset}): nothing couples them here, \
-         it is loaded as a joint of its own; start both where they fit and drive both, or make it fixed"
+        "joint '{name}' mimics joint '{leader}' ({name} = {factor} {leader} + {offset}): mimic joints are \
+         not supported, so '{name}' is loaded as an independent joint; give both consistent initial positions and control both, or make '{name}' fixed"
     )
 }
 
@@ -96,7 +81,7 @@ fn limits(
 ) -> Limits {
     let is_given = |end| bounds.is_some_and(|limit| limit.text(end).is_some());
     let position = (is_given("lower") || is_given("upper")).then(|| {
-        // an infinite bound is no bound, whatever its sign
+        // either infinity means no bound
         let bound = |value: f64, none: f64| if value.is_finite() { value } else { none };
         (bound(read.lower, f64::NEG_INFINITY), bound(read.upper, f64::INFINITY))
     });
@@ -104,7 +89,7 @@ fn limits(
     let position = position.filter(|&(low, high)| {
         if low > high {
             note(format!(
-                "lower limit {} is above upper limit {}: read as none",
+                "lower limit {} is above upper limit {}; both are ignored",
                 unlike(low, &[high]),
                 short(high)
             ));
@@ -114,7 +99,7 @@ fn limits(
     let mut largest = |what: &str, value: f64| {
         // Gazebo writes -1 for no limit
         if value.is_finite() && value < 0.0 {
-            note(format!("its {what} limit is below zero, which is read as none"));
+            note(format!("its {what} limit is negative and is ignored"));
         }
         (value.is_finite() && value >= 0.0).then_some(value)
     };

@@ -1,4 +1,4 @@
-//! `<link>`: mass, inertia, visual and collision shapes.
+//! Reader of `<link>`: mass, inertia, visual and collision shapes.
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
@@ -8,8 +8,8 @@ use super::pose::pose;
 use crate::model::{Geometry, Inertial, Link, LinkChange, ModelWarning, Visual};
 use nalgebra::Matrix3;
 
-/// Data of the rest of the file that links need, and the warnings collected while reading.
-pub(super) struct Surroundings<'a> {
+/// Data from the rest of the file that links require, and the warnings collected while reading.
+pub(super) struct ReadContext<'a> {
     pub(super) materials: Materials<'a>,
     pub(super) meshes: Meshes<'a>,
     /// Replacements for values of the file.
@@ -20,22 +20,22 @@ pub(super) struct Surroundings<'a> {
 pub(super) fn read_link(
     link: Element<'_>,
     name: &str,
-    around: &mut Surroundings<'_>,
+    context: &mut ReadContext<'_>,
 ) -> Result<Link, UrdfError> {
     let mut result = Link::new(name, None);
     if let Some(inertial) = link.child("inertial") {
-        result.inertial = read_inertial(inertial, around)?;
+        result.inertial = read_inertial(inertial, context)?;
     }
-    for change in around.changes {
+    for change in context.changes {
         change.apply(&mut result).map_err(|error| link.fail(UrdfProblem::Model(error)))?;
     }
     for visual in link.children("visual") {
-        // visual shapes do not affect the dynamics: an unreadable one is left out with a warning
-        match read_visual(visual, around) {
+        // visual shapes do not affect the dynamics: an unreadable one is omitted with a warning
+        match read_visual(visual, context) {
             Ok(visual) => result.visuals.push(visual),
             Err(error) => {
-                let note = format!("a visual shape of {} is left out: {error}", link.owner);
-                around.warnings.push(ModelWarning::Note(note));
+                let note = format!("a visual shape of {} is skipped: {error}", link.owner);
+                context.warnings.push(ModelWarning::Note(note));
             }
         }
     }
@@ -43,32 +43,32 @@ pub(super) fn read_link(
     for collision in link.children("collision") {
         let mesh = collision.child("geometry").and_then(|geometry| geometry.child("mesh"));
         let file = mesh.map(|mesh| mesh.text("filename").unwrap_or_default());
-        if file.is_none_or(|name| around.meshes.find(name).is_some()) {
-            result.collisions.extend(read_visual(collision, around).ok());
+        if file.is_none_or(|name| context.meshes.find(name).is_some()) {
+            result.collisions.extend(read_visual(collision, context).ok());
         }
     }
     Ok(result)
 }
 
 /// Returns mass and inertia; `None` without a `<mass>`, as in urdfdom.
-fn read_inertial(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<Option<Inertial>, UrdfError> {
+fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<Option<Inertial>, UrdfError> {
     let owner = element.owner;
-    let mut note = |text: String| around.warnings.push(ModelWarning::Note(text));
+    let mut note = |text: String| context.warnings.push(ModelWarning::Note(text));
     if element.child("mass").is_none() {
-        note(format!("the <inertial> of {owner} is not read: {owner} has no <mass>"));
+        note(format!("the <inertial> of {owner} is ignored, because {owner} has no <mass>"));
         return Ok(None);
     }
     let urdf_rs::Inertial { origin, mass, inertia: given } = element.read()?;
     match element.child("inertia") {
         None if mass.value != 0.0 => {
-            note(format!("{owner} has a mass but no <inertia>: read as a point mass"));
+            note(format!("{owner} has a mass but no <inertia>; it is read as a point mass"));
         }
         None => {}
         Some(inertia) => {
             let is_missing = |product: &&str| inertia.text(product).is_none();
             let missing: Vec<&str> = ["ixy", "ixz", "iyz"].into_iter().filter(is_missing).collect();
             if !missing.is_empty() {
-                note(format!("the <inertia> of {owner} has no {}: read as 0", missing.join(", ")));
+                note(format!("the <inertia> of {owner} has no {}, which is read as 0", missing.join(", ")));
             }
         }
     }
@@ -84,16 +84,16 @@ fn read_inertial(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<
     Ok(Some(Inertial { mass: mass.value, com, inertia }))
 }
 
-/// `R I Rᵀ`, symmetric to the last bit.
+/// Returns `R I Rᵀ`, exactly symmetric.
 fn rotated(rot: &Matrix3<f64>, inertia: &Matrix3<f64>) -> Matrix3<f64> {
     let result = rot * inertia * rot.transpose();
     (result + result.transpose()) * 0.5
 }
 
-fn read_visual(element: Element<'_>, around: &mut Surroundings<'_>) -> Result<Visual, UrdfError> {
+fn read_visual(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<Visual, UrdfError> {
     let urdf_rs::Visual { origin, geometry, material, .. } = element.read()?;
-    let rgba = material.map(|material| around.materials.rgba(material)).transpose()?.flatten();
-    Ok(Visual { pose: pose(element, &origin)?, geometry: shape(geometry, &mut around.meshes), rgba })
+    let rgba = material.map(|material| context.materials.rgba(material)).transpose()?.flatten();
+    Ok(Visual { pose: pose(element, &origin)?, geometry: shape(geometry, &mut context.meshes), rgba })
 }
 
 fn shape(read: urdf_rs::Geometry, meshes: &mut Meshes<'_>) -> Geometry {

@@ -1,18 +1,18 @@
-//! `<material>`: colours, defined once and named elsewhere.
+//! Reader of `<material>`: colours, defined once and referred to by name.
 
 use super::element::Element;
 use super::error::UrdfError;
 use std::collections::HashMap;
 use urdf_rs::Color;
 
-/// The file's named colours.
+/// Named colours of the file.
 pub(super) struct Materials<'a> {
     named: HashMap<&'a str, Element<'a>>,
 }
 
 impl<'a> Materials<'a> {
-    /// Collects the definitions: those of the robot itself first, then those inside visuals,
-    /// which other visuals of real files refer to.
+    /// Collects the definitions: first those of the robot, then those inside visuals, to which other visuals
+    /// refer in some files.
     pub(super) fn new(robot: Element<'a>) -> Self {
         let nested = robot
             .children("link")
@@ -27,7 +27,7 @@ impl<'a> Materials<'a> {
         Self { named }
     }
 
-    /// Returns the colour of a visual's material: its own, or the one defined under its name.
+    /// Returns the colour of a visual's material: either its own colour or the one defined under its name.
     pub(super) fn rgba(&self, material: urdf_rs::Material) -> Result<Option<[f64; 4]>, UrdfError> {
         let named = || self.named.get(material.name.as_str()).map(|color| color.read::<Color>());
         let color = material.color.map(Ok).or_else(named).transpose()?;

@@ -1,4 +1,4 @@
-//! Resolves names of mesh files: `package://`, `file://`, relative names, and files near the URDF.
+//! Resolution of the names of mesh files: `package://`, `file://`, relative names, and files near the URDF.
 
 use super::mesh_name::MeshName;
 use super::mesh_near::Near;
@@ -6,7 +6,7 @@ use crate::model::ModelWarning;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Finds mesh files and records those that are missing.
+/// Finder of mesh files, which records missing files.
 pub(super) struct Meshes<'a> {
     /// The URDF's folder.
     folder: Option<&'a Path>,
@@ -17,7 +17,7 @@ pub(super) struct Meshes<'a> {
     /// Existing and missing folders; avoids a system call for each file in a missing one.
     folders: HashMap<PathBuf, bool>,
     near: Near<'a>,
-    /// The package that each file was found for.
+    /// Package for which each file was found.
     taken: HashMap<String, String>,
     missing: Vec<String>,
     guessed: Vec<(String, String)>,
@@ -78,19 +78,22 @@ impl<'a> Meshes<'a> {
         let files = mesh_files(self.missing.len());
         let hint = match MeshName::of(first) {
             Some(MeshName::InPackage { package, .. }) => {
-                format!("; name the folder that holds the package '{package}'")
+                format!("; specify the folder that contains the package '{package}'")
             }
-            _ => "; copy what is missing into a folder 'meshes' beside the robot's file".to_owned(),
+            _ => "; copy the missing files into a folder 'meshes' beside the robot's file".to_owned(),
         };
-        Some(format!("{files} not found, the first is '{first}': simpler shapes are drawn instead{hint}"))
+        Some(format!(
+            "{files} not found, of which the first is '{first}'; simpler shapes are drawn \
+        instead{hint}"
+        ))
     }
 
     fn about_guessed(&self) -> Option<String> {
         let (name, path) = self.guessed.first()?;
         let files = mesh_files(self.guessed.len());
         Some(format!(
-            "{files} not where the robot says: what has the same name near it is drawn, \
-             {path} for '{name}'"
+            "{files} not at the given paths; files of the same name near them are drawn, such as {path} for \
+             '{name}'"
         ))
     }
 
@@ -104,7 +107,8 @@ impl<'a> Meshes<'a> {
         found
     }
 
-    /// Looks for a file at the path of its name, see [`Self::in_package`] for names in a package.
+    /// Searches for a file at the path of its name; [`Self::in_package`] describes the search for names in a
+    /// package.
     fn at_its_path(&mut self, name: &MeshName) -> Option<Found> {
         let candidates = match name {
             MeshName::InPackage { package, rest } => self.in_package(package, rest),
@@ -171,7 +175,7 @@ mod tests {
     use std::path::PathBuf;
 
     #[test]
-    fn a_package_is_found_by_its_folder_beside_it_or_where_told() {
+    fn a_package_is_found_beside_the_file_or_in_a_given_folder() {
         let root = std::env::temp_dir().join(format!("onorbit_mesh_{}", std::process::id()));
         let (urdf, meshes) = (root.join("arm_description/urdf"), root.join("arm_description/meshes"));
         let other = root.join("elsewhere/hand_description");
@@ -197,8 +201,8 @@ mod tests {
         assert!(warning.to_string().contains("'hand_description'"));
 
         for packages in [[root.join("elsewhere")], [other.clone()]] {
-            let mut told = Meshes::new(None, &packages);
-            assert_eq!(told.resolve("package://hand_description/hand.stl"), path(&hand));
+            let mut given = Meshes::new(None, &packages);
+            assert_eq!(given.resolve("package://hand_description/hand.stl"), path(&hand));
         }
         fs::remove_dir_all(root).expect("the folder is ours");
     }
@@ -224,7 +228,7 @@ mod tests {
         assert_eq!(found.resolve("package://arm/stl/hand.stl"), hand);
         let guesses: Vec<_> = found.warnings().map(|warning| warning.to_string()).collect();
         assert!(guesses.len() == 1 && guesses[0].contains("'package://arm/stl/hand.stl'"), "{guesses:?}");
-        // of the same name, but of another package, or above the folders that speak for it
+        // files of the same name in another package, or above the folders that identify the package
         for other in ["package://gripper/meshes/visual/arm.dae", "package://arm/bus.stl"] {
             assert_eq!(found.resolve(other), other);
         }

@@ -1,11 +1,11 @@
-//! Parses the `filename` of a mesh.
+//! Parser of the `filename` of a mesh.
 
 use std::path::{Component, Path, PathBuf};
 
 /// Largest number of components in a tail of a path.
 const LONGEST_TAIL: usize = 5;
 
-/// The `filename` of a mesh.
+/// Parsed `filename` of a mesh.
 #[derive(Debug, PartialEq)]
 pub(super) enum MeshName {
     /// `package://name/rest`, also with a third slash, or Gazebo's `model://name/rest`.

@@ -1,4 +1,4 @@
-//! Finds meshes near the URDF that do not exist at their named path.
+//! Search near the URDF for meshes that do not exist at their named path.
 
 use super::mesh_name::tails;
 use std::collections::{HashMap, HashSet};
@@ -9,7 +9,8 @@ use std::rc::Rc;
 /// Number of folders above the URDF's in which tails of a name are searched.
 const PARENTS: usize = 3;
 
-/// Finds files by the tail of their name; lists each folder once, since many links have meshes.
+/// Finder of files by the tail of their name, which lists each folder only once, since many links have
+/// meshes.
 pub(super) struct Near<'a> {
     /// The URDF's folder.
     folder: Option<&'a Path>,

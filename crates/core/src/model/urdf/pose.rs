@@ -1,4 +1,4 @@
-//! `<origin>`: a pose.
+//! Reader of `<origin>`, the pose of an element.
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
@@ -45,8 +45,7 @@ pub(super) fn quaternion_warning(robot: Node<'_, '_>) -> Option<ModelWarning> {
     let is_origin = |node: &Node<'_, '_>| node.has_tag_name("origin") && node.has_attribute("quat_xyzw");
     let origin = robot.descendants().find(is_origin)?;
     let line = origin.document().text_pos_at(origin.range().start).row;
-    let note = format!(
-        "line {line}: quat_xyzw is not read in version 1.0; write <robot version=\"1.1\"> or use rpy"
-    );
+    let note =
+        format!("line {line}: quat_xyzw is ignored in version 1.0; write <robot version=\"1.1\"> or use rpy");
     Some(ModelWarning::Note(note))
 }

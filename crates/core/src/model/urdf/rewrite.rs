@@ -1,44 +1,44 @@
-//! Pieces of a text that is no XML, written as XML.
+//! Writer of parts of a malformed text as XML.
 
 use super::tokens::{Kind, Token};
 use std::collections::BTreeSet;
 
-/// Prefixes of one file; the parser compares each with every other.
+/// Largest number of prefixes of a file; the parser compares each with every other.
 const MOST_PREFIXES: usize = 1000;
 
-/// What is written of the text.
+/// Writer of the converted text.
 pub(super) struct Writer<'a> {
     out: String,
     prefixes: BTreeSet<&'a str>,
-    /// Where the name of the outermost tag ends.
+    /// Offset of the end of the outermost tag's name.
     root_name_ends: usize,
-    /// Whether a document type defines any.
+    /// True if a document type defines entities.
     has_entities: bool,
 }
 
-/// The name of an entity that may not be used.
+/// Result of a writer; the error is the name of an entity that is not supported.
 pub(super) type Written = Result<(), String>;
 
 impl<'a> Writer<'a> {
-    /// `length`: about as many bytes will be written.
+    /// Returns a writer with a capacity of `length` bytes.
     pub(super) fn new(length: usize, has_entities: bool) -> Self {
         let out = String::with_capacity(length);
         Self { out, prefixes: BTreeSet::new(), root_name_ends: 0, has_entities }
     }
 
-    /// Nothing but the ends of the lines.
+    /// Writes only the line breaks.
     pub(super) fn blank(&mut self, text: &str) -> Written {
         self.out.extend(text.chars().filter(|&c| c == '\n'));
         Ok(())
     }
 
-    /// The text with spaces for what is no character of XML.
+    /// Writes the text with a space for each character that XML forbids.
     pub(super) fn plain(&mut self, text: &str) -> Written {
         self.out.extend(text.chars().map(|c| if is_character(c) { c } else { ' ' }));
         Ok(())
     }
 
-    /// The text with references for what would be markup.
+    /// Writes the text with references in place of markup characters.
     pub(super) fn escaped(&mut self, text: &str) -> Written {
         for (at, c) in text.char_indices() {
             match c {
@@ -55,12 +55,12 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// A tag, its attributes with a space before each; those that declare prefixes go.
+    /// Writes a tag with a space before each attribute, without declarations of prefixes.
     pub(super) fn tag(&mut self, tag: &Token<'a>) -> Written {
         let (name, mut rest) = tag.split_name();
         self.out.push_str(if tag.kind == Kind::Close { "</" } else { "<" });
         self.name(name)?;
-        // what breaks a line in front of the name does so after it
+        // a line break before the name is written after it
         let front = tag.text.len() - name.len() - rest.len();
         self.blank(&tag.text[..front])?;
         if tag.kind == Kind::Close {
@@ -90,7 +90,7 @@ impl<'a> Writer<'a> {
         self.plain(rest)
     }
 
-    /// A name; only its first colon ends a prefix.
+    /// Writes a name; only its first colon ends a prefix.
     fn name(&mut self, name: &'a str) -> Written {
         let is_free = |prefix: &str| !matches!(prefix, "" | "xml" | "xmlns");
         let split = name.split_once(':').filter(|(prefix, local)| is_free(prefix) && !local.is_empty());
@@ -104,7 +104,7 @@ impl<'a> Writer<'a> {
         self.plain(&local.replace(':', "_"))
     }
 
-    /// All of it, the prefixes declared at its outermost tag.
+    /// Returns the text, with the prefixes declared at the outermost tag.
     pub(super) fn finish(mut self) -> String {
         let declare = |prefix: &&str| format!(" xmlns:{prefix}=\"urn:prefix:{prefix}\"");
         let declared: String = self.prefixes.iter().take(MOST_PREFIXES).map(declare).collect();
@@ -113,7 +113,7 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// What stands before the first value of an attribute, its quotes, and the value.
+/// Splits a text into the part before the first attribute value, its quote, and the value.
 fn first_value(text: &str) -> Option<(&str, char, &str)> {
     let open = text.find(['"', '\''])?;
     let (before, rest) = text.split_at(open);
@@ -122,7 +122,7 @@ fn first_value(text: &str) -> Option<(&str, char, &str)> {
     Some((before, quote, value))
 }
 
-/// The name in `&name;`, where a text starts so.
+/// Returns the name in `&name;` if the text starts with such a reference.
 fn reference(text: &str) -> Option<&str> {
     let rest = text.strip_prefix('&')?;
     let fits = |c: char| c.is_alphanumeric() || matches!(c, '#' | '-' | '_' | '.' | ':');
@@ -130,7 +130,7 @@ fn reference(text: &str) -> Option<&str> {
     (!name.is_empty() && end.starts_with(';')).then_some(name)
 }
 
-/// Whether XML knows a reference without being told.
+/// Returns true if a reference is predefined in XML.
 fn is_known(name: &str) -> bool {
     let code = match (name.strip_prefix("#x"), name.strip_prefix('#')) {
         (Some(digits), _) => u32::from_str_radix(digits, 16),

@@ -6,21 +6,21 @@ use super::error::{UrdfError, UrdfProblem};
 /// Kind of value of an attribute.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
-    /// A name that the file defines; any text.
+    /// Name defined by the file; any text.
     Name,
-    /// A text with a meaning, such as a path or a type; xacro expressions are refused.
+    /// Text with a meaning, such as a path or a type; xacro expressions are rejected.
     Text,
-    /// This many finite numbers.
+    /// Given number of finite numbers.
     Numbers(usize),
-    /// This many positive, finite numbers: edges, a radius.
+    /// Given number of positive, finite numbers, such as edge lengths or a radius.
     Sizes(usize),
-    /// A finite number, or `inf` for no limit.
+    /// Finite number, or `inf` for no limit.
     Limit,
 }
 use Kind::{Limit, Name, Numbers, Sizes, Text};
 
-/// Name of an attribute, its kind, and the text used if the file does not give it. Without such a text
-/// the default of urdf-rs applies, or the attribute is required.
+/// Attribute: name, kind, and the default text if the file omits it. Without a default text the default of
+/// urdf-rs applies, or the attribute is required.
 pub(super) type Attribute = (&'static str, Kind, Option<&'static str>);
 
 /// Returns the attributes that are read of an element.
@@ -56,19 +56,20 @@ pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
     }
 }
 
-/// Returns the child elements that are read of an element; the first of each name counts.
+/// Returns the child elements that are read of an element; only the first of each name is used.
 pub(super) fn elements(tag: &str) -> &'static [&'static str] {
     match tag {
         "joint" => &["parent", "child", "origin", "axis", "limit", "dynamics"],
         "inertial" => &["origin", "mass", "inertia"],
-        // real files colour collisions too
+        // in some files, collisions have a material
         "visual" | "collision" => &["origin", "geometry", "material"],
         "material" => &["color"],
         _ => &[],
     }
 }
 
-/// Refuses a text that is not of the kind of its attribute. urdf-rs would read `1,0 0 0 0` as three zeros.
+/// Returns an error if a text is not of the kind of its attribute. urdf-rs would read `1,0 0 0 0` as three
+/// zeros.
 pub(super) fn check(element: &Element<'_>, attribute: Attribute, text: &str) -> Result<(), UrdfError> {
     let (name, kind, _) = attribute;
     let (count, is_size) = match kind {

@@ -1,4 +1,4 @@
-//! Splits a text into tags, comments and the text between them, without checking any of them.
+//! Tokenizer that splits a text into tags, comments and the text between them, without validation.
 //!
 //! One pass without recursion, so that neither a deep document nor an entity bomb reaches code
 //! that could exhaust the stack or the memory.
@@ -19,7 +19,7 @@ pub(super) enum Kind {
     Empty,
 }
 
-/// A piece of the text.
+/// Token: a part of the text.
 #[derive(Clone, Copy)]
 pub(super) struct Token<'a> {
     pub(super) kind: Kind,

@@ -1,22 +1,22 @@
-//! Kepler's equation for the three conics, from mean to eccentric anomaly.
+//! Solvers of Kepler's equation for the three conics, from mean to eccentric anomaly.
 //!
-//! Each is written with `|1 - e|` as a datum of its own and with `E - sin E` free of
-//! cancellation, so that relative accuracy holds as `e → 1` and `M → 0` together.
+//! `|1 - e|` is a separate input, and `E - sin E` is computed without cancellation, so that the relative
+//! accuracy holds in the limit `e → 1`, `M → 0`.
 
 use crate::spatial::Real;
 use std::f64::consts::PI;
 
-/// Half the eccentric (or hyperbolic) anomaly, by its sine and cosine.
+/// Sine and cosine (hyperbolic ones for a hyperbola) of half the eccentric anomaly.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Half<S = f64> {
+pub(super) struct HalfAnomaly<S = f64> {
     pub(super) sin: S,
     pub(super) cos: S,
 }
 
-/// `Σ xᵏ⁺³ (±1)ᵏ/(2k+3)!` factored: `x - sin x` for `sign = 1`, `sinh x - x` for `sign = -1`; `|x| < 1`.
+/// Sums `Σ (-s)ᵏ x²ᵏ⁺³/(2k+3)!` in nested form, `s = sign`: `x - sin x` for 1, `sinh x - x` for -1; `|x| < 1`.
 #[inline(always)]
 fn cubic_tail<S: Real>(x: S, sign: f64) -> S {
-    // one minus y/d times what follows
+    // each factor is 1 - y/d times the following one
     let fold = |y: S, d: f64, tail: S| S::of(1.0) - y * S::of(1.0 / d) * tail;
     let y = S::of(sign) * x * x;
     let tail = fold(y, 210.0, fold(y, 272.0, S::of(1.0)));
@@ -24,71 +24,77 @@ fn cubic_tail<S: Real>(x: S, sign: f64) -> S {
     x * x * x * S::of(1.0 / 6.0) * fold(y, 20.0, fold(y, 42.0, tail))
 }
 
-/// `x - sin x` without cancellation, given `sin x`.
+/// Returns `x - sin x` without cancellation, given `sin x`.
 #[inline(always)]
-fn minus_sine<S: Real>(x: S, sin: S) -> S {
+fn x_minus_sin<S: Real>(x: S, sin: S) -> S {
     S::select(S::less(x.abs(), S::of(1.0)), cubic_tail(x, 1.0), x - sin)
 }
 
-/// `∛x` to 1e-9 for `x > 0`: a third of the exponent, then Newton's steps for `1/∛x`, which need no quotient.
+/// Returns `∛x` to 1e-9 for `x > 0`: starts from a third of the exponent, then Newton steps for `1/∛x`
+/// without division.
 #[inline(always)]
 fn cube_root<S: Real>(x: S) -> S {
-    const HIGH: u64 = 0x553e_f0ff; // 4/3 of the exponent's bias, balanced over three octaves
+    const HIGH: u64 = 0x553e_f0ff; // 4/3 of the exponent bias, with the error balanced over three octaves
     let mut inverse = S::from_lanes(
         #[inline(always)]
         |lane| {
-            let third = ((x.lane(lane).to_bits() >> 32) * 0x5555_5556) >> 32; // of the upper word
+            let third = ((x.lane(lane).to_bits() >> 32) * 0x5555_5556) >> 32; // of the upper 32 bits
             f64::from_bits((HIGH - third) << 32)
         },
     );
     for _ in 0..3 {
-        // y ← y (4 - x y³)/3, from 3 % over 1e-5 to 2e-10
+        // y ← y (4 - x y³)/3: the error falls from 3 % to 1e-5 to 2e-10
         let cube = inverse * inverse * inverse;
         inverse *= S::of(4.0 / 3.0) - x * cube * S::of(1.0 / 3.0);
     }
     x * inverse * inverse
 }
 
-/// `sinh x - x` without cancellation, given `sinh x`.
-fn sinh_minus(x: f64, sinh: f64) -> f64 {
+/// Returns `sinh x - x` without cancellation, given `sinh x`.
+fn sinh_minus_x(x: f64, sinh: f64) -> f64 {
     if x.abs() < 1.0 { cubic_tail(x, -1.0) } else { sinh - x }
 }
 
-/// `M = (1 - e) E + e (E - sin E)`, rad.
+/// Returns `M = (1 - e) E + e (E - sin E)`, rad.
 pub(super) fn mean_from_eccentric(e: f64, one_minus_e: f64, eccentric: f64) -> f64 {
-    one_minus_e * eccentric + e * minus_sine(eccentric, eccentric.sin())
+    one_minus_e * eccentric + e * x_minus_sin(eccentric, eccentric.sin())
 }
 
-/// `M = (e - 1) H + e (sinh H - H)`.
+/// Returns `M = (e - 1) H + e (sinh H - H)`.
 pub(super) fn mean_from_hyperbolic(e: f64, e_minus_one: f64, hyperbolic: f64) -> f64 {
-    e_minus_one * hyperbolic + e * sinh_minus(hyperbolic, hyperbolic.sinh())
+    e_minus_one * hyperbolic + e * sinh_minus_x(hyperbolic, hyperbolic.sinh())
 }
 
-/// Eccentricity from which [`solve_round`] leaves the rest to [`solve_long`].
-const ROUND: f64 = 0.1;
+/// Eccentricity below which [`solve_ellipse`] uses [`solve_nearly_circular`] instead of [`solve_any_ellipse`].
+const NEARLY_CIRCULAR: f64 = 0.1;
 
-/// Solve `M = E - e sin E` for `M` in [-π, π] and `0 ≤ e < 1`.
+/// Solves `M = E - e sin E` for `M` in [-π, π] and `0 ≤ e < 1`.
 #[inline(always)]
-pub(super) fn solve_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> Half<S> {
-    let is_round = S::less(e, S::of(ROUND));
-    let is_long = S::less(S::of(ROUND.next_down()), e);
-    if !S::any(is_long) {
-        return solve_round(e, mean);
+pub(super) fn solve_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnomaly<S> {
+    let is_nearly_circular = S::less(e, S::of(NEARLY_CIRCULAR));
+    let is_elongated = S::less(S::of(NEARLY_CIRCULAR.next_down()), e);
+    if !S::any(is_elongated) {
+        return solve_nearly_circular(e, mean);
     }
-    let long = solve_long(e, one_minus_e, mean);
-    if !S::any(is_round) {
-        return long;
+    let elongated = solve_any_ellipse(e, one_minus_e, mean);
+    if !S::any(is_nearly_circular) {
+        return elongated;
     }
-    let round = solve_round(e, mean);
-    Half { sin: S::select(is_round, round.sin, long.sin), cos: S::select(is_round, round.cos, long.cos) }
+    let nearly_circular = solve_nearly_circular(e, mean);
+    HalfAnomaly {
+        sin: S::select(is_nearly_circular, nearly_circular.sin, elongated.sin),
+        cos: S::select(is_nearly_circular, nearly_circular.cos, elongated.cos),
+    }
 }
 
-/// That of a nearly round orbit, for `δ = E - M`: half as long a way as [`solve_long`].
+/// Solves Kepler's equation of a nearly circular orbit for `δ = E - M`, at half the cost of [`solve_any_ellipse`].
 ///
-/// `δ = x - x³/2`, `x = e sin M/(1 - e cos M)`, is in error by less than 1e-5 rad; one step of the reverted series of
-/// `f = δ - e sin(M + δ)` to its third order leaves rounding.
+/// Two steps of the reverted series of `f = δ - e sin(M + δ)`. From `δ = 0` to second order it gives `δ = x - x³/2`,
+/// `x = e sin M/(1 - e cos M)`, with an error below 1e-5 rad; from there, to third order, it leaves rounding error.
+///
+/// Source of the series: Abramowitz and Stegun, Handbook of Mathematical Functions, 1964, eq. 3.6.25.
 #[inline(always)]
-fn solve_round<S: Real>(e: S, mean: S) -> Half<S> {
+fn solve_nearly_circular<S: Real>(e: S, mean: S) -> HalfAnomaly<S> {
     let (of, one, half) = (S::of, S::of(1.0), S::of(0.5));
     let (s, c) = (half * mean).sin_cos();
     let (sin_m, cos_m) = (of(2.0) * s * c, one - of(2.0) * s * s);
@@ -101,13 +107,13 @@ fn solve_round<S: Real>(e: S, mean: S) -> Half<S> {
     let d = (e * sin_e - start) * over_f1;
     let d = d * (one + d * (d * (half * f2 * f2 - of(1.0 / 6.0) * f3) - half * f2));
     let (sin, cos) = turned((s, c), half * (start + d));
-    Half { sin, cos }
+    HalfAnomaly { sin, cos }
 }
 
-/// Sine and cosine of an angle that is larger by `x`, `|x| < 1/8`, than that of these.
+/// Returns sine and cosine of an angle increased by `x`, `|x| < 1/8`.
 #[inline(always)]
 fn turned<S: Real>((s, c): (S, S), x: S) -> (S, S) {
-    // 1 - z/a times what follows, for the series of sin x/x and cos x
+    // nested series of sin x/x and cos x: each factor is 1 - z/a times the following one
     let fold = |z: S, a: f64, tail: S| (-z * tail).mul_add(S::of(1.0 / a), S::of(1.0));
     let (z, one) = (x * x, S::of(1.0));
     let sin = x * fold(z, 6.0, fold(z, 20.0, fold(z, 42.0, fold(z, 72.0, one))));
@@ -115,15 +121,15 @@ fn turned<S: Real>((s, c): (S, S), x: S) -> (S, S) {
     (s * cos + c * sin, c * cos - s * sin)
 }
 
-/// That of any ellipse.
+/// Solves Kepler's equation of any ellipse.
 ///
-/// A cubic start, in error by less than 1e-3 rad, and one correction of fifth order.
+/// A cubic start with an error below 1e-3 rad, and one correction of fifth order.
 ///
 /// Source: Markley, Celestial Mechanics and Dynamical Astronomy 63, 1995, eqs. (5)-(24).
 #[inline(always)]
-fn solve_long<S: Real>(e: S, one_minus_e: S, mean: S) -> Half<S> {
+fn solve_any_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnomaly<S> {
     let (of, one, m) = (S::of, S::of(1.0), mean.abs());
-    // Eqs. (20), (5), (9), (10), (14), (15): the cubic from a Padé form of sin E
+    // Eqs. (20), (5), (9), (10), (14), (15): the cubic from a Padé approximant of sin E
     let alpha = (of(3.0 * PI * PI) + of(1.6 * PI) * (of(PI) - m) / (one + e)) * of(1.0 / (PI * PI - 6.0));
     let d = of(3.0) * one_minus_e + alpha * e;
     let q = of(2.0) * alpha * d * one_minus_e - m * m;
@@ -135,7 +141,7 @@ fn solve_long<S: Real>(e: S, one_minus_e: S, mean: S) -> Half<S> {
     // Eqs. (21)-(24): f and its derivatives
     let (sin, cos) = (of(0.5) * start).sin_cos();
     let sin_e = of(2.0) * sin * cos;
-    let f = one_minus_e * start + e * minus_sine(start, sin_e) - m;
+    let f = one_minus_e * start + e * x_minus_sin(start, sin_e) - m;
     let f1 = one_minus_e + of(2.0) * e * sin * sin;
     let f2 = e * sin_e;
     let f3 = e * (one - of(2.0) * sin * sin);
@@ -143,39 +149,39 @@ fn solve_long<S: Real>(e: S, one_minus_e: S, mean: S) -> Half<S> {
     let d3 = -f * f1 / (f1 * f1 - half * f * f2);
     let d4 = -f / (f1 + d3 * (half * f2 + d3 * f3 * sixth));
     let d5 = -f / (f1 + d4 * (half * f2 + d4 * (f3 * sixth - d4 * f2 * of(1.0 / 24.0))));
-    // sin and cos of (start + d5)/2, the correction being small
+    // sin and cos of (start + d5)/2, where d5 is small
     let h = half * d5;
     let h2 = h * h;
     let sin_h = h * (one - h2 * sixth * (one - h2 * of(0.05)));
     let cos_h = one - half * h2 * (one - h2 * of(1.0 / 12.0));
     let up = sin * cos_h + cos * sin_h;
-    Half { sin: S::select(S::less(mean, of(0.0)), -up, up), cos: cos * cos_h - sin * sin_h }
+    HalfAnomaly { sin: S::select(S::less(mean, of(0.0)), -up, up), cos: cos * cos_h - sin * sin_h }
 }
 
-/// Solve `M = e sinh H - H` for any `M` and `e > 1`.
+/// Solves `M = e sinh H - H` for any `M` and `e > 1`.
 ///
-/// Newton from above: `f` is convex for `H > 0`, so the steps fall monotonically.
-pub(super) fn solve_hyperbola(e: f64, e_minus_one: f64, mean: f64) -> Half {
+/// Newton's method from above: `f` is convex for `H > 0`, so the iterates decrease monotonically.
+pub(super) fn solve_hyperbola(e: f64, e_minus_one: f64, mean: f64) -> HalfAnomaly {
     let m = mean.abs();
-    // (e - 1) H + e H³/6 ≤ M bounds H; so does sinh H = (M + H)/e with that bound put in.
+    // bounds of H: (e - 1) H + e H³/6 ≤ M, and sinh H = (M + H)/e with that bound inserted
     let p = 2.0 * (2.0 * e_minus_one / e).sqrt();
     let cubic = p * ((3.0 * m / (e_minus_one * p)).asinh() / 3.0).sinh();
     let mut h = cubic.min(((m + cubic) / e).asinh());
-    // Four steps at most for e - 1 from 1e-16 to 1e6 and M from 1e-40 to 1e20.
+    // at most four steps for e - 1 from 1e-16 to 1e6 and M from 1e-40 to 1e20
     for _ in 0..20 {
         let sin = (0.5 * h).sinh();
-        let f = e_minus_one * h + e * sinh_minus(h, 2.0 * sin * (1.0 + sin * sin).sqrt()) - m;
+        let f = e_minus_one * h + e * sinh_minus_x(h, 2.0 * sin * (1.0 + sin * sin).sqrt()) - m;
         let step = f / (e_minus_one + 2.0 * e * sin * sin);
         h -= step;
         if step.abs() <= 1e-9 * h {
-            break; // the error left is the step squared
+            break; // the remaining error is the square of the step
         }
     }
     let sin = (0.5 * h).sinh();
-    Half { sin: sin.copysign(mean), cos: (1.0 + sin * sin).sqrt() }
+    HalfAnomaly { sin: sin.copysign(mean), cos: (1.0 + sin * sin).sqrt() }
 }
 
-/// Solve Barker's equation `B = D + D³/3` for `D = tan(ν/2)`.
+/// Solves Barker's equation `B = D + D³/3` for `D = tan(ν/2)`.
 pub(super) fn solve_parabola(b: f64) -> f64 {
     2.0 * ((1.5 * b).asinh() / 3.0).sinh()
 }
@@ -184,12 +190,12 @@ pub(super) fn solve_parabola(b: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Residual over what one rounding of `M` and of `E` can do; 8 roundings are allowed.
-    fn residual_in_roundings(e: f64, ome: f64, m: f64) -> f64 {
-        let half = solve_ellipse(e, ome, m);
+    /// Returns the residual divided by the effect of rounding `M` and `E`; 8 are accepted.
+    fn residual_in_roundings(e: f64, one_minus_e: f64, m: f64) -> f64 {
+        let half = solve_ellipse(e, one_minus_e, m);
         let eccentric = 2.0 * half.sin.atan2(half.cos);
-        let slope = ome + 2.0 * e * half.sin * half.sin;
-        let back = mean_from_eccentric(e, ome, eccentric);
+        let slope = one_minus_e + 2.0 * e * half.sin * half.sin;
+        let back = mean_from_eccentric(e, one_minus_e, eccentric);
         (back - m).abs() / (f64::EPSILON * (m.abs() + slope * eccentric.abs()))
     }
 
@@ -197,17 +203,18 @@ mod tests {
     fn ellipse_is_solved_to_rounding_for_every_eccentricity() {
         let mut worst: f64 = 0.0;
         for i in 0..=320 {
-            // 1 - e from 1 down to 1e-16
-            let ome = 10f64.powf(-f64::from(i) / 20.0);
-            let e = 1.0 - ome;
+            // 1 - e from 1 to 1e-16
+            let one_minus_e = 10f64.powf(-f64::from(i) / 20.0);
+            let e = 1.0 - one_minus_e;
             for j in 0..=400 {
-                worst = worst.max(residual_in_roundings(e, ome, PI * f64::from(j) / 400.0));
-                worst = worst.max(residual_in_roundings(e, ome, 3.0 * 10f64.powf(-f64::from(j) / 10.0)));
+                worst = worst.max(residual_in_roundings(e, one_minus_e, PI * f64::from(j) / 400.0));
+                worst =
+                    worst.max(residual_in_roundings(e, one_minus_e, 3.0 * 10f64.powf(-f64::from(j) / 10.0)));
             }
         }
         assert!(worst < 8.0, "{worst} roundings");
         for i in 0..=40 {
-            // both sides of where the nearly round ones end
+            // both sides of the limit between the two solvers
             let e = 0.105 * f64::from(i) / 40.0;
             for j in -400..=400 {
                 worst = worst.max(residual_in_roundings(e, 1.0 - e, PI * f64::from(j) / 400.0));
@@ -226,7 +233,7 @@ mod tests {
                 let half = solve_hyperbola(e, eme, m);
                 let h = 2.0 * half.sin.asinh();
                 let back = mean_from_hyperbolic(e, eme, h);
-                // An error of one rounding in H moves M by e cosh H · H, up to 50 of M's own.
+                // a rounding error of H changes M by e cosh H · H, up to 50 roundings of M
                 let scale = m + (eme + 2.0 * e * half.sin * half.sin) * h;
                 assert!((back - m).abs() < 8.0 * f64::EPSILON * scale, "e-1={eme} M={m}: {back}");
             }

@@ -1,6 +1,6 @@
-//! Motion within the orbital plane, as a function of the time since a known phase.
+//! Motion in the orbital plane as a function of the time since a known phase.
 //!
-//! Perifocal axes: x towards the periapsis, y along the velocity there.
+//! Perifocal axes: x towards the periapsis, y along the velocity at the periapsis.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,7 +10,7 @@ use crate::orbit::OrbitError;
 use crate::orbit::error::positive;
 use crate::spatial::Real;
 
-/// Size and shape, each to full relative accuracy: `1 - e` is not formed from `e`.
+/// Size and shape of a conic, each to full relative accuracy: `1 - e` is not computed from `e`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shape {
     /// Eccentricity `e`.
@@ -23,19 +23,19 @@ pub(super) struct Shape {
     pub(super) inverse_axis: Double,
 }
 
-/// Below this `|1 - e|` no `f64` tells the orbit from a parabola.
+/// `|1 - e|` below which the orbit is treated as a parabola; `f64` cannot resolve the difference.
 pub(super) const PARABOLIC: f64 = 1e-30;
 
 /// Position and velocity in perifocal axes, m and m/s.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct InPlane<S = f64> {
+pub(super) struct PerifocalState<S = f64> {
     pub(super) x: S,
     pub(super) y: S,
     pub(super) vx: S,
     pub(super) vy: S,
 }
 
-/// An ellipse's semi-axes, `√(μ a)` and `√(μ p)`.
+/// Ellipse with its semi-axes, `√(μ a)` and `√(μ p)`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ellipse<S> {
     pub(super) e: S,
@@ -43,14 +43,14 @@ pub(super) struct Ellipse<S> {
     pub(super) periapsis: S,
     pub(super) a: S,
     pub(super) b: S,
-    pub(super) flow: [S; 2],
+    pub(super) velocity_scale: [S; 2],
 }
 
 impl<S: Real> Ellipse<S> {
-    /// State at a mean anomaly in [-π, π].
+    /// Returns the state at a mean anomaly in [-π, π].
     #[inline(always)]
-    pub(super) fn at(&self, mean: S) -> InPlane<S> {
-        let Self { e, one_minus_e, periapsis: q, a, b, flow } = *self;
+    pub(super) fn at(&self, mean: S) -> PerifocalState<S> {
+        let Self { e, one_minus_e, periapsis: q, a, b, velocity_scale } = *self;
         let half = anomaly::solve_ellipse(e, one_minus_e, mean);
         let (s, c) = (half.sin, half.cos);
         // r = a (1 - e cos E) = q + 2 a e sin²(E/2)
@@ -58,16 +58,16 @@ impl<S: Real> Ellipse<S> {
         let sin = S::of(2.0) * s * c;
         let over_r = S::of(1.0) / (q + a * e * versed);
         // x = a (cos E - e), y = b sin E, ẋ = -√(μ a) sin E / r, ẏ = √(μ p) cos E / r
-        InPlane {
+        PerifocalState {
             x: q - a * versed,
             y: b * sin,
-            vx: -flow[0] * sin * over_r,
-            vy: flow[1] * (S::of(1.0) - versed) * over_r,
+            vx: -velocity_scale[0] * sin * over_r,
+            vy: velocity_scale[1] * (S::of(1.0) - versed) * over_r,
         }
     }
 }
 
-/// A period in three pieces, the first two of 26 bits: whole multiples up to 2²⁶ are exact.
+/// Period as the sum of three numbers, the first two of 26 bits: multiples up to 2²⁶ are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Period {
     pub(super) seconds: f64,
@@ -75,7 +75,7 @@ pub(super) struct Period {
     pieces: [f64; 3],
 }
 
-/// Whole periods that are taken away exactly.
+/// Largest number of whole periods that are subtracted exactly.
 const MOST_PERIODS: f64 = 67_108_864.0;
 
 /// Longest time on an open orbit, s: twice the age of the universe.
@@ -91,10 +91,10 @@ impl Period {
         Self { seconds: period.hi, per_second: 1.0 / period.hi, pieces: [first, second, third] }
     }
 
-    /// `dt` less the nearest whole number of periods.
+    /// Returns `dt` minus the nearest whole number of periods.
     #[inline(always)]
     fn reduce<S: Real>(&self, dt: S) -> S {
-        // Adding 1.5 × 2⁵² rounds to a whole number without a library call.
+        // adding 1.5 × 2⁵² rounds to an integer without a library call
         const ROUND: f64 = 6_755_399_441_055_744.0;
         let k = (dt * S::of(self.per_second) + S::of(ROUND)) - S::of(ROUND);
         let [first, second, third] = self.pieces.map(|piece| k * S::of(piece));
@@ -102,10 +102,10 @@ impl Period {
     }
 }
 
-/// One conic, with what its law of motion needs worked out.
+/// Conic with the precomputed constants of its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Conic {
-    /// `e < 1`; phase is the mean anomaly.
+    /// Ellipse, `e < 1`; the phase is the mean anomaly.
     Ellipse {
         a: f64,
         b: f64,
@@ -113,17 +113,17 @@ pub(super) enum Conic {
         n: f64,
         period: Period,
         /// `√(μ a)` and `√(μ p)`, m²/s.
-        flow: [f64; 2],
+        velocity_scale: [f64; 2],
     },
-    /// `e = 1`; phase is the time since periapsis.
+    /// Parabola, `e = 1`; the phase is the time since periapsis.
     Parabola {
         /// `√(μ/(2 q³))`, rad/s.
         n: f64,
-        /// Speed at periapsis halved, `√(μ/(2 q))`, m/s.
+        /// Half the speed at periapsis, `√(μ/(2 q))`, m/s.
         speed: f64,
     },
-    /// `e > 1`; phase is the time since periapsis. `a` and `b` are positive here.
-    Hyperbola { a: f64, b: f64, n: f64, flow: [f64; 2] },
+    /// Hyperbola, `e > 1`; the phase is the time since periapsis. `a` and `b` are positive.
+    Hyperbola { a: f64, b: f64, n: f64, velocity_scale: [f64; 2] },
 }
 
 impl Conic {
@@ -141,16 +141,16 @@ impl Conic {
         positive("mean motion", n.hi)?;
         let a = (Double::from(1.0) / inverse).hi;
         let b = a * (shape.one_minus_e.abs() * (1.0 + e)).sqrt();
-        let flow = (mu * a).sqrt();
-        let flow = [flow, flow * (b / a)];
+        let velocity_scale = (mu * a).sqrt();
+        let velocity_scale = [velocity_scale, velocity_scale * (b / a)];
         if closed {
-            Ok(Self::Ellipse { a, b, n: n.hi, period: Period::new(double::TAU / n), flow })
+            Ok(Self::Ellipse { a, b, n: n.hi, period: Period::new(double::TAU / n), velocity_scale })
         } else {
-            Ok(Self::Hyperbola { a, b, n: n.hi, flow })
+            Ok(Self::Hyperbola { a, b, n: n.hi, velocity_scale })
         }
     }
 
-    /// Largest distance from the epoch, s.
+    /// Returns the largest time from the epoch, s.
     pub(super) fn longest_time(&self) -> f64 {
         match self {
             Self::Ellipse { period, .. } => MOST_PERIODS * period.seconds,
@@ -158,7 +158,8 @@ impl Conic {
         }
     }
 
-    /// Phase (mean anomaly of an ellipse, seconds since periapsis otherwise) `dt` s after `phase`.
+    /// Returns the phase (mean anomaly of an ellipse, otherwise seconds since periapsis) `dt` s after
+    /// `phase`.
     pub(super) fn advance(&self, phase: f64, dt: f64) -> f64 {
         match self {
             Self::Ellipse { n, period, .. } => wrap(phase + n * period.reduce(dt)),
@@ -166,40 +167,45 @@ impl Conic {
         }
     }
 
-    /// States in the plane of an ellipse, `dt` s after `phase`; `None` of an open orbit.
+    /// Returns the perifocal states of an ellipse, `dt` s after `phase`; `None` for an open orbit.
     #[inline(always)]
-    pub(super) fn several<S: Real>(&self, shape: &Shape, phase: f64, dt: S) -> Option<InPlane<S>> {
-        let Self::Ellipse { a, b, n, period, flow } = self else { return None };
+    pub(super) fn ellipse_state_at<S: Real>(
+        &self,
+        shape: &Shape,
+        phase: f64,
+        dt: S,
+    ) -> Option<PerifocalState<S>> {
+        let Self::Ellipse { a, b, n, period, velocity_scale } = self else { return None };
         let ellipse = Ellipse {
             e: S::of(shape.e),
             one_minus_e: S::of(shape.one_minus_e),
             periapsis: S::of(shape.periapsis),
             a: S::of(*a),
             b: S::of(*b),
-            flow: flow.map(S::of),
+            velocity_scale: velocity_scale.map(S::of),
         };
         Some(ellipse.at(wrap(S::of(phase) + S::of(*n) * period.reduce(dt))))
     }
 
-    /// State in the plane at a phase.
-    pub(super) fn in_plane(&self, shape: &Shape, phase: f64) -> InPlane {
+    /// Returns the perifocal state at a phase.
+    pub(super) fn perifocal_state(&self, shape: &Shape, phase: f64) -> PerifocalState {
         let (e, q) = (shape.e, shape.periapsis);
         match *self {
-            Self::Ellipse { a, b, flow, .. } => {
-                Ellipse { e, one_minus_e: shape.one_minus_e, periapsis: q, a, b, flow }.at(phase)
+            Self::Ellipse { a, b, velocity_scale, .. } => {
+                Ellipse { e, one_minus_e: shape.one_minus_e, periapsis: q, a, b, velocity_scale }.at(phase)
             }
-            Self::Hyperbola { a, b, n, flow } => {
+            Self::Hyperbola { a, b, n, velocity_scale } => {
                 let half = anomaly::solve_hyperbola(e, -shape.one_minus_e, n * phase);
                 let (s, c) = (half.sin, half.cos);
                 // r = a (e cosh H - 1) = q + 2 a e sinh²(H/2)
                 let versed = 2.0 * s * s;
                 let sinh = 2.0 * s * c;
                 let over_r = 1.0 / (q + a * e * versed);
-                InPlane {
+                PerifocalState {
                     x: q - a * versed,
                     y: b * sinh,
-                    vx: -flow[0] * sinh * over_r,
-                    vy: flow[1] * (1.0 + versed) * over_r,
+                    vx: -velocity_scale[0] * sinh * over_r,
+                    vy: velocity_scale[1] * (1.0 + versed) * over_r,
                 }
             }
             Self::Parabola { n, speed } => {
@@ -207,13 +213,13 @@ impl Conic {
                 let d = anomaly::solve_parabola(n * phase);
                 // x = q (1 - D²), y = 2 q D, ẋ = -√(μ/(2q)) 2 D/(1 + D²), ẏ = √(μ/(2q)) 2/(1 + D²)
                 let along = 2.0 * speed / (1.0 + d * d);
-                InPlane { x: q * (1.0 - d) * (1.0 + d), y: 2.0 * q * d, vx: -along * d, vy: along }
+                PerifocalState { x: q * (1.0 - d) * (1.0 + d), y: 2.0 * q * d, vx: -along * d, vy: along }
             }
         }
     }
 }
 
-/// Angle in [-π, π], for `|angle| ≤ 3π`.
+/// Wraps an angle to [-π, π], for `|angle| ≤ 3π`.
 #[inline(always)]
 pub(super) fn wrap<S: Real>(angle: S) -> S {
     let (pi, turn) = (S::of(PI), S::of(TAU));
@@ -221,8 +227,8 @@ pub(super) fn wrap<S: Real>(angle: S) -> S {
     S::select(S::less(angle, -pi), angle + turn, angle)
 }
 
-/// An angle of up to 1e15 rad, less the nearest whole number of turns.
-pub(super) fn whole_turns_off(angle: f64) -> f64 {
+/// Subtracts the nearest whole number of turns from an angle of up to 1e15 rad.
+pub(super) fn subtract_turns(angle: f64) -> f64 {
     let k = (angle / TAU).round();
     (-k).mul_add(double::TAU.lo, (-k).mul_add(TAU, angle))
 }

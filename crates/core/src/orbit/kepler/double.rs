@@ -1,13 +1,12 @@
-//! Numbers of twice the precision, for what is worked out once per orbit.
+//! Double-double arithmetic, for constants that are computed once per orbit.
 //!
-//! A period that is wrong by one rounding is 1e-7 m along track after a day; these 32 digits
-//! keep it out of the error budget.
+//! A period with a relative error of one rounding shifts the orbit by 1e-7 m along track per day.
 //!
 //! Source: Dekker, Numerische Mathematik 18, 1971; Hida, Li and Bailey, ARITH-15, 2001.
 
 use nalgebra::Vector3;
 
-/// An unevaluated sum `hi + lo` with `|lo| ≤ ulp(hi)/2`.
+/// Double-double number: an unevaluated sum `hi + lo` with `|lo| ≤ ulp(hi)/2`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Double {
     pub(super) hi: f64,
@@ -24,20 +23,20 @@ impl From<f64> for Double {
 }
 
 impl Double {
-    /// `a + b` for `|a| ≥ |b|`.
+    /// Returns `a + b` for `|a| ≥ |b|`.
     fn quick(a: f64, b: f64) -> Self {
         let hi = a + b;
         Self { hi, lo: b - (hi - a) }
     }
 
-    /// `a + b` exactly.
+    /// Returns `a + b` exactly.
     fn sum(a: f64, b: f64) -> Self {
         let hi = a + b;
         let bb = hi - a;
         Self { hi, lo: (a - (hi - bb)) + (b - bb) }
     }
 
-    /// `a b` exactly.
+    /// Returns `a b` exactly.
     fn product(a: f64, b: f64) -> Self {
         let hi = a * b;
         Self { hi, lo: a.mul_add(b, -hi) }

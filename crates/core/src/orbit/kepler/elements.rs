@@ -1,4 +1,4 @@
-//! Classical elements, to an orbit and back.
+//! Conversion between classical elements and orbits.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,20 +14,20 @@ use crate::orbit::{MU_EARTH, OrbitError};
 /// Size of a conic, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Size {
-    /// Semi-major axis `a`: positive on an ellipse, negative on a hyperbola.
+    /// Semi-major axis `a`: positive for an ellipse, negative for a hyperbola.
     SemiMajorAxis(f64),
-    /// Semi-latus rectum `p = h²/μ`: any conic, and the only size of a parabola.
+    /// Semi-latus rectum `p = h²/μ`, for any conic; the only size of a parabola.
     SemiLatusRectum(f64),
 }
 
-/// Where on the conic.
+/// Position on the conic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// Mean anomaly at the epoch, rad: `n (t - t_p)`, `n = √(μ/|a|³)`; not on a parabola.
+    /// Mean anomaly at the epoch, rad: `n (t - t_p)`, `n = √(μ/|a|³)`; undefined for a parabola.
     MeanAnomaly(f64),
-    /// True anomaly at the epoch, rad; between the asymptotes on an open orbit.
+    /// True anomaly at the epoch, rad; between the asymptotes for an open orbit.
     TrueAnomaly(f64),
-    /// Time of a passage through the periapsis, s of simulation; the epoch is not used.
+    /// Time of a periapsis passage, s of simulation; the epoch is not used.
     PeriapsisTime(f64),
 }
 
@@ -44,16 +44,16 @@ pub struct Elements {
     pub raan: f64,
     /// Argument of periapsis from the ascending node, rad.
     pub argument_of_periapsis: f64,
-    /// Where on the conic.
+    /// Position on the conic.
     pub phase: Phase,
     /// Gravitational parameter, m³/s².
     pub mu: f64,
-    /// Instant at which an anomaly in `phase` holds, s of simulation.
+    /// Time at which the anomaly in `phase` holds, s of simulation.
     pub epoch: f64,
 }
 
 impl Elements {
-    /// Elements with every angle and the epoch zero, around the Earth.
+    /// Returns elements with all angles and the epoch zero, around the Earth.
     pub fn new(size: Size, eccentricity: f64) -> Self {
         Self {
             size,
@@ -68,25 +68,26 @@ impl Elements {
     }
 }
 
-/// Within this of `e = 1` sizes are told by `p` and phases by the time of periapsis:
-/// `a` and `M` would lose `1/|1 - e|` of their digits.
+/// Distance from `e = 1` within which the size is given by `p` and the phase by the time of periapsis: `a`
+/// and `M` would lose `1/|1 - e|` of their digits.
 const NEAR_PARABOLIC: f64 = 1e-2;
 
-/// A hyperbola of more is a straight line to rounding, and its anomalies overflow.
+/// Largest eccentricity of a hyperbola: beyond it the orbit is a straight line to rounding, and the anomalies
+/// overflow.
 const LARGEST_ECCENTRICITY: f64 = 1e20;
 
-/// Largest anomaly on an ellipse, rad: `f64` is 1/8 rad apart there.
+/// Largest anomaly on an ellipse, rad: the spacing of `f64` is 1/8 rad there.
 const LARGEST_ANGLE: f64 = 1e15;
 
 impl Kepler {
-    /// The orbit with these elements.
+    /// Returns the orbit with these elements.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`] and [`OrbitError::NotPositive`] for plain bad numbers and for
-    /// sizes beyond the range of `f64`; [`OrbitError::OutOfRange`] for anomalies on an ellipse beyond 1e15 rad;
-    /// [`OrbitError::NegativeEccentricity`], [`OrbitError::AxisSign`],
-    /// [`OrbitError::ParabolaHasNoAxis`], [`OrbitError::ParabolaHasNoMeanAnomaly`],
-    /// [`OrbitError::Inclination`], [`OrbitError::BeyondAsymptote`] for what cannot be an orbit.
+    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for invalid numbers and sizes beyond the range
+    /// of `f64`; [`OrbitError::OutOfRange`] for anomalies on an ellipse beyond 1e15 rad;
+    /// [`OrbitError::NegativeEccentricity`], [`OrbitError::AxisSign`], [`OrbitError::ParabolaHasNoAxis`],
+    /// [`OrbitError::ParabolaHasNoMeanAnomaly`], [`OrbitError::Inclination`], [`OrbitError::BeyondAsymptote`]
+    /// for inconsistent elements.
     pub fn new(elements: &Elements) -> Result<Self, OrbitError> {
         let mu = positive("mu", elements.mu)?;
         let shape = shape(elements)?;
@@ -96,7 +97,7 @@ impl Kepler {
         if !(0.0..=PI).contains(&inclination) {
             return Err(OrbitError::Inclination { value: inclination });
         }
-        // P, Q: periapsis direction and the one along the velocity there
+        // P, Q: unit vectors to the periapsis, and along the velocity there
         let (si, ci) = inclination.sin_cos();
         let (so, co) = finite("raan", elements.raan)?.sin_cos();
         let (sw, cw) = finite("argument of periapsis", elements.argument_of_periapsis)?.sin_cos();
@@ -105,13 +106,12 @@ impl Kepler {
         Ok(Self { mu, epoch, phase, shape, conic, p_i, q_i })
     }
 
-    /// Classical elements, from which [`Kepler::new`] makes this orbit again.
+    /// Returns the classical elements, from which [`Kepler::new`] rebuilds this orbit.
     ///
-    /// Node and periapsis in [0, 2π), the mean anomaly of an ellipse in [-π, π]: next to the
-    /// periapsis of a long ellipse a turn added to it would cost digits. On a circle the periapsis
-    /// and in the equator the node are where rounding puts them (x axis if exact); their sums
-    /// with the phase stay accurate. Near a parabola the size is the semi-latus rectum and
-    /// the phase the time of periapsis.
+    /// Node and periapsis are in [0, 2π), the mean anomaly of an ellipse in [-π, π], which keeps its digits
+    /// near the periapsis. The periapsis of a circular orbit and the node of an equatorial one are determined
+    /// by rounding (x axis if exact); their sums with the phase are accurate. Near a parabola the size is the
+    /// semi-latus rectum and the phase the time of periapsis.
     pub fn elements(&self) -> Elements {
         let w_i = self.p_i.cross(&self.q_i);
         let tilt = w_i.x.hypot(w_i.y);
@@ -142,7 +142,7 @@ impl Kepler {
     }
 }
 
-/// Size and shape of a conic, refused where the two contradict each other.
+/// Computes size and shape of a conic; returns an error if size and eccentricity contradict each other.
 fn shape(elements: &Elements) -> Result<Shape, OrbitError> {
     let e = finite("eccentricity", elements.eccentricity)?;
     if e < 0.0 {
@@ -175,18 +175,18 @@ fn shape(elements: &Elements) -> Result<Shape, OrbitError> {
     }
 }
 
-/// Epoch and phase at it.
+/// Returns the epoch and the phase at the epoch.
 fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64), OrbitError> {
     let epoch = finite("epoch", elements.epoch)?;
     match (elements.phase, conic) {
         (Phase::PeriapsisTime(t), _) => Ok((finite("time of periapsis", t)?, 0.0)),
         (Phase::MeanAnomaly(m), _) => match conic {
-            Conic::Ellipse { .. } => Ok((epoch, conic::whole_turns_off(angle("mean anomaly", m)?))),
+            Conic::Ellipse { .. } => Ok((epoch, conic::subtract_turns(angle("mean anomaly", m)?))),
             Conic::Hyperbola { n, .. } => Ok((epoch, finite("mean anomaly", m)? / n)),
             Conic::Parabola { .. } => Err(OrbitError::ParabolaHasNoMeanAnomaly { value: m }),
         },
         (Phase::TrueAnomaly(nu), Conic::Ellipse { .. }) => {
-            let nu = conic::whole_turns_off(angle("true anomaly", nu)?);
+            let nu = conic::subtract_turns(angle("true anomaly", nu)?);
             Ok((epoch, phase_from_half_anomaly(shape, conic, (0.5 * nu).sin_cos())))
         }
         (Phase::TrueAnomaly(nu), _) => {
@@ -201,19 +201,20 @@ fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64)
     }
 }
 
-/// An anomaly on an ellipse that has digits left when its whole turns are taken away.
+/// Returns an anomaly on an ellipse, checked to be small enough to have digits left after its turns are
+/// subtracted.
 fn angle(name: &'static str, value: f64) -> Result<f64, OrbitError> {
     if finite(name, value)?.abs() > LARGEST_ANGLE {
-        let expected = "at most 1e15 rad (beyond, f64 tells no eighth of a radian from the next)";
+        let expected = "at most 1e15 rad (beyond, f64 numbers are more than 1/8 rad apart)";
         return Err(OrbitError::OutOfRange { name, value, expected });
     }
     Ok(value)
 }
 
-/// Angle in [0, 2π), for an angle in [-π, π].
+/// Returns the angle in [0, 2π), for an angle in [-π, π].
 fn positive_turn(angle: f64) -> f64 {
     if angle >= 0.0 {
-        angle + 0.0 // makes -0 a plain 0
+        angle + 0.0 // turns -0 into 0
     } else if angle + TAU < TAU {
         angle + TAU
     } else {

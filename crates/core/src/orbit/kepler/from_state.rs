@@ -1,4 +1,4 @@
-//! The conic through a position and a velocity.
+//! Orbit through a position with a velocity.
 
 use nalgebra::Vector3;
 
@@ -8,18 +8,19 @@ use super::{Kepler, anomaly};
 use crate::orbit::OrbitError;
 use crate::orbit::error::{finite, positive};
 
-/// Below this sine the orbit's plane is lost to rounding. No ellipse with `1 - e` above 1e-16
-/// comes near, its smallest sine being `√(1 - e²)`; a hyperbola must be 1e10 times `b` away.
+/// Sine of the angle between position and velocity below which the orbital plane is undefined. Ellipses with
+/// `1 - e` above 1e-16 stay above it, their smallest sine being `√(1 - e²)`; on a hyperbola the limit is
+/// reached at a distance of 1e10 `b`.
 const SMALLEST_SINE: f64 = 1e-10;
 
 impl Kepler {
-    /// The orbit with position `r` (m) and velocity `v` (m/s), axes of `I`, at time zero.
+    /// Returns the orbit with position `r` (m) and velocity `v` (m/s), axes of `I`, at time zero.
     ///
-    /// Any conic; circular and equatorial orbits included.
+    /// Circular and equatorial orbits are not singular.
     ///
     /// # Errors
     /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `mu` (m³/s²), and
-    /// [`OrbitError::Rectilinear`] when `r` and `v` are parallel or one of them vanishes.
+    /// [`OrbitError::Rectilinear`] if `r` and `v` are parallel or one of them is zero.
     ///
     /// Source: Battin, AIAA 1999, chapter 3.
     pub fn from_state(r: Vector3<f64>, v: Vector3<f64>, mu: f64) -> Result<Self, OrbitError> {
@@ -49,7 +50,7 @@ impl Kepler {
         let shape = Shape { e, one_minus_e, periapsis: p.hi / (1.0 + e), inverse_axis };
         let conic = Conic::new(&shape, mu)?;
 
-        // Perifocal axes: the local ones turned back by ν, which lies in the plane for any e.
+        // perifocal axes: the local axes rotated by -ν, which is in the plane for any e
         let (cos, sin) = if e > 0.0 { (e_cos / e, e_sin / e) } else { (1.0, 0.0) };
         let x = r / radius.hi;
         let y = accurate_cross(&r, &v).normalize().cross(&x);
@@ -59,7 +60,7 @@ impl Kepler {
         let half = if e_cos >= 0.0 { (e_sin, e + e_cos) } else { (e - e_cos, e_sin) };
         let half = if e > 0.0 { half } else { (0.0, 1.0) };
         let phase = if let Conic::Hyperbola { n, .. } = conic {
-            // e sinh H = (r·v) √(1/(μ|a|)), accurate along the asymptotes as well
+            // e sinh H = (r·v) √(1/(μ|a|)), also accurate along the asymptotes
             let e_sinh = (rv * (-inverse_axis / mu_d).sqrt()).hi;
             anomaly::mean_from_hyperbolic(e, -one_minus_e, (e_sinh / e).asinh()) / n
         } else {
@@ -69,9 +70,9 @@ impl Kepler {
     }
 }
 
-/// Phase of a conic from `(sin, cos)` of half the true anomaly, up to a common factor.
+/// Returns the phase of a conic from `(sin, cos)` of half the true anomaly, up to a common factor.
 ///
-/// Mean anomaly in [-π, π] on an ellipse, seconds since periapsis on the others.
+/// Mean anomaly in [-π, π] for an ellipse, otherwise seconds since periapsis.
 pub(super) fn phase_from_half_anomaly(shape: &Shape, conic: &Conic, half: (f64, f64)) -> f64 {
     let (sin, cos) = if half.1 < 0.0 { (-half.0, -half.1) } else { half };
     let (e, one_minus_e) = (shape.e, shape.one_minus_e);
@@ -94,7 +95,7 @@ pub(super) fn phase_from_half_anomaly(shape: &Shape, conic: &Conic, half: (f64, 
     }
 }
 
-/// `a × b`, each component to one rounding (Kahan's difference of products).
+/// Computes `a × b`, each component to one rounding (Kahan's difference of products).
 fn accurate_cross(a: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
     let det = |a: f64, b: f64, c: f64, d: f64| {
         let cd = c * d;

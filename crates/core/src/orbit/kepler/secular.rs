@@ -1,4 +1,4 @@
-//! A Kepler ellipse that the planet's flattening turns and hurries, on average.
+//! Kepler ellipse with the secular rates of J₂.
 
 use super::Kepler;
 use super::conic::Conic;
@@ -6,12 +6,12 @@ use crate::orbit::error::{finite, positive};
 use crate::orbit::{Orbit, OrbitError, OrbitState};
 use nalgebra::{Rotation3, Unit, Vector3};
 
-/// A Kepler ellipse with the secular rates of first order in J₂; its elements are mean ones.
+/// Kepler ellipse with secular rates of first order in J₂; its elements are mean elements.
 ///
 /// `Ω̇ = -3/2 n J₂ (R/p)² cos i`, `ω̇ = 3/4 n J₂ (R/p)² (4 - 5 sin²i)`,
-/// `Ṁ - n = 3/4 n J₂ (R/p)² √(1 - e²) (2 - 3 sin²i)`. Node and periapsis are those given at the epoch (with a time of
-/// periapsis: there). Velocity and acceleration are the derivatives of this position; since it swings about the true
-/// motion by kilometres, they are not those of a body that falls in the field.
+/// `Ṁ - n = 3/4 n J₂ (R/p)² √(1 - e²) (2 - 3 sin²i)`. Node and periapsis are those at the epoch, or at the
+/// time of periapsis if that is given. Velocity and acceleration are the derivatives of this position. It
+/// differs from the osculating motion by kilometres, so they are not those of a body in free fall.
 ///
 /// Source: Vallado, Fundamentals of Astrodynamics and Applications, 4th ed., eqs. 9-38, 9-40 and 9-41.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,15 +22,17 @@ pub struct SecularJ2 {
     periapsis_rate: f64,
     /// `Ṁ/n`.
     pace: f64,
-    /// Along the angular momentum at the epoch.
+    /// Unit vector along the angular momentum at the epoch.
     normal: Unit<Vector3<f64>>,
 }
 
 impl Kepler {
-    /// This ellipse with the secular rates of a planet flattened by `j2` about z, with reference radius `radius` (m).
+    /// Returns this ellipse with the secular rates of a planet with `j2` about z and the reference radius
+    /// `radius` (m).
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `radius`, [`OrbitError::OutOfRange`] for what no planet has, [`OrbitError::NotClosed`] for an open orbit.
+    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `radius`, [`OrbitError::OutOfRange`] for a
+    /// `j2` or radius that no planet has, [`OrbitError::NotClosed`] for an open orbit.
     pub fn with_secular_j2(self, j2: f64, radius: f64) -> Result<SecularJ2, OrbitError> {
         if finite("j2", j2)?.abs() > 0.1 {
             return Err(OrbitError::OutOfRange {
@@ -61,7 +63,7 @@ impl Kepler {
 }
 
 impl SecularJ2 {
-    /// Rates of node and periapsis, rad/s.
+    /// Returns the rates of node and periapsis, rad/s.
     pub fn rates(&self) -> (f64, f64) {
         (self.node_rate, self.periapsis_rate)
     }
@@ -75,12 +77,12 @@ impl Orbit for SecularJ2 {
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         let dt = finite("time", t)? - self.kepler.epoch;
         let s = self.kepler.state(self.kepler.epoch + self.pace * dt)?;
-        // turned about the orbit's own normal by ω̇ t, then about z by Ω̇ t
+        // rotate about the orbit normal by ω̇ t, then about z by Ω̇ t
         let node = Rotation3::from_axis_angle(&Vector3::z_axis(), self.node_rate * dt);
         let turn = node * Rotation3::from_axis_angle(&self.normal, self.periapsis_rate * dt);
         let (r, v) = (turn * s.position, turn * s.velocity * self.pace);
         let a = turn * s.acceleration * (self.pace * self.pace);
-        // w = Ω̇ ẑ + ω̇ n̂, which turns with the node: ẇ = Ω̇ ẑ × ω̇ n̂
+        // w = Ω̇ ẑ + ω̇ n̂ rotates with the node: ẇ = Ω̇ ẑ × ω̇ n̂
         let (about_z, about_n) = (Vector3::z() * self.node_rate, node * *self.normal * self.periapsis_rate);
         let (w, w_dot) = (about_z + about_n, about_z.cross(&about_n));
         let carried = w.cross(&r);

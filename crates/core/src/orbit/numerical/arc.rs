@@ -1,4 +1,4 @@
-//! Steps kept, from the initial state outwards.
+//! Integration steps of an orbit, stored from the initial state outward.
 
 use super::collocation::NODES;
 use super::step::{Start, Step};
@@ -6,18 +6,18 @@ use crate::orbit::{OrbitError, OrbitState};
 use nalgebra::Vector3;
 use std::sync::{PoisonError, RwLock};
 
-/// Share of the distance by which the position within a step may be wrong.
+/// Tolerance of the position within a step, relative to the distance.
 const TOLERANCE: f64 = 1e-14;
-/// First step, and least one, as shares of `√(r³/μ)`.
+/// First and smallest step, in units of `√(r³/μ)`.
 const FIRST: f64 = 0.1;
 const SHORTEST: f64 = 1e-9;
-/// Share of the longest step allowed that the next one takes, and how fast lengths may change.
+/// Ratio of the next step to the longest permitted step, and largest ratio of successive steps.
 const SAFETY: f64 = 0.9;
 const CHANGE: (f64, f64) = (0.25, 2.0);
-/// Steps on either side of the initial state: years of a low orbit, 150 MB.
+/// Largest number of steps on either side of the initial state: years of a low orbit, 150 MB.
 const MOST_STEPS: usize = 1 << 18;
 
-/// The two halves of an orbit: after and before the initial state.
+/// Integration steps of an orbit after and before the initial state.
 #[derive(Debug)]
 pub(super) struct Arcs {
     mu: f64,
@@ -27,13 +27,13 @@ pub(super) struct Arcs {
     initial: Start,
 }
 
-/// Steps in one direction.
+/// Integration steps in one direction.
 #[derive(Debug)]
 struct Half {
     steps: Vec<Step>,
-    /// Where the next step begins, and how long it is to be, s.
+    /// Start and length of the next step, s.
     next: (Start, f64),
-    /// Why there is no further step.
+    /// Error that prevents a further step.
     ended: Option<OrbitError>,
 }
 
@@ -49,7 +49,7 @@ impl Arcs {
         Ok(Self { mu, minimum, after: half(length), before: half(-length), initial })
     }
 
-    /// The state at `t`, steps to it being made where they are missing.
+    /// Returns the state at `t` after computing the missing steps.
     pub(super) fn state(
         &self,
         t: f64,
@@ -73,7 +73,8 @@ impl Arcs {
         }
     }
 
-    /// Takes at most `most_steps` steps in each direction towards `times`; whether none is missing.
+    /// Computes at most `most_steps` steps in each direction towards `times`. Returns true if no step is
+    /// missing.
     pub(super) fn prepare(
         &self,
         times: &[f64],
@@ -125,7 +126,7 @@ impl Arcs {
             }
         };
         loop {
-            // as the clock has it: the sum of lengths is the time
+            // the time is the sum of the lengths as rounded
             length = (time + length) - time;
             if length.abs() <= shortest {
                 return Err(OrbitError::StepTooShort { time, length });
@@ -142,7 +143,7 @@ impl Arcs {
                     factor
                 }
                 Ok(None) => 0.5,
-                // a guess may lie where the orbit does not go
+                // the predicted positions may be outside the domain of the field
                 Err(error) if 0.25 * length.abs() <= shortest => return Err(error),
                 Err(_) => 0.25,
             };
@@ -152,12 +153,12 @@ impl Arcs {
 }
 
 impl Half {
-    /// Whether a step holds `t`, or none will.
+    /// Returns true if a step contains `t`, or if the steps cannot be extended to `t`.
     fn needs_no_step(&self, t: f64) -> bool {
         !t.is_finite() || self.ended.is_some() || self.state(t).is_some()
     }
 
-    /// The state at `t` if a step holds it.
+    /// Returns the state at `t` if a step contains it.
     fn state(&self, t: f64) -> Option<OrbitState> {
         let ahead = |time: f64| if self.next.1 > 0.0 { time <= t } else { time >= t };
         if self.steps.is_empty() || (ahead(self.next.0.time) && t != self.next.0.time) {

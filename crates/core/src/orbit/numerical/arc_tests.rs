@@ -1,7 +1,7 @@
-//! One LEO under J₂ about z, against the same equation integrated in extended precision.
+//! Checks a LEO under J₂ about z against an integration of the same equation in extended precision.
 //!
-//! Start: GMAT's case `leo_1day`. The table is from Lobatto collocation with 16 nodes and 160 equal steps a day in
-//! x87 extended precision (numpy longdouble); 100 steps give the same 1e-10 m.
+//! Initial state: GMAT's case `leo_1day`. The table was computed by Lobatto collocation with 16 nodes and 160
+//! equal steps per day in x87 extended precision (numpy longdouble); 100 steps agree to 1e-10 m.
 
 use super::*;
 
@@ -48,7 +48,7 @@ fn at(arcs: &Arcs, t: f64) -> OrbitState {
 #[test]
 fn a_day_and_ten_agree_with_extended_precision() {
     let arcs = start();
-    // 4e-7 and 5e-6 m are measured; rounding of the field grows as t^1.5
+    // measured: 4e-7 and 5e-6 m; the effect of rounding in the field grows as t^1.5
     for ((t, r, v), (dr, dv)) in END.into_iter().zip([(1e-6, 1e-9), (3e-5, 3e-8)]) {
         let s = at(&arcs, t);
         let (far, fast) = ((s.position - Vector3::from(r)).norm(), (s.velocity - Vector3::from(v)).norm());
@@ -56,18 +56,18 @@ fn a_day_and_ten_agree_with_extended_precision() {
         let drift = energy(&s) / energy(&at(&arcs, 0.0)) - 1.0;
         assert!(drift.abs() < 1e-14 * t / DAY, "energy drifts by {drift} in {t} s");
     }
-    // a day takes few steps: the speed of it
+    // the number of steps per day determines the cost
     let half = arcs.after.read().expect("no panic");
     assert!(half.steps.len() < 2600, "{} steps", half.steps.len());
 }
 
 #[test]
 fn published_numbers_lie_where_their_tilted_pole_puts_them() {
-    // GMAT's Earth has its pole of 2000, not z: 88 m in a day are known for a pole along z
+    // GMAT uses the pole of 2000 instead of z: the known difference after a day is 88 m
     let gmat = Vector3::new(-5_751_473.991_327_555, 4_721_214.035_135_832, 2_045_947.768_608_806);
     let away = (at(&start(), DAY).position - gmat).norm();
     assert!((80.0..95.0).contains(&away), "{away} m");
-    // without J₂ it would be 1200 km
+    // without J₂ the difference would be 1200 km
     let arcs = start();
     let round = |_: f64, r: &Vector3<f64>| Ok(crate::gravity::point_mass(MU, r));
     let away = (arcs.state(DAY, round).expect("a state").position - gmat).norm();
@@ -82,7 +82,7 @@ fn within_steps_the_motion_is_as_good_as_at_their_ends() {
     for pair in steps.windows(2) {
         let t = pair[1].start.time;
         let (a, b) = (pair[0].state(t), pair[1].state(t));
-        // roundings of 7e6 m, 7e3 m/s, 8 m/s²
+        // rounding of 7e6 m, 7e3 m/s, 8 m/s²
         assert!((a.position - b.position).amax() < 4e-9, "{t}");
         assert!((a.velocity - b.velocity).amax() < 4e-12, "{t}");
         assert!((a.acceleration - b.acceleration).amax() < 2e-14, "{t}");

@@ -1,7 +1,7 @@
-//! Where a step looks at the field, and what follows from what it sees there.
+//! Nodes and integration weights of a collocation step.
 //!
-//! The acceleration is a polynomial through Lobatto's nodes, both ends of the step among them, so that it is
-//! continuous from step to step; velocity and position are its integrals. In Legendre polynomials nothing cancels.
+//! The acceleration is interpolated at Lobatto nodes, which include both ends of the step, so that it is
+//! continuous across steps; velocity and position are its integrals. The Legendre basis avoids cancellation.
 //!
 //! Source: Hairer, Lubich and Wanner, Geometric Numerical Integration, Springer 2006, section II.1.4 (Lobatto IIIA:
 //! symmetric, of order `2 S - 2` at the ends of steps).
@@ -12,22 +12,22 @@ use std::sync::LazyLock;
 /// Nodes of a step.
 pub(super) const NODES: usize = 9;
 
-/// One vector per node, or per Legendre polynomial.
+/// Vectors, one per node or per Legendre polynomial.
 pub(super) type Samples = [Vector3<f64>; NODES];
 
 /// Lobatto's rule on [-1, 1].
 pub(super) struct Rule {
     pub(super) nodes: [f64; NODES],
-    /// `∫∫` of the polynomial that is one at node `j` and zero at the others, up to node `i`.
+    /// Double integral, up to node `i`, of the polynomial that is one at node `j` and zero at the others.
     pub(super) twice: [[f64; NODES]; NODES],
     /// Legendre coefficient `k` of that polynomial.
     pub(super) spectrum: [[f64; NODES]; NODES],
 }
 
-/// The one rule in use, worked out when it is first needed.
+/// Quadrature rule of a step, computed on first use.
 pub(super) static RULE: LazyLock<Rule> = LazyLock::new(Rule::new);
 
-/// Legendre polynomials at `x` with their first and second integrals from -1.
+/// Legendre polynomials at a point, with their first and second integrals from -1.
 pub(super) struct Legendre {
     pub(super) value: [f64; NODES + 2],
     pub(super) once: [f64; NODES + 1],
@@ -50,7 +50,7 @@ impl Legendre {
     }
 }
 
-/// `1/(2k + 1)`.
+/// Factors `1/(2k + 1)`.
 const INVERSE_ODD: [f64; NODES + 1] = {
     let mut inverse = [1.0; NODES + 1];
     let mut k = 1;
@@ -61,7 +61,7 @@ const INVERSE_ODD: [f64; NODES + 1] = {
     inverse
 };
 
-/// `P₀(x)` to `P_{NODES+1}(x)`: `(k + 1) Pₖ₊₁ = (2k + 1) x Pₖ - k Pₖ₋₁`.
+/// Returns `P₀(x)` to `P_{NODES+1}(x)`: `(k + 1) Pₖ₊₁ = (2k + 1) x Pₖ - k Pₖ₋₁`.
 #[inline(always)]
 fn legendre(x: f64) -> [f64; NODES + 2] {
     let mut p = [1.0; NODES + 2];
@@ -76,7 +76,8 @@ fn legendre(x: f64) -> [f64; NODES + 2] {
 impl Rule {
     fn new() -> Self {
         const LAST: usize = NODES - 1;
-        // inner nodes are the roots of P'ₗ, from Chebyshev's by Newton: (1 - x²) P' = l (Pₗ₋₁ - x Pₗ), Legendre's equation for P″
+        // inner nodes are the roots of P'ₗ, by Newton's method from Chebyshev nodes: (1 - x²) P' = l (Pₗ₋₁ -
+        // x Pₗ), P″ by Legendre's equation
         let nodes = std::array::from_fn(|i| {
             let mut x = -(std::f64::consts::PI * i as f64 / LAST as f64).cos();
             if i == 0 || i == LAST {
@@ -107,7 +108,7 @@ impl Rule {
     }
 }
 
-/// `Σ wⱼ xⱼ`.
+/// Returns the weighted sum `Σ wⱼ xⱼ`.
 #[inline(always)]
 pub(super) fn weighted(weights: &[f64], vectors: &[Vector3<f64>]) -> Vector3<f64> {
     let mut sum = Vector3::zeros();
@@ -124,7 +125,8 @@ mod tests {
     #[test]
     fn integrals_of_powers_are_exact() {
         let rule = &*RULE;
-        // ∫ is twice the first Legendre coefficient, exact up to degree 2S - 3: xⁿ gives (1 - (-1)ⁿ⁺¹)/(n + 1)
+        // ∫ is twice the first Legendre coefficient, exact up to degree 2S - 3: xⁿ gives (1 - (-1)ⁿ⁺¹)/(n +
+        // 1)
         let integral = |power: i32| -> f64 {
             rule.nodes.iter().zip(&rule.spectrum[0]).map(|(x, w)| 2.0 * w * x.powi(power)).sum()
         };

@@ -1,4 +1,4 @@
-//! A reference that falls freely in the full gravity field, integrated.
+//! Reference in free fall in the full gravity field, integrated numerically.
 
 mod arc;
 mod collocation;
@@ -12,11 +12,11 @@ use arc::Arcs;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// An orbit in the full field chosen: `r̈ = g(t, r)`.
+/// Orbit integrated in a gravity field: `r̈ = g(t, r)`.
 ///
-/// Lobatto collocation of order 16 at the ends of steps, which follow from the motion alone: always the same
-/// from `t₀` outwards, made when they are first asked for and kept, so the state at `t` is a function of `t`.
-/// Position, velocity and acceleration are continuous; within a step the position is good to 1e-14 of the distance.
+/// Lobatto collocation of order 16 at the ends of steps. The steps depend on the motion only: they are
+/// computed from `t₀` outward on request and stored, so that the state is a function of `t`. Position,
+/// velocity and acceleration are continuous; within a step the relative error of the position is 1e-14.
 #[derive(Debug)]
 pub struct Numerical {
     gravity: Arc<Gravity>,
@@ -25,10 +25,11 @@ pub struct Numerical {
 }
 
 impl Numerical {
-    /// The orbit through position `r` (m) with velocity `v` (m/s) at `t0` s of simulation, axes of `I`.
+    /// Returns the orbit through position `r` (m) with velocity `v` (m/s) at `t0` s of simulation, axes of
+    /// `I`.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], and [`OrbitError::BeginsBelowSurface`], and those of the field.
+    /// [`OrbitError::NotFinite`], [`OrbitError::BeginsBelowSurface`], and those of the field.
     pub fn new(r: Vector3<f64>, v: Vector3<f64>, t0: f64, gravity: Arc<Gravity>) -> Result<Self, OrbitError> {
         for (name, x) in [("position", &r), ("velocity", &v)] {
             x.iter().try_for_each(|&c| finite(name, c).map(drop))?;
@@ -44,13 +45,13 @@ impl Numerical {
         Ok(Self { gravity, axes: Axes::default(), arcs })
     }
 
-    /// The same orbit, its state and its gravity having been given in these axes.
+    /// Returns the same orbit with `axes` as the axes of state and gravity.
     #[must_use]
     pub fn with_axes(self, axes: Axes) -> Self {
         Self { axes, ..self }
     }
 
-    /// Acceleration at `time` and position `r`, m/s².
+    /// Returns the acceleration at `time` and position `r`, m/s².
     fn field(&self, time: f64, r: &Vector3<f64>) -> Result<Vector3<f64>, OrbitError> {
         self.gravity.acceleration(time, r).map_err(|error| match error {
             GravityError::BelowSurface { distance, minimum } => {
@@ -74,7 +75,7 @@ impl Orbit for Numerical {
         self.axes
     }
 
-    /// That of the Earth whose field or sky it obeys.
+    /// Returns the epoch of the Earth orientation of its field or of its perturbing bodies.
     fn epoch(&self) -> Option<Epoch> {
         self.gravity.epoch()
     }
@@ -84,7 +85,7 @@ impl Orbit for Numerical {
     }
 
     /// # Errors
-    /// [`OrbitError::BelowSurface`] from the time on at which the orbit enters the planet,
+    /// [`OrbitError::BelowSurface`] from the time at which the orbit enters the planet,
     /// [`OrbitError::TooManySteps`] too far from `t₀`, and those of the field.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         self.arcs.state(finite("time", t)?, |time, r| self.field(time, r))

@@ -1,15 +1,15 @@
-//! One step of the integration, and the motion within it.
+//! Integration step and the motion within it.
 
 use super::collocation::{Legendre, NODES, RULE, Rule, Samples, weighted};
 use crate::orbit::{OrbitError, OrbitState};
 use nalgebra::Vector3;
 
-/// Sweeps after which a step is too long for its guess.
+/// Largest number of iterations of a step before its length is reduced.
 const MOST_SWEEPS: usize = 16;
-/// A sweep that moves no node by more than this share of the distance is the last.
+/// Change of the nodes, relative to the distance, at which the iteration has converged.
 const SETTLED: f64 = 1e-15;
 
-/// Where a step begins: each sum with what rounding took off it.
+/// State at the start of a step; each sum is stored with its rounding error (compensated summation).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Start {
     pub(super) time: f64,
@@ -17,7 +17,7 @@ pub(super) struct Start {
     pub(super) velocity: [Vector3<f64>; 2],
 }
 
-/// The motion over one step; the acceleration is a polynomial in Legendre's basis.
+/// Motion over one step; the acceleration is a polynomial in the Legendre basis.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     pub(super) start: Start,
@@ -31,8 +31,9 @@ impl Start {
         Self { time, position: [position, Vector3::zeros()], velocity: [velocity, Vector3::zeros()] }
     }
 
-    /// The collocated motion `length` s on from here, and by how much its interior may be wrong, m; `None` where the
-    /// sweeps do not settle: it is too long. `before` is the step that ended here.
+    /// Computes the step of `length` s from this state, and the estimated error of its interior, m. Returns
+    /// `None` if the iteration does not converge because the step is too long. `before` is the preceding
+    /// step.
     pub(super) fn step(
         &self,
         length: f64,
@@ -54,7 +55,7 @@ impl Start {
         for _ in 0..MOST_SWEEPS {
             let mut moved: f64 = 0.0;
             for i in 1..NODES {
-                // rᵢ = r₀ + (xᵢ + 1) h/2 v₀ + (h/2)² Σ Aᵢⱼ aⱼ, with the newest aⱼ there are
+                // rᵢ = r₀ + (xᵢ + 1) h/2 v₀ + (h/2)² Σ Aᵢⱼ aⱼ, with the newest aⱼ
                 let place = free[i] + weighted(&rule.twice[i], &a) * (half * half);
                 moved = moved.max((place - r[i]).amax());
                 r[i] = place;
@@ -75,17 +76,17 @@ fn spectrum(rule: &Rule, a: &Samples) -> Samples {
 }
 
 impl Step {
-    /// Place within the step, -1 to 1.
+    /// Returns the normalized time within the step, -1 to 1.
     fn place(&self, t: f64) -> f64 {
         2.0 * ((t - self.start.time) / self.length) - 1.0
     }
 
-    /// m/s² at `t`.
+    /// Returns the acceleration at `t`, m/s².
     fn acceleration(&self, t: f64) -> Vector3<f64> {
         weighted(&Legendre::at(self.place(t)).value, &self.spectrum)
     }
 
-    /// Position, velocity and acceleration at `t`.
+    /// Returns position, velocity and acceleration at `t`.
     pub(super) fn state(&self, t: f64) -> OrbitState {
         let (p, half, dt) = (Legendre::at(self.place(t)), 0.5 * self.length, t - self.start.time);
         let ([r, r_lost], [v, v_lost]) = (self.start.position, self.start.velocity);
@@ -98,13 +99,14 @@ impl Step {
         }
     }
 
-    /// What the last polynomial adds to the position, m: more than those that are missing.
+    /// Returns the contribution of the last polynomial to the position, m: an upper bound of the truncated
+    /// terms.
     fn truncation(&self) -> f64 {
         let half = 0.5 * self.length;
         self.spectrum[NODES - 1].norm() * half * half / ((NODES - 1) * (NODES - 1)) as f64
     }
 
-    /// Where the next step begins.
+    /// Returns the state at the end of the step.
     pub(super) fn end(&self) -> Start {
         let (length, half) = (self.length, 0.5 * self.length);
         let ([r, r_lost], [v, v_lost]) = (self.start.position, self.start.velocity);
@@ -119,7 +121,7 @@ impl Step {
     }
 }
 
-/// `a + b + c` and what rounding takes off it.
+/// Returns `a + b + c` and its rounding error.
 fn exactly(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> [Vector3<f64>; 2] {
     let two_sum = |a: f64, b: f64| {
         let sum = a + b;

@@ -1,7 +1,8 @@
 //! Relative orbital elements of a deputy about a chief.
 //!
 //! `δa = (a_d - a)/a`, `δλ = (u_d - u) + (Ω_d - Ω) cos i`, `δe = e_d (cos ω_d, sin ω_d) - e (cos ω, sin ω)`,
-//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`: circles are nothing special, a chief in the equator is.
+//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`: regular for circular orbits, singular for an
+//! equatorial chief.
 //!
 //! Source: D'Amico and Montenbruck, J. Guidance, Control and Dynamics 29(3), 2006; D'Amico, Ph.D. thesis, TU Delft 2010.
 
@@ -10,10 +11,10 @@ use crate::orbit::{Orbit, OrbitError};
 use nalgebra::{Vector3, Vector6};
 use std::f64::consts::{PI, TAU};
 
-/// Below this `sin i` of the chief its node means nothing.
+/// `sin i` of the chief below which its node is undefined.
 const EQUATORIAL: f64 = 1e-6;
 
-/// Elements that stay regular on circles.
+/// Orbital elements of one satellite that are regular for circular orbits.
 struct Regular {
     a: f64,
     /// `M + ω`, rad.
@@ -35,14 +36,15 @@ impl Regular {
         Ok(Self { a, u, e: [e * cos, e * sin], i: elements.inclination, node: elements.raan })
     }
 
-    /// Refused in the equator.
+    /// Returns an error for an equatorial orbit.
     fn inclined(self) -> Result<Self, OrbitError> {
         if self.i.sin() > EQUATORIAL { Ok(self) } else { Err(OrbitError::Equatorial { inclination: self.i }) }
     }
 }
 
-/// `(δa, δλ, δex, δey, δix, δiy)` of a deputy at `deputy` about a chief at `chief`: positions (m) and velocities (m/s)
-/// in `I` at one instant; no unit, or rad. Times `a` they are lengths.
+/// Returns `(δa, δλ, δex, δey, δix, δiy)` of a deputy at `deputy` about a chief at `chief`: positions (m) and
+/// velocities (m/s) in `I` at one instant. The elements are dimensionless or in rad; times `a` they are
+/// lengths.
 ///
 /// # Errors
 /// [`OrbitError::NotClosed`], [`OrbitError::Equatorial`], and those of [`Kepler::from_state`].
@@ -55,15 +57,16 @@ pub fn relative_elements(
     let d = Regular::of(deputy[0], deputy[1], mu)?;
     let (sin, cos) = c.i.sin_cos();
     let node = nearest(d.node - c.node);
-    // δλ is small though u and Ω may each be a turn off
+    // δλ is small even if u and Ω each differ by a turn
     let along = nearest(nearest(d.u - c.u) + node * cos);
     Ok(Vector6::new((d.a - c.a) / c.a, along, d.e[0] - c.e[0], d.e[1] - c.e[1], d.i - c.i, node * sin))
 }
 
-/// Position (m) and velocity (m/s) of a deputy with these relative elements: undoes [`relative_elements`].
+/// Returns position (m) and velocity (m/s) of a deputy with these relative elements, the inverse of
+/// [`relative_elements`].
 ///
 /// # Errors
-/// As [`relative_elements`], and those of [`Kepler::new`] for elements that are no ellipse.
+/// Those of [`relative_elements`], and of [`Kepler::new`] for elements of no ellipse.
 pub fn deputy_state(
     chief: [&Vector3<f64>; 2],
     elements: &Vector6<f64>,
@@ -89,10 +92,10 @@ pub fn deputy_state(
     Ok([r, v])
 }
 
-/// [`relative_elements`] of many pairs: states (B, 3) each, `out` (B, 6).
+/// Computes [`relative_elements`] for many pairs: states (B, 3) each, `out` (B, 6).
 ///
 /// # Errors
-/// As [`relative_elements`]; [`OrbitError::WrongLength`].
+/// Those of [`relative_elements`]; [`OrbitError::WrongLength`].
 pub fn relative_elements_rows(
     chief: [&[f64]; 2],
     deputy: [&[f64]; 2],
@@ -113,10 +116,10 @@ pub fn relative_elements_rows(
     Ok(())
 }
 
-/// [`deputy_state`] of many: chiefs (B, 3) each, `elements` (B, 6), `out` (B, 3) each.
+/// Computes [`deputy_state`] for many pairs: chiefs (B, 3) each, `elements` (B, 6), `out` (B, 3) each.
 ///
 /// # Errors
-/// As [`deputy_state`]; [`OrbitError::WrongLength`].
+/// Those of [`deputy_state`]; [`OrbitError::WrongLength`].
 pub fn deputy_states(
     chief: [&[f64]; 2],
     elements: &[f64],
@@ -140,7 +143,7 @@ pub fn deputy_states(
     Ok(())
 }
 
-/// The same angle within ±π.
+/// Wraps an angle to ±π.
 fn nearest(angle: f64) -> f64 {
     let turns = (angle / TAU).round();
     let angle = angle - turns * TAU;

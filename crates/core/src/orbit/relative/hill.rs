@@ -1,13 +1,15 @@
-//! Linear motion near a circular orbit.
+//! Linear relative motion near a circular orbit (Hill, Clohessy-Wiltshire).
 
 use crate::orbit::OrbitError;
 use crate::orbit::error::{finite, positive};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
-/// What `t` s make of relative position and velocity, on a circle of mean motion `n`, rad/s.
+/// Returns the transition matrix of relative position and velocity over `t` s, for a circular orbit of mean
+/// motion `n`, rad/s.
 ///
-/// `ẍ = 3n² x + 2n ẏ`, `ÿ = -2n ẋ`, `z̈ = -n² z` in Hill's axes `L` (x outward, y along track, z normal), whose rotation
-/// the velocities are relative to; rows and columns `(x, y, z, ẋ, ẏ, ż)`. Wrong by `3/2 ρ²/R` or so a radian of orbit.
+/// `ẍ = 3n² x + 2n ẏ`, `ÿ = -2n ẋ`, `z̈ = -n² z` in Hill axes `L` (x outward, y along track, z normal);
+/// velocities are relative to the rotating axes; rows and columns `(x, y, z, ẋ, ẏ, ż)`. The error is about
+/// `3/2 ρ²/R` per radian of orbit.
 ///
 /// # Errors
 /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`].
@@ -31,28 +33,29 @@ pub fn hill_transition(n: f64, t: f64) -> Result<Matrix6<f64>, OrbitError> {
     Ok(transition)
 }
 
-/// Transitions over many times: `out` holds (T, 6, 6), row-major.
+/// Computes the transition matrices for many times: `out` (T, 6, 6), row-major.
 ///
 /// # Errors
-/// As [`hill_transition`], and [`OrbitError::WrongLength`].
+/// Those of [`hill_transition`], and [`OrbitError::WrongLength`].
 pub fn hill_transitions(n: f64, times: &[f64], out: &mut [f64]) -> Result<(), OrbitError> {
     super::check(&[("transitions", 36 * times.len(), out.len())])?;
     for (&t, to) in times.iter().zip(out.chunks_exact_mut(36)) {
-        to.copy_from_slice(hill_transition(n, t)?.transpose().as_slice()); // column major, transposed
+        to.copy_from_slice(hill_transition(n, t)?.transpose().as_slice()); // column-major, transposed
     }
     Ok(())
 }
 
-/// Smallest determinant of `n Φ_rv`: nearer to none, no impulse reaches the origin at that time.
+/// Smallest determinant of `n Φ_rv`: below it no impulse reaches the origin at that time.
 const SINGULAR: f64 = 1e-9;
 
-/// Velocity at `r` (m, `L`) that leads to the origin in `t` s, m/s: the first impulse of a rendezvous by two.
+/// Returns the velocity at `r` (m, `L`) that reaches the origin in `t` s, m/s: the first impulse of a
+/// two-impulse rendezvous.
 ///
-/// `v = -Φ_rv⁻¹ Φ_rr r`; the second impulse takes away what velocity [`hill_transition`] leaves.
+/// `v = -Φ_rv⁻¹ Φ_rr r`; the second impulse cancels the final velocity, which [`hill_transition`] gives.
 ///
 /// # Errors
-/// As [`hill_transition`]; [`OrbitError::NoIntercept`] at times when every start comes back to its x or z, such as half
-/// a period.
+/// Those of [`hill_transition`]; [`OrbitError::NoIntercept`] at times when x or z return to their initial
+/// values for any velocity, such as half a period.
 pub fn intercept_velocity(n: f64, r: &Vector3<f64>, t: f64) -> Result<Vector3<f64>, OrbitError> {
     r.iter().try_for_each(|&x| finite("position", x).map(drop))?;
     let transition = hill_transition(n, t)?;

@@ -1,10 +1,10 @@
-//! Exact coordinates in the frames that ride on a reference.
+//! Exact coordinates in local orbital frames.
 
 use crate::orbit::error::finite;
 use crate::orbit::{Lvlh, Nadir, Orbit, OrbitError, OrbitState};
 use nalgebra::{Matrix3, Vector3};
 
-/// Which local orbital frame.
+/// Kind of local orbital frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LocalFrame {
     /// [`Lvlh`]: x outward, y along track, z along the angular momentum.
@@ -15,10 +15,10 @@ pub enum LocalFrame {
 }
 
 impl LocalFrame {
-    /// Both with their names.
+    /// All kinds with their names.
     pub const ALL: [(&'static str, Self); 2] = [("lvlh", Self::Lvlh), ("nadir", Self::Nadir)];
 
-    /// Turns local components to `I`; rate of the frame in its own axes.
+    /// Returns the rotation from local axes to `I`, and the angular velocity of the frame in its own axes.
     fn of(self, reference: &OrbitState) -> Result<(Matrix3<f64>, Vector3<f64>), OrbitError> {
         match self {
             Self::Lvlh => Lvlh::of(reference).map(|frame| (frame.rot_il, frame.rate_l)),
@@ -27,7 +27,8 @@ impl LocalFrame {
     }
 }
 
-/// Position and velocity relative to `reference`, as seen in its turning frame: m and m/s, local axes.
+/// Returns position and velocity relative to `reference`, as seen in its rotating frame: m and m/s, local
+/// axes.
 ///
 /// `ρ = R_liᵀ (r - R)`, `ρ̇ = R_liᵀ (v - V) - ω × ρ`; `r` and `v` in `I`.
 ///
@@ -44,7 +45,8 @@ pub fn to_local(
     Ok([rho, rot_il.tr_mul(&(v - reference.velocity)) - rate_l.cross(&rho)])
 }
 
-/// Position and velocity in `I` of what is at `rho` (m) with `rho_dot` (m/s) in the local frame: undoes [`to_local`].
+/// Returns position and velocity in `I` from `rho` (m) and `rho_dot` (m/s) in the local frame, the inverse of
+/// [`to_local`].
 ///
 /// # Errors
 /// [`OrbitError::UndefinedFrame`].
@@ -59,14 +61,15 @@ pub fn from_local(
     Ok([reference.position + rot_il * rho, velocity])
 }
 
-/// One of the two above.
+/// Function that converts states, [`to_local`] or [`from_local`].
 type Convert =
     fn(&OrbitState, LocalFrame, &Vector3<f64>, &Vector3<f64>) -> Result<[Vector3<f64>; 2], OrbitError>;
 
-/// [`to_local`] at each of `times` (T,): `given` and `out` are positions and velocities, (T, 3) each.
+/// Computes [`to_local`] at each of `times` (T,): `given` and `out` are positions and velocities, (T, 3)
+/// each.
 ///
 /// # Errors
-/// As [`to_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
+/// Those of [`to_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
 pub fn to_local_rows(
     orbit: &dyn Orbit,
     frame: LocalFrame,
@@ -77,10 +80,10 @@ pub fn to_local_rows(
     rows(orbit, frame, times, given, out, to_local)
 }
 
-/// [`from_local`] at each of `times`; shapes as those of [`to_local_rows`].
+/// Computes [`from_local`] at each of `times`; shapes as in [`to_local_rows`].
 ///
 /// # Errors
-/// As [`from_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
+/// Those of [`from_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
 pub fn from_local_rows(
     orbit: &dyn Orbit,
     frame: LocalFrame,

@@ -1,4 +1,4 @@
-//! How one satellite moves as seen from another: linear motion, exact coordinates, relative elements.
+//! Relative motion of two satellites: linear motion, exact coordinates, relative elements.
 
 mod elements;
 mod hill;
@@ -11,7 +11,7 @@ pub use local::{LocalFrame, from_local, from_local_rows, to_local, to_local_rows
 use super::OrbitError;
 use nalgebra::Vector3;
 
-/// Refuses arrays of the wrong length.
+/// Returns an error for arrays of the wrong length.
 fn check(arrays: &[(&'static str, usize, usize)]) -> Result<(), OrbitError> {
     match arrays.iter().find(|(_, expected, got)| expected != got) {
         Some(&(name, expected, got)) => Err(OrbitError::WrongLength { name, expected, got }),
@@ -19,7 +19,7 @@ fn check(arrays: &[(&'static str, usize, usize)]) -> Result<(), OrbitError> {
     }
 }
 
-/// Vector `index` of rows of three.
+/// Returns vector `index` of an (N, 3) array.
 fn row(rows: &[f64], index: usize) -> Vector3<f64> {
     Vector3::from_column_slice(&rows[3 * index..][..3])
 }

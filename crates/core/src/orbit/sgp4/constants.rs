@@ -1,9 +1,9 @@
-//! Earth models, and the units that SGP4 counts in: Earth radii, minutes, radians.
+//! Earth models in the units of SGP4: Earth radii, minutes, radians.
 
 use crate::spatial::Real;
 use std::f64::consts::TAU;
 
-/// Earth model of an element set; published sets are fitted with [`EarthModel::Wgs72`].
+/// Earth model of an element set. Published sets are fitted with [`EarthModel::Wgs72`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EarthModel {
     /// WGS-72 with the rounded constants of Spacetrack Report #3.
@@ -16,11 +16,11 @@ pub enum EarthModel {
 }
 
 impl EarthModel {
-    /// Every model with its name.
+    /// All models with their names.
     pub const ALL: [(&'static str, Self); 3] =
         [("wgs72old", Self::Wgs72Old), ("wgs72", Self::Wgs72), ("wgs84", Self::Wgs84)];
 
-    /// Gravitational parameter, m³/s².
+    /// Returns the gravitational parameter, m³/s².
     pub fn mu(self) -> f64 {
         match self {
             Self::Wgs72Old => 3.986_007_996_4e14,
@@ -29,7 +29,7 @@ impl EarthModel {
         }
     }
 
-    /// The constants of the theory.
+    /// Returns the constants of the theory.
     pub(super) fn earth(self) -> Earth {
         // kₑ = 60/√(aₑ³/μ)
         let ke = |a: f64| 60.0 / (a * a * a / (self.mu() / 1e9)).sqrt();
@@ -48,7 +48,7 @@ impl EarthModel {
     }
 }
 
-/// An Earth model as the equations take it.
+/// Constants of an Earth model.
 ///
 /// Source: AIAA 2006-6753, table 1 and the constants of its code.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +68,7 @@ impl Earth {
     }
 }
 
-/// Mean elements of one instant, rad and rad/min.
+/// Mean elements at one instant, rad and rad/min.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mean<S = f64> {
     /// Brouwer's mean motion `n″`.
@@ -83,11 +83,11 @@ pub(super) struct Mean<S = f64> {
     pub(super) anomaly: S,
 }
 
-/// `angle % 2π`: with the angle's own sign, which Lyddane's variables ask for. Up to 2²⁶ turns.
+/// Returns `angle % 2π` with the sign of the angle, which Lyddane's variables require. Up to 2²⁶ turns.
 #[inline(always)]
-pub(super) fn turns_off<S: Real>(angle: S) -> S {
-    const ROUND: f64 = 6_755_399_441_055_744.0; // adding 1.5 × 2⁵² rounds to a whole number
-    // 2π in two pieces of 26 bits and fewer: multiples of each are exact
+pub(super) fn wrap_angle<S: Real>(angle: S) -> S {
+    const ROUND: f64 = 6_755_399_441_055_744.0; // adding 1.5 × 2⁵² rounds to an integer
+    // 2π as the sum of two numbers of at most 26 bits, whose multiples are exact
     const HEAD: f64 = f64::from_bits(TAU.to_bits() & !((1 << 27) - 1));
     const TAIL: f64 = TAU - HEAD;
     let (zero, turn) = (S::of(0.0), S::of(TAU));

@@ -1,4 +1,4 @@
-//! Periods of 225 minutes and more: Sun, Moon and resonance.
+//! Perturbations of orbits with periods of 225 minutes and more: Sun, Moon and resonance.
 
 use super::constants::{Earth, Mean};
 use super::epoch::Epoch;
@@ -7,21 +7,21 @@ use super::near_earth::NearEarth;
 use super::resonance::{EARTH_RATE, Rates, Resonance};
 use std::f64::consts::{PI, TAU};
 
-/// Shortest period, min.
+/// Shortest period of deep-space orbits, min.
 const SHORTEST_PERIOD: f64 = 225.0;
-/// Nearer to the equator than this, rad, the node does not drift by Sun and Moon.
+/// Inclination, rad, below which Sun and Moon cause no drift of the node.
 const EQUATORIAL: f64 = 5.235_987_7e-2;
-/// Below this inclination, rad, Lyddane's variables take the place of node and perigee.
+/// Inclination, rad, below which Lyddane's variables replace node and perigee.
 const LYDDANE: f64 = 0.2;
 
-/// What acts far from the Earth.
+/// Deep-space perturbations.
 #[derive(Clone, Debug)]
 pub(super) struct DeepSpace {
     bodies: [ThirdBody; 2],
     /// Rates of `e`, `i`, `M`, `ω`, `Ω` by both bodies, per minute.
     rates: Five,
     resonance: Option<Resonance>,
-    /// At the epoch, rad.
+    /// Sidereal time at the epoch, rad.
     sidereal: f64,
 }
 
@@ -51,8 +51,8 @@ impl DeepSpace {
         Self { bodies, rates, resonance, sidereal }
     }
 
-    /// Adds what has grown since the epoch, `t` minutes ago.
-    pub(super) fn drift(&self, t: f64, mean: &mut Mean) {
+    /// Adds the secular perturbations over `t` minutes since the epoch.
+    pub(super) fn add_secular(&self, t: f64, mean: &mut Mean) {
         let [e, i, anomaly, perigee, node] = self.rates;
         mean.e += e * t;
         mean.i += i * t;
@@ -64,8 +64,8 @@ impl DeepSpace {
         }
     }
 
-    /// Adds what comes and goes with Sun and Moon.
-    pub(super) fn swing(&self, t: f64, mean: &mut Mean) {
+    /// Adds the periodic perturbations of Sun and Moon.
+    pub(super) fn add_periodic(&self, t: f64, mean: &mut Mean) {
         let [sun, moon] = [&self.bodies[0], &self.bodies[1]].map(|body| body.waves(t));
         let [de, di, dl, gh, h]: Five = std::array::from_fn(|k| sun[k] + moon[k]);
         mean.e += de;
@@ -77,7 +77,7 @@ impl DeepSpace {
             mean.node += node;
             mean.anomaly += dl;
         } else {
-            // Lyddane: α = sin i sin Ω, β = sin i cos Ω and l = M + ω + Ω cos i do not break down at i = 0
+            // Lyddane: α = sin i sin Ω, β = sin i cos Ω and l = M + ω + Ω cos i are regular at i = 0
             let (sin_node, cos_node) = mean.node.sin_cos();
             let alpha = sin * sin_node + (h * cos_node + di * cos * sin_node);
             let beta = sin * cos_node + (-h * sin_node + di * cos * cos_node);

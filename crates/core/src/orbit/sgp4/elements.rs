@@ -1,20 +1,20 @@
-//! Mean elements as SGP4 takes them, whatever they were written in.
+//! Mean elements of SGP4, independent of the format that they were read from.
 
 use super::epoch::Epoch;
 use super::error::ElementSetError;
 use std::f64::consts::TAU;
 
-/// Revolutions per day in one rad/min.
+/// Conversion factor from rad/min to revolutions per day.
 pub(super) const REV_DAY: f64 = 1440.0 / TAU;
 
 /// Mean elements of one satellite at one epoch, in the units of SGP4.
 ///
-/// They belong to SGP4 alone: no other theory gives their orbit.
+/// They are defined by SGP4 and must not be used with another theory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeanElements {
     /// Catalogue number.
     pub satellite: u32,
-    /// When they hold.
+    /// Epoch of the elements.
     pub epoch: Epoch,
     /// `B*`, 1/Earth radii.
     pub drag_term: f64,
@@ -33,7 +33,7 @@ pub struct MeanElements {
 }
 
 impl MeanElements {
-    /// From the entries of a CCSDS Orbit Mean-Elements Message: `entry` gives the text of a keyword.
+    /// Reads the entries of a CCSDS Orbit Mean-Elements Message; `entry` returns the text of a keyword.
     ///
     /// # Errors
     /// [`ElementSetError::Missing`], [`ElementSetError::Entry`] and [`ElementSetError::Range`].
@@ -80,7 +80,7 @@ impl MeanElements {
         .checked()
     }
 
-    /// Itself, if its numbers can be those of an orbit.
+    /// Returns the elements if they are within the range of orbits.
     ///
     /// # Errors
     /// [`ElementSetError::Range`], with values in the units of published element sets.

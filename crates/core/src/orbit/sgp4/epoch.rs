@@ -1,8 +1,8 @@
-//! An instant of UTC as element sets give it.
+//! Epoch of an element set, UTC.
 
 use std::f64::consts::{PI, TAU};
 
-/// A day and the seconds since its midnight, UTC without leap seconds, as SGP4 counts.
+/// A day and the seconds since its midnight, UTC without leap seconds, as in SGP4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Epoch {
     /// Days since 2000-01-01.
@@ -12,7 +12,7 @@ pub struct Epoch {
 }
 
 impl Epoch {
-    /// Day of the year from 1.0, midnight of 1 January.
+    /// Returns the epoch of a day of the year, which is 1.0 at midnight of 1 January.
     pub(super) fn of_year(year: i64, day_of_year: f64) -> Self {
         let whole = day_of_year.floor();
         Self {
@@ -21,7 +21,7 @@ impl Epoch {
         }
     }
 
-    /// `2024-01-31T12:34:56.789`, a `Z` at the end or not; `None` if it is no such text.
+    /// Parses `2024-01-31T12:34:56.789`, with or without a final `Z`; returns `None` for other texts.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let (date, time) = text.trim().trim_end_matches('Z').split_once(['T', ' '])?;
         let mut time = time.split(':');
@@ -59,14 +59,14 @@ impl Epoch {
         })
     }
 
-    /// Julian date in one number, good to 20 µs, as the reference code has it: on orbits of two weeks the Moon's
-    /// pull tells the difference (4 mm).
+    /// Returns the Julian date as one number, good to 20 µs, as the reference code does: for orbits of two
+    /// weeks the effect on the Moon's perturbation is 4 mm.
     pub(super) fn julian_day(&self) -> f64 {
         let (midnight, part) = self.julian_date();
         midnight + part
     }
 
-    /// Greenwich mean sidereal time of 1982, rad within [0, 2π), UTC taken for UT1.
+    /// Returns the Greenwich mean sidereal time of 1982, rad in [0, 2π), with UTC used as UT1.
     ///
     /// Source: Aoki et al., Astronomy and Astrophysics 105, 1982, eq. 14.
     pub(super) fn sidereal_time(&self) -> f64 {
@@ -78,12 +78,12 @@ impl Epoch {
         (seconds * (PI / 180.0) / 240.0).rem_euclid(TAU)
     }
 
-    /// The instant, leap seconds counted from 1972 on.
+    /// Returns the instant; leap seconds are counted from 1972 on.
     pub(super) fn instant(&self) -> crate::earth::Epoch {
         crate::earth::Epoch::of_utc(self.day, self.seconds)
     }
 
-    /// Julian date of the epoch's midnight, and the part of the day since.
+    /// Returns the Julian date of the midnight before the epoch, and the fraction of the day.
     pub fn julian_date(&self) -> (f64, f64) {
         (2_451_544.5 + self.day as f64, self.seconds / 86_400.0)
     }
@@ -94,14 +94,15 @@ fn digits(text: &str) -> Option<i64> {
         .then(|| text.parse().ok())?
 }
 
-/// Days from 2000-01-01 in the Gregorian calendar: years begin in March, so leap days end them.
+/// Returns days from 2000-01-01 in the Gregorian calendar. Years begin in March, so that leap days are at
+/// their end.
 fn days_since_2000(year: i64, month: i64, day: i64) -> i64 {
     let y = if month < 3 { year - 1 } else { year };
     let days_of_months = (153 * ((month + 9) % 12) + 2) / 5;
     365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + days_of_months + day - 730_426
 }
 
-/// Year, month and day of a day counted from 2000-01-01.
+/// Returns year, month and day of a day counted from 2000-01-01.
 fn civil(days: i64) -> (i64, i64, i64) {
     // a lower bound of the year, before and after 2000
     let mut year = 2000 + days.div_euclid(if days < 0 { 365 } else { 366 });
@@ -113,7 +114,7 @@ fn civil(days: i64) -> (i64, i64, i64) {
 }
 
 impl std::fmt::Display for Epoch {
-    /// ISO 8601 to the microsecond: `2000-06-27T18:50:19.733568Z`.
+    /// Returns ISO 8601 to the microsecond: `2000-06-27T18:50:19.733568Z`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let micros = (self.seconds * 1e6).round() as i64;
         let (year, month, day) = civil(self.day + micros.div_euclid(86_400_000_000));
@@ -139,7 +140,7 @@ mod tests {
             ("2056-12-31T00:00:00.000000Z", Epoch::of_year(2056, 366.0)),
         ] {
             assert_eq!(epoch.to_string(), text);
-            let read = Epoch::parse(text).expect("what was written can be read");
+            let read = Epoch::parse(text).expect("a text of to_text can be parsed");
             assert_eq!(read.day, epoch.day, "{text}");
             assert!((read.seconds - epoch.seconds).abs() < 1e-6, "{text}");
         }
@@ -155,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn every_day_of_a_century_comes_back() {
+    fn every_day_of_a_century_is_restored() {
         let first = days_since_2000(1957, 1, 1);
         for days in first..days_since_2000(2057, 1, 1) {
             let (year, month, day) = civil(days);
@@ -174,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_that_are_no_dates_are_refused() {
+    fn invalid_dates_are_rejected() {
         for text in [
             "",
             "2024-02-30T00:00:00",

@@ -1,4 +1,4 @@
-//! What can be wrong with a set of mean elements and with what SGP4 makes of them.
+//! Errors of element sets and of SGP4.
 
 use crate::number_text::{count, short, unlike};
 use std::ops::RangeInclusive;
@@ -8,41 +8,42 @@ use std::ops::RangeInclusive;
 #[non_exhaustive]
 pub enum ElementSetError {
     /// A line of a TLE is too long or too short.
-    #[error("line {line} of the TLE has {got}, 69 are needed (is something missing or wrapped?)", got = count(*got, "column"))]
+    #[error("line {line} of the TLE has {got}; expected 69 (is the line truncated or wrapped?)", got = count(*got, "column"))]
     Length {
-        /// 1 or 2.
+        /// Line number, 1 or 2.
         line: u8,
-        /// Columns given, without blanks at the end.
+        /// Number of columns given, without trailing blanks.
         got: usize,
     },
-    /// A column holds something that cannot stand there.
-    #[error("line {line} of the TLE, column {column}: {got:?} where {expected} is needed")]
+    /// A column holds an invalid character or number.
+    #[error("line {line} of the TLE, column {column}, is {got:?}; expected {expected}")]
     Column {
-        /// 1 or 2.
+        /// Line number, 1 or 2.
         line: u8,
         /// First column of the field, from 1.
         column: usize,
-        /// What stands there.
+        /// Text in the column.
         got: String,
-        /// What should.
+        /// Description of the expected text.
         expected: &'static str,
     },
-    /// The digits do not add up.
+    /// The checksum is wrong.
     #[error(
-        "line {line} of the TLE, column 69: the checksum is {got}, the line adds up to {expected}: \
-         copy the line again, or accept it with check_checksum=False"
+        "line {line} of the TLE, column 69: the checksum is {got}, but the line adds up to {expected}; copy \
+         the line again, or accept it with check_checksum=False"
     )]
     Checksum {
-        /// 1 or 2.
+        /// Line number, 1 or 2.
         line: u8,
-        /// What stands in column 69.
+        /// Digit in column 69.
         got: u8,
-        /// What the line adds up to.
+        /// Checksum of the line.
         expected: u8,
     },
-    /// The lines belong to two satellites.
+    /// The lines are of two satellites.
     #[error(
-        "line 1 of the TLE is of satellite {first:?}, line 2 of {second:?}: give two lines of one satellite"
+        "line 1 of the TLE is of satellite {first:?}, but line 2 is of {second:?}; give two lines of one \
+         satellite"
     )]
     TwoSatellites {
         /// Number in line 1.
@@ -50,92 +51,92 @@ pub enum ElementSetError {
         /// Number in line 2.
         second: String,
     },
-    /// A message lacks an entry.
-    #[error("the OMM has no {key}: SGP4 needs it")]
+    /// An entry of a message is missing.
+    #[error("the OMM has no {key}, which SGP4 requires")]
     Missing {
         /// Keyword of CCSDS 502.0-B.
         key: &'static str,
     },
-    /// An entry of a message makes no sense.
-    #[error("the OMM's {key} is {got:?}, {expected} is needed")]
+    /// An entry of a message is invalid.
+    #[error("the OMM's {key} is {got:?}; expected {expected}")]
     Entry {
         /// Keyword of CCSDS 502.0-B.
         key: &'static str,
-        /// What was given.
+        /// Given text.
         got: String,
-        /// What is needed.
+        /// Description of the expected text.
         expected: &'static str,
     },
-    /// A number lies where no orbit is.
-    #[error("{name} is {got}, it must lie within {} to {}", short(*range.start()), short(*range.end()), got = unlike(*got, &[*range.start(), *range.end()]))]
+    /// A number is out of the range of orbits.
+    #[error("{name} is {got}; it must lie within {} to {}", short(*range.start()), short(*range.end()), got = unlike(*got, &[*range.start(), *range.end()]))]
     Range {
-        /// Which element.
+        /// Name of the element.
         name: &'static str,
-        /// What was given, in the unit of the element set.
+        /// Value given, in the unit of the element set.
         got: f64,
-        /// What is accepted.
+        /// Accepted range.
         range: RangeInclusive<f64>,
     },
 }
 
-/// SGP4's refusals, by the number that the reference code gives them.
+/// Errors of SGP4, with the numbers of the reference code.
 ///
-/// Number 5 (epoch elements below the surface) is no longer raised by it, nor here: such sets are
-/// propagated and decay.
+/// As in current versions of the reference implementation, error 5 (epoch elements below the surface) does
+/// not occur: such orbits are propagated and decay.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Sgp4Error {
-    /// 1: mean eccentricity, drag and secular effects included.
+    /// Error 1: mean eccentricity, including drag and secular effects.
     #[error(
-        "SGP4 error 1 at t = {time} s: the mean eccentricity is {eccentricity}, it must lie in [-0.001, 1): \
-         the elements do not reach so far from their epoch",
+        "SGP4 error 1 at t = {time} s: the mean eccentricity is {eccentricity}; it must lie in [-0.001, 1); \
+         give elements with an epoch nearer to this time",
         time = short(*time), eccentricity = short(*eccentricity)
     )]
     MeanEccentricity {
         /// Time since the epoch, s.
         time: f64,
-        /// What came out.
+        /// Computed value.
         eccentricity: f64,
     },
-    /// 2: mean motion.
+    /// Error 2: mean motion.
     #[error(
-        "SGP4 error 2 at t = {time} s: the mean motion is {mean_motion} rev/day, it must be positive",
+        "SGP4 error 2 at t = {time} s: the mean motion is {mean_motion} rev/day; it must be positive",
         time = short(*time), mean_motion = short(*mean_motion)
     )]
     MeanMotion {
         /// Time since the epoch, s.
         time: f64,
-        /// What came out.
+        /// Computed value.
         mean_motion: f64,
     },
-    /// 3: eccentricity with the pull of Sun and Moon.
+    /// Error 3: eccentricity with perturbations by Sun and Moon.
     #[error(
-        "SGP4 error 3 at t = {time} s: the eccentricity perturbed by Sun and Moon is {eccentricity}, it must lie \
-         in [0, 1]: the elements do not reach so far from their epoch",
+        "SGP4 error 3 at t = {time} s: the eccentricity perturbed by Sun and Moon is {eccentricity}; it \
+         must lie in [0, 1]; give elements with an epoch nearer to this time",
         time = short(*time), eccentricity = short(*eccentricity)
     )]
     PerturbedEccentricity {
         /// Time since the epoch, s.
         time: f64,
-        /// What came out.
+        /// Computed value.
         eccentricity: f64,
     },
-    /// 4: semi-latus rectum.
+    /// Error 4: semi-latus rectum.
     #[error(
-        "SGP4 error 4 at t = {time} s: the semi-latus rectum is {semi_latus_rectum} m, it must not be negative: \
-         the elements do not reach so far from their epoch",
+        "SGP4 error 4 at t = {time} s: the semi-latus rectum is {semi_latus_rectum} m; it must not be \
+         negative; give elements with an epoch nearer to this time",
         time = short(*time), semi_latus_rectum = short(*semi_latus_rectum)
     )]
     SemiLatusRectum {
         /// Time since the epoch, s.
         time: f64,
-        /// What came out, m.
+        /// Computed value, m.
         semi_latus_rectum: f64,
     },
-    /// 6: below the surface.
+    /// Error 6: position below the surface.
     #[error(
-        "SGP4 error 6 at t = {time} s: the satellite has decayed, it is {distance} m from the Earth's centre, \
-         less than {radius} m: end the run earlier",
+        "SGP4 error 6 at t = {time} s: the satellite has decayed: it is {distance} m from the Earth's \
+         centre; expected at least {radius} m; end the run earlier",
         time = short(*time), distance = unlike(*distance, &[*radius]), radius = short(*radius)
     )]
     Decayed {
@@ -147,11 +148,11 @@ pub enum Sgp4Error {
         radius: f64,
     },
     /// An error of the reference code.
-    #[error("SGP4 error {code} at t = {time} s, by the reference code: {}", reason(*.code), time = short(*time))]
-    OfReference {
+    #[error("SGP4 error {code} of the reference implementation at t = {time} s: {}", reason(*.code), time = short(*time))]
+    External {
         /// Time since the epoch, s.
         time: f64,
-        /// Its error code.
+        /// Error code of the reference implementation.
         code: u8,
     },
 }
@@ -163,12 +164,12 @@ fn reason(code: u8) -> &'static str {
         2 => "the mean motion is not positive",
         3 => "the eccentricity perturbed by Sun and Moon is out of range",
         4 => "the semi-latus rectum is negative",
-        _ => "it gave no state",
+        _ => "it returned no state",
     }
 }
 
 impl Sgp4Error {
-    /// The number that the reference code gives it.
+    /// Returns the number of the error in the reference code.
     pub fn code(&self) -> u8 {
         match self {
             Self::MeanEccentricity { .. } => 1,
@@ -176,11 +177,11 @@ impl Sgp4Error {
             Self::PerturbedEccentricity { .. } => 3,
             Self::SemiLatusRectum { .. } => 4,
             Self::Decayed { .. } => 6,
-            Self::OfReference { code, .. } => *code,
+            Self::External { code, .. } => *code,
         }
     }
 
-    /// Time since the epoch, s.
+    /// Returns the time since the epoch, s.
     pub fn time(&self) -> f64 {
         match *self {
             Self::MeanEccentricity { time, .. }
@@ -188,11 +189,11 @@ impl Sgp4Error {
             | Self::PerturbedEccentricity { time, .. }
             | Self::SemiLatusRectum { time, .. }
             | Self::Decayed { time, .. }
-            | Self::OfReference { time, .. } => time,
+            | Self::External { time, .. } => time,
         }
     }
 
-    /// The offending value, in the unit of its message; NaN for errors of the reference code.
+    /// Returns the offending value, in the unit of its message; NaN for errors of the reference code.
     pub fn value(&self) -> f64 {
         match *self {
             Self::MeanEccentricity { eccentricity, .. }
@@ -200,7 +201,7 @@ impl Sgp4Error {
             Self::MeanMotion { mean_motion, .. } => mean_motion,
             Self::SemiLatusRectum { semi_latus_rectum, .. } => semi_latus_rectum,
             Self::Decayed { distance, .. } => distance,
-            Self::OfReference { .. } => f64::NAN,
+            Self::External { .. } => f64::NAN,
         }
     }
 }

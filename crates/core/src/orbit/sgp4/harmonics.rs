@@ -1,18 +1,18 @@
-//! How strongly the Earth's longitude harmonics act on a resonant orbit.
+//! Coefficients of the Earth's longitude harmonics for resonant orbits.
 //!
-//! Source: Spacetrack Report #3, section 7: eccentricity functions `Gₗₚᵩ`, inclination functions `Fₗₘₚ`, and the
-//! harmonics' sizes and phases.
+//! Source: Spacetrack Report #3, section 7: eccentricity functions `Gₗₚᵩ`, inclination functions `Fₗₘₚ`,
+//! amplitudes and phases of the harmonics.
 
 use nalgebra::Complex;
 
-/// One term of the mean motion's rate, `d sin(p ω + q λ - φ)`.
+/// Term of the rate of the mean motion, `d sin(p ω + q λ - φ)`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Harmonic {
-    /// `d e⁻ⁱᵠ`.
+    /// Complex amplitude `d e⁻ⁱᵠ`.
     pub(super) d: Complex<f64>,
-    /// -1 to 2.
+    /// Multiple of the argument of perigee, -1 to 2.
     pub(super) p: i8,
-    /// 1 to 3.
+    /// Multiple of the resonant longitude, 1 to 3.
     pub(super) q: u8,
 }
 
@@ -22,7 +22,7 @@ impl Harmonic {
     }
 }
 
-/// One revolution a day: harmonics (2,2), (3,1) and (3,3).
+/// Returns the terms for one revolution per day: harmonics (2,2), (3,1) and (3,3).
 pub(super) fn day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     let ((sin, cos), e2) = (i.sin_cos(), e * e);
     let (g200, g310) = (1.0 + e2 * (-2.5 + 0.8125 * e2), 1.0 + 2.0 * e2);
@@ -40,11 +40,11 @@ pub(super) fn day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     ]
 }
 
-/// Two revolutions a day: harmonics of order 2 and 4, degrees 2 to 5.
+/// Returns the terms for two revolutions per day: harmonics of order 2 and 4, degrees 2 to 5.
 pub(super) fn half_day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     let (sin, cos) = i.sin_cos();
     let (e2, s2, c2) = (e * e, sin * sin, cos * cos);
-    // eccentricity functions, fitted piece by piece; summed in this order since their terms nearly cancel
+    // eccentricity functions, piecewise fits; the order of summation matters since terms nearly cancel
     let fit = |[c0, c1, c2, c3]: [f64; 4]| c0 + c1 * e + c2 * e2 + c3 * (e * e2);
     let pick = |is_low, low, high| fit(if is_low { low } else { high });
     let g201 = -0.306 - (e - 0.64) * 0.440;
@@ -81,7 +81,7 @@ pub(super) fn half_day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
         * (4.921_875_12 * s2 * (-2.0 - 4.0 * cos + 10.0 * c2) + 6.562_500_12 * (1.0 + 2.0 * cos - 3.0 * c2));
     let f542 = 29.53125 * sin * (2.0 - 8.0 * cos + c2 * (-12.0 + 8.0 * cos + 10.0 * c2));
     let f543 = 29.53125 * sin * (-2.0 - 8.0 * cos + c2 * (12.0 + 8.0 * cos - 10.0 * c2));
-    // d = 3 n² a⁻ˡ √(C² + S²) F G, once more for order 4
+    // d = 3 n² a⁻ˡ √(C² + S²) F G, doubled for order 4
     let k2 = 3.0 * (n * n) * (a * a);
     let (k3, k4, k5) = (k2 * a, k2 * a * a, k2 * a * a * a);
     let (r22, r32, r52) = (k2 * 1.789_167_9e-6, k3 * 3.739_379_2e-7, k5 * 1.142_863_9e-7);

@@ -1,15 +1,15 @@
-//! The pull of Sun and Moon, averaged over the satellite's revolution.
+//! Perturbations by Sun and Moon, averaged over the satellite's revolution.
 //!
 //! Source: Hoots, Schumacher and Glover, J. Guidance, Control and Dynamics 27(2), 2004; coefficients as in
-//! Spacetrack Report #3, section 7, whose names `aₖ`, `xₖ`, `zₖⱼ`, `sₖ` stand here without change.
+//! Spacetrack Report #3, section 7, with its names `aₖ`, `xₖ`, `zₖⱼ`, `sₖ`.
 
 use super::constants::Mean;
 use std::f64::consts::TAU;
 
-/// One value for each of `e`, `i`, `l` (mean longitude), `g + h` (perigee and node) and `h` (node by sin i).
+/// Values for each of `e`, `i`, `l` (mean longitude), `g + h` (perigee and node) and `h` (node by sin i).
 pub(super) type Five = [f64; 5];
 
-/// A perturbing body on its apparent ellipse around the Earth.
+/// Perturbing body on its apparent elliptic orbit around the Earth.
 #[derive(Clone, Debug)]
 pub(super) struct ThirdBody {
     /// Secular rates, per minute.
@@ -17,13 +17,13 @@ pub(super) struct ThirdBody {
     /// Amplitudes of `F₂`, `F₃` and `sin f`.
     waves: [[f64; 3]; 5],
     eccentricity: f64,
-    /// rad/min.
+    /// Mean motion of the body, rad/min.
     motion: f64,
     /// Mean anomaly at the epoch, rad.
     anomaly: f64,
 }
 
-/// Where a body's ellipse lies: cosine and sine of its perigee `g`, inclination `i`, node `h`.
+/// Orientation of a body's orbit: cosine and sine of its perigee `g`, inclination `i` and node `h`.
 struct Ellipse {
     g: (f64, f64),
     i: (f64, f64),
@@ -31,14 +31,14 @@ struct Ellipse {
     eccentricity: f64,
     motion: f64,
     anomaly: f64,
-    /// Strength of the pull, rad²/min².
+    /// Strength of the perturbation, rad²/min².
     c: f64,
 }
 
 const COS_OBLIQUITY: f64 = 0.917_448_67;
 const SIN_OBLIQUITY: f64 = 0.397_854_16;
 
-/// Sun and Moon at `day` days since 1900-01-00 12:00, acting on `mean`.
+/// Returns Sun and Moon at `day` days since 1900-01-00 12:00, acting on `mean`.
 pub(super) fn sun_and_moon(day: f64, mean: &Mean) -> [ThirdBody; 2] {
     let sun = Ellipse {
         g: (0.194_590_5, -0.980_884_58),
@@ -49,7 +49,7 @@ pub(super) fn sun_and_moon(day: f64, mean: &Mean) -> [ThirdBody; 2] {
         anomaly: (6.256_583_7 + 0.017_201_977 * day) % TAU,
         c: 2.986_479_7e-6,
     };
-    // the Moon's orbit, inclined to the ecliptic, in axes of the equator
+    // the Moon's orbit, inclined to the ecliptic, in equatorial axes
     let node = (4.523_602_0 - 9.242_202_9e-4 * day) % TAU;
     let (sin_node, cos_node) = node.sin_cos();
     let cos_i = 0.913_751_64 - 0.035_680_96 * cos_node;
@@ -75,7 +75,7 @@ impl ThirdBody {
     fn new(body: &Ellipse, mean: &Mean) -> Self {
         let ((cg, sg), (ci, si)) = (body.g, body.i);
         let (sin_node, cos_node) = mean.node.sin_cos();
-        // node of the satellite seen from that of the body
+        // node of the satellite relative to that of the body
         let ch = body.h.0 * cos_node + body.h.1 * sin_node;
         let sh = sin_node * body.h.0 - cos_node * body.h.1;
         let ((sin_w, cos_w), (sin_i, cos_i)) = (mean.perigee.sin_cos(), mean.i.sin_cos());
@@ -131,7 +131,7 @@ impl ThirdBody {
         Self { rates, waves, eccentricity: eb, motion: n, anomaly: body.anomaly }
     }
 
-    /// Periodic part at `t` minutes.
+    /// Returns the periodic perturbations at `t` minutes.
     pub(super) fn waves(&self, t: f64) -> Five {
         // f = M + 2 e sin M,  F₂ = ½ sin²f - ¼,  F₃ = -½ sin f cos f
         let anomaly = self.anomaly + self.motion * t;

@@ -22,21 +22,22 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::error::finite;
-use super::rows::{StateRows, in_lanes, one_by_one};
-use super::{Axes, Orbit, OrbitError, OrbitState};
+use super::lanes::fill_lanes;
+use super::reference_orbit::fill_each;
+use super::{Axes, Orbit, OrbitError, OrbitState, StateRows};
 use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real};
 pub use constants::EarthModel;
 pub use elements::MeanElements;
 pub use epoch::Epoch;
 pub use error::{ElementSetError, Sgp4Error};
 use propagate::Propagator;
-pub use theory::Reference;
+pub use theory::ExternalSgp4;
 use theory::{State, Theory};
 
-/// Furthest from the epoch, s: a hundred years, when the elements mean nothing any more.
+/// Largest time from the epoch, s: a hundred years; the elements lose their accuracy within weeks.
 const LONGEST_TIME: f64 = 100.0 * 365.25 * 86_400.0;
 
-/// Step of the differences that give the acceleration, s.
+/// Step of the finite differences for the acceleration, s.
 const STEP: f64 = 30.0;
 
 /// Weights of the central sixth-order second difference, times 180.
@@ -45,12 +46,13 @@ const WEIGHTS: [f64; 4] = [-490.0, 270.0, -27.0, 2.0];
 /// Weights of the central sixth-order first difference, times 60.
 const SLOPE_WEIGHTS: [f64; 3] = [45.0, -9.0, 1.0];
 
-/// The orbit of an element set; simulation time zero is its epoch, axes are TEME.
+/// Orbit of an element set in TEME axes; simulation time zero is the epoch of the set.
 ///
-/// Position and velocity are SGP4's own, as published. Its velocity is not exactly the derivative of its
-/// position: over the published sets 2-9 cm/s apart on nearly circular orbits, 1.2 m/s at eccentricity 0.19, up
-/// to 7 m/s where it is 0.8 and 18 m/s in the last revolutions before decay. The acceleration is the second
-/// derivative of the *position*, by sixth-order central differences over ±90 s: good to 1e-7 m/s².
+/// Position and velocity are those of SGP4, as published. The velocity is not exactly the derivative of the
+/// position: for the published sets the difference is 2-9 cm/s on nearly circular orbits, 1.2 m/s at
+/// eccentricity 0.19, up to 7 m/s at 0.8, and 18 m/s in the last revolutions before decay. The acceleration
+/// is the second derivative of the *position*, by sixth-order central differences over ±90 s, accurate to
+/// 1e-7 m/s².
 #[derive(Clone, Debug)]
 pub struct Sgp4 {
     elements: MeanElements,
@@ -60,38 +62,38 @@ pub struct Sgp4 {
 }
 
 impl Sgp4 {
-    /// Prepares an element set.
+    /// Returns the orbit of an element set.
     pub fn new(elements: MeanElements, model: EarthModel) -> Self {
         let propagator = Propagator::new(&elements, model);
-        Self { elements, model, propagator, theory: Theory::Own }
+        Self { elements, model, propagator, theory: Theory::Native }
     }
 
-    /// Returns the same set, propagated by the reference code; much slower.
-    pub fn by_reference(self, code: Arc<dyn Reference>) -> Self {
-        Self { theory: Theory::Reference(code), ..self }
+    /// Returns the orbit of the same set propagated by the reference implementation, which is much slower.
+    pub fn with_external(self, code: Arc<dyn ExternalSgp4>) -> Self {
+        Self { theory: Theory::External(code), ..self }
     }
 
     fn at(&self, t: f64) -> Result<State, Sgp4Error> {
         self.theory.at(&self.propagator, t)
     }
 
-    /// The element set.
+    /// Returns the element set.
     pub fn elements(&self) -> &MeanElements {
         &self.elements
     }
 
-    /// Earth model in use.
+    /// Returns the Earth model.
     pub fn earth_model(&self) -> EarthModel {
         self.model
     }
 
-    /// Period of the mean motion, s.
+    /// Returns the period of the mean motion, s.
     pub fn period(&self) -> f64 {
         60.0 * TAU / self.elements.mean_motion
     }
 
-    /// SGP4's position (m) and velocity (m/s) at `t`, above the surface.
-    fn flight(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
+    /// Returns position (m) and velocity (m/s) at `t`, or an error below the surface.
+    fn above_surface(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
         if finite("time", t)?.abs() > LONGEST_TIME {
             return Err(OrbitError::TimeOutOfRange { time: t, epoch: 0.0, limit: LONGEST_TIME });
         }
@@ -103,9 +105,9 @@ impl Sgp4 {
         Ok((at.position * 1e3, at.velocity * 1e3))
     }
 
-    /// As many times at once as `S` has lanes; one by one where one of them is refused.
-    fn side_by_side<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
-        in_lanes::<S>(
+    /// Fills the rows on the lanes of `S`; instants with an error are evaluated one by one.
+    fn fill_in_lanes<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
+        fill_lanes::<S>(
             self,
             times,
             rows,
@@ -114,13 +116,13 @@ impl Sgp4 {
                 if !(0..S::LANES).all(|lane| t.lane(lane).abs() <= LONGEST_TIME) {
                     return None;
                 }
-                let at = self.propagator.several(t)?;
+                let at = self.propagator.at_lanes(t)?;
                 Some((at.position * S::of(1e3), at.velocity * S::of(1e3)))
             },
         )
     }
 
-    /// First derivative of the position over steps of `h`, m/s.
+    /// Returns the first derivative of the position by differences of step `h`, m/s.
     fn rate(&self, t: f64, h: f64) -> Result<Vector3<f64>, Sgp4Error> {
         // ṙ ≈ Σ wₖ (r(t + k h) - r(t - k h))/(60 h)
         let mut sum = Vector3::zeros();
@@ -132,7 +134,7 @@ impl Sgp4 {
         Ok(sum / (60.0 * h))
     }
 
-    /// Second derivative of the position over steps of `h`, m/s².
+    /// Returns the second derivative of the position by differences of step `h`, m/s².
     fn acceleration(&self, t: f64, r: &Vector3<f64>, h: f64) -> Result<Vector3<f64>, Sgp4Error> {
         // r̈ ≈ Σ wₖ (r(t + k h) + r(t - k h))/(180 h²)
         let mut sum = r * WEIGHTS[0];
@@ -160,18 +162,19 @@ impl Orbit for Sgp4 {
 
     fn velocity_source(&self) -> &'static str {
         match self.theory {
-            Theory::Own => "SGP4's own velocity (not exactly the derivative of its position)",
-            Theory::Reference(_) => {
-                "SGP4's own velocity by the reference code (not exactly the derivative of its position)"
+            Theory::Native => "SGP4's own velocity (not exactly the derivative of its position)",
+            Theory::External(_) => {
+                "SGP4's own velocity from the reference implementation (not exactly the derivative of its \
+                 position)"
             }
         }
     }
 
     /// # Errors
-    /// [`OrbitError::Sgp4`], and [`OrbitError::TimeOutOfRange`] a hundred years from the epoch.
+    /// [`OrbitError::Sgp4`], and [`OrbitError::TimeOutOfRange`] beyond a hundred years from the epoch.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
-        let (position, velocity) = self.flight(t)?;
-        // where the elements fail within 90 s, a shorter reach will do
+        let (position, velocity) = self.above_surface(t)?;
+        // the step is halved if the propagation fails within 90 s of `t`
         let acceleration = self
             .acceleration(t, &position, STEP)
             .or_else(|_| self.acceleration(t, &position, STEP / 16.0))?;
@@ -183,17 +186,17 @@ impl Orbit for Sgp4 {
     }
 
     fn position_velocity(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
-        self.flight(t)
+        self.above_surface(t)
     }
 
     fn fill(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
-        if matches!(self.theory, Theory::Reference(_)) || !self.propagator.goes_side_by_side() {
-            return one_by_one(self, times, rows);
+        if matches!(self.theory, Theory::External(_)) || !self.propagator.has_lanes() {
+            return fill_each(self, times, rows);
         }
         match InstructionSet::current() {
-            InstructionSet::Baseline => one_by_one(self, times, rows),
-            InstructionSet::Fused => self.side_by_side::<Lanes4>(times, rows),
-            InstructionSet::Wide => self.side_by_side::<Lanes8>(times, rows),
+            InstructionSet::Baseline => fill_each(self, times, rows),
+            InstructionSet::Fused => self.fill_in_lanes::<Lanes4>(times, rows),
+            InstructionSet::Wide => self.fill_in_lanes::<Lanes8>(times, rows),
         }
     }
 }

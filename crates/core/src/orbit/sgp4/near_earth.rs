@@ -1,18 +1,18 @@
-//! What the Earth's flattening and its air do to the mean elements, time after time.
+//! Secular perturbations of the mean elements by the zonal harmonics and by drag.
 //!
-//! Source: Spacetrack Report #3, section 6, in the symbols of that report. The order of every sum and product
-//! is that of the reference code: after thousands of revolutions the last digit of a rate is worth centimetres.
+//! Source: Spacetrack Report #3, section 6, with its symbols. Sums and products are evaluated in the order of
+//! the reference code: after thousands of revolutions the last digit of a rate amounts to centimetres.
 
 use super::constants::{Earth, Mean};
 use super::elements::MeanElements;
 use crate::spatial::Real;
 
-/// Lowest perigee, km of height, at which the drag's finer terms are kept.
+/// Perigee height, km, below which the higher-order drag terms are omitted.
 const FINE_PERIGEE: f64 = 220.0;
-/// Eccentricity from which drag depends on where in its orbit the satellite is.
-const ROUND: f64 = 1e-4;
+/// Eccentricity below which drag is independent of the position in the orbit.
+const NEARLY_CIRCULAR: f64 = 1e-4;
 
-/// Elements at the epoch and how they drift.
+/// Elements at the epoch and their rates.
 #[derive(Clone, Debug)]
 pub(super) struct NearEarth {
     pub(super) epoch: Mean,
@@ -27,7 +27,7 @@ pub(super) struct NearEarth {
     fine: Option<Fine>,
 }
 
-/// Terms of drag beyond the first power of time, left out for low perigees and deep space.
+/// Drag terms beyond the first power of time, omitted for low perigees and deep space.
 #[derive(Clone, Debug)]
 struct Fine {
     eta: f64,
@@ -41,18 +41,18 @@ struct Fine {
     sin0: f64,
 }
 
-/// The drifting elements at one time, and what drag takes off them later on.
-pub(super) struct Drifted<S = f64> {
+/// Mean elements with secular perturbations at one time, and the drag terms that are applied later.
+pub(super) struct SecularElements<S = f64> {
     pub(super) mean: Mean<S>,
     /// Factor of `√a`.
-    pub(super) shrink: S,
+    pub(super) axis_factor: S,
     /// Loss of eccentricity.
-    pub(super) rounding: S,
-    /// Gain of mean longitude over `n″₀`, min.
-    pub(super) lead: S,
+    pub(super) eccentricity_loss: S,
+    /// Increase of the mean longitude over `n″₀`, min.
+    pub(super) longitude_gain: S,
 }
 
-/// Brouwer's mean elements from the published ones.
+/// Returns Brouwer's mean elements from the published ones.
 ///
 /// `n″₀ = n₀/(1 + δ₀)`, `δ₀ = d/a₀²`, `a₀ = a₁ (1 - δ₁² - δ₁ (1/3 + 134 δ₁²/81))`, `δ₁ = d/a₁²`,
 /// `a₁ = (kₑ/n₀)^{2/3}`, `d = ¾ J₂ (3 cos²i - 1)/(1 - e²)^{3/2}`.
@@ -85,7 +85,7 @@ impl NearEarth {
         let pinv2 = 1.0 / (p * p);
         let (x3, x1) = (3.0 * c2 - 1.0, 1.0 - c2);
 
-        // density ~ ((q₀ - s)/(r - s))⁴, s lowered with the perigee
+        // density ~ ((q₀ - s)/(r - s))⁴, with s reduced for low perigees
         let height = (rp - 1.0) * earth.radius_km;
         let s_km = if height < 98.0 { 20.0 } else { (height - 78.0).min(78.0) };
         let s = s_km / earth.radius_km + 1.0;
@@ -102,7 +102,7 @@ impl NearEarth {
             * (a * (1.0 + 1.5 * eta2 + e_eta * (4.0 + eta2))
                 + 0.375 * earth.j2 * xi / psi2 * x3 * (8.0 + 3.0 * eta2 * (8.0 + eta2)));
         let c1 = b_star * cc2;
-        let c3 = if e > ROUND { -2.0 * k * xi * earth.j3_j2 * n * sin / e } else { 0.0 };
+        let c3 = if e > NEARLY_CIRCULAR { -2.0 * k * xi * earth.j3_j2 * n * sin / e } else { 0.0 };
         let about_perigee = -3.0 * x3 * (1.0 - 2.0 * e_eta + eta2 * (1.5 - 0.5 * e_eta))
             + 0.75 * x1 * (2.0 * eta2 - e_eta * (1.0 + eta2)) * (2.0 * perigee).cos();
         let cc4 = 2.0
@@ -142,7 +142,7 @@ impl NearEarth {
                 d: [d2, d3, d4],
                 t: [t3, t4, t5],
                 perigee: b_star * c3 * perigee.cos(),
-                anomaly: if e > ROUND { -2.0 / 3.0 * k * b_star / e_eta } else { 0.0 },
+                anomaly: if e > NEARLY_CIRCULAR { -2.0 / 3.0 * k * b_star / e_eta } else { 0.0 },
                 cube0: cube(1.0 + eta * anomaly.cos()),
                 sin0: anomaly.sin(),
             }
@@ -151,9 +151,9 @@ impl NearEarth {
         Self { epoch, anomaly_rate, perigee_rate, node_rate, node_drag, b_star, c1, c4: cc4, fine }
     }
 
-    /// Elements `t` minutes from the epoch.
+    /// Returns the elements `t` minutes from the epoch.
     #[inline(always)]
-    pub(super) fn at<S: Real>(&self, t: S) -> Drifted<S> {
+    pub(super) fn at<S: Real>(&self, t: S) -> SecularElements<S> {
         let (of, t2, epoch) = (S::of, t * t, &self.epoch);
         let mut mean = Mean {
             n: of(epoch.n),
@@ -163,9 +163,9 @@ impl NearEarth {
             perigee: of(epoch.perigee) + of(self.perigee_rate) * t,
             anomaly: of(epoch.anomaly) + of(self.anomaly_rate) * t,
         };
-        let mut shrink = of(1.0) - of(self.c1) * t;
-        let mut rounding = of(self.b_star * self.c4) * t;
-        let mut lead = of(1.5 * self.c1) * t2;
+        let mut axis_factor = of(1.0) - of(self.c1) * t;
+        let mut eccentricity_loss = of(self.b_star * self.c4) * t;
+        let mut longitude_gain = of(1.5 * self.c1) * t2;
         if let Some(fine) = &self.fine {
             // δω = B* C₃ cos ω₀ t,  δM = -⅔ (q₀ - s)⁴ B* ξ⁴/(e η) [(1 + η cos M)³ - (1 + η cos M₀)³]
             let here = of(1.0) + of(fine.eta) * mean.anomaly.sin_cos().1;
@@ -174,11 +174,11 @@ impl NearEarth {
             mean.perigee -= swing;
             let (t3, [d2, d3, d4], [l3, l4, l5]) = (t2 * t, fine.d, fine.t);
             let t4 = t3 * t;
-            shrink = shrink - of(d2) * t2 - of(d3) * t3 - of(d4) * t4;
-            rounding += of(self.b_star * fine.c5) * (mean.anomaly.sin_cos().0 - of(fine.sin0));
-            lead = lead + of(l3) * t3 + t4 * (of(l4) + t * of(l5));
+            axis_factor = axis_factor - of(d2) * t2 - of(d3) * t3 - of(d4) * t4;
+            eccentricity_loss += of(self.b_star * fine.c5) * (mean.anomaly.sin_cos().0 - of(fine.sin0));
+            longitude_gain = longitude_gain + of(l3) * t3 + t4 * (of(l4) + t * of(l5));
         }
-        Drifted { mean, shrink, rounding, lead }
+        SecularElements { mean, axis_factor, eccentricity_loss, longitude_gain }
     }
 }
 

@@ -1,35 +1,42 @@
-//! From mean elements to position and velocity: long-period terms of J₃, Kepler's equation, short-period terms of J₂.
+//! Osculating state from mean elements: long-period terms of J₃, Kepler's equation, short-period terms of J₂.
 //!
-//! Source: Spacetrack Report #3, section 6, from the long-period terms on.
+//! Source: Spacetrack Report #3, section 6.
 
-use super::constants::{Earth, Mean, turns_off};
+use super::constants::{Earth, Mean, wrap_angle};
 use crate::spatial::{Real, Vec3};
 
-/// Least `1 + cos i`: at `i = π` the report's quotient has no value.
-const RETROGRADE: f64 = 1.5e-12;
-/// Kepler's equation is solved to this, rad, in at most so many steps, none longer than that.
+/// Smallest `1 + cos i`, since a quotient of the report is singular at `i = π`.
+const MIN_ONE_PLUS_COS: f64 = 1.5e-12;
+/// Solution of Kepler's equation: tolerance, rad, number of iterations, and largest step, rad.
 const KEPLER: (f64, usize, f64) = (1e-12, 10, 0.95);
 
-/// Where the satellite is.
-pub(super) struct Flight<S> {
-    /// Semi-latus rectum, Earth radii; where it is negative the rest means nothing.
+/// Position and velocity of the satellite.
+pub(super) struct OsculatingState<S> {
+    /// Semi-latus rectum, Earth radii; if it is negative the other values are meaningless.
     pub(super) p: S,
     /// Distance from the Earth's centre, Earth radii.
     pub(super) distance: S,
-    /// km.
+    /// Position, km.
     pub(super) position: Vec3<S>,
-    /// km/s.
+    /// Velocity, km/s.
     pub(super) velocity: Vec3<S>,
 }
 
-/// Position and velocity of `mean` with semi-major axis `a`, Earth radii; `tilt` is sine and cosine of its inclination.
+/// Returns the state for the mean elements `mean` with semi-major axis `a`, Earth radii, and sine and cosine
+/// of the inclination.
 #[inline(always)]
-pub(super) fn flight<S: Real>(mean: &Mean<S>, a: S, tilt: (S, S), earth: &Earth) -> Flight<S> {
+pub(super) fn osculating_state<S: Real>(
+    mean: &Mean<S>,
+    a: S,
+    inclination_sin_cos: (S, S),
+    earth: &Earth,
+) -> OsculatingState<S> {
     let (Mean { n, e, node, perigee, anomaly, .. }, of, one) = (*mean, S::of, S::of(1.0));
-    let ((sin_i, cos_i), (sin_w, cos_w)) = (tilt, perigee.sin_cos());
-    // long periods: axN = e cos ω,  ayN = e sin ω - J₃ sin i/(2 J₂ p),  Lᴛ = L - J₃ sin i (3 + 5θ)/(4 J₂ p (1 + θ)) axN
+    let ((sin_i, cos_i), (sin_w, cos_w)) = (inclination_sin_cos, perigee.sin_cos());
+    // long-period terms: axN = e cos ω,  ayN = e sin ω - J₃ sin i/(2 J₂ p),
+    // Lᴛ = L - J₃ sin i (3 + 5θ)/(4 J₂ p (1 + θ)) axN
     let up = cos_i + one;
-    let up = S::select(S::less(of(RETROGRADE), up.abs()), up, of(RETROGRADE));
+    let up = S::select(S::less(of(MIN_ONE_PLUS_COS), up.abs()), up, of(MIN_ONE_PLUS_COS));
     let pinv = one / (a * (one - e * e));
     let ax = e * cos_w;
     let ay = e * sin_w + pinv * (of(-0.5 * earth.j3_j2) * sin_i);
@@ -38,7 +45,7 @@ pub(super) fn flight<S: Real>(mean: &Mean<S>, a: S, tilt: (S, S), earth: &Earth)
         + node
         + pinv * (of(-0.25 * earth.j3_j2) * sin_i * (of(3.0) + of(5.0) * cos_i) / up) * ax;
 
-    let (sin_eo, cos_eo) = kepler(turns_off(l - node), ax, ay);
+    let (sin_eo, cos_eo) = kepler(wrap_angle(l - node), ax, ay);
     let (e_cos, e_sin) = (ax * cos_eo + ay * sin_eo, ax * sin_eo - ay * cos_eo);
     let el2 = ax * ax + ay * ay;
     let p = a * (one - el2);
@@ -49,7 +56,7 @@ pub(super) fn flight<S: Real>(mean: &Mean<S>, a: S, tilt: (S, S), earth: &Earth)
     let (sin_u, cos_u) = (a / r * (sin_eo - ay - ax * q), a / r * (cos_eo - ax + ay * q));
     let (sin_2u, cos_2u) = ((cos_u + cos_u) * sin_u, one - of(2.0) * sin_u * sin_u);
 
-    // short periods
+    // short-period terms
     let k1 = of(0.5 * earth.j2) / p;
     let k2 = k1 / p;
     let c2 = cos_i * cos_i;
@@ -61,13 +68,13 @@ pub(super) fn flight<S: Real>(mean: &Mean<S>, a: S, tilt: (S, S), earth: &Earth)
     let rk_dot = r_dot - n * k1 * x1 * sin_2u / of(earth.ke);
     let rf_dot_k = rf_dot + n * k1 * (x1 * cos_2u + of(1.5) * x3) / of(earth.ke);
 
-    // axes along the radius and across it
-    let ((su, cu), (si, ci)) = (turned((sin_u, cos_u), du), turned(tilt, di));
+    // radial and transverse unit vectors
+    let ((su, cu), (si, ci)) = (turned((sin_u, cos_u), du), turned(inclination_sin_cos, di));
     let (sn, cn) = node_k.sin_cos();
     let m = Vec3::new(-sn * ci, cn * ci, si);
     let k = Vec3::new(cn, sn, of(0.0));
     let (out, along) = (m * su + k * cu, m * cu - k * su);
-    Flight {
+    OsculatingState {
         p,
         distance: rk,
         position: out * (rk * of(earth.radius_km)),
@@ -75,14 +82,15 @@ pub(super) fn flight<S: Real>(mean: &Mean<S>, a: S, tilt: (S, S), earth: &Earth)
     }
 }
 
-/// Sine and cosine of an angle turned on by `d`.
+/// Returns sine and cosine of an angle increased by `d`.
 #[inline(always)]
 fn turned<S: Real>((sin, cos): (S, S), d: S) -> (S, S) {
     let (sin_d, cos_d) = d.sin_cos();
     (sin * cos_d + cos * sin_d, cos * cos_d - sin * sin_d)
 }
 
-/// Sine and cosine of `E + ω`, where `u = E + ω - axN sin(E + ω) + ayN cos(E + ω)`, by Newton's steps.
+/// Returns sine and cosine of `E + ω`, where `u = E + ω - axN sin(E + ω) + ayN cos(E + ω)`, by Newton's
+/// method.
 #[inline(always)]
 fn kepler<S: Real>(u: S, ax: S, ay: S) -> (S, S) {
     let (enough, steps, longest) = KEPLER;
@@ -93,12 +101,12 @@ fn kepler<S: Real>(u: S, ax: S, ay: S) -> (S, S) {
         let step = (u - ay * cos + ax * sin - eo) / (S::of(1.0) - cos * ax - sin * ay);
         let (low, high) = (S::of(-longest), S::of(longest));
         let step = S::select(S::less(step, low), low, S::select(S::less(high, step), high, step));
-        // a lane that has got there stays as it is, whatever its neighbours need
-        let is_under_way = S::less(S::of(enough), step.abs());
-        if left == 0 || !S::any(is_under_way) {
+        // lanes that have converged keep their bits
+        let is_iterating = S::less(S::of(enough), step.abs());
+        if left == 0 || !S::any(is_iterating) {
             break;
         }
-        eo += S::select(is_under_way, step, S::of(0.0));
+        eo += S::select(is_iterating, step, S::of(0.0));
         sin_cos = eo.sin_cos();
     }
     sin_cos

@@ -1,4 +1,4 @@
-//! Orbits that keep step with the turning Earth: its longitude harmonics add up over months.
+//! Resonances with the rotation of the Earth: its longitude harmonics add up over months.
 //!
 //! Source: Spacetrack Report #3, section 7; AIAA 2006-6753, appendix B.
 
@@ -7,17 +7,18 @@ use super::harmonics::{Harmonic, day, half_day};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// Turn of the Earth, rad/min.
+/// Rotation rate of the Earth, rad/min.
 pub(super) const EARTH_RATE: f64 = 4.375_269_088_011_3e-3;
 /// Step of the integration, min.
 const STEP: f64 = 720.0;
 
-/// `ṅ = Σ d sin(p ω + q λ - φ)` in the resonant longitude `λ`, `λ̇ = n + λ̇₀`.
+/// Resonance with the Earth's rotation: `ṅ = Σ d sin(p ω + q λ - φ)` in the resonant longitude `λ`,
+/// `λ̇ = n + λ̇₀`.
 #[derive(Clone, Debug)]
 pub(super) struct Resonance {
     kind: Kind,
     harmonics: Vec<Harmonic>,
-    /// `λ` at the epoch, and what its rate has beside `n`.
+    /// `λ` at the epoch, and the part of its rate besides `n`.
     longitude: f64,
     drift: f64,
     n: f64,
@@ -25,12 +26,12 @@ pub(super) struct Resonance {
     perigee_rate: f64,
 }
 
-/// Which period is shared with the Earth.
+/// Period of the resonance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// `λ = M + Ω + ω - θ`.
+    /// One day: `λ = M + Ω + ω - θ`.
     Day,
-    /// `λ = M + 2 Ω - 2 θ`.
+    /// Half a day: `λ = M + 2 Ω - 2 θ`.
     HalfDay,
 }
 
@@ -42,7 +43,8 @@ pub(super) struct Rates {
 }
 
 impl Resonance {
-    /// `None` for periods that are neither a day nor, with eccentricity 0.5 and more, half of one.
+    /// Returns `None` for orbits that are not resonant: periods other than a day and, for eccentricities of
+    /// 0.5 and more, half a day.
     pub(super) fn new(mean: &Mean, rates: &Rates, sidereal: f64, earth: &Earth) -> Option<Self> {
         let Mean { n, e, i, node, perigee, anomaly } = *mean;
         let a = (n / earth.ke).powf(2.0 / 3.0); // 1/a
@@ -62,10 +64,10 @@ impl Resonance {
         Some(Self { kind, harmonics, longitude: longitude % TAU, drift, n, perigee, perigee_rate })
     }
 
-    /// Puts mean motion and mean anomaly at `t` minutes into `mean`; `theta` is the sidereal time then.
+    /// Sets the mean motion and mean anomaly in `mean` to their values `t` minutes after the epoch; `theta` is the
+    /// sidereal time then, rad.
     ///
-    /// Euler-Maclaurin steps of 720 min from the epoch at every call, so that a time has one state whatever
-    /// was asked before.
+    /// Each call integrates from the epoch in Euler-Maclaurin steps of 720 min, so that the result depends only on `t`.
     pub(super) fn apply(&self, t: f64, theta: f64, mean: &mut Mean) {
         let step = STEP.copysign(t);
         let (mut time, mut longitude, mut n) = (0.0, self.longitude, self.n);
@@ -85,10 +87,10 @@ impl Resonance {
         };
     }
 
-    /// `λ̇`, `ṅ`, `n̈`.
+    /// Returns `λ̇`, `ṅ`, `n̈`.
     fn slopes(&self, time: f64, longitude: f64, n: f64) -> [f64; 3] {
         let (perigee, rate) = (self.perigee + self.perigee_rate * time, n + self.drift);
-        // d sin(p ω + q λ - φ) and its slope in λ are Im and q Re of d e⁻ⁱᵠ (eⁱʷ)ᵖ (eⁱˡ)ᵠ
+        // d sin(p ω + q λ - φ) and its derivative in λ are Im and q Re of d e⁻ⁱᵠ (eⁱʷ)ᵖ (eⁱˡ)ᵠ
         let (w, l) = (Complex::cis(perigee), Complex::cis(longitude));
         let (w, l) = ([w.conj(), Complex::ONE, w, w * w], [l, l * l, l * l * l]);
         let (mut n1, mut n2) = (0.0, 0.0);

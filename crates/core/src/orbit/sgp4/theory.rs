@@ -1,12 +1,13 @@
-//! Implementation that propagates an element set: this crate's SGP4, or the reference code as a check.
+//! Choice of the implementation of SGP4: that of this crate, or the reference implementation as a
+//! cross-check.
 
 use super::error::Sgp4Error;
 use super::propagate::Propagator;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// The reference code, initialized with an element set by the caller.
-pub trait Reference: Send + Sync + std::fmt::Debug {
+/// Interface of the reference implementation, initialised with an element set by the caller.
+pub trait ExternalSgp4: Send + Sync + std::fmt::Debug {
     /// Returns position (km) and velocity (km/s), TEME, `minutes` after the epoch, also below the surface.
     ///
     /// # Errors
@@ -16,8 +17,8 @@ pub trait Reference: Send + Sync + std::fmt::Debug {
 
 #[derive(Clone, Debug)]
 pub(super) enum Theory {
-    Own,
-    Reference(Arc<dyn Reference>),
+    Native,
+    External(Arc<dyn ExternalSgp4>),
 }
 
 /// State of the satellite, TEME, also below the surface.
@@ -34,13 +35,13 @@ impl Theory {
     /// Returns the state at `time`, s after the epoch; `own` is this crate's SGP4 for the same set.
     pub(super) fn at(&self, own: &Propagator, time: f64) -> Result<State, Sgp4Error> {
         match self {
-            Self::Own => {
-                let flight = own.at(time)?;
-                let (position, velocity) = (flight.position.to_nalgebra(), flight.velocity.to_nalgebra());
-                Ok(State { position, velocity, distance: flight.distance })
+            Self::Native => {
+                let state = own.at(time)?;
+                let (position, velocity) = (state.position.to_nalgebra(), state.velocity.to_nalgebra());
+                Ok(State { position, velocity, distance: state.distance })
             }
-            Self::Reference(code) => {
-                let [r, v] = code.at(time / 60.0).map_err(|code| Sgp4Error::OfReference { time, code })?;
+            Self::External(code) => {
+                let [r, v] = code.at(time / 60.0).map_err(|code| Sgp4Error::External { time, code })?;
                 let (position, velocity) = (Vector3::from(r), Vector3::from(v));
                 Ok(State { position, velocity, distance: position.norm() / own.earth.radius_km })
             }

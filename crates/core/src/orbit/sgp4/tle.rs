@@ -1,13 +1,13 @@
-//! Two-line element sets, read column by column.
+//! Parser of two-line element sets.
 
 use super::elements::{MeanElements, REV_DAY};
 use super::epoch::Epoch;
 use super::error::ElementSetError;
 
-/// Columns (from 1) between the fields, blank in every set.
+/// Columns (from 1) between the fields, which must be blank.
 const GAPS: [&[usize]; 2] = [&[2, 9, 18, 33, 44, 53, 62, 64], &[2, 8, 17, 26, 34, 43, 52]];
 
-/// One line, known to hold 69 ASCII characters.
+/// Line of a TLE, with 69 ASCII characters.
 struct Line<'a> {
     number: u8,
     text: &'a str,
@@ -46,7 +46,7 @@ impl<'a> Line<'a> {
         Ok(line)
     }
 
-    /// Columns `first..=last`, from 1.
+    /// Returns the columns `first..=last`, from 1.
     fn columns(&self, first: usize, last: usize) -> &'a str {
         &self.text[first - 1..last]
     }
@@ -56,7 +56,7 @@ impl<'a> Line<'a> {
         ElementSetError::Column { line: self.number, column: first, got, expected }
     }
 
-    /// Digits count as they are, a minus sign as one, all else as nothing; modulo ten.
+    /// Checks the checksum: the sum of the digits, with 1 for each minus sign, modulo ten.
     fn add_up(&self) -> Result<(), ElementSetError> {
         let worth = |c: u8| {
             if c == b'-' { 1 } else { u32::from(c.is_ascii_digit()) * u32::from(c.wrapping_sub(b'0')) }
@@ -70,7 +70,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// A number such as ` 34.2682`.
+    /// Parses a number such as ` 34.2682`.
     fn decimal(&self, first: usize, last: usize) -> Result<f64, ElementSetError> {
         let text = self.columns(first, last).trim();
         let is_plain = text
@@ -81,15 +81,15 @@ impl<'a> Line<'a> {
         number.ok_or_else(|| self.wrong(first, last, "a decimal number"))
     }
 
-    /// Digits after a decimal point that is not written.
+    /// Parses digits after an implied decimal point.
     fn fraction(&self, first: usize, last: usize) -> Result<f64, ElementSetError> {
         let text = self.columns(first, last);
         let number =
             if text.bytes().all(|c| c.is_ascii_digit()) { format!("0.{text}").parse().ok() } else { None };
-        number.ok_or_else(|| self.wrong(first, last, "digits alone"))
+        number.ok_or_else(|| self.wrong(first, last, "only digits"))
     }
 
-    /// Sign, five digits of a fraction and an exponent with its sign: ` 28098-4` is 0.28098e-4.
+    /// Parses a sign, five digits of a fraction and an exponent with its sign: ` 28098-4` is 0.28098e-4.
     fn with_exponent(&self, first: usize) -> Result<f64, ElementSetError> {
         let wrong = || {
             self.wrong(
@@ -113,10 +113,10 @@ impl<'a> Line<'a> {
 }
 
 impl MeanElements {
-    /// From the two lines of a TLE; blanks at their ends are ignored.
+    /// Parses the two lines of a TLE; trailing blanks are ignored.
     ///
     /// # Errors
-    /// [`ElementSetError`], which says the line and the column.
+    /// [`ElementSetError`] with the line and the column.
     ///
     /// Source: the column table of CelesTrak's "NORAD Two-Line Element Set Format".
     pub fn from_tle(line1: &str, line2: &str, check_checksum: bool) -> Result<Self, ElementSetError> {
@@ -133,9 +133,9 @@ impl MeanElements {
         if !(1.0..367.0).contains(&day) {
             return Err(one.wrong(21, 32, "a day of the year, 1 to 366"));
         }
-        // two digits: 1957 to 2056
+        // two-digit years: 1957 to 2056
         let epoch = Epoch::of_year(if year < 57 { 2000 + year } else { 1900 + year }, day);
-        one.decimal(34, 43)?; // SGP4 does not use the derivatives of the mean motion, but garbage is garbage
+        one.decimal(34, 43)?; // SGP4 does not use the derivatives of the mean motion, but they must be valid
         one.with_exponent(45)?;
         Self {
             satellite,
@@ -152,7 +152,7 @@ impl MeanElements {
     }
 }
 
-/// Five digits, or a letter and four (Alpha-5: A is 10, I and O are left out).
+/// Parses the catalogue number: five digits, or a letter and four (Alpha-5: A is 10, I and O are not used).
 fn satellite_number(text: &str) -> Option<u32> {
     const LETTERS: &str = "ABCDEFGHJKLMNPQRSTUVWXYZ";
     let text = text.trim();

@@ -1,18 +1,19 @@
-//! Turns of the base against those that its rates imply.
+//! Check of the base's rotations against those that its angular velocities imply.
 
-use super::instant::BaseMotion;
-use super::numbers::{Numbers, Restore};
-use super::worst;
+use super::error_measures::{relative, worst};
+use super::trace_row::BaseMotion;
 use crate::spatial::{Quat, Vec3, log_so3};
+use serde::{Deserialize, Serialize};
 
-/// Rounding of one step of the integrator, of the attitude's quaternion itself: what a product of two unit
-/// quaternions and its normalisation lose at most, in units of ε.
+/// Bound of the rounding of the attitude in one step of the integrator, a product of two unit quaternions and
+/// its normalisation, in units of ε.
 const QUATERNION: f64 = 8.0;
-/// Rounding of a turn, in units of ε: in the step's own exponential, in the rates at its ends, and here.
+/// Rounding of a rotation, in units of ε: in the exponential of the step, in the rates at its ends, and in
+/// this check.
 const TURN: f64 = 16.0;
 
-/// A sum of small turns in W, and the square of the farthest it came.
-#[derive(Default)]
+/// Sum of small rotation vectors in W, and the square of the largest magnitude of the partial sums.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Drift {
     sum: Vec3<f64>,
     largest: f64,
@@ -30,12 +31,12 @@ impl Drift {
 }
 
 /// Running sums over the intervals.
-#[derive(Default)]
-pub(super) struct Attitude {
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(in crate::simulation) struct Attitude {
     residual: Drift,
     commutator: Drift,
     resolution: Drift,
-    /// Bound of what rounding leaves of the residual, rad.
+    /// Bound of the part of the residual that is rounding, rad.
     rounding: f64,
     /// Bound of the parabola's error over intervals that end with a jump, rad.
     unresolved: f64,
@@ -45,7 +46,7 @@ pub(super) struct Attitude {
     since: f64,
 }
 
-/// Intervals that end with a jump count this many times the snap of their neighbours.
+/// Factor on the snap of the neighbouring intervals for an interval that ends with a jump.
 const JUMP: f64 = 4.0;
 
 impl Attitude {
@@ -53,11 +54,11 @@ impl Attitude {
     ///
     /// `h (ω₀ + ω₁)/2 + h²/12 (ω̇₀⁺ − ω̇₁⁻) + h²/12 ω₀ × ω₁ + O(h⁵)`.
     ///
-    /// The first two terms are the integral of the cubic through the data. The last one is the
-    /// commutator; composing `exp(∫ω dt)` misses it, whatever the order of the rates.
-    /// Where a wrench jumps at the second row, `ω̇₁⁻` may not be known and follows from the parabola
-    /// through the rest: `ω̇₁⁻ = 2 (ω₁ − ω₀)/h − ω̇₀⁺`. The closer of the two holds. With the third derivative `d` of the
-    /// rates the parabola misses `d h⁴/72`, estimated from the intervals beside it.
+    /// The first two terms are the integral of the cubic through the data. The last one is the commutator;
+    /// composing `exp(∫ω dt)` misses it, whatever the order of the rates. Where a wrench jumps at the second
+    /// row, `ω̇₁⁻` may be unknown; it then follows from the parabola through the other data: `ω̇₁⁻ = 2 (ω₁ −
+    /// ω₀)/h − ω̇₀⁺`. The value with the smaller residual is used. With the third derivative `d` of the rates
+    /// the error of the parabola is `d h⁴/72`, estimated from the neighbouring intervals.
     #[inline]
     pub(super) fn add(&mut self, before: &BaseMotion, now: &BaseMotion) {
         let h = now.time - before.time;
@@ -75,7 +76,7 @@ impl Attitude {
         self.residual.add(rot_wb * if is_smooth { smooth } else { jumping });
         self.commutator.add(rot_wb * commutator);
         if is_smooth {
-            // how much the cubic changes the parabola: a bound on what the data do not resolve
+            // difference between cubic and parabola: a bound of the error of the interpolation
             self.resolution.add(rot_wb * (smooth - jumping));
             let snap = (smooth - jumping).norm() / h.powi(4);
             self.unresolved += JUMP * self.since * self.snap.max(snap);
@@ -87,37 +88,21 @@ impl Attitude {
         self.rounding += f64::EPSILON * (TURN * moved + QUATERNION);
     }
 
-    /// Residual over the commutator and what the rates do not resolve. Rounding and jumps within their bounds pass
-    /// `gate` whatever these two are, and nothing beyond it does where they vanish.
+    /// Returns the residual over the sum of the commutator and the resolution of the rates.
+    ///
+    /// Rounding and jumps within their bounds pass `gate` even where both vanish, and larger residuals do
+    /// not.
     pub(super) fn consistency(&self, gate: f64) -> f64 {
         let bounds = self.rounding + self.unresolved + JUMP * self.since * self.snap;
         let scale = self.commutator.largest() + self.resolution.largest() + bounds / gate;
-        super::relative(self.residual.largest(), scale)
+        relative(self.residual.largest(), scale)
     }
 }
 
-impl Numbers for Attitude {
-    fn save(&self, to: &mut Vec<f64>) {
-        for drift in [&self.residual, &self.commutator, &self.resolution] {
-            to.extend([drift.sum.x, drift.sum.y, drift.sum.z, drift.largest]);
-        }
-        to.extend([self.rounding, self.unresolved, self.snap, self.since]);
-    }
-
-    fn restore(&mut self, from: &mut Restore<'_>) {
-        for drift in [&mut self.residual, &mut self.commutator, &mut self.resolution] {
-            (drift.sum, drift.largest) = (from.vector(), from.next());
-        }
-        for number in [&mut self.rounding, &mut self.unresolved, &mut self.snap, &mut self.since] {
-            *number = from.next();
-        }
-    }
-}
-
-/// The rotation vector from one attitude to the other, to a few ε of its own length.
+/// Returns the rotation vector from one attitude to the other, to a few ε of its length.
 ///
-/// `q₀* q₁ = q₀* (q₁ − q₀) + |q₀|²`: the vector part comes from the difference, which is exact between
-/// neighbours, instead of from products that cancel. The lengths of the quaternions cancel in the angle.
+/// `q₀* q₁ = q₀* (q₁ − q₀) + |q₀|²`: the vector part follows from the difference, which is exact for
+/// neighbouring attitudes, without cancellation. The lengths of the quaternions cancel in the angle.
 fn turn_between(q0: Quat<f64>, q1: Quat<f64>) -> Vec3<f64> {
     let w = q0.v.dot(q1.v) + q0.w * q1.w;
     let q1 = if w < 0.0 { Quat { v: -q1.v, w: -q1.w } } else { q1 };

@@ -1,7 +1,7 @@
-//! Momentum against impulse, energy against work.
+//! Check of momentum against impulse and of energy against work.
 
-use super::instant::Instant;
-use super::{relative, worst};
+use super::error_measures::{relative, worst};
+use super::trace_row::TraceRow;
 use crate::dynamics::Momentum;
 use crate::spatial::Vec3;
 
@@ -26,7 +26,7 @@ pub(super) struct Balance {
     duration: f64,
 }
 
-/// What the balances start from.
+/// Values in the first row.
 #[derive(Clone, Copy)]
 struct First {
     time: f64,
@@ -37,7 +37,7 @@ struct First {
 }
 
 impl Balance {
-    pub(super) fn add(&mut self, now: &Instant<'_>) {
+    pub(super) fn add(&mut self, now: &TraceRow<'_>) {
         let open = now.kinetic_energy - now.work;
         let first = *self.first.get_or_insert(First {
             time: now.time,
@@ -60,33 +60,34 @@ impl Balance {
         self.worked += (now.work - self.last_work).abs();
         self.last_work = now.work;
         // E_com = E − P²/2m
-        let carried = h.linear.dot(h.linear) / (2.0 * now.mass);
-        self.energy_about_com = self.energy_about_com.max(now.kinetic_energy - carried);
+        let translational = h.linear.dot(h.linear) / (2.0 * now.mass);
+        self.energy_about_com = self.energy_about_com.max(now.kinetic_energy - translational);
         self.energy_w = self.energy_w.max(now.kinetic_energy);
     }
 
-    /// Largest radius of gyration of the robot, m.
+    /// Returns the largest radius of gyration of the robot, m.
     pub(super) fn size(&self) -> f64 {
         self.size
     }
 
-    /// Scale: motion of the bodies against each other. One body has none, then its spin; and what
-    /// is carried along in W is rounded at its own size.
+    /// Returns the drift of linear momentum. Scale: momentum of the bodies relative to each other, or the
+    /// spin of a single body; at least the total momentum, which determines the rounding.
     pub(super) fn linear(&self) -> f64 {
-        let among = if self.relative_momentum > 0.0 { self.relative_momentum } else { self.spin };
-        relative(self.linear, among.max(self.momentum))
+        let relative_momentum = if self.relative_momentum > 0.0 { self.relative_momentum } else { self.spin };
+        relative(self.linear, relative_momentum.max(self.momentum))
     }
 
-    /// Scale: `Σ |Lₖ|`; where nothing turns, the rounding of moments of what moves on, or of what slides within.
+    /// Returns the drift of angular momentum. Scale: `Σ |Lₖ|`, and at least the rounding of the moments of
+    /// the linear momenta.
     pub(super) fn angular(&self) -> f64 {
         const ROUNDING: f64 = 1e-4;
-        let passing = ROUNDING * self.size * self.momentum.max(self.relative_momentum);
-        relative(self.angular, self.angular_scale.max(passing))
+        let moments = ROUNDING * self.size * self.momentum.max(self.relative_momentum);
+        relative(self.angular, self.angular_scale.max(moments))
     }
 
-    /// Scale: all work done, whatever its sign, and the energy that does not depend on how fast W
-    /// sees the robot pass; of that which does only a share, for its rounding. What would move the robot by less than a
-    /// millionth of its size in the whole run is rest.
+    /// Returns the error of the energy balance. Scale: the magnitude of all work done, plus the energy
+    /// relative to the centre of mass, plus a fraction of the energy in W for its rounding; at least the
+    /// energy of a motion by a millionth of the robot's size in the whole run.
     pub(super) fn energy(&self, work_done: f64) -> f64 {
         const ROUNDING: f64 = 1e-3;
         const REST: f64 = 1e-6;

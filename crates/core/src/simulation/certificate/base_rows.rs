@@ -1,25 +1,32 @@
-//! The base rows of inverse dynamics, on velocities differenced from the trace, against the wrenches.
+//! Check of the base rows of inverse dynamics, with accelerations differenced from the trace, against the
+//! wrenches.
 
-use super::instant::Instant;
-use super::numbers::{Numbers, Restore};
-use super::{relative, worst};
+use super::error_measures::{relative, worst};
+use super::trace_row::TraceRow;
 use crate::dynamics::{BodyData, Data, base_rotation, center_of_mass_b, inverse_dynamics};
-use crate::model::{Model, difference, integrate};
+use crate::model::{BASE_NV, Model, difference, integrate};
 use crate::spatial::{Force, Motion, Vec3};
+use serde::{Deserialize, Serialize};
 
-/// What rounding leaves of a momentum at most, in units of ε: of each row, in the sums over the bodies, the rotation
-/// to W and the twist that goes with it.
+/// Bound of the rounding of a momentum, in units of ε: of each row, in the sums over the bodies, in the
+/// rotation to W and in the twist.
 const ROUNDING: f64 = 40.0;
 
-/// Running residuals beyond rounding; each pair is linear, angular.
+/// Largest residuals beyond rounding so far; each pair is linear, angular.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(in crate::simulation) struct Residuals {
+    residual: [f64; 2],
+    scale: [f64; 2],
+    truncation: f64,
+}
+
+/// Residuals of the base rows, with the workspace that computes them.
 pub(super) struct BaseRows {
     data: Data<f64>,
     step: Vec<f64>,
     middle: [Vec<f64>; 3],
     forces: Vec<f64>,
-    residual: [f64; 2],
-    scale: [f64; 2],
-    truncation: f64,
+    pub(super) largest: Residuals,
 }
 
 impl BaseRows {
@@ -30,15 +37,13 @@ impl BaseRows {
             step: zeros.clone(),
             middle: [vec![0.0; model.nq()], zeros.clone(), zeros.clone()],
             forces: zeros,
-            residual: [0.0; 2],
-            scale: [0.0; 2],
-            truncation: 0.0,
+            largest: Residuals::default(),
         }
     }
 
-    /// `f = ID(q_m, (v₀ + v₁)/2, (v₁ − v₀)/h)` at the middle; its base rows, turned to W and about
-    /// the centre of mass, are the mean wrench `ΔJ/h` up to `O(h²)`.
-    pub(super) fn add(&mut self, model: &Model, before: &Instant<'_>, now: &Instant<'_>) {
+    /// Adds an interval: `f = ID(q_m, (v₀ + v₁)/2, (v₁ − v₀)/h)` at its middle; the base rows of `f`, in W
+    /// axes and about the centre of mass, equal the mean wrench `ΔJ/h` up to `O(h²)`.
+    pub(super) fn add(&mut self, model: &Model, before: &TraceRow<'_>, now: &TraceRow<'_>) {
         let h = now.time - before.time;
         let [q, v, a] = &mut self.middle;
         difference(before.q, now.q, &mut self.step);
@@ -60,15 +65,16 @@ impl BaseRows {
         ];
         let scale = self.inertial();
         let rounding = self.rounding(model, h, [before, now]);
+        let largest = &mut self.largest;
         for i in 0..2 {
             let beyond = if open[i] <= rounding[i] { 0.0 } else { open[i] - rounding[i] };
-            self.residual[i] = worst(self.residual[i], beyond);
-            self.scale[i] = self.scale[i].max(scale[i]);
+            largest.residual[i] = worst(largest.residual[i], beyond);
+            largest.scale[i] = largest.scale[i].max(scale[i]);
         }
-        self.truncation = self.truncation.max(truncation(h, before.v, before.a));
+        largest.truncation = largest.truncation.max(truncation(h, before.v, before.a));
     }
 
-    /// `Σ |I a| + |v ×* I v|` over the bodies.
+    /// Returns `Σ |I a| + |v ×* I v|` over the bodies, linear and angular.
     fn inertial(&self) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for body in &self.data.bodies {
@@ -83,15 +89,16 @@ impl BaseRows {
         sum
     }
 
-    /// Bound of what rounding leaves of the two residuals of one step: momenta and impulses, each rounded at its own size and
-    /// differenced over `h`, and moments `v × m v`, which are nothing but rounding.
-    fn rounding(&self, model: &Model, h: f64, rows: [&Instant<'_>; 2]) -> [f64; 2] {
-        let (mut linear, mut angular, mut passing) = (0.0, 0.0, 0.0);
+    /// Returns bounds of the rounding in the two residuals of one step: momenta and impulses, each rounded
+    /// relative to its magnitude and differenced over `h`, and moments `v × m v`, which are zero but for
+    /// rounding.
+    fn rounding(&self, model: &Model, h: f64, rows: [&TraceRow<'_>; 2]) -> [f64; 2] {
+        let (mut linear, mut angular, mut moments) = (0.0, 0.0, 0.0);
         for body in &self.data.bodies {
             let (velocity, momentum) = about_base(body);
             linear += momentum.linear.norm();
             angular += momentum.angular.norm();
-            passing += velocity.linear.norm() * momentum.linear.norm();
+            moments += velocity.linear.norm() * momentum.linear.norm();
         }
         for row in rows {
             linear += row.impulse.linear.norm();
@@ -99,46 +106,38 @@ impl BaseRows {
         }
         angular += rows[1].size * linear;
         let unit = (ROUNDING + 10.0 * model.nodes().len() as f64) * f64::EPSILON;
-        [unit * linear / h, unit * (angular / h + passing)]
+        [unit * linear / h, unit * (angular / h + moments)]
     }
+}
 
-    /// Residual beyond the rounding of its step, over the inertial forces.
-    /// `size`, m, is the robot's: moments below a billionth of its forces at that arm are rounding.
+impl Residuals {
+    /// Returns the residual beyond the rounding of its step, over the inertial forces.
+    ///
+    /// Moments below a billionth of the forces at a lever of `size`, m, that of the robot, count as rounding.
     pub(super) fn residual(&self, size: f64) -> f64 {
         let [linear, angular] = self.scale;
         let angular = angular.max(1e-9 * size * linear);
         worst(relative(self.residual[0], linear), relative(self.residual[1], angular))
     }
 
-    /// Truncation of the differences at the fastest rates of the run; never so wide that a wrench
-    /// as large as the inertial forces could pass.
+    /// Returns the largest residual that passes: the truncation error of the differences at the largest rates
+    /// of the run, limited so that a missing wrench as large as the inertial forces does not pass.
     pub(super) fn gate(&self) -> f64 {
         (1e-6 + self.truncation).min(0.1)
     }
 }
 
-impl Numbers for BaseRows {
-    fn save(&self, to: &mut Vec<f64>) {
-        to.extend(self.residual.iter().chain(&self.scale).chain([&self.truncation]));
-    }
-
-    fn restore(&mut self, from: &mut Restore<'_>) {
-        for pair in [&mut self.residual, &mut self.scale] {
-            *pair = [from.next(), from.next()];
-        }
-        self.truncation = from.next();
-    }
-}
-
-/// Twist and momentum of a body, both about the base's origin.
+/// Returns the twist and the momentum of a body, both about the base's origin.
 fn about_base(body: &BodyData<f64>) -> (Motion<f64>, Force<f64>) {
     let momentum = body.inertia.momentum(body.velocity).from_point(body.pos_b);
     (body.velocity.referred_to(-body.pos_b), momentum)
 }
 
-/// `h² (w² + ẇ)` with `w` the fastest that the last body can turn: the sum of all rates.
+/// Returns `h² (w² + ẇ)`, where `w`, the sum of the magnitudes of all rates, bounds the angular velocity of
+/// any body.
 fn truncation(h: f64, v: &[f64], a: &[f64]) -> f64 {
-    let fastest = |x: &[f64]| Vec3::from_slice(&x[3..]).norm() + x[6..].iter().map(|x| x.abs()).sum::<f64>();
+    let fastest =
+        |x: &[f64]| Vec3::from_slice(&x[3..]).norm() + x[BASE_NV..].iter().map(|x| x.abs()).sum::<f64>();
     let w = fastest(v);
     h * h * (w * w + fastest(a))
 }

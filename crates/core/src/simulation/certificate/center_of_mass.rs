@@ -1,29 +1,29 @@
-//! The centre of mass against the integral of momentum.
+//! Check of the centre of mass against the integral of the momentum.
 
-use super::instant::MassMotion;
-use super::numbers::{Numbers, Restore};
-use super::{relative, worst};
+use super::error_measures::{relative, worst};
+use super::trace_row::MassMotion;
 use crate::spatial::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// Rounding of one step of the position, in units of ε.
 const ROUNDING: f64 = 4.0;
 
-/// Running difference between where the centre of mass is and where its momentum takes it.
-#[derive(Default)]
-pub(super) struct CenterOfMass {
+/// Difference between the recorded centre of mass and the integral of its momentum.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(in crate::simulation) struct CenterOfMass {
     gap: Vec3<f64>,
     /// Square of the largest gap, m².
     largest: f64,
     path: f64,
-    /// Bound of what rounding leaves of the gap, m: each step rounds the position at its own size.
+    /// Bound of the rounding in the gap, m: each step rounds the position relative to its magnitude.
     rounding: f64,
 }
 
 impl CenterOfMass {
-    /// `Δc = h (P₀ + P₁)/2m + h²/12m (F₀⁺ − F₁⁻)`, of fourth order.
+    /// Adds an interval: `Δc = h (P₀ + P₁)/2m + h²/12m (F₀⁺ − F₁⁻)`, of fourth order.
     ///
-    /// `F₁⁻` is the force at the second row; where a wrench jumps there, what impulse and first
-    /// force imply: `F₁⁻ = 2J/h − F₀`. The closer of the two holds.
+    /// `F₁⁻` is the force at the second row or, where a wrench jumps there, follows from the impulse `J` and
+    /// the first force: `F₁⁻ = 2J/h − F₀`. The value with the smaller gap is used.
     #[inline]
     pub(super) fn add(&mut self, before: &MassMotion, now: &MassMotion) {
         let h = now.time - before.time;
@@ -42,24 +42,14 @@ impl CenterOfMass {
         self.rounding += ROUNDING * f64::EPSILON * size;
     }
 
-    /// Length of the path, m.
+    /// Returns the length of the path, m.
     pub(super) fn path(&self) -> f64 {
         self.path
     }
 
-    /// Largest gap over the path and the `size` of the robot; rounding within its bound passes `gate`.
+    /// Returns the largest gap over the path plus the `size` of the robot; rounding within its bound passes
+    /// `gate`.
     pub(super) fn error(&self, size: f64, gate: f64) -> f64 {
         relative(self.largest.sqrt(), self.path + size + self.rounding / gate)
-    }
-}
-
-impl Numbers for CenterOfMass {
-    fn save(&self, to: &mut Vec<f64>) {
-        to.extend([self.gap.x, self.gap.y, self.gap.z, self.largest, self.path, self.rounding]);
-    }
-
-    fn restore(&mut self, from: &mut Restore<'_>) {
-        (self.gap, self.largest, self.path) = (from.vector(), from.next(), from.next());
-        self.rounding = from.next();
     }
 }

@@ -1,23 +1,32 @@
-//! Accumulates the checks on neighbouring steps during the run.
+//! Checks on neighbouring steps, accumulated during the run.
 
 use super::attitude::Attitude;
-use super::base_rows::BaseRows;
+use super::base_rows::{BaseRows, Residuals};
 use super::center_of_mass::CenterOfMass;
-use super::instant::{BaseMotion, MassMotion, Reader};
-use super::numbers::{Numbers, Restore};
-use super::{ATTITUDE, CENTER, PairChecks};
+use super::checks::{ATTITUDE, CENTER, PairChecks};
+use super::trace_row::{BaseMotion, MassMotion, RowReader};
 use crate::model::Model;
 use crate::simulation::trace::Trace;
+use serde::{Deserialize, Serialize};
 
-/// Running checks of a run.
+/// Checks on neighbouring steps of a run whose rows are sparse.
 ///
-/// The two that are sums over the run see every step. The base rows, a maximum, see those steps for which
-/// [`Stream::look_closely`] is called.
+/// The two that are sums over the run use every step. The base rows, a maximum, use the steps for which
+/// [`Stream::add_rows`] is called.
 pub(in crate::simulation) struct Stream {
     attitude: Attitude,
     center: CenterOfMass,
     base_rows: BaseRows,
-    /// Largest radius of gyration seen, m.
+    /// Largest radius of gyration, m.
+    size: f64,
+}
+
+/// The sums and maxima of a [`Stream`], for checkpoints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(in crate::simulation) struct Sums {
+    attitude: Attitude,
+    center: CenterOfMass,
+    residuals: Residuals,
     size: f64,
 }
 
@@ -39,39 +48,39 @@ impl Stream {
     }
 
     /// Adds a step whose two ends are the rows of `trace`.
-    pub(in crate::simulation) fn look_closely(&mut self, model: &Model, trace: &Trace) {
-        let mut reader = Reader::new(model, trace);
+    pub(in crate::simulation) fn add_rows(&mut self, model: &Model, trace: &Trace) {
+        let mut reader = RowReader::new(model, trace);
         if reader.rows() < 2 || trace.time[1] <= trace.time[0] {
             return;
         }
-        let (before, now) = (reader.instant(0), reader.instant(1));
+        let (before, now) = (reader.row(0), reader.row(1));
         self.size = self.size.max(before.size).max(now.size);
         self.base_rows.add(model, &before, &now);
     }
 
-    /// What was found so far.
+    /// Returns the results so far.
     pub(in crate::simulation) fn checks(&self) -> PairChecks {
         PairChecks {
             center_of_mass_error_rel: self.center.error(self.size, CENTER),
-            base_rows_residual_rel: self.base_rows.residual(self.size),
-            base_rows_gate: self.base_rows.gate(),
+            base_rows_residual_rel: self.base_rows.largest.residual(self.size),
+            base_rows_gate: self.base_rows.largest.gate(),
             attitude_consistency: self.attitude.consistency(ATTITUDE),
         }
     }
 
-    /// All numbers, for a checkpoint.
-    pub(in crate::simulation) fn save(&self, to: &mut Vec<f64>) {
-        self.attitude.save(to);
-        self.center.save(to);
-        self.base_rows.save(to);
-        to.push(self.size);
+    /// Returns the sums and maxima so far.
+    pub(in crate::simulation) fn sums(&self) -> Sums {
+        Sums {
+            attitude: self.attitude.clone(),
+            center: self.center.clone(),
+            residuals: self.base_rows.largest.clone(),
+            size: self.size,
+        }
     }
 
-    /// Takes up what [`Stream::save`] gave; false if these are not all of its numbers.
-    pub(in crate::simulation) fn restore(&mut self, from: &mut Restore<'_>) {
-        self.attitude.restore(from);
-        self.center.restore(from);
-        self.base_rows.restore(from);
-        self.size = from.next();
+    /// Continues from [`Stream::sums`].
+    pub(in crate::simulation) fn set_sums(&mut self, sums: Sums) {
+        let Sums { attitude, center, residuals, size } = sums;
+        (self.attitude, self.center, self.base_rows.largest, self.size) = (attitude, center, residuals, size);
     }
 }

@@ -1,13 +1,13 @@
-//! Numbers in an array, where the compiler finds the registers.
+//! Lanes as arrays, which the compiler may keep in vector registers.
 
-/// `N` numbers.
+/// Array of `N` lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Array<const N: usize>([f64; N]);
 
-pub(super) type Four = Array<4>;
-pub(super) type Eight = Array<8>;
-pub(super) type FourMask = [bool; 4];
-pub(super) type EightMask = [bool; 8];
+pub(super) type F64x4 = Array<4>;
+pub(super) type F64x8 = Array<8>;
+pub(super) type Mask4 = [bool; 4];
+pub(super) type Mask8 = [bool; 8];
 
 impl<const N: usize> Array<N> {
     #[inline(always)]
@@ -66,7 +66,7 @@ impl<const N: usize> Array<N> {
     pub(super) fn all(held: [bool; N]) -> bool {
         !held.contains(&false)
     }
-    /// Number `j` of array `i` becomes number `i` of array `j`.
+    /// Returns the transpose: number `j` of array `i` becomes number `i` of array `j`.
     #[inline(always)]
     pub(super) fn transpose(rows: [Self; N]) -> [Self; N] {
         std::array::from_fn(|j| Self::each(|i| rows[i].0[j]))

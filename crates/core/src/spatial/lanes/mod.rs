@@ -1,13 +1,14 @@
-//! Several states side by side: the scalars of batches.
+//! Scalars of batches, with several states in the lanes of a vector register.
 //!
-//! The crate's own: their arithmetic *is* instructions that not every processor has, wherever it is called from.
+//! They are private to the crate, since their arithmetic uses instructions that not every processor has.
 
 #[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
 #[cfg_attr(not(target_arch = "x86_64"), path = "array.rs")]
 mod register;
 
-use super::fused::Fused;
-use super::scalar::{FAST_SINE_LIMIT, Real, gather_one_by_one, scatter_one_by_one};
+use super::cpu_features::{has_avx512, has_fma};
+use super::scalar::{Real, gather_each, scatter_each};
+use super::sine::{FAST_SINE_LIMIT, sin_cos};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 macro_rules! lanes {
@@ -21,7 +22,7 @@ macro_rules! lanes {
         pub(crate) struct $name(register::$register);
 
         impl $name {
-            /// Whether this processor has the instructions that [`Real::enter`] uses.
+            /// Returns true if this processor has the instructions that [`Real::enter`] uses.
             #[inline(always)]
             pub(crate) fn is_available() -> bool {
                 $available
@@ -56,14 +57,14 @@ macro_rules! lanes {
             type Output = Self;
             #[inline(always)]
             fn neg(self) -> Self {
-                Self::of(-0.0) - self // exactly −x, zeros included
+                Self::of(-0.0) - self // exactly −x, also for zeros
             }
         }
 
         #[cfg(target_arch = "x86_64")]
         #[target_feature(enable = $features)]
         fn $enter<R>(kernel: impl FnOnce() -> R) -> R {
-            // a register in memory makes LLVM align the stack; else all that it spills lies across cache lines
+            // a vector in memory makes LLVM align the stack; otherwise spilled registers straddle cache lines
             std::hint::black_box(&$name::default());
             kernel()
         }
@@ -80,7 +81,7 @@ macro_rules! lanes {
             fn from_lanes(f: impl Fn(usize) -> f64) -> Self {
                 let mut numbers = [0.0; $width];
                 for (i, number) in numbers.iter_mut().enumerate() {
-                    *number = f(i); // not by array::from_fn, which is left out of line where f is long
+                    *number = f(i); // array::from_fn is not inlined if f is long
                 }
                 Self(register::$register::from_array(numbers))
             }
@@ -95,16 +96,16 @@ macro_rules! lanes {
                 self.0 = register::$register::from_array(numbers);
             }
             #[inline(always)]
-            fn gather(from: &[f64], place: impl Fn(usize) -> usize, to: &mut [Self]) {
+            fn gather(from: &[f64], offset: impl Fn(usize) -> usize, to: &mut [Self]) {
                 let width = to.len();
                 if width < $width {
-                    return gather_one_by_one(from, place, to);
+                    return gather_each(from, offset, to);
                 }
                 let mut block = [Self::default().0; $width];
                 for start in (0..width).step_by($width) {
-                    let start = start.min(width - $width); // the last block overlaps the one before
+                    let start = start.min(width - $width); // the last block overlaps the preceding one
                     for lane in 0..$width {
-                        let row = from[place(lane) + start..][..$width].try_into();
+                        let row = from[offset(lane) + start..][..$width].try_into();
                         block[lane] = register::$register::from_array(row.unwrap_or_default());
                     }
                     let columns = register::$register::transpose(block);
@@ -114,10 +115,10 @@ macro_rules! lanes {
                 }
             }
             #[inline(always)]
-            fn scatter(from: &[Self], to: &mut [f64], count: usize, place: impl Fn(usize) -> usize) {
+            fn scatter(from: &[Self], to: &mut [f64], count: usize, offset: impl Fn(usize) -> usize) {
                 let width = from.len();
                 if width < $width {
-                    return scatter_one_by_one(from, to, count, place);
+                    return scatter_each(from, to, count, offset);
                 }
                 let mut block = [Self::default().0; $width];
                 for start in (0..width).step_by($width) {
@@ -127,7 +128,7 @@ macro_rules! lanes {
                     }
                     let rows = register::$register::transpose(block);
                     for (lane, row) in rows.into_iter().enumerate().take(count) {
-                        to[place(lane) + start..][..$width].copy_from_slice(&row.to_array());
+                        to[offset(lane) + start..][..$width].copy_from_slice(&row.to_array());
                     }
                 }
             }
@@ -146,11 +147,11 @@ macro_rules! lanes {
             #[inline(always)]
             fn sin_cos(self) -> (Self, Self) {
                 let (near, (s, c)) =
-                    (self.abs().less(Self::of(FAST_SINE_LIMIT)), super::sine::sin_cos(self));
+                    (self.abs().less(Self::of(FAST_SINE_LIMIT)), sin_cos(self));
                 if register::$register::all(near) {
                     return (s, c);
                 }
-                // lane by lane: no angle changes the bits of its neighbours
+                // lanes are replaced one by one, so that no angle changes the bits of the other lanes
                 (Self::select(near, s, self.each(f64::sin)), Self::select(near, c, self.each(f64::cos)))
             }
             #[inline(always)]
@@ -175,7 +176,7 @@ macro_rules! lanes {
                 #[cfg(target_arch = "x86_64")]
                 {
                     assert!(Self::is_available(), "lanes entered on a processor without their instructions");
-                    // SAFETY: the processor has these features, checked on the line above.
+                    // SAFETY: the line above checks that the processor has these features.
                     unsafe { $enter(kernel) }
                 }
                 #[cfg(not(target_arch = "x86_64"))]
@@ -203,28 +204,13 @@ macro_rules! lanes {
 }
 
 lanes!(
-    /// Four states, for processors with AVX2 and FMA (or fused multiply-add in the baseline).
-    Lanes4, Four, FourMask, 4, "avx2,fma", enter_four, Fused::is_available()
+    /// Scalar with four states, for processors with AVX2 and FMA (or fused multiply-add in the baseline).
+    Lanes4, F64x4, Mask4, 4, "avx2,fma", enter_lanes4, has_fma()
 );
 lanes!(
-    /// Eight states, for processors with AVX-512.
-    Lanes8, Eight, EightMask, 8, "avx512f,avx512dq,avx512vl,avx2,fma", enter_eight, has_avx512()
+    /// Scalar with eight states, for processors with AVX-512.
+    Lanes8, F64x8, Mask8, 8, "avx512f,avx512dq,avx512vl,avx2,fma", enter_lanes8, has_avx512()
 );
-
-#[inline(always)]
-fn has_avx512() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    {
-        Fused::is_available()
-            && std::arch::is_x86_feature_detected!("avx512f")
-            && std::arch::is_x86_feature_detected!("avx512dq")
-            && std::arch::is_x86_feature_detected!("avx512vl")
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    {
-        false
-    }
-}
 
 #[cfg(test)]
 mod tests {
@@ -243,17 +229,17 @@ mod tests {
             assert_eq!(lanes.atan2(L::of(2.0)).lane(i), x(i).atan2(2.0));
         }
         assert!((-L::of(0.0)).lane(1).is_sign_negative() && (-L::of(-0.0)).lane(1).is_sign_positive());
-        // rows of every width, further apart than they are wide, and back
+        // rows of every width with gaps between them, gathered and scattered
         for width in 1..20 {
             let rows: Vec<f64> = (0..L::LANES * 25).map(|i| i as f64).collect();
-            let (mut lanes, place) = (vec![L::of(0.0); width], |lane| 3 + 22 * lane);
-            L::gather(&rows, place, &mut lanes);
+            let (mut lanes, offset) = (vec![L::of(0.0); width], |lane| 3 + 22 * lane);
+            L::gather(&rows, offset, &mut lanes);
             for (i, x) in lanes.iter().enumerate() {
-                assert!((0..L::LANES).all(|lane| x.lane(lane) == (place(lane) + i) as f64));
+                assert!((0..L::LANES).all(|lane| x.lane(lane) == (offset(lane) + i) as f64));
             }
             for count in 1..=L::LANES {
                 let mut back = vec![-1.0; rows.len()];
-                L::scatter(&lanes, &mut back, count, place);
+                L::scatter(&lanes, &mut back, count, offset);
                 let is_written = |i: usize| i >= 3 && (i - 3) / 22 < count && (i - 3) % 22 < width;
                 assert!((0..rows.len()).all(|i| back[i] == if is_written(i) { i as f64 } else { -1.0 }));
             }

@@ -1,6 +1,6 @@
 //! Vector registers of x86-64.
 //!
-//! As registers, and not as arrays, numbers stay in them where a value goes from body to body: LLVM copies arrays
+//! Intrinsic register types stay in registers when values are passed between bodies; LLVM copies arrays
 //! through memory.
 #![allow(unsafe_code)] // each intrinsic needs its instruction set
 
@@ -18,8 +18,8 @@ macro_rules! register {
         #[repr(transparent)]
         pub(super) struct $name(x86::$register);
 
-        // SAFETY, of all below: lanes are computed with where their instructions are (`Real::enter`), and a
-        // register is as many numbers in a row.
+        // SAFETY, for all of the following: lanes are used only inside `Real::enter`, where their
+        // instructions exist, and a register has the layout of an array.
         impl $name {
             #[inline(always)]
             pub(super) fn from_array(x: [f64; $width]) -> Self {
@@ -77,12 +77,12 @@ macro_rules! register {
     };
 }
 
-pub(super) type FourMask = x86::__m256d;
-pub(super) type EightMask = x86::__mmask8;
+pub(super) type Mask4 = x86::__m256d;
+pub(super) type Mask8 = x86::__mmask8;
 
 register!(
-    /// Four numbers, AVX2 and FMA.
-    Four, 4, __m256d, FourMask,
+    /// Register of four numbers (AVX2 and FMA).
+    F64x4, 4, __m256d, Mask4,
     |a, b, c| add x86::_mm256_add_pd(a, b), sub x86::_mm256_sub_pd(a, b), mul x86::_mm256_mul_pd(a, b),
     div x86::_mm256_div_pd(a, b), mul_add x86::_mm256_fmadd_pd(a, b, c), sqrt x86::_mm256_sqrt_pd(a),
     abs x86::_mm256_andnot_pd(x86::_mm256_set1_pd(-0.0), a), less x86::_mm256_cmp_pd::<{ x86::_CMP_LT_OQ }>(a, b),
@@ -90,16 +90,16 @@ register!(
     all unsafe { x86::_mm256_movemask_pd(held) } == 0b1111
 );
 register!(
-    /// Eight numbers, AVX-512.
-    Eight, 8, __m512d, EightMask,
+    /// Register of eight numbers (AVX-512).
+    F64x8, 8, __m512d, Mask8,
     |a, b, c| add x86::_mm512_add_pd(a, b), sub x86::_mm512_sub_pd(a, b), mul x86::_mm512_mul_pd(a, b),
     div x86::_mm512_div_pd(a, b), mul_add x86::_mm512_fmadd_pd(a, b, c), sqrt x86::_mm512_sqrt_pd(a),
     abs x86::_mm512_abs_pd(a), less x86::_mm512_cmp_pd_mask::<{ x86::_CMP_LT_OQ }>(a, b),
     select(held) x86::_mm512_mask_blend_pd(held, b, a), any held != 0, all held == u8::MAX
 );
 
-impl Four {
-    /// Lane `j` of register `i` becomes lane `i` of register `j`.
+impl F64x4 {
+    /// Returns the transpose: lane `j` of register `i` becomes lane `i` of register `j`.
     #[inline(always)]
     pub(super) fn transpose(rows: [Self; 4]) -> [Self; 4] {
         let [a, b, c, d] = rows.map(|row| row.0);
@@ -120,8 +120,8 @@ impl Four {
     }
 }
 
-impl Eight {
-    /// Lane `j` of register `i` becomes lane `i` of register `j`.
+impl F64x8 {
+    /// Returns the transpose: lane `j` of register `i` becomes lane `i` of register `j`.
     #[inline(always)]
     pub(super) fn transpose(rows: [Self; 8]) -> [Self; 8] {
         let [a, b, c, d, e, f, g, h] = rows.map(|row| row.0);

@@ -1,0 +1,105 @@
+"""Times two builds of this project alternately and compares them."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import rows
+from contestants import CORE, HERE
+from inputs import STATES
+from revisions import Build
+from timing import Contestant, difference
+
+BLOCKS = 3  # per build and round; the fastest counts, as the least disturbed by other processes
+SAME = (0.98, 1.02)  # ratios that count as the same speed
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """A row of ``make bench`` for one robot."""
+
+    row: rows.Row
+    nv: int
+
+    @property
+    def what(self) -> str:
+        return self.row.what
+
+
+class BuildComparison:
+    """Ratios of the times of two builds in each round, for each row of one robot."""
+
+    def __init__(self, other: Build, here: Build, folder: Path, selected: list[Row]) -> None:
+        self.builds, self.folder = (other, here), folder
+        self.ratios: dict[Row, list[float]] = {row: [] for row in selected}
+        self.times: dict[Row, list[float]] = {row: [] for row in selected}
+        self.changes: dict[Row, float] = {}
+        self.count = 0
+
+    def round(self, seconds: float) -> None:
+        """Restarts both builds and times every row; the first build alternates between rounds."""
+        running: dict[tuple[Build, str], Contestant] = {}
+        order = self.builds if self.count % 2 else self.builds[::-1]
+        self.count += 1
+        for row in self.ratios:
+            who, job = row.row.ours
+            sides = {build: self._contestant(running, build, who) for build in order}
+            if not all(job in side.about.get("jobs", [job]) for side in sides.values()):
+                continue
+            if row not in self.changes:
+                found = [sides[build].result(job, self.folder) for build in self.builds]
+                self.changes[row] = difference(*found, row.row.widths(row.nv))
+            least = dict.fromkeys(self.builds, math.inf)
+            for _ in range(1 + BLOCKS):  # the first block warms up; its time is not shorter, so it may count
+                for build in order:
+                    least[build] = min(least[build], sides[build].time(job, seconds))
+            other, here = (least[build] for build in self.builds)
+            self.ratios[row].append(other / here)
+            self.times[row].append(here)
+        for contestant in running.values():
+            contestant.close()
+
+    def _contestant(self, running: dict[tuple[Build, str], Contestant], build: Build, who: str) -> Contestant:
+        if (build, who) not in running:
+            running[build, who] = start(build, who, self.folder)
+        return running[build, who]
+
+    def change(self, row: Row) -> str:
+        """Returns the largest relative difference of the results as text; ``same bits`` if they are equal."""
+        change = self.changes[row]
+        return f"{change:.0e}" if change else "same bits"
+
+
+def start(build: Build, who: str, folder: Path) -> Contestant:
+    """Starts a process of one build: the Rust program or the Python worker."""
+    if who == "rust":
+        command = [build.contestant, folder / "robot.urdf", folder / "states.bin", STATES]
+        return Contestant([*map(str, command)], core=CORE)
+    environment = {"PYTHONPATH": str(build.python)}
+    if who == "ours_avx2":
+        environment["ONORBIT_INSTRUCTION_SET"] = "avx2+fma"
+    return Contestant([sys.executable, str(HERE / "ours.py"), str(folder)], core=CORE, **environment)
+
+
+def interval(ratios: list[float]) -> tuple[float, float]:
+    """Returns bounds of the median with at least 95 % confidence for any distribution.
+
+    The k-th smallest and k-th largest of n: the median lies outside with probability `2 P(B(n, 1/2) < k)`.
+    """
+    each, n = sorted(ratios), len(ratios)
+    below, k = 1, 0  # number of the 2^n outcomes with at most k successes
+    while 2 * below <= 0.05 * 2**n:
+        k += 1
+        below += math.comb(n, k)
+    if k == 0:
+        return -math.inf, math.inf  # fewer than six rounds give no bounds
+    return each[k - 1], each[n - k]
+
+
+def verdict(low: float, high: float) -> str:
+    if high < SAME[0]:
+        return "SLOWER"
+    return "faster" if low > SAME[1] else "same"

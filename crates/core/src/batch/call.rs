@@ -1,0 +1,41 @@
+//! Inputs and outputs of a kernel call.
+
+use super::kernels::Kernel;
+use crate::model::Model;
+
+/// Rows of an input.
+#[derive(Clone, Copy, Debug)]
+pub struct Rows<'a> {
+    /// Values of all rows, one row after the other.
+    pub data: &'a [f64],
+    /// Length of a row.
+    pub width: usize,
+}
+
+/// Values of the rows of an output, one row after the other.
+pub type RowsMut<'a> = &'a mut [f64];
+
+/// External wrenches on the body of a frame, in frame axes about the frame origin, N and N m, linear first.
+#[derive(Clone, Copy, Debug)]
+pub struct Wrenches<'a> {
+    /// Index of the frame.
+    pub frame: usize,
+    /// One wrench for all states, (6,), or one per state, (B, 6).
+    pub rows: &'a [f64],
+}
+
+/// Call of a kernel: the kernel with its robot and inputs.
+#[derive(Clone, Copy)]
+pub(super) struct Call<'a> {
+    pub(super) kernel: Kernel,
+    pub(super) model: &'a Model,
+    pub(super) inputs: &'a [Rows<'a>],
+    pub(super) external: &'a [Wrenches<'a>],
+}
+
+impl Call<'_> {
+    /// Returns the number of states.
+    pub(super) fn count(&self) -> usize {
+        self.inputs[0].data.len() / self.inputs[0].width.max(1)
+    }
+}

@@ -1,0 +1,83 @@
+//! Control: a control law on a group of joints during an interval of time.
+
+use super::control_law::Interface;
+use super::goal::Goal;
+use super::law::Law;
+use crate::model::Model;
+
+/// One control of a run: a law, the joints it drives, and when it is active.
+///
+/// Joints that no active control drives move freely.
+pub struct Control {
+    /// Name in results, trace columns and messages.
+    pub name: String,
+    /// Indices of the driven joints; no other control may drive them at the same time.
+    pub joints: Vec<usize>,
+    /// The law with its reference.
+    pub law: Law,
+    /// Start condition.
+    pub begin: Begin,
+    /// End time, s; infinite if only a successor or the end of the run stops the control.
+    pub end: f64,
+    /// Tolerances of the tracking error, if the control has a goal.
+    pub goal: Option<Goal>,
+    /// True if the reference is shifted to begin at the pose or the joint positions at the start of the
+    /// control.
+    pub starts_at_present: bool,
+    /// True if the trace has a `tracking` column with the error of this control. If false, a tracked frame
+    /// must be the tool of the run, whose error is recorded in `position_error` and `attitude_error`.
+    pub has_column: bool,
+}
+
+/// Start condition of a control.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Begin {
+    /// Start at this time, s.
+    At(f64),
+    /// Start when the control with this index ends or its goal is decided; that control is then stopped.
+    After(usize),
+}
+
+impl Control {
+    /// Returns a control of a group of joints for the whole run, without a goal.
+    pub fn new(name: &str, joints: Vec<usize>, law: Law) -> Self {
+        Self {
+            name: name.to_owned(),
+            joints,
+            law,
+            begin: Begin::At(0.0),
+            end: f64::INFINITY,
+            goal: None,
+            starts_at_present: false,
+            has_column: true,
+        }
+    }
+
+    /// Returns a control of all joints for the whole run. If it tracks a frame, that is the tool of the run.
+    pub fn on_all_joints(model: &Model, law: Law) -> Self {
+        let joints = (0..model.joint_count()).collect();
+        Self { has_column: false, ..Self::new("control", joints, law) }
+    }
+
+    /// Returns the length of the tracking error: 6 for a frame (m, rad), one per joint, or 0 without a
+    /// reference.
+    pub fn width(&self) -> usize {
+        match (self.law.task(), self.law.joint_reference()) {
+            (Some(_), _) => 6,
+            (None, Some(_)) if self.law.interface() != Interface::Effort => self.joints.len(),
+            _ => 0,
+        }
+    }
+
+    /// Returns the time after the start of the control at which the reference comes to rest, s.
+    pub(super) fn duration(&self) -> f64 {
+        let task = self.law.task().map(|(_, reference)| reference.duration());
+        task.or_else(|| self.law.joint_reference().map(|path| path.duration())).unwrap_or(0.0)
+    }
+
+    /// Returns the start and end times that are known before the run, s.
+    pub fn switch_times(&self) -> impl Iterator<Item = f64> {
+        let start = if let Begin::At(start) = self.begin { start } else { 0.0 };
+        [start, self.end].into_iter().filter(|t| t.is_finite() && *t > 0.0)
+    }
+}

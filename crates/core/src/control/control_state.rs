@@ -1,0 +1,225 @@
+//! State of a control during a run.
+
+use super::computed_torque::task_error;
+use super::control::Control;
+use super::control_law::{Interface, PidMemory};
+use super::error::ControlError;
+use super::goal::{Goal, Outcome};
+use crate::reference::{Hold, JointPath, JointSample, ReferenceError, TaskReference, TaskSample};
+use crate::spatial::{Mat3, Motion, Vec3};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Phase of a control: before its start, active or ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Phase {
+    Waiting,
+    Running,
+    Over,
+}
+
+/// The part of a control's state that a checkpoint stores.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ControlMemory {
+    pub(super) phase: Phase,
+    /// Time of the start, s.
+    pub(super) start: f64,
+    pub(super) outcome: Outcome,
+    /// True if the control holds the pose or the joint positions at which its goal was missed.
+    is_held: bool,
+    /// True if the reference is shifted to begin at the configuration at the start of the control.
+    is_shifted: bool,
+    /// Shift of the reference, or held configuration: a pose (rotation, position) or joint positions.
+    anchor: Vec<f64>,
+    pub(super) pid: PidMemory,
+    /// Time of the last control tick, s.
+    pub(super) last_tick: Option<f64>,
+    /// State saved by a user's controller.
+    pub(super) user: Vec<u8>,
+}
+
+/// State of a control, with its desired motion and its error at the last instant evaluated.
+#[derive(Debug)]
+pub(super) struct ControlState {
+    pub(super) memory: ControlMemory,
+    /// True if the error is used at every control tick.
+    pub(super) needs_error: bool,
+    /// Frame of the task's reference, as a reference at rest at its origin.
+    frame: Option<TaskReference>,
+    pub(super) desired: JointSample,
+    pub(super) desired_pose: Option<TaskSample<f64>>,
+    /// Pose of the tracked frame, in W or relative to the base as its reference is.
+    pub(super) pose: (Mat3<f64>, Vec3<f64>),
+    /// Tracking error, desired minus actual, `(width,)`.
+    pub(super) error: Vec<f64>,
+}
+
+impl ControlState {
+    /// `needs_error`: true if the law uses the error.
+    pub(super) fn new(control: &Control, needs_error: bool) -> Self {
+        let k = control.joints.len();
+        let task = control.law.task();
+        let stay = Hold::new(nalgebra::Matrix3::identity(), nalgebra::Vector3::zeros());
+        let frame = task.zip(stay.ok()).map(|((_, reference), stay)| TaskReference {
+            path: Arc::new(stay),
+            frame: reference.frame.clone(),
+        });
+        let memory = ControlMemory {
+            phase: Phase::Waiting,
+            start: 0.0,
+            outcome: Outcome::Unfinished,
+            is_held: false,
+            is_shifted: false,
+            anchor: vec![0.0; if task.is_some() { 12 } else { k }],
+            pid: PidMemory { integral: vec![0.0; k], previous: vec![None; k] },
+            last_tick: None,
+            user: Vec::new(),
+        };
+        Self {
+            memory,
+            needs_error: needs_error
+                || control.has_column
+                || control.goal.is_some()
+                || control.starts_at_present,
+            frame,
+            desired: JointSample::new(k),
+            desired_pose: None,
+            pose: (Mat3::identity(), Vec3::zero()),
+            error: vec![0.0; control.width()],
+        }
+    }
+
+    pub(super) fn is_running(&self) -> bool {
+        self.memory.phase == Phase::Running
+    }
+
+    pub(super) fn is_waiting(&self) -> bool {
+        self.memory.phase == Phase::Waiting
+    }
+
+    /// Starts the control at `t`; `q` contains all joint positions, and `pose` is current.
+    pub(super) fn start(&mut self, control: &Control, t: f64, q: &[f64]) -> Result<(), ReferenceError> {
+        let memory = &mut self.memory;
+        (memory.phase, memory.start, memory.is_shifted) = (Phase::Running, t, control.starts_at_present);
+        if !control.starts_at_present {
+            return Ok(());
+        }
+        if let (Some(frame), Some((_, reference))) = (&self.frame, control.law.task()) {
+            // from the first pose of the path to that of the tracked frame, in the frame of the reference
+            let (frame, first, (rot, pos)) = (frame.sample(t, t)?, reference.path.sample(0.0), self.pose);
+            let turn = first.rot_wd.transpose() * frame.rot_wd.transpose() * rot;
+            self.set_anchor_pose(turn, frame.rot_wd.transpose_mul(pos - frame.pos_w) - first.pos_w);
+        }
+        if let Some(path) = control.law.joint_reference() {
+            path.sample(0.0, &mut self.desired);
+            for (place, &j) in control.joints.iter().enumerate() {
+                self.memory.anchor[place] = q[j] - self.desired.q[place];
+            }
+        }
+        Ok(())
+    }
+
+    /// Replaces the reference by the current pose or joint positions after the goal was missed.
+    pub(super) fn hold(&mut self, control: &Control, q: &[f64]) {
+        self.memory.is_held = true;
+        match control.law.task() {
+            Some(_) => self.set_anchor_pose(self.pose.0, self.pose.1),
+            None => self.memory.anchor.iter_mut().zip(&control.joints).for_each(|(to, &j)| *to = q[j]),
+        }
+    }
+
+    fn set_anchor_pose(&mut self, rot: Mat3<f64>, pos: Vec3<f64>) {
+        let columns = [rot.x, rot.y, rot.z, pos];
+        columns.into_iter().enumerate().for_each(|(i, v)| v.write(&mut self.memory.anchor[3 * i..]));
+    }
+
+    fn anchor_pose(&self) -> (Mat3<f64>, Vec3<f64>) {
+        let at = |i: usize| Vec3::from_slice(&self.memory.anchor[3 * i..]);
+        (Mat3::from_columns(at(0), at(1), at(2)), at(3))
+    }
+
+    /// Evaluates the desired motion at `t` and the tracking error of the frame or the joints of the control.
+    /// `q` and `rates` contain the values of all joints.
+    pub(super) fn evaluate(
+        &mut self,
+        control: &Control,
+        t: f64,
+        q: &[f64],
+        rates: &[f64],
+    ) -> Result<(), ReferenceError> {
+        if let Some((_, reference)) = control.law.task() {
+            let desired = self.sample(reference, t)?;
+            if self.needs_error {
+                let error: Motion<f64> = task_error(&self.pose.0, self.pose.1, &desired);
+                error.write(&mut self.error);
+            }
+            self.desired_pose = Some(desired);
+        }
+        if let Some(path) = control.law.joint_reference() {
+            self.sample_joints(&**path, t);
+            let is_rate = control.law.interface() == Interface::Velocity;
+            for (place, error) in self.error.iter_mut().enumerate() {
+                let j = control.joints[place];
+                *error =
+                    if is_rate { self.desired.v[place] - rates[j] } else { self.desired.q[place] - q[j] };
+            }
+        }
+        Ok(())
+    }
+
+    fn sample(&self, reference: &TaskReference, t: f64) -> Result<TaskSample<f64>, ReferenceError> {
+        let memory = &self.memory;
+        match &self.frame {
+            _ if memory.is_held => {
+                let (rot, pos) = self.anchor_pose();
+                Ok(TaskSample::at_rest(rot, pos))
+            }
+            Some(frame) if memory.is_shifted => {
+                let (rot, pos) = self.anchor_pose();
+                let mut inner = reference.path.sample(t - memory.start);
+                inner.rot_wd = inner.rot_wd * rot;
+                inner.pos_w += pos;
+                Ok(frame.sample(t, t)?.carry(&inner))
+            }
+            _ => reference.sample(t, memory.start),
+        }
+    }
+
+    fn sample_joints(&mut self, path: &dyn JointPath, t: f64) {
+        let memory = &self.memory;
+        path.sample(t - memory.start, &mut self.desired);
+        if memory.is_shifted {
+            self.desired.q.iter_mut().zip(&memory.anchor).for_each(|(q, shift)| *q += shift);
+        }
+        if memory.is_held {
+            self.desired.q.copy_from_slice(&memory.anchor);
+            self.desired.v.fill(0.0);
+            self.desired.a.fill(0.0);
+        }
+    }
+
+    /// Returns the outcome of the goal at `t`, `clock` s after the start of the control.
+    pub(super) fn judge(&self, goal: &Goal, control: &Control, t: f64, clock: f64) -> Outcome {
+        if self.frame.is_none() {
+            return goal.judge(t, clock, control.duration(), &self.error);
+        }
+        let error = Motion::from_slice(&self.error);
+        let distances = [error.linear.norm(), error.angular.norm()];
+        goal.judge(t, clock, control.duration(), &distances)
+    }
+
+    /// Restores the state from a checkpoint.
+    ///
+    /// # Errors
+    /// [`ControlError::OtherMemory`] if the state belongs to a different control.
+    pub(super) fn restore(&mut self, control: &Control, memory: &ControlMemory) -> Result<(), ControlError> {
+        let sizes = |m: &ControlMemory| [m.anchor.len(), m.pid.integral.len(), m.pid.previous.len()];
+        let components = if self.frame.is_some() { 2 } else { self.error.len() };
+        let is_known = memory.outcome.miss().is_none_or(|miss| miss.component < components);
+        if sizes(memory) != sizes(&self.memory) || !is_known {
+            return Err(ControlError::OtherMemory { control: control.name.clone() });
+        }
+        self.memory.clone_from(memory);
+        Ok(())
+    }
+}

@@ -1,0 +1,61 @@
+//! Start and stop of the controls.
+
+use super::ControllerSet;
+use crate::control::check::check_disjoint;
+use crate::control::control::Begin;
+use crate::control::control_state::Phase;
+use crate::control::error::ControlError;
+use crate::model::{BASE_NQ, Model};
+use crate::spatial::Scalar;
+
+impl<S: Scalar> ControllerSet<'_, S> {
+    /// Evaluates the goals, then stops and starts the controls that are due at `t`. Returns true if anything
+    /// changed.
+    pub(super) fn activate(&mut self, t: f64, model: &Model) -> Result<bool, ControlError> {
+        let Self { controls, states, same_instant, .. } = self;
+        let now = t + *same_instant;
+        let mut has_changed = false;
+        for (control, state) in controls.iter().zip(states.iter_mut()) {
+            if let Some(goal) = &control.goal
+                && state.is_running()
+                && !state.memory.outcome.is_decided()
+            {
+                state.memory.outcome = state.judge(goal, control, t, now - state.memory.start);
+                if state.memory.outcome.miss().is_some() {
+                    state.hold(control, &self.q[BASE_NQ..]);
+                    has_changed = true;
+                }
+            }
+            if state.memory.phase != Phase::Over && control.end <= now {
+                state.memory.phase = Phase::Over;
+                has_changed = true;
+            }
+        }
+        for i in 0..controls.len() {
+            let is_due = match controls[i].begin {
+                Begin::At(start) => start <= now,
+                Begin::After(before) => {
+                    let before = &states[before].memory;
+                    before.phase == Phase::Over || before.outcome.is_decided()
+                }
+            };
+            if states[i].memory.phase == Phase::Waiting && is_due {
+                if let Begin::After(before) = controls[i].begin {
+                    states[before].memory.phase = Phase::Over;
+                }
+                let started = states[i].start(&controls[i], t, &self.q[BASE_NQ..]);
+                started.map_err(|source| ControlError::Reference { time: t, source })?;
+                has_changed = true;
+            }
+        }
+        if has_changed {
+            let running = |i: &usize| states[*i].is_running();
+            for i in (0..controls.len()).filter(running) {
+                for j in (0..i).filter(running) {
+                    check_disjoint(&controls[j], &controls[i], model, t)?;
+                }
+            }
+        }
+        Ok(has_changed)
+    }
+}

@@ -1,0 +1,56 @@
+//! Desired motions and tracking errors of the controls.
+
+use super::ControllerSet;
+use super::values::{matrix, vector};
+use crate::control::control_state::Phase;
+use crate::control::error::ControlError;
+use crate::dynamics::{Data, base_rotation, frame_pose};
+use crate::model::{BASE_NQ, BASE_NV, Model};
+use crate::spatial::{Scalar, Vec3};
+
+impl<S: Scalar> ControllerSet<'_, S> {
+    /// Evaluates the desired motion and the tracking error of every active control at a state.
+    /// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) in `data`.
+    ///
+    /// # Errors
+    /// [`ControlError::Reference`].
+    pub fn update_errors(
+        &mut self,
+        t: f64,
+        model: &Model,
+        data: &Data<S>,
+        q: &[S],
+        v: &[S],
+    ) -> Result<(), ControlError> {
+        // a row is recorded at the instant and the state of the control tick before it
+        let is_same = |last: &[f64], now: &[S]| last.iter().zip(now).all(|(last, now)| *last == now.value());
+        if self.evaluated_at == t && is_same(&self.q, q) && is_same(&self.v, v) {
+            return Ok(());
+        }
+        self.evaluated_at = f64::NAN;
+        self.q.iter_mut().zip(q).for_each(|(to, from)| *to = from.value());
+        self.v.iter_mut().zip(v).for_each(|(to, from)| *to = from.value());
+        for (control, state) in self.controls.iter().zip(&mut self.states) {
+            if state.memory.phase == Phase::Over {
+                state.error.fill(0.0);
+                continue;
+            }
+            if let Some((frame, reference)) = control.law.task().filter(|_| state.needs_error) {
+                let pose = frame_pose(model, data, q, frame);
+                let (rot, pos) = (matrix(&pose.rot_wf), vector(pose.pos_w));
+                state.pose = if reference.is_relative_to_base() {
+                    let rot_wb = base_rotation(&self.q);
+                    (rot_wb.transpose() * rot, rot_wb.transpose_mul(pos - Vec3::from_slice(&self.q)))
+                } else {
+                    (rot, pos)
+                };
+            }
+            if state.is_running() {
+                let evaluated = state.evaluate(control, t, &self.q[BASE_NQ..], &self.v[BASE_NV..]);
+                evaluated.map_err(|source| ControlError::Reference { time: t, source })?;
+            }
+        }
+        self.evaluated_at = t;
+        Ok(())
+    }
+}

@@ -1,0 +1,46 @@
+//! Friction of the joints with given efforts: sticking and slipping.
+
+use super::ControllerSet;
+use crate::control::control_law::JointCommand;
+use crate::model::{BASE_NV, Model};
+use crate::spatial::Scalar;
+
+/// Range of rates, rad/s (m/s), in which the friction of an engine without static friction changes sign.
+const CREEP: f64 = 1e-2;
+
+impl<S: Scalar> ControllerSet<'_, S> {
+    /// Adds damping and friction of the joints with given efforts to their loads. Joints at rest that have
+    /// friction are assumed to stick.
+    pub(super) fn assume_friction(&mut self, model: &Model) {
+        for (j, joint) in model.joints().iter().enumerate() {
+            if self.commands[j] != JointCommand::Effort {
+                continue;
+            }
+            let rate = self.v[BASE_NV + j];
+            self.dynamics.load[j] += rate * joint.damping;
+            if self.friction_creeps {
+                self.dynamics.load[j] += joint.friction * (rate / CREEP).clamp(-1.0, 1.0);
+            } else if rate != 0.0 {
+                self.dynamics.load[j] += joint.friction * rate.signum();
+            } else if joint.static_friction > 0.0 {
+                self.commands[j] = JointCommand::Held;
+            }
+        }
+    }
+
+    /// Releases the first held joint whose holding torque exceeds its static friction: it slips in the
+    /// direction of that torque. Returns false if there is no such joint. Requires the accelerations of all
+    /// joints.
+    pub(super) fn release_joint(&mut self, model: &Model) -> bool {
+        let slips = |j: &usize| {
+            let holding = self.dynamics.holding_torque(*j, self.tau[*j]);
+            self.commands[*j] == JointCommand::Held && holding.abs() > model.joints()[*j].static_friction
+        };
+        let Some(j) = (0..self.commands.len()).find(slips) else { return false };
+        // kinetic friction acts in the direction of the holding torque λ: τ − l, l = … − f sign(λ)
+        let holding = self.dynamics.holding_torque(j, self.tau[j]);
+        self.dynamics.load[j] -= model.joints()[j].friction * holding.signum();
+        self.commands[j] = JointCommand::Effort;
+        true
+    }
+}

@@ -1,0 +1,274 @@
+//! Set of the controls of a run.
+
+mod activation;
+mod errors;
+mod friction;
+mod torques;
+mod values;
+
+use crate::control::check::check_controls;
+use crate::control::computed_torque::{ComputedTorque, ComputedTorqueWork, computed_torque};
+use crate::control::control::{Begin, Control};
+use crate::control::control_law::{ControlLaw, JointCommand};
+use crate::control::control_state::{ControlMemory, ControlState};
+use crate::control::error::ControlError;
+use crate::control::goal::Outcome;
+use crate::control::hybrid_dynamics::HybridDynamics;
+use crate::control::law::Law;
+use crate::control::pseudo_inverse::{PseudoInverse, ROWS};
+use crate::dynamics::{Data, FreeFloating, free_floating_recursion};
+use crate::model::Model;
+use crate::reference::{TaskReference, TaskSample};
+use crate::spatial::Scalar;
+
+/// Controls of a run with their states and workspaces, allocated once.
+pub struct ControllerSet<'a, S> {
+    controls: &'a mut [Control],
+    states: Vec<ControlState>,
+    /// Instant at which desired motions and errors were last evaluated, for the state `q`, `v`, s.
+    evaluated_at: f64,
+    /// Difference, s, below which two instants are treated as the same.
+    same_instant: f64,
+    /// Workspace of a task law on all joints.
+    whole_robot: Option<Box<ComputedTorqueWork<S>>>,
+    reduced: FreeFloating<S>,
+    dynamics: HybridDynamics,
+    /// Pseudo-inverse of one task, for the laws that command efforts.
+    inverse: PseudoInverse<f64>,
+    commands: Vec<JointCommand>,
+    /// Desired acceleration, rad/s² (m/s²), of the joints whose friction a law compensates.
+    desired_accelerations: Vec<Option<f64>>,
+    /// True if friction changes sign continuously at rest, without static friction.
+    friction_creeps: bool,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    tau: Vec<f64>,
+    /// External torque commands, `(n,)`, N m (N), for joints that no active control drives.
+    commanded: Vec<Option<f64>>,
+    jacobian: Vec<f64>,
+    /// Efforts and rates of a group, and workspace of its law.
+    group: [Vec<f64>; 3],
+}
+
+impl<'a, S: Scalar> ControllerSet<'a, S> {
+    /// Checks the controls, resets the users' controllers, and allocates the workspaces.
+    ///
+    /// # Errors
+    /// Those of [`check_controls`], and of the users' controllers.
+    pub fn new(controls: &'a mut [Control], model: &Model, same_instant: f64) -> Result<Self, ControlError> {
+        check_controls(controls, model)?;
+        for control in controls.iter_mut() {
+            control.law.control_law_mut().reset()?;
+        }
+        let (n, tasks) = (model.joint_count(), controls.len());
+        let zeros = |count: usize| vec![0.0; count];
+        let is_whole = |control: &Control| task_on_all_joints(control, n).is_some();
+        let whole_robot = controls.iter().any(is_whole).then(|| Box::new(ComputedTorqueWork::new(model)));
+        let needs_error = |control: &Control| control.law.control_law().uses_error() && !is_whole(control);
+        Ok(Self {
+            states: controls.iter().map(|control| ControlState::new(control, needs_error(control))).collect(),
+            controls,
+            evaluated_at: f64::NAN,
+            same_instant,
+            whole_robot,
+            reduced: FreeFloating::new(model),
+            dynamics: HybridDynamics::new(n, tasks),
+            inverse: PseudoInverse::new(1),
+            commands: vec![JointCommand::Effort; n],
+            desired_accelerations: vec![None; n],
+            friction_creeps: false,
+            q: zeros(model.nq()),
+            v: zeros(model.nv()),
+            tau: zeros(n),
+            commanded: vec![None; n],
+            jacobian: zeros(ROWS * n),
+            group: [zeros(n), zeros(n), zeros(n)],
+        })
+    }
+
+    /// Sets the friction model of engines in which joints do not stick: it changes sign over a range of
+    /// rates.
+    pub fn assume_creeping_friction(&mut self) {
+        self.friction_creeps = true;
+    }
+
+    /// Returns true if a law uses the external wrenches in the data.
+    pub fn compensates_environment(&self) -> bool {
+        self.controls.iter().any(|control| control.law.control_law().compensates_environment() == Some(true))
+    }
+
+    /// Returns the desired accelerations of the last update, rad/s² (m/s²), of the joints whose Coulomb
+    /// friction a law compensates; their drives add the friction torque.
+    pub fn desired_accelerations(&self) -> &[Option<f64>] {
+        &self.desired_accelerations
+    }
+
+    /// Returns the controls.
+    pub fn controls(&self) -> &[Control] {
+        self.controls
+    }
+
+    /// Returns the control that drives joint `j` at `t`, which is active or due to start.
+    pub fn driver_of(&self, j: usize, t: f64) -> Option<&Control> {
+        let now = t + self.same_instant;
+        let drives = |(control, state): &(&Control, &ControlState)| {
+            let is_due = matches!(control.begin, Begin::At(start) if start <= now);
+            let is_active = (state.is_running() || state.is_waiting() && is_due) && control.end > now;
+            is_active && control.joints.contains(&j)
+        };
+        self.controls.iter().zip(&self.states).find(drives).map(|(control, _)| control)
+    }
+
+    /// Returns the external torque commands, `(n,)`, N m (N).
+    pub fn commanded(&self) -> &[Option<f64>] {
+        &self.commanded
+    }
+
+    /// Sets the external torque commands, `(n,)`, N m (N), which are held until the next call; `None` keeps
+    /// the command of a joint. Torques of active controls take precedence.
+    pub fn command(&mut self, tau: &[Option<f64>]) {
+        for (held, tau) in self.commanded.iter_mut().zip(tau) {
+            *held = tau.or(*held);
+        }
+    }
+
+    /// Returns the desired pose and motion of a control at the last instant evaluated, in W or relative to
+    /// the base as its reference is; `None` while the control is not active.
+    pub fn desired(&self, control: usize) -> Option<TaskSample<f64>> {
+        let state = &self.states[control];
+        state.is_running().then_some(state.desired_pose).flatten()
+    }
+
+    /// Returns the tracking error of a control, desired minus actual, at the last instant evaluated,
+    /// `(width,)`; zeros while the control is not active.
+    pub fn error(&self, control: usize) -> &[f64] {
+        &self.states[control].error
+    }
+
+    /// Returns the outcome of a control's goal so far.
+    pub fn outcome(&self, control: usize) -> Outcome {
+        self.states[control].memory.outcome
+    }
+
+    /// Returns the states of all controls, including users' controllers, for a checkpoint.
+    ///
+    /// # Errors
+    /// Those of a user's controller.
+    pub fn save(&self) -> Result<Vec<ControlMemory>, ControlError> {
+        let states = self.controls.iter().zip(&self.states);
+        let saved = states.map(|(control, state)| {
+            let mut memory = state.memory.clone();
+            memory.user = control.law.control_law().save()?;
+            Ok(memory)
+        });
+        saved.collect()
+    }
+
+    /// Restores the states returned by [`ControllerSet::save`].
+    ///
+    /// # Errors
+    /// [`ControlError::OtherControls`], [`ControlError::OtherMemory`] for states of other controls, and those
+    /// of a user's controller.
+    pub fn load(&mut self, saved: &[ControlMemory]) -> Result<(), ControlError> {
+        let (got, expected) = (saved.len(), self.controls.len());
+        if got != expected {
+            return Err(ControlError::OtherControls { got, expected });
+        }
+        self.evaluated_at = f64::NAN;
+        for ((control, state), memory) in self.controls.iter_mut().zip(&mut self.states).zip(saved) {
+            state.restore(control, memory)?;
+            control.law.control_law_mut().load(&memory.user)?;
+        }
+        Ok(())
+    }
+
+    /// Computes the torques, `(n,)`, N m (N), at `t`; those of joints that no active control drives are
+    /// given by external commands, or zero.
+    ///
+    /// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) and the external wrenches
+    /// to compensate in `data`.
+    ///
+    /// # Errors
+    /// [`ControlError`]: active controls with a joint in common, a reference that is not defined at `t`, and
+    /// those of a user's controller.
+    pub fn update(
+        &mut self,
+        t: f64,
+        model: &Model,
+        data: &mut Data<S>,
+        q: &[S],
+        v: &[S],
+        tau: &mut [S],
+    ) -> Result<(), ControlError> {
+        self.update_errors(t, model, data, q, v)?;
+        if self.activate(t, model)? {
+            self.evaluated_at = f64::NAN; // other controls are active now
+            self.update_errors(t, model, data, q, v)?;
+        }
+        if !self.task_of_whole_robot(model, data, q, v, tau) {
+            self.torques_of_groups(t, model, data, q, v)?;
+            tau.iter_mut().zip(&self.tau).for_each(|(to, from)| *to = S::of(*from));
+        }
+        for state in self.states.iter_mut().filter(|state| state.is_running()) {
+            state.memory.last_tick = Some(t);
+        }
+        Ok(())
+    }
+
+    /// Computes the torques of a task law on all joints if it is the only active control (fast path). Returns
+    /// false otherwise.
+    fn task_of_whole_robot(
+        &mut self,
+        model: &Model,
+        data: &mut Data<S>,
+        q: &[S],
+        v: &[S],
+        tau: &mut [S],
+    ) -> bool {
+        let Some(work) = &mut self.whole_robot else { return false };
+        let active = self.controls.iter().zip(&self.states).find(|(_, state)| state.is_running());
+        let Some((control, state)) = active else { return false };
+        let Some((law, reference)) = task_on_all_joints(control, tau.len()) else { return false };
+        let Some(desired) = state.desired_pose else { return false };
+        let is_relative = reference.is_relative_to_base();
+        computed_torque(law, model, data, q, v, &desired.lift(), is_relative, work, tau);
+        work.desired_accelerations(law, &mut self.desired_accelerations);
+        true
+    }
+
+    /// Computes the torques of several groups of joints.
+    fn torques_of_groups(
+        &mut self,
+        t: f64,
+        model: &Model,
+        data: &mut Data<S>,
+        q: &[S],
+        v: &[S],
+    ) -> Result<(), ControlError> {
+        // laws that solve for accelerations take the torques of the other joints into account
+        self.tau.iter_mut().zip(&self.commanded).for_each(|(tau, held)| *tau = held.unwrap_or(0.0));
+        self.commands.fill(JointCommand::Effort);
+        self.desired_accelerations.fill(None);
+        let laws = || {
+            let controls = self.controls.iter().zip(&self.states);
+            controls.filter(|(_, state)| state.is_running()).map(|(control, _)| control.law.control_law())
+        };
+        let has_accelerations = laws().any(|law| law.joint_command() != JointCommand::Effort);
+        if has_accelerations || laws().any(ControlLaw::needs_jacobian) {
+            free_floating_recursion(model, data, q, v, 0, &mut self.reduced);
+        }
+        self.efforts(t, model, data, q, v)?;
+        if has_accelerations {
+            self.accelerations(model, data, q, v);
+        }
+        Ok(())
+    }
+}
+
+/// Returns the law and the reference of a control that tracks a frame by computed torque with all `n` joints.
+fn task_on_all_joints(control: &Control, n: usize) -> Option<(&ComputedTorque, &TaskReference)> {
+    match &control.law {
+        Law::TaskComputedTorque(law, reference) if control.joints.len() == n => Some((law, reference)),
+        _ => None,
+    }
+}

@@ -1,0 +1,164 @@
+//! Torques of the active laws.
+
+use super::ControllerSet;
+use super::values::motion;
+use crate::control::control_law::{EffortInput, EffortWork, JointCommand};
+use crate::control::control_state::ControlState;
+use crate::control::error::ControlError;
+use crate::control::observation::Observation;
+use crate::control::pseudo_inverse::ROWS;
+use crate::dynamics::{Data, FreeFloating, base_relative_frame, free_floating_frame};
+use crate::model::{BASE_NV, Model};
+use crate::reference::TaskReference;
+use crate::spatial::{Motion, Scalar};
+
+impl<S: Scalar> ControllerSet<'_, S> {
+    /// Computes the torques of the laws that command efforts.
+    pub(super) fn efforts(
+        &mut self,
+        t: f64,
+        model: &Model,
+        data: &Data<S>,
+        q: &[S],
+        v: &[S],
+    ) -> Result<(), ControlError> {
+        let n = model.joint_count();
+        for (control, state) in self.controls.iter_mut().zip(&mut self.states) {
+            let law = control.law.control_law();
+            if !state.is_running() || law.joint_command() != JointCommand::Effort {
+                continue;
+            }
+            let [tau, rates, scratch] = &mut self.group;
+            let (joints, k) = (&control.joints[..], control.joints.len());
+            let (tau, rates) = (&mut tau[..k], &mut rates[..k]);
+            rates.iter_mut().zip(joints).for_each(|(to, &j)| *to = self.v[BASE_NV + j]);
+            let mut velocity_error = Motion::zero();
+            if let Some((frame, reference)) = control.law.task().filter(|_| law.needs_jacobian()) {
+                reduce_to_frame(model, data, q, v, frame, reference, &mut self.reduced);
+                for (i, row) in self.reduced.jacobian.chunks_exact(n).enumerate() {
+                    let group = self.jacobian[i * k..].iter_mut().zip(joints);
+                    group.for_each(|(to, &j)| *to = row[j].value());
+                }
+                velocity_error = state.velocity_error(&self.reduced);
+            }
+            let desired = state.desired_pose;
+            let input = EffortInput {
+                control: &control.name,
+                observation: Observation { time: t, q: &self.q, v: &self.v, model, joints, desired },
+                elapsed: state.memory.last_tick.map_or(0.0, |last| t - last),
+                desired: &state.desired,
+                error: (&state.error, velocity_error),
+                jacobian: &self.jacobian[..ROWS * k],
+                rates,
+            };
+            let work = EffortWork { pid: &mut state.memory.pid, inverse: &mut self.inverse, scratch };
+            control.law.control_law_mut().efforts(&input, work, tau)?;
+            joints.iter().zip(tau).for_each(|(&j, tau)| self.tau[j] = *tau);
+        }
+        Ok(())
+    }
+
+    /// Computes the torques of the laws that command accelerations, and the desired accelerations of the
+    /// joints with friction compensation.
+    pub(super) fn accelerations(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
+        self.set_up_dynamics(model);
+        self.solve_dynamics(model, data, q, v);
+        while self.release_joint(model) {
+            self.solve_dynamics(model, data, q, v);
+        }
+        for (control, _) in self.controls.iter().zip(&self.states).filter(|(_, state)| state.is_running()) {
+            let law = control.law.control_law();
+            if law.compensates_friction() {
+                for (place, &j) in control.joints.iter().enumerate() {
+                    let acceleration = self.dynamics.acceleration[j];
+                    self.desired_accelerations[j] = Some(law.desired_acceleration(place, acceleration));
+                }
+            }
+        }
+    }
+
+    /// Sets inertia, loads and given accelerations of the reduced model, and the command of each joint.
+    fn set_up_dynamics(&mut self, model: &Model) {
+        let Self { dynamics, reduced, .. } = self;
+        for (to, from) in dynamics.inertia.iter_mut().zip(&reduced.inertia) {
+            *to = from.value();
+        }
+        for (j, load) in dynamics.load.iter_mut().enumerate() {
+            *load = (reduced.bias[j] - reduced.external[j]).value();
+        }
+        let mut compensates_friction = false;
+        for (control, state) in self.controls.iter().zip(&self.states).filter(|(_, state)| state.is_running())
+        {
+            let law = control.law.control_law();
+            let (command, damping) = (law.joint_command(), law.task_damping());
+            let is_compensated = law.compensates_friction();
+            compensates_friction |= is_compensated;
+            for (place, &j) in control.joints.iter().enumerate() {
+                let rate = self.v[BASE_NV + j];
+                self.commands[j] = command;
+                dynamics.load[j] += if is_compensated { rate * model.joints()[j].damping } else { 0.0 };
+                match command {
+                    JointCommand::Acceleration => {
+                        let error = state.error[place];
+                        dynamics.acceleration[j] = law.joint_acceleration(place, error, rate, &state.desired);
+                    }
+                    JointCommand::Task => dynamics.null_damping[j] = [damping.null_space, damping.suppressed],
+                    JointCommand::Effort | JointCommand::Held => {}
+                }
+            }
+        }
+        if compensates_friction {
+            self.assume_friction(model);
+        }
+    }
+
+    /// Computes the accelerations of all joints, and the torques of the joints with commanded accelerations.
+    fn solve_dynamics(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
+        let Self { dynamics, reduced, tau, .. } = self;
+        dynamics.eliminate(&self.commands, tau);
+        for (control, state) in self.controls.iter().zip(&self.states).filter(|(_, state)| state.is_running())
+        {
+            let law = control.law.control_law();
+            let Some((frame, reference)) = control.law.task() else { continue };
+            if law.joint_command() != JointCommand::Task {
+                continue;
+            }
+            reduce_to_frame(model, data, q, v, frame, reference, reduced);
+            // p̈r − d
+            let acceleration = state.desired_pose.map_or(Motion::zero(), |desired| desired.acceleration);
+            let (error, velocity_error) = (Motion::from_slice(&state.error), state.velocity_error(reduced));
+            let task_acceleration =
+                law.task_acceleration(error, velocity_error, acceleration) - motion(reduced.drift);
+            let mut rows = [0.0; ROWS];
+            task_acceleration.write(&mut rows);
+            self.jacobian.iter_mut().zip(&reduced.jacobian).for_each(|(to, from)| *to = from.value());
+            dynamics.add_task(&self.jacobian, rows, law.task_damping().pseudo_inverse);
+        }
+        dynamics.solve(&self.v[BASE_NV..], tau);
+    }
+}
+
+impl ControlState {
+    /// Returns the velocity error, desired minus actual, of the frame of the reduced model.
+    fn velocity_error<S: Scalar>(&self, reduced: &FreeFloating<S>) -> Motion<f64> {
+        let desired = self.desired_pose.map_or(Motion::zero(), |desired| desired.velocity);
+        desired - motion(reduced.velocity)
+    }
+}
+
+/// Computes Jacobian, velocity and drift of a frame, in W, or relative to the base if its reference is.
+fn reduce_to_frame<S: Scalar>(
+    model: &Model,
+    data: &Data<S>,
+    q: &[S],
+    v: &[S],
+    frame: usize,
+    reference: &TaskReference,
+    out: &mut FreeFloating<S>,
+) {
+    if reference.is_relative_to_base() {
+        base_relative_frame(model, data, v, frame, out);
+    } else {
+        free_floating_frame(model, data, q, v, frame, out);
+    }
+}

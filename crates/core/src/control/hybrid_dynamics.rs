@@ -1,0 +1,150 @@
+//! Hybrid dynamics of joints with given accelerations or tasks and joints with given efforts.
+
+use super::control_law::JointCommand;
+use super::pseudo_inverse::{PseudoInverse, ROWS};
+use crate::spatial::{cholesky_factor, cholesky_solve, dot};
+
+/// Solver for the torques that give the joints `A` their commanded accelerations while the efforts of all
+/// other joints `E` are given.
+///
+/// The reduced model `M* q̈ + l = τ`, `l = c* − Q* + f`, in the two groups: the joints `E` react like a
+/// second base, `q̈_E = y − G q̈_A` with `G = M_EE⁻¹ M_EA` and `y = M_EE⁻¹ (τ_E − l_E)`, so that a task
+/// `ẍ = J q̈ + d` depends on `A` alone, `ẍ = (J_A − J_E G) q̈_A + d + J_E y`. In `A`, joint laws give the
+/// accelerations `q̈_J`. The tasks determine the others with one damped pseudo-inverse of all their rows,
+/// `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so that each arm accounts for the reaction
+/// to the other. Joints that friction holds belong to neither group: `q̈ = 0`. For a single task on all
+/// joints this equals [`computed_torque`](super::computed_torque).
+///
+/// Source of the method: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 9.2 (hybrid dynamics).
+pub(super) struct HybridDynamics {
+    n: usize,
+    /// `M*`, `(n, n)`.
+    pub(super) inertia: Vec<f64>,
+    /// `l`, `(n,)`.
+    pub(super) load: Vec<f64>,
+    /// `q̈`, `(n,)`; that of `J` is given.
+    pub(super) acceleration: Vec<f64>,
+    /// `k` and `κ` of each joint of `T`, 1/s.
+    pub(super) null_damping: Vec<[f64; 2]>,
+    tasks: Vec<usize>,
+    fixed: Vec<usize>,
+    given: Vec<usize>,
+    factor: Vec<f64>,
+    /// `G`, a row of `E`'s length per joint of `A`, at the joint's index.
+    gain: Vec<f64>,
+    y: Vec<f64>,
+    jacobian: Vec<f64>,
+    /// `p̈r − d − J_E y − J_J q̈_J` of all tasks.
+    task_accelerations: Vec<f64>,
+    damping: Vec<f64>,
+    inverse: PseudoInverse<f64>,
+    work: [Vec<f64>; 4],
+}
+
+impl HybridDynamics {
+    /// Allocates the workspace for `n` joints and up to `tasks` tasks.
+    pub(super) fn new(n: usize, tasks: usize) -> Self {
+        let (zeros, indices) = (|k: usize| vec![0.0; k], || Vec::with_capacity(n));
+        Self {
+            n,
+            inertia: zeros(n * n),
+            load: zeros(n),
+            acceleration: zeros(n),
+            null_damping: vec![[0.0; 2]; n],
+            tasks: indices(),
+            fixed: indices(),
+            given: indices(),
+            factor: zeros(n * n),
+            gain: zeros(n * n),
+            y: zeros(n),
+            jacobian: Vec::with_capacity(ROWS * tasks * n),
+            task_accelerations: Vec::with_capacity(ROWS * tasks),
+            damping: Vec::with_capacity(tasks),
+            inverse: PseudoInverse::new(tasks),
+            work: [zeros(n), zeros(n), zeros(n), zeros(n)],
+        }
+    }
+
+    /// Eliminates the joints with given efforts `tau`, and clears the tasks.
+    pub(super) fn eliminate(&mut self, commands: &[JointCommand], tau: &[f64]) {
+        let Self { n, inertia, load, tasks, fixed, given, factor, gain, y, acceleration, .. } = self;
+        for (list, command) in
+            [(tasks, JointCommand::Task), (fixed, JointCommand::Acceleration), (given, JointCommand::Effort)]
+        {
+            list.clear();
+            list.extend((0..*n).filter(|&j| commands[j] == command));
+        }
+        (0..*n).filter(|&j| commands[j] == JointCommand::Held).for_each(|j| acceleration[j] = 0.0);
+        [&mut self.jacobian, &mut self.task_accelerations, &mut self.damping]
+            .into_iter()
+            .for_each(Vec::clear);
+        let e = self.given.len();
+        for (row, &i) in self.given.iter().enumerate() {
+            y[row] = tau[i] - load[i];
+            for (column, &j) in self.given.iter().enumerate() {
+                factor[row * e + column] = inertia[i * *n + j];
+            }
+        }
+        cholesky_factor(&mut factor[..e * e], e);
+        cholesky_solve(&factor[..e * e], e, &mut y[..e]);
+        for &a in self.tasks.iter().chain(&self.fixed) {
+            let column = &mut gain[a * *n..a * *n + e];
+            column.iter_mut().zip(&self.given).for_each(|(g, &i)| *g = inertia[i * *n + a]);
+            cholesky_solve(&factor[..e * e], e, column);
+        }
+    }
+
+    /// Adds a task with the Jacobian `(6, n)`, the acceleration `p̈r − d` and `λ₀`.
+    pub(super) fn add_task(&mut self, jacobian: &[f64], acceleration: [f64; ROWS], damping: f64) {
+        let (n, given) = (self.n, &self.given);
+        let [of_given, ..] = &mut self.work;
+        for (row, acceleration) in jacobian.chunks_exact(n).zip(acceleration) {
+            let of_given = &mut of_given[..given.len()];
+            of_given.iter_mut().zip(given).for_each(|(x, &i)| *x = row[i]);
+            // J_A − J_E G
+            let entry = |a: usize| row[a] - dot(of_given, &self.gain[a * n..]);
+            // p̈r − d − J_E y − J_J q̈_J
+            let fixed: f64 = self.fixed.iter().map(|&a| entry(a) * self.acceleration[a]).sum();
+            self.task_accelerations.push(acceleration - dot(of_given, &self.y) - fixed);
+            self.jacobian.extend(self.tasks.iter().map(|&a| entry(a)));
+        }
+        self.damping.push(damping);
+    }
+
+    /// Returns the friction torque that holds a joint whose drive gives `tau`, N m (N). Requires the
+    /// accelerations of all joints.
+    pub(super) fn holding_torque(&self, j: usize, tau: f64) -> f64 {
+        dot(&self.inertia[j * self.n..(j + 1) * self.n], &self.acceleration) + self.load[j] - tau
+    }
+
+    /// Computes all accelerations and writes the torques of `A` to `tau`.
+    pub(super) fn solve(&mut self, rates: &[f64], tau: &mut [f64]) {
+        let Self { n, tasks, fixed, given, acceleration, null_damping, .. } = self;
+        let [a, x, free, suppressed] = &mut self.work;
+        let k = tasks.len();
+        let (a, x, free, suppressed) = (&mut a[..k], &mut x[..k], &mut free[..k], &mut suppressed[..k]);
+        if !self.damping.is_empty() {
+            // q̈_T = J_T⁺ r − N k q̇ − κ D q̇
+            self.inverse.factor(&self.jacobian, k, &self.damping);
+            self.inverse.apply(&self.jacobian, &self.task_accelerations, a);
+            tasks.iter().enumerate().for_each(|(i, &j)| x[i] = null_damping[j][0] * rates[j]);
+            self.inverse.free(&self.jacobian, x, free);
+            (0..k).for_each(|i| a[i] -= free[i]);
+            tasks.iter().enumerate().for_each(|(i, &j)| x[i] = rates[j]);
+            self.inverse.suppressed(&self.jacobian, x, free, suppressed);
+            for (i, &j) in tasks.iter().enumerate() {
+                acceleration[j] = a[i] - null_damping[j][1] * suppressed[i];
+            }
+        }
+        // q̈_E = y − G q̈_A
+        for (row, &i) in given.iter().enumerate() {
+            let along: f64 =
+                tasks.iter().chain(&*fixed).map(|&j| self.gain[j * *n + row] * acceleration[j]).sum();
+            acceleration[i] = self.y[row] - along;
+        }
+        // τ_A = M* q̈ + l
+        for &i in tasks.iter().chain(&*fixed) {
+            tau[i] = dot(&self.inertia[i * *n..(i + 1) * *n], acceleration) + self.load[i];
+        }
+    }
+}

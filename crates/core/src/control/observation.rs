@@ -1,0 +1,21 @@
+//! Input of a user's controller.
+
+use crate::model::Model;
+use crate::reference::TaskSample;
+
+/// State of the robot at a control tick, with the joints to drive and the desired motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Observation<'a> {
+    /// Time, s.
+    pub time: f64,
+    /// Configuration, `(nq,)`.
+    pub q: &'a [f64],
+    /// Velocity, `(nv,)`.
+    pub v: &'a [f64],
+    /// The robot.
+    pub model: &'a Model,
+    /// Indices of the joints to drive, in the order of the torques.
+    pub joints: &'a [usize],
+    /// Desired pose and motion of the tool, if the controller has a reference.
+    pub desired: Option<TaskSample<f64>>,
+}

@@ -1,0 +1,97 @@
+//! Methods of [`Earth`] for many instants, with row-major arrays.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::Earth;
+use super::error::EarthError;
+use super::geodetic::{Geodetic, WGS84};
+
+fn check_length(name: &'static str, got: usize, expected: usize) -> Result<(), EarthError> {
+    if got == expected { Ok(()) } else { Err(EarthError::WrongLength { name, expected, got }) }
+}
+
+/// Writes `at(index, time)` to row `index` of the result.
+fn fill_rows<const N: usize>(
+    times: &[f64],
+    rows: &mut [f64],
+    at: impl Fn(usize, f64) -> Result<[f64; N], EarthError>,
+) -> Result<(), EarthError> {
+    check_length("the result", rows.len(), N * times.len())?;
+    for (index, (&t, row)) in times.iter().zip(rows.chunks_exact_mut(N)).enumerate() {
+        row.copy_from_slice(&at(index, t)?);
+    }
+    Ok(())
+}
+
+impl Earth {
+    /// Computes `rot_fi` (T, 3, 3), row-major, at `times` (T,), s.
+    ///
+    /// # Errors
+    /// Those of [`Earth::covers`].
+    pub fn rotations(&self, times: &[f64], rotations: &mut [f64]) -> Result<(), EarthError> {
+        fill_rows::<9>(times, rotations, |_, t| {
+            let transposed: Matrix3<f64> = self.checked_rotation(t)?.transpose(); // column major
+            let mut row = [0.0; 9];
+            row.copy_from_slice(transposed.as_slice());
+            Ok(row)
+        })
+    }
+
+    /// Computes the angular velocities of `F` in `I` (T, 3), axes of `I`, rad/s.
+    ///
+    /// # Errors
+    /// Those of [`Earth::covers`].
+    pub fn angular_velocities(&self, times: &[f64], rates: &mut [f64]) -> Result<(), EarthError> {
+        fill_rows(times, rates, |_, t| self.covers(t).map(|()| self.angular_velocity(t).into()))
+    }
+
+    /// Computes the positions of the Sun (T, 3), axes of `I`, m.
+    ///
+    /// # Errors
+    /// Those of [`Earth::sun`].
+    pub fn suns(&self, times: &[f64], positions: &mut [f64]) -> Result<(), EarthError> {
+        fill_rows(times, positions, |_, t| Ok(self.sun(t)?.into()))
+    }
+
+    /// Computes the positions of the Moon (T, 3), axes of `I`, m.
+    ///
+    /// # Errors
+    /// Those of [`Earth::moon`].
+    pub fn moons(&self, times: &[f64], positions: &mut [f64]) -> Result<(), EarthError> {
+        fill_rows(times, positions, |_, t| Ok(self.moon(t)?.into()))
+    }
+
+    /// Transforms positions (T, 3), m, from `I` to `F` axes.
+    ///
+    /// # Errors
+    /// Those of [`Earth::covers`].
+    pub fn to_fixed(&self, times: &[f64], positions: &[f64], fixed: &mut [f64]) -> Result<(), EarthError> {
+        check_length("the positions", positions.len(), 3 * times.len())?;
+        fill_rows(times, fixed, |k, t| Ok((self.checked_rotation(t)? * row(positions, k)).into()))
+    }
+
+    /// Computes latitude, longitude (rad) and altitude (m) on WGS84, (T, 3), of positions (T, 3), m, axes of `I`.
+    ///
+    /// # Errors
+    /// Those of [`Earth::covers`] and [`Geodetic::of`].
+    pub fn geodetics(
+        &self,
+        times: &[f64],
+        positions: &[f64],
+        coordinates: &mut [f64],
+    ) -> Result<(), EarthError> {
+        check_length("the positions", positions.len(), 3 * times.len())?;
+        fill_rows(times, coordinates, |k, t| {
+            let geodetic = Geodetic::of(&(self.checked_rotation(t)? * row(positions, k)), &WGS84)?;
+            Ok([geodetic.latitude, geodetic.longitude, geodetic.altitude])
+        })
+    }
+
+    fn checked_rotation(&self, t: f64) -> Result<Matrix3<f64>, EarthError> {
+        self.covers(t).map(|()| self.rot_fi(t))
+    }
+}
+
+fn row(rows: &[f64], k: usize) -> Vector3<f64> {
+    Vector3::from_row_slice(&rows[3 * k..3 * k + 3])
+}

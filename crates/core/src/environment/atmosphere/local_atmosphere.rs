@@ -1,0 +1,102 @@
+//! Exponential density around a robot, from two evaluations of the model.
+
+use super::error::AtmosphereError;
+use super::model::Atmosphere;
+use super::point::AtmospherePoint;
+use crate::earth::Earth;
+use crate::spatial::{Lanes8, Real, Vec3};
+use nalgebra::Vector3;
+
+/// Distance from its centre up to which a local density is used, m.
+///
+/// The horizontal scale length of the density is at least a third of the Earth's radius in every model, so the relative
+/// error is at most 8e-5, or 1e-4 with the vertical change of the scale height. Where the layers of a table are
+/// discontinuous, the jump is displaced by at most this distance.
+const VALID_RADIUS: f64 = 160.0;
+
+/// Spacing of the grid of centres, m and s: near robots and successive steps share a centre.
+const GRID: (f64, f64) = (128.0, 0.125);
+
+/// Altitude difference over which the scale height is computed, m.
+const RISE: f64 = 100.0;
+
+/// Density around a point `r₀`: `ρ(r) = ρ₀ exp(-κ û·(r - r₀))` with the vertical `û`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalAtmosphere {
+    time: f64,
+    centre: Vector3<f64>,
+    up: Vector3<f64>,
+    density: f64,
+    /// Inverse of the scale height, 1/m.
+    decay: f64,
+    /// Angular velocity of the Earth, axes of `I`, rad/s; it changes by 1e-7 per day, relative.
+    pub(in crate::environment) earth_rate: Vector3<f64>,
+}
+
+impl LocalAtmosphere {
+    /// Returns the density around `centre`, axes of `I`, m.
+    ///
+    /// # Errors
+    /// Errors of the model at the centre.
+    pub fn new(
+        atmosphere: &dyn Atmosphere,
+        earth: &Earth,
+        time: f64,
+        centre: &Vector3<f64>,
+    ) -> Result<Self, AtmosphereError> {
+        let point = AtmospherePoint::new(earth, time, centre)?;
+        let density = atmosphere.density(&point)?;
+        // κ = ln(ρ/ρ⁺)/Δh;  Δh < 0 at the upper end of a model
+        let slope = |rise: f64| Ok((density / atmosphere.density(&point.raised(rise))?).ln() / rise);
+        let decay = if density > 0.0 { slope(RISE).or_else(|_: AtmosphereError| slope(-RISE))? } else { 0.0 };
+        let earth_rate = earth.angular_velocity(time);
+        Ok(Self { time, centre: *centre, up: point.up, density, decay, earth_rate })
+    }
+
+    /// Returns the density at positions `r`, axes of `I`, m, kg/m³.
+    ///
+    /// If one of them is more than 160 m from the centre, `model` is evaluated there for the lanes that are
+    /// in use.
+    #[inline(always)]
+    pub(in crate::environment) fn densities<S: Real, E>(
+        &self,
+        r: Vec3<S>,
+        counts: impl Fn(usize) -> bool,
+        model: impl Fn(Vector3<f64>) -> Result<f64, E>,
+    ) -> Result<S, E> {
+        let offset = r - Vec3::of(&self.centre.into());
+        if S::any(S::of(VALID_RADIUS * VALID_RADIUS).less(offset.dot(offset))) {
+            let mut found = [0.0; Lanes8::LANES];
+            for (i, density) in found.iter_mut().enumerate().take(S::LANES).filter(|(i, _)| counts(*i)) {
+                let r = r.lane(i).to_nalgebra();
+                *density = self.density(&r).map_or_else(|| model(r), Ok)?;
+            }
+            return Ok(S::from_lanes(|i| found[i]));
+        }
+        Ok(self.extrapolate(offset))
+    }
+
+    /// Returns the density at `r`, axes of `I`, m, kg/m³; `None` more than 160 m from the centre.
+    pub fn density(&self, r: &Vector3<f64>) -> Option<f64> {
+        let offset = r - self.centre;
+        (offset.norm_squared() <= VALID_RADIUS * VALID_RADIUS).then(|| self.extrapolate(offset.into()))
+    }
+
+    #[inline(always)]
+    fn extrapolate<S: Real>(&self, offset: Vec3<S>) -> S {
+        // ρ = ρ₀ e⁻ˣ,  x = κ û·(r - r₀), to third order: |x| is at most 0.03 (near the ground)
+        let (s, x) = (S::of, Vec3::of(&self.up.into()).dot(offset) * S::of(self.decay));
+        s(self.density) * (s(1.0) - x * (s(1.0) - x * (s(0.5) - x * s(1.0 / 6.0))))
+    }
+
+    /// Returns true if this is the atmosphere around `centre` at `time`.
+    pub(in crate::environment) fn is_about(&self, time: f64, centre: &Vector3<f64>) -> bool {
+        self.time == time && self.centre == *centre
+    }
+
+    /// Returns the nearest point of the grid in space, at most 111 m away, and the last one in time.
+    pub(in crate::environment) fn grid_point(time: f64, r: &Vector3<f64>) -> (f64, Vector3<f64>) {
+        let (spacing, tick) = GRID;
+        ((time / tick).floor() * tick, r.map(|x| (x / spacing).round() * spacing))
+    }
+}

@@ -1,0 +1,66 @@
+//! Position and instant at which an atmosphere is evaluated.
+
+use super::error::AtmosphereError;
+use crate::earth::{Earth, Geodetic, WGS84};
+use nalgebra::Vector3;
+use std::f64::consts::FRAC_PI_2;
+
+/// A point outside the Earth at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct AtmospherePoint<'a> {
+    /// Rotation of the Earth.
+    pub earth: &'a Earth,
+    /// Instant, s of simulation.
+    pub time: f64,
+    /// Latitude, longitude (rad) and altitude (m) on WGS84.
+    pub geodetic: Geodetic,
+    /// Position from the Earth's centre, axes of `I`, m.
+    pub position: Vector3<f64>,
+    /// Unit normal of the ellipsoid, outward, axes of `I`.
+    pub up: Vector3<f64>,
+}
+
+impl<'a> AtmospherePoint<'a> {
+    /// Returns the point at `position`, axes of `I`, m.
+    ///
+    /// # Errors
+    /// [`AtmosphereError::BelowSurface`], [`AtmosphereError::Earth`].
+    pub fn new(earth: &'a Earth, time: f64, position: &Vector3<f64>) -> Result<Self, AtmosphereError> {
+        let rot_fi = earth.rot_fi(time);
+        let geodetic = Geodetic::of(&(rot_fi * position), &WGS84)?;
+        Self { earth, time, geodetic, position: *position, up: rot_fi.tr_mul(&up(&geodetic)) }.above_surface()
+    }
+
+    /// Returns the point at these coordinates.
+    ///
+    /// # Errors
+    /// Those of [`AtmospherePoint::new`]; [`AtmosphereError::Value`] for a latitude outside ±π/2.
+    pub fn at(earth: &'a Earth, time: f64, geodetic: Geodetic) -> Result<Self, AtmosphereError> {
+        let value = geodetic.latitude;
+        if !(-FRAC_PI_2..=FRAC_PI_2).contains(&value) {
+            let expected = "an angle from -π/2 to π/2 rad (45° is 0.785)";
+            return Err(AtmosphereError::Value { name: "latitude", value, expected });
+        }
+        let rot_fi = earth.rot_fi(time);
+        let (position, up) = (rot_fi.tr_mul(&geodetic.position(&WGS84)), rot_fi.tr_mul(&up(&geodetic)));
+        Self { earth, time, geodetic, position, up }.above_surface()
+    }
+
+    /// Returns the point `height` metres above this one.
+    pub(super) fn raised(&self, height: f64) -> Self {
+        let geodetic = Geodetic { altitude: self.geodetic.altitude + height, ..self.geodetic };
+        Self { geodetic, position: self.position + self.up * height, ..*self }
+    }
+
+    fn above_surface(self) -> Result<Self, AtmosphereError> {
+        let altitude = self.geodetic.altitude;
+        if altitude >= 0.0 { Ok(self) } else { Err(AtmosphereError::BelowSurface { altitude }) }
+    }
+}
+
+/// Returns the normal of the ellipsoid, axes of `F`.
+fn up(geodetic: &Geodetic) -> Vector3<f64> {
+    let ((slat, clat), (slon, clon)) = (geodetic.latitude.sin_cos(), geodetic.longitude.sin_cos());
+    // (cos φ cos λ, cos φ sin λ, sin φ)
+    Vector3::new(clat * clon, clat * slon, slat)
+}

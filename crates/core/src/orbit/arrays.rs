@@ -1,0 +1,70 @@
+//! States and frames of an orbit at many instants.
+
+use super::{Orbit, OrbitError, PathFrame, StateRows};
+
+/// Computes positions and velocities at many instants, axes of `I`.
+///
+/// `times` (T,) s; `positions` and `velocities` (T, 3), row-major, m and m/s.
+///
+/// # Errors
+/// [`OrbitError::WrongLength`] if an output does not hold 3 T numbers; otherwise the first error of
+/// [`Orbit::position_velocity`]. Rows before the error are written.
+pub fn states(
+    orbit: &dyn Orbit,
+    times: &[f64],
+    positions: &mut [f64],
+    velocities: &mut [f64],
+) -> Result<(), OrbitError> {
+    orbit.fill(times, StateRows::new(times.len(), positions, velocities)?)
+}
+
+/// Computes the local orbital frames (Hill) at many instants.
+///
+/// `times` (T,) s; `rotations` receives `rot_il` (T, 3, 3), row-major, and `rates` the angular velocity of
+/// the frame in its own axes (T, 3), rad/s.
+///
+/// # Errors
+/// [`OrbitError::WrongLength`]; otherwise the first error of [`Orbit::lvlh`].
+pub fn lvlh_frames(
+    orbit: &dyn Orbit,
+    times: &[f64],
+    rotations: &mut [f64],
+    rates: &mut [f64],
+) -> Result<(), OrbitError> {
+    frames_at(times, rotations, rates, |t| orbit.lvlh(t).map(PathFrame::from))
+}
+
+/// Computes the frames [`Orbit::frame`] at many instants; arrays as in [`lvlh_frames`].
+///
+/// # Errors
+/// [`OrbitError::WrongLength`]; otherwise the first error of [`Orbit::frame`].
+pub fn path_frames(
+    orbit: &dyn Orbit,
+    times: &[f64],
+    rotations: &mut [f64],
+    rates: &mut [f64],
+) -> Result<(), OrbitError> {
+    frames_at(times, rotations, rates, |t| orbit.frame(t))
+}
+
+fn frames_at(
+    times: &[f64],
+    rotations: &mut [f64],
+    rates: &mut [f64],
+    frame: impl Fn(f64) -> Result<PathFrame, OrbitError>,
+) -> Result<(), OrbitError> {
+    for (name, expected, got) in
+        [("rotations", 9 * times.len(), rotations.len()), ("rates", 3 * times.len(), rates.len())]
+    {
+        if got != expected {
+            return Err(OrbitError::WrongLength { name, expected, got });
+        }
+    }
+    let rows = rotations.chunks_exact_mut(9).zip(rates.chunks_exact_mut(3));
+    for (&t, (rotation, rate)) in times.iter().zip(rows) {
+        let frame = frame(t)?;
+        rotation.copy_from_slice(frame.rot_ip.transpose().as_slice()); // column-major, transposed
+        rate.copy_from_slice(frame.rate_p.as_slice());
+    }
+    Ok(())
+}

@@ -1,0 +1,39 @@
+//! Evaluation of an orbit at several instants at once, on SIMD lanes.
+
+use super::{Orbit, OrbitError, StateRows};
+use crate::spatial::{Real, Vec3};
+
+/// Fills the rows on the lanes of `S`. Where `kernel` returns `None`, the instants are evaluated one by one.
+pub(super) fn fill_lanes<S: Real>(
+    orbit: &impl Orbit,
+    times: &[f64],
+    mut rows: StateRows<'_>,
+    kernel: impl Fn(S) -> Option<(Vec3<S>, Vec3<S>)>,
+) -> Result<(), OrbitError> {
+    rows.check(times)?;
+    let mut done = 0;
+    while done < times.len() {
+        // as many blocks as possible inside the kernel's instruction set
+        done = S::enter(
+            #[inline(always)]
+            || {
+                let mut from = done;
+                while from < times.len() {
+                    let count = S::LANES.min(times.len() - from);
+                    // lanes beyond the end repeat the last instant
+                    let t = S::from_lanes(|lane| times[from + lane.min(count - 1)]);
+                    let Some((position, velocity)) = kernel(t) else { break };
+                    rows.set_lanes(from, count, &position, &velocity);
+                    from += count;
+                }
+                from
+            },
+        );
+        for index in done..times.len().min(done + S::LANES) {
+            let (position, velocity) = orbit.position_velocity(times[index])?;
+            rows.set(index, &position, &velocity)?;
+        }
+        done = times.len().min(done + S::LANES);
+    }
+    Ok(())
+}

@@ -1,0 +1,48 @@
+//! Errors of paths through given points.
+
+use crate::number_text::{count, short, unlike};
+use crate::spatial::SplineError;
+
+/// Errors of paths: invalid points, or a time at which the path is not defined.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[allow(missing_docs)] // the fields are what the messages say
+pub enum PathError {
+    #[error("the path has {got}; expected at least 2", got = count(*got, "point"))]
+    TooFewPoints { got: usize },
+    #[error("{name} has {got}; expected {expected}, one per time", got = count(*got, "row"))]
+    WrongLength { name: &'static str, expected: usize, got: usize },
+    #[error(
+        "{name}[{index}] holds {value}; expected finite numbers up to 1e60 (SI units)",
+        value = short(*value)
+    )]
+    NotFinite { name: &'static str, index: usize, value: f64 },
+    #[error(
+        "times[{index}] is {time} s after {before} s; times must increase by at least 1e-9 s; sort the rows \
+         and remove duplicates",
+        before = short(*before), time = unlike(*time, &[*before])
+    )]
+    NotIncreasing { index: usize, before: f64, time: f64 },
+    #[error("accelerations are given without velocities; give both, or velocities alone, or neither")]
+    AccelerationsAlone,
+    #[error(
+        "attitudes[{index}] (x, y, z, w) has norm {norm}; it must be 1 within 1e-6; normalise it",
+        norm = unlike(*norm, &[1.0])
+    )]
+    QuaternionNorm { index: usize, norm: f64 },
+    #[error(
+        "the attitude rotates by {angle} rad from point {before} to the next; it must rotate by at most 2.0 \
+         rad, because larger rotations are ambiguous in direction; give points closer in time",
+        before = index - 1,
+        angle = short(*angle)
+    )]
+    TurnTooFar { index: usize, angle: f64 },
+    #[error(
+        "the path covers {start} s to {end} s, but the run requires t = {time} s; give times that cover the \
+         run, or continue the path beyond them in free fall with ends=\"coast\"",
+        time = unlike(*time, &[*start, *end]), start = short(*start), end = short(*end)
+    )]
+    TimeOutOfPath { time: f64, start: f64, end: f64 },
+    #[error(transparent)]
+    Spline(#[from] SplineError),
+}

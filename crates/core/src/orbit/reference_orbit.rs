@@ -1,0 +1,118 @@
+//! Interface of a reference orbit.
+
+use super::{Axes, Lvlh, OrbitError, OrbitState, PathFrame, StateRows};
+use crate::earth::Epoch;
+use crate::gravity::Gravity;
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+/// Reference orbit as a function of time.
+pub trait Orbit: Send + Sync + std::fmt::Debug {
+    /// Returns the gravitational parameter of the planet, m³/s²; `None` without a planet.
+    fn mu(&self) -> Option<f64>;
+
+    /// Returns the gravity field if the orbit is in free fall in this field and no other force; otherwise
+    /// `None`.
+    fn gravity(&self) -> Option<&Arc<Gravity>> {
+        None
+    }
+
+    /// Returns the state at `t` seconds of simulation, axes of `I`.
+    ///
+    /// # Errors
+    /// [`OrbitError`] if the orbit is not defined at `t`, or `t` is not finite.
+    fn state(&self, t: f64) -> Result<OrbitState, OrbitError>;
+
+    /// Returns the states at two instants if the kind of orbit can compute both at little more than the cost
+    /// of one, with the same bits; otherwise `None`.
+    fn two_states(&self, _: [f64; 2]) -> Option<[OrbitState; 2]> {
+        None
+    }
+
+    /// Returns position and velocity, m and m/s, as [`Orbit::state`] does.
+    ///
+    /// # Errors
+    /// Those of [`Orbit::state`], except errors of the acceleration.
+    fn position_velocity(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
+        self.state(t).map(|state| (state.position, state.velocity))
+    }
+
+    /// Computes positions and velocities at many instants. Rows before the first error are written.
+    ///
+    /// The states equal those of [`Orbit::position_velocity`] up to rounding: some kinds evaluate several
+    /// instants at once on SIMD lanes.
+    ///
+    /// # Errors
+    /// The error of [`Orbit::position_velocity`] at the first instant that has one.
+    fn fill(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
+        fill_each(self, times, rows)
+    }
+
+    /// Computes at most `most_steps` integration steps towards `times`. Returns true if no further step is
+    /// required.
+    ///
+    /// Has no effect on results; callers prepare in parts so that long integrations can be interrupted.
+    fn prepare(&self, _times: &[f64], _most_steps: usize) -> bool {
+        true
+    }
+
+    /// Returns the axes of `I`.
+    fn axes(&self) -> Axes {
+        Axes::default()
+    }
+
+    /// Returns the epoch at time zero, if the orbit defines one.
+    fn epoch(&self) -> Option<Epoch> {
+        None
+    }
+
+    /// Returns a description of the origin of [`OrbitState::velocity`].
+    fn velocity_source(&self) -> &'static str {
+        "derivative of the position"
+    }
+
+    /// Returns the time derivative of the position at `t`, m/s. Equals `state.velocity` unless the orbit
+    /// model reports a velocity that is not its derivative (SGP4).
+    ///
+    /// # Errors
+    /// Those of [`Orbit::state`].
+    fn rate_of_position(&self, _t: f64, state: &OrbitState) -> Result<Vector3<f64>, OrbitError> {
+        Ok(state.velocity)
+    }
+
+    /// Returns the times at which the acceleration jumps, s of simulation; the integrator stops at each.
+    fn event_times(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Returns the frame attached to the reference: its given attitude, otherwise its local orbital frame.
+    ///
+    /// # Errors
+    /// Those of [`Orbit::state`] and [`Orbit::lvlh`].
+    fn frame(&self, t: f64) -> Result<PathFrame, OrbitError> {
+        self.lvlh(t).map(PathFrame::from)
+    }
+
+    /// Returns the local orbital frame (Hill, RSW) at `t` seconds of simulation.
+    ///
+    /// # Errors
+    /// Those of [`Orbit::state`], and [`OrbitError::UndefinedFrame`] if the reference is at rest or moves
+    /// along its radius.
+    fn lvlh(&self, t: f64) -> Result<Lvlh, OrbitError> {
+        Lvlh::of(&self.state(t)?)
+    }
+}
+
+/// Fills the rows with one evaluation of the orbit per instant.
+pub(super) fn fill_each(
+    orbit: &(impl Orbit + ?Sized),
+    times: &[f64],
+    mut rows: StateRows<'_>,
+) -> Result<(), OrbitError> {
+    rows.check(times)?;
+    for (index, &t) in times.iter().enumerate() {
+        let (position, velocity) = orbit.position_velocity(t)?;
+        rows.set(index, &position, &velocity)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,14 @@
+//! State of a reference orbit.
+
+use nalgebra::Vector3;
+
+/// State of the reference at one instant, axes of `I`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrbitState {
+    /// Position from the planet's centre, m.
+    pub position: Vector3<f64>,
+    /// Velocity, m/s.
+    pub velocity: Vector3<f64>,
+    /// True acceleration, m/s², which may differ from the gravity at the position.
+    pub acceleration: Vector3<f64>,
+}

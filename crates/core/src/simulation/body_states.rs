@@ -1,0 +1,128 @@
+//! Converts between the states of systems in base axes and the blocks of bodies in `W` that effects work on.
+
+use crate::dynamics::{BodyData, Data, base_rotation};
+use crate::environment::{Bodies, BodyMotion, BodyState, Wrenches, on_lanes};
+use crate::model::{Model, Node};
+use crate::spatial::{Force, Mat3, Motion, Real, Scalar, Vec3};
+use nalgebra::{Matrix3, Vector3};
+
+/// A system whose bodies receive wrenches, with the kinematics of its state in `data`.
+pub(super) struct LoadedSystem<'a, S> {
+    pub(super) data: &'a mut Data<S>,
+    pub(super) q: &'a [S],
+    /// Velocity of the frame in which `data` has its velocities, W axes, m/s.
+    pub(super) frame_velocity: Vec3<S>,
+}
+
+/// Returns the bodies of systems at rest with all origins at the origin of `W`.
+pub(super) fn bodies_of(models: &[&Model]) -> Bodies {
+    let at_rest = |node: &Node| BodyState {
+        mass: node.mass,
+        inertia: node.about_com.to_nalgebra(),
+        com: node.com.to_nalgebra(),
+        rot_wk: Matrix3::identity(),
+        origin: Vector3::zeros(),
+        velocity: Vector3::zeros(),
+        angular_velocity: Vector3::zeros(),
+    };
+    let bodies = |model: &&Model| model.nodes().iter().map(at_rest).collect();
+    Bodies::new(&models.iter().map(bodies).collect::<Vec<_>>())
+}
+
+impl<S: Scalar> LoadedSystem<'_, S> {
+    /// Writes the states of the bodies of system number `system` to `bodies`.
+    pub(super) fn gather_bodies(&self, system: usize, with_velocity: bool, bodies: &mut Bodies) {
+        let count = self.data.bodies.len();
+        on_lanes!(count, L => self.gather_lanes::<L>(system, with_velocity, bodies));
+    }
+
+    #[inline(always)]
+    fn gather_lanes<L: Real>(&self, system: usize, with_velocity: bool, bodies: &mut Bodies) {
+        L::enter(
+            #[inline(always)]
+            || {
+                let (rot_wb, origin) = (self.rot_wb::<L>(), broadcast::<S, L>(&Vec3::from_slice(self.q)));
+                let frame_velocity = broadcast::<S, L>(&self.frame_velocity);
+                bodies.store_motion(
+                    system,
+                    with_velocity,
+                    #[inline(always)]
+                    |first| {
+                        let body = bodies_from(self.data, first);
+                        let vectors = |of: fn(&BodyData<S>) -> &Vec3<S>| gather::<S, L>(|i| of(body(i)));
+                        let com = vectors(|body| &body.inertia.com);
+                        let rot_bk = Mat3::from_columns(
+                            vectors(|body| &body.rot_bk.x),
+                            vectors(|body| &body.rot_bk.y),
+                            vectors(|body| &body.rot_bk.z),
+                        );
+                        let velocity = || {
+                            let linear = vectors(|body| &body.velocity.linear);
+                            let twist = Motion::new(linear, vectors(|body| &body.velocity.angular));
+                            [rot_wb * twist.at(com) + frame_velocity, rot_wb * twist.angular]
+                        };
+                        BodyMotion {
+                            com: rot_wb * (vectors(|body| &body.pos_b) + com) + origin,
+                            rot_wk: rot_wb * rot_bk,
+                            velocity: if with_velocity { velocity() } else { [Vec3::zero(); 2] },
+                        }
+                    },
+                );
+            },
+        );
+    }
+
+    /// Writes the wrenches on system number `system` to `data`: base axes, about the origins of the bodies.
+    pub(super) fn scatter_wrenches(&mut self, system: usize, wrenches: &Wrenches) {
+        on_lanes!(self.data.bodies.len(), L => self.scatter_lanes::<L>(system, wrenches));
+    }
+
+    #[inline(always)]
+    fn scatter_lanes<L: Real>(&mut self, system: usize, wrenches: &Wrenches) {
+        L::enter(
+            #[inline(always)]
+            || {
+                let rot_wb = self.rot_wb::<L>();
+                for first in (0..self.data.bodies.len()).step_by(L::LANES) {
+                    let wrench = wrenches.lanes::<L>(system, first);
+                    let com = {
+                        let body = bodies_from(self.data, first);
+                        gather::<S, L>(|i| &body(i).inertia.com)
+                    };
+                    // f_b = Rᵀ f,  τ_b = Rᵀ τ + c × f_b
+                    let force = rot_wb.transpose_mul(wrench.force);
+                    let torque = com.cross_add(force, rot_wb.transpose_mul(wrench.torque));
+                    for (i, body) in self.data.bodies[first..].iter_mut().take(L::LANES).enumerate() {
+                        let one = |v: Vec3<L>| Vec3::of(&v.lane(i));
+                        body.external = Force::new(one(force), one(torque));
+                    }
+                }
+            },
+        );
+    }
+
+    /// Returns the rotation from the base to `W`.
+    #[inline(always)]
+    fn rot_wb<L: Real>(&self) -> Mat3<L> {
+        base_rotation(self.q).map(|x| L::of(x.value()))
+    }
+}
+
+/// Returns a vector with the same components in all lanes.
+#[inline(always)]
+fn broadcast<S: Scalar, L: Real>(v: &Vec3<S>) -> Vec3<L> {
+    v.map(|x| L::of(x.value()))
+}
+
+/// Returns body `first + i` for lane `i`; lanes past the end repeat the last body.
+#[inline(always)]
+fn bodies_from<'a, S>(data: &'a Data<S>, first: usize) -> impl Fn(usize) -> &'a BodyData<S> {
+    let bodies = &data.bodies[first..];
+    move |i| &bodies[i.min(bodies.len() - 1)]
+}
+
+/// Gathers one vector per lane.
+#[inline(always)]
+fn gather<'a, S: Scalar, L: Real>(of: impl Fn(usize) -> &'a Vec3<S>) -> Vec3<L> {
+    Vec3::from_lanes(|i| of(i).map(|x| x.value()))
+}

@@ -1,0 +1,63 @@
+//! Computes a certificate from a trace.
+
+use super::attitude::Attitude;
+use super::balance::Balance;
+use super::base_rows::BaseRows;
+use super::center_of_mass::CenterOfMass;
+use super::checks::{ATTITUDE, CENTER, Certificate, JOINT_STEP_DOUBLING, PairChecks};
+use super::step_doubling::StepDoubling;
+use super::trace_row::{RowReader, TraceRow};
+use crate::model::Model;
+use crate::simulation::trace::Trace;
+
+/// Computes the certificate of a run of `model` from its trace alone; all errors are zero where the trace has
+/// no rows.
+pub fn certify(model: &Model, trace: &Trace) -> Certificate {
+    let mut reader = RowReader::new(model, trace);
+    let mut balance = Balance::default();
+    let mut center = CenterOfMass::default();
+    let mut base_rows = BaseRows::new(model);
+    let mut attitude = Attitude::default();
+    let mut last = None;
+    for k in 0..reader.rows() {
+        let now = reader.row(k);
+        balance.add(&now);
+        // an impact has two rows at one instant, without a step between them
+        if let Some(before) = last.as_ref().filter(|before: &&TraceRow<'_>| before.time < now.time) {
+            center.add(&before.mass_motion(), &now.mass_motion());
+            if trace.has_every_step {
+                base_rows.add(model, before, &now);
+                attitude.add(&before.base, &now.base);
+            }
+        }
+        last = Some(now);
+    }
+    // without external forces the check of the centre of mass does not depend on the spacing of the rows
+    let is_free = trace.impulse.iter().all(|x| *x == 0.0);
+    let doubling = StepDoubling { model, trace, size: balance.size(), gate: JOINT_STEP_DOUBLING };
+    let center_error = center.error(balance.size(), CENTER);
+    let pairs = if trace.has_every_step {
+        Some(PairChecks {
+            center_of_mass_error_rel: center_error,
+            base_rows_residual_rel: base_rows.largest.residual(balance.size()),
+            base_rows_gate: base_rows.largest.gate(),
+            attitude_consistency: attitude.consistency(ATTITUDE),
+        })
+    } else {
+        trace.pair_checks
+    };
+    Certificate {
+        linear_momentum_drift_rel: balance.linear(),
+        angular_momentum_drift_rel: balance.angular(),
+        energy_balance_error_rel: balance.energy(trace.work_done),
+        center_of_mass_error_rel: pairs
+            .map(|pairs| pairs.center_of_mass_error_rel)
+            .or_else(|| is_free.then_some(center_error)),
+        base_rows_residual_rel: pairs.map(|pairs| pairs.base_rows_residual_rel),
+        base_rows_gate: pairs.map_or(0.0, |pairs| pairs.base_rows_gate),
+        attitude_consistency: pairs.map(|pairs| pairs.attitude_consistency),
+        attitude_step_doubling_rad: trace.attitude_step_doubling,
+        joint_step_doubling_rel: doubling.joints(),
+        position_step_doubling_rel: doubling.origin(center.path()),
+    }
+}

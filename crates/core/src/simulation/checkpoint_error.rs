@@ -1,0 +1,37 @@
+//! Errors of checkpoints.
+
+use crate::number_text::short;
+use thiserror::Error;
+
+/// A checkpoint from which a run cannot resume.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[allow(missing_docs)] // the fields are what the messages say
+pub enum CheckpointError {
+    #[error("the checkpoint is damaged: {reason}; run the scenario again")]
+    Unreadable { reason: String },
+    #[error(
+        "the checkpoint was written by version {found} of onorbit_rs; version {own} may round differently: resume with \
+         version {found}, or run the scenario again"
+    )]
+    OtherVersion { found: String, own: String },
+    #[error(
+        "the checkpoint was written with the instruction set {found}; this run uses {own}, which rounds differently: set \
+         ONORBIT_INSTRUCTION_SET={found}, or run the scenario again"
+    )]
+    OtherInstructionSet { found: String, own: String },
+    #[error(
+        "the checkpoint needs the {expected} rows recorded before it, but {got} are given; pass all of them"
+    )]
+    MissingRows { got: usize, expected: usize },
+    #[error(
+        "the checkpoint has {got} {name}, but the simulation has {expected}: it belongs to another scenario"
+    )]
+    OtherSize { name: &'static str, got: usize, expected: usize },
+    #[error(
+        "the checkpoint is of a run {duration} with steps of {step} s; duration, steps, control period or events of this \
+         run differ: it belongs to another scenario",
+        duration = duration.map_or("without a planned end".to_owned(), |end| format!("of {} s", short(end))),
+        step = short(*step)
+    )]
+    OtherSchedule { duration: Option<f64>, step: f64 },
+}

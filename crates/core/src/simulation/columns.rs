@@ -1,0 +1,310 @@
+//! The table of the recorded quantities: name, path, shape, unit, frame and meaning of each, described once.
+//!
+//! The recorder, the Python bindings, `trace.npz` and its reader, the viewer, the figures and the
+//! documentation read this table.
+
+use crate::model::{BASE_NQ, BASE_NV, Model};
+use std::fmt;
+
+/// Length of one axis of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Length {
+    /// One entry per row of the trace, `T`.
+    Rows,
+    /// One entry per event, `K`.
+    Events,
+    /// The same for every robot.
+    Fixed(usize),
+    /// Number of coordinates of the robot, `nq`.
+    Nq,
+    /// Number of velocities of the robot, `nv`.
+    Nv,
+    /// Number of joints of the robot, `n`.
+    Joints,
+    /// Number of bodies of the robot.
+    Bodies,
+    /// Number of tracking errors of a control, `k`: 6 for a task, otherwise one per joint.
+    Errors,
+}
+
+impl Length {
+    /// Returns the length for a robot; 1 where the robot does not determine it.
+    fn of(self, model: &Model) -> usize {
+        match self {
+            Self::Fixed(length) => length,
+            Self::Nq => model.nq(),
+            Self::Nv => model.nv(),
+            Self::Joints => model.joint_count(),
+            Self::Bodies => model.nodes().len(),
+            Self::Rows | Self::Events | Self::Errors => 1,
+        }
+    }
+}
+
+impl fmt::Display for Length {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rows => f.write_str("T"),
+            Self::Events => f.write_str("K"),
+            Self::Fixed(length) => write!(f, "{length}"),
+            Self::Nq => f.write_str("nq"),
+            Self::Nv => f.write_str("nv"),
+            Self::Joints => f.write_str("n"),
+            Self::Bodies => f.write_str("bodies"),
+            Self::Errors => f.write_str("k"),
+        }
+    }
+}
+
+/// What a run must have so that a column is recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Condition {
+    /// Every run has the column.
+    Always,
+    /// A controller that compensates Coulomb friction, with the native equations of motion.
+    FrictionCompensation,
+    /// A tool.
+    Tool,
+    /// A tool with a reference.
+    Reference,
+    /// An orbit.
+    Orbit,
+    /// `gravity_mode: carried` around a planet.
+    Carried,
+    /// A list of controls.
+    Controls,
+    /// `record_wrenches`.
+    Wrenches,
+}
+
+impl Condition {
+    /// Returns the condition in words.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Always => "always",
+            Self::FrictionCompensation => "with a controller that compensates friction",
+            Self::Tool => "with a tool",
+            Self::Reference => "with a tool that follows a reference",
+            Self::Orbit => "with an orbit",
+            Self::Carried => "with gravity_mode \"carried\" around a planet",
+            Self::Controls => "with a list of controls",
+            Self::Wrenches => "with record_wrenches",
+        }
+    }
+}
+
+/// A range of the last axis of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Its name.
+    pub name: &'static str,
+    /// Index of its first number.
+    pub start: usize,
+    /// Index after its last number; `None` where it extends to the end of the axis.
+    pub end: Option<usize>,
+}
+
+/// Description of one recorded quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Name of the attribute of a trace.
+    pub name: &'static str,
+    /// Name in files; `*` stands for the name of a control or of an effect.
+    pub path: &'static str,
+    /// Length of each axis.
+    pub shape: &'static [Length],
+    /// Unit; of each part in order, separated by semicolons, where there are parts. `1` for none.
+    pub unit: &'static str,
+    /// Frame in whose axes the numbers are expressed; empty where they have none.
+    pub frame: &'static str,
+    /// The quantity.
+    pub meaning: &'static str,
+    /// When it is recorded.
+    pub condition: Condition,
+    /// Parts of the last axis; empty where the column is one quantity.
+    pub parts: &'static [Part],
+}
+
+impl Column {
+    /// Returns the shape of one row for a robot.
+    pub fn row_shape(&self, model: &Model) -> Vec<usize> {
+        self.shape[1..].iter().map(|length| length.of(model)).collect()
+    }
+
+    /// Returns how many numbers one row has for a robot.
+    pub fn row_width(&self, model: &Model) -> usize {
+        self.shape[1..].iter().map(|length| length.of(model)).product()
+    }
+
+    /// Returns the path of the column of one control or effect.
+    pub fn path_of(&self, owner: &str) -> String {
+        self.path.replace('*', owner)
+    }
+
+    /// Returns the name of the control or effect whose column has this path, if there is one.
+    pub fn owner_of<'a>(&self, path: &'a str) -> Option<&'a str> {
+        self.path.strip_suffix('*').and_then(|prefix| path.strip_prefix(prefix))
+    }
+}
+
+const fn part(name: &'static str, start: usize, end: Option<usize>) -> Part {
+    Part { name, start, end }
+}
+
+const WHOLE: &[Part] = &[];
+const CONFIGURATION: &[Part] =
+    &[part("position", 0, Some(3)), part("quaternion", 3, Some(BASE_NQ)), part("joints", BASE_NQ, None)];
+const VELOCITY: &[Part] =
+    &[part("linear", 0, Some(3)), part("angular", 3, Some(BASE_NV)), part("joints", BASE_NV, None)];
+const LINEAR_ANGULAR: &[Part] = &[part("linear", 0, Some(3)), part("angular", 3, Some(6))];
+const FORCE_TORQUE: &[Part] = &[part("force", 0, Some(3)), part("torque", 3, Some(6))];
+
+/// One axis of a shape, as the table writes it.
+macro_rules! length {
+    (T) => {
+        Length::Rows
+    };
+    (K) => {
+        Length::Events
+    };
+    (nq) => {
+        Length::Nq
+    };
+    (nv) => {
+        Length::Nv
+    };
+    (n) => {
+        Length::Joints
+    };
+    (bodies) => {
+        Length::Bodies
+    };
+    (k) => {
+        Length::Errors
+    };
+    ($length:literal) => {
+        Length::Fixed($length)
+    };
+}
+
+/// Declares the static table.
+macro_rules! table {
+    ($($name:ident ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident, $parts:ident,
+        $meaning:literal;)+) => {
+        /// Columns that are fields of a trace, in its order.
+        pub static COLUMNS: &[Column] = &[
+            $(column!($name, stringify!($name), ($($axis),+), $unit, $frame, $condition, $parts, $meaning)),+
+        ];
+    };
+}
+
+/// One row of the table as a [`Column`].
+macro_rules! column {
+    (
+        $name:ident, $path:expr, ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident,
+        $parts:ident, $meaning:literal
+    ) => {
+        Column {
+            name: stringify!($name),
+            path: $path,
+            shape: &[$(length!($axis)),+],
+            unit: $unit,
+            frame: $frame,
+            meaning: $meaning,
+            condition: Condition::$condition,
+            parts: $parts,
+        }
+    };
+}
+
+/// Passes the rows of the table to a macro, which declares a field, a getter or a description for each:
+/// name, shape, unit, frame, condition, parts, meaning.
+///
+/// Paths are those of a single system: the name itself.
+#[macro_export]
+macro_rules! trace_columns {
+    ($then:ident) => {
+        $then! {
+            time (T), "s", "", Always, WHOLE, "Time.";
+            q (T, nq), "m; 1; rad or m", "W", Always, CONFIGURATION,
+                "Configuration: position and quaternion (x, y, z, w) of the base, then joint positions.";
+            v (T, nv), "m/s; rad/s; rad/s or m/s", "B", Always, VELOCITY,
+                "Velocity: linear and angular velocity of the base, then joint rates.";
+            tau (T, n), "N m or N", "", Always, WHOLE,
+                "Joint torque (force of a prismatic joint), held from the time of this row to the next step.";
+            friction_compensation (T, n), "N m or N", "", FrictionCompensation, WHOLE,
+                "Part of tau that compensates Coulomb friction.";
+            acceleration (T, nv), "m/s²; rad/s²; rad/s² or m/s²", "B", Always, VELOCITY,
+                "Time derivative of v just after the time of this row.";
+            momentum (T, 6), "N s; N m s", "W", Always, LINEAR_ANGULAR,
+                "Linear momentum, and angular momentum about the centre of mass of the system.";
+            impulse (T, 6), "N s; N m s", "W", Always, LINEAR_ANGULAR,
+                "Time integral of the external forces and of their moments about the centre of mass.";
+            kinetic_energy (T), "J", "W", Always, WHOLE, "Kinetic energy.";
+            work (T), "J", "W", Always, WHOLE,
+                "Work done on the robot by motors and external wrenches, less dissipated.";
+            dissipated (T), "J", "", Always, WHOLE,
+                "Energy lost in the damping, friction and stops of the joints.";
+            center_of_mass (T, 3), "m", "W", Always, WHOLE, "Position of the centre of mass of the system.";
+            tool_pose (T, 4, 4), "m", "W", Tool, WHOLE, "Pose of the tool as a homogeneous matrix.";
+            reference_pose (T, 4, 4), "m", "W", Reference, WHOLE,
+                "Desired pose of the tool as a homogeneous matrix.";
+            position_error (T, 3), "m", "W", Reference, WHOLE, "Desired minus actual position of the tool.";
+            attitude_error (T, 3), "rad", "W", Reference, WHOLE,
+                "Rotation vector from the actual to the desired attitude of the tool.";
+            position_eci (T, 3), "m", "I", Orbit, WHOLE,
+                "Position of the origin of the base from the planet's centre.";
+            velocity_eci (T, 3), "m/s", "I", Orbit, WHOLE, "Velocity of the origin of the base.";
+            reference_position_eci (T, 3), "m", "I", Orbit, WHOLE,
+                "Position of the reference orbit, which is the origin of W, from the planet's centre.";
+            reference_velocity_eci (T, 3), "m/s", "I", Orbit, WHOLE, "Velocity of the reference orbit.";
+            reference_residual (T, 3), "m/s²", "I", Carried, WHOLE,
+                "Acceleration of gravity that the reference orbit does not follow and that is left out.";
+        }
+    };
+}
+
+trace_columns!(table);
+
+/// Tracking errors, one column per control.
+pub static TRACKING: Column = column!(
+    tracking,
+    "tracking_*",
+    (T, k),
+    "m and rad, or those of the joints",
+    "W",
+    Controls,
+    WHOLE,
+    "Desired minus actual: position and rotation vector of a task (axes of B where its reference is relative \
+     to the base), else one number per joint; zero while the control is inactive."
+);
+
+/// Wrenches of the environment, one column per effect.
+pub static WRENCHES: Column = column!(
+    wrenches,
+    "wrench_*",
+    (T, bodies, 6),
+    "N; N m",
+    "W",
+    Wrenches,
+    FORCE_TORQUE,
+    "Force of an effect on each body, and its torque about the body's centre of mass."
+);
+
+/// Times at which the run changed to another reference orbit.
+pub static REREFERENCED: Column = column!(
+    rereferenced,
+    "rereferenced",
+    (K),
+    "s",
+    "",
+    Always,
+    WHOLE,
+    "Times at which the robot had drifted too far from its reference orbit for accurate integration, which \
+     continued about a new one; the rows stay in W."
+);
+
+/// Returns the description of every recorded quantity.
+pub fn columns() -> impl Iterator<Item = &'static Column> {
+    COLUMNS.iter().chain([&TRACKING, &WRENCHES, &REREFERENCED])
+}

@@ -1,0 +1,71 @@
+//! The controls of one system of a run, and the desired pose of its tool.
+
+use super::error::SimulationError;
+use super::schedule::SAME_INSTANT;
+use super::system::System;
+use super::system_state::SystemState;
+use crate::control::{Control, ControlError, ControllerSet};
+use crate::model::Model;
+use crate::reference::{TaskReference, TaskSample};
+use crate::spatial::Scalar;
+
+/// The controls of one system, its tool, and the reference of the tool that no control tracks.
+pub(super) struct Controllers<'a, S> {
+    pub(super) set: ControllerSet<'a, S>,
+    tool: Option<usize>,
+    reference: Option<&'a TaskReference>,
+}
+
+impl<'a, S: Scalar> Controllers<'a, S> {
+    pub(super) fn new(
+        controls: &'a mut [Control],
+        (tool, reference): (Option<usize>, Option<&'a TaskReference>),
+        model: &Model,
+        time_step: f64,
+    ) -> Result<Self, SimulationError> {
+        let set = ControllerSet::new(controls, model, SAME_INSTANT * time_step)?;
+        Ok(Self { set, tool, reference })
+    }
+
+    /// Returns the desired pose of the tool at `t`, and whether it is relative to the base. Needs the kinematics of
+    /// `state` in `system`.
+    pub(super) fn desired(
+        &mut self,
+        t: f64,
+        state: &SystemState<S>,
+        system: &System<'_, S>,
+    ) -> Result<Option<(TaskSample<f64>, bool)>, SimulationError> {
+        self.set.update_errors(t, system.model, &system.data, &state.q, &state.v)?;
+        if let Some(reference) = self.reference {
+            let sample = reference.sample(t, 0.0);
+            let sample = sample.map_err(|source| SimulationError::Reference { time: t, source })?;
+            return Ok(Some((sample, reference.is_relative_to_base())));
+        }
+        Ok(self.set.controls().iter().enumerate().find_map(|(i, control)| {
+            let (_, reference) = control.law.task().filter(|(frame, _)| Some(*frame) == self.tool)?;
+            Some((self.set.desired(i)?, reference.is_relative_to_base()))
+        }))
+    }
+
+    /// Sets the torques of the system, whose kinematics are those of `state`; leaves them as they are without
+    /// controls.
+    pub(super) fn update(
+        &mut self,
+        t: f64,
+        state: &SystemState<S>,
+        system: &mut System<'_, S>,
+    ) -> Result<(), SimulationError> {
+        if self.set.controls().is_empty() {
+            return Ok(());
+        }
+        let System { model, data, command, modes, .. } = system;
+        self.set.update(t, model, data, &state.q, &state.v, command)?;
+        modes.requested_mut().copy_from_slice(self.set.desired_accelerations());
+        match command.iter().position(|tau| !tau.value().is_finite()) {
+            Some(joint) => {
+                Err(ControlError::Overflow { joint, time: t, value: command[joint].value() }.into())
+            }
+            None => Ok(()),
+        }
+    }
+}

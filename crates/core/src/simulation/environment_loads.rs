@@ -1,0 +1,220 @@
+//! Computes the wrenches of the environment's effects on the bodies of all systems.
+
+use super::body_states::{LoadedSystem, bodies_of};
+use super::error::SimulationError;
+use super::external_loads::ExternalLoads;
+use super::local_reference::{LocalReference, Shift};
+use super::reference_cache::{Instant, ReferenceCache};
+use super::state::State;
+use super::system::System;
+use crate::earth::Earth;
+use crate::environment::{
+    Bodies, DifferentialGravity, Effect, EnvironmentError, GravityMode, Reference, Scene, Wrench, Wrenches,
+};
+use crate::gravity::Gravity;
+use crate::model::Model;
+use crate::orbit::{Numerical, Orbit, OrbitState};
+use crate::spatial::Scalar;
+use nalgebra::Vector3;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Effects of the environment on all systems of a run, their reference orbit, and the workspace to evaluate them.
+#[derive(Debug)]
+pub(super) struct EnvironmentLoads {
+    effects: Vec<Arc<dyn Effect>>,
+    reads_velocities: bool,
+    /// Orbit on which the origin of W moves.
+    reference: Option<Arc<dyn Orbit>>,
+    /// Freely falling reference that replaces `reference` once the robot has drifted far from it.
+    local_reference: Option<LocalReference>,
+    /// States of the orbit about which the robot is integrated: `reference` or the local one.
+    cache: ReferenceCache,
+    gravity: Option<Arc<Gravity>>,
+    earth: Option<Arc<Earth>>,
+    gravity_mode: GravityMode,
+    /// Step being integrated, s.
+    interval: (f64, f64),
+    bodies: Bodies,
+    wrenches: Wrenches,
+    /// Wrenches of the effects that the motion of the reference already includes; only in `Carried` mode.
+    common: Wrenches,
+}
+
+impl EnvironmentLoads {
+    pub(super) fn new(
+        models: &[&Model],
+        effects: Vec<Arc<dyn Effect>>,
+        orbit: Option<Arc<dyn Orbit>>,
+        gravity: Option<Arc<Gravity>>,
+        earth: Option<Arc<Earth>>,
+        gravity_mode: GravityMode,
+    ) -> Self {
+        let counts: Vec<_> = models.iter().map(|model| model.nodes().len()).collect();
+        Self {
+            reads_velocities: effects.iter().any(|effect| effect.reads_velocities()),
+            effects,
+            reference: orbit.clone(),
+            local_reference: None,
+            cache: ReferenceCache::new(orbit),
+            gravity,
+            earth,
+            gravity_mode,
+            interval: (f64::NAN, f64::NAN),
+            bodies: bodies_of(models),
+            wrenches: Wrenches::new(&counts),
+            common: Wrenches::new(&counts),
+        }
+    }
+
+    /// Returns the local reference about which the robot is integrated, if there is one.
+    pub(super) fn local_reference(&self) -> Option<&LocalReference> {
+        self.local_reference.as_ref()
+    }
+
+    /// Integrates the robot about `local`, an orbit in free fall, from now on.
+    pub(super) fn set_local_reference(&mut self, local: LocalReference) -> Result<(), SimulationError> {
+        let (Some(gravity), Some(&time)) = (&self.gravity, local.times.last()) else { return Ok(()) };
+        let orbit = Numerical::new(local.position.into(), local.velocity.into(), time, Arc::clone(gravity));
+        let orbit = orbit.map_err(|source| SimulationError::Orbit { time, source })?;
+        self.cache = ReferenceCache::new(Some(Arc::new(orbit)));
+        self.local_reference = Some(local);
+        Ok(())
+    }
+
+    /// Returns the shift at `t` from the local reference to W, if the robot has a local reference.
+    pub(super) fn shift(&mut self, t: f64, mass: f64) -> Result<Option<Shift>, SimulationError> {
+        if self.local_reference.is_none() {
+            return Ok(None);
+        }
+        let Some(state) = self.reference_state(t)? else { return Ok(None) };
+        let (Some(reference), Some(local)) = (&self.reference, &self.local_reference) else {
+            return Ok(None);
+        };
+        let (reference, rate) = state_and_rate(&**reference, t)?;
+        Ok(Some(Shift::between(local, &state, &reference, rate, mass)))
+    }
+
+    /// Returns the state of the current reference at `t` with the time derivative of its position as velocity.
+    pub(super) fn origin_state(&self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
+        let found = self.cache.orbit().map(|orbit| state_and_rate(orbit, t)).transpose()?;
+        Ok(found.map(|(state, velocity)| OrbitState { velocity, ..state }))
+    }
+
+    /// Returns the state of the current reference at `t`, if the run has an orbit.
+    pub(super) fn reference_state(&mut self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
+        Ok(self.cache.at(t, self.interval.1)?.state)
+    }
+
+    /// Returns true if the current reference obeys exactly the gravity of the run.
+    fn in_free_fall(&self) -> bool {
+        let obeyed = self.cache.orbit().and_then(|orbit| orbit.gravity());
+        obeyed.zip(self.gravity.as_ref()).is_some_and(|(own, all)| Arc::ptr_eq(own, all))
+    }
+
+    /// Returns `g(r_ref) - r̈_ref` at `t`, m/s²; `None` where there is no planet.
+    pub(super) fn reference_residual(&mut self, t: f64) -> Result<Option<Vector3<f64>>, SimulationError> {
+        let Some(state) = self.reference_state(t)? else { return Ok(None) };
+        let in_free_fall = self.in_free_fall();
+        let reference = Reference { state, gravity: self.gravity.as_deref(), in_free_fall };
+        DifferentialGravity::residual(t, &reference)
+            .map_err(|source| SimulationError::Environment { time: t, source })
+    }
+
+    /// Sums the wrenches of `effects` at `t` on `self.bodies` into `self.wrenches`.
+    fn sum_effects(&mut self, t: f64, effects: Range<usize>) -> Result<(), SimulationError> {
+        let is_carried = self.gravity_mode == GravityMode::Carried;
+        self.wrenches.clear();
+        if is_carried {
+            self.common.clear();
+        }
+        let in_free_fall = self.in_free_fall();
+        let Instant { state, ephemeris, .. } = self.cache.at(t, self.interval.1)?;
+        let gravity = self.gravity.as_deref();
+        let reference = state.map(|state| Reference { state, gravity, in_free_fall });
+        let mut scene = Scene::new(self.interval, t, &self.bodies, ephemeris);
+        (scene.reference, scene.earth) = (reference, self.earth.as_deref()); // in place: it is large
+        for effect in &self.effects[effects] {
+            let is_common = is_carried && effect.acts_on_reference();
+            let wrenches = if is_common { &mut self.common } else { &mut self.wrenches };
+            effect
+                .add_wrenches(&scene, wrenches)
+                .map_err(|source| SimulationError::Environment { time: t, source })?;
+        }
+        if is_carried {
+            self.add_relative_to_reference()
+                .map_err(|source| SimulationError::Environment { time: t, source })?;
+        }
+        Ok(())
+    }
+
+    /// Adds the common wrenches without the acceleration they give to the whole robot.
+    fn add_relative_to_reference(&mut self) -> Result<(), EnvironmentError> {
+        let total: Vector3<f64> = self.common.iter().map(|wrench| wrench.force).sum();
+        let acceleration = total / self.bodies.iter().map(|(_, body)| body.mass).sum::<f64>();
+        for (wrench, (index, body)) in self.common.iter().zip(self.bodies.iter()) {
+            // Fₖ − mₖ ΣF/Σm
+            let force = wrench.force - acceleration * body.mass;
+            self.wrenches.add(index, Wrench { force, ..wrench })?;
+        }
+        Ok(())
+    }
+
+    /// Returns the wrench of one effect on each body at `t`, for the body states gathered last.
+    pub(super) fn wrenches_of(&mut self, effect: usize, t: f64) -> Result<&Wrenches, SimulationError> {
+        self.sum_effects(t, effect..effect + 1)?;
+        Ok(&self.wrenches)
+    }
+}
+
+/// Returns the state of an orbit, and the time derivative of its position, from which its velocity may differ.
+fn state_and_rate(orbit: &dyn Orbit, t: f64) -> Result<(OrbitState, Vector3<f64>), SimulationError> {
+    let with_rate = |state| orbit.rate_of_position(t, &state).map(|rate| (state, rate));
+    orbit.state(t).and_then(with_rate).map_err(|source| SimulationError::Orbit { time: t, source })
+}
+
+impl EnvironmentLoads {
+    /// Computes the wrenches on the bodies of one system alone, which is the only one of these loads.
+    pub(super) fn apply_to_one<S: Scalar>(
+        &mut self,
+        mut system: LoadedSystem<'_, S>,
+        t: f64,
+        interval: (f64, f64),
+    ) -> Result<(), SimulationError> {
+        if self.effects.is_empty() {
+            return Ok(());
+        }
+        system.gather_bodies(0, self.reads_velocities, &mut self.bodies);
+        self.interval = interval;
+        self.sum_effects(t, 0..self.effects.len())?;
+        system.scatter_wrenches(0, &self.wrenches);
+        Ok(())
+    }
+}
+
+impl<S: Scalar> ExternalLoads<S> for EnvironmentLoads {
+    fn apply(
+        &mut self,
+        systems: &mut [System<'_, S>],
+        state: &State<S>,
+        t: f64,
+        interval: (f64, f64),
+    ) -> Result<(), SimulationError> {
+        if self.effects.is_empty() {
+            return Ok(());
+        }
+        for (number, (system, state)) in systems.iter_mut().zip(&state.systems).enumerate() {
+            system.loaded(&state.q).gather_bodies(number, self.reads_velocities, &mut self.bodies);
+        }
+        self.interval = interval;
+        self.sum_effects(t, 0..self.effects.len())?;
+        for (number, (system, state)) in systems.iter_mut().zip(&state.systems).enumerate() {
+            system.loaded(&state.q).scatter_wrenches(number, &self.wrenches);
+        }
+        Ok(())
+    }
+
+    fn is_active(&self) -> bool {
+        !self.effects.is_empty()
+    }
+}

@@ -1,0 +1,98 @@
+//! Equations of motion of all systems of a run: from a state and joint torques to rates of change.
+
+use super::error::SimulationError;
+use super::external_loads::ExternalLoads;
+use super::state::{Rate, State};
+use super::system::System;
+use crate::dynamics::Data;
+use crate::model::Model;
+use crate::spatial::Real;
+
+/// Equations of motion of all systems under external loads and held joint torques.
+///
+/// Every evaluation first computes the kinematics of all systems, then the loads once for all of them, then the rates
+/// of each.
+pub(crate) struct EquationsOfMotion<'a, S, W> {
+    /// The systems, in the order of the run.
+    pub(crate) systems: Vec<System<'a, S>>,
+    pub(crate) loads: W,
+}
+
+impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
+    /// `restitution` of the stops at the joints' position limits; without it there are no stops.
+    pub(crate) fn new(models: &[&'a Model], loads: W, restitution: Option<f64>) -> Self {
+        Self { systems: models.iter().map(|model| System::new(model, restitution)).collect(), loads }
+    }
+
+    /// Computes the kinematics of `state` and projects every base twist onto the momentum of its system.
+    pub(crate) fn project_momentum(&mut self, state: &mut State<S>) {
+        for (system, state) in self.systems.iter_mut().zip(&mut state.systems) {
+            system.project_momentum(state);
+        }
+    }
+
+    /// Computes the kinematics of `state` in W.
+    pub(crate) fn update_kinematics(&mut self, state: &State<S>) {
+        for (system, state) in self.systems.iter_mut().zip(&state.systems) {
+            system.update_kinematics(state);
+        }
+    }
+
+    /// Restores kinematics and loads at the start of a step, which a trial step has overwritten.
+    pub(super) fn restore(&mut self, start: &[Data<S>]) {
+        for (system, start) in self.systems.iter_mut().zip(start) {
+            system.restore(start);
+        }
+    }
+
+    /// Computes the external wrenches on all systems at the state whose kinematics they have.
+    pub(crate) fn apply_loads(
+        &mut self,
+        t: f64,
+        interval: (f64, f64),
+        state: &State<S>,
+    ) -> Result<(), SimulationError> {
+        self.loads.apply(&mut self.systems, state, t, interval)
+    }
+
+    /// Computes the rates at a state whose kinematics and loads the systems have.
+    pub(crate) fn rates(&mut self, state: &State<S>, rate: &mut Rate<S>) {
+        let is_loaded = self.loads.is_active();
+        for ((system, state), rate) in self.systems.iter_mut().zip(&state.systems).zip(&mut rate.systems) {
+            system.rates(state, is_loaded, rate);
+        }
+    }
+
+    /// Computes kinematics, loads and rates of a later stage.
+    pub(crate) fn evaluate(
+        &mut self,
+        t: f64,
+        interval: (f64, f64),
+        state: &State<S>,
+        rate: &mut Rate<S>,
+    ) -> Result<(), SimulationError> {
+        for (system, state) in self.systems.iter_mut().zip(&state.systems) {
+            system.update_stage_kinematics(state);
+        }
+        self.apply_loads(t, interval, state)?;
+        self.rates(state, rate);
+        Ok(())
+    }
+
+    /// Returns true if a joint of any system has friction or stops.
+    pub(crate) fn has_modes(&self) -> bool {
+        self.systems.iter().any(|system| system.modes.is_active())
+    }
+
+    /// Returns true if a joint of any system is locked.
+    pub(super) fn any_locked(&self) -> bool {
+        self.systems.iter().any(|system| system.modes.locked().is_some())
+    }
+
+    /// Determines the modes of all joints for the step that starts here. Needs kinematics and loads.
+    pub(crate) fn solve_modes(&mut self, state: &State<S>) {
+        for (system, state) in self.systems.iter_mut().zip(&state.systems) {
+            system.solve_modes(&state.q, &state.v);
+        }
+    }
+}

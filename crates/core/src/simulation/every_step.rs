@@ -1,0 +1,160 @@
+//! Evaluates the certificate's checks of one system at every step of a run whose rows are sparse.
+
+use super::certificate::{BaseMotion, MassMotion, PairChecks, Stream, Sums};
+use super::environment_loads::EnvironmentLoads;
+use super::error::SimulationError;
+use super::integrator::{FirstStage, StepEnds};
+use super::recorder::{RecordOptions, Recorder};
+use super::system::System;
+use super::system_state::SystemState;
+use crate::dynamics::center_of_mass;
+use crate::model::Model;
+use crate::spatial::{Quat, Scalar, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// Motion at one end of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct End {
+    base: BaseMotion,
+    whole: MassMotion,
+}
+
+/// Certificate of one system of a run in progress.
+pub(super) struct EveryStep {
+    stream: Stream,
+    /// Start of the present step; after the step, with the accelerations and forces at both of its ends.
+    start: Option<End>,
+    /// The two rows of a step whose base rows are checked.
+    rows: Recorder,
+}
+
+/// State of [`EveryStep`] between two steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct SavedChecks {
+    sums: Sums,
+    start: Option<End>,
+}
+
+impl EveryStep {
+    pub(super) fn new(number: usize, model: &Model) -> Result<Self, SimulationError> {
+        let rows = Recorder::new(2, (number, model), RecordOptions::default(), &[], true)?;
+        Ok(Self { stream: Stream::new(model), start: None, rows })
+    }
+
+    /// Returns the results so far.
+    pub(super) fn checks(&self) -> PairChecks {
+        self.stream.checks()
+    }
+
+    pub(super) fn save(&self) -> SavedChecks {
+        SavedChecks { sums: self.stream.sums(), start: self.start }
+    }
+
+    pub(super) fn restore(&mut self, saved: SavedChecks) {
+        self.stream.set_sums(saved.sums);
+        self.start = saved.start;
+    }
+
+    /// Leaves out the present step.
+    pub(super) fn skip(&mut self) {
+        self.start = None;
+    }
+
+    /// Adds the step that ends at `state`, which is on its momentum and whose kinematics are in `system`.
+    pub(super) fn end<S: Scalar>(&mut self, t: f64, state: &SystemState<S>, system: &System<'_, S>) {
+        if let Some(start) = self.start.take().filter(|start| start.base.time < t) {
+            let mut now = End::of(t, state, system);
+            // the accelerations at the end of the step are stored with its start
+            now.base.change_before = start.base.change_before;
+            now.base.changes = start.base.changes;
+            now.whole.force_before = start.whole.force_before;
+            self.stream.add((&start.base, &start.whole), (&now.base, &now.whole));
+        }
+    }
+
+    /// Stores the start of a step, before it is taken. Expects kinematics of `state` in `system`.
+    pub(super) fn start<S: Scalar>(&mut self, t: f64, state: &SystemState<S>, system: &System<'_, S>) {
+        self.start = Some(End::of(t, state, system));
+    }
+
+    /// Adds accelerations and forces at both ends of the step, from its first and its last stage.
+    pub(super) fn add_stages(&mut self, step: &StepEnds<'_, impl Scalar>) {
+        let Some(End { base, whole }) = &mut self.start else { return };
+        let first = &step.first.acceleration;
+        base.change_after = value(Vec3::from_slice(&first[3..]));
+        let last = &step.last.a;
+        base.change_before = value(Vec3::from_slice(&last[3..]));
+        base.changes = last[3..].iter().map(|x| x.value().abs()).sum::<f64>() + base.rates * base.rates;
+        whole.force_after = value(step.first.force);
+        whole.force_before = value(step.last.wrench.linear);
+    }
+
+    /// Records the start of a step whose base rows are checked. Expects kinematics and loads in `system`.
+    pub(super) fn record_start<S: Scalar>(
+        &mut self,
+        t: f64,
+        state: &SystemState<S>,
+        system: &System<'_, S>,
+        loads: &mut EnvironmentLoads,
+    ) -> Result<(), SimulationError> {
+        self.rows.truncate(0);
+        self.record_end(t, state, system, loads)
+    }
+
+    /// Records the end of that step. Expects a state on its momentum, with kinematics and loads in `system`.
+    pub(super) fn record_end<S: Scalar>(
+        &mut self,
+        t: f64,
+        state: &SystemState<S>,
+        system: &System<'_, S>,
+        loads: &mut EnvironmentLoads,
+    ) -> Result<(), SimulationError> {
+        self.rows.record_state(t, state, system, None, None);
+        self.rows.record_wrenches(system.model, loads, t)
+    }
+
+    /// Completes the row at the start of that step with the acceleration there.
+    pub(super) fn complete_start<S: Scalar>(&mut self, model: &Model, first: &FirstStage<S>) {
+        self.rows.record_acceleration(model, &first.acceleration);
+    }
+
+    /// Completes the row at the end of that step with the acceleration there, and checks the base rows.
+    pub(super) fn complete_end<S: Scalar>(&mut self, model: &Model, first: &FirstStage<S>) {
+        self.rows.record_acceleration(model, &first.acceleration);
+        self.stream.add_rows(model, &self.rows.trace);
+    }
+}
+
+impl End {
+    /// Returns the motion of a state on its momentum, without accelerations and forces.
+    fn of<S: Scalar>(time: f64, state: &SystemState<S>, system: &System<'_, S>) -> Self {
+        let attitude = Quat { v: value(Vec3::from_slice(&state.q[3..])), w: state.q[6].value() };
+        let rate = value(Vec3::from_slice(&state.v[3..]));
+        let rates: f64 = state.v[3..].iter().map(|x| x.value().abs()).sum();
+        let zero = Vec3::zero();
+        let base = BaseMotion {
+            time,
+            attitude,
+            rate,
+            change_before: zero,
+            change_after: zero,
+            rates,
+            changes: rates * rates,
+            is_cut: false,
+        };
+        let whole = MassMotion {
+            time,
+            mass: system.model.mass(),
+            center: value(center_of_mass(&system.data, &state.q)),
+            momentum: value(state.momentum().linear),
+            impulse: value(state.impulse.linear),
+            force_before: zero,
+            force_after: zero,
+        };
+        Self { base, whole }
+    }
+}
+
+fn value<S: Scalar>(v: Vec3<S>) -> Vec3<f64> {
+    Vec3::new(v.x.value(), v.y.value(), v.z.value())
+}

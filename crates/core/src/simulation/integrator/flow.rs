@@ -1,0 +1,93 @@
+//! The flow of the equations of motion over an interval, by the integrator of the run.
+
+use super::dormand_prince::DormandPrince;
+use super::rk4::{BaseStages, rk4};
+use super::semi_implicit_euler::semi_implicit_euler;
+use super::settings::{Integrator, StepSettings};
+use super::stages::Stages;
+use super::tolerance::StepControl;
+use crate::simulation::equations::EquationsOfMotion;
+use crate::simulation::error::SimulationError;
+use crate::simulation::external_loads::ExternalLoads;
+use crate::simulation::state::State;
+use crate::spatial::Real;
+
+/// Integrator of a run with its buffers.
+pub(crate) struct Flow<S> {
+    integrator: Integrator,
+    pub(crate) stages: Stages<S>,
+    /// Motion of each base over the stages of RK4.
+    bases: Vec<BaseStages<S>>,
+    /// Further stages and step control of the adaptive integrator.
+    dormand_prince: Option<Box<DormandPrince<S>>>,
+}
+
+impl<S: Real> Flow<S> {
+    pub(crate) fn new(state: &State<S>, settings: &StepSettings) -> Self {
+        let stages = Stages::new(state);
+        let bases = state.systems.iter().map(|_| BaseStages::new()).collect();
+        let is_adaptive = settings.integrator == Integrator::DormandPrince;
+        let dormand_prince = is_adaptive
+            .then(|| Box::new(DormandPrince::new(&stages.rate, settings.tolerance, settings.duration)));
+        Self { integrator: settings.integrator, stages, bases, dormand_prince }
+    }
+
+    /// Moves `state` from the start of `interval` to its end, or as far as the tolerance allows, and returns the
+    /// time reached. Expects kinematics and loads at the start in `equations`.
+    pub(crate) fn advance(
+        &mut self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<f64, SimulationError> {
+        match &mut self.dormand_prince {
+            Some(method) => method.adaptive_step(&mut self.stages, equations, state, interval),
+            None => self.step(equations, state, interval).map(|()| interval.1),
+        }
+    }
+
+    /// Moves `state` over the whole of `interval` in one step. Expects kinematics and loads at its start in
+    /// `equations`.
+    pub(crate) fn step(
+        &mut self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<(), SimulationError> {
+        self.stages.evaluate_first(equations, state);
+        match (&mut self.dormand_prince, self.integrator) {
+            (Some(method), _) => method.step(&mut self.stages, equations, state, interval)?,
+            (None, Integrator::SemiImplicitEuler) => {
+                semi_implicit_euler(&mut self.stages, equations, state, interval);
+            }
+            (None, _) => rk4(&mut self.stages, &mut self.bases, equations, state, interval)?,
+        }
+        Stages::leave_step_frame(equations, state);
+        Ok(())
+    }
+
+    /// Writes the state at `t` within the last step of the adaptive integrator; its base twist is not yet projected
+    /// onto the momentum. Fixed-step integrators have no dense output and leave `state` as it is.
+    pub(crate) fn interpolate(&mut self, t: f64, state: &mut State<S>) {
+        if let Some(method) = &self.dormand_prince {
+            method.interpolate(&mut self.stages, t, state);
+        }
+    }
+
+    /// Returns true if the tolerance determines the length of the steps.
+    pub(crate) fn is_adaptive(&self) -> bool {
+        self.dormand_prince.is_some()
+    }
+
+    /// State of the step control, if the integrator is adaptive.
+    pub(crate) fn control(&self) -> Option<&StepControl> {
+        self.dormand_prince.as_ref().map(|method| &method.control)
+    }
+
+    /// Restores the state of the step control.
+    pub(crate) fn set_control(&mut self, control: StepControl) {
+        if let Some(method) = &mut self.dormand_prince {
+            method.control = control;
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Classical Runge-Kutta of fourth order on SO(3) × ℝⁿ.
+
+use super::stages::Stages;
+use crate::simulation::equations::EquationsOfMotion;
+use crate::simulation::error::SimulationError;
+use crate::simulation::external_loads::ExternalLoads;
+use crate::simulation::state::{Rate, State};
+use crate::simulation::system_state::SystemState;
+use crate::spatial::{Real, Vec3, dexp_inv};
+
+/// Node `c` and weight `b` of the second to fourth stage.
+const STAGES: [(f64, f64); 3] = [(0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
+
+/// Nyström weights `ā` of the base's origin at the stages: `p_i = p₀ + c h ṗ₀ + h² Σ ā_ij p̈_j`.
+///
+/// Conditions up to order four: `Σ_j ā_ij = c_i²/2`, `Σ b_i ā_ij c_j = 1/24`; the last stage is exact for an
+/// acceleration that is linear in time.
+const NYSTROM: [[f64; 3]; 3] =
+    [[0.125, 0.0, 0.0], [1.0 / 24.0, 1.0 / 12.0, 0.0], [1.0 / 6.0, 0.0, 1.0 / 3.0]];
+
+/// Nyström weights at the end of the step: `p₁ = p₀ + h ṗ₀ + h² (p̈₁ + p̈₂ + p̈₃)/6`.
+const NYSTROM_END: [f64; 3] = [1.0 / 6.0; 3];
+
+/// Motion of the base of one system over the stages of a step.
+pub(super) struct BaseStages<S> {
+    /// Velocity of the origin at the start of the step, W axes.
+    velocity: Vec3<S>,
+    /// Accelerations of the origin in the first three stages, W axes.
+    accelerations: [Vec3<S>; 3],
+    /// Rotation vector since the start of the step, base axes.
+    theta: Vec3<S>,
+}
+
+impl<S: Real> BaseStages<S> {
+    pub(super) fn new() -> Self {
+        Self { velocity: Vec3::zero(), accelerations: [Vec3::zero(); 3], theta: Vec3::zero() }
+    }
+}
+
+/// Takes a step: `y' = y ⊕ h (k₁ + 2 k₂ + 2 k₃ + k₄)/6`, with `k = dexp⁻¹(θ) ω` for the attitude. Expects the first
+/// stage in `stages`.
+///
+/// The base's origin follows its acceleration by Nyström's formula instead. Far from the reference orbit the tide
+/// is as strong as gravity, and this leaves a seventh of the error.
+pub(super) fn rk4<S: Real>(
+    stages: &mut Stages<S>,
+    bases: &mut [BaseStages<S>],
+    equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+    state: &mut State<S>,
+    interval: (f64, f64),
+) -> Result<(), SimulationError> {
+    let Stages { start, trial, rate, sum, .. } = stages;
+    let (t, h) = (interval.0, interval.1 - interval.0);
+    sum.clear();
+    S::enter(
+        #[inline(always)]
+        || sum.accumulate(rate, S::of(1.0 / 6.0)),
+    );
+    for (base, rate) in bases.iter_mut().zip(&rate.systems) {
+        (base.velocity, base.accelerations) = (rate.base_velocity, [rate.base_acceleration; 3]);
+    }
+    for (stage, (c, b)) in STAGES.into_iter().enumerate() {
+        S::enter(
+            #[inline(always)]
+            || {
+                for (base, rate) in bases.iter_mut().zip(&rate.systems) {
+                    base.accelerations[stage] = rate.base_acceleration;
+                    base.theta = rate.rotation_rate * S::of(c * h);
+                }
+                trial.move_from(start, rate, S::of(c * h));
+                move_origins(bases, NYSTROM[stage], S::of(c * h), S::of(h * h), start, trial);
+            },
+        );
+        let instant = if c == 1.0 { interval.1 } else { t + c * h };
+        equations.evaluate(instant, interval, trial, rate)?;
+        S::enter(
+            #[inline(always)]
+            || {
+                to_rotation_vector(bases, trial, rate);
+                sum.accumulate(rate, S::of(b));
+            },
+        );
+    }
+    S::enter(
+        #[inline(always)]
+        || {
+            state.move_from(start, sum, S::of(h));
+            move_origins(bases, NYSTROM_END, S::of(h), S::of(h * h), start, state);
+        },
+    );
+    Ok(())
+}
+
+/// Computes the rates of the rotation vectors at a stage, `dexp⁻¹(θ) ω`.
+#[inline(always)]
+fn to_rotation_vector<S: Real>(bases: &[BaseStages<S>], trial: &State<S>, rate: &mut Rate<S>) {
+    for ((base, trial), rate) in bases.iter().zip(&trial.systems).zip(&mut rate.systems) {
+        rate.rotation_rate = dexp_inv(base.theta, Vec3::from_slice(&trial.v[3..]));
+    }
+}
+
+/// Writes the position of every base's origin to `to`.
+#[inline(always)]
+fn move_origins<S: Real>(
+    bases: &[BaseStages<S>],
+    weights: [f64; 3],
+    h: S,
+    h_squared: S,
+    start: &State<S>,
+    to: &mut State<S>,
+) {
+    for ((base, start), to) in bases.iter().zip(&start.systems).zip(&mut to.systems) {
+        move_origin(base, weights, h, h_squared, start, to);
+    }
+}
+
+/// Writes the position of the base's origin to `to`: `p₀ + h ṗ₀ + h² Σ w p̈`.
+#[inline(always)]
+fn move_origin<S: Real>(
+    base: &BaseStages<S>,
+    weights: [f64; 3],
+    h: S,
+    h_squared: S,
+    start: &SystemState<S>,
+    to: &mut SystemState<S>,
+) {
+    let mut sum = Vec3::zero();
+    for (acceleration, weight) in base.accelerations.iter().zip(weights) {
+        sum = acceleration.scale_add(S::of(weight), sum);
+    }
+    let straight = base.velocity.scale_add(h, Vec3::from_slice(&start.q));
+    sum.scale_add(h_squared, straight).write(&mut to.q);
+}

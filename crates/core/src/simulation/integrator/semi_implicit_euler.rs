@@ -1,0 +1,34 @@
+//! Semi-implicit Euler, first order.
+
+use super::stages::Stages;
+use crate::model::integrate;
+use crate::simulation::equations::EquationsOfMotion;
+use crate::simulation::external_loads::ExternalLoads;
+use crate::simulation::state::State;
+use crate::spatial::{Real, Vec3};
+
+/// Takes a step: `v' = v + h a(q, v)`, `q' = q ⊕ h v'`, each system in the frame of its step. Expects the first stage in
+/// `stages`.
+pub(super) fn semi_implicit_euler<S: Real>(
+    stages: &mut Stages<S>,
+    equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+    state: &mut State<S>,
+    interval: (f64, f64),
+) {
+    let Stages { start, rate, sum, .. } = stages;
+    let h = S::of(interval.1 - interval.0);
+    S::enter(
+        #[inline(always)]
+        || {
+            state.move_from(start, rate, h);
+            let parts = state.systems.iter_mut().zip(&start.systems).zip(&mut sum.systems);
+            for (((state, start), sum), system) in parts.zip(&equations.systems) {
+                for (delta, v) in sum.v.iter_mut().zip(&state.v) {
+                    *delta = *v * h;
+                }
+                integrate(&start.q, &sum.v, &mut state.q);
+                system.frame_velocity().scale_add(h, Vec3::from_slice(&state.q)).write(&mut state.q);
+            }
+        },
+    );
+}

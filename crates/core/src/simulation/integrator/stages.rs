@@ -1,0 +1,142 @@
+//! Buffers of a step, its first stage, and the frame in which it is taken.
+
+use crate::dynamics::base_rotation;
+use crate::simulation::equations::EquationsOfMotion;
+use crate::simulation::external_loads::ExternalLoads;
+use crate::simulation::state::{Rate, State};
+use crate::simulation::system_state::{SystemRate, SystemState};
+use crate::spatial::{Real, Vec3};
+
+/// States and rates of the stages of a step, allocated once.
+pub(crate) struct Stages<S> {
+    /// State at the start of the step, its velocities relative to the frames of the step.
+    pub(crate) start: State<S>,
+    /// State at which the last stage was evaluated.
+    pub(super) trial: State<S>,
+    /// Rates of the last stage.
+    pub(crate) rate: Rate<S>,
+    /// Weighted sum of rates.
+    pub(super) sum: Rate<S>,
+    /// First stage of each system.
+    pub(crate) first: Vec<FirstStage<S>>,
+}
+
+/// First stage of one system, seen from W.
+pub(crate) struct FirstStage<S> {
+    /// Acceleration at the start of the step, `(nv,)`.
+    pub(crate) acceleration: Vec<S>,
+    /// Sum of the external forces at the start of the step, W axes, N.
+    pub(crate) force: Vec3<S>,
+    /// Velocity of the base's origin at the start of the step, base axes: that of the frame of the step.
+    pub(super) frame_velocity_b: Vec3<S>,
+}
+
+/// Both ends of the last step of one system.
+pub(crate) struct StepEnds<'a, S> {
+    /// State at the start, its velocity relative to the frame of the step.
+    pub(crate) start: &'a SystemState<S>,
+    pub(crate) first: &'a FirstStage<S>,
+    /// Rates of the last stage.
+    pub(crate) last: &'a SystemRate<S>,
+}
+
+impl<S: Real> Stages<S> {
+    pub(crate) fn new(state: &State<S>) -> Self {
+        let rate = Rate::of(state);
+        let first = |state: &SystemState<S>| FirstStage {
+            acceleration: vec![S::of(0.0); state.v.len()],
+            force: Vec3::zero(),
+            frame_velocity_b: Vec3::zero(),
+        };
+        Self {
+            start: state.clone(),
+            trial: state.clone(),
+            sum: rate.clone(),
+            rate,
+            first: state.systems.iter().map(first).collect(),
+        }
+    }
+
+    /// Evaluates the first stage and enters the frames of the step. Expects kinematics and loads of `state` in
+    /// `equations`.
+    pub(crate) fn evaluate_first(
+        &mut self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &State<S>,
+    ) {
+        self.start.copy_from(state);
+        for ((first, system), start) in
+            self.first.iter_mut().zip(&mut equations.systems).zip(&mut self.start.systems)
+        {
+            first.frame_velocity_b = Vec3::from_slice(&start.v);
+            system.enter_step_frame(&start.q, &mut start.v);
+        }
+        equations.rates(&self.start, &mut self.rate);
+        for ((first, rate), start) in self.first.iter_mut().zip(&self.rate.systems).zip(&self.start.systems) {
+            first.take(rate, &start.v);
+        }
+    }
+
+    /// Returns `state` from the frames of the step to W: `v = v' + Rᵀ u`.
+    pub(super) fn leave_step_frame(
+        equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+    ) {
+        for (system, state) in equations.systems.iter().zip(&mut state.systems) {
+            S::enter(
+                #[inline(always)]
+                || {
+                    let frame_velocity_b = base_rotation(&state.q).transpose_mul(system.frame_velocity());
+                    (Vec3::from_slice(&state.v) + frame_velocity_b).write(&mut state.v);
+                },
+            );
+        }
+    }
+
+    /// Returns both ends of the last step of each system.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = StepEnds<'_, S>> {
+        let parts = self.start.systems.iter().zip(&self.first).zip(&self.rate.systems);
+        parts.map(|((start, first), last)| StepEnds { start, first, last })
+    }
+
+    /// Returns `q` and `v` of a system at the start of the last step (of the first lane).
+    pub(crate) fn start_state(&self, number: usize) -> [Vec<f64>; 2] {
+        let start = &self.start.systems[number];
+        let mut v = start.v.clone();
+        (Vec3::from_slice(&v) + self.first[number].frame_velocity_b).write(&mut v);
+        [&start.q, &v].map(|x| x.iter().map(|x| x.lane(0)).collect())
+    }
+
+    /// Returns true if the state of a system in the last stage is finite.
+    pub(crate) fn is_finite(&self, number: usize) -> bool {
+        self.trial.systems[number].is_finite()
+    }
+}
+
+impl<S: Real> FirstStage<S> {
+    /// Takes the acceleration and the external force at the start of the step, where the velocity is `v`.
+    fn take(&mut self, rate: &SystemRate<S>, v: &[S]) {
+        self.force = rate.wrench.linear;
+        self.acceleration.copy_from_slice(&rate.a);
+        // seen from W the velocity u of the frame of the step turns in base axes: a = a' − (ω × u, 0)
+        S::enter(
+            #[inline(always)]
+            || {
+                let turning = Vec3::from_slice(&v[3..]).cross(self.frame_velocity_b);
+                let linear = Vec3::from_slice(&self.acceleration) - turning;
+                linear.write(&mut self.acceleration);
+            },
+        );
+    }
+}
+
+/// Computes `Σ w_i k_i`.
+pub(super) fn combine<S: Real>(sum: &mut Rate<S>, stages: &[Rate<S>], weights: &[f64]) {
+    sum.clear();
+    for (k, &weight) in stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+        S::enter(
+            #[inline(always)]
+            || sum.accumulate(k, S::of(weight)),
+        );
+    }
+}

@@ -1,0 +1,207 @@
+//! Error of a step of the embedded pair, relative to the tolerance.
+
+use super::stages::{Stages, combine};
+use super::tableau::E;
+use crate::dynamics::composite_momentum;
+use crate::model::{Axis, BASE_NV};
+use crate::simulation::equations::EquationsOfMotion;
+use crate::simulation::external_loads::ExternalLoads;
+use crate::simulation::state::Rate;
+use crate::simulation::system::System;
+use crate::simulation::system_state::{SystemRate, SystemState};
+use crate::spatial::{Real, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// Largest rotation of the base in a step, rad: its rotation vector must stay short of a whole turn.
+pub(super) const LARGEST_ROTATION: f64 = 2.0;
+
+/// Fraction of the fastest rate of the run below which errors of rates need not become smaller.
+const SLOW: f64 = 1e-3;
+
+/// State of the step control. A run resumes from it with the same bits.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct StepControl {
+    /// Step to try next, s; zero before the first.
+    pub(crate) step: f64,
+    /// Error of the last accepted step, relative to the tolerance.
+    pub(crate) error: f64,
+    /// Scales and errors of each system.
+    pub(crate) systems: Vec<SystemControl>,
+}
+
+/// Scales to which the errors of a system are relative, and the errors of its attitude.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SystemControl {
+    /// Fastest rate so far, rad/s, and speed, m/s.
+    pub(crate) fastest: [f64; 2],
+    /// Sum of the estimated errors of the attitude, rad.
+    pub(crate) rotation_error: f64,
+    /// Radius of gyration of the system at the start of the run, m: the scale of lengths.
+    pub(crate) size: f64,
+}
+
+impl StepControl {
+    /// Returns the control before the first step of as many systems.
+    pub(super) fn new(systems: usize) -> Self {
+        Self { step: 0.0, error: 0.0, systems: vec![SystemControl::default(); systems] }
+    }
+
+    /// Computes the sizes of the systems, once. Expects kinematics in `equations`.
+    pub(super) fn measure_sizes<S: Real>(
+        &mut self,
+        equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+    ) {
+        for (control, system) in self.systems.iter_mut().zip(&equations.systems) {
+            if control.size == 0.0 {
+                let inertia = composite_momentum(&system.data).0;
+                let about = inertia.about_com();
+                let trace = (about.xx + about.yy + about.zz).lane(0);
+                control.size = (trace / (2.0 * inertia.mass.lane(0))).sqrt();
+            }
+        }
+    }
+
+    /// Adds the errors of the attitudes in a step of length `h` whose rates have the errors `errors`.
+    pub(super) fn add_rotation_errors<S: Real>(&mut self, errors: &Rate<S>, h: f64) {
+        for (control, error) in self.systems.iter_mut().zip(&errors.systems) {
+            control.rotation_error += h * norm(error.rotation_rate);
+        }
+    }
+}
+
+/// Error that a step may make.
+#[derive(Clone, Debug)]
+pub(super) struct Tolerance {
+    /// `ε`.
+    pub(super) epsilon: f64,
+    /// Duration of the run, s.
+    horizon: f64,
+    /// Weight of the attitude in the error; a test sets it to zero.
+    pub(super) attitude_weight: f64,
+}
+
+impl Tolerance {
+    pub(super) fn new(epsilon: f64, horizon: f64) -> Self {
+        Self { epsilon, horizon, attitude_weight: 1.0 }
+    }
+
+    /// Returns the error of the last step relative to the tolerance, the largest over the systems.
+    ///
+    /// The tolerance is `ε` of a radian in attitude and joints, of the system's radius of gyration (or of the
+    /// distance from W's origin) in lengths, and of the magnitude of rates.
+    pub(super) fn error<S: Real>(
+        &self,
+        stages: &mut Stages<S>,
+        k: &[Rate<S>],
+        control: &mut StepControl,
+        equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        h: f64,
+    ) -> f64 {
+        combine(&mut stages.sum, k, &E);
+        let (mut largest, mut is_folded) = (0.0, false);
+        for (number, (system, control)) in equations.systems.iter().zip(&control.systems).enumerate() {
+            let step = SystemStep::new(stages, number, system, control, h);
+            largest = larger(largest, self.system_error(&step));
+            let last = &k[6].systems[number];
+            is_folded |=
+                vector(&step.trial.q[3..]).is_nan() || h * norm(last.rotation_rate) > 2.0 * LARGEST_ROTATION;
+        }
+        if largest <= 1.0 {
+            for (number, (system, control)) in equations.systems.iter().zip(&mut control.systems).enumerate()
+            {
+                // rejected steps do not count
+                control.fastest = SystemStep::new(stages, number, system, control, h).fastest;
+            }
+        }
+        if is_folded { f64::NAN } else { largest }
+    }
+
+    /// Returns the error of one system in a step.
+    fn system_error<S: Real>(&self, step: &SystemStep<'_, '_, S>) -> f64 {
+        let SystemStep { start, trial, sum, size, spin, speed, h, fastest: [fastest, highest], .. } = *step;
+        // rounding of a robot at rest must not stop the run: a drift of ε/1000 by its end is accepted
+        let slow = SLOW * fastest.max(vector(&trial.v) / size).max(1.0 / self.horizon);
+        let crawl = SLOW * highest.max(size / self.horizon);
+
+        let relative =
+            |error: f64, scale: f64| if error == 0.0 { 0.0 } else { error / (self.epsilon * scale) };
+        let weight = self.attitude_weight;
+        let mut largest = [
+            weight * relative(h * norm(sum.rotation_rate), 1.0),
+            relative(h * norm(sum.base_velocity), size.max(vector(&start.q))),
+            weight * relative(h * vector(&sum.a[3..]), spin + slow),
+            relative(h * vector(&sum.a), speed + size * spin + crawl),
+        ]
+        .into_iter()
+        .fold(0.0, larger);
+        for j in 0..start.v.len() - BASE_NV {
+            let scale = if step.is_prismatic(j) { size } else { 1.0 };
+            largest = larger(largest, relative(h * sum.v[BASE_NV + j].lane(0).abs(), scale));
+            let error = h * sum.a[BASE_NV + j].lane(0).abs();
+            largest = larger(largest, relative(error, step.rate(j) + slow * scale));
+        }
+        largest
+    }
+}
+
+/// A step of one system, whose error is measured.
+struct SystemStep<'a, 's, S> {
+    system: &'a System<'s, S>,
+    start: &'a SystemState<S>,
+    trial: &'a SystemState<S>,
+    /// Fifth less fourth order.
+    sum: &'a SystemRate<S>,
+    h: f64,
+    size: f64,
+    /// Angular velocity, rad/s, and speed of the base, m/s: the larger of both ends.
+    spin: f64,
+    speed: f64,
+    /// Fastest rate so far and in this step, rad/s, and speed, m/s.
+    fastest: [f64; 2],
+}
+
+impl<'a, 's, S: Real> SystemStep<'a, 's, S> {
+    fn new(
+        stages: &'a Stages<S>,
+        number: usize,
+        system: &'a System<'s, S>,
+        control: &SystemControl,
+        h: f64,
+    ) -> Self {
+        let (start, trial) = (&stages.start.systems[number], &stages.trial.systems[number]);
+        let (sum, size) = (&stages.sum.systems[number], control.size);
+        let spin = vector(&start.v[3..]).max(vector(&trial.v[3..]));
+        let speed = norm(system.frame_velocity()).max(vector(&trial.v));
+        let mut step = Self { system, start, trial, sum, h, size, spin, speed, fastest: control.fastest };
+        let [fastest, highest] = control.fastest;
+        let angular = |j: usize| if step.is_prismatic(j) { step.rate(j) / size } else { step.rate(j) };
+        let fastest = (0..start.v.len() - BASE_NV).map(angular).fold(fastest.max(spin), f64::max);
+        step.fastest = [fastest, highest.max(speed).max(size * fastest)];
+        step
+    }
+
+    fn is_prismatic(&self, j: usize) -> bool {
+        self.system.model.nodes()[j + 1].axis == Axis::Prismatic
+    }
+
+    /// Returns the larger rate of a joint at both ends, rad/s (m/s).
+    fn rate(&self, j: usize) -> f64 {
+        let rate = |state: &SystemState<S>| state.v[BASE_NV + j].lane(0).abs();
+        rate(self.start).max(rate(self.trial))
+    }
+}
+
+/// Returns the norm (of the first lane).
+fn norm<S: Real>(v: Vec3<S>) -> f64 {
+    v.norm().lane(0)
+}
+
+/// Returns the norm of the first three numbers.
+fn vector<S: Real>(x: &[S]) -> f64 {
+    norm(Vec3::from_slice(x))
+}
+
+/// Returns the larger of two numbers, or NaN if either is NaN.
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}

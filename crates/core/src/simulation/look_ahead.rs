@@ -1,0 +1,150 @@
+//! Advances a run to any time, and evaluates it there. A step that ends later is tried and taken back, so that the steps
+//! do not depend on the times at which the run was evaluated.
+
+use super::checkpoint::Progress;
+use super::error::SimulationError;
+use super::only::only;
+use super::run_state::RunState;
+use super::schedule::{Cursor, Interval};
+use super::stepper::Monitor;
+use super::trace::Trace;
+use crate::spatial::Scalar;
+use std::ops::ControlFlow;
+
+/// Number of fixed native steps between two calls of the monitor.
+const MONITOR_EVERY: usize = 64;
+
+impl<S: Scalar> RunState<'_, S> {
+    /// Takes all steps that end at `t` or before it. Stops at a cut if the monitor breaks.
+    pub(super) fn advance_to(
+        &mut self,
+        t: f64,
+        monitor: Monitor<'_>,
+    ) -> Result<ControlFlow<()>, SimulationError> {
+        let advanced = self.take_steps_to(t, monitor);
+        let is_within_step = matches!(advanced, Ok(ControlFlow::Continue(())))
+            && self.schedule.is_later(t, self.schedule.now());
+        self.time = if is_within_step { t.max(self.time) } else { self.schedule.now() };
+        advanced
+    }
+
+    fn take_steps_to(&mut self, t: f64, monitor: Monitor<'_>) -> Result<ControlFlow<()>, SimulationError> {
+        while self.schedule.is_later(t, self.schedule.now()) {
+            let Some((interval, after)) = self.schedule.following() else { break };
+            self.rereference_if_far(interval.start)?;
+            if self.schedule.is_later(interval.end, t) && !self.step_ends_by(t, &interval, after)? {
+                break;
+            }
+            self.schedule.set_cursor(after);
+            self.step(&interval)?;
+            let is_due = self.mover.has_long_steps() || self.steps.is_multiple_of(MONITOR_EVERY);
+            if is_due && monitor(self.schedule.now()).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Returns true if the step in an interval that ends after `t` ends at `t` or before it: at a change of a joint's
+    /// mode, or where the tolerance requires it. Tries the step without rows.
+    fn step_ends_by(&mut self, t: f64, interval: &Interval, after: Cursor) -> Result<bool, SimulationError> {
+        if !self.mover.may_end_early(&self.equations) {
+            return Ok(false);
+        }
+        self.and_return(f64::NEG_INFINITY, |run| {
+            run.schedule.set_cursor(after);
+            run.step(interval)?;
+            Ok(!run.schedule.is_later(run.schedule.now(), t))
+        })
+    }
+
+    /// Calls `work`, in which rows before the time `records_before` are recorded, and returns to the present cut.
+    /// Controllers that `work` updated there, and whose state may be a user's, are not updated a second time.
+    fn and_return<R>(
+        &mut self,
+        records_before: f64,
+        work: impl FnOnce(&mut Self) -> Result<R, SimulationError>,
+    ) -> Result<R, SimulationError> {
+        let before: Progress = self.progress();
+        let is_updated = self.is_updated || self.schedule.is_control_tick();
+        self.records_before = records_before;
+        let result = work(self);
+        self.records_before = f64::INFINITY;
+        self.restore(before);
+        self.is_updated = is_updated;
+        result
+    }
+
+    /// Ends the step that contains the present time at that time, which becomes a cut.
+    pub(super) fn cut_at_present(&mut self) -> Result<(), SimulationError> {
+        while self.schedule.is_later(self.time, self.schedule.now()) {
+            let Some((interval, after)) = self.schedule.following() else { break };
+            self.schedule.set_cursor(after);
+            self.step_to(self.time, &interval)?;
+        }
+        Ok(())
+    }
+
+    /// Writes configuration and velocity at the present time, in W.
+    pub(super) fn read_state(&mut self, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError> {
+        if self.schedule.is_later(self.time, self.schedule.now()) {
+            self.and_return(f64::NEG_INFINITY, |run| {
+                run.cross_to_present().map(|is_dense| run.copy_state(is_dense))
+            })?;
+        } else {
+            self.copy_state(false);
+        }
+        let Self { equations, mover, row_buffers: (state, _), time, .. } = self;
+        mover.kinematics(equations, state);
+        mover.resolve_impacts(equations, state);
+        let (state, model) = (only(&state.systems), only(&equations.systems).model);
+        for (to, from) in [(&mut *q, &state.q), (&mut *v, &state.v)] {
+            to.iter_mut().zip(from).for_each(|(to, from)| *to = from.value());
+        }
+        if let Some(shift) = equations.loads.shift(*time, model.mass())? {
+            shift.transform_state(q, v);
+        }
+        Ok(())
+    }
+
+    /// Copies the state to the buffer for rows: the present one, or dense output of the last step.
+    fn copy_state(&mut self, is_dense: bool) {
+        let Self { state, mover, row_buffers: (copy, _), time, .. } = self;
+        match mover.flow().filter(|_| is_dense) {
+            Some(flow) => flow.interpolate(*time, copy),
+            None => copy.copy_from(state),
+        }
+    }
+
+    /// Steps from the present cut to the present time. An adaptive integrator takes its whole step; returns true if the
+    /// present is then within it.
+    fn cross_to_present(&mut self) -> Result<bool, SimulationError> {
+        match self.schedule.following() {
+            Some((interval, after)) if self.mover.is_adaptive() => {
+                self.schedule.set_cursor(after);
+                self.step(&interval).map(|()| true)
+            }
+            _ => self.cut_at_present().map(|()| false),
+        }
+    }
+
+    /// Adds the rows up to the present time, and one at that time.
+    pub(super) fn record_present(&mut self) -> Result<(), SimulationError> {
+        if !self.schedule.is_later(self.time, self.schedule.now()) {
+            return self.record_end();
+        }
+        self.records_before = self.time; // an adaptive step passes it
+        let crossed = self.cross_to_present();
+        self.records_before = f64::INFINITY;
+        if crossed? { self.record_within(self.time) } else { self.record_end() }
+    }
+
+    /// Returns the rows so far and one at the present time, as if the run ended there.
+    pub(super) fn trace(&mut self) -> Result<Trace, SimulationError> {
+        self.and_return(f64::INFINITY, |run| {
+            run.record_present()?;
+            run.conclude();
+            Ok(only(&run.systems).recorder.trace.clone())
+        })
+    }
+}

@@ -1,0 +1,69 @@
+//! Impacts of joints on the stops at their position limits.
+
+use crate::dynamics::locked_dynamics_recursion;
+use crate::model::{BASE_NQ, BASE_NV};
+use crate::simulation::system::System;
+use crate::simulation::system_state::SystemState;
+use crate::spatial::{Force, Motion, Real};
+
+impl<S: Real> System<'_, S> {
+    /// Returns the first joint that moves into its stop, if there is one.
+    pub(in crate::simulation) fn first_impact(&self, state: &SystemState<S>) -> Option<usize> {
+        (0..self.model.joint_count()).find(|&j| {
+            let stop = self.modes.stop(j, state.q[BASE_NQ + j].lane(0));
+            stop * state.v[BASE_NV + j].lane(0) > 0.0
+        })
+    }
+
+    /// Applies the impulses of all joints that move into their stops. Needs kinematics, and leaves those after the
+    /// impacts, without loads.
+    ///
+    /// `Δv = M⁻¹ e_j λ`, `λ = −(1 + e) q̇_j / (M⁻¹)_jj`: the momentum does not change, and the energy lost is
+    /// `−½ (1 − e) λ q̇_j`. Joints that rest at their stops take part as long as these push; friction has no
+    /// impulse.
+    pub(crate) fn resolve_impacts(&mut self, state: &mut SystemState<S>, restitution: f64) {
+        let n = self.model.joint_count();
+        for round in 0..4 * n + 4 {
+            let Some(j) = self.first_impact(state) else { break };
+            let rate = state.v[BASE_NV + j].lane(0);
+            let e = if round < 2 * n { restitution } else { 0.0 };
+            let response = self.impulse_response(j, -rate.signum(), state);
+            let impulse = -(1.0 + e) * rate / response;
+            for (v, change) in state.v.iter_mut().zip(&self.scratch) {
+                *v += *change * S::of(impulse.abs());
+            }
+            state.v[BASE_NV + j] = S::of(-e * rate);
+            let lost = S::of(-0.5 * (1.0 - e) * impulse * rate);
+            state.work += -lost;
+            state.dissipated += lost;
+            self.project_momentum(state);
+        }
+    }
+
+    /// Writes the change of velocity for a unit impulse at joint `j` to `scratch`; returns `(M⁻¹)_jj`, the change of
+    /// that joint's rate per unit of signed impulse.
+    fn impulse_response(&mut self, j: usize, sign: f64, state: &SystemState<S>) -> f64 {
+        let n = self.model.joint_count();
+        for body in &mut self.data.bodies {
+            (body.velocity, body.external) = (Motion::zero(), Force::zero());
+        }
+        let mut a = std::mem::take(&mut self.scratch);
+        let at_rest = vec![S::of(0.0); BASE_NV + n]; // impacts are rare: they may allocate
+        let mut impulse = at_rest.clone();
+        impulse[BASE_NV + j] = S::of(sign);
+        let stop = |i: usize| self.modes.stop(i, state.q[BASE_NQ + i].lane(0));
+        let mut locked: Vec<bool> =
+            (0..n).map(|i| i != j && stop(i) != 0.0 && state.v[BASE_NV + i].lane(0) == 0.0).collect();
+        for _ in 0..=n {
+            locked_dynamics_recursion(self.model, &mut self.data, &at_rest, &impulse, &locked, &mut a);
+            // a stop can only push: one that would have to pull is released
+            let pulls =
+                |i: &usize| locked[*i] && self.data.bodies[i + 1].holding_torque.lane(0) * stop(*i) > 0.0;
+            let Some(i) = (0..n).find(pulls) else { break };
+            locked[i] = false;
+        }
+        let response = a[BASE_NV + j].lane(0) * sign;
+        self.scratch = a;
+        response
+    }
+}

@@ -1,0 +1,98 @@
+//! Which joints with static friction slip and which stick.
+
+use crate::dynamics::locked_dynamics_recursion;
+use crate::model::{Axis, BASE_NQ, BASE_NV};
+use crate::simulation::system::System;
+use crate::spatial::{Force, Motion, Real};
+
+/// Fraction of the torques at a joint within which it still sticks: rounding must not release it.
+const ROUNDING: f64 = 1e-10;
+
+impl<S: Real> System<'_, S> {
+    /// Determines the modes of the joints for the step that starts here. Needs kinematics and loads.
+    ///
+    /// Joints at rest are locked first. One that would need more torque than friction and stop provide slips in the
+    /// direction of that torque; one that would then move the other way sticks after all. With bounded torques and
+    /// a positive definite inertia there is one solution. All joints change at once in each pass; if that cycles,
+    /// only the first of them does (Murty's rule).
+    ///
+    /// Source: Murty, Linear Algebra and its Applications 7(1), 1974.
+    pub(crate) fn solve_modes(&mut self, q: &[S], v: &[S]) {
+        if !self.modes.is_active() {
+            return;
+        }
+        self.modes.lock_joints_at_rest(q, v);
+        if self.modes.locked().is_none() {
+            return;
+        }
+        let (n, mut a) = (self.model.joint_count(), std::mem::take(&mut self.scratch));
+        for pass in 0..4 * n + 8 {
+            self.update_joint_forces(v);
+            let Self { model, data, modes, forces, .. } = self;
+            locked_dynamics_recursion(model, data, v, forces, modes.is_locked_each(), &mut a);
+            let mut has_changed = false;
+            for j in 0..n {
+                let change = self.mode_change(j, q, v, &a);
+                if let Some(direction) = change {
+                    self.modes.set_slip(j, direction);
+                    has_changed = true;
+                    if pass > n {
+                        break;
+                    }
+                }
+            }
+            if !has_changed {
+                break;
+            }
+        }
+        self.scratch = a;
+    }
+
+    /// Returns the direction in which a joint at rest should slip instead, or 0 if it should stick; `None` if its mode
+    /// is consistent.
+    fn mode_change(&self, j: usize, q: &[S], v: &[S], a: &[S]) -> Option<f64> {
+        if v[BASE_NV + j].lane(0) != 0.0 {
+            return None;
+        }
+        if self.modes.is_locked(j) {
+            let (margin, direction) = self.stick_margin(j, q);
+            return (margin < -0.5 * ROUNDING).then_some(direction);
+        }
+        let direction = self.modes.direction(j);
+        (a[BASE_NV + j].lane(0) * direction < 0.0).then_some(0.0)
+    }
+
+    /// Returns the torque that a locked joint can still take before it slips, relative to the torques that act on it,
+    /// and the direction in which it would slip. Needs the torques of a recursion.
+    fn stick_margin(&self, j: usize, q: &[S]) -> (f64, f64) {
+        let body = &self.data.bodies[j + 1];
+        let (lowest, highest) = self.modes.torque_bounds(j, q[BASE_NQ + j].lane(0));
+        let (need, friction) = (body.holding_torque.lane(0), self.modes.holding_friction(j));
+        let size = |m: Motion<S>, f: Force<S>| {
+            m.linear.norm() * f.linear.norm() + m.angular.norm() * f.angular.norm()
+        };
+        let along_axis = match self.model.nodes()[j + 1].axis {
+            Axis::Revolute => body.force.angular,
+            Axis::Prismatic => body.force.linear,
+        };
+        // λ = Uᵀ a' − τ + Sᵀ pA, the magnitude of each term; U and a' about the parent's origin
+        let terms = size(body.acceleration.referred_to(-body.offset), body.u_force) + along_axis.norm();
+        let scale = terms.lane(0) + self.forces[BASE_NV + j].lane(0).abs() + friction + f64::MIN_POSITIVE;
+        let (down, up) = ((highest - need) / scale, (need - lowest) / scale);
+        if down < up { (down, -1.0) } else { (up, 1.0) }
+    }
+
+    /// Returns the smallest stick margin of the locked joints; negative if one should slip. Needs kinematics and
+    /// loads.
+    pub(super) fn least_stick_margin(&mut self, q: &[S], v: &[S]) -> f64 {
+        self.update_joint_forces(v);
+        let mut a = std::mem::take(&mut self.scratch);
+        let Self { model, data, modes, forces, .. } = self;
+        if let Some(locked) = modes.locked() {
+            locked_dynamics_recursion(model, data, v, forces, locked, &mut a);
+        }
+        self.scratch = a;
+        let locked = (0..self.model.joint_count()).filter(|&j| self.modes.is_locked(j));
+        locked.map(|j| self.stick_margin(j, q).0 + ROUNDING).fold(f64::INFINITY, f64::min)
+    }
+}

@@ -1,0 +1,208 @@
+//! Modes of the joints during a step, from Coulomb friction and the stops at position limits.
+
+use crate::model::{BASE_NQ, BASE_NV, JointProperties, Model};
+use crate::spatial::Real;
+use serde::{Deserialize, Serialize};
+
+/// Distance beyond a limit at which a joint still counts as at it, rad (m).
+pub(in crate::simulation) const AT_LIMIT: f64 = 1e-12;
+
+/// Rate within which the compensation for an external engine changes its direction, rad/s (m/s).
+const TURN: f64 = 1e-2;
+
+/// Acceleration above which that compensation expects a joint at rest to move, rad/s² (m/s²).
+const START: f64 = 1e-2;
+
+/// Modes of the joints during a step. They follow from the state at its start and from the accelerations that the
+/// control laws request.
+///
+/// A joint is at rest if its rate is exactly zero. With static friction `fs`, or at a stop, it is locked while the
+/// torque `λ` that this takes lies within [`JointModes::torque_bounds`]; kinetic friction opposes its motion.
+///
+/// A law that compensates Coulomb friction gives the acceleration it requests for each of its joints. The motor of
+/// the joint then adds the torque of the friction itself: while the joint moves, the kinetic friction in the
+/// direction of its rate, which changes sign at the instant at which the rate does; at rest, if the law requests an
+/// acceleration, the static friction in the direction of the law's torque. Friction then has no effect on the
+/// motion, and holds the joints that the law leaves at rest.
+#[derive(Clone, Debug)]
+pub(crate) struct JointModes {
+    /// Kinetic friction, N m (N).
+    friction: Vec<f64>,
+    /// Static friction, N m (N), at least the kinetic one.
+    static_friction: Vec<f64>,
+    /// Acceleration that a law requests, rad/s² (m/s²), of the joints whose friction it compensates; zero where a
+    /// joint at rest is to stay at rest.
+    requested: Vec<Option<f64>>,
+    /// Positions that the stops allow, rad (m); infinite without stops.
+    limits: Vec<(f64, f64)>,
+    /// Coefficient of restitution of the stops.
+    pub(super) restitution: f64,
+    is_active: bool,
+    locked: Vec<bool>,
+    any_locked: bool,
+    /// Direction of slip of joints with friction: −1, 0 or 1.
+    direction: Vec<f64>,
+}
+
+/// Modes of the joints in the last step, for checkpoints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(in crate::simulation) struct SavedModes {
+    pub(in crate::simulation) locked: Vec<bool>,
+    pub(in crate::simulation) direction: Vec<f64>,
+}
+
+impl JointModes {
+    pub(in crate::simulation) fn new(model: &Model, restitution: Option<f64>) -> Self {
+        let n = model.joint_count();
+        let of_joints = |get: fn(&JointProperties) -> f64| model.joints().iter().map(get).collect();
+        let friction = of_joints(|joint| joint.friction);
+        let static_friction: Vec<f64> = of_joints(|joint| joint.static_friction);
+        let free = (f64::NEG_INFINITY, f64::INFINITY);
+        let limits: Vec<(f64, f64)> = model
+            .joints()
+            .iter()
+            .map(|joint| joint.limits.position.filter(|_| restitution.is_some()).unwrap_or(free))
+            .collect();
+        let is_active =
+            static_friction.iter().any(|f| *f > 0.0) || limits.iter().any(|limits| *limits != free);
+        Self {
+            friction,
+            static_friction,
+            requested: vec![None; n],
+            limits,
+            restitution: restitution.unwrap_or(0.0),
+            is_active,
+            locked: vec![false; n],
+            any_locked: false,
+            direction: vec![0.0; n],
+        }
+    }
+
+    /// Returns which joints are locked and in which direction the others slip, `(n,)` each.
+    pub(in crate::simulation) fn save(&self) -> SavedModes {
+        SavedModes { locked: self.locked.clone(), direction: self.direction.clone() }
+    }
+
+    /// Restores what [`JointModes::save`] returned.
+    pub(in crate::simulation) fn restore(&mut self, saved: &SavedModes) {
+        self.locked.copy_from_slice(&saved.locked);
+        self.direction.copy_from_slice(&saved.direction);
+        self.any_locked = self.locked.contains(&true);
+    }
+
+    /// Returns true if any joint has friction or stops.
+    pub(crate) fn is_active(&self) -> bool {
+        self.is_active
+    }
+
+    /// Returns which joints are locked, `(n,)`, if any is.
+    pub(in crate::simulation) fn locked(&self) -> Option<&[bool]> {
+        self.any_locked.then_some(&self.locked[..])
+    }
+
+    /// Returns which joints are locked, `(n,)`.
+    pub(super) fn is_locked_each(&self) -> &[bool] {
+        &self.locked
+    }
+
+    pub(super) fn is_locked(&self, j: usize) -> bool {
+        self.locked[j]
+    }
+
+    /// Lets a joint slip in a direction, −1 or 1, or locks it (0).
+    pub(super) fn set_slip(&mut self, j: usize, direction: f64) {
+        (self.locked[j], self.direction[j]) = (direction == 0.0, direction);
+        self.any_locked = self.locked.contains(&true);
+    }
+
+    /// Kinetic friction during the step, against the slip, N m (N).
+    fn drag(&self, j: usize) -> f64 {
+        self.friction[j] * self.direction[j]
+    }
+
+    /// Torque that the motor adds to the law's torque during the step, N m (N); `None` if no law compensates friction.
+    pub(in crate::simulation) fn compensation(&self, j: usize) -> Option<f64> {
+        self.requested[j].map(|_| self.drag(j))
+    }
+
+    /// Kinetic friction less its compensation, N m (N): zero where a law compensates it.
+    pub(in crate::simulation) fn remaining_drag(&self, j: usize) -> f64 {
+        if self.requested[j].is_some() { 0.0 } else { self.drag(j) }
+    }
+
+    /// Accelerations requested for the joints whose friction a control law compensates, `(n,)`.
+    pub(crate) fn requested(&self) -> &[Option<f64>] {
+        &self.requested
+    }
+
+    /// As [`JointModes::requested`], to be written by the law.
+    pub(crate) fn requested_mut(&mut self) -> &mut [Option<f64>] {
+        &mut self.requested
+    }
+
+    /// Returns true if the joint has any friction.
+    pub(super) fn has_friction(&self, j: usize) -> bool {
+        self.static_friction[j] > 0.0
+    }
+
+    /// Largest torque with which friction holds a joint at rest, N m (N); zero where the motor overcomes it.
+    pub(super) fn holding_friction(&self, j: usize) -> f64 {
+        if self.requested[j].is_some_and(|a| a != 0.0) { 0.0 } else { self.static_friction[j] }
+    }
+
+    pub(super) fn direction(&self, j: usize) -> f64 {
+        self.direction[j]
+    }
+
+    pub(super) fn limits(&self, j: usize) -> (f64, f64) {
+        self.limits[j]
+    }
+
+    /// Returns the stop at which a joint at `q` rests: 1 for the upper, −1 for the lower, 0 for neither.
+    pub(super) fn stop(&self, j: usize, q: f64) -> f64 {
+        let (lower, upper) = self.limits[j];
+        f64::from(q >= upper) - f64::from(q <= lower)
+    }
+
+    /// Returns the bounds of the torque that holds a joint at rest: `−fs..fs`, unbounded where a stop pushes.
+    pub(super) fn torque_bounds(&self, j: usize, q: f64) -> (f64, f64) {
+        let (f, stop) = (self.holding_friction(j), self.stop(j, q));
+        let lowest = if stop > 0.0 { f64::NEG_INFINITY } else { -f };
+        let highest = if stop < 0.0 { f64::INFINITY } else { f };
+        (lowest, highest)
+    }
+
+    /// Locks the joints at rest that friction or a stop can hold, and lets the others slip: the first guess of the modes.
+    pub(super) fn lock_joints_at_rest<S: Real>(&mut self, q: &[S], v: &[S]) {
+        for j in 0..self.locked.len() {
+            let (q, rate) = (q[BASE_NQ + j].lane(0), v[BASE_NV + j].lane(0));
+            let can_be_held = self.has_friction(j) || self.stop(j, q) != 0.0;
+            self.locked[j] = rate == 0.0 && can_be_held;
+            self.direction[j] = if rate == 0.0 { 0.0 } else { rate.signum() };
+        }
+        self.any_locked = self.locked.contains(&true);
+    }
+
+    /// Sets the compensation for an external engine that has its own friction and holds torques over its steps.
+    ///
+    /// Such friction creeps instead of sticking, and the sign of a small rate is arbitrary: within ±[`TURN`] the
+    /// compensation changes continuously from one direction to the other, shifted by the acceleration that the law
+    /// requests of a joint at rest (in full from [`START`] on).
+    pub(in crate::simulation) fn compensate_by_rate<S: Real>(&mut self, v: &[S]) {
+        for (j, requested) in self.requested.iter().enumerate() {
+            let start = requested.map_or(0.0, |a| (a / START).clamp(-1.0, 1.0));
+            self.direction[j] = (2.0 * v[BASE_NV + j].lane(0) / TURN + start).clamp(-1.0, 1.0);
+        }
+    }
+
+    /// Returns the power that damping and friction dissipate, `Σ (b q̇ + f s) q̇`, W.
+    #[inline(always)]
+    pub(in crate::simulation) fn loss<S: Real>(&self, model: &Model, v: &[S]) -> S {
+        let mut sum = S::of(0.0);
+        for (j, joint) in model.joints().iter().enumerate() {
+            let torque = v[BASE_NV + j] * S::of(joint.damping) + S::of(self.drag(j));
+            sum += torque * v[BASE_NV + j];
+        }
+        sum
+    }
+}

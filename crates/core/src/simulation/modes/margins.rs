@@ -1,0 +1,84 @@
+//! Distances of the joints of a system from the next change of their modes, and what happens at the change.
+
+use super::joint_modes::AT_LIMIT;
+use crate::model::{BASE_NQ, BASE_NV};
+use crate::simulation::system::System;
+use crate::simulation::system_state::SystemState;
+use crate::spatial::Real;
+
+/// A step of one system, from `start` to `end`.
+pub(super) struct ModesOfStep<'a, 's, S> {
+    pub(super) system: &'a System<'s, S>,
+    pub(super) start: &'a SystemState<S>,
+    pub(super) end: &'a SystemState<S>,
+    /// Whether the directions of slip may change within the step without ending it.
+    pub(super) ignores_slip: bool,
+}
+
+impl<S: Real> ModesOfStep<'_, '_, S> {
+    fn joints(&self) -> std::ops::Range<usize> {
+        0..self.system.model.joint_count()
+    }
+
+    /// Returns the least margin of the moving joints.
+    pub(super) fn least_margin(&self) -> f64 {
+        let margin = |j| self.slip_margin(j).min(self.limit_margin(j));
+        self.joints().map(margin).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Returns the rate of a slipping joint in its direction of slip, relative to the rates of the step.
+    fn slip_margin(&self, j: usize) -> f64 {
+        let modes = &self.system.modes;
+        let direction = modes.direction(j);
+        if self.ignores_slip || direction == 0.0 || !modes.has_friction(j) {
+            return f64::INFINITY;
+        }
+        let (first, last) = (self.start.v[BASE_NV + j].lane(0), self.end.v[BASE_NV + j].lane(0));
+        direction * last / (first.abs() + last.abs()).max(f64::MIN_POSITIVE)
+    }
+
+    /// Returns the distance of a joint from the nearer limit, relative to that at the start of the step.
+    fn limit_margin(&self, j: usize) -> f64 {
+        let modes = &self.system.modes;
+        let (lower, upper) = modes.limits(j);
+        if modes.is_locked(j) || (lower, upper) == (f64::NEG_INFINITY, f64::INFINITY) {
+            return f64::INFINITY;
+        }
+        let (first, last) = (self.start.q[BASE_NQ + j].lane(0), self.end.q[BASE_NQ + j].lane(0));
+        let distance = |q: f64| (upper - q).min(q - lower);
+        (distance(last) + AT_LIMIT) / (distance(first).abs() + AT_LIMIT)
+    }
+
+    /// Returns the first joint that would leave rest only to slip back at once.
+    pub(super) fn first_that_slips_back(&self) -> Option<usize> {
+        let slips_back = |j: &usize| self.start.v[BASE_NV + j].lane(0) == 0.0 && self.slip_margin(*j) <= 0.0;
+        self.joints().find(slips_back)
+    }
+
+    /// Returns the larger rate at both ends of the first joint that came to rest or to its stop, rad/s (m/s).
+    pub(super) fn rate_of_first_stopped(&self) -> Option<f64> {
+        let rate = |state: &SystemState<S>, j: usize| state.v[BASE_NV + j].lane(0).abs();
+        let came_to_rest = |j: &usize| rate(self.end, *j) == 0.0 && rate(self.start, *j) > 0.0;
+        let stopped = self.system.first_impact(self.end).or_else(|| self.joints().find(came_to_rest));
+        stopped.map(|j| rate(self.start, j).max(rate(self.end, j)))
+    }
+}
+
+impl<S: Real> System<'_, S> {
+    /// Removes rounding at an event: joints that came to rest get a rate of zero, those past a limit its position.
+    pub(super) fn snap_to_event(&self, start: &SystemState<S>, state: &mut SystemState<S>) {
+        let modes = &self.modes;
+        for j in 0..self.model.joint_count() {
+            let direction = modes.direction(j) * f64::from(modes.has_friction(j));
+            let (first, rate) = (start.v[BASE_NV + j].lane(0), state.v[BASE_NV + j].lane(0));
+            if direction != 0.0 && direction * rate <= 1e-13 * first.abs() {
+                state.v[BASE_NV + j] = S::of(0.0);
+            }
+            let (lower, upper) = modes.limits(j);
+            let q = state.q[BASE_NQ + j].lane(0);
+            if !modes.is_locked(j) && (q > upper || q < lower) {
+                state.q[BASE_NQ + j] = S::of(q.clamp(lower, upper));
+            }
+        }
+    }
+}

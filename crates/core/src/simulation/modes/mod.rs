@@ -1,0 +1,10 @@
+//! Modes of the joints: which stick, slip or rest at a stop, and the instants within a step at which that changes.
+
+mod impacts;
+mod joint_friction;
+mod joint_modes;
+mod margins;
+mod step_method;
+
+pub(super) use joint_modes::{AT_LIMIT, JointModes, SavedModes};
+pub(crate) use step_method::StepMethod;

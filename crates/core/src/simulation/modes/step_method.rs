@@ -1,0 +1,227 @@
+//! A step that ends early where a joint stops, starts to slip or reaches a limit.
+
+use super::margins::ModesOfStep;
+use crate::simulation::equations::EquationsOfMotion;
+use crate::simulation::error::SimulationError;
+use crate::simulation::external_loads::ExternalLoads;
+use crate::simulation::integrator::{Flow, StepSettings};
+use crate::simulation::state::State;
+use crate::spatial::Real;
+
+/// Idle steps in a row after which friction stops joints at the ends of steps and restitution is zero, so that an
+/// infinite sequence of bounces ends.
+const MOST_IDLE_STEPS: usize = 32;
+/// A step cut short is idle if it is shorter than this fraction of a regular step,
+const IDLE: f64 = 1e-6;
+/// or if the joint that comes to rest or to its stop moved by less than this since the last cut, rad or m.
+const STILL: f64 = 1e-9;
+/// Resolution of the instant of an event, as a fraction of the step.
+const RESOLUTION: f64 = 1e-14;
+
+/// Integrates the equations of motion and locates the changes of the joints' modes within a step.
+pub(crate) struct StepMethod<S> {
+    pub(crate) flow: Flow<S>,
+    start: State<S>,
+    settled: State<S>,
+    /// Whether directions of slip may change within a step without ending it.
+    ignores_slip: bool,
+    /// Idle steps in a row.
+    pub(crate) idle_steps: usize,
+    time_step: f64,
+}
+
+impl<S: Real> StepMethod<S> {
+    pub(crate) fn new(state: &State<S>, settings: &StepSettings) -> Self {
+        Self {
+            flow: Flow::new(state, settings),
+            start: state.clone(),
+            settled: state.clone(),
+            ignores_slip: false,
+            idle_steps: 0,
+            time_step: settings.time_step,
+        }
+    }
+
+    /// Prepares for another run.
+    pub(crate) fn reset(&mut self) {
+        self.idle_steps = 0;
+    }
+
+    /// Applies the impacts of a state on the momentum. Needs kinematics, and leaves those after the impacts; the
+    /// loads are to be computed next.
+    pub(crate) fn resolve_impacts(
+        &self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+    ) {
+        let is_endless = self.idle_steps > MOST_IDLE_STEPS;
+        for (system, state) in equations.systems.iter_mut().zip(&mut state.systems) {
+            if system.modes.is_active() {
+                let restitution = if is_endless { 0.0 } else { system.modes.restitution };
+                system.resolve_impacts(state, restitution);
+            }
+        }
+    }
+
+    /// Moves `state` from the start of `interval` towards its end and returns the time reached. Expects a state on
+    /// the momentum, with kinematics, loads and modes of its joints in `equations`.
+    pub(crate) fn advance(
+        &mut self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<f64, SimulationError> {
+        if !equations.has_modes() {
+            return self.flow.advance(equations, state, interval);
+        }
+        self.start.copy_from(state);
+        let end = self.flow.advance(equations, state, interval)?;
+        if !state.is_finite() {
+            return Ok(end);
+        }
+        self.ignores_slip = self.idle_steps >= MOST_IDLE_STEPS;
+        let fraction = self.locate(equations, state, (interval.0, end))?;
+        let reached = if fraction < 1.0 { interval.0 + fraction * (end - interval.0) } else { end };
+        let parts = equations.systems.iter().zip(&self.start.systems).zip(&mut state.systems);
+        parts.for_each(|((system, start), state)| system.snap_to_event(start, state));
+        let is_idle = self.is_idle(equations, state, reached - interval.0);
+        self.idle_steps = if is_idle { self.idle_steps + 1 } else { 0 };
+        Ok(reached)
+    }
+
+    /// Returns true if the step of length `h` that ended in `state` made no progress.
+    fn is_idle(
+        &self,
+        equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &State<S>,
+        h: f64,
+    ) -> bool {
+        match self.modes_of(equations, state).find_map(|step| step.rate_of_first_stopped()) {
+            Some(rate) => rate * h < STILL,
+            None => h < IDLE * self.time_step,
+        }
+    }
+
+    /// Returns the step of each system from its start to `end`.
+    fn modes_of<'a, 's, W>(
+        &'a self,
+        equations: &'a EquationsOfMotion<'s, S, W>,
+        end: &'a State<S>,
+    ) -> impl Iterator<Item = ModesOfStep<'a, 's, S>> {
+        let parts = equations.systems.iter().zip(&self.start.systems).zip(&end.systems);
+        let ignores_slip = self.ignores_slip;
+        parts.map(move |((system, start), end)| ModesOfStep { system, start, end, ignores_slip })
+    }
+
+    /// Returns the fraction of the step after which a mode changes, with `state` moved there; 1 if none does.
+    ///
+    /// Regula falsi (Illinois) on the length of the step, so that the state at the event has the order of the
+    /// integrator.
+    fn locate(
+        &mut self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+        whole: (f64, f64),
+    ) -> Result<f64, SimulationError> {
+        let (mut high, mut after) = (1.0, self.margin(equations, state, whole)?);
+        if after >= 0.0 {
+            return Ok(1.0);
+        }
+        state.copy_from(&self.start);
+        let (mut low, mut before) = (0.0, self.least_margin(equations, state));
+        // a joint that starts to slip has no margin at first: it gains one soon, or sticks during this step
+        let mut fraction = 1.0;
+        for _ in 0..10 {
+            if before > 0.0 {
+                break;
+            }
+            fraction *= 0.5;
+            let margin = self.repeat_step(equations, state, whole, fraction)?;
+            if margin > 0.0 {
+                (low, before) = (fraction, margin);
+            } else {
+                (high, after) = (fraction, margin);
+            }
+        }
+        if before <= 0.0 && self.keep_stuck(equations, state) {
+            self.repeat_step(equations, state, whole, 1.0)?;
+            return self.locate(equations, state, whole);
+        }
+        for round in 0..100 {
+            if high - low <= RESOLUTION {
+                break;
+            }
+            let secant = (low * after - high * before) / (after - before);
+            let is_inside = secant > low && secant < high && round < 40 && before > 0.0;
+            let middle = if is_inside { secant } else { 0.5 * (low + high) };
+            let margin = self.repeat_step(equations, state, whole, middle)?;
+            if margin < 0.0 {
+                (high, after) = (middle, margin);
+                before *= 0.5;
+            } else {
+                (low, before) = (middle, margin);
+                after *= 0.5;
+            }
+        }
+        self.repeat_step(equations, state, whole, high)?;
+        Ok(high)
+    }
+
+    /// Repeats the step over a fraction of its length; returns the margin at its end.
+    fn repeat_step(
+        &mut self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+        whole: (f64, f64),
+        fraction: f64,
+    ) -> Result<f64, SimulationError> {
+        let end = if fraction < 1.0 { whole.0 + fraction * (whole.1 - whole.0) } else { whole.1 };
+        state.copy_from(&self.start);
+        equations.project_momentum(state);
+        equations.apply_loads(whole.0, (whole.0, end), state)?;
+        self.flow.step(equations, state, (whole.0, end))?;
+        self.margin(equations, state, (whole.0, end))
+    }
+
+    /// Returns the relative distance to the next change of a joint's mode; negative if one was missed.
+    fn margin(
+        &mut self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &State<S>,
+        interval: (f64, f64),
+    ) -> Result<f64, SimulationError> {
+        let mut least = self.least_margin(equations, state);
+        if equations.any_locked() && self.idle_steps < MOST_IDLE_STEPS {
+            self.settled.copy_from(state);
+            equations.project_momentum(&mut self.settled);
+            equations.apply_loads(interval.1, interval, &self.settled)?;
+            for (system, state) in equations.systems.iter_mut().zip(&self.settled.systems) {
+                least = least.min(system.least_stick_margin(&state.q, &state.v));
+            }
+        }
+        Ok(least)
+    }
+
+    /// Returns the least margin of the moving joints of all systems.
+    fn least_margin(
+        &self,
+        equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &State<S>,
+    ) -> f64 {
+        self.modes_of(equations, state).map(|step| step.least_margin()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Locks a joint that would leave rest only to slip back at once; returns true if there was one.
+    fn keep_stuck(
+        &self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &State<S>,
+    ) -> bool {
+        let steps = self.modes_of(equations, state).enumerate();
+        let found = steps.filter_map(|(number, step)| Some((number, step.first_that_slips_back()?))).next();
+        if let Some((number, j)) = found {
+            equations.systems[number].modes.set_slip(j, 0.0);
+        }
+        found.is_some()
+    }
+}

@@ -1,0 +1,154 @@
+//! What moves the systems over a step: the native equations of motion or an external engine.
+
+use super::engine::ExternalEngine;
+use super::environment_loads::EnvironmentLoads;
+use super::equations::EquationsOfMotion;
+use super::error::SimulationError;
+use super::integrator::{Flow, StepControl};
+use super::modes::StepMethod;
+use super::only::{only, only_mut};
+use super::recorder::Recorder;
+use super::state::State;
+use super::system_state::SystemState;
+use crate::model::Model;
+use crate::spatial::Scalar;
+
+type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
+
+/// The one place at which native dynamics and an external engine differ; schedule, controllers, rows and
+/// certificate are the same for both. An external engine moves one robot, the only system of its run.
+pub(super) enum Mover<'a, S> {
+    Native(StepMethod<S>),
+    External(ExternalEngine<'a>),
+}
+
+impl<S: Scalar> Mover<'_, S> {
+    /// Computes the kinematics of `state`. The native base twist follows from the momentum; that of an external
+    /// engine is left as it is.
+    pub(super) fn kinematics(&self, equations: &mut Equations<'_, S>, state: &mut State<S>) {
+        match self {
+            Self::Native(_) => equations.project_momentum(state),
+            Self::External(_) => equations.update_kinematics(state),
+        }
+    }
+
+    /// Applies the impacts of joints that reach their stops; an external engine has its own stops.
+    pub(super) fn resolve_impacts(&self, equations: &mut Equations<'_, S>, state: &mut State<S>) {
+        if let Self::Native(method) = self {
+            method.resolve_impacts(equations, state);
+        }
+    }
+
+    /// Computes which joints stick, slip or rest at a stop during the step.
+    pub(super) fn solve_modes(&self, equations: &mut Equations<'_, S>, state: &State<S>) {
+        match self {
+            Self::Native(_) => equations.solve_modes(state),
+            Self::External(_) => {
+                only_mut(&mut equations.systems).modes.compensate_by_rate(&only(&state.systems).v);
+            }
+        }
+    }
+
+    pub(super) fn is_external(&self) -> bool {
+        matches!(self, Self::External(_))
+    }
+
+    pub(super) fn is_adaptive(&self) -> bool {
+        matches!(self, Self::Native(method) if method.flow.is_adaptive())
+    }
+
+    /// Returns true if a step may take long.
+    pub(super) fn has_long_steps(&self) -> bool {
+        self.is_external() || self.is_adaptive()
+    }
+
+    /// Returns true if a step may end before the end of its interval.
+    pub(super) fn may_end_early(&self, equations: &Equations<'_, S>) -> bool {
+        match self {
+            Self::Native(_) => equations.has_modes() || self.is_adaptive(),
+            Self::External(_) => false,
+        }
+    }
+
+    /// Moves `state` from the start of `interval` towards its end and returns the time reached.
+    pub(super) fn advance(
+        &mut self,
+        equations: &mut Equations<'_, S>,
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<f64, SimulationError> {
+        match self {
+            Self::Native(method) => method.advance(equations, state, interval),
+            Self::External(engine) => {
+                let (system, state) = (only(&equations.systems), only_mut(&mut state.systems));
+                engine.advance(system, state, interval).map(|()| interval.1)
+            }
+        }
+    }
+
+    /// Completes a system's row at the start of the step taken last with the acceleration there; removes the row if an
+    /// external engine did not return one.
+    pub(super) fn complete_row(&self, number: usize, recorder: &mut Recorder, model: &Model) {
+        match self {
+            Self::Native(method) => {
+                recorder.record_acceleration(model, &method.flow.stages.first[number].acceleration);
+            }
+            Self::External(engine) => match engine.first_acceleration() {
+                Some(acceleration) => recorder.record_acceleration(model, acceleration),
+                None => recorder.drop_last_row(),
+            },
+        }
+    }
+
+    /// Work done on a system in the step taken last, J; `state` is its state at the end.
+    pub(super) fn work_of_step(&self, number: usize, state: &SystemState<S>) -> f64 {
+        match self {
+            Self::Native(method) => (state.work - method.flow.stages.start.systems[number].work).value(),
+            Self::External(engine) => engine.work_of_step(),
+        }
+    }
+
+    /// The integrator of the native equations of motion.
+    pub(super) fn flow(&mut self) -> Option<&mut Flow<S>> {
+        match self {
+            Self::Native(method) => Some(&mut method.flow),
+            Self::External(_) => None,
+        }
+    }
+
+    /// State of the adaptive step control, and the number of idle steps in a row.
+    pub(super) fn progress(&self) -> (Option<StepControl>, usize) {
+        match self {
+            Self::Native(method) => (method.flow.control().cloned(), method.idle_steps),
+            Self::External(_) => (None, 0),
+        }
+    }
+
+    /// Restores what [`Mover::progress`] returned.
+    pub(super) fn restore(&mut self, (control, idle_steps): (Option<StepControl>, usize)) {
+        if let Self::Native(method) = self {
+            method.idle_steps = idle_steps;
+            if let Some(control) = control {
+                method.flow.set_control(control);
+            }
+        }
+    }
+
+    /// Returns the number of the first system that is not finite, in `state` or in the last stage of the integrator.
+    pub(super) fn first_diverged(&self, state: &State<S>) -> Option<usize> {
+        state.systems.iter().enumerate().position(|(number, state)| match self {
+            Self::Native(method) => !state.is_finite() || !method.flow.stages.is_finite(number),
+            Self::External(_) => !state.is_finite(),
+        })
+    }
+
+    /// Returns configuration and velocity of a system at its last finite state: `state`, or that at the start of its
+    /// step.
+    pub(super) fn last_finite(&self, number: usize, state: &State<S>) -> [Vec<f64>; 2] {
+        let present = &state.systems[number];
+        match self {
+            Self::Native(method) if !present.is_finite() => method.flow.stages.start_state(number),
+            _ => [&present.q, &present.v].map(|x| x.iter().map(|x| x.value()).collect()),
+        }
+    }
+}

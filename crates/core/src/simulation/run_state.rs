@@ -1,0 +1,143 @@
+//! State of a run between two steps, from which it continues with the same bits.
+
+use super::accuracy::Accuracy;
+use super::checkpoint::{Checkpoint, Progress, SavedControllers, SystemProgress};
+use super::checkpoint_error::CheckpointError;
+use super::environment_loads::EnvironmentLoads;
+use super::equations::EquationsOfMotion;
+use super::error::SimulationError;
+use super::integrator::Stages;
+use super::layout::Layout;
+use super::mover::Mover;
+use super::only::only_mut;
+use super::run_system::RunSystem;
+use super::schedule::Schedule;
+use super::state::State;
+use super::system::System;
+use super::trace::Trace;
+use crate::earth::Earth;
+use crate::spatial::Scalar;
+use std::sync::Arc;
+
+/// A run in progress. Its steps are in `step.rs`, its rows in `record.rs`, stops within a step in `look_ahead.rs`.
+pub(super) struct RunState<'a, S> {
+    /// Names of the systems and of their joints; all lists with one entry per system have this order.
+    pub(super) layout: Layout,
+    /// State at the present cut.
+    pub(super) state: State<S>,
+    pub(super) equations: EquationsOfMotion<'a, S, EnvironmentLoads>,
+    /// Controllers and recorders.
+    pub(super) systems: Vec<RunSystem<'a, S>>,
+    pub(super) mover: Mover<'a, S>,
+    pub(super) schedule: Schedule,
+    pub(super) record_every: usize,
+    /// Whether every step is a row.
+    pub(super) has_every_step: bool,
+    pub(super) accuracy: Accuracy<S>,
+    /// Steps taken so far.
+    pub(super) steps: usize,
+    /// Present time, s: the present cut, or a time within the step that begins there.
+    pub(super) time: f64,
+    /// Whether the controllers were updated at the present cut.
+    pub(super) is_updated: bool,
+    /// Rows at this time or later are not recorded, s: infinity except in a step that is tried.
+    pub(super) records_before: f64,
+    /// State and stages for rows that are not at the start of a step.
+    pub(super) row_buffers: (State<S>, Stages<S>),
+    /// Distance of the base from the origin of W beyond which a system gets a local reference, m.
+    pub(super) rereference_beyond: f64,
+    pub(super) earth: Option<Arc<Earth>>,
+}
+
+impl<S: Scalar> RunState<'_, S> {
+    /// Returns the state of everything that a step changes, except the controllers.
+    pub(super) fn progress(&self) -> Progress {
+        let (step_control, idle_steps) = self.mover.progress();
+        let systems = self.systems.iter().zip(&self.equations.systems).enumerate();
+        let progress = |(number, (run, system)): (usize, (&RunSystem<'_, S>, &System<'_, S>))| {
+            let (errors, checks) = self.accuracy.save(number);
+            let trace = &run.recorder.trace;
+            let (rows, work_done) = (trace.rows(), trace.work_done);
+            SystemProgress { rows, modes: system.modes.save(), errors, checks, work_done }
+        };
+        Progress {
+            steps: self.steps,
+            cursor: self.schedule.cursor(),
+            state: self.state.map(|x| x.value()),
+            step_control,
+            idle_steps,
+            systems: systems.map(progress).collect(),
+        }
+    }
+
+    /// Returns to what [`RunState::progress`] returned; rows recorded since are removed.
+    pub(super) fn restore(&mut self, progress: Progress) {
+        self.state = progress.state.map(|x| S::of(*x));
+        self.schedule.set_cursor(progress.cursor);
+        self.steps = progress.steps;
+        self.mover.restore((progress.step_control, progress.idle_steps));
+        let systems = self.systems.iter_mut().zip(&mut self.equations.systems);
+        for (number, (saved, (run, system))) in progress.systems.into_iter().zip(systems).enumerate() {
+            system.modes.restore(&saved.modes);
+            self.accuracy.restore(number, (saved.errors, saved.checks));
+            run.recorder.truncate(saved.rows);
+            run.recorder.trace.work_done = saved.work_done;
+        }
+    }
+
+    /// Returns a checkpoint; the rows so far are not part of it.
+    pub(super) fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
+        let systems = self.systems.iter().zip(&self.equations.systems);
+        let systems = systems.map(|(run, system)| run.save_controllers(system)).collect::<Result<_, _>>()?;
+        let controllers = SavedControllers { is_updated: self.is_updated, systems };
+        let local_reference = self.equations.loads.local_reference().cloned();
+        Ok(Checkpoint::new(self.time, self.schedule.clone(), self.progress(), local_reference, controllers))
+    }
+
+    /// Continues from a checkpoint, with the rows recorded until then.
+    pub(super) fn resume(&mut self, from: Checkpoint, trace: Trace) -> Result<(), SimulationError> {
+        from.check(&self.layout, &self.schedule, trace.rows())?;
+        let (time, progress, local_reference, saved) = from.into_parts();
+        self.check_estimates(&progress)?;
+        only_mut(&mut self.systems).recorder.resume(trace)?;
+        self.restore(progress);
+        self.time = time;
+        if let Some(local) = local_reference {
+            self.equations.loads.set_local_reference(local)?;
+        }
+        self.is_updated = saved.is_updated;
+        let systems = self.systems.iter_mut().zip(&mut self.equations.systems);
+        for (saved, (run, system)) in saved.systems.into_iter().zip(systems) {
+            run.load_controllers(saved, system)?;
+        }
+        Ok(())
+    }
+
+    /// Checks that a checkpoint has the estimates of the error that this run makes.
+    fn check_estimates(&self, progress: &Progress) -> Result<(), CheckpointError> {
+        for (number, saved) in progress.systems.iter().enumerate() {
+            let (errors, checks) = self.accuracy.save(number);
+            if errors.is_some() != saved.errors.is_some() || checks.is_some() != saved.checks.is_some() {
+                let (name, expected) = ("estimates of the error", usize::from(errors.is_some()));
+                return Err(CheckpointError::OtherSize { name, got: 1 - expected, expected });
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes to the traces what is known only during the run: estimates of its error, changes of reference, and
+    /// outcomes of goals.
+    pub(super) fn conclude(&mut self) {
+        let control = self.mover.progress().0;
+        let local = self.equations.loads.local_reference();
+        let systems = self.systems.iter_mut().zip(&self.equations.systems);
+        for (number, (run, system)) in systems.enumerate() {
+            let rotation_error = control.as_ref().map(|control| control.systems[number].rotation_error);
+            let results = run.goal_results(system.model);
+            let trace = &mut run.recorder.trace;
+            self.accuracy.conclude(number, self.steps, rotation_error, trace);
+            trace.rereferenced = local.map_or_else(Vec::new, |local| local.times.clone());
+            trace.results = results;
+        }
+    }
+}

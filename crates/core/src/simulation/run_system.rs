@@ -1,0 +1,79 @@
+//! What a run has for each system besides its state and its equations of motion.
+
+use super::checkpoint::SystemControllers;
+use super::controllers::Controllers;
+use super::environment_loads::EnvironmentLoads;
+use super::error::SimulationError;
+use super::recorder::Recorder;
+use super::system::System;
+use super::system_state::SystemState;
+use super::trace::GoalResult;
+use crate::model::Model;
+use crate::orbit::OrbitState;
+use crate::spatial::Scalar;
+
+/// Controllers and recorder of one system.
+pub(super) struct RunSystem<'a, S> {
+    pub(super) controllers: Controllers<'a, S>,
+    pub(super) recorder: Recorder,
+}
+
+impl<S: Scalar> RunSystem<'_, S> {
+    /// Adds a row without its acceleration for a state whose kinematics are in `system`. `orbit` is the state of the
+    /// reference orbit.
+    pub(super) fn add_row(
+        &mut self,
+        t: f64,
+        state: &SystemState<S>,
+        system: &System<'_, S>,
+        loads: &mut EnvironmentLoads,
+        orbit: Option<OrbitState>,
+    ) -> Result<(), SimulationError> {
+        let Self { controllers, recorder } = self;
+        recorder.record_state(t, state, system, orbit, controllers.desired(t, state, system)?);
+        recorder.record_tracking(&controllers.set);
+        recorder.record_wrenches(system.model, loads, t)
+    }
+
+    /// Returns the controllers of `system` and its torques.
+    pub(super) fn save_controllers(
+        &self,
+        system: &System<'_, S>,
+    ) -> Result<SystemControllers, SimulationError> {
+        Ok(SystemControllers {
+            command: system.command.iter().map(|x| x.value()).collect(),
+            commanded: self.controllers.set.commanded().to_vec(),
+            requested: system.modes.requested().to_vec(),
+            controls: self.controllers.set.save()?,
+        })
+    }
+
+    /// Restores what [`RunSystem::save_controllers`] returned.
+    pub(super) fn load_controllers(
+        &mut self,
+        saved: SystemControllers,
+        system: &mut System<'_, S>,
+    ) -> Result<(), SimulationError> {
+        let SystemControllers { command, commanded, requested, controls } = saved;
+        system.command.iter_mut().zip(command).for_each(|(to, from)| *to = S::of(from));
+        self.controllers.set.command(&commanded);
+        system.modes.requested_mut().copy_from_slice(&requested);
+        Ok(self.controllers.set.load(&controls)?)
+    }
+
+    /// Returns the outcomes of the goals so far.
+    pub(super) fn goal_results(&self, model: &Model) -> Vec<GoalResult> {
+        let set = &self.controllers.set;
+        let with_goal = set.controls().iter().enumerate().filter(|(_, control)| control.goal.is_some());
+        with_goal
+            .map(|(i, control)| {
+                let outcome = set.outcome(i);
+                let component = outcome.miss().map(|miss| match control.law.task() {
+                    Some(_) => ["position", "attitude"][miss.component].to_owned(),
+                    None => model.joints()[control.joints[miss.component]].name.clone(),
+                });
+                GoalResult { name: control.name.clone(), outcome, component }
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,144 @@
+//! One step of a run: the order of execution at a cut, numbered as on the design page.
+
+use super::equations::EquationsOfMotion;
+use super::error::SimulationError;
+use super::record::complete_rows;
+use super::run_state::RunState;
+use super::run_system::RunSystem;
+use super::schedule::Interval;
+use crate::control::ControlError;
+use crate::spatial::{Scalar, Vec3};
+
+impl<S: Scalar> RunState<'_, S> {
+    /// Takes a step in `interval`, which begins at the present cut: from there to `end`, to the first change of a
+    /// joint's mode, or as far as the tolerance allows.
+    pub(super) fn step_to(&mut self, end: f64, interval: &Interval) -> Result<(), SimulationError> {
+        let start = interval.start;
+        self.order_of_execution(end, interval).map_err(|error| self.name_divergence(error, start))?;
+        if self.state.is_finite() { Ok(()) } else { Err(self.diverged(start)) }
+    }
+
+    /// Takes a step over the whole interval.
+    pub(super) fn step(&mut self, interval: &Interval) -> Result<(), SimulationError> {
+        self.step_to(interval.end, interval)
+    }
+
+    fn order_of_execution(&mut self, end: f64, interval: &Interval) -> Result<(), SimulationError> {
+        self.begin(interval, end)?;
+        // 6 row at the start of the step
+        let is_row = self.is_row_due(interval);
+        if is_row {
+            self.record(interval.start)?;
+        }
+        // 7 integration, 8 location of the first change of a joint's mode
+        let reached = self.flow(interval, end, is_row)?;
+        self.schedule.cut_at(reached);
+        (self.steps, self.is_updated) = (self.steps + 1, false);
+        self.record_within_step()
+    }
+
+    /// Kinematics, impacts, loads, controllers and modes at the start of a step in `interval` to `end`, or of the last
+    /// row, which has no step.
+    pub(super) fn begin(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
+        let t = interval.start;
+        // 1 kinematics, and the base twist projected onto the momentum
+        self.mover.kinematics(&mut self.equations, &mut self.state);
+        if !self.state.is_finite() {
+            return Err(self.diverged(t));
+        }
+        self.accuracy.end_step(t, &self.state, &self.equations);
+        // 2 impacts of joints at their stops
+        self.impacts(t, (t, end))?;
+        // 3 loads of the environment, 4 controllers that are due
+        self.loads_and_controllers(interval, end)?;
+        // 5 which joints stick, slip or rest at a stop during the step
+        self.mover.solve_modes(&mut self.equations, &self.state);
+        Ok(())
+    }
+
+    /// Controllers that compensate the environment are updated after the loads, which they need; others before them.
+    /// They see the loads of the whole interval, wherever the step ends.
+    fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
+        let t = interval.start;
+        let is_due = interval.is_control_tick && !self.is_updated;
+        let uses_loads =
+            is_due && self.systems.iter().any(|run| run.controllers.set.compensates_environment());
+        if is_due {
+            self.update_controllers(t, false)?;
+        }
+        if uses_loads {
+            self.equations.apply_loads(t, (t, interval.end), &self.state)?;
+            self.update_controllers(t, true)?;
+        }
+        self.is_updated |= is_due;
+        if !uses_loads || end != interval.end {
+            self.equations.apply_loads(t, (t, end), &self.state)?;
+        }
+        Ok(())
+    }
+
+    /// Updates the controllers of the systems that compensate the environment, or of the others.
+    fn update_controllers(&mut self, t: f64, compensates_environment: bool) -> Result<(), SimulationError> {
+        let parts = self.systems.iter_mut().zip(&mut self.equations.systems).zip(&self.state.systems);
+        for ((RunSystem { controllers, .. }, system), state) in parts {
+            if controllers.set.compensates_environment() == compensates_environment {
+                if !compensates_environment {
+                    system.data.clear_external();
+                }
+                controllers.update(t, state, system)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Integrates over the interval and returns the time reached; the accuracy of the step is measured beside it.
+    fn flow(&mut self, interval: &Interval, end: f64, is_row: bool) -> Result<f64, SimulationError> {
+        let span = (interval.start, end);
+        let Self { state, equations, mover, accuracy, systems, .. } = self;
+        accuracy.start_step(self.steps, span, state, equations, mover)?;
+        let result = mover.advance(equations, state, span);
+        if is_row {
+            complete_rows(systems, mover, equations);
+        }
+        let reached = result?;
+        for (number, (run, state)) in systems.iter_mut().zip(&state.systems).enumerate() {
+            run.recorder.trace.work_done += mover.work_of_step(number, state).abs();
+        }
+        let is_smooth = !interval.is_event && !equations.has_modes();
+        accuracy.measure_step(
+            (span.0, reached),
+            is_smooth,
+            state,
+            equations,
+            mover,
+            &mut self.row_buffers,
+        )?;
+        Ok(reached)
+    }
+
+    /// Continues about a new local reference if a system has drifted far from its reference orbit.
+    pub(super) fn rereference_if_far(&mut self, t: f64) -> Result<(), SimulationError> {
+        let EquationsOfMotion { systems, loads } = &mut self.equations;
+        for (number, (system, state)) in systems.iter_mut().zip(&mut self.state.systems).enumerate() {
+            if Vec3::from_slice(&state.q).norm().value() > self.rereference_beyond {
+                system.rereference(loads, t, state)?;
+                self.accuracy.skip_step(number);
+            }
+        }
+        Ok(())
+    }
+
+    /// Reports divergence as such: once the state is not finite, errors raised downstream (overflow of a torque, orbit
+    /// or effect evaluated at a position that is not finite) become [`SimulationError::Diverged`].
+    pub(super) fn name_divergence(&self, error: SimulationError, t: f64) -> SimulationError {
+        let is_overflow = matches!(&error, SimulationError::Control(ControlError::Overflow { .. }));
+        if is_overflow || self.mover.first_diverged(&self.state).is_some() { self.diverged(t) } else { error }
+    }
+
+    /// Returns the error that carries the last finite state.
+    fn diverged(&self, time: f64) -> SimulationError {
+        let number = self.mover.first_diverged(&self.state).unwrap_or(0); // else a controller overflowed
+        let [q, v] = self.mover.last_finite(number, &self.state);
+        SimulationError::Diverged { time, q, v }
+    }
+}

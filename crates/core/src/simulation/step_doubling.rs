@@ -1,0 +1,219 @@
+//! Differences between steps and halved steps: an estimate of the errors of the attitude and of each joint.
+
+use super::acceleration_jumps::AccelerationJumps;
+use super::equations::EquationsOfMotion;
+use super::error::SimulationError;
+use super::external_loads::ExternalLoads;
+use super::integrator::Flow;
+use super::state::State;
+use super::system::System;
+use super::system_state::SystemState;
+use super::trace::CoordinateDrift;
+use crate::dynamics::Data;
+use crate::model::{BASE_NQ, BASE_NV, QUATERNION};
+use crate::spatial::{Quat, Scalar, Vec3, log_so3};
+use serde::{Deserialize, Serialize};
+
+/// Most steps between two probes; three steps each, so about a hundredth of a run.
+const EVERY: usize = 256;
+/// Least number of probes of a run that has as many steps.
+const LEAST: usize = 5;
+/// Further steps that a run of many steps probes early, where transients are.
+const EARLY: [usize; 3] = [4, 16, 64];
+/// Differences below this many ε of what they are taken from are rounding.
+const ROUNDING: f64 = 16.0;
+
+/// Repeats a step at intervals as two of half its size, and sums the differences of their ends.
+///
+/// A local error of order `p + 1` is smaller by `2^p` in two half steps, so the difference is the
+/// local error itself but for a sixteenth (Runge-Kutta). The sum bounds the error of a run that does
+/// not amplify it; a chaotic one does.
+pub(super) struct StepDoubling<S> {
+    whole: State<S>,
+    halved: State<S>,
+    /// Kinematics and loads of each system at the start of the step.
+    start: Vec<Data<S>>,
+    /// Steps between two probes.
+    every: usize,
+    /// Sum of the magnitudes of all accelerations of each system at the start of the step.
+    changes: Vec<f64>,
+    /// Errors of each system.
+    pub(super) errors: Vec<Errors>,
+}
+
+/// Errors of one system that the probes found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Errors {
+    /// Step of the last probe.
+    pub(super) step: usize,
+    /// Difference of the attitude at the last probe, rad, and the sum over the steps before it.
+    turn: [f64; 2],
+    /// Of the base's origin, then of every joint.
+    pub(super) drifts: Vec<Drift>,
+    /// Jumps of the joints' accelerations, from every step.
+    pub(super) jumps: AccelerationJumps,
+}
+
+/// Differences of a coordinate between steps and halved steps: of its position and of its rate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Drift {
+    /// Differences at the last probe.
+    last: [f64; 2],
+    /// Sums over the steps before it.
+    sum: [f64; 2],
+    /// Largest rate that a probe saw.
+    fastest: f64,
+}
+
+impl Drift {
+    fn until(&self, steps: f64) -> [f64; 2] {
+        [0, 1].map(|i| self.sum[i] + self.last[i] * steps)
+    }
+}
+
+impl Errors {
+    /// Sum of the differences of attitude over `steps` steps so far, rad.
+    pub(super) fn turn(&self, steps: usize) -> f64 {
+        self.turn[1] + self.turn[0] * (steps - self.step) as f64
+    }
+
+    /// The same of a coordinate's position and rate, and its largest rate; index 0 is the base's origin, then come
+    /// the joints.
+    pub(super) fn drift(&self, coordinate: usize, steps: usize) -> CoordinateDrift {
+        let drift = &self.drifts[coordinate];
+        let [position, rate] = drift.until((steps - self.step) as f64);
+        let joint = coordinate.checked_sub(1);
+        let of_joint = |x: &[f64]| joint.and_then(|j| x.get(j)).copied().unwrap_or(0.0);
+        let fastest = drift.fastest.max(of_joint(&self.jumps.fastest));
+        CoordinateDrift { position, rate, fastest, jumps: of_joint(&self.jumps.jumps) }
+    }
+
+    /// Returns the errors of a system with this number of joints before the first probe.
+    fn new(joints: usize) -> Self {
+        let drifts = vec![Drift::default(); joints + 1];
+        Self { drifts, jumps: AccelerationJumps::new(joints), ..Self::default() }
+    }
+
+    fn advance(&mut self, step: usize) {
+        let steps = (step - self.step) as f64;
+        self.turn[1] = self.turn(step);
+        for drift in &mut self.drifts {
+            drift.sum = drift.until(steps);
+        }
+        self.step = step;
+    }
+}
+
+impl<S: Scalar> StepDoubling<S> {
+    /// `steps` is the planned number of steps, if the run has a planned end.
+    pub(super) fn new(systems: &[System<'_, S>], state: &State<S>, steps: Option<usize>) -> Self {
+        let every = steps.map_or(EVERY, |steps| (steps / LEAST).clamp(1, EVERY));
+        Self {
+            whole: state.clone(),
+            halved: state.clone(),
+            start: systems.iter().map(|system| Data::new(system.model)).collect(),
+            every,
+            changes: vec![0.0; systems.len()],
+            errors: systems.iter().map(|system| Errors::new(system.model.joint_count())).collect(),
+        }
+    }
+
+    /// Returns true if step `step` is probed.
+    pub(super) fn is_due(&self, step: usize) -> bool {
+        step.is_multiple_of(self.every) || self.every == EVERY && EARLY.contains(&step)
+    }
+
+    /// Probes the step number `step` over `interval`, if it is due. The state and the kinematics and loads in
+    /// `equations` stay as they are, to the bit.
+    pub(super) fn probe(
+        &mut self,
+        step: usize,
+        interval: (f64, f64),
+        state: &State<S>,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        flow: &mut Flow<S>,
+    ) -> Result<(), SimulationError> {
+        if !self.is_due(step) {
+            return Ok(());
+        }
+        self.errors.iter_mut().for_each(|errors| errors.advance(step));
+        for (start, system) in self.start.iter_mut().zip(&equations.systems) {
+            start.copy_from(&system.data);
+        }
+        let repeated = self.repeat(interval, state, equations, flow);
+        equations.restore(&self.start);
+        repeated?;
+        self.compare(state, interval.1 - interval.0, equations);
+        Ok(())
+    }
+
+    /// Takes one step and two halved ones from `state`, and stores the magnitudes of the accelerations at its start.
+    fn repeat(
+        &mut self,
+        interval: (f64, f64),
+        state: &State<S>,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        flow: &mut Flow<S>,
+    ) -> Result<(), SimulationError> {
+        let middle = 0.5 * (interval.0 + interval.1);
+        self.whole.copy_from(state);
+        flow.step(equations, &mut self.whole, interval)?;
+        for (changes, first) in self.changes.iter_mut().zip(&flow.stages.first) {
+            *changes = first.acceleration.iter().map(|x| x.value().abs()).sum();
+        }
+        self.halved.copy_from(state);
+        for half in [(interval.0, middle), (middle, interval.1)] {
+            equations.project_momentum(&mut self.halved);
+            equations.apply_loads(half.0, interval, &self.halved)?;
+            flow.step(equations, &mut self.halved, half)?;
+        }
+        Ok(())
+    }
+
+    /// Stores the differences of the two ends of a step of length `h` from `state`.
+    fn compare<W>(&mut self, state: &State<S>, h: f64, equations: &EquationsOfMotion<'_, S, W>) {
+        for (number, (errors, system)) in self.errors.iter_mut().zip(&equations.systems).enumerate() {
+            let [start, whole, halved] =
+                [state, &self.whole, &self.halved].map(|state| &state.systems[number]);
+            errors.compare(start, [whole, halved], h, self.changes[number], system.model.mass());
+        }
+    }
+}
+
+impl Errors {
+    /// Stores the differences of the ends of one step of length `h` from `start` and of two halved ones; `changes` is
+    /// the sum of the magnitudes of all accelerations.
+    fn compare<S: Scalar>(
+        &mut self,
+        start: &SystemState<S>,
+        [whole, halved]: [&SystemState<S>; 2],
+        h: f64,
+        changes: f64,
+        mass: f64,
+    ) {
+        let [a, b] = [whole, halved].map(|state| Quat::from_xyzw(&state.q[QUATERNION]));
+        let rates: f64 = start.v[3..].iter().map(|x| x.value().abs()).sum();
+        let forced = h * (changes + rates * rates);
+        let beyond = |difference: f64, scale: f64| (difference - ROUNDING * f64::EPSILON * scale).max(0.0);
+        self.turn[0] = beyond(log_so3(a.conjugate().product(b)).norm().value(), 1.0);
+        let (origin, joints) = self.drifts.split_first_mut().expect("the base has an entry");
+        let off = |a: Vec3<S>, b: Vec3<S>| (a - b).norm().value();
+        let (p, p_halved) = (Vec3::from_slice(&whole.q), Vec3::from_slice(&halved.q));
+        let speed = Vec3::from_slice(&start.v).norm().value();
+        let (j, j_halved) = (whole.impulse.linear, halved.impulse.linear);
+        origin.fastest = origin.fastest.max(speed);
+        origin.last = [
+            beyond(off(p, p_halved), p.norm().value() + h * (speed + forced)),
+            beyond(off(j, j_halved), j.norm().value()) / mass,
+        ];
+        for (i, joint) in joints.iter_mut().enumerate() {
+            let off = |a: S, b: S| (a - b).value().abs();
+            let (q, v) = (whole.q[BASE_NQ + i], whole.v[BASE_NV + i]);
+            joint.fastest = joint.fastest.max(v.value().abs()).max(start.v[BASE_NV + i].value().abs());
+            joint.last = [
+                beyond(off(q, halved.q[BASE_NQ + i]), q.value().abs() + h * (rates + forced)),
+                beyond(off(v, halved.v[BASE_NV + i]), v.value().abs() + forced),
+            ];
+        }
+    }
+}

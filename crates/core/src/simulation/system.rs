@@ -1,0 +1,208 @@
+//! Equations of motion of one system: from its state, loads and joint torques to rates of change.
+
+use super::body_states::LoadedSystem;
+use super::modes::JointModes;
+use super::system_state::{SystemRate, SystemState};
+use crate::dynamics::{
+    Data, Momentum, base_rotation, center_of_mass_b, forward_dynamics_recursion, kinematics,
+    locked_dynamics_recursion, projected_base_twist,
+};
+use crate::model::{BASE_NV, Model};
+use crate::spatial::{Force, Motion, Real, Vec3};
+
+/// Equations of motion of one system under held joint torques and the external wrenches in `data`.
+pub(crate) struct System<'a, S> {
+    pub(crate) model: &'a Model,
+    pub(crate) data: Data<S>,
+    /// Commanded joint torques, `(n,)`, N m (N); without the compensation of Coulomb friction.
+    pub(crate) command: Vec<S>,
+    /// Generalized forces of a stage, `(nv,)`: command, damping and friction.
+    pub(super) forces: Vec<S>,
+    /// Buffer for accelerations or changes of velocity, `(nv,)`.
+    pub(super) scratch: Vec<S>,
+    /// Velocity, W axes, of the frame in which `data` holds velocities: zero outside a step, that of the base's
+    /// origin at the start of the step within it.
+    frame_velocity: Vec3<S>,
+    mass: S,
+    /// Which joints stick or rest at a stop.
+    pub(crate) modes: JointModes,
+    /// Whether any joint has damping or friction.
+    is_lossy: bool,
+}
+
+impl<'a, S: Real> System<'a, S> {
+    /// `restitution` of the stops at the joints' position limits; without it there are no stops.
+    pub(crate) fn new(model: &'a Model, restitution: Option<f64>) -> Self {
+        let (n, zero) = (model.joint_count(), S::of(0.0));
+        Self {
+            model,
+            data: Data::new(model),
+            command: vec![zero; n],
+            forces: vec![zero; model.nv()],
+            scratch: vec![zero; model.nv()],
+            frame_velocity: Vec3::zero(),
+            mass: S::of(model.mass()),
+            modes: JointModes::new(model, restitution),
+            is_lossy: model.joints().iter().any(|joint| joint.damping > 0.0 || joint.friction > 0.0),
+        }
+    }
+
+    /// Computes the kinematics of `state` and projects its base twist onto its momentum:
+    /// `v_b = Mbb⁻¹ (h − Mbm q̇)`.
+    ///
+    /// The momentum `h` is integrated from the external wrenches alone, so it is conserved to rounding without
+    /// them; the integrated base twist has a truncation error. Called once per step.
+    pub(crate) fn project_momentum(&mut self, state: &mut SystemState<S>) {
+        // in the frame of the base's origin: a robot that passes W's origin at km/s keeps all its digits
+        let frame_velocity = Motion::new(Vec3::from_slice(&state.v), Vec3::zero());
+        Vec3::zero().write(&mut state.v);
+        self.update_kinematics(state);
+        let (mass, data) = (self.mass, &mut self.data);
+        S::enter(
+            #[inline(always)]
+            || {
+                let mut target = state.momentum();
+                target.linear -= base_rotation(&state.q) * frame_velocity.linear * mass;
+                let twist = projected_base_twist(data, &state.q, &state.v, target);
+                let correction = twist - Motion::from_slice(&state.v) + frame_velocity;
+                (twist + frame_velocity).write(&mut state.v);
+                data.bodies.iter_mut().for_each(|body| body.velocity += correction.referred_to(body.pos_b));
+            },
+        );
+    }
+
+    /// Computes the kinematics of `state` in W.
+    pub(crate) fn update_kinematics(&mut self, state: &SystemState<S>) {
+        self.frame_velocity = Vec3::zero();
+        kinematics(self.model, &mut self.data, &state.q, &state.v);
+    }
+
+    /// Computes the kinematics of a later stage of a step, whose velocity is relative to the frame of the step.
+    pub(super) fn update_stage_kinematics(&mut self, stage: &SystemState<S>) {
+        kinematics(self.model, &mut self.data, &stage.q, &stage.v);
+    }
+
+    /// Restores kinematics and loads at the start of a step, which a trial step has overwritten.
+    pub(super) fn restore(&mut self, start: &Data<S>) {
+        self.data.copy_from(start);
+        self.frame_velocity = Vec3::zero();
+    }
+
+    /// Changes to the frame of the step, which moves with the base's origin as it does now: `v` and the velocities in
+    /// `data` become relative to it.
+    ///
+    /// The equations of motion are the same there, and everything integrated stays robot-sized: in base axes even a
+    /// straight flight is a velocity that turns, at the cost of digits and of order.
+    pub(crate) fn enter_step_frame(&mut self, q: &[S], v: &mut [S]) {
+        let frame_velocity_b = Vec3::from_slice(v);
+        let Self { data, frame_velocity, .. } = self;
+        S::enter(
+            #[inline(always)]
+            || {
+                *frame_velocity = base_rotation(q) * frame_velocity_b;
+                Vec3::zero().write(v);
+                for body in &mut data.bodies {
+                    body.velocity.linear -= frame_velocity_b;
+                }
+            },
+        );
+    }
+
+    /// Velocity of the frame of the step, W axes, m/s.
+    pub(crate) fn frame_velocity(&self) -> Vec3<S> {
+        self.frame_velocity
+    }
+
+    /// Returns what loads need of the system, with the configuration whose kinematics are in `data`.
+    pub(super) fn loaded<'s>(&'s mut self, q: &'s [S]) -> LoadedSystem<'s, S> {
+        LoadedSystem { q, frame_velocity: self.frame_velocity, data: &mut self.data }
+    }
+
+    /// Computes the rates at a state whose kinematics and loads are in `data`; `is_loaded`: there are loads.
+    pub(crate) fn rates(&mut self, state: &SystemState<S>, is_loaded: bool, rate: &mut SystemRate<S>) {
+        let (q, v) = (&state.q[..], &state.v[..]);
+        self.update_joint_forces(v);
+        let Self { model, data, forces, modes, frame_velocity, is_lossy, .. } = self;
+        let loaded = if is_loaded { model.nodes().len() } else { 0 };
+        match modes.locked() {
+            Some(locked) => locked_dynamics_recursion(model, data, v, forces, locked, &mut rate.a),
+            None => forward_dynamics_recursion(model, data, v, forces, &mut rate.a),
+        }
+        rate.v.copy_from_slice(v);
+        S::enter(
+            #[inline(always)]
+            || base_rates(data, loaded, q, v, *frame_velocity, forces, rate),
+        );
+        if *is_lossy {
+            rate.loss = S::enter(
+                #[inline(always)]
+                || modes.loss(model, v),
+            );
+        }
+    }
+
+    /// Torque that the motor of joint `j` adds to its command to compensate Coulomb friction, N m (N).
+    pub(crate) fn compensation(&self, j: usize) -> f64 {
+        self.modes.compensation(j).unwrap_or(0.0)
+    }
+
+    /// Torque of the motor of joint `j`: command and compensation of Coulomb friction, N m (N).
+    pub(crate) fn torque(&self, j: usize) -> S {
+        match self.modes.compensation(j) {
+            Some(compensation) => self.command[j] + S::of(compensation),
+            None => self.command[j],
+        }
+    }
+
+    /// Computes the generalized forces at the joints, `τ − b q̇ − f s`, with `s` the direction of slip; `f s` is left
+    /// out where the motor compensates it.
+    pub(super) fn update_joint_forces(&mut self, v: &[S]) {
+        let Self { model, modes, command, forces, is_lossy, .. } = self;
+        forces[BASE_NV..].copy_from_slice(command);
+        if !*is_lossy {
+            return;
+        }
+        S::enter(
+            #[inline(always)]
+            || {
+                for (j, joint) in model.joints().iter().enumerate() {
+                    forces[BASE_NV + j] -=
+                        v[BASE_NV + j] * S::of(joint.damping) + S::of(modes.remaining_drag(j));
+                }
+            },
+        );
+    }
+}
+
+/// Computes the base's velocity and acceleration in W, the sum of the wrenches on the first `loaded` bodies and the
+/// power of all forces. `v` and the velocities in `data` are relative to a frame that moves at `frame_velocity`.
+#[inline(always)]
+fn base_rates<S: Real>(
+    data: &Data<S>,
+    loaded: usize,
+    q: &[S],
+    v: &[S],
+    frame_velocity: Vec3<S>,
+    forces: &[S],
+    rate: &mut SystemRate<S>,
+) {
+    let rot_wb = base_rotation(q);
+    rate.base_velocity = rot_wb * Vec3::from_slice(v) + frame_velocity;
+    rate.rotation_rate = Vec3::from_slice(&v[3..]);
+    // p̈ = R (a + ω × v)
+    rate.base_acceleration =
+        rot_wb * (Vec3::from_slice(&rate.a) + rate.rotation_rate.cross(Vec3::from_slice(v)));
+    let (mut total, mut power) = (Force::zero(), S::of(0.0));
+    for body in &data.bodies[..loaded] {
+        total += body.external.from_point(body.pos_b);
+        power += body.velocity.dot(body.external);
+    }
+    for (tau, rate) in forces[BASE_NV..].iter().zip(&v[BASE_NV..]) {
+        power = tau.mul_add(*rate, power);
+    }
+    if loaded > 0 {
+        total.angular -= center_of_mass_b(data).cross(total.linear);
+    }
+    rate.wrench = Momentum { linear: rot_wb * total.linear, angular: rot_wb * total.angular };
+    rate.power = power + rate.wrench.linear.dot(frame_velocity);
+}

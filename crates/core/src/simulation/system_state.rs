@@ -1,0 +1,158 @@
+//! State of one system and its time derivatives.
+
+use crate::dynamics::{Data, Momentum, kinematics, momentum};
+use crate::model::{BASE_NQ, BASE_NV, Model};
+use crate::spatial::{Quat, Real, Vec3, exp_so3};
+use serde::{Deserialize, Serialize};
+
+/// Everything of a system that is integrated: configuration, velocity, momentum and energies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SystemState<S> {
+    /// Configuration, `(nq,)`.
+    pub(crate) q: Vec<S>,
+    /// Velocity, `(nv,)`.
+    pub(crate) v: Vec<S>,
+    /// Momentum at the start of the run.
+    pub(crate) start: Momentum<S>,
+    /// Integral of the external wrenches: forces, and moments about the centre of mass.
+    pub(crate) impulse: Momentum<S>,
+    /// Work done on the robot so far, J.
+    pub(crate) work: S,
+    /// Energy dissipated by damping, friction and stops of the joints so far, J.
+    pub(crate) dissipated: S,
+}
+
+/// Time derivatives of a system at one stage.
+#[derive(Clone, Debug)]
+pub(crate) struct SystemRate<S> {
+    /// Velocity of the base's origin in W axes, m/s.
+    pub(crate) base_velocity: Vec3<S>,
+    /// Acceleration of the base's origin in W axes, m/s².
+    pub(crate) base_acceleration: Vec3<S>,
+    /// Rate of the rotation vector since the start of the step, base axes, rad/s.
+    pub(crate) rotation_rate: Vec3<S>,
+    /// Joint rates in `[BASE_NV..]`: the stage's velocity.
+    pub(crate) v: Vec<S>,
+    /// Acceleration, `(nv,)`.
+    pub(crate) a: Vec<S>,
+    /// Rate of momentum: all external forces and their moments about the centre of mass.
+    pub(crate) wrench: Momentum<S>,
+    /// Power of joint torques and external wrenches, W.
+    pub(crate) power: S,
+    /// Power dissipated by damping and friction, W.
+    pub(crate) loss: S,
+}
+
+impl<S: Real> SystemRate<S> {
+    pub(crate) fn new(nv: usize) -> Self {
+        let zeros = vec![S::of(0.0); nv];
+        Self {
+            base_velocity: Vec3::zero(),
+            base_acceleration: Vec3::zero(),
+            rotation_rate: Vec3::zero(),
+            v: zeros.clone(),
+            a: zeros,
+            wrench: Momentum::default(),
+            power: S::of(0.0),
+            loss: S::of(0.0),
+        }
+    }
+
+    /// `self += s · other`, for weighted sums of stages.
+    #[inline(always)]
+    pub(crate) fn accumulate(&mut self, other: &Self, s: S) {
+        self.base_velocity = other.base_velocity.scale_add(s, self.base_velocity);
+        self.rotation_rate = other.rotation_rate.scale_add(s, self.rotation_rate);
+        self.wrench.linear = other.wrench.linear.scale_add(s, self.wrench.linear);
+        self.wrench.angular = other.wrench.angular.scale_add(s, self.wrench.angular);
+        self.power = other.power.mul_add(s, self.power);
+        self.loss = other.loss.mul_add(s, self.loss);
+        for (to, from) in [(&mut self.v, &other.v), (&mut self.a, &other.a)] {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = from.mul_add(s, *to);
+            }
+        }
+    }
+
+    /// Copies without allocating.
+    pub(crate) fn copy_from(&mut self, from: &Self) {
+        let Self { base_velocity, base_acceleration, rotation_rate, wrench, power, loss, .. } = *from;
+        (self.base_velocity, self.base_acceleration, self.rotation_rate) =
+            (base_velocity, base_acceleration, rotation_rate);
+        (self.wrench, self.power, self.loss) = (wrench, power, loss);
+        self.v.copy_from_slice(&from.v);
+        self.a.copy_from_slice(&from.a);
+    }
+
+    /// Sets everything to zero, for a sum.
+    #[inline(always)]
+    pub(crate) fn clear(&mut self) {
+        (self.base_velocity, self.rotation_rate, self.wrench) =
+            (Vec3::zero(), Vec3::zero(), Momentum::default());
+        (self.power, self.loss) = (S::of(0.0), S::of(0.0));
+        self.v.fill(S::of(0.0));
+        self.a.fill(S::of(0.0));
+    }
+}
+
+impl<S: Real> SystemState<S> {
+    /// State at `q`, its quaternion normalised, and `v`, with the momentum that belongs to them. Writes the kinematics to
+    /// `data`.
+    pub(crate) fn at(model: &Model, data: &mut Data<S>, mut q: Vec<S>, v: Vec<S>) -> Self {
+        Quat::from_xyzw(&q[3..]).normalized().write_xyzw(&mut q[3..]);
+        kinematics(model, data, &q, &v);
+        let start = momentum(data, &q);
+        Self { q, v, start, impulse: Momentum::default(), work: S::of(0.0), dissipated: S::of(0.0) }
+    }
+
+    /// Returns true if configuration and velocity are finite in every lane.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.q.iter().chain(&self.v).all(|x| (0..S::LANES).all(|lane| x.lane(lane).is_finite()))
+    }
+
+    /// Momentum of the state: the initial one and the integral of the external wrenches.
+    pub(crate) fn momentum(&self) -> Momentum<S> {
+        let (a, b) = (&self.start, &self.impulse);
+        Momentum { linear: a.linear + b.linear, angular: a.angular + b.angular }
+    }
+
+    /// Converts every number.
+    pub(crate) fn map<T>(&self, f: impl Fn(&S) -> T) -> SystemState<T> {
+        let momentum = |h: &Momentum<S>| Momentum { linear: h.linear.map(&f), angular: h.angular.map(&f) };
+        SystemState {
+            q: self.q.iter().map(&f).collect(),
+            v: self.v.iter().map(&f).collect(),
+            start: momentum(&self.start),
+            impulse: momentum(&self.impulse),
+            work: f(&self.work),
+            dissipated: f(&self.dissipated),
+        }
+    }
+
+    /// Copies without allocating.
+    pub(crate) fn copy_from(&mut self, from: &Self) {
+        self.q.copy_from_slice(&from.q);
+        self.v.copy_from_slice(&from.v);
+        (self.start, self.impulse) = (from.start, from.impulse);
+        (self.work, self.dissipated) = (from.work, from.dissipated);
+    }
+
+    /// Writes `from ⊕ h rate`: positions and velocities add, the attitude is multiplied by `exp(h θ̇)`.
+    #[inline(always)]
+    pub(crate) fn move_from(&mut self, from: &Self, rate: &SystemRate<S>, h: S) {
+        rate.base_velocity.scale_add(h, Vec3::from_slice(&from.q)).write(&mut self.q);
+        let attitude = Quat::from_xyzw(&from.q[3..]).product(exp_so3(rate.rotation_rate * h));
+        attitude.renormalized().write_xyzw(&mut self.q[3..]);
+        let joints = (&mut self.q[BASE_NQ..], &from.q[BASE_NQ..], &rate.v[BASE_NV..]);
+        for (to, from, rate) in [joints, (&mut self.v[..], &from.v[..], &rate.a[..])] {
+            for ((to, from), rate) in to.iter_mut().zip(from).zip(rate) {
+                *to = rate.mul_add(h, *from);
+            }
+        }
+        self.start = from.start;
+        self.impulse.linear = rate.wrench.linear.scale_add(h, from.impulse.linear);
+        self.impulse.angular = rate.wrench.angular.scale_add(h, from.impulse.angular);
+        self.work = rate.power.mul_add(h, from.work);
+        self.dissipated = rate.loss.mul_add(h, from.dissipated);
+    }
+}

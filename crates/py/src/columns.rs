@@ -1,0 +1,109 @@
+//! Table of the columns of a trace.
+
+use onorbit_core::simulation::{Column, Length, Part, columns};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyMappingProxy, PySlice, PyTuple};
+
+/// Description of one recorded quantity: an entry of ``onorbit_rs.COLUMNS``.
+///
+/// Attributes
+/// ----------
+/// name : str
+///     Attribute of the trace.
+/// path : str
+///     Name in ``trace.npz`` and in a checkpoint; ``*`` stands for the name of a control or of an effect.
+/// shape : tuple of str and int
+///     Length of each axis: ``T`` rows, ``nq``, ``nv``, ``n`` joints, ``bodies``, ``k`` errors, ``K`` events.
+/// unit : str
+///     Unit, or the unit of each part, separated by semicolons; ``1`` if dimensionless.
+/// frame : str
+///     Frame in whose axes the numbers are expressed; empty if they do not depend on a frame.
+/// meaning : str
+///     Description of the quantity.
+/// condition : str
+///     Condition under which it is recorded.
+/// parts : mapping of str to tuple of slice and str
+///     Slice of the last axis and unit of each part; empty for a column without parts.
+#[pyclass(name = "Column", frozen, module = "onorbit_rs")]
+pub(crate) struct PyColumn(&'static Column);
+
+#[pymethods]
+impl PyColumn {
+    /// Attribute of the trace.
+    #[getter]
+    fn name(&self) -> &'static str {
+        self.0.name
+    }
+
+    /// Name in files; ``*`` stands for the name of a control or of an effect.
+    #[getter]
+    fn path(&self) -> &'static str {
+        self.0.path
+    }
+
+    /// Length of each axis.
+    #[getter]
+    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let axis = |length: &Length| match length {
+            Length::Fixed(length) => length.into_pyobject(py).map(Bound::into_any).map_err(PyErr::from),
+            symbol => symbol.to_string().into_pyobject(py).map(Bound::into_any).map_err(PyErr::from),
+        };
+        PyTuple::new(py, self.0.shape.iter().map(axis).collect::<PyResult<Vec<_>>>()?)
+    }
+
+    /// Unit, or the unit of each part, separated by semicolons; ``1`` if dimensionless.
+    #[getter]
+    fn unit(&self) -> &'static str {
+        self.0.unit
+    }
+
+    /// Frame in whose axes the numbers are expressed; empty if they do not depend on a frame.
+    #[getter]
+    fn frame(&self) -> &'static str {
+        self.0.frame
+    }
+
+    /// Description of the quantity.
+    #[getter]
+    fn meaning(&self) -> &'static str {
+        self.0.meaning
+    }
+
+    /// Condition under which it is recorded.
+    #[getter]
+    fn condition(&self) -> &'static str {
+        self.0.condition.text()
+    }
+
+    /// Slice of the last axis and unit of each part; empty for a column without parts.
+    #[getter]
+    fn parts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyMappingProxy>> {
+        let parts = PyDict::new(py);
+        let slice = |part: &Part| py.get_type::<PySlice>().call1((part.start, part.end));
+        for (part, unit) in self.0.parts.iter().zip(self.0.unit.split("; ")) {
+            parts.set_item(part.name, (slice(part)?, unit))?;
+        }
+        Ok(PyMappingProxy::new(py, parts.as_mapping()))
+    }
+
+    fn __repr__(&self) -> String {
+        let Column { name, shape, unit, .. } = self.0;
+        let shape: Vec<String> = shape.iter().map(Length::to_string).collect();
+        format!("<Column {name}: ({}), {unit}>", shape.join(", "))
+    }
+}
+
+/// Returns the read-only mapping from names to descriptions.
+fn table(py: Python<'_>) -> PyResult<Bound<'_, PyMappingProxy>> {
+    let all = PyDict::new(py);
+    for column in columns() {
+        all.set_item(column.name, PyColumn(column))?;
+    }
+    Ok(PyMappingProxy::new(py, all.as_mapping()))
+}
+
+/// Adds the class and the table to the module.
+pub(crate) fn add(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_class::<PyColumn>()?;
+    m.add("COLUMNS", table(m.py())?)
+}

@@ -1,0 +1,200 @@
+//! Controls: laws with their joints, references, goals and times.
+
+use super::LAWS;
+use super::gains::per_joint;
+use super::native_law::{Group, Robot};
+use super::user::PythonController;
+use crate::errors::{IntoPython, plain};
+use crate::reference;
+use onorbit_core::control::{Begin, Control, ControlError, Goal, Law};
+use pyo3::prelude::*;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Goal of a control with tolerances, as in the joint trajectory controller of ROS.
+///
+/// The outcome is in ``trace.results``.
+///
+/// Parameters
+/// ----------
+/// tolerance : float or array
+///     Permitted error at the end of the reference: (m, rad) for a task, a number or (k,) for joints.
+/// path_tolerance : float or array, optional
+///     Permitted error during the motion; default: unlimited.
+/// time : float, optional
+///     Time allowed after the end of the reference, s; default: unlimited.
+#[pyclass(name = "Goal", frozen, module = "onorbit_rs")]
+pub(crate) struct PyGoal {
+    goal: Goal,
+}
+
+#[pymethods]
+impl PyGoal {
+    #[new]
+    #[pyo3(signature = (*, tolerance, path_tolerance=None, time=None))]
+    fn new(tolerance: Any<'_, '_>, path_tolerance: Option<Any<'_, '_>>, time: Option<f64>) -> PyResult<Self> {
+        let (tolerance, _) = per_joint(Some(tolerance), "tolerance", 0.0)?;
+        let path = path_tolerance.map(|path| per_joint(Some(path), "path_tolerance", 0.0)).transpose()?;
+        Ok(Self { goal: Goal { path: path.map(|path| path.0), tolerance, time } })
+    }
+}
+
+/// One of several controllers of a robot, with its joints, reference and times.
+///
+/// Joints that belong to no control move freely.
+///
+/// Parameters
+/// ----------
+/// controller : control law or object
+///     Law, or an object with ``update(t, state)`` that returns joint torques (k,).
+/// reference : Reference or JointReference, optional
+///     Reference; its time begins with the control.
+/// joints : list of str, optional
+///     Names of the joints; default: all.
+/// tool : str, optional
+///     Frame of the reference of a Python controller; default: that of the simulation.
+/// name : str, optional
+///     Name for the trace and the results.
+/// start : float
+///     Simulation time at which the control starts, s.
+/// end : float, optional
+///     Simulation time at which the control ends, s.
+/// after : str, optional
+///     Name of another control; this one starts when the goal of the other is decided or when the other ends.
+/// goal : Goal, optional
+///     Goal with tolerances.
+/// starts_at_present : bool
+///     If True, the reference is moved so that it begins at the current pose or joint positions.
+#[pyclass(name = "Control", frozen, module = "onorbit_rs")]
+pub(crate) struct PyControl {
+    controller: Py<PyAny>,
+    reference: Option<Py<PyAny>>,
+    joints: Option<Vec<String>>,
+    tool: Option<String>,
+    name: Option<String>,
+    start: f64,
+    end: f64,
+    after: Option<String>,
+    goal: Option<Py<PyGoal>>,
+    starts_at_present: bool,
+}
+
+#[pymethods]
+impl PyControl {
+    #[new]
+    #[pyo3(signature = (
+        controller, *, reference=None, joints=None, tool=None, name=None, start=0.0, end=None, after=None, goal=None,
+        starts_at_present=false,
+    ))]
+    fn new(
+        controller: Py<PyAny>,
+        reference: Option<Py<PyAny>>,
+        joints: Option<Vec<String>>,
+        tool: Option<String>,
+        name: Option<String>,
+        start: f64,
+        end: Option<f64>,
+        after: Option<String>,
+        goal: Option<Py<PyGoal>>,
+        starts_at_present: bool,
+    ) -> Self {
+        let end = end.unwrap_or(f64::INFINITY);
+        Self { controller, reference, joints, tool, name, start, end, after, goal, starts_at_present }
+    }
+}
+
+/// Returns the controls of a run: a single controller with the reference of the run, or a list of `Control`.
+pub(crate) fn controls_of(
+    controller: Any<'_, '_>,
+    reference: Option<Any<'_, '_>>,
+    robot: &Robot<'_>,
+) -> PyResult<Vec<Control>> {
+    let py = controller.py();
+    let joints: Vec<usize> = (0..robot.model.joint_count()).collect();
+    if let Some(law) = law_of(controller, reference, &joints, robot.tool, robot)? {
+        let has_column = !matches!(law, Law::TaskComputedTorque(..) | Law::User(..));
+        return Ok(vec![Control { has_column, ..Control::on_all_joints(robot.model, law) }]);
+    }
+    let Ok(items) = controller.try_iter() else { return Err(no_controller(controller)) };
+    if reference.is_some() {
+        let message = "a list of controls has no common reference; give each Control its 'reference'";
+        return Err(plain(py, "ControlError", message));
+    }
+    let items = items.map(|item| one_control(item?)).collect::<PyResult<Vec<_>>>()?;
+    let names: Vec<String> = items
+        .iter()
+        .enumerate()
+        .map(|(i, c)| c.get().name.clone().unwrap_or(format!("control_{i}")))
+        .collect();
+    items.iter().zip(&names).map(|(item, name)| item.get().bind(py, name, &names, robot)).collect()
+}
+
+/// Returns an entry of a list of controls.
+fn one_control(item: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyControl>> {
+    item.cast_into::<PyControl>().map_err(|error| no_controller(&error.into_inner()))
+}
+
+impl PyControl {
+    /// Returns the control of the core for a robot; `names` are the names of all controls.
+    fn bind(&self, py: Python<'_>, name: &str, names: &[String], robot: &Robot<'_>) -> PyResult<Control> {
+        let joints = match &self.joints {
+            None => (0..robot.model.joint_count()).collect(),
+            Some(joints) => joints
+                .iter()
+                .map(|joint| robot.model.joint(joint).map_err(|error| error.into_python(py)))
+                .collect::<PyResult<Vec<_>>>()?,
+        };
+        let tool = match &self.tool {
+            None => robot.tool,
+            Some(tool) => Some(robot.model.frame(tool).map_err(|error| error.into_python(py))?),
+        };
+        let reference = self.reference.as_ref().map(|reference| reference.bind(py));
+        let controller = self.controller.bind(py);
+        let law =
+            law_of(controller, reference, &joints, tool, robot)?.ok_or_else(|| no_controller(controller))?;
+        let begin = match &self.after {
+            None => Begin::At(self.start),
+            Some(after) => Begin::After(names.iter().position(|other| other == after).ok_or_else(|| {
+                let (control, after) = (name.to_owned(), after.clone());
+                ControlError::NoSuchControl { control, after }.into_python(py)
+            })?),
+        };
+        let goal = self.goal.as_ref().map(|goal| goal.get().goal.clone());
+        let (end, starts_at_present) = (self.end, self.starts_at_present);
+        Ok(Control { begin, end, goal, starts_at_present, ..Control::new(name, joints, law) })
+    }
+}
+
+/// Returns the law in a Python object, with its reference; None if the object is not a controller.
+fn law_of(
+    controller: Any<'_, '_>,
+    reference: Option<Any<'_, '_>>,
+    joints: &[usize],
+    tool: Option<usize>,
+    robot: &Robot<'_>,
+) -> PyResult<Option<Law>> {
+    let group = Group { reference, joints, robot };
+    if let Some(law) = LAWS.iter().find_map(|law_of| law_of(controller, &group)) {
+        return law.map(Some);
+    }
+    if !controller.hasattr("update")? {
+        return Ok(None);
+    }
+    let tracked = match (reference, tool) {
+        (None, _) => None,
+        (Some(reference), Some(tool)) => Some((tool, reference::extract(reference, robot.orbit)?)),
+        (Some(_), None) => {
+            let message = "a controller with a reference requires the frame that tracks it; give 'tool'";
+            return Err(plain(controller.py(), "ControlError", message));
+        }
+    };
+    Ok(Some(Law::User(Box::new(PythonController { object: controller.clone().unbind() }), tracked)))
+}
+
+/// Returns the error for an object that is not a controller.
+fn no_controller(controller: Any<'_, '_>) -> PyErr {
+    let message = "controller has no method update(t, state); give a controller such as ComputedTorque, an \
+    object derived from \
+                   Controller, or a list of Control objects";
+    plain(controller.py(), "ControlError", message)
+}

@@ -1,0 +1,93 @@
+//! PID controllers of joints.
+
+use super::gains::{one_count, per_joint};
+use super::native_law::{Group, NativeLaw};
+use crate::errors::{IntoPython, fields, raise};
+use onorbit_core::control::{Interface, JointPid, Law, PerJoint};
+use pyo3::prelude::*;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// PID controller for each joint, as in ROS Control: ``tau = p e + i ∫e dt + d e'``.
+///
+/// At least one gain is required, except for ``effort``. The integral does not grow further at a limit.
+/// Friction is not compensated: a joint that sticks waits for the integral.
+///
+/// Parameters
+/// ----------
+/// interface : {"position", "velocity", "effort"}
+///     Quantity that the reference commands. For ``effort`` its positions are efforts, N m or N, and there
+///     are no gains.
+/// p, i, d : float or (k,) array, optional
+///     Gains per rad (m) of error.
+/// i_limit : float or (k,) array, optional
+///     Limit of the integral term, N m or N.
+/// effort_limit : float or (k,) array, optional
+///     Limit of the effort, N m or N; default: the limits of the URDF; ``inf`` for no limit.
+///
+/// Raises
+/// ------
+/// ControlError
+#[pyclass(name = "JointPid", frozen, module = "onorbit_rs")]
+pub(crate) struct PyJointPid {
+    law: JointPid,
+    /// True if the effort limits are those of the robot.
+    uses_robot_limits: bool,
+}
+
+#[pymethods]
+impl PyJointPid {
+    #[new]
+    #[pyo3(signature = (*, interface="position", p=None, i=None, d=None, i_limit=None, effort_limit=None))]
+    fn new(
+        py: Python<'_>,
+        interface: &str,
+        p: Option<Any<'_, '_>>,
+        i: Option<Any<'_, '_>>,
+        d: Option<Any<'_, '_>>,
+        i_limit: Option<Any<'_, '_>>,
+        effort_limit: Option<Any<'_, '_>>,
+    ) -> PyResult<Self> {
+        let lacks_gains = [&p, &i, &d].iter().all(|gain| gain.is_none());
+        if lacks_gains && matches!(interface, "position" | "velocity") {
+            let message = format!(
+                "a PID with interface '{interface}' and no gains has no effect; give 'p', 'i' or 'd', or \
+                 leave these \
+                 joints without a controller"
+            );
+            return Err(raise(py, "ControlError", &message, &fields!(py, "name": "gains")));
+        }
+        let interface = match interface {
+            "position" => Interface::Position,
+            "velocity" => Interface::Velocity,
+            "effort" => Interface::Effort,
+            other => {
+                let message =
+                    format!("interface is '{other}'; the choices are 'position', 'velocity' and 'effort'");
+                let fields = fields!(py, "name": "interface", "got": other);
+                return Err(raise(py, "ControlError", &message, &fields));
+            }
+        };
+        let uses_robot_limits = effort_limit.is_none();
+        let gain = |value, name| per_joint(value, name, 0.0);
+        let limit = |value, name| per_joint(value, name, f64::INFINITY);
+        let (p, i, d) = (gain(p, "p")?, gain(i, "i")?, gain(d, "d")?);
+        let (i_limit, effort_limit) = (limit(i_limit, "i_limit")?, limit(effort_limit, "effort_limit")?);
+        let count = one_count(py, &[&p, &i, &d, &i_limit, &effort_limit])?;
+        let (p, i, d, i_limit, effort_limit) = (p.0, i.0, d.0, i_limit.0, effort_limit.0);
+        let law = JointPid { interface, p, i, d, i_limit, effort_limit };
+        law.check(count).map_err(|error| error.into_python(py))?;
+        Ok(Self { law, uses_robot_limits })
+    }
+}
+
+impl NativeLaw for PyJointPid {
+    fn law(&self, py: Python<'_>, group: &Group<'_, '_>) -> PyResult<Law> {
+        let mut law = self.law.clone();
+        if self.uses_robot_limits {
+            let limit = |j: &usize| group.robot.model.joints()[*j].limits.effort.unwrap_or(f64::INFINITY);
+            law.effort_limit = PerJoint::new(group.joints.iter().map(limit).collect());
+        }
+        Ok(Law::Pid(law, group.joint_path(py)?))
+    }
+}

@@ -1,0 +1,71 @@
+//! Interface between the Python class of a control law and the controls of a run.
+
+use crate::errors::plain;
+use crate::reference;
+use onorbit_core::control::Law;
+use onorbit_core::model::Model;
+use onorbit_core::orbit::Orbit;
+use onorbit_core::reference::{JointReference, TaskReference};
+use pyo3::PyClass;
+use pyo3::prelude::*;
+use pyo3::pyclass::boolean_struct::True;
+use std::sync::Arc;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Robot, tool and orbit of the controls.
+pub(crate) struct Robot<'a> {
+    pub(crate) model: &'a Arc<Model>,
+    pub(crate) orbit: Option<&'a Arc<dyn Orbit>>,
+    pub(crate) tool: Option<usize>,
+}
+
+/// Reference, joints and robot that a control gives to its law.
+pub(super) struct Group<'a, 'py> {
+    pub(super) reference: Option<Any<'a, 'py>>,
+    pub(super) joints: &'a [usize],
+    pub(super) robot: &'a Robot<'a>,
+}
+
+impl Group<'_, '_> {
+    /// Returns the reference of a tracked frame.
+    pub(super) fn task(&self, py: Python<'_>) -> PyResult<TaskReference> {
+        reference::extract(self.required(py)?, self.robot.orbit)
+    }
+
+    /// Returns the reference of the joints.
+    pub(super) fn joint_path(&self, py: Python<'_>) -> PyResult<JointReference> {
+        reference::extract_joints(self.required(py)?)
+    }
+
+    fn required(&self, py: Python<'_>) -> PyResult<Any<'_, '_>> {
+        let message = "the controller requires a reference, such as a Hold or a JointHold";
+        self.reference.ok_or_else(|| plain(py, "ControlError", message))
+    }
+}
+
+/// Python class of a control law of the core.
+pub(super) trait NativeLaw: PyClass<Frozen = True> + Sync {
+    /// Returns the law for a group of joints, with its reference.
+    fn law(&self, py: Python<'_>, group: &Group<'_, '_>) -> PyResult<Law>;
+}
+
+/// Returns the law of a group if the controller is an instance of one class.
+pub(super) type LawOf = fn(Any<'_, '_>, &Group<'_, '_>) -> Option<PyResult<Law>>;
+
+/// Implements [`LawOf`] for the class `L`.
+pub(super) fn law_of<L: NativeLaw>(controller: Any<'_, '_>, group: &Group<'_, '_>) -> Option<PyResult<Law>> {
+    Some(controller.cast::<L>().ok()?.get().law(controller.py(), group))
+}
+
+/// Returns an error for a robot other than that of a law.
+pub(super) fn same_robot(py: Python<'_>, own: &Arc<Model>, model: &Arc<Model>) -> PyResult<()> {
+    if Arc::ptr_eq(own, model) || own.is_like(model) {
+        return Ok(());
+    }
+    let (own, other) = (own.name(), model.name());
+    let message = format!(
+        "the controller belongs to robot '{own}', but the robot is '{other}'; construct it from the same model"
+    );
+    Err(plain(py, "ControlError", &message))
+}

@@ -1,0 +1,47 @@
+//! Reduced model of a free-floating manipulator.
+
+use super::evaluate;
+use crate::arrays::Threads;
+use crate::model::PyModel;
+use onorbit_core::batch::Kernel;
+use pyo3::prelude::*;
+
+/// Reduced model of a free-floating manipulator, ``M* q̈ + c* = τ + Q*`` and ``ẍ = Jg q̈ + d``.
+#[pyclass(name = "FreeFloating", frozen, get_all, module = "onorbit_rs")]
+pub(crate) struct PyFreeFloating {
+    /// ``M*``, (n, n) or (B, n, n), kg m².
+    inertia: Py<PyAny>,
+    /// ``c*``, (n,) or (B, n), N m.
+    bias: Py<PyAny>,
+    /// ``Q* = Qm - Mbmᵀ Mbb⁻¹ Qb``, (n,) or (B, n), N m.
+    external: Py<PyAny>,
+    /// ``Jg``, (6, n) or (B, 6, n), W axes at the frame's origin, linear rows first.
+    jacobian: Py<PyAny>,
+    /// ``d``, (6,) or (B, 6), m/s² and rad/s², W axes.
+    drift: Py<PyAny>,
+}
+
+/// Returns the reduced model in new arrays or in those of `out`.
+pub(crate) fn free_floating<'py>(
+    py: Python<'py>,
+    model: &PyModel,
+    frame: usize,
+    state: &[&Bound<'py, PyAny>],
+    external: Option<&Bound<'py, PyAny>>,
+    out: Option<&Bound<'py, PyFreeFloating>>,
+    threads: Option<Threads>,
+) -> PyResult<Bound<'py, PyFreeFloating>> {
+    let n = model.model.joint_count();
+    let shapes: [&[usize]; 5] = [&[n, n], &[n], &[n], &[6, n], &[6]];
+    let kernel = Kernel::FreeFloating(frame);
+    let given = out.map(|out| {
+        let PyFreeFloating { inertia, bias, external, jacobian, drift } = out.get();
+        [inertia, bias, external, jacobian, drift].map(|array| array.bind(py).clone())
+    });
+    let arrays = evaluate(py, model, kernel, state, external, shapes, given, threads)?;
+    if let Some(out) = out {
+        return Ok(out.clone());
+    }
+    let [inertia, bias, external, jacobian, drift] = arrays.map(|array| array.into_any().unbind());
+    Bound::new(py, PyFreeFloating { inertia, bias, external, jacobian, drift })
+}

@@ -1,0 +1,104 @@
+//! Epoch, orientation parameters and ephemerides of the Earth, as given from Python.
+
+use crate::arrays::{Input, fixed, wrong_shape};
+use crate::errors::{IntoPython, LARGEST_TABLE, fields, in_file, raise, unreadable};
+use onorbit_core::earth::{
+    Earth, EarthError, EarthParameters, Epoch, ROTATION_RATE, SpiceKernel, SpiceSegment,
+};
+use onorbit_core::text_file::read_text;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+use std::path::PathBuf;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Returns an epoch from text or an aware ``datetime``.
+pub(super) fn epoch(epoch: Any<'_, '_>) -> PyResult<Epoch> {
+    let py = epoch.py();
+    let text = if epoch.is_instance_of::<PyString>() {
+        epoch.to_string()
+    } else {
+        let datetime = py.import("datetime")?;
+        if !epoch.is_instance(&datetime.getattr("datetime")?)? {
+            return Err(EarthError::Epoch { text: epoch.repr()?.to_string() }.into_python(py));
+        }
+        if epoch.call_method0("utcoffset")?.is_none() {
+            let message =
+                format!("epoch {} has no time zone; set one, such as tzinfo=datetime.UTC", epoch.repr()?);
+            return Err(raise(py, "EarthError", &message, &fields!(py, "name": "epoch", "got": epoch)));
+        }
+        let utc = epoch.call_method1("astimezone", (datetime.getattr("timezone")?.getattr("utc")?,))?;
+        utc.call_method1("strftime", ("%Y-%m-%dT%H:%M:%S.%f UTC",))?.to_string()
+    };
+    Epoch::parse(&text).map_err(|error| error.into_python(py))
+}
+
+/// Returns Earth orientation parameters from a table or from constants.
+pub(super) fn earth_parameters(
+    py: Python<'_>,
+    eop: Option<Any<'_, '_>>,
+    ut1_minus_utc: Option<f64>,
+    polar_motion: Option<Any<'_, '_>>,
+) -> PyResult<EarthParameters> {
+    match (eop, ut1_minus_utc, polar_motion) {
+        (Some(table), None, None) => parameter_table(table),
+        (Some(_), ..) => {
+            let message = "give either eop, or ut1_minus_utc and polar_motion, not both";
+            Err(raise(py, "EarthError", message, &fields!(py,)))
+        }
+        (None, ut1_minus_utc, pole) => {
+            let ut1_minus_utc = ut1_minus_utc.unwrap_or(0.0);
+            let polar_motion = pole.map_or(Ok([0.0; 2]), |pole| fixed::<2>(pole, "polar_motion", &[2]))?;
+            Ok(EarthParameters::Constant { ut1_minus_utc, polar_motion })
+        }
+    }
+}
+
+/// Returns an Earth that rotates uniformly about z.
+pub(super) fn about_z(
+    py: Python<'_>,
+    angle: Option<f64>,
+    rate: Option<f64>,
+    epoch: Option<Epoch>,
+) -> PyResult<Earth> {
+    let (angle, rate) = (angle.unwrap_or(0.0), rate.unwrap_or(ROTATION_RATE));
+    for (name, value) in [("angle", angle), ("rate", rate)] {
+        if !value.is_finite() {
+            return Err(EarthError::NotFinite { name, value }.into_python(py));
+        }
+    }
+    let earth = Earth::about_z(angle, rate);
+    Ok(match epoch {
+        Some(epoch) => earth.with_epoch(epoch),
+        None => earth,
+    })
+}
+
+/// Returns Earth orientation parameters from a file or from rows.
+fn parameter_table(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
+    let py = eop.py();
+    if let Ok(path) = eop.extract::<PathBuf>() {
+        let text = read_text(&path, LARGEST_TABLE)
+            .map_err(|error| unreadable(py, &path, "Earth-orientation table", &error))?;
+        return EarthParameters::read(&text).map_err(|error| in_file(py, &path, error));
+    }
+    let rows = Input::new(eop, "eop")?;
+    let [_, 4] = rows.shape() else { return Err(wrong_shape(py, "eop", "(N, 4)", rows.shape())) };
+    Ok(EarthParameters::from_rows(rows.data().as_chunks().0))
+}
+
+/// Returns Sun and Moon of a SPICE kernel, read by Python's `jplephem`.
+pub(super) fn spice_kernel(py: Python<'_>, path: PathBuf) -> PyResult<SpiceKernel> {
+    type Parts<'py> = Vec<(f64, f64, f64, Bound<'py, PyAny>)>;
+    let read = py.import("onorbit_rs.ephemeris.spice")?.getattr("segments")?;
+    let (sun, moon): (Parts<'_>, Parts<'_>) = read.call1((path,))?.extract()?;
+    let segments = |parts: Parts<'_>| {
+        let segment = |(sign, start, length, array): (f64, f64, f64, Bound<'_, PyAny>)| {
+            let array = Input::new(&array, "coefficients")?;
+            let count = array.shape().last().copied().unwrap_or(0);
+            Ok(SpiceSegment { sign, start, length, count, coefficients: array.data().to_vec() })
+        };
+        parts.into_iter().map(segment).collect::<PyResult<Vec<_>>>()
+    };
+    SpiceKernel::new(segments(sun)?, segments(moon)?).map_err(|error| error.into_python(py))
+}

@@ -1,0 +1,307 @@
+//! Rotation of the Earth, and positions of Sun and Moon.
+
+mod inputs;
+
+use crate::arrays::{Input, fresh, shape_text, wrong_shape, zeros};
+use crate::errors::{IntoPython, fields, raise};
+use crate::interrupt::in_pieces;
+use crate::orbit::times;
+use crate::pickling::{ConstructorCall, Reduced};
+use onorbit_core::earth::{Axes, Earth, EarthError};
+use onorbit_core::orbit::Orbit;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Epoch of a run, orientation of the Earth, and positions of Sun and Moon.
+///
+/// UT1 and polar motion are measured quantities, which the user supplies as constants or as a table; by
+/// default they are zero.
+///
+/// Parameters
+/// ----------
+/// epoch : str or datetime, optional
+///     Time zero: text with its time scale, such as ``2024-03-01T12:00:00 UTC`` (or ``Z``, TAI, TT, TDB), or
+///     an aware ``datetime``.
+/// rotation : {"iau2006", "about_z"}
+///     Precession of IAU 2006 and nutation of 2000A (to 2 mas), or uniform rotation about z. Without an
+///     epoch, ``about_z`` has no Sun and no Moon.
+/// ut1_minus_utc : float, optional
+///     UT1 - UTC, constant during the run, s.
+/// polar_motion : (2,) array, optional
+///     Coordinates of the pole, constant during the run, rad.
+/// eop : path or (N, 4) array, optional
+///     Table of Earth orientation parameters: a file (``finals2000A`` or ``eopc04`` of the IERS, or lines
+///     below ``mjd,x_arcsec,y_arcsec,ut1_minus_utc_s``), or rows of MJD (UTC), coordinates of the pole, rad,
+///     and UT1 - UTC, s.
+/// angle : float, optional
+///     Rotation angle at time zero for ``about_z``, rad.
+/// rate : float, optional
+///     Angular velocity for ``about_z``, rad/s.
+/// ephemeris : path, optional
+///     SPICE kernel for Sun and Moon, such as ``de440s.bsp``, read by PyPI's jplephem. By default they are
+///     computed by an analytic series (2″ and 10″ from JPL's DE421 over 1900-2050).
+/// axes : {"GCRF", "TEME"}
+///     Inertial axes of the methods; a run uses those of its orbit.
+#[pyclass(name = "Earth", frozen, module = "onorbit_rs")]
+pub(crate) struct PyEarth {
+    pub(crate) earth: Arc<Earth>,
+    constructor_call: ConstructorCall,
+}
+
+#[pymethods]
+impl PyEarth {
+    #[new]
+    #[pyo3(signature = (
+        epoch=None, *, rotation="iau2006", ut1_minus_utc=None, polar_motion=None, eop=None, angle=None, rate=None,
+        ephemeris=None, axes="GCRF",
+    ))]
+    fn new(
+        py: Python<'_>,
+        epoch: Option<Any<'_, '_>>,
+        rotation: &str,
+        ut1_minus_utc: Option<f64>,
+        polar_motion: Option<Any<'_, '_>>,
+        eop: Option<Any<'_, '_>>,
+        angle: Option<f64>,
+        rate: Option<f64>,
+        ephemeris: Option<PathBuf>,
+        axes: &str,
+    ) -> PyResult<Self> {
+        let keywords = fields!(
+            py, "epoch": epoch, "rotation": rotation, "ut1_minus_utc": ut1_minus_utc, "polar_motion": polar_motion,
+            "eop": eop, "angle": angle, "rate": rate,
+            "ephemeris": &ephemeris, "axes": axes,
+        );
+        let epoch = epoch.map(inputs::epoch).transpose()?;
+        let earth = match rotation {
+            "iau2006" if angle.is_some() || rate.is_some() => {
+                let message = "angle and rate apply to rotation 'about_z' only; omit them for 'iau2006'";
+                return Err(raise(py, "EarthError", message, &fields!(py,)));
+            }
+            "iau2006" => {
+                let what = "rotation 'iau2006'";
+                let epoch = epoch.ok_or_else(|| EarthError::NeedsEpoch { what }.into_python(py))?;
+                let parameters = inputs::earth_parameters(py, eop, ut1_minus_utc, polar_motion)?;
+                Earth::new(epoch, &parameters).map_err(|error| error.into_python(py))?
+            }
+            "about_z" if eop.is_some() || ut1_minus_utc.is_some() || polar_motion.is_some() => {
+                let message = "UT1 and polar motion apply to rotation 'iau2006' only; give angle and rate for 'about_z'";
+                return Err(raise(py, "EarthError", message, &fields!(py,)));
+            }
+            "about_z" => inputs::about_z(py, angle, rate, epoch)?,
+            other => return Err(unknown(py, "rotation", other, "'iau2006' and 'about_z'")),
+        };
+        let earth = match ephemeris {
+            Some(path) => {
+                let kernel = inputs::spice_kernel(py, path)?;
+                earth.with_kernel(kernel).map_err(|error| error.into_python(py))?
+            }
+            None => earth,
+        };
+        let earth = match axes {
+            "GCRF" => earth,
+            "TEME" => earth.in_axes(Axes::Teme),
+            other => return Err(unknown(py, "axes", other, "'GCRF' and 'TEME'")),
+        };
+        let constructor_call = ConstructorCall::with_keywords("Earth", &keywords)?;
+        Ok(Self { earth: Arc::new(earth), constructor_call })
+    }
+
+    /// Time zero: ISO 8601, UTC (TAI before 1972); None without an epoch.
+    #[getter]
+    fn epoch(&self) -> Option<String> {
+        self.earth.epoch().map(|epoch| epoch.to_string())
+    }
+
+    /// Inertial axes of the methods: ``GCRF`` or ``TEME``; None for rotation about z without an epoch.
+    #[getter]
+    fn axes(&self) -> Option<&'static str> {
+        self.earth.axes().map(Axes::name)
+    }
+
+    /// Return the rotation ``rot_fi`` from inertial to Earth-fixed (ITRF) components.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Simulation time, s.
+    ///
+    /// Returns
+    /// -------
+    /// (3, 3) or (T, 3, 3) array
+    ///     Rotation matrix, dimensionless.
+    fn rotation<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.at(py, t, &[3, 3], Earth::rotations)
+    }
+
+    /// Return the angular velocity of the Earth.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Simulation time, s.
+    ///
+    /// Returns
+    /// -------
+    /// (3,) or (T, 3) array
+    ///     Angular velocity, inertial axes, rad/s.
+    fn angular_velocity<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.at(py, t, &[3], Earth::angular_velocities)
+    }
+
+    /// Return the position of the Sun, without light time and aberration.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Simulation time, s.
+    ///
+    /// Returns
+    /// -------
+    /// (3,) or (T, 3) array
+    ///     Position from the Earth's centre, inertial axes, m.
+    fn sun<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.at(py, t, &[3], Earth::suns)
+    }
+
+    /// Return the position of the Moon, without light time and aberration.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Simulation time, s.
+    ///
+    /// Returns
+    /// -------
+    /// (3,) or (T, 3) array
+    ///     Position from the Earth's centre, inertial axes, m.
+    fn moon<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.at(py, t, &[3], Earth::moons)
+    }
+
+    /// Convert a position from inertial to Earth-fixed axes.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Simulation time, s.
+    /// r : (3,) or (T, 3) array
+    ///     Position from the Earth's centre, inertial axes, m.
+    ///
+    /// Returns
+    /// -------
+    /// (3,) or (T, 3) array
+    ///     Position from the Earth's centre, Earth-fixed axes, m.
+    fn to_fixed<'py>(
+        &self,
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+        r: Any<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let r = Input::new(r, "r")?;
+        self.of(py, t, &r, Earth::to_fixed)
+    }
+
+    /// Return the geodetic coordinates of a position.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Simulation time, s.
+    /// r : (3,) or (T, 3) array
+    ///     Position from the Earth's centre, inertial axes, m.
+    ///
+    /// Returns
+    /// -------
+    /// latitude, longitude : float or (T,) array
+    ///     Geodetic coordinates on WGS84, rad.
+    /// altitude : float or (T,) array
+    ///     Altitude above WGS84, m.
+    fn geodetic<'py>(
+        &self,
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+        r: Any<'_, 'py>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let r = Input::new(r, "r")?;
+        let coordinates = self.of(py, t, &r, Earth::geodetics)?;
+        let part = |k: usize| coordinates.get_item((py.Ellipsis(), k));
+        PyTuple::new(py, [part(0)?, part(1)?, part(2)?])
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let epoch = self.epoch().map_or("no epoch".to_owned(), |epoch| format!("epoch {epoch}"));
+        format!("<Earth: {epoch}, {}>", self.axes().unwrap_or("about z"))
+    }
+}
+
+/// Returns the error for an argument that names none of the `known` choices.
+fn unknown(py: Python<'_>, name: &str, got: &str, known: &str) -> PyErr {
+    let message = format!("{name} is '{got}'; the choices are {known}");
+    raise(py, "EarthError", &message, &fields!(py, "name": name, "got": got))
+}
+
+/// Function that fills values at times.
+type AtTimes = fn(&Earth, &[f64], &mut [f64]) -> Result<(), EarthError>;
+/// Function that converts positions at times.
+type OfPositions = fn(&Earth, &[f64], &[f64], &mut [f64]) -> Result<(), EarthError>;
+
+impl PyEarth {
+    /// Returns the Earth with the axes of an orbit.
+    pub(crate) fn in_axes_of(&self, orbit: Option<&dyn Orbit>) -> Arc<Earth> {
+        match orbit {
+            Some(orbit) if self.earth.axes().is_some_and(|axes| axes != orbit.axes()) => {
+                Arc::new(self.earth.in_axes(orbit.axes()))
+            }
+            _ => Arc::clone(&self.earth),
+        }
+    }
+
+    /// Returns values at one time or at many.
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+        tail: &[usize],
+        fill: AtTimes,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (times, shape) = times(t)?;
+        let result = zeros(py, &[&shape, tail].concat())?;
+        let into = fresh(&result);
+        let width = tail.iter().product::<usize>();
+        in_pieces(py, times.len(), 4096, |range| {
+            fill(&self.earth, &times[range.clone()], &mut into[width * range.start..width * range.end])
+        })?;
+        Ok(result.into_any())
+    }
+
+    /// Converts positions at one time or at many.
+    fn of<'py>(
+        &self,
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+        r: &Input<'py>,
+        fill: OfPositions,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (times, shape) = times(t)?;
+        let expected = [shape.as_slice(), &[3]].concat();
+        if r.shape() != expected {
+            return Err(wrong_shape(py, "r", &shape_text(&expected), r.shape()));
+        }
+        let result = zeros(py, &expected)?;
+        let (positions, into) = (r.data(), fresh(&result));
+        in_pieces(py, times.len(), 4096, |range| {
+            let rows = 3 * range.start..3 * range.end;
+            fill(&self.earth, &times[range], &positions[rows.clone()], &mut into[rows])
+        })?;
+        Ok(result.into_any())
+    }
+}

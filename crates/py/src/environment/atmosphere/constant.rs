@@ -1,0 +1,25 @@
+//! Constant density.
+
+use super::PyAtmosphere;
+use crate::errors::{IntoPython, fields};
+use onorbit_core::environment::atmosphere::ConstantAtmosphere;
+use pyo3::prelude::*;
+
+/// Atmosphere with constant density.
+///
+/// Parameters
+/// ----------
+/// density : float
+///     Density, kg/m³.
+#[pyclass(name = "ConstantAtmosphere", extends = PyAtmosphere, frozen, module = "onorbit_rs")]
+pub(super) struct PyConstantAtmosphere;
+
+#[pymethods]
+impl PyConstantAtmosphere {
+    #[new]
+    fn new(py: Python<'_>, density: f64) -> PyResult<PyClassInitializer<Self>> {
+        let atmosphere = ConstantAtmosphere::new(density).map_err(|error| error.into_python(py))?;
+        let keywords = fields!(py, "density": density);
+        Ok(PyAtmosphere::new(atmosphere, "ConstantAtmosphere", &keywords)?.add_subclass(Self))
+    }
+}

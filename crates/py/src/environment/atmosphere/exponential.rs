@@ -1,0 +1,54 @@
+//! Exponential atmosphere.
+
+use super::PyAtmosphere;
+use crate::errors::{IntoPython, fields, raise};
+use onorbit_core::environment::atmosphere::{ExponentialAtmosphere, Layer};
+use pyo3::prelude::*;
+
+/// Exponential atmosphere.
+///
+/// Without arguments it has the 28 layers of Vallado's table 8-4 (2013), from 0 to 1000 km and above, for
+/// moderate solar activity.
+///
+/// Parameters
+/// ----------
+/// density : float, optional
+///     Density at ``altitude``, kg/m³.
+/// altitude : float, optional
+///     Reference altitude above WGS84, m.
+/// scale_height : float, optional
+///     Altitude difference over which the density decreases by the factor e, m.
+#[pyclass(name = "ExponentialAtmosphere", extends = PyAtmosphere, frozen, module = "onorbit_rs")]
+pub(super) struct PyExponentialAtmosphere;
+
+#[pymethods]
+impl PyExponentialAtmosphere {
+    #[new]
+    #[pyo3(signature = (*, density=None, altitude=None, scale_height=None))]
+    fn new(
+        py: Python<'_>,
+        density: Option<f64>,
+        altitude: Option<f64>,
+        scale_height: Option<f64>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let atmosphere = match (density, altitude, scale_height) {
+            (None, None, None) => Ok(ExponentialAtmosphere::table()),
+            (Some(density), Some(base), Some(scale_height)) => {
+                ExponentialAtmosphere::new(vec![Layer { base, density, scale_height }])
+            }
+            _ => {
+                let message =
+                    "give all of density, altitude and scale_height, or none of them for the table of layers";
+                return Err(raise(
+                    py,
+                    "EffectError",
+                    message,
+                    &fields!(py, "name": "density, altitude, scale_height"),
+                ));
+            }
+        };
+        let atmosphere = atmosphere.map_err(|error| error.into_python(py))?;
+        let keywords = fields!(py, "density": density, "altitude": altitude, "scale_height": scale_height);
+        Ok(PyAtmosphere::new(atmosphere, "ExponentialAtmosphere", &keywords)?.add_subclass(Self))
+    }
+}

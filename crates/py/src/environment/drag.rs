@@ -1,0 +1,39 @@
+//! Drag.
+
+use super::atmosphere::PyAtmosphere;
+use super::surfaces::{SurfaceAssignment, copied};
+use super::{Any, Kind, PyEffect};
+use crate::errors::fields;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// Drag ``-½ ρ C_D A (n·u)₊ u`` on every face in co-rotating air, with its torque.
+///
+/// ``u`` is the velocity of the face's centroid relative to the air, for a cannonball that of the centre of
+/// mass. It requires an orbit and an ``earth``. The density is computed on a grid of 128 m and extrapolated
+/// with the scale height: within 160 m the relative error is at most 1e-4.
+///
+/// Parameters
+/// ----------
+/// atmosphere : Atmosphere
+///     Model of the density.
+/// surfaces : Surface or dict of str to Surface, optional
+///     Surfaces of the links: by default ``Faces()`` of the robot's visual geometry with C_D 2.2; one surface
+///     for a robot with one body; or a dict by link, in which links that are not listed have no drag.
+#[pyclass(name = "Drag", extends = PyEffect, frozen, module = "onorbit_rs")]
+pub(super) struct PyDrag;
+
+#[pymethods]
+impl PyDrag {
+    #[new]
+    #[pyo3(signature = (atmosphere, *, surfaces=None))]
+    fn new(
+        atmosphere: &Bound<'_, PyAtmosphere>,
+        surfaces: Option<Any<'_, '_>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let keywords = fields!(atmosphere.py(), "atmosphere": atmosphere, "surfaces": copied(surfaces)?);
+        let atmosphere = Arc::clone(&atmosphere.get().atmosphere);
+        let kind = Kind::Drag { atmosphere, surfaces: SurfaceAssignment::new(surfaces)? };
+        Ok(PyEffect::new(kind, "Drag", &keywords)?.add_subclass(Self))
+    }
+}

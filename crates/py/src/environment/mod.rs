@@ -1,0 +1,139 @@
+//! Effects of the environment. Names of bodies are resolved when the simulation is constructed.
+
+mod atmosphere;
+mod body_wrench;
+mod drag;
+mod gravity_gradient;
+mod radiation_pressure;
+mod surfaces;
+
+use crate::arrays::list_of;
+use crate::errors::IntoPython;
+use crate::pickling::{ConstructorCall, Reduced};
+use nalgebra::Vector3;
+use onorbit_core::environment::atmosphere::Atmosphere;
+use onorbit_core::environment::{BodyWrench, Drag, Effect, GravityGradient, RadiationPressure};
+use onorbit_core::gravity::{GravityField, Luminary};
+use onorbit_core::model::Model;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::Arc;
+use surfaces::SurfaceAssignment;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_class::<PyEffect>()?;
+    m.add_class::<gravity_gradient::PyGravityGradient>()?;
+    m.add_class::<body_wrench::PyBodyWrench>()?;
+    m.add_class::<drag::PyDrag>()?;
+    m.add_class::<radiation_pressure::PyRadiationPressure>()?;
+    atmosphere::add_classes(m)?;
+    surfaces::add_classes(m)
+}
+
+/// Base class of effects on the bodies, the entries of ``environment``.
+#[pyclass(name = "Effect", subclass, frozen, module = "onorbit_rs")]
+pub(crate) struct PyEffect {
+    kind: Kind,
+    constructor_call: ConstructorCall,
+}
+
+#[pymethods]
+impl PyEffect {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
+    }
+}
+
+/// Parameters of an effect that is not yet assigned to a robot.
+pub(crate) enum Kind {
+    GravityGradient,
+    /// Part of the gravity of the run; see [`crate::gravity::gravity_of`].
+    GravityField(Arc<GravityField>),
+    /// Part of the gravity of the run; see [`crate::gravity::gravity_of`].
+    ThirdBody(Luminary),
+    BodyWrench {
+        frame: String,
+        force: Vector3<f64>,
+        torque: Vector3<f64>,
+        start: f64,
+        end: f64,
+    },
+    Drag {
+        atmosphere: Arc<dyn Atmosphere>,
+        surfaces: SurfaceAssignment,
+    },
+    RadiationPressure {
+        surfaces: SurfaceAssignment,
+        flux: f64,
+        earth_radius: Option<f64>,
+    },
+}
+
+/// Returns the effects in ``environment``.
+pub(crate) fn effects<'py>(environment: Option<Any<'_, 'py>>) -> PyResult<Vec<Bound<'py, PyEffect>>> {
+    environment.map_or_else(
+        || Ok(Vec::new()),
+        |value| list_of(value, "environment", "effects, such as [oo.GravityGradient()],"),
+    )
+}
+
+impl PyEffect {
+    /// Returns an effect with the constructor and keywords that pickle it.
+    pub(crate) fn new(
+        kind: Kind,
+        constructor: &str,
+        keywords: &Bound<'_, PyDict>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let constructor_call = ConstructorCall::with_keywords(constructor, keywords)?;
+        Ok(PyClassInitializer::from(Self { kind, constructor_call }))
+    }
+
+    /// Returns the gravity field if the effect is one.
+    pub(crate) fn field(&self) -> Option<&Arc<GravityField>> {
+        match &self.kind {
+            Kind::GravityField(field) => Some(field),
+            _ => None,
+        }
+    }
+
+    /// Returns the Sun or the Moon if the effect is its gravity.
+    pub(crate) fn luminary(&self) -> Option<Luminary> {
+        match &self.kind {
+            Kind::ThirdBody(body) => Some(*body),
+            _ => None,
+        }
+    }
+
+    /// Returns true if the effect is part of gravity, which a reference orbit may follow.
+    pub(crate) fn is_gravity(&self) -> bool {
+        matches!(self.kind, Kind::GravityField(_) | Kind::ThirdBody(_))
+    }
+
+    /// Returns the effect on a given robot; `None` if it is part of gravity.
+    pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Option<Arc<dyn Effect>>> {
+        Ok(Some(match &self.kind {
+            Kind::GravityField(_) | Kind::ThirdBody(_) => return Ok(None),
+            Kind::GravityGradient => Arc::new(GravityGradient),
+            Kind::BodyWrench { frame, force, torque, start, end } => {
+                let frame = model.frame(frame).map_err(|error| error.into_python(py))?;
+                let wrench = BodyWrench::on_frame(model, frame, *force, *torque)
+                    .and_then(|wrench| wrench.during(*start, *end))
+                    .map_err(|error| error.into_python(py))?;
+                Arc::new(wrench)
+            }
+            Kind::Drag { atmosphere, surfaces } => {
+                Arc::new(Drag::new(Arc::clone(atmosphere), surfaces.on_with_warning(py, model, "drag")?))
+            }
+            Kind::RadiationPressure { surfaces, flux, earth_radius } => {
+                let pressure =
+                    RadiationPressure::new(surfaces.on_with_warning(py, model, "radiation pressure")?)
+                        .with_flux(*flux)
+                        .and_then(|pressure| pressure.with_shadow(*earth_radius))
+                        .map_err(|error| error.into_python(py))?;
+                Arc::new(pressure)
+            }
+        }))
+    }
+}

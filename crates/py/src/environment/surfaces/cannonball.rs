@@ -1,0 +1,37 @@
+//! Surfaces with the same area from all directions.
+
+use super::{PySurface, SurfaceKind};
+use crate::errors::{IntoPython, fields};
+use onorbit_core::environment::surfaces::Surface;
+use pyo3::prelude::*;
+
+/// Surface with the same area from all directions, at the centre of mass and therefore without torque.
+///
+/// Parameters
+/// ----------
+/// area : float
+///     Cross-sectional area, m².
+/// drag_coefficient : float
+///     C_D.
+/// reflectivity : float
+///     C_R: 1 absorbs all light, 2 is a flat mirror that faces the Sun.
+#[pyclass(name = "Cannonball", extends = PySurface, frozen, module = "onorbit_rs")]
+pub(super) struct PyCannonball;
+
+#[pymethods]
+impl PyCannonball {
+    #[new]
+    #[pyo3(signature = (area, *, drag_coefficient=2.2, reflectivity=1.0))]
+    fn new(
+        py: Python<'_>,
+        area: f64,
+        drag_coefficient: f64,
+        reflectivity: f64,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        Surface::cannonball(area, drag_coefficient, reflectivity).map_err(|error| error.into_python(py))?;
+        let keywords =
+            fields!(py, "area": area, "drag_coefficient": drag_coefficient, "reflectivity": reflectivity);
+        let kind = SurfaceKind::Cannonball { area, drag_coefficient, reflectivity };
+        Ok(PySurface::new(kind, "Cannonball", &keywords)?.add_subclass(Self))
+    }
+}

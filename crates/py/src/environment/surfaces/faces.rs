@@ -1,0 +1,41 @@
+//! Faces of the visual geometry.
+
+use super::{PySurface, SurfaceKind, optics};
+use crate::errors::{IntoPython, fields};
+use onorbit_core::environment::surfaces::Surface;
+use pyo3::prelude::*;
+
+/// Faces of a link's visual geometry: boxes, cylinders and spheres exactly, capsules to 2 %; meshes are
+/// rejected.
+///
+/// Each face has its own angle of incidence and centroid, which results in a torque. Faces do not shadow each
+/// other.
+///
+/// Parameters
+/// ----------
+/// drag_coefficient : float
+///     C_D.
+/// specular : float
+///     Specularly reflected fraction of the light.
+/// diffuse : float
+///     Diffusely reflected fraction of the light; the remainder is absorbed.
+#[pyclass(name = "Faces", extends = PySurface, frozen, module = "onorbit_rs")]
+pub(super) struct PyFaces;
+
+#[pymethods]
+impl PyFaces {
+    #[new]
+    #[pyo3(signature = (*, drag_coefficient=2.2, specular=0.0, diffuse=0.0))]
+    fn new(
+        py: Python<'_>,
+        drag_coefficient: f64,
+        specular: f64,
+        diffuse: f64,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        Surface::cannonball(0.0, drag_coefficient, 0.0).map_err(|error| error.into_python(py))?;
+        let kind = SurfaceKind::Faces { drag_coefficient, optics: optics(py, specular, diffuse)? };
+        let keywords =
+            fields!(py, "drag_coefficient": drag_coefficient, "specular": specular, "diffuse": diffuse);
+        Ok(PySurface::new(kind, "Faces", &keywords)?.add_subclass(Self))
+    }
+}

@@ -1,0 +1,100 @@
+//! Attachment of one robot to another.
+
+use super::PyModel;
+use super::part::PyRobotPart;
+use crate::arrays::{fixed, type_name};
+use crate::errors::{IntoPython, fields, plain, raise};
+use crate::pickling::{ConstructorCall, deep_copy};
+use nalgebra::Isometry3;
+use onorbit_core::model::Mount;
+use onorbit_core::reference::Hold;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Attach one robot to another, such as an arm to a bus, and return the combined robot.
+///
+/// ``other`` is fixed to a frame of ``model``. The base and the name of the result are those of ``model``.
+/// Joints are numbered depth first: those of ``other`` come after all joints of ``model`` if ``frame`` is
+/// fixed to the base, otherwise after the joints beyond the body of ``frame``.
+///
+/// Parameters
+/// ----------
+/// model : Model
+///     The robot that carries the other, such as a bus.
+/// frame : str
+///     Link or frame of ``model`` to attach to.
+/// other : Model or path
+///     The robot to attach, such as an arm. The base may be massless in a URDF or xacro file.
+/// other_frame : str, optional
+///     Mounting frame of ``other``. It must be fixed to the base of ``other``. Defaults to its root link.
+/// pose : (4, 4) array, optional
+///     Homogeneous transform of the mounting frame in ``frame``, m. Defaults to the identity.
+/// prefix : str, optional
+///     Prefix for the names of all links, joints and frames of ``other``, such as ``"left_"``.
+///
+/// Returns
+/// -------
+/// Model
+///
+/// Raises
+/// ------
+/// FrameError
+///     If a frame does not exist.
+/// ModelError
+///     If both robots have a link, joint or frame of the same name, or if joints move ``other_frame``.
+#[pyfunction]
+#[pyo3(signature = (model, frame, other, other_frame=None, *, pose=None, prefix=""))]
+pub(super) fn attach(
+    model: &Bound<'_, PyModel>,
+    frame: &str,
+    other: Any<'_, '_>,
+    other_frame: Option<&str>,
+    pose: Option<Any<'_, '_>>,
+    prefix: &str,
+) -> PyResult<PyModel> {
+    let py = model.py();
+    let mount = Mount {
+        frame: other_frame.map(str::to_owned),
+        pose: pose.map(isometry).transpose()?.unwrap_or_default(),
+        prefix: prefix.to_owned(),
+    };
+    let other = model_or_part(other)?;
+    let bus = &model.get().model;
+    let (arm, is_part) = match other.cast::<PyModel>() {
+        Ok(model) => (&*model.get().model, false),
+        Err(_) => (&other.cast::<PyRobotPart>()?.get().model, true),
+    };
+    let whole = bus.attach(frame, arm, &mount).map_err(|error| error.into_python(py))?;
+    // warnings were issued when the models were loaded; those of a part are issued here
+    let known = if is_part { bus.warnings().to_vec() } else { whole.warnings().to_vec() };
+    let keywords = fields!(py, "pose": deep_copy(pose)?, "prefix": prefix);
+    let call = ConstructorCall::new("attach", (model, frame, &other, other_frame), &keywords)?;
+    PyModel::wrap(py, whole, Some(call), &known)
+}
+
+/// Returns `other`, read from its file if it is a path.
+fn model_or_part<'py>(other: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
+    if other.is_instance_of::<PyModel>() || other.is_instance_of::<PyRobotPart>() {
+        return Ok(other.clone());
+    }
+    let py = other.py();
+    let Ok(path) = other.extract::<PathBuf>() else {
+        let got = type_name(other);
+        let message = format!("other is of type {got}; expected a Model or the path of a URDF or xacro file");
+        return Err(raise(py, "DtypeError", &message, &fields!(py, "name": "other", "got": got)));
+    };
+    Ok(Bound::new(py, PyRobotPart::from_urdf(py, path, None, None, false, None)?)?.into_any())
+}
+
+/// Converts a (4, 4) homogeneous transform.
+fn isometry(pose: Any<'_, '_>) -> PyResult<Isometry3<f64>> {
+    let refuse = |message: &str| plain(pose.py(), "ModelError", message);
+    let rows = fixed::<16>(pose, "pose", &[4, 4])?;
+    if !rows.iter().all(|entry| entry.abs() <= 1e12) {
+        return Err(refuse("the position of the pose exceeds 1e12 m; check the units"));
+    }
+    let poses = Hold::from_rows(&[rows]).map_err(|error| refuse(&error.to_string()))?;
+    Ok(poses[0].isometry())
+}

@@ -1,0 +1,217 @@
+//! Robots built link by link.
+
+use super::PyModel;
+use crate::arrays::fixed;
+use crate::errors::{IntoPython, fields, raise};
+use crate::pickling::ConstructorCall;
+use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
+use onorbit_core::model::{Inertial, Joint, JointKind, Limits, Link, Model, ModelBuilder};
+use pyo3::prelude::*;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Builder of a robot, link by link; the first link is the free-floating base.
+///
+/// Parameters
+/// ----------
+/// name : str
+///     Name of the robot.
+/// base : str
+///     Name of the base link.
+/// mass : float, optional
+///     Mass of the base, kg; a link without mass is massless.
+/// com : (3,) array, optional
+///     Centre of mass in link axes, m.
+/// inertia : (3, 3) array, optional
+///     Inertia about the centre of mass in link axes, kg m².
+#[pyclass(name = "ModelBuilder", module = "onorbit_rs")]
+pub(crate) struct PyModelBuilder {
+    builder: ModelBuilder,
+}
+
+#[pymethods]
+impl PyModelBuilder {
+    #[new]
+    #[pyo3(signature = (name, *, base, mass=None, com=None, inertia=None))]
+    fn new(
+        py: Python<'_>,
+        name: &str,
+        base: &str,
+        mass: Option<f64>,
+        com: Option<Any<'_, '_>>,
+        inertia: Option<Any<'_, '_>>,
+    ) -> PyResult<Self> {
+        let link = Link::new(base, inertial(py, mass, com, inertia)?);
+        let builder = ModelBuilder::new(name, link).map_err(|error| error.into_python(py))?;
+        Ok(Self { builder })
+    }
+
+    /// Add a link and the joint that connects it to its parent.
+    ///
+    /// Limits are stored but not enforced.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Name of the link.
+    /// parent : str
+    ///     Name of the parent link.
+    /// joint : str
+    ///     Name of the joint.
+    /// kind : {"revolute", "continuous", "prismatic", "fixed"}
+    ///     Type of the joint.
+    /// axis : (3,) array, optional
+    ///     Joint axis in link axes.
+    /// xyz, rpy : (3,) array, optional
+    ///     Position, m, and roll, pitch, yaw, rad, of the link frame in the parent's frame at joint position
+    ///     zero.
+    /// mass : float, optional
+    ///     Mass, kg.
+    /// com : (3,) array, optional
+    ///     Centre of mass in link axes, m.
+    /// inertia : (3, 3) array, optional
+    ///     Inertia about the centre of mass in link axes, kg m².
+    /// damping : float
+    ///     Viscous friction, N m s/rad or N s/m.
+    /// friction : float
+    ///     Coulomb friction of the moving joint (kinetic), N m or N.
+    /// rotor_inertia : float
+    ///     Rotor inertia reflected to the joint, kg m² or kg.
+    /// lower, upper : float, optional
+    ///     Position limits, rad or m.
+    /// velocity : float, optional
+    ///     Rate limit, rad/s or m/s.
+    /// effort : float, optional
+    ///     Effort limit, N m or N.
+    /// static_friction : float, optional
+    ///     Largest friction at rest, at least ``friction``, which is the default, N m or N.
+    #[pyo3(signature = (
+        name, *, parent, joint, kind="revolute", axis=None, xyz=None, rpy=None, mass=None, com=None, inertia=None,
+        damping=0.0, friction=0.0, rotor_inertia=0.0, lower=None, upper=None, velocity=None, effort=None,
+        static_friction=None,
+    ))]
+    fn add_link(
+        &mut self,
+        py: Python<'_>,
+        name: &str,
+        parent: &str,
+        joint: &str,
+        kind: &str,
+        axis: Option<Any<'_, '_>>,
+        xyz: Option<Any<'_, '_>>,
+        rpy: Option<Any<'_, '_>>,
+        mass: Option<f64>,
+        com: Option<Any<'_, '_>>,
+        inertia: Option<Any<'_, '_>>,
+        damping: f64,
+        friction: f64,
+        rotor_inertia: f64,
+        lower: Option<f64>,
+        upper: Option<f64>,
+        velocity: Option<f64>,
+        effort: Option<f64>,
+        static_friction: Option<f64>,
+    ) -> PyResult<()> {
+        let axis = vector(axis, "axis", [0.0, 0.0, 1.0])?;
+        let kind = match kind {
+            "revolute" | "continuous" => JointKind::Revolute(axis),
+            "prismatic" => JointKind::Prismatic(axis),
+            "fixed" => JointKind::Fixed,
+            other => {
+                let message = format!(
+                    "joint '{joint}' is of kind '{other}'; the kinds are revolute, continuous, prismatic and fixed"
+                );
+                return Err(raise(py, "ModelError", &message, &fields!(py, "joint": joint)));
+            }
+        };
+        let position = match (lower, upper) {
+            (None, None) => None,
+            _ => Some((lower.unwrap_or(f64::NEG_INFINITY), upper.unwrap_or(f64::INFINITY))),
+        };
+        let limits = Limits { position, velocity, effort };
+        let plain = Joint::new(joint, kind, pose(xyz, rpy)?);
+        let joint = Joint { limits, damping, friction, static_friction, rotor_inertia, ..plain };
+        let link = Link::new(name, inertial(py, mass, com, inertia)?);
+        self.builder.add(parent, joint, link).map_err(|error| error.into_python(py))?;
+        Ok(())
+    }
+
+    /// Add a named frame that is fixed to a link.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Name of the frame.
+    /// link : str
+    ///     Link to which it is fixed.
+    /// xyz, rpy : (3,) array, optional
+    ///     Position, m, and roll, pitch, yaw, rad, in the link's frame.
+    #[pyo3(signature = (name, link, *, xyz=None, rpy=None))]
+    fn add_frame(
+        &mut self,
+        py: Python<'_>,
+        name: &str,
+        link: &str,
+        xyz: Option<Any<'_, '_>>,
+        rpy: Option<Any<'_, '_>>,
+    ) -> PyResult<()> {
+        let pose = pose(xyz, rpy)?;
+        self.builder.add_frame(name, link, pose).map_err(|error| error.into_python(py))?;
+        Ok(())
+    }
+
+    /// Return the robot.
+    ///
+    /// More links may be added to the builder afterwards; they do not change the returned robot.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    fn build(&self, py: Python<'_>) -> PyResult<PyModel> {
+        let model = self.builder.clone().build().map_err(|error| error.into_python(py))?;
+        PyModel::wrap(py, model, None, &[])
+    }
+}
+
+/// Returns a spacecraft without joints.
+pub(super) fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyResult<PyModel> {
+    let numbers = fixed::<9>(inertia, "inertia", &[3, 3])?;
+    let inertia = Matrix3::from_row_slice(&numbers);
+    let model = Model::rigid_body(mass, inertia).map_err(|error| error.into_python(py))?;
+    let rows: Vec<&[f64]> = numbers.chunks(3).collect();
+    let keywords = fields!(py, "mass": mass, "inertia": rows);
+    PyModel::wrap(py, model, Some(ConstructorCall::with_keywords("Model.rigid_body", &keywords)?), &[])
+}
+
+/// Reads a (3,) vector.
+pub(super) fn vector(value: Option<Any<'_, '_>>, name: &str, default: [f64; 3]) -> PyResult<Vector3<f64>> {
+    Ok(Vector3::from(value.map_or(Ok(default), |value| fixed(value, name, &[3]))?))
+}
+
+/// Reads a position and roll, pitch, yaw.
+fn pose(xyz: Option<Any<'_, '_>>, rpy: Option<Any<'_, '_>>) -> PyResult<Isometry3<f64>> {
+    let angles = vector(rpy, "rpy", [0.0; 3])?;
+    let rotation = UnitQuaternion::from_euler_angles(angles.x, angles.y, angles.z);
+    Ok(Isometry3::from_parts(Translation3::from(vector(xyz, "xyz", [0.0; 3])?), rotation))
+}
+
+/// Reads the inertial properties of a link; `None` without a mass.
+fn inertial(
+    py: Python<'_>,
+    mass: Option<f64>,
+    com: Option<Any<'_, '_>>,
+    inertia: Option<Any<'_, '_>>,
+) -> PyResult<Option<Inertial>> {
+    let Some(mass) = mass else {
+        if com.is_some() || inertia.is_some() {
+            return Err(raise(py, "ModelError", "com and inertia require a mass; give one", &fields!(py,)));
+        }
+        return Ok(None);
+    };
+    let inertia = inertia.map_or(Ok([0.0; 9]), |value| fixed(value, "inertia", &[3, 3]))?;
+    Ok(Some(Inertial {
+        mass,
+        com: vector(com, "com", [0.0; 3])?,
+        inertia: Matrix3::from_row_slice(&inertia),
+    }))
+}

@@ -1,0 +1,181 @@
+//! Descriptions of joints, bodies, frames and shapes of a robot.
+
+use onorbit_core::model::{Axis, Frame, Geometry, Model, Visual};
+use onorbit_core::spatial::{Mat3, Vec3};
+use pyo3::prelude::*;
+
+type Matrix3 = [[f64; 3]; 3];
+type Matrix4 = [[f64; 4]; 4];
+
+/// Moving joint of a model; positions in rad, or m for a prismatic joint.
+#[pyclass(name = "Joint", frozen, get_all, module = "onorbit_rs")]
+pub(super) struct PyJoint {
+    /// Name.
+    name: String,
+    /// ``revolute`` or ``prismatic``; a continuous joint is revolute without ``lower`` and ``upper``.
+    kind: &'static str,
+    /// Name of the parent body.
+    parent: String,
+    /// Name of the child body.
+    child: String,
+    /// Pose of the child link in the parent link at position zero: (4, 4), m.
+    pose: Matrix4,
+    /// Unit vector of the axis in the child link: (3,).
+    axis: [f64; 3],
+    /// Lower position limit, rad or m, or None.
+    lower: Option<f64>,
+    /// Upper position limit, rad or m, or None.
+    upper: Option<f64>,
+    /// Rate limit, rad/s or m/s, or None.
+    velocity: Option<f64>,
+    /// Effort limit, N m or N, or None.
+    effort: Option<f64>,
+    /// Viscous friction, N m s/rad or N s/m.
+    damping: f64,
+    /// Kinetic Coulomb friction, N m or N.
+    friction: f64,
+    /// Largest friction at rest, N m or N.
+    static_friction: f64,
+    /// Rotor inertia reflected to the joint, kg m² or kg.
+    rotor_inertia: f64,
+}
+
+/// Body of a model: a link together with all links that are fixed to it.
+#[pyclass(name = "Body", frozen, get_all, module = "onorbit_rs")]
+pub(super) struct PyBody {
+    /// Name of its first link.
+    name: String,
+    /// Mass, kg.
+    mass: f64,
+    /// Centre of mass in the link's axes: (3,), m.
+    com: [f64; 3],
+    /// Inertia about the centre of mass in the link's axes: (3, 3), kg m².
+    inertia: Matrix3,
+}
+
+/// Named frame that is fixed to a body.
+#[pyclass(name = "Frame", frozen, get_all, module = "onorbit_rs")]
+pub(super) struct PyFrame {
+    /// Name.
+    name: String,
+    /// Name of the body to which it is fixed.
+    body: String,
+    /// Pose in the link of the body: (4, 4), m.
+    pose: Matrix4,
+}
+
+/// Shape that is fixed to a frame.
+#[pyclass(name = "Visual", frozen, get_all, module = "onorbit_rs")]
+pub(super) struct PyVisual {
+    /// Name of the frame to which it is fixed.
+    link: String,
+    /// Pose in that frame: (4, 4), m.
+    pose: [[f64; 4]; 4],
+    /// ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``.
+    kind: &'static str,
+    /// Edge lengths of a box, radius and length of a cylinder or capsule, radius of a sphere, m; empty for a mesh.
+    size: Vec<f64>,
+    /// Path of a mesh file, or None.
+    filename: Option<String>,
+    /// Scale of a mesh along its axes: (3,), dimensionless.
+    scale: [f64; 3],
+    /// Red, green, blue and opacity from 0 to 1, or None.
+    rgba: Option<[f64; 4]>,
+}
+
+impl PyVisual {
+    fn new(link: &str, visual: &Visual) -> Self {
+        let m = visual.pose.to_homogeneous();
+        let pose = std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]));
+        let (kind, size, filename, scale) = match &visual.geometry {
+            Geometry::Box(edges) => ("box", edges.to_vec(), None, [1.0; 3]),
+            Geometry::Cylinder { radius, length } => ("cylinder", vec![*radius, *length], None, [1.0; 3]),
+            Geometry::Capsule { radius, length } => ("capsule", vec![*radius, *length], None, [1.0; 3]),
+            Geometry::Sphere { radius } => ("sphere", vec![*radius], None, [1.0; 3]),
+            Geometry::Mesh { filename, scale } => ("mesh", Vec::new(), Some(filename.clone()), *scale),
+        };
+        Self { link: link.to_owned(), pose, kind, size, filename, scale, rgba: visual.rgba }
+    }
+}
+
+/// Returns the descriptions of visual or collision shapes with the indices of their frames.
+pub(super) fn shapes(model: &Model, shapes: &[(usize, Visual)]) -> Vec<PyVisual> {
+    let frame = |index: usize| &model.frames()[index].name;
+    shapes.iter().map(|(index, shape)| PyVisual::new(frame(*index), shape)).collect()
+}
+
+/// Returns the descriptions of the moving joints, in the order of `v`.
+pub(super) fn joints(model: &Model) -> Vec<PyJoint> {
+    let body = |k: usize| model.body_frame(k).name.clone();
+    let bound = |value: f64| Some(value).filter(|value| value.is_finite());
+    let joint = |(j, joint): (usize, &onorbit_core::model::JointProperties)| {
+        let node = &model.nodes()[j + 1];
+        let kind = match node.axis {
+            Axis::Revolute => "revolute",
+            Axis::Prismatic => "prismatic",
+        };
+        let (parent, child) = (model.body_frame(node.parent), model.body_frame(j + 1));
+        // pose of the child link in the parent body at position zero: X_pk X_kf
+        let at_zero = Frame {
+            name: String::new(),
+            body: node.parent,
+            rot_kf: node.rot_pk * child.rot_kf,
+            pos_kf: node.rot_pk * child.pos_kf + node.pos_pk,
+        };
+        let (rot, pos) = model.pose_in_link(&at_zero);
+        let limits = &joint.limits;
+        PyJoint {
+            name: joint.name.clone(),
+            kind,
+            parent: parent.name.clone(),
+            child: body(j + 1),
+            pose: pose(&rot, pos),
+            axis: joint.axis.to_nalgebra().into(),
+            lower: limits.position.and_then(|(lower, _)| bound(lower)),
+            upper: limits.position.and_then(|(_, upper)| bound(upper)),
+            velocity: limits.velocity,
+            effort: limits.effort,
+            damping: joint.damping,
+            friction: joint.friction,
+            static_friction: joint.static_friction,
+            rotor_inertia: node.rotor_inertia,
+        }
+    };
+    model.joints().iter().enumerate().map(joint).collect()
+}
+
+/// Returns the descriptions of the bodies, base first.
+pub(super) fn bodies(model: &Model) -> Vec<PyBody> {
+    let body = |(k, node): (usize, &onorbit_core::model::Node)| {
+        let link = model.body_frame(k);
+        let rot = link.rot_kf.to_nalgebra();
+        let com = rot.transpose() * (node.com - link.pos_kf).to_nalgebra();
+        let inertia = rot.transpose() * node.about_com.to_nalgebra() * rot;
+        let inertia = std::array::from_fn(|i| std::array::from_fn(|j| inertia[(i, j)]));
+        PyBody { name: link.name.clone(), mass: node.mass, com: com.into(), inertia }
+    };
+    model.nodes().iter().enumerate().map(body).collect()
+}
+
+/// Returns the descriptions of the frames.
+pub(super) fn frames(model: &Model) -> Vec<PyFrame> {
+    let frame = |frame: &Frame| {
+        let (rot, pos) = model.pose_in_link(frame);
+        let body = model.body_frame(frame.body).name.clone();
+        PyFrame { name: frame.name.clone(), body, pose: pose(&rot, pos) }
+    };
+    model.frames().iter().map(frame).collect()
+}
+
+/// Returns the rows of `[[R, p], [0, 1]]`.
+fn pose(rot: &Mat3<f64>, pos: Vec3<f64>) -> Matrix4 {
+    let (rot, pos) = (rot.to_nalgebra(), pos.to_nalgebra());
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| match (i, j) {
+            (3, 3) => 1.0,
+            (3, _) => 0.0,
+            (_, 3) => pos[i],
+            _ => rot[(i, j)],
+        })
+    })
+}

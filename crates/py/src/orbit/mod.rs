@@ -1,0 +1,190 @@
+//! Reference orbits.
+
+mod custom_path;
+mod fixed_frame;
+mod kepler;
+mod numerical;
+mod reference;
+mod relative;
+mod sgp4;
+
+use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
+use crate::interrupt::{in_pieces, prepare};
+use crate::pickling::{ConstructorCall, Reduced};
+use nalgebra::Vector3;
+use onorbit_core::orbit::{Orbit, OrbitError, lvlh_frames, path_frames, states};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::sync::Arc;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_class::<PyOrbit>()?;
+    m.add_class::<kepler::PyKepler>()?;
+    m.add_class::<sgp4::PySgp4>()?;
+    m.add_class::<custom_path::PyCustomPath>()?;
+    m.add_class::<fixed_frame::PyFixedFrame>()?;
+    m.add_class::<numerical::PyNumerical>()?;
+    relative::add_functions(m)
+}
+
+/// Base class of reference orbits, on which the origin of W moves.
+#[pyclass(name = "Orbit", subclass, frozen, module = "onorbit_rs")]
+pub(crate) struct PyOrbit {
+    pub(crate) orbit: Arc<dyn Orbit>,
+    constructor_call: ConstructorCall,
+}
+
+/// Returns the base object of an orbit of any kind.
+fn base(
+    orbit: Arc<dyn Orbit>,
+    constructor: &str,
+    arguments: &Bound<'_, PyTuple>,
+    keywords: &Bound<'_, PyDict>,
+) -> PyResult<PyOrbit> {
+    let constructor_call = ConstructorCall::new(constructor, arguments.clone(), keywords)?;
+    Ok(PyOrbit { orbit, constructor_call })
+}
+
+/// Function that fills rotations and angular velocities.
+type FillFrames = fn(&dyn Orbit, &[f64], &mut [f64], &mut [f64]) -> Result<(), OrbitError>;
+
+#[pymethods]
+impl PyOrbit {
+    /// Gravitational parameter of the planet, m³/s², or None without a planet.
+    #[getter]
+    fn mu(&self) -> Option<f64> {
+        self.orbit.mu()
+    }
+
+    /// Inertial axes of positions and velocities: ``GCRF``, or ``TEME`` for an element set.
+    #[getter]
+    fn axes(&self) -> &'static str {
+        self.orbit.axes().name()
+    }
+
+    /// Description of the origin of the velocity; that of SGP4 is not exactly the derivative of the position.
+    #[getter]
+    fn velocity_source(&self) -> &'static str {
+        self.orbit.velocity_source()
+    }
+
+    /// Return position and velocity.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Simulation time, s.
+    ///
+    /// Returns
+    /// -------
+    /// r : (3,) or (T, 3) array
+    ///     Position from the planet's centre, inertial axes, m.
+    /// v : (3,) or (T, 3) array
+    ///     Velocity, inertial axes, m/s.
+    fn state<'py>(
+        &self,
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let (times, shape) = times(t)?;
+        let dims: Vec<usize> = shape.iter().copied().chain([3]).collect();
+        let (r, v) = (zeros(py, &dims)?, zeros(py, &dims)?);
+        let (to_r, to_v) = (fresh(&r), fresh(&v));
+        let orbit = &*self.orbit;
+        prepare(py, orbit, &times)?;
+        in_pieces(py, times.len(), 16_384, |range| {
+            let rows = 3 * range.start..3 * range.end;
+            states(orbit, &times[range], &mut to_r[rows.clone()], &mut to_v[rows])
+        })?;
+        Ok((r.into_any(), v.into_any()))
+    }
+
+    /// Return attitude and angular velocity of the local orbital frame L (Hill, RSW).
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Simulation time, s.
+    ///
+    /// Returns
+    /// -------
+    /// rot_il : (3, 3) or (T, 3, 3) array
+    ///     Rotation from L components (x radial outward, z along the angular momentum) to inertial
+    ///     components.
+    /// w : (3,) or (T, 3) array
+    ///     Angular velocity of L in its own axes, rad/s.
+    fn lvlh<'py>(
+        &self,
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        self.frames(py, t, lvlh_frames)
+    }
+
+    /// Return attitude and angular velocity of the frame that moves along the reference.
+    ///
+    /// This is the attitude given with a path or a fixed frame, otherwise the local orbital frame.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float or (T,) array
+    ///     Simulation time, s.
+    ///
+    /// Returns
+    /// -------
+    /// rot : (3, 3) or (T, 3, 3) array
+    ///     Rotation from components in the frame to inertial components.
+    /// w : (3,) or (T, 3) array
+    ///     Angular velocity of the frame in its own axes, rad/s.
+    fn frame<'py>(
+        &self,
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        self.frames(py, t, path_frames)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
+    }
+}
+
+impl PyOrbit {
+    fn frames<'py>(
+        &self,
+        py: Python<'py>,
+        t: Any<'_, 'py>,
+        fill: FillFrames,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let (times, shape) = times(t)?;
+        let with = |tail: &[usize]| shape.iter().chain(tail).copied().collect::<Vec<usize>>();
+        let (rotations, rates) = (zeros(py, &with(&[3, 3]))?, zeros(py, &with(&[3]))?);
+        let (to_r, to_w) = (fresh(&rotations), fresh(&rates));
+        let orbit = &*self.orbit;
+        prepare(py, orbit, &times)?;
+        in_pieces(py, times.len(), 4096, |range| {
+            let (nine, three) = (9 * range.start..9 * range.end, 3 * range.start..3 * range.end);
+            fill(orbit, &times[range], &mut to_r[nine], &mut to_w[three])
+        })?;
+        Ok((rotations.into_any(), rates.into_any()))
+    }
+}
+
+/// Returns three finite numbers.
+fn vector(value: Any<'_, '_>, name: &str) -> PyResult<Vector3<f64>> {
+    Ok(Vector3::from(fixed::<3>(value, name, &[3])?))
+}
+
+/// Returns one time (shape ``()``) or many (shape ``(T,)``) with the shape.
+pub(crate) fn times(t: Any<'_, '_>) -> PyResult<(Vec<f64>, Vec<usize>)> {
+    if let Ok(one) = t.extract::<f64>() {
+        return Ok((vec![one], Vec::new()));
+    }
+    let input = Input::new(t, "t")?;
+    match input.shape() {
+        [n] => Ok((input.data().to_vec(), vec![*n])),
+        other => Err(wrong_shape(t.py(), "t", "a number or (T,)", other)),
+    }
+}

@@ -1,0 +1,77 @@
+//! Linear relative motion near a circular orbit.
+
+use super::Any;
+use crate::arrays::{array_of, fixed, fresh, zeros};
+use crate::errors::IntoPython;
+use crate::interrupt::in_pieces;
+use crate::orbit::times;
+use nalgebra::Vector3;
+use numpy::PyArrayDyn;
+use onorbit_core::orbit::relative;
+use pyo3::prelude::*;
+
+/// Return the Clohessy-Wiltshire transition matrix.
+///
+/// It solves Hill's linear equations of relative motion near a circular orbit; the error is of second order
+/// in the separation.
+///
+/// Parameters
+/// ----------
+/// mean_motion : float
+///     Mean motion of the circular orbit, rad/s.
+/// t : float or (T,) array
+///     Time, s.
+///
+/// Returns
+/// -------
+/// (6, 6) or (T, 6, 6) array
+///     Transition matrix of ``(x, y, z, ẋ, ẏ, ż)`` in Hill's axes (x radial outward, y along track, z
+///     normal), m and m/s.
+#[pyfunction]
+pub(super) fn hill_transition<'py>(
+    py: Python<'py>,
+    mean_motion: f64,
+    t: Any<'_, 'py>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (instants, shape) = times(t)?;
+    let out = zeros(py, &shape.iter().copied().chain([6, 6]).collect::<Vec<_>>())?;
+    let to = fresh(&out);
+    in_pieces(py, instants.len(), 16_384, |range| {
+        let into = 36 * range.start..36 * range.end;
+        relative::hill_transitions(mean_motion, &instants[range], &mut to[into])
+    })?;
+    Ok(out.into_any())
+}
+
+/// Return the velocity that leads to the origin in a given time: the first impulse of a two-impulse
+/// rendezvous.
+///
+/// Parameters
+/// ----------
+/// mean_motion : float
+///     Mean motion of the circular orbit, rad/s.
+/// r : (3,) array
+///     Relative position, Hill's axes, m.
+/// t : float
+///     Time, s.
+///
+/// Returns
+/// -------
+/// (3,) array
+///     Relative velocity, Hill's axes, m/s.
+///
+/// Raises
+/// ------
+/// OrbitError
+///     If no such velocity exists, such as at half a period.
+#[pyfunction]
+pub(super) fn intercept_velocity<'py>(
+    py: Python<'py>,
+    mean_motion: f64,
+    r: Any<'_, 'py>,
+    t: f64,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let r = Vector3::from(fixed::<3>(r, "r", &[3])?);
+    let v = relative::intercept_velocity(mean_motion, &r, t).map_err(|error| error.into_python(py))?;
+    Ok(array_of(py, &[3], v.as_slice()))
+}

@@ -1,0 +1,72 @@
+//! Pickling of objects by the call that constructed them.
+
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::path::{Path, PathBuf};
+
+/// Function and arguments that rebuild an object: the value of `__reduce__`.
+pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
+
+/// Constructor, arguments and keywords that reconstruct an object.
+pub(crate) struct ConstructorCall(Py<PyTuple>);
+
+impl ConstructorCall {
+    /// Records a call with keywords only.
+    pub(crate) fn with_keywords(constructor: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
+        Self::new(constructor, (), keywords)
+    }
+
+    /// Records a call with arguments and keywords.
+    pub(crate) fn new<'py, A>(
+        constructor: &str,
+        arguments: A,
+        keywords: &Bound<'py, PyDict>,
+    ) -> PyResult<Self>
+    where
+        A: IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>>,
+        PyErr: From<A::Error>,
+    {
+        let py = keywords.py();
+        let arguments = arguments.into_pyobject(py)?;
+        Ok(Self((constructor, arguments, keywords).into_pyobject(py)?.unbind()))
+    }
+
+    /// Returns the arguments and keywords if the object was constructed by `constructor`.
+    pub(crate) fn arguments_of<'py>(
+        &self,
+        py: Python<'py>,
+        constructor: &str,
+    ) -> PyResult<Option<(Bound<'py, PyTuple>, Bound<'py, PyDict>)>> {
+        let (own, arguments, keywords) = self.0.bind(py).extract::<(String, _, _)>()?;
+        Ok((own == constructor).then_some((arguments, keywords)))
+    }
+
+    /// Returns the value of `__reduce__`.
+    pub(crate) fn reduce<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let rebuild = py.import("onorbit_rs.common.pickling")?.getattr("rebuild")?;
+        Ok((rebuild, self.0.bind(py).clone().into_any()))
+    }
+
+    /// Returns the value of `__reduce__` of a robot, whose file may change before it is read again.
+    ///
+    /// The file is also read here: an error in this process is reported, whereas an error in a worker of a
+    /// pool stops the worker silently.
+    pub(crate) fn reduce_robot<'py>(&self, robot: &Bound<'py, PyAny>) -> PyResult<Reduced<'py>> {
+        let py = robot.py();
+        let print = py.import("onorbit_rs.robots.fingerprint")?.call_method1("fingerprint", (robot,))?;
+        let rebuild = py.import("onorbit_rs.robots.pickling")?.getattr("rebuild_robot")?;
+        let arguments = self.0.bind(py).add((print,))?;
+        rebuild.call1(arguments.cast::<PyTuple>()?)?;
+        Ok((rebuild, arguments))
+    }
+}
+
+/// Returns the absolute path, which is valid in any working directory.
+pub(crate) fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Returns a deep copy, which later changes of the original do not affect.
+pub(crate) fn deep_copy<'py>(value: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    value.map(|value| value.py().import("copy")?.call_method1("deepcopy", (value,))).transpose()
+}

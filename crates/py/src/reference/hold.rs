@@ -1,0 +1,28 @@
+//! Constant pose.
+
+use super::{Any, PyReference, pose};
+use pyo3::prelude::*;
+
+/// Constant pose.
+///
+/// Parameters
+/// ----------
+/// pose : (4, 4) array
+///     Pose of the tool in ``frame``, m.
+/// frame : {"world", "lvlh", "base"} or Target, optional
+///     Frame of the reference; default: W.
+#[pyclass(name = "Hold", extends = PyReference, frozen, module = "onorbit_rs")]
+pub(super) struct PyHold;
+
+#[pymethods]
+impl PyHold {
+    #[new]
+    #[pyo3(signature = (pose, *, frame=None))]
+    fn new(
+        py: Python<'_>,
+        pose: Any<'_, '_>,
+        frame: Option<Any<'_, '_>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        Ok(PyClassInitializer::from(PyReference::new(py, Ok(self::pose(pose)?), frame)?).add_subclass(Self))
+    }
+}

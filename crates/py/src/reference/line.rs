@@ -1,0 +1,50 @@
+//! Straight line from rest to rest.
+
+use super::{Any, PyReference, pose, timing};
+use onorbit_core::reference::{Line, TimeLaw, Timing};
+use pyo3::prelude::*;
+
+/// Straight line from rest to rest, with the attitude on the geodesic of SO(3).
+///
+/// Parameters
+/// ----------
+/// start_pose, end_pose : (4, 4) array
+///     Initial and final pose of the tool in ``frame``, m.
+/// duration : float, optional
+///     Duration, s; otherwise the shortest within the following limits.
+/// speed, acceleration : float, optional
+///     Limits of the origin, m/s and m/s².
+/// angular_speed, angular_acceleration : float, optional
+///     Limits of the attitude, rad/s and rad/s².
+/// frame : {"world", "lvlh", "base"} or Target, optional
+///     Frame of the reference; default: W.
+#[pyclass(name = "Line", extends = PyReference, frozen, module = "onorbit_rs")]
+pub(super) struct PyLine;
+
+#[pymethods]
+impl PyLine {
+    #[new]
+    #[pyo3(signature = (
+        start_pose, end_pose, *, duration=None, speed=None, acceleration=None, angular_speed=None,
+        angular_acceleration=None, frame=None,
+    ))]
+    fn new(
+        py: Python<'_>,
+        start_pose: Any<'_, '_>,
+        end_pose: Any<'_, '_>,
+        duration: Option<f64>,
+        speed: Option<f64>,
+        acceleration: Option<f64>,
+        angular_speed: Option<f64>,
+        angular_acceleration: Option<f64>,
+        frame: Option<Any<'_, '_>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let (start, end) = (pose(start_pose)?, pose(end_pose)?);
+        let limits = [speed, acceleration, angular_speed, angular_acceleration];
+        let line = match timing::of_task(py, duration, limits)? {
+            Timing::Given(duration) => TimeLaw::quintic(duration).map(|law| Line::new(start, &end, law)),
+            Timing::Limits(limits) => Line::within(start, &end, &limits),
+        };
+        Ok(PyClassInitializer::from(PyReference::new(py, line, frame)?).add_subclass(Self))
+    }
+}

@@ -1,0 +1,45 @@
+//! Line with a parabola perpendicular to it.
+
+use super::{Any, PyReference, pose, vector};
+use nalgebra::Vector3;
+use onorbit_core::reference::LineParabola;
+use pyo3::prelude::*;
+
+/// Line with a parabola perpendicular to it, ``p(t) = p0 + s d + s (1 - s) h``, with constant attitude.
+///
+/// ``s`` is the quintic from 0 to 1.
+///
+/// Parameters
+/// ----------
+/// start_pose : (4, 4) array
+///     Initial pose of the tool in ``frame``, m.
+/// displacement : (3,) array
+///     ``d``, axes of ``frame``, m.
+/// duration : float
+///     Duration, s.
+/// height : (3,) array, optional
+///     ``h``, axes of ``frame``, m; a quarter of it is reached at half the distance.
+/// frame : {"world", "lvlh", "base"} or Target, optional
+///     Frame of the reference; default: W.
+#[pyclass(name = "LineParabola", extends = PyReference, frozen, module = "onorbit_rs")]
+pub(super) struct PyLineParabola;
+
+#[pymethods]
+impl PyLineParabola {
+    #[new]
+    #[pyo3(signature = (start_pose, *, displacement, duration, height=None, frame=None))]
+    fn new(
+        py: Python<'_>,
+        start_pose: Any<'_, '_>,
+        displacement: Any<'_, '_>,
+        duration: f64,
+        height: Option<Any<'_, '_>>,
+        frame: Option<Any<'_, '_>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let start = pose(start_pose)?;
+        let displacement = vector(displacement, "displacement")?;
+        let height = height.map_or(Ok(Vector3::zeros()), |value| vector(value, "height"))?;
+        let path = LineParabola::from_pose(start, displacement, height, duration);
+        Ok(PyClassInitializer::from(PyReference::new(py, path, frame)?).add_subclass(Self))
+    }
+}

@@ -1,0 +1,88 @@
+//! Splines through poses.
+
+use super::{Any, PyReference, poses, row, timing};
+use crate::arrays::{Input, wrong_shape};
+use onorbit_core::reference::PoseSpline;
+use pyo3::prelude::*;
+
+/// Twice continuously differentiable path through poses, from rest to rest.
+///
+/// Parameters
+/// ----------
+/// poses : (K, 4, 4) array
+///     Poses of the tool in ``frame``, m.
+/// times : (K,) array, optional
+///     Times of the poses, s; otherwise the shortest within the limits of :class:`Line`, which are reached in
+///     each piece, or with ``stops=False`` somewhere on the path.
+/// speed, acceleration, angular_speed, angular_acceleration : float, optional
+///     As for :class:`Line`.
+/// stops : bool
+///     If False, the path passes through the poses without stopping.
+/// frame : {"world", "lvlh", "base"} or Target, optional
+///     Frame of the reference; default: W.
+#[pyclass(name = "Waypoints", extends = PyReference, frozen, module = "onorbit_rs")]
+pub(super) struct PyWaypoints;
+
+#[pymethods]
+impl PyWaypoints {
+    #[new]
+    #[pyo3(signature = (
+        poses, *, times=None, speed=None, acceleration=None, angular_speed=None, angular_acceleration=None, stops=true,
+        frame=None,
+    ))]
+    fn new(
+        py: Python<'_>,
+        poses: Any<'_, '_>,
+        times: Option<Any<'_, '_>>,
+        speed: Option<f64>,
+        acceleration: Option<f64>,
+        angular_speed: Option<f64>,
+        angular_acceleration: Option<f64>,
+        stops: bool,
+        frame: Option<Any<'_, '_>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let times = times.map(|times| row(times, "times")).transpose()?;
+        let limits = [speed, acceleration, angular_speed, angular_acceleration];
+        let timing = timing::of_task(py, times, limits)?;
+        let path = PoseSpline::waypoints(&self::poses(poses)?, &timing, stops);
+        Ok(PyClassInitializer::from(PyReference::new(py, path, frame)?).add_subclass(Self))
+    }
+}
+
+/// C² spline through poses at given times; before and after, the first and last pose are held.
+///
+/// Parameters
+/// ----------
+/// times : (K,) array
+///     Times, s.
+/// poses : (K, 4, 4) array
+///     Poses of the tool in ``frame``, m.
+/// velocities : (K, 6) array, optional
+///     Velocities, axes of ``frame``, linear first, m/s and rad/s.
+/// frame : {"world", "lvlh", "base"} or Target, optional
+///     Frame of the reference; default: W.
+#[pyclass(name = "Sampled", extends = PyReference, frozen, module = "onorbit_rs")]
+pub(super) struct PySampled;
+
+#[pymethods]
+impl PySampled {
+    #[new]
+    #[pyo3(signature = (times, poses, *, velocities=None, frame=None))]
+    fn new(
+        py: Python<'_>,
+        times: Any<'_, '_>,
+        poses: Any<'_, '_>,
+        velocities: Option<Any<'_, '_>>,
+        frame: Option<Any<'_, '_>>,
+    ) -> PyResult<PyClassInitializer<Self>> {
+        let velocities = velocities.map(|value| Input::new(value, "velocities")).transpose()?;
+        if let Some(input) = &velocities
+            && !matches!(input.shape(), [_, 6])
+        {
+            return Err(wrong_shape(py, "velocities", "(K, 6)", input.shape()));
+        }
+        let velocities = velocities.as_ref().map(Input::data);
+        let path = PoseSpline::sampled(&row(times, "times")?, &self::poses(poses)?, velocities);
+        Ok(PyClassInitializer::from(PyReference::new(py, path, frame)?).add_subclass(Self))
+    }
+}

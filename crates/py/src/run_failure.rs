@@ -1,0 +1,49 @@
+//! Exceptions of runs that end early.
+
+use crate::errors::{SimulationErrorExt, fields, raise};
+use crate::trace::PyTrace;
+use onorbit_core::control::ControlError;
+use onorbit_core::number_text::short;
+use onorbit_core::simulation::SimulationError;
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+
+/// Returns the exception for a run that an error ended. A Ctrl-C in a Python controller, in another engine, or
+/// pending while the run failed becomes `RunInterrupted`, with the error as its context.
+pub(crate) fn run_failure(py: Python<'_>, error: SimulationError, trace: PyTrace) -> PyErr {
+    let ctrl_c = match &error {
+        SimulationError::Control(ControlError::User(source)) | SimulationError::Engine(source) => source
+            .downcast_ref::<PyErr>()
+            .filter(|error| error.is_instance_of::<PyKeyboardInterrupt>(py))
+            .map(|error| error.clone_ref(py)),
+        _ => match py.check_signals() {
+            Err(other) if !other.is_instance_of::<PyKeyboardInterrupt>(py) => return other,
+            checked => checked.err(),
+        },
+    };
+    let last = trace.trace.time.last().copied();
+    let (Some(ctrl_c), Some(time)) = (ctrl_c, last) else {
+        return error.into_python_with(py, Py::new(py, trace).ok());
+    };
+    let interrupted = run_interrupted(py, ctrl_c, time, trace);
+    interrupted.set_context(py, Some(error.into_python_with(py, None)));
+    interrupted
+}
+
+/// Returns the exception for an error raised between two steps: Ctrl-C becomes `RunInterrupted`.
+pub(crate) fn interrupted(py: Python<'_>, error: PyErr, time: f64, trace: PyTrace) -> PyErr {
+    if error.is_instance_of::<PyKeyboardInterrupt>(py) {
+        run_interrupted(py, error, time, trace)
+    } else {
+        error // the callback raised
+    }
+}
+
+/// Returns `RunInterrupted` with the signal as its cause.
+fn run_interrupted(py: Python<'_>, signal: PyErr, time: f64, trace: PyTrace) -> PyErr {
+    let message = format!("the run was interrupted at t = {} s", short(time));
+    let fields = fields!(py, "time": time, "trace": Py::new(py, trace).ok());
+    let error = raise(py, "RunInterrupted", &message, &fields);
+    error.set_cause(py, Some(signal));
+    error
+}

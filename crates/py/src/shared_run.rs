@@ -1,0 +1,121 @@
+//! A simulation and the run that borrows it, shared by `Simulation` and its steppers.
+
+use crate::errors::{SimulationErrorExt, plain};
+use onorbit_core::simulation::{Checkpoint, Simulation, Stepper, Trace};
+use pyo3::prelude::*;
+use self_cell::{MutBorrow, self_cell};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+
+self_cell!(
+    /// Run together with the simulation that it borrows.
+    struct Running {
+        owner: MutBorrow<Simulation>,
+        #[not_covariant]
+        dependent: Stepper,
+    }
+);
+
+/// State of the owner: the simulation, or its current run.
+enum Slot {
+    Idle(Box<Simulation>),
+    Running(Box<Running>),
+    /// Neither; temporary state while one replaces the other.
+    Empty,
+}
+
+/// Simulation with its current run and the number of runs started so far.
+pub(crate) struct Runs {
+    slot: Slot,
+    number: u64,
+    /// Wall-clock time of the current run so far, s.
+    pub(crate) wall_s: f64,
+}
+
+#[derive(Clone)]
+pub(crate) struct SharedRun(Arc<Mutex<Runs>>);
+
+impl SharedRun {
+    pub(crate) fn new(simulation: Simulation) -> Self {
+        let slot = Slot::Idle(Box::new(simulation));
+        Self(Arc::new(Mutex::new(Runs { slot, number: 0, wall_s: 0.0 })))
+    }
+
+    /// Returns exclusive access to the runs. Raises an error if another thread, or a callback of the run
+    /// itself, has access.
+    pub(crate) fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Runs>> {
+        match self.0.try_lock() {
+            Ok(runs) => Ok(runs),
+            Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => {
+                let message = "this simulation is already being advanced, by another thread or by an \
+                enclosing call; use a second Simulation";
+                Err(plain(py, "SimulationError", message))
+            }
+        }
+    }
+
+    /// Ends the current run and starts another one; returns its number.
+    pub(crate) fn start(
+        &self,
+        py: Python<'_>,
+        duration: Option<f64>,
+        from: Option<(Checkpoint, Trace)>,
+        wall_s: f64,
+    ) -> PyResult<u64> {
+        let mut runs = self.lock(py)?;
+        runs.release();
+        let Slot::Idle(simulation) = std::mem::replace(&mut runs.slot, Slot::Empty) else {
+            return Err(plain(
+                py,
+                "SimulationError",
+                "this simulation is unusable after an internal error (panic); create a new one",
+            ));
+        };
+        let running = Running::try_new_or_recover(MutBorrow::new(*simulation), |simulation| {
+            let simulation = simulation.borrow_mut();
+            match from {
+                None => simulation.start(duration),
+                Some((checkpoint, rows)) => simulation.resume(duration, checkpoint, rows),
+            }
+        });
+        match running {
+            Ok(running) => {
+                runs.slot = Slot::Running(Box::new(running));
+                runs.number += 1;
+                runs.wall_s = wall_s;
+                Ok(runs.number)
+            }
+            Err((simulation, error)) => {
+                runs.slot = Slot::Idle(Box::new(simulation.into_inner()));
+                Err(error.into_python_with(py, None))
+            }
+        }
+    }
+}
+
+impl Runs {
+    /// Ends the current run, if there is one.
+    fn release(&mut self) {
+        self.slot = match std::mem::replace(&mut self.slot, Slot::Empty) {
+            Slot::Running(running) => Slot::Idle(Box::new(running.into_owner().into_inner())),
+            other => other,
+        };
+    }
+
+    /// Ends run `number`, if it is the current run.
+    pub(crate) fn end(&mut self, number: u64) {
+        if self.number == number {
+            self.release();
+        }
+    }
+
+    /// Calls `work` with run `number`; `None` if another run has been started since, or if it was ended.
+    pub(crate) fn with<R>(&mut self, number: u64, work: impl FnOnce(&mut Stepper<'_>) -> R) -> Option<R> {
+        match &mut self.slot {
+            Slot::Running(running) if self.number == number => {
+                Some(running.with_dependent_mut(|_, stepper| work(stepper)))
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,379 @@
+//! Runs that are advanced step by step.
+
+use crate::arrays::{Input, array_of, first_row, wrong_shape};
+use crate::checkpoint::{PyCheckpoint, checkpoint_of, columns_since};
+use crate::errors::{SimulationErrorExt, fields, plain, raise};
+use crate::interrupt::PACE;
+use crate::run_failure::{interrupted, run_failure};
+use crate::shared_run::{Runs, SharedRun};
+use crate::simulation::period;
+use crate::trace::PyTrace;
+use numpy::{PyArrayDyn, PyArrayMethods};
+use onorbit_core::model::Model;
+use onorbit_core::number_text::short;
+use onorbit_core::simulation::{Layout, RunFailure, SimulationError, Stepper, Trace};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::ops::ControlFlow;
+use std::sync::{Arc, MutexGuard};
+use std::time::{Duration, Instant};
+
+/// Callback between slices of wall-clock time, which receives the run and its wall-clock time so far, s.
+type Pause<'a> = &'a mut dyn FnMut(Python<'_>, &mut Stepper<'_>, f64) -> PyResult<()>;
+
+/// Run that is advanced step by step: :meth:`Simulation.start`.
+///
+/// ``advance`` and ``advance_to`` do not change the motion: the steps are those of :meth:`Simulation.run`. Where
+/// the current time lies within a step, the state comes from dense output (adaptive steps) or from a shorter
+/// step, and the step itself is taken later.
+#[pyclass(name = "Stepper", frozen, module = "onorbit_rs")]
+pub(crate) struct PyStepper {
+    run: SharedRun,
+    number: u64,
+    model: Arc<Model>,
+    layout: Layout,
+}
+
+#[pymethods]
+impl PyStepper {
+    /// Present time, s.
+    #[getter]
+    fn time(&self, py: Python<'_>) -> PyResult<f64> {
+        self.with(py, |stepper| stepper.time())
+    }
+
+    /// Planned end of the run, s; None without one.
+    #[getter]
+    fn duration(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+        self.with(py, |stepper| stepper.duration())
+    }
+
+    /// Configuration at the current time, (nq,), a read-only array: base position, m, in W, base quaternion xyzw,
+    /// joint positions, rad or m.
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.state(py).map(|(q, _)| constant(py, &q))
+    }
+
+    /// Velocity at the current time, (nv,), a read-only array: base twist, m/s and rad/s, in base axes, joint
+    /// rates, rad/s or m/s.
+    #[getter]
+    fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.state(py).map(|(_, v)| constant(py, &v))
+    }
+
+    /// Advance by a time.
+    ///
+    /// Parameters
+    /// ----------
+    /// dt : float
+    ///     Simulated time, s, positive.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     If ``dt`` is not positive and finite, or leads past the planned end; the run stays as it was.
+    /// RunInterrupted
+    ///     At Ctrl-C, at a step before the requested time; ``trace`` holds the rows so far, and the run can
+    ///     be advanced further.
+    /// SimulationError
+    ///     If the run diverges; ``trace`` holds the rows so far, and the run has ended.
+    fn advance(&self, py: Python<'_>, dt: f64) -> PyResult<()> {
+        let mut runs = self.run.lock(py)?;
+        let after = runs.with(self.number, |stepper| stepper.time_after(dt)).ok_or_else(|| ended(py))?;
+        let t = after.map_err(|error| error.into_python_with(py, None))?;
+        self.advance_locked(py, &mut runs, t, None, &mut |py, _, _| py.check_signals())
+    }
+
+    /// Advance to a time.
+    ///
+    /// Parameters
+    /// ----------
+    /// t : float
+    ///     Time, s, not before the current time.
+    /// wall_s : float, optional
+    ///     Wall-clock time after which it returns early, at the end of a step, s. Default: no limit.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     If ``t`` is not finite, in the past, or after the planned end; the run stays as it was.
+    /// RunInterrupted
+    ///     At Ctrl-C, at a step before the requested time; ``trace`` holds the rows so far, and the run can
+    ///     be advanced further.
+    /// SimulationError
+    ///     If the run diverges; ``trace`` holds the rows so far, and the run has ended.
+    #[pyo3(signature = (t, *, wall_s=None))]
+    fn advance_to(&self, py: Python<'_>, t: f64, wall_s: Option<f64>) -> PyResult<()> {
+        let limit = wall_s.map(|seconds| period(py, "wall_s", seconds)).transpose()?;
+        let mut runs = self.run.lock(py)?;
+        self.advance_locked(py, &mut runs, t, limit, &mut |py, _, _| py.check_signals())
+    }
+
+    /// Hold joint torques from the current time on, until the next command.
+    ///
+    /// The current time becomes the end of a step. The trace has the bits of a run whose controller returns the
+    /// same torques at the same times (of an adaptive integrator: but for the lengths of the steps before them).
+    ///
+    /// Parameters
+    /// ----------
+    /// tau : (n,) array or dict of float
+    ///     Torques, N m (N on a prismatic joint), of all joints, or by the names of some; the others stay as they are.
+    ///
+    /// Raises
+    /// ------
+    /// ShapeError
+    ///     If the array does not have one entry per joint.
+    /// InputError
+    ///     If a torque is not finite, or the robot has no joint of a name.
+    /// ControlError
+    ///     If an active controller drives one of the joints.
+    fn command(&self, py: Python<'_>, tau: &Bound<'_, PyAny>) -> PyResult<()> {
+        let tau = self.torques(tau)?;
+        self.try_with(py, |stepper| stepper.command(&tau))
+    }
+
+    /// Return the trace so far, with its last row at the current time.
+    ///
+    /// Returns
+    /// -------
+    /// Trace
+    ///     A copy; the run goes on independently of it.
+    fn trace(&self, py: Python<'_>) -> PyResult<PyTrace> {
+        let trace = self.try_with(py, |stepper| stepper.trace())?;
+        let wall_s = self.run.lock(py)?.wall_s;
+        let is_complete = self.with(py, |stepper| Some(stepper.time()) == stepper.duration())?;
+        Ok(self.wrap(trace, is_complete, wall_s))
+    }
+
+    /// End the run at the current time and return its trace, without copying the rows.
+    ///
+    /// Returns
+    /// -------
+    /// Trace
+    fn finish(&self, py: Python<'_>) -> PyResult<PyTrace> {
+        let is_complete =
+            self.with(py, |stepper| stepper.duration().is_none_or(|end| stepper.time() == end))?;
+        self.end(py, &mut self.run.lock(py)?, is_complete)
+    }
+
+    /// Return the rows recorded so far as columns, without a row at the current time.
+    ///
+    /// Parameters
+    /// ----------
+    /// since : int, optional
+    ///     First row to return.
+    ///
+    /// Returns
+    /// -------
+    /// dict of array
+    ///     (k, width) for each column of the trace by its name.
+    #[pyo3(signature = (since=0))]
+    fn columns(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = first_row)] since: usize,
+    ) -> PyResult<Py<PyDict>> {
+        let columns = self.with(py, |stepper| match stepper.has_ended() {
+            true => Err(ended(py)),
+            false => columns_since(py, stepper.rows(), since),
+        })??;
+        Ok(columns.unbind())
+    }
+
+    /// Return a checkpoint, from which :meth:`Simulation.start` resumes with identical bits.
+    ///
+    /// Parameters
+    /// ----------
+    /// since : int, optional
+    ///     First row of ``columns``; resuming needs all rows.
+    ///
+    /// Returns
+    /// -------
+    /// Checkpoint
+    ///
+    /// Raises
+    /// ------
+    /// ControlError
+    ///     If a Python controller cannot be saved; the run stays as it was.
+    #[pyo3(signature = (since=0))]
+    fn checkpoint(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = first_row)] since: usize,
+    ) -> PyResult<PyCheckpoint> {
+        let wall_s = self.run.lock(py)?.wall_s;
+        self.with(py, |stepper| checkpoint_of(py, stepper, since, wall_s))?
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let text = self.with(py, |stepper| match stepper.duration() {
+            Some(end) => format!("<Stepper: at t = {} s of {} s>", short(stepper.time()), short(end)),
+            None => format!("<Stepper: at t = {} s>", short(stepper.time())),
+        });
+        Ok(text.unwrap_or_else(|_| "<Stepper: ended or in use>".to_owned()))
+    }
+}
+
+impl PyStepper {
+    pub(crate) fn new(run: SharedRun, number: u64, model: Arc<Model>) -> Self {
+        let layout = Layout::new([(model.name(), &*model)]);
+        Self { run, number, model, layout }
+    }
+
+    /// Runs to the end and returns the whole trace; `pause` is called at intervals.
+    pub(crate) fn run_to_end(&self, py: Python<'_>, duration: f64, pause: Pause<'_>) -> PyResult<PyTrace> {
+        let mut runs = self.run.lock(py)?;
+        if let Err(error) = self.advance_locked(py, &mut runs, duration, None, pause) {
+            runs.end(self.number);
+            return Err(error);
+        }
+        self.end(py, &mut runs, true)
+    }
+
+    /// Ends the run and returns its trace.
+    fn end(&self, py: Python<'_>, runs: &mut MutexGuard<'_, Runs>, is_complete: bool) -> PyResult<PyTrace> {
+        let finished = runs.with(self.number, |stepper| py.detach(|| stepper.finish()));
+        let wall_s = runs.wall_s;
+        runs.end(self.number);
+        match finished.ok_or_else(|| ended(py))? {
+            Ok(trace) => Ok(self.wrap(trace, is_complete, wall_s)),
+            Err(RunFailure { error, trace }) => Err(run_failure(py, error, self.wrap(*trace, false, wall_s))),
+        }
+    }
+
+    /// Advances in slices of wall-clock time, without the GIL.
+    fn advance_locked(
+        &self,
+        py: Python<'_>,
+        runs: &mut MutexGuard<'_, Runs>,
+        t: f64,
+        limit: Option<Duration>,
+        pause: Pause<'_>,
+    ) -> PyResult<()> {
+        let (start, wall_before) = (Instant::now(), runs.wall_s);
+        let slice = limit.map_or(PACE, |limit| limit.min(PACE));
+        loop {
+            let wall_s = wall_before + start.elapsed().as_secs_f64();
+            let advanced = runs.with(self.number, |stepper| {
+                let result = py.detach(|| {
+                    let from = Instant::now();
+                    stepper.advance_until(t, &mut |_| match from.elapsed() < slice {
+                        true => ControlFlow::Continue(()),
+                        false => ControlFlow::Break(()),
+                    })
+                });
+                match result {
+                    Ok(ControlFlow::Continue(())) => Ok(true),
+                    Ok(ControlFlow::Break(())) => match pause(py, stepper, wall_s) {
+                        Ok(()) => Ok(limit.is_some_and(|limit| start.elapsed() >= limit)),
+                        Err(error) => Err(self.stopped(py, stepper, error, wall_s)),
+                    },
+                    Err(error) => Err(self.failed(py, stepper, error, wall_s)),
+                }
+            });
+            runs.wall_s = wall_before + start.elapsed().as_secs_f64();
+            if advanced.ok_or_else(|| ended(py))?? {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Returns the exception for an error of the core; errors that ended the run get its rows.
+    fn failed(
+        &self,
+        py: Python<'_>,
+        stepper: &mut Stepper<'_>,
+        error: SimulationError,
+        wall_s: f64,
+    ) -> PyErr {
+        if !stepper.has_failed() {
+            return error.into_python_with(py, None);
+        }
+        let trace = stepper.finish().unwrap_or_default();
+        run_failure(py, error, self.wrap(trace, false, wall_s))
+    }
+
+    /// Returns the exception for a signal or an error of a callback between two steps.
+    fn stopped(&self, py: Python<'_>, stepper: &mut Stepper<'_>, error: PyErr, wall_s: f64) -> PyErr {
+        let time = stepper.time();
+        match stepper.trace() {
+            Ok(trace) => interrupted(py, error, time, self.wrap(trace, false, wall_s)),
+            Err(failure) => self.failed(py, stepper, failure, wall_s),
+        }
+    }
+
+    fn with<R>(&self, py: Python<'_>, work: impl FnOnce(&mut Stepper<'_>) -> R) -> PyResult<R> {
+        self.run.lock(py)?.with(self.number, work).ok_or_else(|| ended(py))
+    }
+
+    /// Wraps a trace of the run.
+    fn wrap(&self, trace: Trace, is_complete: bool, wall_s: f64) -> PyTrace {
+        PyTrace { trace, model: Arc::clone(&self.model), is_complete, wall_s }
+    }
+
+    /// Returns the number of rows recorded so far.
+    pub(crate) fn row_count(&self, py: Python<'_>) -> PyResult<usize> {
+        self.with(py, |stepper| stepper.rows().rows())
+    }
+
+    /// Calls `work`, in which a Python controller may run, and converts its error.
+    fn try_with<R>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Stepper<'_>) -> Result<R, SimulationError>,
+    ) -> PyResult<R> {
+        let mut runs = self.run.lock(py)?;
+        let wall_s = runs.wall_s;
+        let result = runs.with(self.number, |stepper| {
+            work(stepper).map_err(|error| self.failed(py, stepper, error, wall_s))
+        });
+        result.ok_or_else(|| ended(py))?
+    }
+
+    fn state(&self, py: Python<'_>) -> PyResult<(Vec<f64>, Vec<f64>)> {
+        let (mut q, mut v) = (vec![0.0; self.model.nq()], vec![0.0; self.model.nv()]);
+        self.try_with(py, |stepper| stepper.read_state(&mut q, &mut v))?;
+        Ok((q, v))
+    }
+
+    /// Reads the torques of a command.
+    fn torques(&self, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Option<f64>>> {
+        let (py, place) = (tau.py(), &self.layout.systems()[0]); // a simulation is of one robot
+        let n = place.joints.len();
+        let Ok(by_name) = tau.cast::<PyDict>() else {
+            let input = Input::new(tau, "tau")?;
+            if input.shape() != [n] {
+                return Err(wrong_shape(py, "tau", &format!("({n},)"), input.shape()));
+            }
+            return Ok(input.data().iter().copied().map(Some).collect());
+        };
+        let mut torques = vec![None; n];
+        for (name, value) in by_name {
+            let name = name.str()?.to_string();
+            let Some(joint) = place.joint(&name) else {
+                let message = format!("tau names joint '{name}'; the robot has {}", place.joints.join(", "));
+                return Err(raise(py, "InputError", &message, &fields!(py, "name": "tau", "got": name)));
+            };
+            let input = Input::new(&value, &format!("tau['{name}']"))?;
+            let [torque] = input.data() else {
+                return Err(wrong_shape(py, &format!("tau['{name}']"), "()", input.shape()));
+            };
+            torques[joint] = Some(*torque);
+        }
+        Ok(torques)
+    }
+}
+
+/// Returns the error of a stepper whose run is over.
+fn ended(py: Python<'_>) -> PyErr {
+    let message = "the run has ended; start a new one (a simulation has one run at a time)";
+    plain(py, "SimulationError", message)
+}
+
+/// Returns a read-only array.
+fn constant<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
+    let array = array_of(py, &[values.len()], values);
+    let _ = array.readwrite().make_nonwriteable();
+    array
+}

@@ -1,0 +1,40 @@
+"""Shell completion of arguments: bundled names, then files and folders."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+
+def scenario_names(incomplete: str) -> list[str]:
+    """Return bundled scenarios and YAML files."""
+    from onorbit_rs import scenarios
+
+    return [*_fitting(scenarios.names(), incomplete), *_files(incomplete, (".yaml", ".yml"))]
+
+
+def robot_names(incomplete: str) -> list[str]:
+    """Return bundled robots, URDF and xacro files."""
+    from onorbit_rs import robots
+
+    return [*_fitting(robots.names(), incomplete), *_files(incomplete, (".urdf", ".xacro"))]
+
+
+def _fitting(names: list[str], incomplete: str) -> list[str]:
+    return [name for name in names if name.startswith(incomplete)]
+
+
+def _files(incomplete: str, endings: tuple[str, ...]) -> Iterator[str]:
+    """Yield files with one of the endings, and folders."""
+    typed, _, start = incomplete.rpartition("/")
+    prefix = f"{typed}/" if "/" in incomplete else ""
+    try:
+        entries = sorted(Path(prefix or ".").iterdir())
+    except OSError:
+        return
+    for entry in entries:
+        if entry.name.startswith(start) and (start or not entry.name.startswith(".")):
+            if entry.is_dir():
+                yield f"{prefix}{entry.name}/"
+            elif entry.name.endswith(endings):
+                yield f"{prefix}{entry.name}"

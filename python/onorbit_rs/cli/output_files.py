@@ -1,0 +1,37 @@
+"""Output files named by the user."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from onorbit_rs.common.files import exists, file_kind, is_link, output_errors
+from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError
+
+
+def check_output_file(file: Path | None, *, force: bool) -> None:
+    """Check that a file can be written, before any computation.
+
+    Raises
+    ------
+    OutputNotEmptyError
+        If the file exists and ``force`` is false.
+    OutputFolderError
+        If it is a folder, a link or a device, or its folder does not exist or is not writable.
+    """
+    if file is None:
+        return
+    folder = file.absolute().parent
+    with output_errors(file):
+        if file.is_dir():
+            raise OutputFolderError(f"cannot write {file}: it is a folder; give a file", path=str(file))
+        if is_link(file) or (file.exists() and not file.is_file()):
+            raise OutputFolderError(
+                f"cannot write {file}: it is {file_kind(file)}, name a regular file", path=str(file)
+            )
+        if exists(file) and not force:
+            raise OutputNotEmptyError(f"{file} already exists; replace it with --force", path=str(file))
+        if not folder.is_dir():
+            raise OutputFolderError(f"cannot write {file}: no such folder", path=str(file))
+        if not os.access(folder, os.W_OK):
+            raise OutputFolderError(f"cannot write {file}: its folder is not writable", path=str(file))

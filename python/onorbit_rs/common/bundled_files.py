@@ -1,0 +1,37 @@
+"""Names and paths of the files that are part of the package."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from onorbit_rs.common.suggestions import did_you_mean, nearest
+from onorbit_rs.exceptions import NotFoundError
+
+
+def names(folder: Path, ending: str) -> list[str]:
+    """Return the names, without their ending, of the files with this ending in a folder of the package."""
+    return sorted(file.stem for file in folder.glob(f"*{ending}"))
+
+
+def path(name: str, kind: str, folder: Path, ending: str) -> Path:
+    """Return the path of a bundled file.
+
+    Parameters
+    ----------
+    name : str
+        Name without its ending.
+    kind : str
+        Kind of the files, for messages.
+    folder : path
+    ending : str
+
+    Raises
+    ------
+    NotFoundError
+        If there is no such file; suggests the nearest name.
+    """
+    known = names(folder, ending)
+    if name not in known:
+        message = f"no bundled {kind} is named {name!r}{did_you_mean(name, known)}"
+        raise NotFoundError(message, path=name, kind=kind, suggestion=nearest(name, known))
+    return folder / f"{name}{ending}"

@@ -1,0 +1,121 @@
+"""Progress display on a terminal: simulated time and real-time factor, then the current task."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs.common.printable import printable
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bar
+
+ProgressCallback = Callable[[float, float], None]
+"""Called with the simulated time and the duration, s."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Progress of a run: the simulation loop calls ``move``; ``tell`` displays the name of each later task.
+
+    ``move`` is None if nothing is displayed.
+    """
+
+    move: ProgressCallback | None = None
+    tell: Callable[[str], None] = lambda doing: None
+
+
+@contextmanager
+def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progress]:
+    """Show a progress bar during the block, if stderr is a terminal."""
+    if quiet or not _is_watched():
+        yield Progress()
+        return
+    with _drawn(_bar()) as bar:
+        task = bar.add_task(printable(name), total=duration_s, doing="starting", start=False)
+        yield Progress(_Mover(bar, task), lambda doing: bar.update(task, completed=duration_s, doing=doing))
+
+
+@contextmanager
+def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None]]:
+    """Show a progress bar in the block; yields a function that sets the part's name and the fraction done."""
+    if quiet or not _is_watched():
+        yield lambda part, done: None
+        return
+    with _drawn(_bar()) as bar:
+        task = bar.add_task(printable(name), total=1.0, doing="starting")
+        yield lambda part, done: bar.update(task, completed=done, doing=printable(part))
+
+
+@contextmanager
+def _drawn(bar: Bar) -> Iterator[Bar]:
+    """Draw the bar during the block; errors of a terminal that is closed meanwhile are ignored."""
+    bar.start()
+    try:
+        yield bar
+    finally:
+        with suppress(OSError):
+            bar.stop()
+
+
+def _is_watched() -> bool:
+    """Return whether stderr is open and a terminal."""
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
+def _bar() -> Bar:
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TextColumn("{task.fields[doing]}", markup=False),
+        TimeRemainingColumn(),
+    )
+    return Progress(*columns, console=Console(stderr=True), transient=True)
+
+
+@contextmanager
+def doing(name: str, *, quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Show a status line during the block; yields a function that sets the name of the current part."""
+    if quiet or not _is_watched():
+        yield lambda part: None
+        return
+    from rich.console import Console
+    from rich.markup import escape
+
+    with Console(stderr=True).status(escape(printable(name))) as status:
+        yield lambda part: status.update(escape(printable(f"{name}: {part}")))
+
+
+class _Mover:
+    """Moves the bar; the speed of a resumed run does not include the time before its checkpoint."""
+
+    def __init__(self, bar: Any, task: Any) -> None:
+        self._bar, self._task = bar, task
+        self._first: tuple[float, float] | None = None
+
+    def __call__(self, reached_s: float, total_s: float) -> None:
+        now = time.perf_counter()
+        if self._first is None:
+            self._first = now, reached_s
+            self._bar.reset(self._task, completed=reached_s, total=total_s, start=True)
+        factor = real_time_factor(*self._first, now, reached_s)
+        self._bar.update(self._task, completed=reached_s, doing=progress_text(reached_s, total_s, factor))
+
+
+def real_time_factor(began: float, began_at_s: float, now: float, reached_s: float) -> float | None:
+    """Return simulated time per wall-clock time since ``began``; None within the first millisecond."""
+    elapsed = now - began
+    return (reached_s - began_at_s) / elapsed if elapsed > 1e-3 else None
+
+
+def progress_text(reached_s: float, total_s: float, factor: float | None) -> str:
+    """Return the text of the progress bar, such as ``t = 12.3 / 60 s, 45x real time``."""
+    speed = "" if factor is None else f", {factor:.3g}x real time"
+    return f"t = {reached_s:.4g} / {total_s:.4g} s{speed}"

@@ -1,6 +1,0 @@
-"""Amounts of things in messages."""
-
-
-def count(number: int, one: str, many: str) -> str:
-    """Return ``1 joint`` or ``2 joints``."""
-    return f"{number} {one if number == 1 else many}"

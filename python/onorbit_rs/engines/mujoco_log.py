@@ -1,0 +1,36 @@
+"""Disables MuJoCo's log during a step.
+
+Warnings about nearly singular matrices then go neither to stderr nor to MUJOCO_LOG.TXT. The log settings are
+global to the process, so MuJoCo's log is also disabled in other threads during that time. The user's settings
+are restored when no engine is in a step.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+_lock = threading.Lock()
+_saved: list[Any] = []
+"""The user's log settings, once per engine that is in a step."""
+
+
+@contextmanager
+def without_log(mujoco: Any) -> Iterator[None]:
+    """Disable the log from the first entry to the last exit, in any order of exits."""
+    with _lock:
+        saved = _saved[0] if _saved else mujoco.MjLogConfig.get()
+        if not _saved:
+            quiet = mujoco.MjLogConfig.get()
+            quiet.logto_console = quiet.logto_file = 0
+            quiet.set()
+        _saved.append(saved)
+    try:
+        yield
+    finally:
+        with _lock:
+            _saved.pop()
+            if not _saved:
+                saved.set()

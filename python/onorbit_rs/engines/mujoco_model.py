@@ -1,0 +1,140 @@
+"""Converts a robot to a MuJoCo model: bodies, joints and rotors, without gravity and contacts."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.exceptions import EngineError, ModelError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Body, Joint, Model
+
+    Floats = NDArray[np.float64]
+
+HARDEST = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+"""``solimp`` of friction and stops; a soft constraint leaves a fraction ``1 - d`` of the acceleration."""
+
+DAMPING_RATIO = 10.0
+"""Damping ratio `ζ` of stops: a joint leaves a stop with a fraction `1 / (2ζ)²` of its approach rate."""
+
+
+def import_mujoco() -> ModuleType:
+    """Return the package ``mujoco``.
+
+    Raises
+    ------
+    EngineError
+        If it is not installed.
+    """
+    try:
+        import mujoco
+    except ImportError:
+        raise missing() from None
+    return mujoco  # type: ignore[no-any-return]
+
+
+def missing() -> EngineError:
+    """Return the error for a missing MuJoCo."""
+    message = "the engine 'mujoco' needs MuJoCo, which is not installed: pip install 'onorbit-rs[mujoco]'"
+    return EngineError(message, name="engine", got="mujoco")
+
+
+def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any:
+    """Return the ``mujoco.MjModel`` of a robot; joints keep their names, :func:`link_name` names the bodies.
+
+    Raises
+    ------
+    EngineError
+        If MuJoCo is not installed.
+    ModelError
+        If MuJoCo cannot represent a body or joint, such as a body without mass or inertia.
+    """
+    mujoco = import_mujoco()
+    spec = mujoco.MjSpec()
+    spec.modelname = model.name
+    spec.compiler.degree = spec.compiler.alignfree = spec.compiler.autolimits = False
+    spec.option.gravity = np.zeros(3)
+    spec.option.timestep = time_step
+    spec.option.tolerance, spec.option.iterations = 1e-15, 200
+    bit = mujoco.mjtDisableBit
+    # without warm start the step depends on the state only, so a resumed run gives the same bits
+    spec.option.disableflags = int(bit.mjDSBL_WARMSTART | bit.mjDSBL_CONTACT | bit.mjDSBL_AUTORESET)
+    joints = {joint.child: joint for joint in model.joints}
+    bodies: dict[str, Any] = {}
+    moments: dict[str, Floats] = {}
+    for body in model.bodies:
+        joint = joints.get(body.name)
+        bodies[body.name] = new = (spec.worldbody if joint is None else bodies[joint.parent]).add_body()
+        new.name, new.mass = link_name(body.name), body.mass
+        new.ipos, new.explicitinertial = np.array(body.com), True
+        moments[body.name], new.iquat = _principal(mujoco, body)
+        new.inertia = np.full(3, moments[body.name].mean())
+        if joint is None:
+            new.add_freejoint().align = mujoco.mjtAlignFree.mjALIGNFREE_FALSE
+        else:
+            _attach(mujoco, new, joint, time_step=time_step, enforce_limits=enforce_limits)
+    try:
+        compiled = spec.compile()
+    except ValueError as error:
+        raise ModelError(f"MuJoCo rejects this robot: {' '.join(str(error).split())}") from error
+    # set after compilation, since the compiler rejects moments that violate the triangle inequality, which
+    # occur in published robots
+    for name, moment in moments.items():
+        compiled.body(link_name(name)).inertia[:] = moment
+    mujoco.mj_setConst(compiled, mujoco.MjData(compiled))
+    return compiled
+
+
+def link_name(name: str) -> str:
+    """Return the MuJoCo name of a body; the prefix avoids the reserved name ``world``."""
+    return f"link {name}"
+
+
+def _principal(mujoco: ModuleType, body: Body) -> tuple[Floats, Floats]:
+    """Return the principal moments of inertia and the quaternion (wxyz) of their axes."""
+    moments, axes = np.linalg.eigh(np.array(body.inertia))
+    if body.mass <= 0.0 or moments[0] <= 0.0:
+        raise ModelError(
+            f"link '{body.name}' has no mass or no inertia, which MuJoCo does not support; give "
+            "it a small mass and inertia (planar and ball joints have such links), or use engine: native",
+            link=body.name,
+        )
+    quat = np.empty(4)
+    mujoco.mju_mat2Quat(quat, (axes * np.sign(np.linalg.det(axes))).ravel())
+    return moments, quat
+
+
+def _attach(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, enforce_limits: bool) -> None:
+    """Set the pose of a body in its parent and add its joint."""
+    pose = np.array(joint.pose)
+    quat = np.empty(4)
+    mujoco.mju_mat2Quat(quat, pose[:3, :3].ravel())
+    body.pos, body.quat = pose[:3, 3], quat
+    kinds = mujoco.mjtJoint
+    moving = body.add_joint()
+    moving.name, moving.axis = joint.name, np.array(joint.axis)
+    moving.type = kinds.mjJNT_HINGE if joint.kind == "revolute" else kinds.mjJNT_SLIDE
+    if joint.static_friction > joint.friction:
+        raise ModelError(
+            f"joint '{joint.name}' has a static friction of {joint.static_friction:g} above its kinetic "
+            f"friction of {joint.friction:g}: MuJoCo has one friction for both; make them equal, or use "
+            "engine: native",
+            joint=joint.name,
+        )
+    moving.armature, moving.frictionloss = joint.rotor_inertia, joint.friction
+    moving.damping = np.array([joint.damping, 0.0, 0.0])
+    moving.solref_friction = np.array([2.0 * time_step, 1.0])
+    moving.solref_limit = np.array([2.0 * time_step, DAMPING_RATIO])
+    moving.solimp_friction = moving.solimp_limit = np.array(HARDEST)
+    lower, upper = (
+        -np.inf if joint.lower is None else joint.lower,
+        np.inf if joint.upper is None else joint.upper,
+    )
+    if enforce_limits and (np.isfinite(lower) or np.isfinite(upper)):
+        moving.limited = True
+        moving.range = np.clip([lower, upper], -1e9, 1e9)

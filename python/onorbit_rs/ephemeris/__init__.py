@@ -1,0 +1,1 @@
+"""Readers of orbit and ephemeris data: OMM files, ``Satrec`` objects, SPICE kernels."""

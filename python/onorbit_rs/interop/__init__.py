@@ -1,1 +1,0 @@
-"""Files of others, read and written."""

@@ -1,0 +1,43 @@
+"""Errors for output folders and files that may not be written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from onorbit_rs.common.files import file_kind, is_regular
+from onorbit_rs.exceptions import OutputNotEmptyError, OutputNotWritableError
+from onorbit_rs.output.manifest import MANIFEST
+
+
+def not_empty(folder: Path) -> OutputNotEmptyError:
+    """Return the error for a folder that contains files."""
+    return OutputNotEmptyError(
+        f"output folder is not empty: {folder}; choose another, or replace its run with --force (force=True)",
+        path=str(folder),
+    )
+
+
+def foreign(file: Path) -> OutputNotEmptyError:
+    """Return the error for a path that no run wrote, or that is a link, a pipe or a folder."""
+    is_file = is_regular(file)
+    what = "there" if is_file else file_kind(file)
+    why = f"and {MANIFEST} does not list it as a file that a run wrote" if is_file else "which no run makes"
+    return OutputNotEmptyError(
+        f"cannot write {file}: it is {what}, {why}; move it away or choose another folder", path=str(file)
+    )
+
+
+def edited(file: Path) -> OutputNotEmptyError:
+    """Return the error for a figure that was edited."""
+    return OutputNotEmptyError(
+        f"cannot replace {file}: it was changed since it was drawn; move it out of the folder to keep it, or "
+        "remove it",
+        path=str(file),
+    )
+
+
+def not_writable(folder: Path, error: OSError) -> OutputNotWritableError:
+    """Return the error for an output folder that cannot be created or written."""
+    return OutputNotWritableError(
+        f"output folder cannot be written: {folder}: {error.strerror or error}", path=str(folder)
+    )

@@ -1,0 +1,61 @@
+"""Pickling of a trace: its arrays and computed results under the same names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.output.columns import path_of
+from onorbit_rs.output.saved_trace import SavedTrace
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Trace
+
+
+@dataclass(frozen=True)
+class PickledTrace(SavedTrace):
+    """Result of unpickling a :class:`onorbit_rs.Trace`: the same attributes, read-only, but another class."""
+
+    is_complete: bool
+    wall_s: float
+    results: Sequence[Any]
+    results_of_methods: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        """Make the columns read-only."""
+        for rows in self.arrays.values():
+            rows.setflags(write=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return the class and its fields."""
+        return PickledTrace, tuple(getattr(self, part.name) for part in fields(self))
+
+    def certificate(self) -> Any:
+        """Return the certificate of the trace."""
+        return self.results_of_methods["certificate"]
+
+    def joint_limits_exceeded(self) -> Any:
+        """Return the names of the joints beyond their position limits."""
+        return self.results_of_methods["joint_limits_exceeded"]
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self.arrays.get("time", ()))
+
+
+def arrays_of(trace: Trace) -> dict[str, Any]:
+    """Return the columns of a trace by path, including those of every control and every effect."""
+    arrays = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
+    for name, by_owner in (("tracking", trace.tracking), ("wrenches", trace.wrenches)):
+        arrays |= {path_of(name, owner): np.asarray(rows) for owner, rows in by_owner.items()}
+    return arrays
+
+
+def reduced(trace: Trace) -> tuple[Any, ...]:
+    """Return the class and arguments that rebuild a trace from a pickle."""
+    results = {"certificate": trace.certificate(), "joint_limits_exceeded": trace.joint_limits_exceeded()}
+    arrays = arrays_of(trace) | {"rereferenced": np.asarray(trace.rereferenced)}
+    return PickledTrace, (arrays, trace.is_complete, trace.wall_s, list(trace.results), results)

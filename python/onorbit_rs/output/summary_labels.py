@@ -1,0 +1,45 @@
+"""Labels of the entries of a summary."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+_ERROR = re.compile(
+    r"tracking_(?:(?P<owner>.+)_)?(?P<what>position|attitude|joint)_error_(?P<which>max|final)_(?P<unit>rad|m)"
+)
+_GOAL = re.compile(r"control_(.+)_result")
+_WHICH = {"max": "largest", "final": "at the end"}
+
+EXCEEDED = {
+    "joint_limits_exceeded": "joint limits",
+    "joint_rates_exceeded": "rate limits of joints",
+    "joint_efforts_exceeded": "effort limits of joints",
+}
+"""Labels of the entries of a summary that name joints beyond a limit of the robot."""
+
+
+class Tracking(NamedTuple):
+    """A tracking error of the controller ``owner``; ``owner`` is empty if the run has a single controller."""
+
+    owner: str
+    label: str
+    unit: str
+    is_largest: bool
+
+
+def tracking(key: str) -> Tracking | None:
+    """Return the tracking error described by a key; None for other keys."""
+    found = _ERROR.fullmatch(key)
+    if found is None:
+        return None
+    owner, what, which, unit = found.group("owner", "what", "which", "unit")
+    error = "prismatic joint error" if (what, unit) == ("joint", "m") else f"{what} error"
+    prefix = f"{owner}: " if owner else "tool " if what != "joint" else ""
+    return Tracking(owner or "", f"{prefix}{error}, {_WHICH[which]}", unit, which == "max")
+
+
+def goal_of(key: str) -> str | None:
+    """Return the name of the control whose goal a key belongs to; None for other keys."""
+    found = _GOAL.fullmatch(key)
+    return found[1] if found else None

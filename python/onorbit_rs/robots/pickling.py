@@ -1,0 +1,36 @@
+"""Creates robots from a pickle."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs.common.pickling import rebuild
+from onorbit_rs.exceptions import ModelError
+from onorbit_rs.robots.fingerprint import has_changed
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model
+
+
+def rebuild_robot(
+    constructor: str, arguments: tuple[Any, ...], keywords: dict[str, Any], fingerprint: str
+) -> Model:
+    """Return the pickled robot, read again from its description.
+
+    Raises
+    ------
+    ModelError
+        If the description now has another fingerprint.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # these warnings were given when the description was first read
+        model: Model = rebuild(constructor, arguments, keywords)
+    if has_changed(model, fingerprint):
+        path = keywords.get("path")
+        raise ModelError(
+            f"{path or 'the description'} is no longer that of the pickled robot: it, or a file it includes, "
+            "was changed since; restore it, or load the robot again and pickle that",
+            path=path and str(path),
+        )
+    return model

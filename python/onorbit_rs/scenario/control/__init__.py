@@ -1,0 +1,44 @@
+"""Controllers. A new law is one file with two classes, each added to its union.
+
+``docs/howto/controller.md``, "Add a law to the engine", lists its places in the other folders.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from onorbit_rs.scenario.control.compliance import ComplianceControl, ComplianceController
+from onorbit_rs.scenario.control.computed_torque import ComputedTorqueControl, ComputedTorqueController
+from onorbit_rs.scenario.control.joint_computed_torque import (
+    JointComputedTorqueControl,
+    JointComputedTorqueController,
+)
+from onorbit_rs.scenario.control.joint_pid import JointPidControl, JointPidController
+from onorbit_rs.scenario.control.law import JointLaw
+from onorbit_rs.scenario.control.python import PythonControl, PythonController
+from onorbit_rs.scenario.part import of_kind
+
+__all__ = [
+    "AnyControl",
+    "AnyController",
+    "Controller",
+    "JointLaw",
+    "JointPidController",
+    "PythonController",
+]
+
+AnyController = (
+    ComputedTorqueController
+    | JointComputedTorqueController
+    | JointPidController
+    | ComplianceController
+    | PythonController
+)
+Controller = Annotated[AnyController, Field(discriminator="kind"), of_kind(AnyController)]
+
+_Controls = (
+    ComputedTorqueControl | ComplianceControl | JointComputedTorqueControl | JointPidControl | PythonControl
+)
+AnyControl = Annotated[_Controls, Field(discriminator="kind"), of_kind(_Controls)]

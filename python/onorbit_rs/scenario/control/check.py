@@ -1,0 +1,90 @@
+"""Checks that controllers, references and tools of a scenario are consistent."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.scenario.control.law import JointLaw, TaskLaw
+from onorbit_rs.scenario.control.selection import tool_of
+from onorbit_rs.scenario.errors import inconsistent
+from onorbit_rs.scenario.reference import HoldReference, JointHoldReference, TaskReference
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.schema import Scenario
+    from onorbit_rs.scenario.yaml_lines import Location
+
+
+def check_control(scenario: Scenario) -> None:
+    """Raise an error for inconsistent controllers; set the default reference, a constant pose or position."""
+    if scenario.controllers is not None:
+        if scenario.controller is not None:
+            raise inconsistent("controllers", "give either one 'controller' or a list of 'controllers'")
+        if scenario.reference is not None:
+            raise inconsistent(
+                "reference", "'controllers' each have their own 'reference'; move it into one of them"
+            )
+        _check_names(scenario.controllers)
+        for index, control in enumerate(scenario.controllers):
+            tool = tool_of(control, scenario.tool)
+            control.reference = _checked(control, control.reference, tool, scenario, ("controllers", index))
+    elif scenario.controller is not None:
+        scenario.reference = _checked(scenario.controller, scenario.reference, scenario.tool, scenario, ())
+    elif scenario.reference is not None:
+        raise inconsistent(
+            "reference", "a reference requires a 'controller' that tracks it; add one or remove the reference"
+        )
+
+
+def _check_names(controls: list[Any]) -> None:
+    """Raise an error for duplicate names, an unknown name in ``after``, or ``after`` with ``start``."""
+    names = [control.name for control in controls]
+    for index, control in enumerate(controls):
+        at: Location = ("controllers", index)
+        if control.name in names[:index]:
+            raise inconsistent(
+                (*at, "name"), f"two controllers are named {control.name!r}; names must be unique"
+            )
+        if control.after is None:
+            continue
+        others = [name for name in names if name != control.name]
+        if control.after not in others:
+            hint = did_you_mean(control.after, others)
+            raise inconsistent((*at, "after"), f"no other controller is named {control.after!r}{hint}")
+        if control.start != 0.0:
+            raise inconsistent((*at, "start"), "give either 'start' (a time) or 'after' (another controller)")
+
+
+def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at: Location) -> Any:
+    """Return the reference of a control law or the default; raise an error if its kind does not match."""
+    kind, is_task = law.kind, isinstance(reference, TaskReference)
+    if isinstance(law, JointLaw):
+        if is_task:
+            raise inconsistent(
+                (*at, "reference"),
+                f"{reference.kind} moves a tool, but {kind} controls joints; use a joint reference "
+                "(joint_hold, joint_waypoints, joint_ramps, joint_sampled), or the controller "
+                "computed_torque",
+            )
+        if reference is None and getattr(law, "interface", None) == "effort":
+            raise inconsistent(
+                (*at, "reference"),
+                "interface effort requires a reference that contains the efforts; use joint_sampled or "
+                "joint_hold",
+            )
+        return reference or JointHoldReference()
+    if reference is not None and not is_task:
+        raise inconsistent(
+            (*at, "reference"),
+            f"{reference.kind} moves joints, but {kind} controls a tool; use a reference of a tool "
+            "(hold, line, waypoints, ...), or the controller joint_computed_torque",
+        )
+    if isinstance(law, TaskLaw) and reference is None:
+        reference = HoldReference()
+    if reference is not None and tool is None:
+        raise inconsistent((*at, "tool"), "'tool' is missing; give the frame that the controller tracks")
+    if getattr(reference, "frame", None) == "lvlh" and scenario.orbit is None:
+        raise inconsistent(
+            (*at, "reference", "frame"), "frame lvlh requires an orbit; add 'orbit' or use another frame"
+        )
+    return reference

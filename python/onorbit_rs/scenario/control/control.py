@@ -1,0 +1,84 @@
+"""Keys of each entry in a list of controls, besides those of its law."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.control.gains import JointTolerance, TaskTolerance
+from onorbit_rs.scenario.control.law import arguments
+from onorbit_rs.scenario.fields import NotNegative, Positive, Time
+from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.reference import Reference
+
+
+class TaskGoal(Part):
+    """Largest distance and angle of the tool from its reference."""
+
+    tolerance: TaskTolerance
+    """At the end of the reference."""
+    path_tolerance: TaskTolerance | None = None
+    """Before the end; if it is exceeded, the control stops and holds the tool."""
+    time: Annotated[Time, NotNegative] | None = None
+    """Time allowed after the end of the reference. Default: unlimited."""
+
+
+class JointGoal(Part):
+    """Largest errors of the joints: one number, or one per joint."""
+
+    tolerance: JointTolerance
+    """At the end of the reference."""
+    path_tolerance: JointTolerance | None = None
+    """Before the end; if it is exceeded, the control stops and holds the joints."""
+    time: Annotated[Time, NotNegative] | None = None
+    """Time allowed after the end of the reference. Default: unlimited."""
+
+
+def _as_list(value: Any) -> Any:
+    return [value] if isinstance(value, str) else value
+
+
+class Control(Part):
+    """Joint group, reference and schedule of a control."""
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_\-]+$")]
+    """Name in results, columns of the trace and messages."""
+    joints: Annotated[list[str], Field(min_length=1), BeforeValidator(_as_list)] | None = None
+    """Names of joints, or patterns such as ``right_*``. Default: all joints."""
+    reference: Reference | None = None
+    """Default: the tool or the joints are held."""
+    start: Annotated[Time, NotNegative] = 0.0
+    """Time at which the control starts."""
+    end: Annotated[Time, Positive] | None = None
+    """Time at which the control ends. Default: the end of the run."""
+    after: str | None = None
+    """Name of another control; this control starts when the goal of that one is decided, or at its end."""
+    starts_at_present: bool = False
+    """Whether the reference is moved to start at the present pose of the tool or position of the joints."""
+
+    def build_control(self, law: Any, reference: Any, joints: list[str] | None) -> _core.Control:
+        """Return the control of the engine from its law, its reference and its joint group."""
+        goal: TaskGoal | JointGoal | None = getattr(self, "goal", None)
+        return _core.Control(
+            law, reference=reference, joints=joints, tool=getattr(self, "tool", None), name=self.name,
+            start=self.start, end=self.end, after=self.after, starts_at_present=self.starts_at_present,
+            goal=None if goal is None else _core.Goal(**arguments(**goal.model_dump())),
+        )  # fmt: skip
+
+
+class TaskControl(Control):
+    """Control of a tool."""
+
+    tool: str | None = None
+    """Frame that is controlled. Default: that of the scenario."""
+    goal: TaskGoal | None = None
+    """Goal whose result is part of the summary."""
+
+
+class JointControl(Control):
+    """Control of joints."""
+
+    goal: JointGoal | None = None
+    """Goal whose result is part of the summary."""

@@ -1,0 +1,70 @@
+"""PID controllers of joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, ClassVar, Literal, Self
+
+from pydantic import model_validator
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.control.control import JointControl
+from onorbit_rs.scenario.control.gains import JointEffort, JointNumber
+from onorbit_rs.scenario.control.initial_mobility import InitialMobility, square
+from onorbit_rs.scenario.control.law import JointLaw, SampledGain, arguments
+from onorbit_rs.scenario.errors import invalid
+
+
+class JointPidController(JointLaw):
+    """PID controller per joint with the interfaces of ROS Control; gains are plain SI numbers.
+
+    Friction is not compensated.
+    """
+
+    synonyms: ClassVar = {"kp": "p", "ki": "i", "kd": "d", "i_clamp": "i_limit"}
+
+    kind: Literal["joint_pid"] = "joint_pid"
+    interface: Literal["position", "velocity", "effort"] = "position"
+    """Meaning of the reference; with ``effort``, its positions are the efforts, N m or N."""
+    p: JointNumber = 0.0
+    """Proportional gain, N m per rad (per rad/s with ``velocity``)."""
+    i: JointNumber = 0.0
+    """Integral gain."""
+    d: JointNumber = 0.0
+    """Derivative gain."""
+    i_limit: JointEffort | None = None
+    """Largest contribution of the integral, N m or N."""
+    effort_limit: JointEffort | None = None
+    """Largest effort, N m or N. Default: the limits in the robot's file."""
+
+    @model_validator(mode="after")
+    def _has_gains(self) -> Self:
+        """Raise an error for a PID without gains, which would leave the joints passive."""
+        if self.interface != "effort" and not self.model_fields_set & {"p", "i", "d"}:
+            raise invalid(
+                f"a PID of interface {self.interface} has no gains; give 'p', 'i' or 'd', or no"
+                " controller if the joints are to be passive"
+            )
+        return self
+
+    def build_law(self, model: _core.Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
+        """Return the control law of the engine."""
+        return _core.JointPid(
+            interface=self.interface,
+            **arguments(p=self.p, i=self.i, d=self.d, i_limit=self.i_limit, effort_limit=self.effort_limit),
+        )
+
+    def sampled_gains(self, mobility: InitialMobility) -> Iterator[SampledGain]:
+        """Yield the gains that the control period limits."""
+        if self.interface == "effort":
+            return
+        joints, of_joints = mobility.joint_count(self), mobility.of_joints(self)
+        has_rates = self.interface == "velocity"
+        yield "p", 1 if has_rates else 2, of_joints @ square(self.p, joints)
+        if not has_rates:
+            yield "d", 1, of_joints @ square(self.d, joints)
+
+
+class JointPidControl(JointPidController, JointControl):
+    """PID controller per joint of a joint group."""

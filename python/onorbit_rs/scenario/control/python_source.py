@@ -1,0 +1,216 @@
+"""Inspects the source of a controller written in Python without executing it."""
+
+from __future__ import annotations
+
+import ast
+import importlib.machinery
+import importlib.util
+import inspect
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.common.input_files import LARGEST_TEXT, check_regular, read_bytes
+from onorbit_rs.exceptions import ControlError, NotFoundError
+from onorbit_rs.scenario.control.python_errors import no_class, no_module, no_python, no_update
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.control.python import PythonController
+
+_BASES_WITHOUT_UPDATE = ("Controller", "ABC", "object", "Protocol", "Generic")
+_KINDS = inspect.Parameter
+
+
+class Placeholder:
+    """Replaces a controller whose source was inspected but not executed; its efforts are zero."""
+
+    def update(self, t: float, state: Any) -> Any:
+        """Return zero efforts, (n,)."""
+        return np.zeros(len(state.joints))
+
+
+def source_of(part: PythonController, folder: Path) -> str:
+    """Return the path of the file that a controller executes, or the name of a module without a file.
+
+    Parameters
+    ----------
+    part : PythonController
+    folder : path
+        Folder of the scenario, at which a relative path starts.
+
+    Raises
+    ------
+    NotFoundError, ReadError
+        If there is no such file or module, or it is a folder, a pipe or a device.
+    """
+    if part.file is not None:
+        file = folder / part.file
+        try:
+            check_regular(file, "controller")
+        except NotFoundError as error:
+            message = f"{error}; a relative path starts at the scenario's folder"
+            raise NotFoundError(message, path=str(file), kind="controller") from None
+        return str(file)
+    found = _module_file(str(part.module))
+    return str(part.module) if found is None else found
+
+
+def inspect_source(part: PythonController, folder: Path) -> Placeholder:
+    """Return a placeholder for a controller after inspecting its source.
+
+    Checks only what can be known without executing the source.
+
+    Parameters
+    ----------
+    part : PythonController
+    folder : path
+        Folder of the scenario, at which a relative path starts.
+
+    Raises
+    ------
+    NotFoundError, ReadError
+        If there is no such file or module, or it cannot be read.
+    ControlError
+        If the source is not Python, the class or its method ``update`` is missing, or its constructor does
+        not accept the arguments.
+    """
+    source = source_of(part, folder)
+    if not source.endswith(".py"):
+        if part.file is None:
+            return Placeholder()  # a compiled module has no source
+        raise no_python(source)
+    try:
+        tree = ast.parse(read_bytes(source, LARGEST_TEXT, "controller"), filename=source)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        reason = " ".join(str(error).split())
+        raise ControlError(
+            f"{source} cannot be read as Python: {type(error).__name__}: {reason}", name="file", got=source
+        ) from error
+    statements = list(_statements(tree.body))
+    classes = {node.name: node for node in statements if isinstance(node, ast.ClassDef)}
+    definition = classes.get(part.class_)
+    if definition is None and not _may_be_bound(part.class_, statements):
+        raise no_class(part.class_, source, classes)
+    if definition is not None:
+        _check_class(definition, classes, part, source)
+    return Placeholder()
+
+
+def _module_file(name: str) -> str | None:
+    """Return the file of a module, or None if it has none, without importing the module or its packages."""
+    top, *rest = name.split(".")
+    try:
+        spec = importlib.util.find_spec(top)
+    except (ValueError, ImportError):
+        return None
+    for depth in range(len(rest)):
+        folders = None if spec is None else spec.submodule_search_locations
+        inner = ".".join([top, *rest[: depth + 1]])
+        spec = None if folders is None else importlib.machinery.PathFinder.find_spec(inner, folders)
+    if spec is None:
+        raise no_module(name)
+    return spec.origin if spec.has_location else None
+
+
+def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """Yield the statements of a module, including those in ``if``, ``try`` and ``with``."""
+    for statement in body:
+        yield statement
+        for inner in ("body", "orelse", "finalbody"):
+            if isinstance(statement, (ast.If, ast.Try, ast.With)):
+                yield from _statements(getattr(statement, inner, []))
+
+
+def _may_be_bound(name: str, statements: list[ast.stmt]) -> bool:
+    """Return whether an import or assignment may give the module this name."""
+    for statement in statements:
+        if isinstance(statement, (ast.Import, ast.ImportFrom)):
+            names = [alias.asname or alias.name.split(".")[0] for alias in statement.names]
+        elif isinstance(statement, (ast.Assign, ast.AnnAssign)):
+            names = [node.id for node in ast.walk(statement) if isinstance(node, ast.Name)]
+        else:
+            continue
+        if name in names or "*" in names:
+            return True
+    return False
+
+
+def _check_class(
+    definition: ast.ClassDef, classes: dict[str, ast.ClassDef], part: PythonController, source: str
+) -> None:
+    """Raise ControlError for a class without ``update``, or a constructor that rejects the arguments."""
+    line, are_all_known = _with_bases(definition, classes)
+    methods = [
+        (node.name, node)
+        for one in line
+        for node in one.body
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
+    ]
+    names = {name for name, _ in methods} | {
+        node.id for one in line for item in one.body if isinstance(item, ast.Assign)
+        for node in ast.walk(item) if isinstance(node, ast.Name)
+    }  # fmt: skip
+    if "update" not in names and are_all_known:
+        raise no_update(part.class_, source)
+    is_plain = are_all_known and "__new__" not in names and not any(one.decorator_list for one in line)
+    constructor = next((node for name, node in methods if name == "__init__"), None)
+    if not is_plain or (constructor is not None and constructor.decorator_list):
+        return
+    parameters = [] if constructor is None else _parameters(constructor.args)
+    try:
+        inspect.Signature(parameters).bind(**part.arguments)
+    except TypeError as error:
+        raise ControlError(
+            f"{part.class_}(...) of {source} does not accept the arguments {part.arguments}: {error}",
+            name="arguments",
+            got=part.arguments,
+        ) from error
+
+
+def _with_bases(
+    definition: ast.ClassDef, classes: dict[str, ast.ClassDef]
+) -> tuple[list[ast.ClassDef], bool]:
+    """Return a class with its bases in the same file, and whether it has no other bases."""
+    line, are_all_known, waiting = [], not definition.keywords, [definition]
+    while waiting:
+        one = waiting.pop(0)
+        if one in line:
+            continue
+        line.append(one)
+        for base in one.bases:
+            name = (
+                base.id
+                if isinstance(base, ast.Name)
+                else base.attr
+                if isinstance(base, ast.Attribute)
+                else ""
+            )
+            if isinstance(base, ast.Name) and name in classes:
+                waiting.append(classes[name])
+            elif name not in _BASES_WITHOUT_UPDATE:
+                are_all_known = False
+    return line, are_all_known
+
+
+def _parameters(given: ast.arguments) -> list[inspect.Parameter]:
+    """Return the parameters of a constructor without ``self``, in the order that a signature requires."""
+    plain = [*given.posonlyargs, *given.args]
+    without_default = len(plain) - len(given.defaults)
+    parameters = [
+        inspect.Parameter(
+            argument.arg,
+            _KINDS.POSITIONAL_ONLY if i < len(given.posonlyargs) else _KINDS.POSITIONAL_OR_KEYWORD,
+            default=_KINDS.empty if i < without_default else None,
+        )
+        for i, argument in enumerate(plain)
+    ][1:]
+    if given.vararg:
+        parameters.append(inspect.Parameter(given.vararg.arg, _KINDS.VAR_POSITIONAL))
+    for argument, default in zip(given.kwonlyargs, given.kw_defaults, strict=True):
+        value = _KINDS.empty if default is None else None
+        parameters.append(inspect.Parameter(argument.arg, _KINDS.KEYWORD_ONLY, default=value))
+    if given.kwarg:
+        parameters.append(inspect.Parameter(given.kwarg.arg, _KINDS.VAR_KEYWORD))
+    return parameters

@@ -1,0 +1,44 @@
+"""Checks and creates the physics engine of a scenario."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from onorbit_rs import engines
+from onorbit_rs.scenario.errors import inconsistent
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model
+    from onorbit_rs.scenario.schema import Scenario
+
+
+def check_engine(scenario: Scenario) -> None:
+    """Raise an error for settings that the engine does not support."""
+    settings = scenario.simulation
+    if scenario.engine == "native":
+        return
+    if settings.integrator == "dormand_prince":
+        raise inconsistent(
+            ("simulation", "integrator"),
+            f"engine {scenario.engine} does not support integrator dormand_prince; use rk4, or engine: "
+            "native",
+        )
+    if settings.enforce_limits and settings.restitution > 0.0:
+        raise inconsistent(
+            ("simulation", "restitution"),
+            f"engine {scenario.engine} does not support restitution; use restitution: 0, or engine: native",
+        )
+
+
+def build_engine(scenario: Scenario, model: Model) -> engines.Mujoco | None:
+    """Return the physics engine of the run, or None for the native one."""
+    if scenario.engine == "native":
+        return None
+    settings = scenario.simulation
+    assert settings.integrator != "dormand_prince"  # check_engine raises an error for it
+    return engines.Mujoco(
+        model,
+        time_step=settings.time_step,
+        integrator=settings.integrator,
+        enforce_limits=settings.enforce_limits,
+    )

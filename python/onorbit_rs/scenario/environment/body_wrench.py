@@ -1,0 +1,45 @@
+"""Constant force and torque on one body."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from onorbit_rs import _core
+from onorbit_rs.common.suggestions import did_you_mean, nearest
+from onorbit_rs.exceptions import FrameError
+from onorbit_rs.scenario.errors import invalid
+from onorbit_rs.scenario.fields import Force3, Time, Torque3
+from onorbit_rs.scenario.part import Part
+
+
+class BodyWrenchEffect(Part):
+    """Force and torque on one body, constant in body axes, from ``start`` to ``end``."""
+
+    kind: Literal["body_wrench"] = "body_wrench"
+    body: str
+    force: Force3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    torque: Torque3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    start: Time = 0.0
+    end: Time | None = None
+    """Default: the end of the run."""
+
+    @model_validator(mode="after")
+    def _ends_after_start(self) -> BodyWrenchEffect:
+        if self.end is not None and self.end <= self.start:
+            raise invalid(f"end is {self.end:g} s; it must be later than start, {self.start:g} s")
+        return self
+
+    def build(self, model: _core.Model, _folder: Path) -> _core.BodyWrench:
+        """Return the effect of the engine; raises ``FrameError`` if the robot has no such body."""
+        bodies = list(model.body_names)
+        if self.body not in bodies:
+            raise FrameError(
+                f"no body is named {self.body!r}{did_you_mean(self.body, bodies)}",
+                name=self.body, kind="body", known=bodies, suggestion=nearest(self.body, bodies),
+            )  # fmt: skip
+        times = {"start": self.start} | ({} if self.end is None else {"end": self.end})
+        return _core.BodyWrench(self.body, force=np.array(self.force), torque=np.array(self.torque), **times)

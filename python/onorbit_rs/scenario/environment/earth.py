@@ -1,0 +1,78 @@
+"""Epoch of the run and orientation of the Earth."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+from onorbit_rs import _core
+from onorbit_rs.exceptions import EarthError
+from onorbit_rs.scenario.errors import invalid
+from onorbit_rs.scenario.fields import Angle, AngularRate, FilePath, Time
+from onorbit_rs.scenario.part import Part
+
+
+def _epoch(value: object) -> str:
+    if not isinstance(value, (str, datetime)):
+        message = f"{value!r} is not an epoch; write it as in 2024-03-01T12:00:00 UTC"
+        raise EarthError(message, name="epoch", got=value)
+    epoch = _core.Earth(value, rotation="about_z").epoch  # raises an error for anything else
+    assert epoch is not None
+    return value if isinstance(value, str) else epoch
+
+
+Epoch = Annotated[str, BeforeValidator(_epoch)]
+
+
+class EarthPart(Part):
+    """Orientation of the Earth: IAU 2006 with measured UT1 and polar motion, or uniform rotation about z."""
+
+    rotation: Literal["iau2006", "about_z"] = "iau2006"
+    ut1_minus_utc: Time | None = None
+    polar_motion: Annotated[list[Angle], Field(min_length=2, max_length=2)] | None = None
+    eop: FilePath | None = None
+    """File of Earth-orientation parameters, relative to the scenario."""
+    angle: Angle | None = None
+    rate: AngularRate | None = None
+    ephemeris: FilePath | None = None
+    """SPICE kernel with Sun and Moon, relative to the scenario."""
+
+    @model_validator(mode="after")
+    def _is_one_rotation(self) -> EarthPart:
+        is_uniform, iau = self.rotation == "about_z", (self.ut1_minus_utc, self.polar_motion, self.eop)
+        if is_uniform and any(given is not None for given in iau):
+            raise invalid("ut1_minus_utc, polar_motion and eop apply only to rotation: iau2006; omit them")
+        if not is_uniform and (self.angle is not None or self.rate is not None):
+            raise invalid("angle and rate apply only to rotation: about_z; omit them")
+        if self.eop is not None and (self.ut1_minus_utc is not None or self.polar_motion is not None):
+            raise invalid("give eop, or ut1_minus_utc and polar_motion, not both")
+        return self
+
+
+def build_earth(
+    earth: EarthPart | None, epoch: str | None, orbit: _core.Orbit | None, folder: Path
+) -> _core.Earth | None:
+    """Return the Earth of a run in the axes of its orbit; the default epoch is that of the element set.
+
+    SGP4's positions are in TEME, whose axes differ from GCRF by 37 km on the ground in 2024.
+    """
+    axes: Any = "GCRF" if orbit is None else orbit.axes
+    if epoch is None and isinstance(orbit, _core.Sgp4) and orbit.epoch >= FIRST_UTC:
+        epoch = orbit.epoch
+    if earth is None:
+        return None if epoch is None else _core.Earth(epoch, axes=axes)
+    given: dict[str, Any] = earth.model_dump(exclude_none=True)
+    if earth.polar_motion is not None:
+        given["polar_motion"] = np.array(earth.polar_motion)
+    for name in ("eop", "ephemeris"):
+        if name in given:
+            given[name] = folder / given[name]
+    return _core.Earth(epoch, axes=axes, **given)
+
+
+FIRST_UTC = "1972"
+"""Start of UTC with leap seconds; epochs of older element sets cannot be converted."""

@@ -1,0 +1,20 @@
+"""Gravity of Sun and Moon."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.part import Part
+
+
+class ThirdBodyEffect(Part):
+    """Gravity of the Sun or the Moon on robot and reference; requires an orbit and an epoch."""
+
+    kind: Literal["third_body"] = "third_body"
+    body: Literal["sun", "moon"]
+
+    def build(self, _model: _core.Model, _folder: Path) -> _core.ThirdBody:
+        """Return the effect of the engine."""
+        return _core.ThirdBody(self.body)

@@ -1,0 +1,43 @@
+"""Locations in a scenario, as written in messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from onorbit_rs.exceptions import OnOrbitError, ScenarioError
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.schema import Scenario
+
+
+def dotted(at: tuple[str | int, ...]) -> str:
+    """Return a location as text, such as ``environment[0].force``."""
+    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in at).removeprefix(".")
+
+
+def file_and_line(file: Path | None, line: int | None) -> str:
+    """Return file and line, such as ``mine.yaml:11``; ``scenario`` for a scenario made in Python."""
+    return f"{file or 'scenario'}" + (f":{line}" if line else "")
+
+
+def scenario_error(message: str, file: Path | None, line: int | None, path: str = "") -> ScenarioError:
+    """Return an error whose message starts with its location."""
+    where = f"{file_and_line(file, line)}: {path}: " if path else f"{file_and_line(file, line)}: "
+    return ScenarioError(where + message, file=str(file) if file else None, path=path or None, line=line)
+
+
+@contextmanager
+def located(scenario: Scenario, *at: str | int) -> Iterator[None]:
+    """Add file, line and key to the message of an :class:`OnOrbitError` raised in the block."""
+    try:
+        yield
+    except OnOrbitError as error:
+        if getattr(error, "located", False):
+            raise
+        where = file_and_line(scenario.file, scenario.line_of(*at))
+        error.message = f"{where}: {dotted(at)}: {error.message}"
+        error.located = True  # type: ignore[attr-defined]  # inner blocks are more specific
+        raise

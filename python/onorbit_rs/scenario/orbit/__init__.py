@@ -1,0 +1,32 @@
+"""Reference orbits. A new kind is one file with one class, added to the union."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field
+
+from onorbit_rs.scenario.orbit.conic import KeplerOrbit, NumericalOrbit
+from onorbit_rs.scenario.orbit.custom_path import CustomPathOrbit
+from onorbit_rs.scenario.orbit.fixed_frame import FixedFrameOrbit
+from onorbit_rs.scenario.orbit.sgp4 import Sgp4Orbit
+from onorbit_rs.scenario.part import of_kind
+
+__all__ = [
+    "AnyOrbit",
+    "CustomPathOrbit",
+    "FixedFrameOrbit",
+    "KeplerOrbit",
+    "NumericalOrbit",
+    "Orbit",
+    "Sgp4Orbit",
+]
+
+
+def _with_kind(value: Any) -> Any:
+    """Return the data of an orbit; the default of its kind is ``kepler``."""
+    return {"kind": "kepler"} | value if isinstance(value, dict) else value
+
+
+AnyOrbit = KeplerOrbit | NumericalOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit
+Orbit = Annotated[AnyOrbit, Field(discriminator="kind"), of_kind(AnyOrbit), BeforeValidator(_with_kind)]

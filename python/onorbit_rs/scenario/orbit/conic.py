@@ -1,0 +1,149 @@
+"""Orbits that are defined by a conic: two-body motion and numerical integration from its initial state."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import model_validator
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.errors import invalid
+from onorbit_rs.scenario.fields import (
+    Angle,
+    GravitationalParameter,
+    Length,
+    Length3,
+    NotNegative,
+    Number,
+    Positive,
+    Speed3,
+    Time,
+)
+from onorbit_rs.scenario.part import Part
+
+SIZES = ("semi_major_axis", "semi_latus_rectum")
+SECULAR = ("secular_j2", "j2", "radius")
+PHASES = ("mean_anomaly", "true_anomaly", "periapsis_time")
+
+
+class ConicOrbit(Part):
+    """Conic from elements or from a state.
+
+    Elements: a size (``semi_major_axis``, negative for a hyperbola, or ``semi_latus_rectum``, required for a
+    parabola), ``eccentricity``, three angles, and one phase. State: ``position`` and ``velocity`` at the
+    start, inertial axes.
+    """
+
+    synonyms: ClassVar = {
+        "a": "semi_major_axis", "sma": "semi_major_axis", "altitude": "semi_major_axis",
+        "p": "semi_latus_rectum",
+        "e": "eccentricity", "ecc": "eccentricity", "i": "inclination", "inc": "inclination",
+        "node": "raan", "right_ascension": "raan", "argp": "argument_of_periapsis",
+        "aop": "argument_of_periapsis", "argument_of_perigee": "argument_of_periapsis",
+        "m": "mean_anomaly", "ma": "mean_anomaly", "nu": "true_anomaly", "ta": "true_anomaly",
+        "r": "position", "v": "velocity",
+    }  # fmt: skip
+
+    semi_major_axis: Length | None = None
+    semi_latus_rectum: Annotated[Length, Positive] | None = None
+    eccentricity: Annotated[Number, NotNegative] | None = None
+    inclination: Angle | None = None
+    raan: Angle | None = None
+    argument_of_periapsis: Angle | None = None
+    mean_anomaly: Angle | None = None
+    true_anomaly: Angle | None = None
+    periapsis_time: Time | None = None
+    position: Length3 | None = None
+    velocity: Speed3 | None = None
+    mu: Annotated[GravitationalParameter, Positive] = _core.MU_EARTH
+    """Gravitational parameter, m³/s²; default: the Earth's."""
+
+    def build(self, _folder: Path) -> _core.Orbit:
+        """Return the conic as an orbit of the engine."""
+        given = self._given()
+        if self.position is None:
+            return _core.Kepler(**given)
+        position, velocity = given.pop("position"), given.pop("velocity")
+        return _core.Kepler.from_state(np.array(position), np.array(velocity), **given)
+
+    def _given(self) -> dict[str, Any]:
+        return self.model_dump(exclude_none=True, exclude={"kind"})
+
+    @model_validator(mode="after")
+    def _is_one_orbit(self) -> Self:
+        given = [name for name in self._given() if name not in ("mu", *SECULAR)]
+        if self.position is not None or self.velocity is not None:
+            others = [name for name in given if name not in ("position", "velocity")]
+            if self.position is None or self.velocity is None:
+                raise invalid("a state requires both 'position' and 'velocity'")
+            if others:
+                raise invalid(f"give a state or elements, not both: {', '.join(others)}")
+            return self
+        sizes = [name for name in SIZES if name in given]
+        if len(sizes) != 1:
+            raise invalid(f"give exactly one of {_listed(SIZES)}; given: {', '.join(sizes) or 'none'}")
+        phases = [name for name in PHASES if name in given]
+        if len(phases) > 1:
+            raise invalid(f"give one of {_listed(PHASES)}; given: {', '.join(phases)}")
+        self._check_signs()
+        self._set_defaults(has_phase=bool(phases))
+        return self
+
+    def _set_defaults(self, *, has_phase: bool) -> None:
+        """Set the elements that were not given: a circle in the equatorial plane, starting at periapsis."""
+        for name in ("eccentricity", "inclination", "raan", "argument_of_periapsis"):
+            if getattr(self, name) is None:
+                setattr(self, name, 0.0)
+        if not has_phase:
+            self.true_anomaly = 0.0
+
+    def _check_signs(self) -> None:
+        a, e = self.semi_major_axis, self.eccentricity or 0.0
+        if a is None:
+            return
+        if e == 1.0:
+            raise invalid("a parabola (eccentricity 1) has no semi-major axis; give 'semi_latus_rectum'")
+        if (a > 0.0) != (e < 1.0):
+            right = (
+                "positive below eccentricity 1" if e < 1.0 else "negative above eccentricity 1 (a hyperbola)"
+            )
+            raise invalid(f"semi_major_axis {a:g} m contradicts eccentricity {e:g}; it must be {right}")
+
+
+class KeplerOrbit(ConicOrbit):
+    """Two-body motion; with ``secular_j2``, node, periapsis and mean anomaly drift due to oblateness."""
+
+    kind: Literal["kepler"] = "kepler"
+    secular_j2: bool | None = None
+    j2: Number | None = None
+    radius: Annotated[Length, Positive] | None = None
+    """Reference radius of ``j2``; the default of both is the Earth's value."""
+
+    @model_validator(mode="after")
+    def _has_secular_j2(self) -> KeplerOrbit:
+        given = [name for name in SECULAR[1:] if getattr(self, name) is not None]
+        if given and not self.secular_j2:
+            raise invalid(
+                f"{_listed(tuple(given))} has no effect without 'secular_j2: true'; add that, or omit it"
+            )
+        return self
+
+
+class NumericalOrbit(ConicOrbit):
+    """Free fall in the gravity of the scenario's environment, integrated from this state at the start."""
+
+    kind: Literal["numerical"] = "numerical"
+
+    @staticmethod
+    def integrate(
+        conic: _core.Orbit, effects: list[_core.Effect], earth: _core.Earth | None
+    ) -> _core.Numerical:
+        """Return the orbit that starts on a conic and is integrated in the gravity among the effects."""
+        gravity = [effect for effect in effects if isinstance(effect, (_core.GravityField, _core.ThirdBody))]
+        return _core.Numerical.from_orbit(conic, environment=gravity, earth=earth)
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(repr(name) for name in names)

@@ -1,0 +1,13 @@
+"""Gravity mode: gravity on a robot whose reference orbit is not in free fall."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator
+
+GravityMode = Annotated[
+    Literal["true", "carried"],
+    BeforeValidator(lambda value: "true" if value is True else value),  # YAML reads true as a boolean
+]
+"""``true``: the robot moves away from a reference that is not in free fall; ``carried``: it moves along."""

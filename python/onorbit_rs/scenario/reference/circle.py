@@ -1,0 +1,54 @@
+"""Circular arc and helix about an axis."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.fields import Angle, Length, Length3, Number, Number3, Positive
+from onorbit_rs.scenario.reference.task import TimedReference
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.reference.start import Start
+
+
+class CircleReference(TimedReference):
+    """Circular arc about an axis."""
+
+    kind: Literal["circle"] = "circle"
+    center: Length3
+    """Point on the axis, relative to the start."""
+    axis: Number3
+    """Direction of the axis."""
+    angle: Angle
+    """Angle of the arc."""
+    turns: bool = True
+    """Whether the attitude rotates with the arc."""
+    ramp: Annotated[Number, Positive] | None = None
+    """Fraction of the duration in each ramp to a constant rate. Default: the quintic, without such ramps."""
+
+    def build(self, at: Start) -> _core.Reference:
+        """Return the reference of the engine."""
+        start = self.first_pose(at)
+        return _core.Circle(start, **self._shape(start))
+
+    def _shape(self, start: np.ndarray[Any, Any]) -> dict[str, Any]:
+        return {
+            "center": start[:3, 3] + self.center, "axis": np.array(self.axis), "angle": self.angle,
+            "turns": self.turns, "ramp": self.ramp, "frame": self.engine_frame(),
+        } | self.limits()  # fmt: skip
+
+
+class ScrewReference(CircleReference):
+    """Helix: circular arc with a displacement along its axis."""
+
+    kind: Literal["screw"] = "screw"  # type: ignore[assignment]  # narrows the discriminator of the base
+    advance: Length
+    """Displacement along the axis over the whole angle."""
+
+    def build(self, at: Start) -> _core.Reference:
+        """Return the reference of the engine."""
+        start = self.first_pose(at)
+        return _core.Screw(start, advance=self.advance, **self._shape(start))

@@ -1,0 +1,65 @@
+"""Frame in which a reference of a tool is expressed: a named frame or that of a target."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Discriminator, Field, Tag
+
+from onorbit_rs import _core
+from onorbit_rs.common.suggestions import nearest
+from onorbit_rs.scenario.errors import invalid, shortened
+from onorbit_rs.scenario.fields import AngularRate3, Length3, Speed3
+from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.pose import Pose
+
+
+class TargetMotion(Pose):
+    """Free-flying spacecraft: its pose at time zero in W, constant velocity and angular velocity, W axes."""
+
+    synonyms: ClassVar = {
+        "angular_velocity": "spin", "angular_rate": "spin", "rate": "spin", "linear_velocity": "velocity",
+        "orientation": "attitude",
+    }  # fmt: skip
+
+    velocity: Speed3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    spin: AngularRate3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    """Angular velocity."""
+    size: Length3 | None = None
+    """Edge lengths of the box that the viewer draws at the target."""
+
+
+class TargetFrame(Part):
+    """Frame of a target."""
+
+    target: TargetMotion
+
+    def build(self) -> _core.Target:
+        """Return the target of the engine."""
+        motion = self.target
+        return _core.Target(
+            motion.transform(), velocity=np.array(motion.velocity), spin=np.array(motion.spin)
+        )
+
+
+FRAMES = ("world", "lvlh", "base")
+
+
+def _frame(value: Any) -> Any:
+    """Return a valid frame name or the data of a target; raise an error for anything else."""
+    if value in FRAMES or isinstance(value, (dict, TargetFrame)):
+        return value
+    near = nearest(value, FRAMES) if isinstance(value, str) else None
+    raise invalid(
+        f"{shortened(value)} is not a frame{f', did you mean {near!r}?' if near else ''}; give one of "
+        f"{', '.join(FRAMES)}, or {{target: {{position: ..., velocity: ..., spin: ...}}}}"
+    )
+
+
+Frame = Annotated[
+    Annotated[Literal["world", "lvlh", "base"], Tag("name")] | Annotated[TargetFrame, Tag("a target")],
+    Discriminator(lambda value: "name" if isinstance(value, str) else "a target"),
+    BeforeValidator(_frame),
+]
+"""World W, the local orbital frame L, the base at time zero, or a target."""

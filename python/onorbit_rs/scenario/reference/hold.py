@@ -1,0 +1,21 @@
+"""Reference that holds a tool at its start."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.reference.task import TaskReference
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.reference.start import Start
+
+
+class HoldReference(TaskReference):
+    """Constant pose."""
+
+    kind: Literal["hold"] = "hold"
+
+    def build(self, at: Start) -> _core.Hold:
+        """Return the reference of the engine."""
+        return _core.Hold(self.first_pose(at), frame=self.engine_frame())

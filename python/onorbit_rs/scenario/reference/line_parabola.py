@@ -1,0 +1,33 @@
+"""Straight line with a parabola added to it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.fields import Length3, Positive, Time
+from onorbit_rs.scenario.reference.task import TaskReference
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.reference.start import Start
+
+
+class LineParabolaReference(TaskReference):
+    """Start + s·displacement + s(1 - s)·height with constant attitude; s is the quintic from 0 to 1."""
+
+    kind: Literal["line_parabola"] = "line_parabola"
+    displacement: Length3
+    """From the first position of the tool to its last."""
+    height: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    """Factor of s(1 - s); the vertex of the parabola is at a quarter of it."""
+    duration: Annotated[Time, Positive]
+
+    def build(self, at: Start) -> _core.LineParabola:
+        """Return the reference of the engine."""
+        return _core.LineParabola(
+            self.first_pose(at), displacement=np.array(self.displacement), height=np.array(self.height),
+            duration=self.duration, frame=self.engine_frame(),
+        )  # fmt: skip

@@ -1,0 +1,53 @@
+"""State of the robot from which references start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onorbit_rs import _core
+from onorbit_rs.common.coordinates import JOINTS_Q
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Start:
+    """Robot at time zero, and what a controller tracks."""
+
+    model: _core.Model
+    q: Floats
+    """Configuration (nq,)."""
+    orbit: _core.Orbit | None
+    folder: Path
+    """Folder of the scenario, at which relative paths start."""
+    tool: str | None = None
+    """Tracked frame of a reference of a tool."""
+    joints: tuple[str, ...] | None = None
+    """Joint group of a joint reference; default: all joints."""
+
+    def tool_pose(self) -> Floats:
+        """Return the pose (4, 4) of the tool in W."""
+        assert self.tool is not None, "a reference of a tool is built for a tool"
+        return np.asarray(self.model.frame_pose(self.q, self.tool))
+
+    @property
+    def group(self) -> list[str]:
+        """Names of the joints in the group."""
+        return list(self.joints or self.model.joint_names)
+
+    def of_group(self, values: Floats) -> Floats:
+        """Return the values of the group, (len(group),), from those of all joints, (n,)."""
+        names = list(self.model.joint_names)
+        return values[[names.index(name) for name in self.group]]
+
+    @property
+    def joint_positions(self) -> Floats:
+        """Positions of all joints, (n,), rad or m."""
+        return self.q[JOINTS_Q]

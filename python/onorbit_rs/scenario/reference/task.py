@@ -1,0 +1,127 @@
+"""Base classes of references of a tool, and goals relative to the start of a reference."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import model_validator
+
+from onorbit_rs import _core
+from onorbit_rs.common.coordinates import POSITION, QUATERNION
+from onorbit_rs.common.rotations import matrix_from_quaternion
+from onorbit_rs.scenario.attitude import Attitude, quaternion_of
+from onorbit_rs.scenario.errors import invalid
+from onorbit_rs.scenario.fields import (
+    Acceleration,
+    AngularAcceleration,
+    AngularRate,
+    Length3,
+    Positive,
+    Speed,
+    Time,
+)
+from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.pose import Pose
+from onorbit_rs.scenario.reference.frame import Frame, TargetFrame
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs.scenario.reference.start import Start
+
+    Floats = NDArray[np.float64]
+
+_LIMITS = {"duration", "speed", "acceleration", "angular_speed", "angular_acceleration"}
+
+
+class Goal(Part):
+    """Pose to reach, relative to the start or in the frame of the reference."""
+
+    displacement: Length3 | None = None
+    """From the position of the start."""
+    turn: Attitude | None = None
+    """Rotation from the attitude of the start, about the axes of the frame."""
+    position: Length3 | None = None
+    """In the frame."""
+    attitude: Attitude | None = None
+    """In the frame."""
+
+    @model_validator(mode="after")
+    def _is_given_once(self) -> Goal:
+        if self.displacement is not None and self.position is not None:
+            raise invalid("give either 'displacement' (from the start) or 'position' (in the frame)")
+        if self.turn is not None and self.attitude is not None:
+            raise invalid("give either 'turn' (from the start) or 'attitude' (in the frame)")
+        return self
+
+    def pose(self, start: Floats) -> Floats:
+        """Return the goal (4, 4) in the frame of the reference, given its start (4, 4)."""
+        pose = start.copy()
+        if self.turn is not None:
+            pose[:3, :3] = matrix_from_quaternion(quaternion_of(self.turn)) @ start[:3, :3]
+        if self.attitude is not None:
+            pose[:3, :3] = matrix_from_quaternion(quaternion_of(self.attitude))
+        if self.displacement is not None:
+            pose[:3, 3] += self.displacement
+        if self.position is not None:
+            pose[:3, 3] = self.position
+        return pose
+
+
+class TaskReference(Part):
+    """Reference of a tool."""
+
+    frame: Frame = "world"
+    """Frame of all poses of the reference."""
+    start: Pose | None = None
+    """Pose at which it starts, in the frame. Default: the pose of the tool at the start of the run."""
+
+    def build(self, at: Start) -> _core.Reference:
+        """Return the reference of the engine, for a robot in the state ``at``."""
+        raise NotImplementedError
+
+    def engine_frame(self) -> Any:
+        """Return the argument ``frame`` of the references of the engine."""
+        return self.frame.build() if isinstance(self.frame, TargetFrame) else self.frame
+
+    def first_pose(self, at: Start) -> Floats:
+        """Return the pose (4, 4) at which the reference starts, in its frame."""
+        if self.start is not None:
+            return self.start.transform()
+        tool = at.tool_pose()
+        frame = np.eye(4)
+        if isinstance(self.frame, TargetFrame):
+            frame = self.frame.target.transform()
+        elif self.frame == "base":
+            frame[:3, :3], frame[:3, 3] = matrix_from_quaternion(at.q[QUATERNION]), at.q[POSITION]
+        elif self.frame == "lvlh" and at.orbit is not None:
+            frame[:3, :3] = at.orbit.lvlh(0.0)[0]
+        rot, pos = frame[:3, :3], frame[:3, 3]
+        start = np.eye(4)
+        start[:3, :3], start[:3, 3] = rot.T @ tool[:3, :3], rot.T @ (tool[:3, 3] - pos)
+        return start
+
+
+class LimitedReference(TaskReference):
+    """Reference of a tool that is traversed as fast as its limits allow."""
+
+    speed: Annotated[Speed, Positive] | None = None
+    """Largest speed of the tool."""
+    acceleration: Annotated[Acceleration, Positive] | None = None
+    """Largest acceleration of the tool."""
+    angular_speed: Annotated[AngularRate, Positive] | None = None
+    """Largest angular rate of the tool."""
+    angular_acceleration: Annotated[AngularAcceleration, Positive] | None = None
+    """Largest angular acceleration of the tool."""
+
+    def limits(self) -> dict[str, Any]:
+        """Return the given limits, as keyword arguments of the references of the engine."""
+        return self.model_dump(include=_LIMITS, exclude_none=True)
+
+
+class TimedReference(LimitedReference):
+    """Reference of a tool with a given duration, or as fast as its limits allow."""
+
+    duration: Annotated[Time, Positive] | None = None
+    """Duration of the motion, instead of limits."""

@@ -1,0 +1,108 @@
+"""Converts the validation errors of pydantic to messages with their location in the YAML file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from onorbit_rs.common.counting import count
+from onorbit_rs.common.suggestions import did_you_mean, nearest
+from onorbit_rs.exceptions import ScenarioError
+from onorbit_rs.scenario.errors import shortened
+from onorbit_rs.scenario.locations import dotted, scenario_error
+from onorbit_rs.scenario.yaml_lines import Lines, Location, line_of
+
+
+def first_error(error: ValidationError, data: Any, file: Path | None, lines: Lines) -> ScenarioError:
+    """Return the error that is first in the file, with the number of further errors in its message."""
+    found: list[tuple[int, Location, str]] = []
+    for details in error.errors(include_url=False):
+        at, message = _location_and_message(details, data)
+        found.append((line_of(at, lines) or lines.get((), 0), at, message))
+    line, at, message = min(found, key=lambda entry: entry[0])
+    more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+    return scenario_error(message + more, file, line or None, dotted(at))
+
+
+def _location_and_message(details: ErrorDetails, data: Any) -> tuple[Location, str]:
+    """Return the location of an error in the YAML file and its message."""
+    kind, context = details["type"], details.get("ctx", {})
+    at = _yaml_location(details["loc"], data, is_missing=kind == "missing")
+    if kind == "unknown_key":
+        return (*at, context["key"]), details["msg"]
+    if kind == "inconsistent":
+        return context["at"], details["msg"]
+    if kind == "union_tag_invalid":
+        known = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
+        return (*at, "kind"), f"unknown kind {context['tag']!r}{did_you_mean(context['tag'], known)}"
+    if kind == "missing":
+        return at, "is missing" + _FORMS.get(at[-1] if at else "", "")
+    return at, _message(kind, details, context)
+
+
+_FORMS: dict[str | int, str] = {
+    "robot": ": a bundled name (humanoid_torso), a URDF, or {rigid_body: {mass: ..., inertia: ...}}",
+    "simulation": ": at least {duration: 10 s}",
+}
+"""What to write if a section is missing."""
+
+_MUST_BE = {
+    "int": "a whole number",
+    "float": "a number",
+    "bool": "true or false",
+    "list": "a list ([a, b], or lines that start with '- ')",
+    "dict": "a mapping of keys to values",
+    "model": "a mapping of keys to values",
+    "string": "text (put a number in quotes)",
+    "path": "the path of a file",
+}
+"""Required kinds of value, by the first word of pydantic's error type."""
+
+
+def _message(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> str:
+    """Return the message of an error in one value."""
+    given = details["input"]
+    if kind == "value_error":
+        return str(context["error"])
+    if kind == "literal_error":
+        return f"{shortened(given)} is not one of {context['expected']}{_near(given, context)}"
+    if kind in ("too_short", "too_long"):
+        needed = context["min_length" if kind == "too_short" else "max_length"]
+        got = count(context["actual_length"], "entry", "entries")
+        return f"has {got}, expected {'at least 1' if needed == 1 else needed}"
+    if kind == "greater_than_equal":
+        return f"{shortened(given)} is below the minimum, {context['ge']}"
+    if kind == "less_than_equal":
+        return f"{shortened(given)} is above the maximum, {context['le']}"
+    if kind == "string_pattern_mismatch":
+        return f"{shortened(given)} has characters other than letters, digits, '_' and '-'"
+    what = kind.split("_")[0]
+    if what in _MUST_BE and kind.endswith(("_type", "_parsing", "_from_float", "_size")):
+        return f"must be {_MUST_BE[what]}, not {shortened(given)}"
+    return details["msg"]
+
+
+def _near(given: object, context: Mapping[str, Any]) -> str:
+    """Return ``, did you mean ...?`` if one of the expected words is similar."""
+    near = nearest(str(given), re.findall(r"'([^']*)'", context["expected"]))
+    return f", did you mean {near!r}?" if near else ""
+
+
+def _yaml_location(loc: Location, data: Any, *, is_missing: bool) -> Location:
+    """Return pydantic's location without the tags of unions, which are not in the file."""
+    at: list[str | int] = []
+    for index, step in enumerate(loc):
+        inside = (isinstance(data, dict) and step in data) or (
+            isinstance(data, list) and isinstance(step, int)
+        )
+        if inside:
+            data = data[step]
+            at.append(step)
+        elif is_missing and index == len(loc) - 1:
+            at.append(step)
+    return tuple(at)

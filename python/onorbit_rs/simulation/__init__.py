@@ -1,0 +1,1 @@
+"""Runs a scenario: progress, live view, checkpoints, and the results written at the end."""

@@ -1,0 +1,142 @@
+"""Writes the results of a run that reached its end, was stopped, or failed."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.common.printable import shell_word
+from onorbit_rs.exceptions import RunInterrupted, SimulationError
+from onorbit_rs.output import (
+    OutputFolder,
+    has_checkpoint,
+    summarize,
+    write_pictures,
+    write_summary,
+    write_trace,
+)
+from onorbit_rs.scenario.divergence import divergence
+from onorbit_rs.simulation.stop_signals import stopped_by
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from onorbit_rs._core import Trace
+    from onorbit_rs.scenario.build import Built
+
+
+def finished(
+    trace: Trace, built: Built, folder: OutputFolder | None, tell: Callable[[str], None]
+) -> dict[str, Any]:
+    """Evaluate the certificate of a completed run, write its folder, and return its summary."""
+    tell("certificate")
+    if folder is None:
+        return summarize(trace, built)
+    with _noting(lambda: _not_written(folder)):
+        summary = summarize(trace, built)
+        tell("writing the trace")
+        with folder.replacing() as files:
+            write_trace(files, trace)
+            write_summary(files, summary)
+    with _noting(lambda: f"trace and summary in {folder.path} are complete; {_not_drawn(folder)}"):
+        write_pictures(folder, trace, summary, built, tell=tell)
+    folder.discard_checkpoint()
+    return summary
+
+
+@contextmanager
+def _noting(results: Callable[[], str]) -> Iterator[None]:
+    """On Ctrl-C in the block, add a note on which results exist and how to complete them."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        stop.add_note(results())
+        raise
+
+
+def _not_written(folder: OutputFolder) -> str:
+    word = shell_word(folder.path)
+    if has_checkpoint(folder.path):
+        return f"the run ended, but results in {folder.path} are incomplete: onorbit resume {word}"
+    return f"the run ended, but results in {folder.path} are incomplete; run it again with --force"
+
+
+def _not_drawn(folder: OutputFolder) -> str:
+    """Return the command that writes missing figures and recording."""
+    word = shell_word(folder.path)
+    if has_checkpoint(folder.path):
+        return f"figures and recording are not; write them with: onorbit resume {word}"
+    return f"figures and recording are not; draw the figures with: onorbit report {word}"
+
+
+def keep_failed(error: Exception, built: Built, folder: OutputFolder | None) -> None:
+    """Write the rows of a run that ended by an error other than divergence, and add a note to the error."""
+    trace = getattr(error, "trace", None)
+    if folder is None or trace is None or len(trace) == 0:
+        return
+    try:
+        _write_rows(trace, "failed", built, folder)
+        folder.discard_checkpoint()
+    except Exception as full:  # report the error of the run
+        error.add_note(f"the rows so far could not be written: {full}")
+    else:
+        error.add_note(f"the rows so far are in {folder.path}")
+
+
+def keep_stopped(
+    stop: SimulationError | RunInterrupted,
+    built: Built,
+    folder: OutputFolder | None,
+    tell: Callable[[str], None],
+) -> None:
+    """Write the rows of a run that stopped early, and add the folder to its message."""
+    if isinstance(stop, SimulationError):
+        stop.message = divergence(stop, built.scenario, built.model)
+    else:
+        duration = built.scenario.simulation.duration
+        stop.message = f"stopped by {stopped_by(stop)[0]} at t = {stop.time:g} s of {duration:g} s"
+    if folder is None:
+        return
+    try:
+        _keep_rows(stop, built, folder, tell)
+    except KeyboardInterrupt:  # again
+        stop.message += f"; stopped again before all results were written to {folder.path}"
+    except Exception as full:  # report the end of the run
+        stop.message += f"; its results could not be written completely: {full}"
+
+
+def _keep_rows(
+    stop: SimulationError | RunInterrupted,
+    built: Built,
+    folder: OutputFolder,
+    tell: Callable[[str], None],
+) -> None:
+    """Write the folder of a run that stopped early."""
+    if stop.trace is None or len(stop.trace) == 0:
+        folder.discard()
+        return
+    diverged = isinstance(stop, SimulationError)
+    summary = _write_rows(stop.trace, "diverged" if diverged else "interrupted", built, folder)
+    stop.message += f"; the trace so far is in {folder.path}"
+    if diverged:  # diverged numbers are not drawn, and the run cannot resume
+        folder.discard_checkpoint()
+        return
+    if has_checkpoint(folder.path):
+        stop.message += f"; continue with: onorbit resume {shell_word(folder.path)}"
+    try:
+        write_pictures(folder, stop.trace, summary, built, tell=tell)
+    except KeyboardInterrupt:  # a second Ctrl-C: the run is already stopped
+        word = shell_word(folder.path)
+        stop.message += f"; some figures were not drawn; draw them with: onorbit report {word}"
+
+
+def _write_rows(trace: Trace, status: str, built: Built, folder: OutputFolder) -> dict[str, Any]:
+    """Write trace and summary of a run, and return the summary."""
+    with np.errstate(all="ignore"):  # a diverged run has numbers near the end of the range of floats
+        summary = summarize(trace, built, status=status)
+    with folder.replacing() as files:
+        write_trace(files, trace)
+        write_summary(files, summary)
+    return summary

@@ -1,0 +1,108 @@
+"""A run that a viewer shows while it is simulated."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from typing import TYPE_CHECKING
+
+from onorbit_rs.exceptions import ControlError, RunInterrupted
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Checkpoint, Stepper, Trace
+    from onorbit_rs.common.progress import ProgressCallback
+    from onorbit_rs.output import CheckpointWriter
+    from onorbit_rs.scenario.build import Built
+    from onorbit_rs.viewer.live import LiveView
+
+CHECKPOINT_EVERY = 30.0
+"""Wall-clock time between two checkpoints, s."""
+
+_SLICE_S = 0.05
+"""Wall-clock time between two updates of the progress bar, s."""
+
+
+def watched(
+    built: Built,
+    progress: ProgressCallback | None,
+    checkpoint: CheckpointWriter | None = None,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+    resume: Checkpoint | None = None,
+) -> Trace:
+    """Simulate a scenario while a viewer shows it; without a viewer, simulate it with a warning."""
+    from onorbit_rs.viewer.live import open_live
+    from onorbit_rs.viewer.setting import Setting
+
+    duration = built.scenario.simulation.duration
+    live = open_live(Setting.of(built), duration)
+    if live is None:
+        return built.simulation.run(
+            duration, progress=progress, checkpoint=checkpoint, checkpoint_every=checkpoint_every,
+            resume=resume,
+        )  # fmt: skip
+    rows = 0 if resume is None else len(resume.columns["time"])
+    saver = _Saver(checkpoint, checkpoint_every, rows)
+    trace = None
+    try:
+        stepper = built.simulation.start(duration=duration, resume=resume)
+        _advance(stepper, duration, progress, live, saver)
+        trace = stepper.finish()
+    finally:
+        live.finish(trace)
+    return trace
+
+
+def _advance(
+    stepper: Stepper, duration: float, progress: ProgressCallback | None, live: LiveView, saver: _Saver
+) -> None:
+    """Advance to the end in slices of wall-clock time; show and save the new rows in between."""
+    from onorbit_rs.viewer.live import UPDATE_EVERY_S
+
+    shown, last = 0, time.monotonic()
+    while stepper.time < duration:
+        try:
+            stepper.advance_to(duration, wall_s=_SLICE_S)
+        except RunInterrupted as stop:
+            try:
+                saver.save(stepper)
+            except Exception as error:
+                stop.add_note(f"the last checkpoint could not be written: {error}")
+            raise
+        if progress is not None:
+            progress(stepper.time, duration)
+        if time.monotonic() - last >= UPDATE_EVERY_S:
+            last = time.monotonic()
+            columns = stepper.columns(shown)
+            shown += len(columns.get("time", ()))
+            live.take(columns)
+        saver.save_if_due(stepper)
+
+
+class _Saver:
+    """Passes the checkpoints of a run to their writer, each with the rows since the previous one."""
+
+    def __init__(self, writer: CheckpointWriter | None, every_s: float, rows: int) -> None:
+        """Start after the first ``rows`` rows, which are already written."""
+        self._writer, self._every_s, self._rows = writer, every_s, rows
+        self._last = time.monotonic()
+
+    def save_if_due(self, stepper: Stepper) -> None:
+        if time.monotonic() - self._last >= self._every_s:
+            self.save(stepper)
+
+    def save(self, stepper: Stepper) -> None:
+        """Write a checkpoint.
+
+        If the controller cannot be saved, warn once and disable checkpoints for this run.
+        """
+        if self._writer is None:
+            return
+        try:
+            checkpoint = stepper.checkpoint(self._rows)
+        except ControlError as error:
+            self._writer = None
+            warnings.warn(f"checkpoints are disabled for this run: {error}", UserWarning, stacklevel=2)
+            return
+        self._last = time.monotonic()
+        if self._writer(checkpoint):
+            self._rows += len(checkpoint.columns.get("time", ()))

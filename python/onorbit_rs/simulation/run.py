@@ -1,0 +1,224 @@
+"""Runs a scenario with one call, :func:`run`, or resumes an interrupted run, :func:`resume`."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs.common.files import exists
+from onorbit_rs.common.numbers import finite_float
+from onorbit_rs.common.progress import doing, progress_bar
+from onorbit_rs.engines import versions
+from onorbit_rs.exceptions import InputError, ModelError, NotFoundError, RunInterrupted, SimulationError
+from onorbit_rs.output import (
+    CheckpointWriter,
+    OutputFolder,
+    read_checkpoint,
+    scenario_digest,
+    with_absolute_paths,
+    write_scenario,
+)
+from onorbit_rs.output.read import check_folder
+from onorbit_rs.output.robot import CHANGED, was_changed
+from onorbit_rs.scenario import Scenario, load
+from onorbit_rs.scenario.build import Built, build
+from onorbit_rs.simulation.finish import finished, keep_failed, keep_stopped
+from onorbit_rs.simulation.live import CHECKPOINT_EVERY, watched
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model, Trace
+
+
+@dataclass(frozen=True)
+class Run:
+    """Results of a run.
+
+    It can be pickled, for :mod:`multiprocessing`; the robot is then loaded again on access.
+
+    Attributes
+    ----------
+    trace : Trace
+        Recorded rows.
+    summary : dict
+        Content of ``summary.json``.
+    scenario : Scenario
+        Scenario that was run.
+    out : Path or None
+        Output folder.
+    """
+
+    trace: Trace
+    summary: dict[str, Any]
+    scenario: Scenario
+    out: Path | None
+    _ran: Model | None = field(default=None, repr=False, compare=False)
+    """None after unpickling."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle data only: ``multiprocessing.Pool`` hangs if unpickling raises."""
+        return Run, (self.trace, self.summary, self.scenario, self.out)
+
+    @cached_property
+    def model(self) -> Model:
+        """Robot of the run; after unpickling it is loaded from the scenario.
+
+        Raises
+        ------
+        OnOrbitError
+            If its file is missing or cannot be read, or was changed since the run (``ModelError``).
+        """
+        if self._ran is not None:
+            return self._ran
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # these warnings were shown during the run
+            model = self.scenario.robot.build(self.scenario)
+        if was_changed(model, self.summary):
+            raise ModelError(CHANGED)
+        return model
+
+
+def run(
+    scenario: str | os.PathLike[str] | Mapping[str, Any] | Scenario,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    force: bool = False,
+    quiet: bool = False,
+    view: bool = False,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+) -> Run:
+    """Run a scenario and, with ``out``, write its output folder.
+
+    Parameters
+    ----------
+    scenario : str, path, mapping or Scenario
+        Name of a bundled scenario, a YAML file, its content as a mapping, or a loaded scenario.
+    out : str or path, optional
+        Folder for trace, summary, figures and recording; None writes nothing.
+    force : bool
+        Replace the files of an earlier run in ``out``.
+    quiet : bool
+        Show no progress bar, even on a terminal.
+    view : bool
+        Show the run in the viewer while it is simulated; without a display, a warning is given.
+    checkpoint_every : float
+        Wall-clock time between two checkpoints in ``out``, s; :func:`resume` continues from the last one.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    OnOrbitError
+        Before the run starts: for an invalid scenario (``ScenarioError``), a missing file
+        (``NotFoundError``), or a folder that is not empty, not writable or in use by another process
+        (``OutputFolderError``).
+    SimulationError
+        If the run diverges; the trace so far is in the error and in ``out``.
+    RunInterrupted
+        On Ctrl-C; the trace so far is in the exception and in ``out``.
+    """
+    every = _checked_period(checkpoint_every)
+    checked = load(scenario)
+    built = build(checked)
+    if out is None:
+        return _simulate(built, None, quiet=quiet, view=view)
+    with OutputFolder.claim(out, force=force) as folder:
+        write_scenario(folder, checked)
+        writer = CheckpointWriter(folder, _digest(checked))
+        return _simulate(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=every)
+
+
+def resume(
+    out: str | os.PathLike[str],
+    *,
+    quiet: bool = False,
+    view: bool = False,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+) -> Run:
+    """Resume an interrupted run with bit-identical results.
+
+    Parameters
+    ----------
+    out : str or path
+        Output folder with ``scenario.yaml`` and the last checkpoint.
+    quiet : bool
+        Show no progress bar, even on a terminal.
+    view : bool
+        Show the run in the viewer, from its beginning.
+    checkpoint_every : float
+        Wall-clock time between two checkpoints, s.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    CheckpointError
+        If the run has ended, or its scenario, its robot or the version of onorbit_rs has changed.
+    OnOrbitError
+        As :func:`run`.
+    """
+    every = _checked_period(checkpoint_every)
+    path = Path(out)
+    check_folder(path)
+    if not exists(path / "scenario.yaml"):
+        raise NotFoundError(
+            f"no run in this folder (scenario.yaml is missing): {path}", path=str(path), kind="run"
+        )
+    with OutputFolder(path) as folder:
+        folder.check_figures()
+        scenario = load(path / "scenario.yaml")
+        digest = _digest(scenario)
+        saved = read_checkpoint(path, digest)
+        writer = CheckpointWriter(folder, digest, after=saved)
+        return _simulate(
+            build(scenario), folder, quiet=quiet, view=view,
+            checkpoint=writer, checkpoint_every=every, resume=saved.checkpoint,
+        )  # fmt: skip
+
+
+def _checked_period(checkpoint_every: float) -> float:
+    """Return the period if it is valid; checked before any file is written."""
+    every = finite_float(checkpoint_every)
+    if every is None or every < 0.0:
+        raise InputError(
+            f"checkpoint_every is {checkpoint_every!r} s; it must be finite and at least zero",
+            name="checkpoint_every", got=checkpoint_every, expected=">= 0",
+        )  # fmt: skip
+    return every
+
+
+def _digest(scenario: Scenario) -> str:
+    """Return the digest of the scenario, its files and the version of its engine."""
+    return scenario_digest(with_absolute_paths(scenario) | versions(scenario.engine))
+
+
+def _simulate(
+    built: Built, folder: OutputFolder | None, *, quiet: bool, view: bool = False, **checkpoints: Any
+) -> Run:
+    """Simulate and write the results, including those of a run that was stopped or failed."""
+    scenario, duration = built.scenario, built.scenario.simulation.duration
+    try:
+        with progress_bar(scenario.name, duration, quiet=quiet) as progress:
+            if view:
+                trace = watched(built, progress.move, **checkpoints)
+            else:
+                trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
+            summary = finished(trace, built, folder, progress.tell)
+            return Run(trace, summary, scenario, folder.path if folder else None, built.model)
+    except (SimulationError, RunInterrupted) as stop:
+        with doing("stopped; writing the results so far", quiet=quiet) as tell:
+            keep_stopped(stop, built, folder, tell)
+        raise
+    except (
+        Exception
+    ) as error:  # raised by a Python controller, or outside of the range of orbit or environment
+        keep_failed(error, built, folder)
+        raise

@@ -1,0 +1,1 @@
+"""Tools around the simulator: new scenarios, conversion, comparison and validation."""

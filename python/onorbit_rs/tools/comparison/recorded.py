@@ -1,0 +1,116 @@
+"""Columns of a run to compare, read from its folder or from a new run."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.common.files import exists
+from onorbit_rs.exceptions import DtypeError, ModelError, NotFoundError
+from onorbit_rs.output import with_absolute_paths
+from onorbit_rs.output.manifest import SCENARIO, SUMMARY
+from onorbit_rs.output.read import SavedRun
+from onorbit_rs.robots.fingerprint import has_changed
+from onorbit_rs.scenario import Scenario
+from onorbit_rs.simulation.run import Run, run
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | Run
+"""The output folder of a run, a scenario as accepted by :func:`onorbit_rs.run`, or a run."""
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Columns of a run by their names in ``trace.npz``, its scenario and its robot."""
+
+    name: str
+    columns: dict[str, NDArray[np.float64]]
+    scenario: Scenario
+    run: Run | None = None
+    """The run, if it is in memory."""
+    fingerprint: str | None = None
+    """Fingerprint of the robot at the time of the run; None for runs of earlier versions."""
+
+    @property
+    def robot(self) -> Any:
+        """The robot as given in the resolved scenario."""
+        named = with_absolute_paths(self.scenario)["robot"]
+        return next(iter(named.values())) if len(named) == 1 else named
+
+    def joint_names(self) -> list[str]:
+        """Return the joint names in column order; for a folder, the scenario's robot is loaded again.
+
+        Raises
+        ------
+        OnOrbitError
+            If the robot's file is missing, cannot be read or has changed.
+        """
+        if self.run is not None:
+            return list(self.run.model.joint_names)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # these warnings were shown during the run
+            model = self.scenario.robot.build(self.scenario)
+        if has_changed(model, self.fingerprint):
+            raise ModelError(
+                f"{self.robot} was changed since {self.name} was recorded; restore it or run the "
+                "scenario again",
+                path=str(self.robot),
+            )
+        return list(model.joint_names)
+
+
+def recorded(source: Source) -> Recorded:
+    """Return the recorded columns of a run, given the run, its folder, or a scenario to simulate.
+
+    Raises
+    ------
+    DtypeError
+        If the source has another type, such as a trace.
+    NotFoundError, ReadError
+        If the folder contains no run, or its files cannot be read or were changed.
+    """
+    if isinstance(source, Run):
+        return _of_run(source)
+    if isinstance(source, (str, os.PathLike)) and Path(source).is_dir():
+        return _of_folder(Path(source))
+    if not isinstance(source, (str, os.PathLike, Mapping, Scenario)):
+        kind = type(source).__name__
+        raise DtypeError(
+            f"a {kind} cannot be compared; give the folder of a run, a scenario, or a Run",
+            name="source", got=kind, expected="folder, scenario or Run",
+        )  # fmt: skip
+    return _of_run(run(source))
+
+
+def on_the_other_engine(first: Recorded) -> Recorded:
+    """Simulate the same scenario on the other engine, and return its recorded columns."""
+    scenario = first.scenario
+    other = {"native": "mujoco", "mujoco": "native"}[scenario.engine]
+    return _of_run(run(with_absolute_paths(scenario) | {"engine": other}))
+
+
+def _of_run(made: Run) -> Recorded:
+    trace = made.trace
+    columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
+    name = f"{made.scenario.name} ({made.scenario.engine})" if made.out is None else str(made.out)
+    return Recorded(name, columns, made.scenario, made, made.summary.get("robot_fingerprint"))
+
+
+def _of_folder(folder: Path) -> Recorded:
+    saved = SavedRun(folder)
+    trace = saved.trace()
+    if not exists(folder / SCENARIO):
+        raise NotFoundError(
+            f"no run in this folder ({SCENARIO} is missing): {folder}", path=str(folder), kind="run"
+        )
+    columns = {name: np.asarray(getattr(trace, name), dtype=np.float64) for name in trace.columns()}
+    known = saved.summary().get("robot_fingerprint") if exists(folder / SUMMARY) else None
+    return Recorded(str(folder), columns, saved.scenario(), fingerprint=known)

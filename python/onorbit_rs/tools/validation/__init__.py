@@ -1,0 +1,96 @@
+"""Published cases and conservation laws, checked through the public API: ``onorbit validate``.
+
+Each file holds one family of cases in ``CASES``: short tables of numbers with their sources.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+
+from onorbit_rs.exceptions import InputError
+from onorbit_rs.tools.validation import (
+    against_mujoco,
+    against_pinocchio,
+    against_sgp4,
+    against_spart,
+    air_and_light,
+    bodies,
+    conservation,
+    earth,
+    gravity,
+    kepler,
+    nasa,
+    order,
+    relative,
+    robots,
+    rotation,
+    secular,
+    sgp4,
+)
+from onorbit_rs.tools.validation.case import Case, Check, Gate, Verdict
+
+__all__ = ["CASES", "Case", "Check", "Gate", "Verdict", "run", "select"]
+
+CASES: tuple[Case, ...] = tuple(
+    case
+    for module in (
+        kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
+        conservation, order, against_pinocchio, against_mujoco, against_sgp4, against_spart,
+    )
+    for case in module.CASES
+)  # fmt: skip
+"""All cases, grouped by family."""
+
+
+def select(only: Sequence[str] = ()) -> list[Case]:
+    """Return the cases whose family or name contains one of the words; without words, all cases.
+
+    Raises
+    ------
+    InputError
+        If no case matches a word.
+    """
+    families = ", ".join(dict.fromkeys(case.family for case in CASES))
+    for word in only:
+        if not any(_matches(case, word) for case in CASES):
+            raise InputError(
+                f"no case matches {word!r}; the families are {families}",
+                name="only", got=word, expected=families,
+            )  # fmt: skip
+    return [case for case in CASES if not only or any(_matches(case, word) for word in only)]
+
+
+def _matches(case: Case, word: str) -> bool:
+    return word.lower() in f"{case.family} {case.name}".lower()
+
+
+def run(
+    cases: Sequence[Case] = CASES,
+    *,
+    threads: int | None = None,
+    each: Callable[[Case], object] = lambda case: None,
+) -> list[Verdict]:
+    """Run the cases in parallel and return their verdicts in the same order.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+    threads : int, optional
+        Number of cases that run at a time; default: the number of cores.
+    each : callable
+        Called with each completed case, in any order.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # warnings about robot files are shown by another command
+        with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
+            jobs = {pool.submit(case.judge): case for case in cases}
+            try:
+                for job in as_completed(jobs):
+                    each(jobs[job])
+            except BaseException:  # on Ctrl-C the waiting cases are not started
+                pool.shutdown(cancel_futures=True)
+                raise
+    return [job.result() for job in jobs]
