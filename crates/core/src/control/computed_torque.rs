@@ -204,9 +204,9 @@ impl<S: Real> ComputedTorqueWork<S> {
     /// Writes the accelerations of the last call, rad/s² (m/s²), for the compensation of Coulomb friction:
     /// `None` if `law` does not compensate it, zero for joints that may stay at rest.
     pub fn desired_accelerations(&self, law: &ComputedTorque, asked: &mut [Option<f64>]) {
+        let stiffness = law.least_stiffness();
         for (to, from) in asked.iter_mut().zip(&self.acceleration) {
-            *to =
-                law.compensate_friction.then(|| zero_within_goal_error(from.lane(0), law.least_stiffness()));
+            *to = law.compensate_friction.then(|| zero_within_goal_error(from.lane(0), stiffness));
         }
     }
 }

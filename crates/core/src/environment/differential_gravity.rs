@@ -81,7 +81,7 @@ impl Effect for DifferentialGravity {
 impl DifferentialGravity {
     fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let planet = scene.planet(NAME)?;
-        let state = &planet.reference;
+        let state = planet.reference;
         // only the tide g(r) - g(r_ref): the reference obeys g, or its residual is omitted
         let tide_only = planet.in_free_fall || self.gravity_mode == GravityMode::Carried;
         let point_mass_residual = if tide_only {

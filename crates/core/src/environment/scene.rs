@@ -120,17 +120,18 @@ impl<'a> Scene<'a> {
         effect: &'static str,
     ) -> Result<(OrbitState, &'a Earth), EnvironmentError> {
         let reference = self.planet(effect)?.reference;
-        Ok((reference, self.earth.ok_or(EnvironmentError::NoEarth { effect })?))
+        Ok((*reference, self.earth.ok_or(EnvironmentError::NoEarth { effect })?))
     }
 
     /// Returns the planet of the reference orbit; the reference must be above ground.
-    pub(super) fn planet(&self, effect: &'static str) -> Result<Planet<'a>, EnvironmentError> {
-        let around = |r: Reference<'a>| Some((r.state, r.gravity?, r.in_free_fall));
-        let found = self.reference.and_then(around);
-        let (reference, gravity, in_free_fall) = found.ok_or(EnvironmentError::NoPlanet { effect })?;
-        let minimum_cubed = lowest_ground_cubed(gravity.mu());
-        let planet = Planet { effect, mu: gravity.mu(), gravity, reference, in_free_fall, minimum_cubed };
-        planet.check_above_ground(ScenePoint::Reference, reference.position.norm())?;
+    pub(super) fn planet(&self, effect: &'static str) -> Result<Planet<'_, 'a>, EnvironmentError> {
+        let found = self.reference.as_ref().and_then(|reference| Some((reference, reference.gravity?)));
+        let (Reference { state, in_free_fall, .. }, gravity) =
+            found.ok_or(EnvironmentError::NoPlanet { effect })?;
+        let (mu, minimum_cubed) = (gravity.mu(), lowest_ground_cubed(gravity.mu()));
+        let planet =
+            Planet { effect, mu, gravity, reference: state, in_free_fall: *in_free_fall, minimum_cubed };
+        planet.check_above_ground(ScenePoint::Reference, state.position.norm())?;
         Ok(planet)
     }
 
@@ -139,14 +140,14 @@ impl<'a> Scene<'a> {
     /// `tide_only` selects the field that also gives its difference to the reference, the tide.
     pub(super) fn local_field(
         &self,
-        planet: &Planet<'a>,
+        planet: &Planet<'_, 'a>,
         tide_only: bool,
     ) -> Result<Option<&LocalField<'a>>, EnvironmentError> {
         if planet.gravity.is_point_mass() {
             return Ok(None);
         }
         let expand = || -> Result<LocalField<'a>, EnvironmentError> {
-            let OrbitState { position, velocity, .. } = planet.reference;
+            let OrbitState { position, velocity, .. } = *planet.reference;
             let travel = velocity.norm() * (self.interval.1 - self.interval.0);
             let (time, r_ref, com) = (self.time, position.into(), self.bodies.center_of_mass());
             let sky = get_or_try_init(&self.ephemeris.sky, || planet.gravity.sky(time, r_ref))?;
@@ -171,16 +172,16 @@ fn get_or_try_init<T, E>(cell: &OnceCell<T>, compute: impl FnOnce() -> Result<T,
 }
 
 /// Planet of a scene as seen by one effect.
-pub(super) struct Planet<'a> {
+pub(super) struct Planet<'s, 'a> {
     effect: &'static str,
     pub(super) mu: f64,
     pub(super) gravity: &'a Gravity,
-    pub(super) reference: OrbitState,
+    pub(super) reference: &'s OrbitState,
     pub(super) in_free_fall: bool,
     minimum_cubed: f64,
 }
 
-impl Planet<'_> {
+impl Planet<'_, '_> {
     /// Rejects bodies below ground; `distance` is that from the planet's centre, m.
     #[inline(always)]
     pub(super) fn check_group_above_ground<S: Real>(

@@ -14,6 +14,8 @@ pub(super) struct Controllers<'a, S> {
     pub(super) set: ControllerSet<'a, S>,
     tool: Option<usize>,
     reference: Option<&'a TaskReference>,
+    /// Sample of `reference` at the last instant asked for.
+    sample: Option<TaskSample<f64>>,
 }
 
 impl<'a, S: Scalar> Controllers<'a, S> {
@@ -24,7 +26,7 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         time_step: f64,
     ) -> Result<Self, SimulationError> {
         let set = ControllerSet::new(controls, model, SAME_INSTANT * time_step)?;
-        Ok(Self { set, tool, reference })
+        Ok(Self { set, tool, reference, sample: None })
     }
 
     /// Returns the desired pose of the tool at `t`, and whether it is relative to the base. Needs the kinematics of
@@ -34,12 +36,12 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         t: f64,
         state: &SystemState<S>,
         system: &System<'_, S>,
-    ) -> Result<Option<(TaskSample<f64>, bool)>, SimulationError> {
+    ) -> Result<Option<(&TaskSample<f64>, bool)>, SimulationError> {
         self.set.update_errors(t, system.model, &system.data, &state.q, &state.v)?;
         if let Some(reference) = self.reference {
             let sample = reference.sample(t, 0.0);
             let sample = sample.map_err(|source| SimulationError::Reference { time: t, source })?;
-            return Ok(Some((sample, reference.is_relative_to_base())));
+            return Ok(Some((self.sample.insert(sample), reference.is_relative_to_base())));
         }
         Ok(self.set.controls().iter().enumerate().find_map(|(i, control)| {
             let (_, reference) = control.law.task().filter(|(frame, _)| Some(*frame) == self.tool)?;
@@ -61,11 +63,8 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         let System { model, data, command, modes, .. } = system;
         self.set.update(t, model, data, &state.q, &state.v, command)?;
         modes.requested_mut().copy_from_slice(self.set.desired_accelerations());
-        match command.iter().position(|tau| !tau.value().is_finite()) {
-            Some(joint) => {
-                Err(ControlError::Overflow { joint, time: t, value: command[joint].value() }.into())
-            }
-            None => Ok(()),
-        }
+        let overflow = command.iter().map(|tau| tau.value()).enumerate().find(|(_, tau)| !tau.is_finite());
+        let overflow = overflow.map(|(joint, value)| ControlError::Overflow { joint, time: t, value });
+        overflow.map_or(Ok(()), |error| Err(error.into()))
     }
 }

@@ -102,7 +102,7 @@ impl<'a> ExternalEngine<'a> {
         for (to, from) in [(&mut *q, &state.q), (&mut *v, &state.v)] {
             to.iter_mut().zip(from).for_each(|(to, from)| *to = from.value());
         }
-        tau.iter_mut().enumerate().for_each(|(j, to)| *to = system.torque(j).value());
+        tau.iter_mut().zip(system.torques()).for_each(|(to, tau)| *to = tau.value());
         *has_output = false;
         engine.step(&StepInput { interval, q, v, tau }, output)?;
         *has_output = true;

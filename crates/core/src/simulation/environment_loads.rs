@@ -31,6 +31,8 @@ pub(super) struct EnvironmentLoads {
     /// States of the orbit about which the robot is integrated: `reference` or the local one.
     cache: ReferenceCache,
     gravity: Option<Arc<Gravity>>,
+    /// Whether that orbit obeys exactly the gravity of the run.
+    in_free_fall: bool,
     earth: Option<Arc<Earth>>,
     gravity_mode: GravityMode,
     /// Step being integrated, s.
@@ -54,6 +56,7 @@ impl EnvironmentLoads {
         Self {
             reads_velocities: effects.iter().any(|effect| effect.reads_velocities()),
             effects,
+            in_free_fall: orbit.as_deref().is_some_and(|orbit| obeys(orbit, gravity.as_ref())),
             reference: orbit.clone(),
             local_reference: None,
             cache: ReferenceCache::new(orbit),
@@ -77,6 +80,7 @@ impl EnvironmentLoads {
         let (Some(gravity), Some(&time)) = (&self.gravity, local.times.last()) else { return Ok(()) };
         let orbit = Numerical::new(local.position.into(), local.velocity.into(), time, Arc::clone(gravity));
         let orbit = orbit.map_err(|source| SimulationError::Orbit { time, source })?;
+        self.in_free_fall = obeys(&orbit, self.gravity.as_ref());
         self.cache = ReferenceCache::new(Some(Arc::new(orbit)));
         self.local_reference = Some(local);
         Ok(())
@@ -106,16 +110,10 @@ impl EnvironmentLoads {
         Ok(self.cache.at(t, self.interval.1)?.state)
     }
 
-    /// Returns true if the current reference obeys exactly the gravity of the run.
-    fn in_free_fall(&self) -> bool {
-        let obeyed = self.cache.orbit().and_then(|orbit| orbit.gravity());
-        obeyed.zip(self.gravity.as_ref()).is_some_and(|(own, all)| Arc::ptr_eq(own, all))
-    }
-
     /// Returns `g(r_ref) - r̈_ref` at `t`, m/s²; `None` where there is no planet.
     pub(super) fn reference_residual(&mut self, t: f64) -> Result<Option<Vector3<f64>>, SimulationError> {
         let Some(state) = self.reference_state(t)? else { return Ok(None) };
-        let in_free_fall = self.in_free_fall();
+        let in_free_fall = self.in_free_fall;
         let reference = Reference { state, gravity: self.gravity.as_deref(), in_free_fall };
         DifferentialGravity::residual(t, &reference)
             .map_err(|source| SimulationError::Environment { time: t, source })
@@ -128,7 +126,7 @@ impl EnvironmentLoads {
         if is_carried {
             self.common.clear();
         }
-        let in_free_fall = self.in_free_fall();
+        let in_free_fall = self.in_free_fall;
         let Instant { state, ephemeris, .. } = self.cache.at(t, self.interval.1)?;
         let gravity = self.gravity.as_deref();
         let reference = state.map(|state| Reference { state, gravity, in_free_fall });
@@ -165,6 +163,11 @@ impl EnvironmentLoads {
         self.sum_effects(t, effect..effect + 1)?;
         Ok(&self.wrenches)
     }
+}
+
+/// Returns true if an orbit obeys exactly this gravity.
+fn obeys(orbit: &dyn Orbit, gravity: Option<&Arc<Gravity>>) -> bool {
+    orbit.gravity().zip(gravity).is_some_and(|(own, all)| Arc::ptr_eq(own, all))
 }
 
 /// Returns the state of an orbit, and the time derivative of its position, from which its velocity may differ.

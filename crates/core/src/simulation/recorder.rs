@@ -123,7 +123,7 @@ impl Recorder {
         state: &SystemState<S>,
         system: &System<'_, S>,
         orbit: Option<OrbitState>,
-        desired: Option<(TaskSample<f64>, bool)>,
+        desired: Option<(&TaskSample<f64>, bool)>,
     ) {
         S::enter(
             #[inline(always)]
@@ -175,16 +175,16 @@ impl Recorder {
         state: &SystemState<S>,
         system: &System<'_, S>,
         orbit: Option<OrbitState>,
-        desired: Option<(TaskSample<f64>, bool)>,
+        desired: Option<(&TaskSample<f64>, bool)>,
     ) {
         let (trace, data, q, v) = (&mut self.trace, &system.data, &state.q, &state.v);
         trace.time.push(t);
         push(&mut trace.q, q);
         push(&mut trace.v, v);
-        let joints = 0..system.model.joint_count();
-        trace.tau.extend(joints.clone().map(|j| system.torque(j).value()));
+        trace.tau.extend(system.torques().map(|tau| tau.value()));
         if self.options.compensates_friction {
-            trace.friction_compensation.extend(joints.map(|j| system.compensation(j)));
+            let compensations = system.modes.compensations();
+            trace.friction_compensation.extend(compensations.map(|torque| torque.unwrap_or(0.0)));
         }
         let (h, energy, com) = momentum_energy_com(system.model, data, q, v);
         push_vector(&mut trace.momentum, h.linear);

@@ -141,17 +141,10 @@ impl<'a, S: Real> System<'a, S> {
         }
     }
 
-    /// Torque that the motor of joint `j` adds to its command to compensate Coulomb friction, N m (N).
-    pub(crate) fn compensation(&self, j: usize) -> f64 {
-        self.modes.compensation(j).unwrap_or(0.0)
-    }
-
-    /// Torque of the motor of joint `j`: command and compensation of Coulomb friction, N m (N).
-    pub(crate) fn torque(&self, j: usize) -> S {
-        match self.modes.compensation(j) {
-            Some(compensation) => self.command[j] + S::of(compensation),
-            None => self.command[j],
-        }
+    /// Returns the torques of the motors, command and compensation of Coulomb friction, N m (N).
+    pub(crate) fn torques(&self) -> impl Iterator<Item = S> {
+        let joints = self.command.iter().zip(self.modes.compensations());
+        joints.map(|(command, torque)| torque.map_or(*command, |torque| *command + S::of(torque)))
     }
 
     /// Computes the generalized forces at the joints, `τ − b q̇ − f s`, with `s` the direction of slip; `f s` is left

@@ -1,30 +1,38 @@
 //! Detection of the processor's vector instructions.
 
+use std::sync::LazyLock;
+
+/// Features of this processor, detected once: asking the standard library for all of them at every call of a kernel
+/// takes as long as a small kernel.
+static DETECTED: LazyLock<Features> = LazyLock::new(Features::detect);
+
+struct Features {
+    fma: bool,
+    avx512: bool,
+}
+
+impl Features {
+    #[cfg(target_arch = "x86_64")]
+    fn detect() -> Self {
+        use std::arch::is_x86_feature_detected as has;
+        let fma = has!("avx2") && has!("fma");
+        Self { fma, avx512: fma && has!("avx512f") && has!("avx512dq") && has!("avx512vl") }
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    fn detect() -> Self {
+        Self { fma: cfg!(target_arch = "aarch64"), avx512: false } // fma is part of the baseline there
+    }
+}
+
 /// Returns true if the processor has fused multiply-add (on x86-64: AVX2 and FMA).
 #[inline(always)]
 pub(super) fn has_fma() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    {
-        std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    {
-        cfg!(target_arch = "aarch64") // fused multiply-add is part of the baseline there
-    }
+    DETECTED.fma
 }
 
 /// Returns true if the processor has AVX-512 F, DQ and VL, and [`has_fma`].
 #[inline(always)]
 pub(super) fn has_avx512() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    {
-        has_fma()
-            && std::arch::is_x86_feature_detected!("avx512f")
-            && std::arch::is_x86_feature_detected!("avx512dq")
-            && std::arch::is_x86_feature_detected!("avx512vl")
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    {
-        false
-    }
+    DETECTED.avx512
 }

@@ -24,12 +24,14 @@ impl<S: Scalar> ControllerSet<'_, S> {
     ) -> Result<(), ControlError> {
         // a row is recorded at the instant and the state of the control tick before it
         let is_same = |last: &[f64], now: &[S]| last.iter().zip(now).all(|(last, now)| *last == now.value());
-        if self.evaluated_at == t && is_same(&self.q, q) && is_same(&self.v, v) {
+        if self.evaluated_at == t && (!self.reads_state || is_same(&self.q, q) && is_same(&self.v, v)) {
             return Ok(());
         }
         self.evaluated_at = f64::NAN;
-        self.q.iter_mut().zip(q).for_each(|(to, from)| *to = from.value());
-        self.v.iter_mut().zip(v).for_each(|(to, from)| *to = from.value());
+        if self.reads_state {
+            self.q.iter_mut().zip(q).for_each(|(to, from)| *to = from.value());
+            self.v.iter_mut().zip(v).for_each(|(to, from)| *to = from.value());
+        }
         for (control, state) in self.controls.iter().zip(&mut self.states) {
             if state.memory.phase == Phase::Over {
                 state.error.fill(0.0);

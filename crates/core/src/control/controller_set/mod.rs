@@ -29,6 +29,9 @@ pub struct ControllerSet<'a, S> {
     evaluated_at: f64,
     /// Difference, s, below which two instants are treated as the same.
     same_instant: f64,
+    /// False if all controls are task laws on all joints without an error to evaluate, for which `q` and `v` are not
+    /// needed.
+    reads_state: bool,
     /// Workspace of a task law on all joints.
     whole_robot: Option<Box<ComputedTorqueWork<S>>>,
     reduced: FreeFloating<S>,
@@ -38,6 +41,9 @@ pub struct ControllerSet<'a, S> {
     commands: Vec<JointCommand>,
     /// Desired acceleration, rad/s² (m/s²), of the joints whose friction a law compensates.
     desired_accelerations: Vec<Option<f64>>,
+    compensates_environment: bool,
+    /// True if a joint has Coulomb friction.
+    has_friction: bool,
     /// True if friction changes sign continuously at rest, without static friction.
     friction_creeps: bool,
     q: Vec<f64>,
@@ -65,8 +71,17 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         let is_whole = |control: &Control| task_on_all_joints(control, n).is_some();
         let whole_robot = controls.iter().any(is_whole).then(|| Box::new(ComputedTorqueWork::new(model)));
         let needs_error = |control: &Control| control.law.control_law().uses_error() && !is_whole(control);
+        let compensates =
+            |control: &Control| control.law.control_law().compensates_environment() == Some(true);
+        let states: Vec<_> =
+            controls.iter().map(|control| ControlState::new(control, needs_error(control))).collect();
+        let reads_state =
+            |(control, state): (&Control, &ControlState)| state.needs_error || !is_whole(control);
         Ok(Self {
-            states: controls.iter().map(|control| ControlState::new(control, needs_error(control))).collect(),
+            reads_state: controls.iter().zip(&states).any(reads_state),
+            has_friction: model.has_friction(),
+            compensates_environment: controls.iter().any(compensates),
+            states,
             controls,
             evaluated_at: f64::NAN,
             same_instant,
@@ -94,7 +109,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
 
     /// Returns true if a law uses the external wrenches in the data.
     pub fn compensates_environment(&self) -> bool {
-        self.controls.iter().any(|control| control.law.control_law().compensates_environment() == Some(true))
+        self.compensates_environment
     }
 
     /// Returns the desired accelerations of the last update, rad/s² (m/s²), of the joints whose Coulomb
@@ -134,9 +149,9 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
 
     /// Returns the desired pose and motion of a control at the last instant evaluated, in W or relative to
     /// the base as its reference is; `None` while the control is not active.
-    pub fn desired(&self, control: usize) -> Option<TaskSample<f64>> {
+    pub fn desired(&self, control: usize) -> Option<&TaskSample<f64>> {
         let state = &self.states[control];
-        state.is_running().then_some(state.desired_pose).flatten()
+        state.desired_pose.as_ref().filter(|_| state.is_running())
     }
 
     /// Returns the tracking error of a control, desired minus actual, at the last instant evaluated,
@@ -229,10 +244,12 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         let active = self.controls.iter().zip(&self.states).find(|(_, state)| state.is_running());
         let Some((control, state)) = active else { return false };
         let Some((law, reference)) = task_on_all_joints(control, tau.len()) else { return false };
-        let Some(desired) = state.desired_pose else { return false };
+        let Some(desired) = &state.desired_pose else { return false };
         let is_relative = reference.is_relative_to_base();
         computed_torque(law, model, data, q, v, &desired.lift(), is_relative, work, tau);
-        work.desired_accelerations(law, &mut self.desired_accelerations);
+        if self.has_friction {
+            work.desired_accelerations(law, &mut self.desired_accelerations);
+        }
         true
     }
 

@@ -120,9 +120,12 @@ impl JointModes {
         self.friction[j] * self.direction[j]
     }
 
-    /// Torque that the motor adds to the law's torque during the step, N m (N); `None` if no law compensates friction.
-    pub(in crate::simulation) fn compensation(&self, j: usize) -> Option<f64> {
-        self.requested[j].map(|_| self.drag(j))
+    /// Returns the torques that the motors add to those of the law during the step, `(n,)`, N m (N); `None` for a joint
+    /// whose friction no law compensates.
+    pub(in crate::simulation) fn compensations(&self) -> impl Iterator<Item = Option<f64>> {
+        let drag =
+            self.friction.iter().zip(&self.direction).map(|(friction, direction)| friction * direction);
+        self.requested.iter().zip(drag).map(|(requested, drag)| requested.map(|_| drag))
     }
 
     /// Kinetic friction less its compensation, N m (N): zero where a law compensates it.
