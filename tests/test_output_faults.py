@@ -71,7 +71,8 @@ def test_a_checkpoint_that_cannot_be_written_warns_once_and_the_run_continues(
         discard(folder)
 
     monkeypatch.setattr(OutputFolder, "discard_checkpoint", keep)
-    data = tumbling()
+    data = tumbling(60.0)  # long enough for several checkpoints on any machine
+    data["simulation"]["record_every"] = 100
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         whole = oo.run(data, tmp_path / "out", quiet=True, checkpoint_every=0.0)
