@@ -4,34 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.common.coordinates import (
-    ANGULAR,
-    BASE_NQ,
-    BASE_NV,
-    JOINTS_Q,
-    JOINTS_V,
-    LINEAR,
-    POSITION,
-    QUATERNION,
-)
-from onorbit_rs.layouts.state import (
-    check_unit,
-    checked_state,
-    checked_vectors,
-    concatenated,
-    in_model_order,
-    names_in,
-    no_floating_base,
-    order_of,
-    to_body,
-    to_world,
-)
+from onorbit_rs.layouts.quaternion_layout import QuaternionLayout
+from onorbit_rs.layouts.state import checked_state, checked_vectors, names_in, no_floating_base, order_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from onorbit_rs._core import Model
     from onorbit_rs.layouts.state import Floats
+
+_LAYOUT = QuaternionLayout(
+    position=slice(4, 7), quaternion=[1, 2, 3, 0], joints=slice(7, None),
+    linear=slice(3, 6), angular=slice(0, 3), is_angular_in_world=True,
+)  # fmt: skip
 
 
 def to_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> tuple[Floats, Floats]:
@@ -59,12 +44,7 @@ def to_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> tu
     InputError, ShapeError, DtypeError
         If an argument is invalid.
     """
-    q_model, v_model = checked_state(model, q, v)
-    order = _order(model, joints)
-    quat = q_model[..., QUATERNION]
-    positions = concatenated(quat[..., [3, 0, 1, 2]], q_model[..., POSITION], q_model[..., BASE_NQ + order])
-    linear, angular = to_world(quat, v_model[..., LINEAR]), to_world(quat, v_model[..., ANGULAR])
-    return positions, concatenated(angular, linear, v_model[..., BASE_NV + order])
+    return _LAYOUT.from_model(checked_state(model, q, v), _order(model, joints))
 
 
 def from_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> tuple[Floats, Floats]:
@@ -89,20 +69,11 @@ def from_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> 
 
     Raises
     ------
-    FrameError
-        If a joint does not exist.
-    InputError, ShapeError, DtypeError
-        If an argument is invalid.
+    OnOrbitError
+        As :func:`to_drake`.
     """
     order = _order(model, joints)
-    q_other, v_other = checked_vectors(q=(q, model.nq), v=(v, model.nv))
-    quat = q_other[..., [1, 2, 3, 0]]
-    check_unit("q", quat)
-    linear, angular = to_body(quat, v_other[..., 3:6]), to_body(quat, v_other[..., :3])
-    return (
-        concatenated(q_other[..., 4:7], quat, in_model_order(q_other[..., JOINTS_Q], order)),
-        concatenated(linear, angular, in_model_order(v_other[..., JOINTS_V], order)),
-    )
+    return _LAYOUT.to_model("q", checked_vectors(q=(q, model.nq), v=(v, model.nv)), order)
 
 
 def _order(model: Model, joints: Any) -> NDArray[Any]:

@@ -4,34 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.common.coordinates import (
-    ANGULAR,
-    BASE_NQ,
-    BASE_NV,
-    JOINTS_Q,
-    JOINTS_V,
-    LINEAR,
-    POSITION,
-    QUATERNION,
-)
-from onorbit_rs.layouts.state import (
-    check_unit,
-    checked_state,
-    checked_vectors,
-    concatenated,
-    in_model_order,
-    names_in,
-    no_floating_base,
-    order_of,
-    to_body,
-    to_world,
-)
+from onorbit_rs.layouts.quaternion_layout import QuaternionLayout
+from onorbit_rs.layouts.state import checked_state, checked_vectors, names_in, no_floating_base, order_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from onorbit_rs._core import Model
     from onorbit_rs.layouts.state import Floats
+
+_LAYOUT = QuaternionLayout(position=slice(3), quaternion=[4, 5, 6, 3], joints=slice(7, None))
 
 _FREE, _SLIDE, _HINGE = 0, 2, 3  # mjtJoint
 
@@ -61,13 +43,7 @@ def to_mujoco(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> t
     InputError, ShapeError, DtypeError
         If an argument is invalid.
     """
-    q_model, v_model = checked_state(model, q, v)
-    order = _order(model, joints)
-    quat = q_model[..., QUATERNION]
-    qpos = concatenated(q_model[..., POSITION], quat[..., [3, 0, 1, 2]], q_model[..., BASE_NQ + order])
-    return qpos, concatenated(
-        to_world(quat, v_model[..., LINEAR]), v_model[..., ANGULAR], v_model[..., BASE_NV + order]
-    )
+    return _LAYOUT.from_model(checked_state(model, q, v), _order(model, joints))
 
 
 def from_mujoco(model: Model, qpos: ArrayLike, qvel: ArrayLike, joints: Any = None) -> tuple[Floats, Floats]:
@@ -90,21 +66,11 @@ def from_mujoco(model: Model, qpos: ArrayLike, qvel: ArrayLike, joints: Any = No
 
     Raises
     ------
-    FrameError
-        If a joint does not exist.
-    InputError, ShapeError, DtypeError
-        If an argument is invalid.
+    OnOrbitError
+        As :func:`to_mujoco`.
     """
     order = _order(model, joints)
-    q_other, v_other = checked_vectors(qpos=(qpos, model.nq), qvel=(qvel, model.nv))
-    quat = q_other[..., [4, 5, 6, 3]]
-    check_unit("qpos", quat)
-    return (
-        concatenated(q_other[..., :3], quat, in_model_order(q_other[..., JOINTS_Q], order)),
-        concatenated(
-            to_body(quat, v_other[..., :3]), v_other[..., 3:6], in_model_order(v_other[..., JOINTS_V], order)
-        ),
-    )
+    return _LAYOUT.to_model("qpos", checked_vectors(qpos=(qpos, model.nq), qvel=(qvel, model.nv)), order)
 
 
 def _order(model: Model, joints: Any) -> NDArray[Any]:

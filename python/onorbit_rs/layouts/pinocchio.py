@@ -90,10 +90,8 @@ def from_pinocchio(
 
     Raises
     ------
-    FrameError
-        If a joint does not exist.
-    InputError, ShapeError, DtypeError
-        If an argument is invalid.
+    OnOrbitError
+        As :func:`to_pinocchio`.
     """
     order, is_unbounded = _layout(model, joints, unbounded)
     q_other, v_other = checked_vectors(q=(q, model.nq + sum(is_unbounded)), v=(v, model.nv))

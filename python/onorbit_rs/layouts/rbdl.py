@@ -5,23 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from onorbit_rs.common.coordinates import ANGULAR, BASE_NQ, BASE_NV, JOINTS_V, LINEAR, POSITION, QUATERNION
-from onorbit_rs.layouts.state import (
-    check_unit,
-    checked_state,
-    checked_vectors,
-    concatenated,
-    in_model_order,
-    order_of,
-    to_body,
-    to_world,
-)
+from onorbit_rs.layouts.quaternion_layout import QuaternionLayout
+from onorbit_rs.layouts.state import checked_state, checked_vectors, order_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from onorbit_rs._core import Model
     from onorbit_rs.layouts.state import Floats
+
+_LAYOUT = QuaternionLayout(position=slice(3), quaternion=[3, 4, 5, -1], joints=slice(6, -1))
 
 
 def to_rbdl(
@@ -53,15 +46,7 @@ def to_rbdl(
     InputError, ShapeError, DtypeError
         If an argument is invalid.
     """
-    q_model, v_model = checked_state(model, q, v)
-    order = order_of(model, joints)
-    quat = q_model[..., QUATERNION]
-    positions = concatenated(
-        q_model[..., POSITION], quat[..., :3], q_model[..., BASE_NQ + order], quat[..., 3:]
-    )
-    return positions, concatenated(
-        to_world(quat, v_model[..., LINEAR]), v_model[..., ANGULAR], v_model[..., BASE_NV + order]
-    )
+    return _LAYOUT.from_model(checked_state(model, q, v), order_of(model, joints))
 
 
 def from_rbdl(
@@ -88,18 +73,8 @@ def from_rbdl(
 
     Raises
     ------
-    FrameError
-        If a joint does not exist.
-    InputError, ShapeError, DtypeError
-        If an argument is invalid.
+    OnOrbitError
+        As :func:`to_rbdl`.
     """
     order = order_of(model, joints)
-    q_other, v_other = checked_vectors(q=(q, model.nq), v=(v, model.nv))
-    quat = concatenated(q_other[..., 3:6], q_other[..., -1:])
-    check_unit("q", quat)
-    return (
-        concatenated(q_other[..., :3], quat, in_model_order(q_other[..., 6:-1], order)),
-        concatenated(
-            to_body(quat, v_other[..., :3]), v_other[..., 3:6], in_model_order(v_other[..., JOINTS_V], order)
-        ),
-    )
+    return _LAYOUT.to_model("q", checked_vectors(q=(q, model.nq), v=(v, model.nv)), order)

@@ -108,10 +108,8 @@ def from_spart(
 
     Raises
     ------
-    FrameError
-        If a joint does not exist.
-    InputError, ShapeError, DtypeError
-        If an argument is invalid.
+    OnOrbitError
+        As :func:`to_spart`.
     """
     order, com = order_of(model, joints), _com(model, base_com)
     n = len(order)
