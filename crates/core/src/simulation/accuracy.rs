@@ -80,9 +80,9 @@ impl<S: Scalar> Accuracy<S> {
             }
             every_step.start(interval.0, state, system);
         }
-        if let (Some(doubling), Some(flow)) = (&mut self.doubling, mover.flow()) {
+        if let (Some(doubling), Some(integration)) = (&mut self.doubling, mover.integration()) {
             // if the probe fails, so does the step, which reports it
-            let _ = doubling.probe(step, interval, state, equations, flow);
+            let _ = doubling.probe(step, interval, state, equations, integration);
         }
         Ok(())
     }
@@ -97,19 +97,19 @@ impl<S: Scalar> Accuracy<S> {
         mover: &mut Mover<'_, S>,
         buffers: &mut (State<S>, Stages<S>),
     ) -> Result<(), SimulationError> {
-        let Some(flow) = mover.flow() else { return Ok(()) };
+        let Some(integration) = mover.integration() else { return Ok(()) };
         if let Some(doubling) = &mut self.doubling {
             let h = interval.1 - interval.0;
-            let steps = flow.stages.ends().zip(&equations.systems);
+            let steps = integration.stages.ends().zip(&equations.systems);
             for (errors, (ends, system)) in doubling.errors.iter_mut().zip(steps) {
                 errors.jumps.add_step(&ends, &system.command, h, is_smooth);
             }
         }
-        for (every_step, ends) in self.every_step.iter_mut().zip(flow.stages.ends()) {
+        for (every_step, ends) in self.every_step.iter_mut().zip(integration.stages.ends()) {
             every_step.add_stages(&ends);
         }
         if self.is_recorded {
-            self.complete_rows(equations, &flow.stages, EveryStep::complete_start);
+            self.complete_rows(equations, &integration.stages, EveryStep::complete_start);
             if state.is_finite() {
                 return self.record_end(interval, state, equations, buffers);
             }

@@ -64,7 +64,7 @@ pub(super) struct SystemProgress {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedControllers {
     /// Whether the controllers were updated at the present cut.
-    pub(super) is_updated: bool,
+    pub(super) controllers_updated: bool,
     /// One entry per system.
     pub(super) systems: Vec<SystemControllers>,
 }

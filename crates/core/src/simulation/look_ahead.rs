@@ -51,27 +51,28 @@ impl<S: Scalar> RunState<'_, S> {
         if !self.mover.may_end_early(&self.equations) {
             return Ok(false);
         }
-        self.and_return(f64::NEG_INFINITY, |run| {
+        self.peek(f64::NEG_INFINITY, |run| {
             run.schedule.set_cursor(after);
             run.step(interval)?;
             Ok(!run.schedule.is_later(run.schedule.now(), t))
         })
     }
 
-    /// Calls `work`, in which rows before the time `records_before` are recorded, and returns to the present cut.
-    /// Controllers that `work` updated there, and whose state may be a user's, are not updated a second time.
-    fn and_return<R>(
+    /// Calls `work` and then returns to the present state. While `work` runs, only rows before the time
+    /// `records_before` are recorded. The state of the controllers, which may be user-defined, is not restored: if `work`
+    /// has updated them at the current cut, they are not updated there again.
+    fn peek<R>(
         &mut self,
         records_before: f64,
         work: impl FnOnce(&mut Self) -> Result<R, SimulationError>,
     ) -> Result<R, SimulationError> {
         let before: Progress = self.progress();
-        let is_updated = self.is_updated || self.schedule.is_control_tick();
+        let controllers_updated = self.controllers_updated || self.schedule.is_control_tick();
         self.records_before = records_before;
         let result = work(self);
         self.records_before = f64::INFINITY;
         self.restore(before);
-        self.is_updated = is_updated;
+        self.controllers_updated = controllers_updated;
         result
     }
 
@@ -88,7 +89,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// Writes configuration and velocity at the present time, in W.
     pub(super) fn read_state(&mut self, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError> {
         if self.schedule.is_later(self.time, self.schedule.now()) {
-            self.and_return(f64::NEG_INFINITY, |run| {
+            self.peek(f64::NEG_INFINITY, |run| {
                 run.cross_to_present().map(|is_dense| run.copy_state(is_dense))
             })?;
         } else {
@@ -110,8 +111,8 @@ impl<S: Scalar> RunState<'_, S> {
     /// Copies the state to the buffer for rows: the present one, or dense output of the last step.
     fn copy_state(&mut self, is_dense: bool) {
         let Self { state, mover, row_buffers: (copy, _), time, .. } = self;
-        match mover.flow().filter(|_| is_dense) {
-            Some(flow) => flow.interpolate(*time, copy),
+        match mover.integration().filter(|_| is_dense) {
+            Some(integration) => integration.interpolate(*time, copy),
             None => copy.copy_from(state),
         }
     }
@@ -141,7 +142,7 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Returns the rows so far and one at the present time, as if the run ended there.
     pub(super) fn trace(&mut self) -> Result<Trace, SimulationError> {
-        self.and_return(f64::INFINITY, |run| {
+        self.peek(f64::INFINITY, |run| {
             run.record_present()?;
             run.conclude();
             Ok(only(&run.systems).recorder.trace.clone())

@@ -4,7 +4,7 @@ use super::engine::ExternalEngine;
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
-use super::integrator::{Flow, StepControl};
+use super::integrator::{Integration, StepControl};
 use super::modes::StepMethod;
 use super::only::{only, only_mut};
 use super::recorder::Recorder;
@@ -15,8 +15,8 @@ use crate::spatial::Scalar;
 
 type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
 
-/// The one place at which native dynamics and an external engine differ; schedule, controllers, rows and
-/// certificate are the same for both. An external engine moves one robot, the only system of its run.
+/// The native integrator or an external engine; the order of execution in a step is the same for both. An external
+/// engine moves one robot, the only system of its run.
 pub(super) enum Mover<'a, S> {
     Native(StepMethod<S>),
     External(ExternalEngine<'a>),
@@ -54,7 +54,7 @@ impl<S: Scalar> Mover<'_, S> {
     }
 
     pub(super) fn is_adaptive(&self) -> bool {
-        matches!(self, Self::Native(method) if method.flow.is_adaptive())
+        matches!(self, Self::Native(method) if method.integration.is_adaptive())
     }
 
     /// Returns true if a step may take long.
@@ -91,7 +91,7 @@ impl<S: Scalar> Mover<'_, S> {
     pub(super) fn complete_row(&self, number: usize, recorder: &mut Recorder, model: &Model) {
         match self {
             Self::Native(method) => {
-                recorder.record_acceleration(model, &method.flow.stages.first[number].acceleration);
+                recorder.record_acceleration(model, &method.integration.stages.first[number].acceleration);
             }
             Self::External(engine) => match engine.first_acceleration() {
                 Some(acceleration) => recorder.record_acceleration(model, acceleration),
@@ -103,33 +103,36 @@ impl<S: Scalar> Mover<'_, S> {
     /// Work done on a system in the step taken last, J; `state` is its state at the end.
     pub(super) fn work_of_step(&self, number: usize, state: &SystemState<S>) -> f64 {
         match self {
-            Self::Native(method) => (state.work - method.flow.stages.start.systems[number].work).value(),
+            Self::Native(method) => {
+                (state.work - method.integration.stages.start.systems[number].work).value()
+            }
             Self::External(engine) => engine.work_of_step(),
         }
     }
 
-    /// The integrator of the native equations of motion.
-    pub(super) fn flow(&mut self) -> Option<&mut Flow<S>> {
+    /// Returns the integrator of the native equations of motion; `None` for an external engine.
+    pub(super) fn integration(&mut self) -> Option<&mut Integration<S>> {
         match self {
-            Self::Native(method) => Some(&mut method.flow),
+            Self::Native(method) => Some(&mut method.integration),
             Self::External(_) => None,
         }
     }
 
-    /// State of the adaptive step control, and the number of idle steps in a row.
-    pub(super) fn progress(&self) -> (Option<StepControl>, usize) {
+    /// Returns what [`Mover::restore`] needs to return to the current step: the state of the adaptive step control
+    /// (`None` without it) and the number of consecutive idle steps.
+    pub(super) fn save(&self) -> (Option<StepControl>, usize) {
         match self {
-            Self::Native(method) => (method.flow.control().cloned(), method.idle_steps),
+            Self::Native(method) => (method.integration.control().cloned(), method.idle_steps),
             Self::External(_) => (None, 0),
         }
     }
 
-    /// Restores what [`Mover::progress`] returned.
+    /// Restores the step control and the number of idle steps that [`Mover::save`] returned.
     pub(super) fn restore(&mut self, (control, idle_steps): (Option<StepControl>, usize)) {
         if let Self::Native(method) = self {
             method.idle_steps = idle_steps;
             if let Some(control) = control {
-                method.flow.set_control(control);
+                method.integration.set_control(control);
             }
         }
     }
@@ -137,7 +140,7 @@ impl<S: Scalar> Mover<'_, S> {
     /// Returns the number of the first system that is not finite, in `state` or in the last stage of the integrator.
     pub(super) fn first_diverged(&self, state: &State<S>) -> Option<usize> {
         state.systems.iter().enumerate().position(|(number, state)| match self {
-            Self::Native(method) => !state.is_finite() || !method.flow.stages.is_finite(number),
+            Self::Native(method) => !state.is_finite() || !method.integration.stages.is_finite(number),
             Self::External(_) => !state.is_finite(),
         })
     }
@@ -147,7 +150,7 @@ impl<S: Scalar> Mover<'_, S> {
     pub(super) fn last_finite(&self, number: usize, state: &State<S>) -> [Vec<f64>; 2] {
         let present = &state.systems[number];
         match self {
-            Self::Native(method) if !present.is_finite() => method.flow.stages.start_state(number),
+            Self::Native(method) if !present.is_finite() => method.integration.stages.start_state(number),
             _ => [&present.q, &present.v].map(|x| x.iter().map(|x| x.value()).collect()),
         }
     }

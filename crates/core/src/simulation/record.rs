@@ -41,8 +41,8 @@ impl<S: Scalar> RunState<'_, S> {
     /// Adds a row at `t` within the last step, from the dense output of the adaptive integrator.
     pub(super) fn record_within(&mut self, t: f64) -> Result<(), SimulationError> {
         let Self { equations, mover, systems, row_buffers: (state, stages), .. } = self;
-        if let Some(flow) = mover.flow() {
-            flow.interpolate(t, state);
+        if let Some(integration) = mover.integration() {
+            integration.interpolate(t, state);
         }
         equations.project_momentum(state);
         equations.apply_loads(t, (t, t), state)?;

@@ -38,7 +38,7 @@ impl<S: Scalar> System<'_, S> {
         (Vec3::from_slice(&state.q) - lift(com)).write(&mut state.q);
         let velocity_b = base_rotation(&state.q).transpose_mul(lift(com_velocity));
         (Vec3::from_slice(&state.v) - velocity_b).write(&mut state.v);
-        state.start.linear -= lift(momentum);
+        state.initial_momentum.linear -= lift(momentum);
         Ok(())
     }
 }

@@ -19,7 +19,8 @@ use crate::earth::Earth;
 use crate::spatial::Scalar;
 use std::sync::Arc;
 
-/// A run in progress. Its steps are in `step.rs`, its rows in `record.rs`, stops within a step in `look_ahead.rs`.
+/// A run in progress. Steps are in `step.rs`, the recording of rows in `record.rs`, and the evaluation at times within a
+/// step in `look_ahead.rs`.
 pub(super) struct RunState<'a, S> {
     /// Names of the systems and of their joints; all lists with one entry per system have this order.
     pub(super) layout: Layout,
@@ -39,7 +40,7 @@ pub(super) struct RunState<'a, S> {
     /// Present time, s: the present cut, or a time within the step that begins there.
     pub(super) time: f64,
     /// Whether the controllers were updated at the present cut.
-    pub(super) is_updated: bool,
+    pub(super) controllers_updated: bool,
     /// Rows at this time or later are not recorded, s: infinity except in a step that is tried.
     pub(super) records_before: f64,
     /// State and stages for rows that are not at the start of a step.
@@ -52,7 +53,7 @@ pub(super) struct RunState<'a, S> {
 impl<S: Scalar> RunState<'_, S> {
     /// Returns the state of everything that a step changes, except the controllers.
     pub(super) fn progress(&self) -> Progress {
-        let (step_control, idle_steps) = self.mover.progress();
+        let (step_control, idle_steps) = self.mover.save();
         let systems = self.systems.iter().zip(&self.equations.systems).enumerate();
         let progress = |(number, (run, system)): (usize, (&RunSystem<'_, S>, &System<'_, S>))| {
             let (errors, checks) = self.accuracy.save(number);
@@ -89,7 +90,7 @@ impl<S: Scalar> RunState<'_, S> {
     pub(super) fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
         let systems = self.systems.iter().zip(&self.equations.systems);
         let systems = systems.map(|(run, system)| run.save_controllers(system)).collect::<Result<_, _>>()?;
-        let controllers = SavedControllers { is_updated: self.is_updated, systems };
+        let controllers = SavedControllers { controllers_updated: self.controllers_updated, systems };
         let local_reference = self.equations.loads.local_reference().cloned();
         Ok(Checkpoint::new(self.time, self.schedule.clone(), self.progress(), local_reference, controllers))
     }
@@ -105,7 +106,7 @@ impl<S: Scalar> RunState<'_, S> {
         if let Some(local) = local_reference {
             self.equations.loads.set_local_reference(local)?;
         }
-        self.is_updated = saved.is_updated;
+        self.controllers_updated = saved.controllers_updated;
         let systems = self.systems.iter_mut().zip(&mut self.equations.systems);
         for (saved, (run, system)) in saved.systems.into_iter().zip(systems) {
             run.load_controllers(saved, system)?;
@@ -128,7 +129,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// Writes to the traces what is known only during the run: estimates of its error, changes of reference, and
     /// outcomes of goals.
     pub(super) fn conclude(&mut self) {
-        let control = self.mover.progress().0;
+        let control = self.mover.save().0;
         let local = self.equations.loads.local_reference();
         let systems = self.systems.iter_mut().zip(&self.equations.systems);
         for (number, (run, system)) in systems.enumerate() {

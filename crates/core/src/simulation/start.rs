@@ -143,7 +143,7 @@ impl Simulation {
             has_every_step,
             steps: 0,
             time: 0.0,
-            is_updated: false,
+            controllers_updated: false,
             records_before: f64::INFINITY,
             rereference_beyond,
             earth: self.earth.clone(),

@@ -31,9 +31,9 @@ impl<S: Scalar> RunState<'_, S> {
             self.record(interval.start)?;
         }
         // 7 integration, 8 location of the first change of a joint's mode
-        let reached = self.flow(interval, end, is_row)?;
+        let reached = self.integrate(interval, end, is_row)?;
         self.schedule.cut_at(reached);
-        (self.steps, self.is_updated) = (self.steps + 1, false);
+        (self.steps, self.controllers_updated) = (self.steps + 1, false);
         self.record_within_step()
     }
 
@@ -60,7 +60,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// They see the loads of the whole interval, wherever the step ends.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
-        let is_due = interval.is_control_tick && !self.is_updated;
+        let is_due = interval.is_control_tick && !self.controllers_updated;
         let uses_loads =
             is_due && self.systems.iter().any(|run| run.controllers.set.compensates_environment());
         if is_due {
@@ -70,7 +70,7 @@ impl<S: Scalar> RunState<'_, S> {
             self.equations.apply_loads(t, (t, interval.end), &self.state)?;
             self.update_controllers(t, true)?;
         }
-        self.is_updated |= is_due;
+        self.controllers_updated |= is_due;
         if !uses_loads || end != interval.end {
             self.equations.apply_loads(t, (t, end), &self.state)?;
         }
@@ -92,7 +92,7 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Integrates over the interval and returns the time reached; the accuracy of the step is measured beside it.
-    fn flow(&mut self, interval: &Interval, end: f64, is_row: bool) -> Result<f64, SimulationError> {
+    fn integrate(&mut self, interval: &Interval, end: f64, is_row: bool) -> Result<f64, SimulationError> {
         let span = (interval.start, end);
         let Self { state, equations, mover, accuracy, systems, .. } = self;
         accuracy.start_step(self.steps, span, state, equations, mover)?;

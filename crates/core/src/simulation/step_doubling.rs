@@ -4,7 +4,7 @@ use super::acceleration_jumps::AccelerationJumps;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
-use super::integrator::Flow;
+use super::integrator::Integration;
 use super::state::State;
 use super::system::System;
 use super::system_state::SystemState;
@@ -131,7 +131,7 @@ impl<S: Scalar> StepDoubling<S> {
         interval: (f64, f64),
         state: &State<S>,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
-        flow: &mut Flow<S>,
+        integration: &mut Integration<S>,
     ) -> Result<(), SimulationError> {
         if !self.is_due(step) {
             return Ok(());
@@ -140,7 +140,7 @@ impl<S: Scalar> StepDoubling<S> {
         for (start, system) in self.start.iter_mut().zip(&equations.systems) {
             start.copy_from(&system.data);
         }
-        let repeated = self.repeat(interval, state, equations, flow);
+        let repeated = self.repeat(interval, state, equations, integration);
         equations.restore(&self.start);
         repeated?;
         self.compare(state, interval.1 - interval.0, equations);
@@ -153,19 +153,19 @@ impl<S: Scalar> StepDoubling<S> {
         interval: (f64, f64),
         state: &State<S>,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
-        flow: &mut Flow<S>,
+        integration: &mut Integration<S>,
     ) -> Result<(), SimulationError> {
         let middle = 0.5 * (interval.0 + interval.1);
         self.whole.copy_from(state);
-        flow.step(equations, &mut self.whole, interval)?;
-        for (changes, first) in self.changes.iter_mut().zip(&flow.stages.first) {
+        integration.step(equations, &mut self.whole, interval)?;
+        for (changes, first) in self.changes.iter_mut().zip(&integration.stages.first) {
             *changes = first.acceleration.iter().map(|x| x.value().abs()).sum();
         }
         self.halved.copy_from(state);
         for half in [(interval.0, middle), (middle, interval.1)] {
             equations.project_momentum(&mut self.halved);
             equations.apply_loads(half.0, interval, &self.halved)?;
-            flow.step(equations, &mut self.halved, half)?;
+            integration.step(equations, &mut self.halved, half)?;
         }
         Ok(())
     }

@@ -12,8 +12,8 @@ pub(crate) struct SystemState<S> {
     pub(crate) q: Vec<S>,
     /// Velocity, `(nv,)`.
     pub(crate) v: Vec<S>,
-    /// Momentum at the start of the run.
-    pub(crate) start: Momentum<S>,
+    /// Momentum at the start of the run, W axes; changed only when the system is re-referenced.
+    pub(crate) initial_momentum: Momentum<S>,
     /// Integral of the external wrenches: forces, and moments about the centre of mass.
     pub(crate) impulse: Momentum<S>,
     /// Work done on the robot so far, J.
@@ -101,8 +101,15 @@ impl<S: Real> SystemState<S> {
     pub(crate) fn at(model: &Model, data: &mut Data<S>, mut q: Vec<S>, v: Vec<S>) -> Self {
         Quat::from_xyzw(&q[3..]).normalized().write_xyzw(&mut q[3..]);
         kinematics(model, data, &q, &v);
-        let start = momentum(data, &q);
-        Self { q, v, start, impulse: Momentum::default(), work: S::of(0.0), dissipated: S::of(0.0) }
+        let initial_momentum = momentum(data, &q);
+        Self {
+            q,
+            v,
+            initial_momentum,
+            impulse: Momentum::default(),
+            work: S::of(0.0),
+            dissipated: S::of(0.0),
+        }
     }
 
     /// Returns true if configuration and velocity are finite in every lane.
@@ -112,7 +119,7 @@ impl<S: Real> SystemState<S> {
 
     /// Momentum of the state: the initial one and the integral of the external wrenches.
     pub(crate) fn momentum(&self) -> Momentum<S> {
-        let (a, b) = (&self.start, &self.impulse);
+        let (a, b) = (&self.initial_momentum, &self.impulse);
         Momentum { linear: a.linear + b.linear, angular: a.angular + b.angular }
     }
 
@@ -122,7 +129,7 @@ impl<S: Real> SystemState<S> {
         SystemState {
             q: self.q.iter().map(&f).collect(),
             v: self.v.iter().map(&f).collect(),
-            start: momentum(&self.start),
+            initial_momentum: momentum(&self.initial_momentum),
             impulse: momentum(&self.impulse),
             work: f(&self.work),
             dissipated: f(&self.dissipated),
@@ -133,7 +140,7 @@ impl<S: Real> SystemState<S> {
     pub(crate) fn copy_from(&mut self, from: &Self) {
         self.q.copy_from_slice(&from.q);
         self.v.copy_from_slice(&from.v);
-        (self.start, self.impulse) = (from.start, from.impulse);
+        (self.initial_momentum, self.impulse) = (from.initial_momentum, from.impulse);
         (self.work, self.dissipated) = (from.work, from.dissipated);
     }
 
@@ -149,7 +156,7 @@ impl<S: Real> SystemState<S> {
                 *to = rate.mul_add(h, *from);
             }
         }
-        self.start = from.start;
+        self.initial_momentum = from.initial_momentum;
         self.impulse.linear = rate.wrench.linear.scale_add(h, from.impulse.linear);
         self.impulse.angular = rate.wrench.angular.scale_add(h, from.impulse.angular);
         self.work = rate.power.mul_add(h, from.work);

@@ -10,7 +10,7 @@
 //!    ([`System::project_momentum`](super::system::System::project_momentum)).
 
 mod dormand_prince;
-mod flow;
+mod integration;
 mod rk4;
 mod semi_implicit_euler;
 mod settings;
@@ -18,7 +18,7 @@ mod stages;
 mod tableau;
 mod tolerance;
 
-pub(crate) use flow::Flow;
+pub(crate) use integration::Integration;
 pub use settings::Integrator;
 pub(crate) use settings::StepSettings;
 pub(super) use stages::{FirstStage, Stages, StepEnds};

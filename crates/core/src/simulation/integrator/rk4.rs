@@ -8,7 +8,7 @@ use crate::simulation::state::{Rate, State};
 use crate::simulation::system_state::SystemState;
 use crate::spatial::{Real, Vec3, dexp_inv};
 
-/// Node `c` and weight `b` of the second to fourth stage.
+/// Nodes `c` (fractions of the step) and weights `b` of the second to fourth stages.
 const STAGES: [(f64, f64); 3] = [(0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
 
 /// Nyström weights `ā` of the base's origin at the stages: `p_i = p₀ + c h ṗ₀ + h² Σ ā_ij p̈_j`.
@@ -40,8 +40,8 @@ impl<S: Real> BaseStages<S> {
 /// Takes a step: `y' = y ⊕ h (k₁ + 2 k₂ + 2 k₃ + k₄)/6`, with `k = dexp⁻¹(θ) ω` for the attitude. Expects the first
 /// stage in `stages`.
 ///
-/// The base's origin follows its acceleration by Nyström's formula instead. Far from the reference orbit the tide
-/// is as strong as gravity, and this leaves a seventh of the error.
+/// The position of the base's origin is integrated from its acceleration with Nyström weights instead, which reduces the
+/// error of the position far from the reference orbit, where differential gravity is strong.
 pub(super) fn rk4<S: Real>(
     stages: &mut Stages<S>,
     bases: &mut [BaseStages<S>],

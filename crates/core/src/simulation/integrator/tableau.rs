@@ -3,10 +3,10 @@
 //! Source: Dormand and Prince, J. Computational and Applied Mathematics 6(1), 1980; Hairer, Nørsett
 //! and Wanner, Solving Ordinary Differential Equations I, 1993, II.5 and II.6.
 
-/// Reach of the second to seventh stage.
+/// Nodes `c` of the second to seventh stages, as fractions of the step.
 pub(super) const C: [f64; 6] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
 
-/// Weights of the earlier stages in each; the last row is the solution of fifth order.
+/// Weights of the earlier stages in the second to seventh stages, one row per stage; the last row equals `B`.
 pub(super) const A: [[f64; 6]; 6] = [
     [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
     [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
@@ -16,12 +16,14 @@ pub(super) const A: [[f64; 6]; 6] = [
     B,
 ];
 
+/// Weights of the fifth-order solution.
 const B: [f64; 6] = [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0];
 
-/// Fifth less fourth order.
+/// Weights of the error estimate: those of the fifth-order solution minus those of the fourth-order one.
 pub(super) const E: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0];
 
+/// Weights of the quartic term of the dense output.
 const D: [f64; 7] = [
     -12_715_105_075.0 / 11_282_082_432.0,
     0.0,
@@ -32,12 +34,12 @@ const D: [f64; 7] = [
     69_997_945.0 / 29_380_423.0,
 ];
 
-/// Weights of the seven stages at the fraction `x` of the step.
+/// Returns the weights of the seven stages in the dense output at the fraction `x` of the step.
 pub(super) fn dense(x: f64) -> [f64; 7] {
     let y = 1.0 - x;
     std::array::from_fn(|i| {
         let (b, first, last) = (B.get(i).copied().unwrap_or(0.0), f64::from(i == 0), f64::from(i == 6));
-        // Hermite's cubic through both ends, and a quartic that vanishes there with its slope
+        // cubic Hermite polynomial through both ends, plus a quartic whose value and slope are zero at both ends
         x * (b + y * (first - b + x * (2.0 * b - last - first + y * D[i])))
     })
 }
@@ -51,7 +53,7 @@ mod tests {
         w.iter().zip([0.0].iter().chain(&C)).map(|(w, c)| w * f(*c)).sum()
     }
 
-    /// Conditions of a quadrature, and those of trees: `Σ w_i a_ij c_j^k`.
+    /// Checks the quadrature conditions `Σ w_i c_i^k` and the order conditions of the trees `Σ w_i a_ij c_j^k`.
     #[test]
     fn the_dense_output_is_of_fourth_order_everywhere() {
         for x in [0.1, 0.3, 0.5, 0.77, 1.0_f64] {

@@ -4,7 +4,7 @@ use super::margins::ModesOfStep;
 use crate::simulation::equations::EquationsOfMotion;
 use crate::simulation::error::SimulationError;
 use crate::simulation::external_loads::ExternalLoads;
-use crate::simulation::integrator::{Flow, StepSettings};
+use crate::simulation::integrator::{Integration, StepSettings};
 use crate::simulation::state::State;
 use crate::spatial::Real;
 
@@ -20,7 +20,7 @@ const RESOLUTION: f64 = 1e-14;
 
 /// Integrates the equations of motion and locates the changes of the joints' modes within a step.
 pub(crate) struct StepMethod<S> {
-    pub(crate) flow: Flow<S>,
+    pub(crate) integration: Integration<S>,
     start: State<S>,
     settled: State<S>,
     /// Whether directions of slip may change within a step without ending it.
@@ -33,7 +33,7 @@ pub(crate) struct StepMethod<S> {
 impl<S: Real> StepMethod<S> {
     pub(crate) fn new(state: &State<S>, settings: &StepSettings) -> Self {
         Self {
-            flow: Flow::new(state, settings),
+            integration: Integration::new(state, settings),
             start: state.clone(),
             settled: state.clone(),
             ignores_slip: false,
@@ -72,10 +72,10 @@ impl<S: Real> StepMethod<S> {
         interval: (f64, f64),
     ) -> Result<f64, SimulationError> {
         if !equations.has_modes() {
-            return self.flow.advance(equations, state, interval);
+            return self.integration.advance(equations, state, interval);
         }
         self.start.copy_from(state);
-        let end = self.flow.advance(equations, state, interval)?;
+        let end = self.integration.advance(equations, state, interval)?;
         if !state.is_finite() {
             return Ok(end);
         }
@@ -179,7 +179,7 @@ impl<S: Real> StepMethod<S> {
         state.copy_from(&self.start);
         equations.project_momentum(state);
         equations.apply_loads(whole.0, (whole.0, end), state)?;
-        self.flow.step(equations, state, (whole.0, end))?;
+        self.integration.step(equations, state, (whole.0, end))?;
         self.margin(equations, state, (whole.0, end))
     }
 

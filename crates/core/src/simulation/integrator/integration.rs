@@ -1,4 +1,4 @@
-//! The flow of the equations of motion over an interval, by the integrator of the run.
+//! Integration of the equations of motion over an interval with the integrator of the run.
 
 use super::dormand_prince::DormandPrince;
 use super::rk4::{BaseStages, rk4};
@@ -13,7 +13,7 @@ use crate::simulation::state::State;
 use crate::spatial::Real;
 
 /// Integrator of a run with its buffers.
-pub(crate) struct Flow<S> {
+pub(crate) struct Integration<S> {
     integrator: Integrator,
     pub(crate) stages: Stages<S>,
     /// Motion of each base over the stages of RK4.
@@ -22,7 +22,7 @@ pub(crate) struct Flow<S> {
     dormand_prince: Option<Box<DormandPrince<S>>>,
 }
 
-impl<S: Real> Flow<S> {
+impl<S: Real> Integration<S> {
     pub(crate) fn new(state: &State<S>, settings: &StepSettings) -> Self {
         let stages = Stages::new(state);
         let bases = state.systems.iter().map(|_| BaseStages::new()).collect();
