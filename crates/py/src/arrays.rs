@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString, PyTuple};
 use pyo3::{PyClass, PyTypeInfo};
 
-/// Returns the type of an object for a message.
+/// Returns the name of an object's type, for messages.
 pub(crate) fn type_name(value: &Bound<'_, PyAny>) -> String {
     value.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string())
 }
@@ -22,7 +22,8 @@ pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
         Some(Ok(number)) => Ok(number),
         Some(Err(error)) if error.is_instance_of::<PyOverflowError>(py) => {
             let (limit, got) = (i64::MAX, value.str());
-            let got = got.map_or_else(|_| "of thousands of digits".to_owned(), |got| got.to_string());
+            let got =
+                got.map_or_else(|_| "an integer with thousands of digits".to_owned(), |got| got.to_string());
             let message = format!("{name} is {got}; it must be at most {limit}");
             Err(raise(
                 py,
@@ -59,12 +60,12 @@ pub(crate) fn record_every(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     count(value, "record_every", 1, " step")
 }
 
-/// Number of the first row to return.
+/// Reads the index of the first row to return.
 pub(crate) fn first_row(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     count(value, "since", 0, "")
 }
 
-/// Argument `threads`: the number of threads.
+/// Number of threads, read from the argument `threads`.
 #[derive(Clone, Copy)]
 pub(crate) struct Threads(pub(crate) usize);
 
@@ -76,7 +77,7 @@ impl<'py> FromPyObject<'_, 'py> for Threads {
     }
 }
 
-/// Returns the entries of a list, all of class `T`; `what` names the class in messages.
+/// Returns the entries of a list whose entries all have the class `T`; `what` is its name in messages.
 pub(crate) fn list_of<'py, T: PyClass>(
     value: &Bound<'py, PyAny>,
     name: &str,
@@ -106,7 +107,8 @@ pub(crate) struct Input<'py> {
 }
 
 impl<'py> Input<'py> {
-    /// Borrows `value`, converting lists and other real numbers; rejects anything else by name.
+    /// Borrows an array of `f64`, and converts lists and other arrays of real numbers. Any other value is an
+    /// error whose message contains `name`.
     pub(crate) fn new(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         // the type is exact: a subclass such as a masked array is converted
         if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
@@ -198,7 +200,7 @@ pub(crate) fn fixed<const N: usize>(
     }
 }
 
-/// Returns an error for numbers that are not finite.
+/// Returns an error if a number is not finite.
 pub(crate) fn finite(py: Python<'_>, name: &str, numbers: &[f64]) -> PyResult<()> {
     let Some(x) = numbers.iter().find(|x| !x.is_finite()) else { return Ok(()) };
     let message = format!("{name} holds {x}; all values must be finite");
@@ -251,7 +253,7 @@ pub(crate) fn fresh<'a>(array: &'a Bound<'_, PyArrayDyn<f64>>) -> &'a mut [f64] 
 
 /// Returns a new array with these numbers.
 pub(crate) fn array_of<'py>(py: Python<'py>, shape: &[usize], data: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
-    let array = PyArray::zeros(py, IxDyn(shape), false); // as small as a state
+    let array = PyArray::zeros(py, IxDyn(shape), false); // for small arrays, such as a state
     fresh(&array).copy_from_slice(data);
     array
 }

@@ -64,7 +64,7 @@ pub(crate) struct PythonEngine {
 }
 
 impl PythonEngine {
-    /// Wraps the engine of a simulation whose environment is complete.
+    /// Wraps the engine of a simulation, to which all effects must have been added before.
     pub(crate) fn new(engine: &Bound<'_, PyAny>, simulation: &Simulation) -> PyResult<Self> {
         let model = &simulation.model;
         let sizes = [model.nq(), model.nv(), model.nodes().len()];

@@ -35,7 +35,7 @@ pub(crate) fn batch<R: Send>(
 /// Runs `work` on a separate thread; Ctrl-C during it raises at once and abandons `work`, which finishes in
 /// the background.
 ///
-/// For work that cannot be stopped: parsing a file, computing a certificate.
+/// This is for work that cannot be stopped, such as parsing a file or computing a certificate.
 pub(crate) fn abandonable<R: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> R + Send + 'static,

@@ -19,7 +19,7 @@ self_cell!(
 enum Slot {
     Idle(Box<Simulation>),
     Running(Box<Running>),
-    /// Neither; temporary state while one replaces the other.
+    /// Temporary state while the simulation and its run replace each other.
     Empty,
 }
 

@@ -41,9 +41,10 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// earth : Earth, optional
 ///     Epoch and orientation of the Earth.
 /// gravity_mode : {"true", "carried"}
-///     Behaviour for a reference orbit that is not in free fall: the robot moves away from it, or it moves
-///     along with it: only the tide of gravity acts, and drag and radiation pressure without their common
-///     acceleration; the omitted acceleration of gravity is ``trace.reference_residual``.
+///     Behaviour for a reference orbit that is not in free fall. ``true``: the robot drifts away from it.
+///     ``carried``: the robot moves along with it; only tidal gravity acts, and drag and radiation pressure
+///     act without their common acceleration. ``trace.reference_residual`` is the omitted gravitational
+///     acceleration.
 /// environment : list of Effect, optional
 ///     Effects on the bodies.
 /// controller : control law, object or list of Control, optional
@@ -171,7 +172,7 @@ impl PySimulation {
 
     /// Simulate from the initial state and return the trace.
     ///
-    /// It ends a run that :meth:`start` began.
+    /// This ends a run that :meth:`start` began.
     ///
     /// Parameters
     /// ----------
@@ -235,8 +236,8 @@ impl PySimulation {
     /// Parameters
     /// ----------
     /// duration : float, optional
-    ///     Planned end of the run, s. It is the last cut, and the time over which the adaptive integrator and
-    ///     the certificate measure errors. Default: no planned end.
+    ///     Planned end of the run, s. The last step ends there, and the adaptive integrator and the
+    ///     certificate measure errors over this time. Default: no planned end.
     /// resume : Checkpoint, optional
     ///     Checkpoint from which the run continues, with identical bits; its duration is the default.
     ///
@@ -259,12 +260,12 @@ impl PySimulation {
     ) -> PyResult<PyStepper> {
         if let Some(duration) = duration {
             let checked = SimulationError::check_positive("duration", duration);
-            checked.map_err(|error| error.into_python_with(py, None))?; // before the present run is ended
+            checked.map_err(|error| error.into_python_with(py, None))?; // before the current run ends
         }
         let from = resume.map(|checkpoint| checkpoint.get().read(py)).transpose()?;
         let begin = from.as_ref().map_or(0.0, |from| from.0.time());
         if let Some(orbit) = &self.orbit {
-            prepare(py, &**orbit, &[begin])?; // Ctrl-C interrupts it; after a resumed start it is done already
+            prepare(py, &**orbit, &[begin])?; // can be interrupted by Ctrl-C
         }
         let wall_s = resume.map_or(0.0, |checkpoint| checkpoint.get().wall_s);
         let number = self.run.start(py, duration, from, wall_s)?;

@@ -18,14 +18,14 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, MutexGuard};
 use std::time::{Duration, Instant};
 
-/// Callback between slices of wall-clock time, which receives the run and its wall-clock time so far, s.
+/// Callback at regular intervals of wall-clock time, which receives the run and its wall-clock time so far, s.
 type Pause<'a> = &'a mut dyn FnMut(Python<'_>, &mut Stepper<'_>, f64) -> PyResult<()>;
 
-/// Run that is advanced step by step: :meth:`Simulation.start`.
+/// Run that is advanced step by step, as returned by :meth:`Simulation.start`.
 ///
-/// ``advance`` and ``advance_to`` do not change the motion: the steps are those of :meth:`Simulation.run`. Where
-/// the current time lies within a step, the state comes from dense output (adaptive steps) or from a shorter
-/// step, and the step itself is taken later.
+/// ``advance`` and ``advance_to`` do not change the motion: the steps are those of :meth:`Simulation.run`. If
+/// the current time lies within a step, the state is computed by dense output (adaptive steps) or by a shorter
+/// step; the whole step is taken later.
 #[pyclass(name = "Stepper", frozen, module = "onorbit_rs")]
 pub(crate) struct PyStepper {
     run: SharedRun,
@@ -36,7 +36,7 @@ pub(crate) struct PyStepper {
 
 #[pymethods]
 impl PyStepper {
-    /// Present time, s.
+    /// Current time, s.
     #[getter]
     fn time(&self, py: Python<'_>) -> PyResult<f64> {
         self.with(py, |stepper| stepper.time())
@@ -48,31 +48,31 @@ impl PyStepper {
         self.with(py, |stepper| stepper.duration())
     }
 
-    /// Configuration at the current time, (nq,), a read-only array: base position, m, in W, base quaternion xyzw,
+    /// Configuration at the current time, a read-only (nq,) array: base position in W, m; base quaternion xyzw;
     /// joint positions, rad or m.
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.state(py).map(|(q, _)| constant(py, &q))
     }
 
-    /// Velocity at the current time, (nv,), a read-only array: base twist, m/s and rad/s, in base axes, joint
+    /// Velocity at the current time, a read-only (nv,) array: base twist in base axes, m/s and rad/s; joint
     /// rates, rad/s or m/s.
     #[getter]
     fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.state(py).map(|(_, v)| constant(py, &v))
     }
 
-    /// Advance by a time.
+    /// Advance the run by a time interval.
     ///
     /// Parameters
     /// ----------
     /// dt : float
-    ///     Simulated time, s, positive.
+    ///     Simulated time, s; must be positive.
     ///
     /// Raises
     /// ------
     /// InputError
-    ///     If ``dt`` is not positive and finite, or leads past the planned end; the run stays as it was.
+    ///     If ``dt`` is not positive and finite, or leads past the planned end; the run is unchanged.
     /// RunInterrupted
     ///     At Ctrl-C, at a step before the requested time; ``trace`` holds the rows so far, and the run can
     ///     be advanced further.
@@ -85,19 +85,19 @@ impl PyStepper {
         self.advance_locked(py, &mut runs, t, None, &mut |py, _, _| py.check_signals())
     }
 
-    /// Advance to a time.
+    /// Advance the run to a given time.
     ///
     /// Parameters
     /// ----------
     /// t : float
     ///     Time, s, not before the current time.
     /// wall_s : float, optional
-    ///     Wall-clock time after which it returns early, at the end of a step, s. Default: no limit.
+    ///     Wall-clock time after which the call returns early, at the end of a step, s. Default: no limit.
     ///
     /// Raises
     /// ------
     /// InputError
-    ///     If ``t`` is not finite, in the past, or after the planned end; the run stays as it was.
+    ///     If ``t`` is not finite, in the past, or after the planned end; the run is unchanged.
     /// RunInterrupted
     ///     At Ctrl-C, at a step before the requested time; ``trace`` holds the rows so far, and the run can
     ///     be advanced further.
@@ -110,22 +110,24 @@ impl PyStepper {
         self.advance_locked(py, &mut runs, t, limit, &mut |py, _, _| py.check_signals())
     }
 
-    /// Hold joint torques from the current time on, until the next command.
+    /// Set the joint torques, which are held from the current time until the next command.
     ///
-    /// The current time becomes the end of a step. The trace has the bits of a run whose controller returns the
-    /// same torques at the same times (of an adaptive integrator: but for the lengths of the steps before them).
+    /// The current time becomes the end of a step. The trace is bit-identical to that of a run whose controller
+    /// returns the same torques at the same times; with an adaptive integrator, the lengths of the steps before
+    /// these times may differ.
     ///
     /// Parameters
     /// ----------
     /// tau : (n,) array or dict of float
-    ///     Torques, N m (N on a prismatic joint), of all joints, or by the names of some; the others stay as they are.
+    ///     Torques of all joints, or torques by joint name, N m (N for a prismatic joint). Joints that are not
+    ///     named keep their torques.
     ///
     /// Raises
     /// ------
     /// ShapeError
     ///     If the array does not have one entry per joint.
     /// InputError
-    ///     If a torque is not finite, or the robot has no joint of a name.
+    ///     If a torque is not finite, or a name is not that of a joint.
     /// ControlError
     ///     If an active controller drives one of the joints.
     fn command(&self, py: Python<'_>, tau: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -138,7 +140,7 @@ impl PyStepper {
     /// Returns
     /// -------
     /// Trace
-    ///     A copy; the run goes on independently of it.
+    ///     A copy, which does not change when the run continues.
     fn trace(&self, py: Python<'_>) -> PyResult<PyTrace> {
         let trace = self.try_with(py, |stepper| stepper.trace())?;
         let wall_s = self.run.lock(py)?.wall_s;
@@ -186,7 +188,7 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// since : int, optional
-    ///     First row of ``columns``; resuming needs all rows.
+    ///     First row of ``columns``; a checkpoint can be resumed only if it contains all rows.
     ///
     /// Returns
     /// -------
@@ -195,7 +197,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// ControlError
-    ///     If a Python controller cannot be saved; the run stays as it was.
+    ///     If the state of a Python controller cannot be saved; the run is unchanged.
     #[pyo3(signature = (since=0))]
     fn checkpoint(
         &self,
@@ -279,7 +281,7 @@ impl PyStepper {
         }
     }
 
-    /// Returns the exception for an error of the core; errors that ended the run get its rows.
+    /// Returns the exception for an error of the core, with the rows of the run if the error ended it.
     fn failed(
         &self,
         py: Python<'_>,
@@ -339,7 +341,7 @@ impl PyStepper {
 
     /// Reads the torques of a command.
     fn torques(&self, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Option<f64>>> {
-        let (py, place) = (tau.py(), &self.layout.systems()[0]); // a simulation is of one robot
+        let (py, place) = (tau.py(), &self.layout.systems()[0]); // a simulation has one robot
         let n = place.joints.len();
         let Ok(by_name) = tau.cast::<PyDict>() else {
             let input = Input::new(tau, "tau")?;
@@ -365,7 +367,7 @@ impl PyStepper {
     }
 }
 
-/// Returns the error of a stepper whose run is over.
+/// Returns the error of a stepper whose run has ended.
 fn ended(py: Python<'_>) -> PyErr {
     let message = "the run has ended; start a new one (a simulation has one run at a time)";
     plain(py, "SimulationError", message)

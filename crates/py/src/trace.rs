@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Result of a run: one row per recorded step; the first row is the initial state, the last the end.
+/// Result of a run: one row per recorded step; the first row is the initial state, the last the final state.
 ///
 /// The columns are read-only views in SI units; columns that do not apply to the run have the value None.
 /// ``onorbit_rs.COLUMNS`` describes each: shape, unit, frame and meaning.
@@ -26,12 +26,12 @@ pub(crate) struct PyTrace {
     pub(crate) wall_s: f64,
 }
 
-/// Number of rows from which the certificate of a trace takes a tenth of a second.
+/// Number of rows above which the certificate of a trace takes more than a tenth of a second.
 const LONG_TRACE: usize = 1 << 14;
 
 type Column<'py> = Option<Bound<'py, PyArrayDyn<f64>>>;
 
-/// Returns a view of a column with the trace as its owner; None where the run did not record it.
+/// Returns a view of a column with the trace as its owner; None if the run did not record it.
 fn view<'py>(this: &Bound<'py, PyTrace>, data: &[f64], row: &[usize]) -> PyResult<Column<'py>> {
     let shape: Vec<usize> = std::iter::once(this.get().trace.rows()).chain(row.iter().copied()).collect();
     let Ok(array) = ArrayView::from_shape(IxDyn(&shape), data) else { return Ok(None) };
@@ -44,7 +44,7 @@ fn view<'py>(this: &Bound<'py, PyTrace>, data: &[f64], row: &[usize]) -> PyResul
 fn described<'py>(this: &Bound<'py, PyTrace>, name: &str, data: &[f64]) -> PyResult<Column<'py>> {
     let column = COLUMNS.iter().find(|column| column.name == name).expect("every field is in the table");
     let row = column.row_shape(&this.get().model);
-    // a robot without joints has torques of no width
+    // a robot without joints has torques of width zero
     let is_recorded = !data.is_empty() || (column.condition == Condition::Always && row.contains(&0));
     if is_recorded { view(this, data, &row) } else { Ok(None) }
 }

@@ -14,7 +14,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 type Pair<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 type Out<'a, 'py> = Option<Any<'a, 'py>>;
 
-/// Return positions and velocities of many orbits of any kinds.
+/// Return the positions and velocities of many orbits, which may be of different kinds.
 ///
 /// The states equal those of ``orbit.state`` up to rounding, and their bits do not depend on ``threads``.
 ///
@@ -23,7 +23,7 @@ type Out<'a, 'py> = Option<Any<'a, 'py>>;
 /// orbits : list of Orbit
 ///     N orbits.
 /// times : (T,) or (N, T) array
-///     Simulation times, s, for all orbits or for each.
+///     Simulation times, s: the same for all orbits, or one row per orbit.
 /// threads : int, optional
 ///     Number of threads; default: all cores.
 /// out : tuple of two (N, T, 3) arrays, optional
@@ -39,7 +39,8 @@ type Out<'a, 'py> = Option<Any<'a, 'py>>;
 /// Raises
 /// ------
 /// OrbitError
-///     If an orbit is rejected (also ``Sgp4Error``, ``PathError``); ``index`` is its index.
+///     If a state cannot be computed; ``index`` is the index of the orbit. ``Sgp4Error`` and ``PathError``
+///     are subclasses.
 #[pyfunction]
 #[pyo3(signature = (orbits, times, *, threads=None, out=None))]
 pub(super) fn propagate<'py>(
@@ -71,7 +72,7 @@ pub(super) fn propagate<'py>(
     written(py, &shape, out, std::slice::from_ref(&input), run)
 }
 
-/// Calls `write` with two arrays of this shape, the given or new ones, and returns them.
+/// Calls `write` with two arrays of this shape, those in `out` or new ones, and returns them.
 fn written<'py>(
     py: Python<'py>,
     shape: &[usize],
@@ -85,7 +86,7 @@ fn written<'py>(
     Ok((r.into_array().into_any(), v.into_array().into_any()))
 }
 
-/// Returns the states of many ellipses; elements and time are numbers or (N,) arrays.
+/// Returns the states of many elliptic orbits; each element and the time are a number or an (N,) array.
 pub(crate) fn kepler_states<'py>(
     py: Python<'py>,
     given: [(&str, Any<'_, 'py>); 7],

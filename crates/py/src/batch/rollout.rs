@@ -15,7 +15,8 @@ use std::sync::atomic::AtomicBool;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Integrate many states in empty space: passively, with given torques, or with a computed-torque controller.
+/// Integrate many states without an environment: with free joints, given torques, or a computed-torque
+/// controller.
 ///
 /// The bits of the results do not depend on ``threads``.
 ///
@@ -36,7 +37,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// controller : ComputedTorque, optional
 ///     Controller that tracks ``reference``.
 /// reference : Reference, optional
-///     Path of the controller's tool.
+///     Path that the tool of the controller tracks.
 /// integrator : {"rk4", "semi_implicit_euler"}
 ///     Integrator.
 /// record_every : int, optional
@@ -49,8 +50,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Returns
 /// -------
 /// q, v : (B, nq) and (B, nv) array
-///     Final states; with ``record_every`` (B, K, nq) and (B, K, nv) with ``K = steps // record_every + 1``
-///     rows, the first of which are the initial states.
+///     Final states. With ``record_every``, the shapes are (B, K, nq) and (B, K, nv), where
+///     ``K = steps // record_every + 1``; the first of the K rows is the initial state.
 ///
 /// Raises
 /// ------
@@ -161,7 +162,7 @@ fn law_of<'a, 'py>(controller: Any<'a, 'py>) -> PyResult<&'a Bound<'py, PyComput
     })
 }
 
-/// Returns the batch size of `(B, width)`.
+/// Returns the batch size B of an array of shape `(B, width)`.
 fn batch_of(py: Python<'_>, input: &Input<'_>, name: &str, width: usize) -> PyResult<usize> {
     match input.shape() {
         [batch, got] if *got == width => Ok(*batch),

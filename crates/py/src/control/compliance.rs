@@ -14,7 +14,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Compliance of a tool by a virtual spring and damper: ``tau = Jg^T (K e + D e') - k N qdot``.
 ///
 /// The law is passive; in free fall there is no gravity load to compensate. Friction is not compensated and
-/// may hold the tool away from its goal. Because torques are held between control ticks, the damping is
+/// may keep the tool from reaching its goal. Because torques are held between control ticks, the damping is
 /// limited to about twice the inertia of the tool divided by the control period.
 ///
 /// Parameters
@@ -33,6 +33,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Raises
 /// ------
 /// ControlError, FrameError, ShapeError
+///     If a gain is invalid, the frame does not exist, or a gain has the wrong shape.
 #[pyclass(name = "Compliance", frozen, module = "onorbit_rs")]
 pub(crate) struct PyCompliance {
     law: Compliance,

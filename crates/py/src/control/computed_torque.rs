@@ -26,7 +26,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// damping : float
 ///     Singular value of the generalized Jacobian below which its inverse is damped.
 /// null_space_damping : float
-///     Damping of the self-motion, 1/s.
+///     Damping of joint motion that does not move the tool, 1/s.
 /// compensate_environment : bool
 ///     If True, the external wrenches are compensated.
 /// compensate_friction : bool
@@ -37,6 +37,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Raises
 /// ------
 /// ControlError, FrameError, ShapeError
+///     If a gain is invalid, the frame does not exist, or a gain has the wrong shape.
 #[pyclass(name = "ComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyComputedTorque {
     pub(crate) law: ComputedTorque,
@@ -44,7 +45,7 @@ pub(crate) struct PyComputedTorque {
 }
 
 impl PyComputedTorque {
-    /// Returns an error for a robot other than that of the law.
+    /// Returns an error if `model` is not the robot of this law.
     pub(crate) fn check_model(&self, py: Python<'_>, model: &Arc<Model>) -> PyResult<()> {
         same_robot(py, &self.model, model)
     }

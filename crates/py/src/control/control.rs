@@ -46,15 +46,15 @@ impl PyGoal {
 /// Parameters
 /// ----------
 /// controller : control law or object
-///     Law, or an object with ``update(t, state)`` that returns joint torques (k,).
+///     Control law, or an object with ``update(t, state)`` that returns joint torques (k,).
 /// reference : Reference or JointReference, optional
-///     Reference; its time begins with the control.
+///     Reference, whose time is zero when the control starts.
 /// joints : list of str, optional
 ///     Names of the joints; default: all.
 /// tool : str, optional
 ///     Frame of the reference of a Python controller; default: that of the simulation.
 /// name : str, optional
-///     Name for the trace and the results.
+///     Name of the control in the trace and the results.
 /// start : float
 ///     Simulation time at which the control starts, s.
 /// end : float, optional

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Reads a number, (6,) or (6, 6).
+/// Reads a task-space gain: a number, a (6,) array or a (6, 6) array.
 pub(super) fn gains(value: Any<'_, '_>, name: &str) -> PyResult<[f64; 36]> {
     if let Ok(gain) = value.extract::<f64>() {
         return Ok(ComputedTorque::diagonal([gain; 6]));
@@ -19,7 +19,7 @@ pub(super) fn gains(value: Any<'_, '_>, name: &str) -> PyResult<[f64; 36]> {
     }
 }
 
-/// Reads a number or (k,), with its length.
+/// Reads a joint gain, a number or a (k,) array, and returns its length.
 pub(super) fn per_joint(value: Option<Any<'_, '_>>, name: &str, default: f64) -> PyResult<(PerJoint, usize)> {
     let Some(value) = value else { return Ok((default.into(), 1)) };
     if let Ok(number) = value.extract::<f64>() {
@@ -32,7 +32,7 @@ pub(super) fn per_joint(value: Option<Any<'_, '_>>, name: &str, default: f64) ->
     }
 }
 
-/// Returns the common length of gains with one entry per joint.
+/// Returns the common length of the gains that have one entry per joint.
 pub(super) fn one_count(py: Python<'_>, gains: &[&(PerJoint, usize)]) -> PyResult<usize> {
     let mut counts: Vec<usize> = gains.iter().map(|gain| gain.1).filter(|n| *n > 1).collect();
     counts.sort_unstable();

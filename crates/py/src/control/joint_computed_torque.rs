@@ -27,6 +27,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Raises
 /// ------
 /// ControlError
+///     If a gain is invalid.
 #[pyclass(name = "JointComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointComputedTorque {
     law: JointComputedTorque,

@@ -11,7 +11,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// PID controller for each joint, as in ROS Control: ``tau = p e + i ∫e dt + d e'``.
 ///
 /// At least one gain is required, except for ``effort``. The integral does not grow further at a limit.
-/// Friction is not compensated: a joint that sticks waits for the integral.
+/// Friction is not compensated: a joint that sticks moves only when the integral term overcomes static
+/// friction.
 ///
 /// Parameters
 /// ----------
@@ -19,7 +20,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     Quantity that the reference commands. For ``effort`` its positions are efforts, N m or N, and there
 ///     are no gains.
 /// p, i, d : float or (k,) array, optional
-///     Gains per rad (m) of error.
+///     Proportional, integral and derivative gain; for ``position`` in N m/rad, N m/(rad s) and N m s/rad, or
+///     N/m, N/(m s) and N s/m for prismatic joints.
 /// i_limit : float or (k,) array, optional
 ///     Limit of the integral term, N m or N.
 /// effort_limit : float or (k,) array, optional
@@ -28,6 +30,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Raises
 /// ------
 /// ControlError
+///     If the interface is unknown, a value is invalid, or all gains are missing.
 #[pyclass(name = "JointPid", frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointPid {
     law: JointPid,

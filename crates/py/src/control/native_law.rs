@@ -20,7 +20,7 @@ pub(crate) struct Robot<'a> {
     pub(crate) tool: Option<usize>,
 }
 
-/// Reference, joints and robot that a control gives to its law.
+/// Reference, joints and robot of a control, from which its law is constructed.
 pub(super) struct Group<'a, 'py> {
     pub(super) reference: Option<Any<'a, 'py>>,
     pub(super) joints: &'a [usize],
@@ -28,12 +28,12 @@ pub(super) struct Group<'a, 'py> {
 }
 
 impl Group<'_, '_> {
-    /// Returns the reference of a tracked frame.
+    /// Returns the reference as one of a tool.
     pub(super) fn task(&self, py: Python<'_>) -> PyResult<TaskReference> {
         reference::extract(self.required(py)?, self.robot.orbit)
     }
 
-    /// Returns the reference of the joints.
+    /// Returns the reference as one of joints.
     pub(super) fn joint_path(&self, py: Python<'_>) -> PyResult<JointReference> {
         reference::extract_joints(self.required(py)?)
     }
@@ -58,7 +58,7 @@ pub(super) fn law_of<L: NativeLaw>(controller: Any<'_, '_>, group: &Group<'_, '_
     Some(controller.cast::<L>().ok()?.get().law(controller.py(), group))
 }
 
-/// Returns an error for a robot other than that of a law.
+/// Returns an error if `model` is not the robot `own` of a law.
 pub(super) fn same_robot(py: Python<'_>, own: &Arc<Model>, model: &Arc<Model>) -> PyResult<()> {
     if Arc::ptr_eq(own, model) || own.is_like(model) {
         return Ok(());

@@ -18,7 +18,7 @@ use pyo3::types::PyDict;
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
-/// Evaluates `kernel`.
+/// Evaluates `kernel` for one state or a batch of states.
 ///
 /// `shapes` are the trailing shapes of its outputs; `out` are the arrays to write them into.
 pub(crate) fn evaluate<'py, const N: usize>(
@@ -61,7 +61,7 @@ pub(crate) fn evaluate<'py, const N: usize>(
     Ok(outputs.map(Output::into_array))
 }
 
-/// Returns the batch size if the first argument is a batch.
+/// Returns the batch size if the first argument is a batch, and checks that the others match it.
 fn batch_of(py: Python<'_>, inputs: &[Input<'_>], names: &[&str]) -> PyResult<Option<usize>> {
     let first = inputs[0].shape();
     for (input, name) in inputs.iter().zip(names) {

@@ -87,7 +87,7 @@ fn parameter_table(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
     Ok(EarthParameters::from_rows(rows.data().as_chunks().0))
 }
 
-/// Returns Sun and Moon of a SPICE kernel, read by Python's `jplephem`.
+/// Returns the positions of Sun and Moon in a SPICE kernel, which PyPI's `jplephem` reads.
 pub(super) fn spice_kernel(py: Python<'_>, path: PathBuf) -> PyResult<SpiceKernel> {
     type Parts<'py> = Vec<(f64, f64, f64, Bound<'py, PyAny>)>;
     let read = py.import("onorbit_rs.ephemeris.spice")?.getattr("segments")?;

@@ -243,15 +243,15 @@ impl PyEarth {
     }
 }
 
-/// Returns the error for an argument that names none of the `known` choices.
+/// Returns the error for an argument that is not one of the `known` choices.
 fn unknown(py: Python<'_>, name: &str, got: &str, known: &str) -> PyErr {
     let message = format!("{name} is '{got}'; the choices are {known}");
     raise(py, "EarthError", &message, &fields!(py, "name": name, "got": got))
 }
 
-/// Function that fills values at times.
+/// Function of the core that computes a quantity at each of the given times.
 type AtTimes = fn(&Earth, &[f64], &mut [f64]) -> Result<(), EarthError>;
-/// Function that converts positions at times.
+/// Function of the core that converts one position per time.
 type OfPositions = fn(&Earth, &[f64], &[f64], &mut [f64]) -> Result<(), EarthError>;
 
 impl PyEarth {
@@ -265,7 +265,7 @@ impl PyEarth {
         }
     }
 
-    /// Returns values at one time or at many.
+    /// Evaluates a quantity at one time or at an array of times.
     fn at<'py>(
         &self,
         py: Python<'py>,
@@ -283,7 +283,7 @@ impl PyEarth {
         Ok(result.into_any())
     }
 
-    /// Converts positions at one time or at many.
+    /// Converts positions at one time or at an array of times.
     fn of<'py>(
         &self,
         py: Python<'py>,

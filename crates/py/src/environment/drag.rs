@@ -10,8 +10,8 @@ use std::sync::Arc;
 /// Drag ``-½ ρ C_D A (n·u)₊ u`` on every face in co-rotating air, with its torque.
 ///
 /// ``u`` is the velocity of the face's centroid relative to the air, for a cannonball that of the centre of
-/// mass. It requires an orbit and an ``earth``. The density is computed on a grid of 128 m and extrapolated
-/// with the scale height: within 160 m the relative error is at most 1e-4.
+/// mass. The effect requires an orbit and an ``earth``. The density is computed on a grid of 128 m and
+/// extrapolated with the scale height; within 160 m of a grid point, the relative error is at most 1e-4.
 ///
 /// Parameters
 /// ----------

@@ -10,7 +10,8 @@ use pyo3::prelude::*;
 ///
 /// ``F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]``, for a cannonball ``-P C_R A ŝ``, with ``P = ν
 /// (flux/c) (1 au/d)²`` and ``ν`` the fraction of the solar disc that is not occulted by the Earth. Light
-/// reflected or emitted by the Earth is neglected. It requires an orbit and an ``earth`` with an epoch.
+/// reflected or emitted by the Earth is neglected. The effect requires an orbit and an
+/// ``earth`` with an epoch.
 ///
 /// Parameters
 /// ----------

@@ -13,9 +13,9 @@ use std::sync::Arc;
 
 /// Gravity field of a planet, without its point mass.
 ///
-/// Its ``mu`` replaces that of the run. As an effect of a simulation it acts on every body. The orientation
-/// of the planet is that of the simulation's ``earth``; a field of order 0 needs none, and its axis is then
-/// z. Positions are from the planet's centre in planet-fixed axes.
+/// The ``mu`` of the field replaces that of the run. As an effect of a simulation it acts on every body. The
+/// orientation of the planet is that of the simulation's ``earth``. A field of order 0 does not require one;
+/// its axis is then z. Positions are from the planet's centre in planet-fixed axes.
 ///
 /// Parameters
 /// ----------
@@ -67,7 +67,7 @@ impl PyGravityField {
         )
     }
 
-    /// Return a field of zonal harmonics only, in closed form.
+    /// Return a field that has zonal harmonics only and is evaluated in closed form.
     ///
     /// Parameters
     /// ----------
@@ -108,14 +108,14 @@ impl PyGravityField {
                 return Err(plain(
                     py,
                     "GravityError",
-                    "expected a degree, for the Earth, or all of j, mu and radius; give one or the other",
+                    "give either degree, for the zonal harmonics of the Earth, or all of j, mu and radius",
                 ));
             }
         };
         Bound::new(py, Self::wrap(py, field, "GravityField.zonal", &keywords)?)
     }
 
-    /// Return the field of a ``.gfc`` file (ICGEM).
+    /// Read a field from a ``.gfc`` file (ICGEM format).
     ///
     /// Parameters
     /// ----------
@@ -142,7 +142,7 @@ impl PyGravityField {
         Bound::new(py, Self::wrap(py, field, "GravityField.from_gfc", &keywords)?)
     }
 
-    /// Return the field of fully normalised coefficients.
+    /// Return a field with the given fully normalised coefficients.
     ///
     /// Parameters
     /// ----------
@@ -254,7 +254,7 @@ impl PyGravityField {
     }
 }
 
-/// Function that fills rows.
+/// Function of the core that computes one row per position.
 type Fill = fn(&GravityField, &[f64], &mut [f64]) -> Result<(), GravityError>;
 
 impl PyGravityField {

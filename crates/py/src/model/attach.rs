@@ -17,7 +17,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///
 /// ``other`` is fixed to a frame of ``model``. The base and the name of the result are those of ``model``.
 /// Joints are numbered depth first: those of ``other`` come after all joints of ``model`` if ``frame`` is
-/// fixed to the base, otherwise after the joints beyond the body of ``frame``.
+/// fixed to the base, otherwise after the joints that descend from the body of ``frame``.
 ///
 /// Parameters
 /// ----------
@@ -26,7 +26,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// frame : str
 ///     Link or frame of ``model`` to attach to.
 /// other : Model or path
-///     The robot to attach, such as an arm. The base may be massless in a URDF or xacro file.
+///     The robot to attach, such as an arm. If it is a URDF or xacro file, its base may be massless.
 /// other_frame : str, optional
 ///     Mounting frame of ``other``. It must be fixed to the base of ``other``. Defaults to its root link.
 /// pose : (4, 4) array, optional

@@ -30,7 +30,7 @@ pub(super) fn with_link(
 }
 
 /// Returns the call that reconstructs `model.with_link(name, **keywords)`. Successive changes of one link
-/// become a single call, so that a loop that changes it does not keep every model on the way.
+/// become a single call, so that repeated changes do not keep every intermediate model in memory.
 fn call_of_with_link(
     model: &Bound<'_, PyModel>,
     name: &str,

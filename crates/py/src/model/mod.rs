@@ -74,7 +74,7 @@ impl PyModel {
         Ok(Self { model: Arc::new(model), evaluator, constructor_call })
     }
 
-    /// Index of a frame by name.
+    /// Returns the index of the frame with this name.
     pub(crate) fn frame(&self, name: &Bound<'_, PyAny>) -> PyResult<usize> {
         let py = name.py();
         let Ok(text) = name.cast::<PyString>() else {
@@ -137,7 +137,7 @@ impl PyModel {
     /// text : str
     ///     URDF.
     /// folder : path, optional
-    ///     Folder of relative paths.
+    ///     Folder at which relative paths start.
     /// package_paths : list of path, optional
     ///     As for :meth:`from_urdf`.
     ///
@@ -285,7 +285,7 @@ impl PyModel {
         self.model.warnings().iter().map(ToString::to_string).collect()
     }
 
-    /// Visual geometry.
+    /// Shapes of the visual geometry.
     #[getter]
     fn visuals(&self) -> Vec<PyVisual> {
         description::shapes(&self.model, self.model.visuals())
@@ -629,7 +629,7 @@ impl PyModel {
         evaluate_three(q.py(), self, Kernel::ForwardDynamicsDerivatives, &[q, v, tau], external, out, threads)
     }
 
-    /// Return linear momentum, and angular momentum about the centre of mass of the robot.
+    /// Return the linear momentum, and the angular momentum about the centre of mass of the robot.
     ///
     /// Parameters
     /// ----------
@@ -643,7 +643,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// (6,) or (B, 6) array
-    ///     W axes, kg m/s and kg m²/s.
+    ///     Linear, then angular momentum, W axes, kg m/s and kg m²/s.
     #[pyo3(signature = (q, v, *, threads=None, out=None))]
     fn momentum<'py>(
         &self,

@@ -27,7 +27,8 @@ use std::sync::Arc;
 /// mu : float, optional
 ///     Gravitational parameter, m³/s²; None means that there is no planet.
 /// ends : {"error", "coast"}
-///     Behaviour outside the times: ``PathError``, or motion at the last velocity and angular velocity.
+///     Behaviour outside the times: ``error`` raises ``PathError``; ``coast`` continues at the velocity and
+///     angular velocity of the nearest end.
 #[pyclass(name = "CustomPath", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PyCustomPath {
     path: Arc<CustomPath>,

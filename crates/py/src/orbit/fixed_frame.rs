@@ -12,8 +12,8 @@ use std::sync::Arc;
 
 /// Reference at rest in inertial axes.
 ///
-/// It has no local orbital frame; :meth:`frame` returns its attitude. With ``mu`` the robot falls away from
-/// it, because the reference does not fall.
+/// It has no local orbital frame; :meth:`frame` returns its attitude. With ``mu``, the robot falls and
+/// leaves the reference, which does not.
 ///
 /// Parameters
 /// ----------

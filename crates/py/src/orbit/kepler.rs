@@ -33,9 +33,9 @@ use std::sync::Arc;
 /// true_anomaly : float, optional
 ///     True anomaly at ``epoch``, rad.
 /// periapsis_time : float, optional
-///     Time of a periapsis passage, s of simulation.
+///     Simulation time of a periapsis passage, s.
 /// epoch : float
-///     Time of the anomaly, s of simulation.
+///     Simulation time to which the anomaly refers, s.
 /// mu : float
 ///     Gravitational parameter, m³/s²; default: that of the Earth.
 /// secular_j2 : bool
@@ -180,7 +180,7 @@ impl PyKepler {
         Bound::new(py, wrap(py, Kepler::from_state(r, v, mu), flattening, base_object)?)
     }
 
-    /// Return the states of many ellipses, without an object for each.
+    /// Return the states of many elliptic orbits without creating an object for each.
     ///
     /// The states equal those of ``Kepler(...).state(t)`` up to the rounding of ``n t``.
     ///

@@ -47,7 +47,7 @@ fn base(
     Ok(PyOrbit { orbit, constructor_call })
 }
 
-/// Function that fills rotations and angular velocities.
+/// Function of the core that computes rotations and angular velocities at given times.
 type FillFrames = fn(&dyn Orbit, &[f64], &mut [f64], &mut [f64]) -> Result<(), OrbitError>;
 
 #[pymethods]
@@ -64,7 +64,7 @@ impl PyOrbit {
         self.orbit.axes().name()
     }
 
-    /// Description of the origin of the velocity; that of SGP4 is not exactly the derivative of the position.
+    /// How the velocity is obtained, as text; SGP4's velocity is not exactly the derivative of its position.
     #[getter]
     fn velocity_source(&self) -> &'static str {
         self.orbit.velocity_source()

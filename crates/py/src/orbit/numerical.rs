@@ -16,8 +16,8 @@ use std::sync::Arc;
 
 /// Orbit integrated numerically in a gravity field.
 ///
-/// The integration uses collocation of order 16 and extends as far as states are requested; the error after a
-/// day in LEO is a micrometre.
+/// The integration uses collocation of order 16 and is extended as later states are requested; the error
+/// after one day in LEO is a micrometre.
 ///
 /// Parameters
 /// ----------

@@ -54,8 +54,8 @@ impl PyJointHold {
 /// points : (K, n) array
 ///     Positions, rad or m.
 /// times : (K,) array, optional
-///     Times of the points, s; otherwise the shortest within ``speed`` and ``acceleration``, which a joint
-///     reaches in each piece, or with ``stops=False`` somewhere on the path.
+///     Times of the points, s. Default: the shortest times within ``speed`` and ``acceleration``; some joint
+///     then reaches a limit in each piece, or with ``stops=False`` at one point of the path.
 /// speed, acceleration : float or (n,) array, optional
 ///     Limits, rad/s or m/s, rad/s² or m/s².
 /// stops : bool
@@ -91,7 +91,7 @@ impl PyJointWaypoints {
     /// start : (n,) array
     ///     Initial positions, rad or m.
     /// moves : list of tuple of int and float
-    ///     Index of a joint and its new position, in order.
+    ///     Index of each joint that moves and its new position, rad or m, in the order of the motions.
     /// times, speed, acceleration
     ///     As in the constructor.
     ///

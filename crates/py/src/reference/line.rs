@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 /// start_pose, end_pose : (4, 4) array
 ///     Initial and final pose of the tool in ``frame``, m.
 /// duration : float, optional
-///     Duration, s; otherwise the shortest within the following limits.
+///     Duration, s. Default: the shortest within the following limits.
 /// speed, acceleration : float, optional
 ///     Limits of the origin, m/s and m/s².
 /// angular_speed, angular_acceleration : float, optional

@@ -50,7 +50,7 @@ pub(crate) struct PyReference {
 
 #[pymethods]
 impl PyReference {
-    /// Time from its start until it comes to rest in its frame, s; 0 for a constant pose.
+    /// Time from the start of the reference until it is at rest in its frame, s; 0 for a constant pose.
     #[getter]
     fn duration(&self) -> f64 {
         self.path.duration()
@@ -76,7 +76,7 @@ impl PyReference {
 
     /// Return pose, velocity and acceleration in W.
     ///
-    /// This is not possible for a reference relative to the base.
+    /// A reference relative to the base raises ``ControlError``, because its pose in W depends on the robot.
     ///
     /// Parameters
     /// ----------
@@ -131,7 +131,7 @@ pub(crate) struct PyJointReference {
 
 #[pymethods]
 impl PyJointReference {
-    /// Time from its start until it comes to rest, s; 0 for constant positions.
+    /// Time from the start of the reference until it is at rest, s; 0 for constant positions.
     #[getter]
     fn duration(&self) -> f64 {
         self.path.duration()
@@ -147,7 +147,7 @@ impl PyJointReference {
     /// Returns
     /// -------
     /// q, rates, accelerations : (n,) or (T, n) array
-    ///     rad or m, per s, per s².
+    ///     Positions, rad or m; rates, rad/s or m/s; accelerations, rad/s² or m/s².
     fn sample<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Arrays<'py>> {
         let (times, shape) = times(t)?;
         let dims: Vec<usize> = shape.into_iter().chain([self.path.count()]).collect();

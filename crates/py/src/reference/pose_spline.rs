@@ -12,8 +12,8 @@ use pyo3::prelude::*;
 /// poses : (K, 4, 4) array
 ///     Poses of the tool in ``frame``, m.
 /// times : (K,) array, optional
-///     Times of the poses, s; otherwise the shortest within the limits of :class:`Line`, which are reached in
-///     each piece, or with ``stops=False`` somewhere on the path.
+///     Times of the poses, s. Default: the shortest times within the limits of :class:`Line`, one of which is
+///     then reached in each piece, or with ``stops=False`` at one point of the path.
 /// speed, acceleration, angular_speed, angular_acceleration : float, optional
 ///     As for :class:`Line`.
 /// stops : bool

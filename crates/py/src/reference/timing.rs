@@ -63,7 +63,7 @@ fn per_joint(value: Any<'_, '_>, name: &str, count: usize) -> PyResult<Vec<f64>>
     }
 }
 
-/// Returns the error for a duration and limits.
+/// Returns the error for a reference with both times and limits.
 fn both(py: Python<'_>) -> PyErr {
-    plain(py, "ControlError", "both times (or a duration) and limits are given; give one of them")
+    plain(py, "ControlError", "times (or a duration) and limits are both given; give only one of them")
 }

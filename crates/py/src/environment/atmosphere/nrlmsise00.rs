@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 
 /// NRLMSISE-00 atmosphere, including anomalous oxygen.
 ///
-/// It requires an ``earth`` with an epoch and space weather, either constants or a table. A missing value or
-/// day raises ``EffectError``.
+/// The model requires an ``earth`` with an epoch, and space weather, either as constants or as a table. A
+/// missing value or day raises ``EffectError``.
 ///
 /// Parameters
 /// ----------

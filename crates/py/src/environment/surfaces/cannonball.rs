@@ -12,9 +12,9 @@ use pyo3::prelude::*;
 /// area : float
 ///     Cross-sectional area, m².
 /// drag_coefficient : float
-///     C_D.
+///     Drag coefficient C_D.
 /// reflectivity : float
-///     C_R: 1 absorbs all light, 2 is a flat mirror that faces the Sun.
+///     Radiation pressure coefficient C_R: 1 if all light is absorbed, 2 for a flat mirror that faces the Sun.
 #[pyclass(name = "Cannonball", extends = PySurface, frozen, module = "onorbit_rs")]
 pub(super) struct PyCannonball;
 

@@ -5,8 +5,9 @@ use crate::errors::{IntoPython, fields};
 use onorbit_core::environment::surfaces::Surface;
 use pyo3::prelude::*;
 
-/// Faces of a link's visual geometry: boxes, cylinders and spheres exactly, capsules to 2 %; meshes are
-/// rejected.
+/// Faces of a link's visual geometry.
+///
+/// Boxes, cylinders and spheres are represented exactly, capsules to 2 %; meshes are rejected.
 ///
 /// Each face has its own angle of incidence and centroid, which results in a torque. Faces do not shadow each
 /// other.
@@ -14,7 +15,7 @@ use pyo3::prelude::*;
 /// Parameters
 /// ----------
 /// drag_coefficient : float
-///     C_D.
+///     Drag coefficient C_D.
 /// specular : float
 ///     Specularly reflected fraction of the light.
 /// diffuse : float

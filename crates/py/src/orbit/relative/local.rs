@@ -30,7 +30,7 @@ use pyo3::prelude::*;
 /// rho : (3,) or (T, 3) array
 ///     Relative position, axes of the frame, m.
 /// rho_dot : (3,) or (T, 3) array
-///     Its rate of change in the rotating frame, m/s.
+///     Rate of change of the relative position in the rotating frame, m/s.
 #[pyfunction]
 #[pyo3(signature = (orbit, t, r, v, *, frame="lvlh"))]
 pub(super) fn to_lvlh<'py>(
@@ -57,7 +57,7 @@ pub(super) fn to_lvlh<'py>(
 /// r : (3,) or (T, 3) array
 ///     Relative position, axes of the frame, m.
 /// v : (3,) or (T, 3) array
-///     Its rate of change in the rotating frame, m/s.
+///     Rate of change of the relative position in the rotating frame, m/s.
 /// frame : {"lvlh", "nadir"}
 ///     As for :func:`to_lvlh`.
 ///
@@ -80,10 +80,10 @@ pub(super) fn from_lvlh<'py>(
     convert_states(py, orbit, t, (r, v), frame, relative::from_local_rows)
 }
 
-/// Conversion of the core.
+/// Function of the core that converts states in one direction.
 type Convert = fn(&dyn Orbit, LocalFrame, &[f64], [&[f64]; 2], [&mut [f64]; 2]) -> Result<(), OrbitError>;
 
-/// Converts the states at one time or at many.
+/// Converts the states at one time or at an array of times.
 fn convert_states<'py>(
     py: Python<'py>,
     orbit: &Bound<'py, PyOrbit>,
