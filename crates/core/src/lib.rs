@@ -13,15 +13,15 @@
 //! | forward dynamics by ABA | `dynamics/aba.rs` | `kernel` |
 //! | momentum projection `v_b = Mbb⁻¹ (h − Mbm q̇)` | `dynamics/momentum.rs` | `projected_base_twist` |
 //! | Kepler's equation, ellipse and hyperbola | `orbit/kepler/anomaly.rs` | `solve_ellipse`, `solve_hyperbola` |
-//! | `F_k = m_k [g(r_k) − r̈_ref]`; in `gravity_mode: carried` only the tide | `environment/differential_gravity.rs` | `GravityMode`, `DifferentialGravity::add` |
+//! | `F_k = m_k [g(r_k) − r̈_ref]`; only the tide if `gravity_mode: carried` | `environment/differential_gravity.rs` | `GravityMode`, `DifferentialGravity::add` |
 //! | common acceleration of drag and light `ΣF/Σm`, removed in `carried` mode | `simulation/environment_loads.rs` | `add_relative_to_reference` |
 //! | gravity-gradient torque `T = 3μ/r³ r̂ × I r̂`, `T_i = −ε_ijk (I G)_jk` | `environment/gravity_gradient.rs` | `GravityGradient::add`, `torque` |
 //! | drag on a face `F = −½ ρ C_D a u`: `a = A (n·u)₊` | `environment/surfaces/face.rs` | `Face::add_drag` |
-//! | … sums over the faces `−Σ a u`, `−Σ a c × u` | `environment/surfaces/sums.rs` | `DragSums::wrench` |
-//! | … times `½ C_D`; `Drag::add` multiplies by `ρ` | `environment/surfaces/surface_block.rs` | `SurfaceBlock::drag` |
+//! | sums over the faces `−Σ a u`, `−Σ a c × u` | `environment/surfaces/sums.rs` | `DragSums::wrench` |
+//! | product of these sums with `½ C_D`; `Drag::add` multiplies by `ρ` | `environment/surfaces/surface_block.rs` | `SurfaceBlock::drag` |
 //! | RK4 on SO(3) | `simulation/integrator/rk4.rs` | `rk4` |
 //! | computed torque `τ = M* q̈ + c* − Q* + f` | `control/computed_torque.rs` | `kernel` |
-//! | the same for groups of joints | `control/hybrid_dynamics.rs` | `eliminate`, `solve` |
+//! | computed torque for some joints, given torques for the others | `control/hybrid_dynamics.rs` | `eliminate`, `solve` |
 
 pub mod batch;
 pub mod control;
@@ -37,6 +37,6 @@ pub mod simulation;
 pub mod spatial;
 pub mod text_file;
 
-#[cfg(doctest)] // its examples run with those of the crate
+#[cfg(doctest)] // runs the examples of this page as doctests
 #[doc = include_str!("../../../docs/api/rust.md")]
 mod documentation {}

@@ -26,7 +26,7 @@ pub enum TextFileError {
 /// Returns the text of a UTF-8 file of at most `limit` bytes.
 ///
 /// # Errors
-/// Those of [`read_bytes`], and [`TextFileError::NotUtf8`].
+/// The errors of [`read_bytes`], and [`TextFileError::NotUtf8`].
 pub fn read_text(path: &Path, limit: usize) -> Result<String, TextFileError> {
     let text = String::from_utf8(read_bytes(path, limit)?);
     text.map_err(|error| TextFileError::NotUtf8 { at: error.utf8_error().valid_up_to() })

@@ -24,7 +24,7 @@ pub struct Wrenches<'a> {
     pub rows: &'a [f64],
 }
 
-/// Call of a kernel: the kernel with its robot and inputs.
+/// Call of a kernel: kernel, robot and inputs.
 #[derive(Clone, Copy)]
 pub(super) struct Call<'a> {
     pub(super) kernel: Kernel,

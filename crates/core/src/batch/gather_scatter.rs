@@ -27,7 +27,7 @@ pub(super) fn gather<S: Real>(from: &[f64], strides: Strides, to: &mut [S]) {
 /// is first assembled in a buffer.
 const BLOCK: usize = 64;
 
-/// Buffer for one block of each row, for up to eight lanes, aligned to a register.
+/// Buffer for one block of each row, for up to eight lanes, aligned to a vector register.
 #[repr(align(64))]
 struct BlockBuffer([f64; 8 * BLOCK]);
 

@@ -14,7 +14,8 @@ const CHUNK: usize = 4096;
 /// anomaly at time zero (rad), time (s). Each has one value for all states or one per state.
 ///
 /// # Errors
-/// [`InputError`]: wrong lengths, numbers that are not finite, elements that are not those of an ellipse, zero threads.
+/// [`InputError`] for wrong lengths, numbers that are not finite, elements that do not describe an ellipse, or zero
+/// threads.
 pub fn kepler_states<'a>(
     elements: [&[f64]; 7],
     mu: f64,

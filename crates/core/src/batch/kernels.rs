@@ -203,7 +203,7 @@ impl Kernel {
     }
 }
 
-/// Workspace of all kernels for one scalar.
+/// Workspace of all kernels for one scalar type.
 #[derive(Clone, Debug)]
 pub(super) struct KernelData<S> {
     pub(super) data: Data<S>,

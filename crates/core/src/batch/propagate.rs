@@ -78,7 +78,7 @@ pub fn propagate<'a>(
     }
 }
 
-/// Computes the rows of one orbit, until stopped.
+/// Computes the rows of one orbit; ends early if the batch is stopped.
 fn fill(
     orbit: &dyn Orbit,
     times: &[f64],

@@ -1,4 +1,4 @@
-//! Rollouts: many runs without environment, passive, with given torques, or with computed torque.
+//! Rollouts: many runs without environment, with passive joints, given torques or computed torque.
 
 use super::gather_scatter::{Strides, gather, scatter};
 use super::input::{InputError, check_finite, check_frame, check_quaternions, check_whole};
@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// Control of the joints in a rollout.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum RolloutControl<'a> {
-    /// No torques.
+    /// No torques at the joints.
     #[default]
     Passive,
     /// Given torques, `(B, steps, n)`, N m.
@@ -203,11 +203,11 @@ impl<'a, S: Real> Lanes<'a, S> {
         }
     }
 
-    /// Advances one step, divided where joints stick or start to slip.
+    /// Advances by one step, which is divided at the instants at which joints stick or start to slip.
     fn advance(&mut self, mut t: f64, end: f64) {
         let Self { equations, state, stepper, .. } = self;
         equations.solve_modes(state);
-        // without environment, no evaluation in a step returns an error
+        // no evaluation in a step returns an error, because there is no environment
         while let Ok(reached) = stepper.advance(equations, state, (t, end)) {
             if reached >= end {
                 break;
@@ -259,8 +259,8 @@ impl<'a, S: Real> Lanes<'a, S> {
         );
     }
 
-    /// Returns the lane of the first run whose state is not finite. A state that becomes non-finite remains
-    /// so.
+    /// Returns the lane of the first run whose state is not finite. A state that has become non-finite never becomes
+    /// finite again.
     fn diverged(&self) -> Option<usize> {
         let state = only(&self.state.systems);
         let numbers = || state.q.iter().chain(&state.v);

@@ -30,8 +30,8 @@ impl Threads<'_> {
 
 /// Runs `task` for every element until stopped, with one workspace per thread.
 ///
-/// Uses at most as many threads as there are elements and processors, and the calling thread if that number
-/// is one. The elements are generated on demand, so a long batch needs no memory in advance.
+/// Uses at most as many threads as there are elements and processors, and only the calling thread if that number is
+/// one. The elements are generated on demand, so a long batch needs no memory in advance.
 ///
 /// # Errors
 /// [`InputError::NoThreads`].

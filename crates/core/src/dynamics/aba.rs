@@ -15,7 +15,7 @@ use crate::spatial::{ArticulatedInertia, Force, Motion, Real};
 /// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in base axes.
 ///
 /// The bias accelerations for `q̈ = 0` are computed first, as in inverse dynamics; the recursion then solves for the
-/// difference from these and multiplies each articulated inertia only once. If light bodies carry heavy ones, the
+/// difference from these and multiplies each articulated inertia only once. If a light body supports heavy ones, the
 /// mass matrix is used instead (`dense.rs`).
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Tables 7.1 and 9.4.
@@ -96,7 +96,7 @@ fn kernel<S: Real>(
             if is_locked(k) {
                 body.force = force; // only locked joints need it, and storing lanes is expensive
             }
-            // 1/D,  D = Sᵀ U + rotor; 1/D = 0 makes a locked joint rigid: it passes on all of IA
+            // 1/D, D = Sᵀ U + rotor; 1/D = 0 makes a locked joint rigid: its parent then supports the whole of IA
             body.d_inverse = match is_locked(k) {
                 true => S::of(0.0),
                 false => S::of(1.0) / (joint_effort(node, body.axis(), u_force) + S::of(node.rotor_inertia)),

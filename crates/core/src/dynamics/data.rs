@@ -25,7 +25,8 @@ pub struct BodyData<S> {
     pub external: Force<S>,
     /// Sum of the external wrenches on the subtree. Set by [`free_floating`](super::free_floating).
     pub subtree_external: Force<S>,
-    /// Spatial acceleration. Velocity products only, or complete, depending on the algorithm that ran last.
+    /// Spatial acceleration: the velocity-product part or the complete acceleration, depending on the algorithm that
+    /// ran last.
     pub acceleration: Motion<S>,
     /// Acceleration minus the bias acceleration for `q̈ = 0`. Set by ABA for bodies with several children.
     pub delta_acceleration: Motion<S>,
@@ -39,7 +40,8 @@ pub struct BodyData<S> {
     pub u_force: Force<S>,
     /// `1/D = 1 / (Sᵀ U + rotor)`, zero for a locked joint. Set by ABA.
     pub d_inverse: S,
-    /// `u = τ − Sᵀ pA`, joint effort less the bias force of the articulated body, N m (N). Set by ABA.
+    /// `u = τ − Sᵀ pA`, joint effort minus the component of the articulated bias force along the joint, N m (N). Set by
+    /// ABA.
     pub joint_bias: S,
     /// Constraint torque `λ` that keeps a locked joint from accelerating, N m (N). Set by ABA for locked
     /// joints.
@@ -65,7 +67,7 @@ impl<S: Real> BodyData<S> {
         SpatialInertia::at_com(self.inertia.mass, self.com_b(), self.inertia.about_com)
     }
 
-    /// Rotates the centre of mass and the inertia of the body to base axes. Those of the base are constant.
+    /// Rotates the centre of mass and the inertia of the body to base axes. For the base itself they are constant.
     #[inline(always)]
     pub(super) fn rotate_inertia(&mut self, node: &Node) {
         self.inertia.com = self.rot_bk * Vec3::of(&node.com);
@@ -83,7 +85,7 @@ pub struct Data<S> {
     /// `L` below the diagonal and `D⁻¹` on it, `M = L D Lᵀ`, `(nv, nv)`. Allocated only for robots solved by
     /// the mass matrix (`dense.rs`).
     pub(super) factors: Vec<S>,
-    /// Generalized forces, `(nv,)`, of the same robots.
+    /// Generalized forces, `(nv,)`. Allocated like `factors`.
     pub(super) forces: Vec<S>,
 }
 

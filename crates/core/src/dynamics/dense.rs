@@ -1,4 +1,4 @@
-//! Forward dynamics by the mass matrix, for robots in which a light body carries heavy ones.
+//! Forward dynamics by the mass matrix, for robots in which a light body supports heavy ones.
 //!
 //! The articulated inertia of such a body is a small difference of large numbers, so ABA loses digits to cancellation.
 //! The entries of `M` are accurate relative to their own size, and the residual of `M = L D Lᵀ` is small relative to
@@ -86,7 +86,7 @@ fn factorize<S: Real>(m: &mut [S], nv: usize) {
             m[i * nv + j] = scaled * m[j * nv + j];
             pivot -= scaled * m[i * nv + j];
         }
-        let pivot = S::select(pivot.less(least), least, pivot); // only rounding makes it smaller
+        let pivot = S::select(pivot.less(least), least, pivot); // the pivot is smaller only because of rounding
         m[i * nv + i] = S::of(1.0) / pivot;
     }
 }

@@ -8,7 +8,7 @@ use crate::spatial::{Force, Real};
 /// Wrench on the body of a frame, in frame axes about the frame origin, N and N m.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameWrench<S> {
-    /// Index of the frame.
+    /// Index of the frame in the model.
     pub frame: usize,
     /// Force and moment in frame axes.
     pub wrench: Force<S>,

@@ -112,7 +112,7 @@ fn inertia_momentum_energy<S: Real>(
 /// Projects the base twist onto a momentum: returns `v_b = Mbb⁻¹ (h − Mbm q̇)` in base axes, linear first.
 ///
 /// `h` is the momentum `target` in B about the base origin. `target` is in W axes, its angular part about the centre of
-/// mass. Needs [`kinematics`](super::kinematics) at `q`, `v`.
+/// mass. Requires [`kinematics`](super::kinematics) at `q`, `v`.
 pub fn projected_base_twist<S: Real>(data: &Data<S>, q: &[S], v: &[S], target: Momentum<S>) -> Motion<S> {
     S::enter(
         #[inline(always)]

@@ -27,9 +27,10 @@ pub fn inverse_dynamics<S: Real>(
     inverse_dynamics_recursion(model, data, v, Some(a), tau);
 }
 
-/// Computes the bias forces `c − Σ Jᵀ F`: Coriolis and centrifugal forces `c(q, v)` minus the external wrenches.
+/// Computes the bias forces `c − Σ Jᵀ F`: Coriolis and centrifugal forces `c(q, v)` minus the generalized forces of the
+/// external wrenches.
 ///
-/// Equal to inverse dynamics at `a = 0`. `c` (out): `(nv,)`.
+/// The result equals inverse dynamics at `a = 0`. `c` (out): `(nv,)`.
 pub fn bias_forces<S: Real>(
     model: &Model,
     data: &mut Data<S>,

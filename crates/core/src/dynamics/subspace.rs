@@ -1,4 +1,4 @@
-//! The motion subspace `S` of a joint, at the body origin in base axes.
+//! Products with the motion subspace `S` of a joint, at the body origin in base axes.
 //!
 //! The origin lies on the joint axis `z`, so `S = (0, z)` for a revolute joint and `(z, 0)` for a prismatic one.
 //! Products with `S` therefore need only half of the other factor.

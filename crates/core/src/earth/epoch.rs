@@ -31,7 +31,8 @@ pub struct Epoch {
 }
 
 impl Epoch {
-    /// Parses a text such as `2024-03-01T12:00:00 UTC`: date, time and time scale: UTC (or `Z`), TAI, TT or TDB.
+    /// Parses a text such as `2024-03-01T12:00:00 UTC`: date, time and a time scale, which is UTC (or `Z`), TAI, TT or
+    /// TDB.
     ///
     /// A leap second is second 60.
     ///
@@ -67,10 +68,11 @@ impl Epoch {
 
     fn of(instant: Instant) -> Self {
         let nanoseconds = (instant.to_time_scale(TimeScale::TAI) - noon_of_2000()).total_nanoseconds();
-        Self { tai: nanoseconds as i64 } // fits, because years are limited
+        Self { tai: nanoseconds as i64 } // fits in i64, because years are limited
     }
 
-    /// Returns the epoch of a number of days from 2000-01-01 and seconds of UTC; leap seconds from 1972 on.
+    /// Returns the epoch `seconds` of UTC after the midnight `day` days from 2000-01-01; leap seconds are counted from
+    /// 1972 on.
     pub(crate) fn of_utc(day: i64, seconds: f64) -> Self {
         let midnight = Instant::from_gregorian_utc_at_midnight(2000, 1, 1);
         Self::of(midnight + Unit::Day * day + Unit::Second * seconds)
@@ -113,12 +115,12 @@ impl Epoch {
 
     /// Returns TAI - UTC, s.
     fn leap_seconds(self) -> i32 {
-        // hifitime compares TAI seconds with UTC instants, so its steps are early by the leap seconds themselves
+        // hifitime compares TAI seconds with UTC instants, so each leap second takes effect too early by TAI - UTC
         let early = self.instant().leap_seconds_iers();
         (self.instant() - Unit::Second * i64::from(early)).leap_seconds_iers()
     }
 
-    /// Returns true within a leap second.
+    /// Returns true if the epoch lies within a leap second.
     fn is_leap_second(self) -> bool {
         (1..self.after(1.0).leap_seconds()).contains(&self.leap_seconds())
     }
@@ -185,7 +187,7 @@ fn numbers(text: &str) -> Option<([u16; 6], u32)> {
     Some((fields, nanoseconds))
 }
 
-/// Returns true for 1 to `longest` digits.
+/// Returns true if the text consists of 1 to `longest` digits.
 fn is_number(text: &str, longest: usize) -> bool {
     (1..=longest).contains(&text.len()) && text.bytes().all(|c| c.is_ascii_digit())
 }

@@ -21,7 +21,7 @@ pub enum EarthError {
         /// Given value.
         text: String,
     },
-    /// A quantity depends on the date, but there is no epoch.
+    /// A quantity depends on the date, but no epoch is given.
     #[error("{what} requires an epoch; give the run an epoch, such as '2024-03-01T12:00:00 UTC'")]
     NeedsEpoch {
         /// Name of the quantity.
@@ -41,7 +41,7 @@ pub enum EarthError {
         /// Last known instant.
         to: String,
     },
-    /// A time or an input is infinite or NaN.
+    /// A time or another input is infinite or NaN.
     #[error("{name} is {value}; expected a finite number", value = short(*value))]
     NotFinite {
         /// Name of the input.
@@ -66,7 +66,7 @@ pub enum EarthError {
     Table {
         /// Line, from 1.
         line: usize,
-        /// Problem.
+        /// Description of the problem.
         problem: String,
     },
     /// A position is so near the Earth's centre that its latitude is not unique.
@@ -81,7 +81,7 @@ pub enum EarthError {
         /// Smallest accepted distance, m.
         minimum: f64,
     },
-    /// The orbit's epoch and the Earth's differ.
+    /// The epochs of the orbit and of the Earth differ.
     #[error("the epoch of the orbit is {orbit}, but that of the run is {run}; give both the same epoch")]
     OtherEpoch {
         /// Epoch of the orbit.
@@ -89,7 +89,7 @@ pub enum EarthError {
         /// Epoch of the Earth.
         run: String,
     },
-    /// The orbit's axes and the Earth's differ.
+    /// The inertial axes of the orbit and of the Earth differ.
     #[error(
         "the orbit has {orbit} axes, but the Earth has {run} axes; create the Earth with the axes of the orbit"
     )]
@@ -99,7 +99,7 @@ pub enum EarthError {
         /// Axes of the Earth.
         run: &'static str,
     },
-    /// A number in a segment of a kernel is implausible.
+    /// A number in a segment of a SPICE kernel is implausible.
     #[error("{name} of a segment of the kernel is {value}; expected {expected}")]
     Segment {
         /// Name of the number.

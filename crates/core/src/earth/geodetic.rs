@@ -29,7 +29,8 @@ pub struct Geodetic {
     pub altitude: f64,
 }
 
-/// Smallest distance from the centre, m; latitudes are not unique where normals meet, within `a e²` = 43 km.
+/// Smallest distance from the centre, m; closer than `a e²` = 43 km, normals of the ellipsoid intersect and latitudes
+/// are not unique.
 const NEAREST: f64 = 50e3;
 
 impl Geodetic {

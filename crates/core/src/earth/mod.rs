@@ -45,7 +45,7 @@ pub struct Earth {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Rotation {
-    /// Uniform rotation about z of `I`; `inertial` defines these axes for Sun and Moon.
+    /// Uniform rotation about z of `I`; `inertial` defines the axes of `I` for the positions of Sun and Moon.
     AboutZ { angle: f64, rate: f64, inertial: Option<Box<Orientation>> },
     /// Rotation by IAU 2006 and the Earth-orientation parameters of the IERS.
     Iau2006(Box<Orientation>),
@@ -57,7 +57,8 @@ impl Earth {
         Self { rotation: Rotation::AboutZ { angle, rate, inertial: None }, sun_moon: None }
     }
 
-    /// Returns the Earth of IAU 2006/2000A with time zero at `epoch`, in GCRF axes; its pole is within 2 mas (6 cm).
+    /// Returns the Earth of IAU 2006/2000A with time zero at `epoch`, in GCRF axes; its pole is accurate to 2 mas (6
+    /// cm).
     ///
     /// # Errors
     /// [`EarthError::Parameter`] and [`EarthError::WrongLength`] for invalid parameters; [`EarthError::OutsideSpan`] if
@@ -72,7 +73,8 @@ impl Earth {
         Ok(earth)
     }
 
-    /// Returns the same Earth with time zero at `epoch`; this adds Sun and Moon in GCRF axes to a uniform rotation.
+    /// Returns the same Earth with time zero at `epoch`. An Earth with uniform rotation then also has Sun and Moon, in
+    /// GCRF axes.
     pub fn with_epoch(mut self, epoch: Epoch) -> Self {
         if let Rotation::AboutZ { inertial, .. } = &mut self.rotation {
             *inertial = Some(Box::new(Orientation::of_axes(epoch, epoch.series_span())));
@@ -80,7 +82,7 @@ impl Earth {
         Self { sun_moon: Some(SunMoon::new(epoch, None)), ..self }
     }
 
-    /// Returns the same Earth with the positions of Sun and Moon of a SPICE kernel.
+    /// Returns the same Earth with the positions of Sun and Moon from a SPICE kernel.
     ///
     /// # Errors
     /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] if the kernel does not cover eight days from the epoch.
@@ -152,7 +154,8 @@ impl Earth {
 
     /// Returns the rotation from `I` to `F` components at `t` s of simulation.
     ///
-    /// Outside the span that the Earth [covers](Self::covers), parameters and pole are those of its nearest end.
+    /// Outside the span that the Earth [covers](Self::covers), the parameters and the pole at the nearest end of the
+    /// span are used.
     pub fn rot_fi(&self, t: f64) -> Matrix3<f64> {
         match &self.rotation {
             Rotation::AboutZ { angle, rate, .. } => rotation::r3(angle + rate * t),
@@ -184,7 +187,7 @@ impl Earth {
     /// Without a kernel, direction and distance are within 10″ and 3e-5 of JPL's DE421 from 1900 to 2050.
     ///
     /// # Errors
-    /// Those of [`Earth::sun`].
+    /// The errors of [`Earth::sun`].
     pub fn moon(&self, t: f64) -> Result<Vector3<f64>, EarthError> {
         let sun_moon = self.sun_moon_at("the Moon", t)?;
         Ok(sun_moon.moon(t, |t| self.rot_ig(t)))

@@ -26,7 +26,7 @@ pub(super) struct Orientation {
 }
 
 impl Orientation {
-    /// Returns the orientation for a run from `epoch` that needs the pole within `span`, s of simulation.
+    /// Returns the orientation for a run that starts at `epoch` and evaluates the pole within `span`, s of simulation.
     pub(super) fn new(
         epoch: Epoch,
         axes: Axes,
@@ -78,7 +78,7 @@ impl Orientation {
 
     /// Returns the rotation from `I` to `F` components: `W R₃(θ - s) Mᵀ` from GCRF, `W R₃(θ₈₂)` from TEME.
     ///
-    /// `Mᵀ R₃(s)` are the celestial intermediate axes, of pole `X, Y`; `θ₈₂` is the mean sidereal time of 1982.
+    /// `Mᵀ R₃(s)` are the celestial intermediate axes, with the pole `X, Y`; `θ₈₂` is the mean sidereal time of 1982.
     ///
     /// Source: IERS Conventions (2010), eq. 5.1 and 5.10; Vallado and others, AIAA 2006-6753, for TEME.
     pub(super) fn rot_fi(&self, t: f64) -> Matrix3<f64> {
@@ -149,7 +149,7 @@ impl Orientation {
 
 impl PartialEq for Orientation {
     fn eq(&self, other: &Self) -> bool {
-        // the other fields follow from these
+        // the other fields are determined by these
         (self.epoch, self.axes, &self.parameters) == (other.epoch, other.axes, &other.parameters)
     }
 }

@@ -7,9 +7,9 @@ use super::precession::ARC_SECOND;
 /// UT1 and polar motion during a run.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Parameters {
-    /// Constants: UT1 - TAI, s, and `x_p, y_p`, rad.
+    /// Constant UT1 - TAI, s, and polar motion `x_p, y_p`, rad.
     Constant { ut1_minus_tai: f64, polar_motion: [f64; 2] },
-    /// Linear interpolation between rows; UT1 - TAI has no leap seconds.
+    /// Rows, which are interpolated linearly; UT1 - TAI has no leap seconds.
     Table(Box<[Row]>),
 }
 
@@ -24,14 +24,14 @@ pub(super) struct Row {
 /// Earth-orientation parameters supplied by the user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EarthParameters {
-    /// Constants.
+    /// Constant parameters.
     Constant {
         /// UT1 - UTC at the epoch, s.
         ut1_minus_utc: f64,
         /// Polar motion `x_p, y_p`, rad.
         polar_motion: [f64; 2],
     },
-    /// Rows in the order of time, with linear interpolation.
+    /// Rows in order of time, which are interpolated linearly.
     Table(Vec<EarthParameterRow>),
 }
 
@@ -68,7 +68,7 @@ impl EarthParameters {
 const FARTHEST_POLE: f64 = 5.0 * ARC_SECOND;
 
 impl Parameters {
-    /// Returns the parameters for a run from `epoch`.
+    /// Returns the parameters for a run that starts at `epoch`.
     pub(super) fn new(given: &EarthParameters, epoch: Epoch) -> Result<Self, EarthError> {
         match given {
             EarthParameters::Constant { ut1_minus_utc, polar_motion } => {
@@ -122,7 +122,7 @@ impl Parameters {
         }
     }
 
-    /// Returns `x_p, y_p`, rad.
+    /// Returns the polar motion `x_p, y_p`, rad.
     pub(super) fn polar_motion(&self, t: f64) -> [f64; 2] {
         match self {
             Self::Constant { polar_motion, .. } => *polar_motion,
@@ -141,7 +141,7 @@ fn around(rows: &[Row], t: f64) -> (&Row, &Row, f64) {
     (a, b, ((t - a.time) / (b.time - a.time)).clamp(0.0, 1.0))
 }
 
-/// Returns the largest |UT1 - UTC| accepted, s: the bound that defines leap seconds.
+/// Returns the largest accepted |UT1 - UTC|, s, which is the bound that leap seconds maintain.
 ///
 /// Before 1972, UT1 - TAI replaces UT1 - UTC; by 2035 the bound will be raised.
 ///

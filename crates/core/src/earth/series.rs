@@ -11,7 +11,7 @@ pub(super) struct Series {
 impl Series {
     /// Returns the sum at `t` centuries for these arguments, rad.
     pub(super) fn sum(&self, t: f64, arguments: &[f64; 8]) -> f64 {
-        // terms with l' decay with the eccentricity of the Earth's orbit (Meeus, Astronomical Algorithms, ch. 47)
+        // terms with l' decrease with the eccentricity of the Earth's orbit (Meeus, Astronomical Algorithms, ch. 47)
         let decay = 1.0 - 0.002_516 * t;
         let term = |(multiples, [a, b]): &([i8; 8], [f64; 2])| {
             let angle: f64 = multiples.iter().zip(arguments).map(|(k, x)| f64::from(*k) * x).sum();

@@ -10,7 +10,7 @@ const FARTHEST_KM: f64 = 1e12;
 /// Positions of one body relative to another: Chebyshev series on intervals of equal length (types 2 and 3).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpiceSegment {
-    /// Sign of the positions: 1, or -1 if they are subtracted.
+    /// Sign of the positions in the sum: 1, or -1 if they are subtracted.
     pub sign: f64,
     /// Start of the first interval, s of TDB from J2000.0.
     pub start: f64,

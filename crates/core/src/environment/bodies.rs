@@ -56,7 +56,7 @@ impl Bodies {
         self.len() == 0
     }
 
-    /// Returns the state of a body, if it exists; a plain number is a body of the first system.
+    /// Returns the state of a body, if it exists. A plain number selects a body of the first system.
     pub fn get(&self, body: impl Into<BodyIndex>) -> Option<BodyState> {
         let row = self.layout.row(body.into())?;
         let (block, i) = (&self.blocks[row / WIDTH], row % WIDTH);
@@ -96,7 +96,7 @@ impl Bodies {
         moment * (1.0 / mass)
     }
 
-    /// Returns the bodies of a system in groups of as many as `S` has lanes.
+    /// Returns the bodies of a system in groups with one body per lane of `S`.
     #[inline(always)]
     pub(super) fn groups<S: Real>(&self, system: usize) -> impl Iterator<Item = LaneGroup<'_>> {
         let (start, count) = self.layout.systems()[system];

@@ -1,4 +1,4 @@
-//! Effect: a wrench fixed in a body and active during an interval.
+//! Effect that applies a wrench, fixed in a body, during an interval.
 
 use nalgebra::Vector3;
 
@@ -28,7 +28,7 @@ pub struct BodyWrench {
 impl BodyWrench {
     /// Returns a force (N) at the origin of `body` and a torque (N m), both in body axes and always active.
     ///
-    /// A plain number is a body of the first system.
+    /// A plain number selects a body of the first system.
     ///
     /// # Errors
     /// [`EnvironmentError::NotFinite`].

@@ -11,14 +11,14 @@ use super::wrenches::{WrenchLanes, Wrenches};
 use crate::gravity::{point_mass, tide};
 use crate::spatial::{Real, Vec3};
 
-/// Motion of the robot relative to a reference that is not in free fall (`gravity_mode` in YAML and Python).
+/// Treatment of gravity relative to a reference orbit that is not in free fall (`gravity_mode` in YAML and Python).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GravityMode {
-    /// The robot obeys the gravity field and falls away from such a reference.
+    /// The robot obeys the gravity field and moves away from such a reference.
     #[default]
     True,
-    /// The robot is carried along with the reference: of gravity only the tide acts, and drag and radiation pressure act
-    /// without the acceleration that they give to the whole robot.
+    /// The robot shares the non-gravitational acceleration of the reference: only the tidal part of gravity acts on it,
+    /// and the common acceleration caused by drag and radiation pressure is removed.
     Carried,
 }
 
@@ -37,7 +37,7 @@ pub struct DifferentialGravity {
 const NAME: &str = "gravity";
 
 impl DifferentialGravity {
-    /// Returns `g(r_ref) - r̈_ref` at `t` s, m/s², `W` axes: the gravity that the reference does not follow.
+    /// Returns `g(r_ref) - r̈_ref` at `t` s, m/s², `W` axes: the part of gravity that the reference does not follow.
     ///
     /// Exactly zero for a reference in free fall; `None` without a planet.
     ///

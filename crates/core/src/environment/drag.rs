@@ -13,7 +13,7 @@ use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Effect: drag force and torque on every body with a surface.
+/// Effect that applies drag forces and torques to every body with a surface.
 ///
 /// The force on a face of area `A` and outward normal `n` is `F = -½ ρ C_D A (n·u)₊ u` at its centroid `c`, that on a
 /// cannonball `F = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the velocity of this point

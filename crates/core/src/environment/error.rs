@@ -14,7 +14,7 @@ pub enum EnvironmentError {
     /// The gravity of planet and third bodies is not defined.
     #[error(transparent)]
     Gravity(#[from] GravityError),
-    /// An effect that requires a planet is active without a planet.
+    /// An effect that requires a planet is used without a planet.
     #[error(
         "{effect} requires an orbit around a planet, but this run has none; add an orbit or remove the effect"
     )]
@@ -22,7 +22,7 @@ pub enum EnvironmentError {
         /// Name of the effect.
         effect: &'static str,
     },
-    /// An effect that requires the rotation of the Earth is active without an Earth.
+    /// An effect that requires the rotation of the Earth is used without an Earth.
     #[error("{effect} requires the rotation of the Earth; pass `earth` to the run (in YAML an epoch)")]
     NoEarth {
         /// Name of the effect.

@@ -8,7 +8,7 @@ use super::soa::on_lanes;
 use super::wrenches::{WrenchLanes, Wrenches};
 use crate::spatial::{Real, Sym3, Vec3};
 
-/// Gravity-gradient torque on each body about its centre of mass.
+/// Effect that applies the gravity-gradient torque to each body, about its centre of mass.
 ///
 /// `T_i = -ε_ijk (I G)_jk`, with the gradient `G` of the full field at the body, 1/s², and the inertia `I` about the
 /// centre of mass, kg m²; for a point mass `T = (3μ/r³) r̂ × I r̂`, with `r` from the planet's centre to the

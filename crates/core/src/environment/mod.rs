@@ -2,14 +2,13 @@
 //!
 //! | equation | file, function |
 //! |-|-|
-//! | `F = m [g(r) - r̈_ref]`; in [`GravityMode::Carried`] only the tide | `differential_gravity.rs`, `add` |
-//! | `T = (3μ/r³) r̂ × I r̂`, of a field `T_i = -ε_ijk (I G)_jk` | `gravity_gradient.rs`, `add`, `torque` |
+//! | `F = m [g(r) - r̈_ref]`; only the tide in [`GravityMode::Carried`] | `differential_gravity.rs`, `add` |
+//! | `T = (3μ/r³) r̂ × I r̂` for a point mass, `T_i = -ε_ijk (I G)_jk` for any field | `gravity_gradient.rs`, `add`, `torque` |
 //! | `F = -½ ρ C_D A (n·u)₊ u` on a face | `surfaces/face.rs` `add_drag`, `sums.rs` `wrench`, `surface_block.rs` `drag` |
 //! | `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]` on a face | `surfaces/face.rs` `add_pressure`, `sums.rs` `wrench` |
 //!
-//! [`Effect`] is the trait that each effect implements; a new effect requires a file and a line in this
-//! module.
-//! `W` has inertial axes and its origin on the reference orbit.
+//! [`Effect`] is the trait that each effect implements; a new effect requires a new file and a line in this module. `W`
+//! has inertial axes and its origin on the reference orbit.
 
 pub mod atmosphere;
 mod bodies;

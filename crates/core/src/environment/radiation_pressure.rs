@@ -11,12 +11,12 @@ use super::wrenches::{WrenchLanes, Wrenches};
 use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 
-/// Force and torque of sunlight on every body with a surface, with the shadow of the Earth.
+/// Effect that applies the force and torque of sunlight to every body with a surface, with the shadow of the Earth.
 ///
 /// The force on a face of area `A` and outward normal `n` is `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]` at
 /// its centroid where `cos θ = n·ŝ > 0`, that on a cannonball `F = -P C_R A ŝ` at the centre of mass. `ŝ` points to the
-/// Sun; `P = ν (Φ/c) (1 au/d)²` with the true distance `d` of the Sun and the fraction `ν` of the solar disc not
-/// occulted by the Earth. Parts do not shadow each other; light from the Earth is neglected.
+/// Sun; `P = ν (Φ/c) (1 au/d)²` with the distance `d` of the Sun and the fraction `ν` of the solar disc not occulted by
+/// the Earth. Parts do not shadow each other; light from the Earth is neglected.
 ///
 /// The shadow is evaluated at every stage of a step; no step ends at its edge. A penumbra (about 8 s in a low orbit) is
 /// smooth enough for steps of 1 s. Long fixed steps resolve its edge to a fraction of a step; adaptive steps
@@ -100,14 +100,14 @@ struct Light<S> {
 }
 
 impl<S: Real> Light<S> {
-    /// Gathers the light on each body.
+    /// Gathers the light that reaches each body.
     #[inline(always)]
     fn from_lanes(light: impl Fn(usize) -> Light<f64>) -> Self {
         Self { to_sun: Vec3::from_lanes(|i| light(i).to_sun), pressure: S::from_lanes(|i| light(i).pressure) }
     }
 }
 
-/// Returns `radius` if it can be that of a planet in metres.
+/// Returns `radius` if it is a plausible radius of a planet, m.
 fn planet_radius(radius: f64) -> Result<f64, SurfaceError> {
     if radius.is_finite() && radius >= 1e5 {
         return Ok(radius);

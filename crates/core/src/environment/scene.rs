@@ -17,7 +17,7 @@ use std::cell::OnceCell;
 pub struct Reference<'a> {
     /// State of the reference, axes of `I`; the origin of `W` is at its position.
     pub state: OrbitState,
-    /// Gravity that acts on robot and reference; `None` around no planet.
+    /// Gravity that acts on robot and reference; `None` without a planet.
     pub gravity: Option<&'a Gravity>,
     /// True if the reference obeys exactly this gravity, so that only differences of gravity act in `W`.
     pub in_free_fall: bool,
@@ -137,7 +137,7 @@ impl<'a> Scene<'a> {
 
     /// Returns the gravity around the robot without the planet's point mass; `None` if it is a point mass only.
     ///
-    /// `tide_only` selects the field that also gives its difference to the reference, the tide.
+    /// `tide_only` selects the expansion that also provides the difference from the reference, which is the tide.
     pub(super) fn local_field(
         &self,
         planet: &Planet<'_, 'a>,
@@ -163,7 +163,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Returns the value of the cell; an empty cell is filled by `compute`.
+/// Returns the value of the cell and fills an empty cell with the result of `compute`.
 fn get_or_try_init<T, E>(cell: &OnceCell<T>, compute: impl FnOnce() -> Result<T, E>) -> Result<&T, E> {
     match cell.get() {
         Some(value) => Ok(value),
@@ -171,7 +171,7 @@ fn get_or_try_init<T, E>(cell: &OnceCell<T>, compute: impl FnOnce() -> Result<T,
     }
 }
 
-/// Planet of a scene as seen by one effect.
+/// Planet of a scene, with the name of the effect for which it is evaluated.
 pub(super) struct Planet<'s, 'a> {
     effect: &'static str,
     pub(super) mu: f64,
@@ -182,7 +182,7 @@ pub(super) struct Planet<'s, 'a> {
 }
 
 impl Planet<'_, '_> {
-    /// Rejects bodies below ground; `distance` is that from the planet's centre, m.
+    /// Rejects bodies below ground; `distance` is measured from the planet's centre, m.
     #[inline(always)]
     pub(super) fn check_group_above_ground<S: Real>(
         &self,

@@ -26,20 +26,20 @@ impl Column8 {
         self.0[i]
     }
 
-    /// Returns `Σ aᵢ bᵢ`, added up in four partial sums.
+    /// Returns `Σ aᵢ bᵢ`, computed as four partial sums.
     pub(super) fn dot(&self, other: &Self) -> f64 {
         let pair = |i: usize| self.0[i] * other.0[i] + self.0[i + WIDTH / 2] * other.0[i + WIDTH / 2];
         (pair(0) + pair(1)) + (pair(2) + pair(3))
     }
 
-    /// Returns as many numbers as `S` has lanes, from row `offset` on.
+    /// Returns the numbers of consecutive rows, one per lane of `S`, starting at row `offset`.
     #[inline(always)]
     pub(super) fn load<S: Real>(&self, offset: usize) -> S {
         let numbers = &self.0[offset..][..S::LANES];
         S::from_lanes(|i| numbers[i])
     }
 
-    /// Stores the lanes from row `offset` on.
+    /// Stores the lanes in consecutive rows, starting at row `offset`.
     #[inline(always)]
     pub(super) fn store<S: Real>(&mut self, offset: usize, lanes: S) {
         for (i, to) in self.0[offset..][..S::LANES].iter_mut().enumerate() {
@@ -48,7 +48,7 @@ impl Column8 {
     }
 }
 
-/// Stores a vector in three columns from row `offset` on.
+/// Stores a vector per lane in three columns, starting at row `offset`.
 #[inline(always)]
 pub(super) fn store<S: Real>(columns: &mut Vec3<Column8>, offset: usize, lanes: Vec3<S>) {
     columns.x.store(offset, lanes.x);

@@ -52,7 +52,7 @@ impl Wrenches {
         self.blocks.fill(WrenchLanes::default());
     }
 
-    /// Returns the wrench on a body, if the body exists; a plain number is a body of the first system.
+    /// Returns the wrench on a body, if the body exists. A plain number selects a body of the first system.
     pub fn get(&self, body: impl Into<BodyIndex>) -> Option<Wrench> {
         let row = self.layout.row(body.into())?;
         let (block, i) = (&self.blocks[row / WIDTH], row % WIDTH);
@@ -71,7 +71,7 @@ impl Wrenches {
         (0..count).filter_map(move |body| self.get(BodyIndex { system, body }))
     }
 
-    /// Adds a wrench to the wrench on a body; a plain number is a body of the first system.
+    /// Adds a wrench to the wrench on a body. A plain number selects a body of the first system.
     ///
     /// # Errors
     /// [`EnvironmentError::UnknownBody`].
@@ -84,7 +84,7 @@ impl Wrenches {
         Ok(())
     }
 
-    /// Adds to the wrenches on as many bodies as `S` has lanes, from `row` on.
+    /// Adds wrenches to those on consecutive bodies, one per lane of `S`, starting at row `row`.
     #[inline(always)]
     pub(super) fn add_lanes<S: Real>(&mut self, row: usize, wrenches: WrenchLanes<S>) {
         let (to, offset) = (&mut self.blocks[row / WIDTH], row % WIDTH);
@@ -93,7 +93,7 @@ impl Wrenches {
         store(&mut to.torque, offset, sum.torque);
     }
 
-    /// Returns the wrenches on as many bodies of a system as `S` has lanes, from body `first` on.
+    /// Returns the wrenches on consecutive bodies of a system, one per lane of `S`, starting with body `first`.
     #[inline(always)]
     pub(crate) fn lanes<S: Real>(&self, system: usize, first: usize) -> WrenchLanes<S> {
         let row = self.layout.systems()[system].0 + first;

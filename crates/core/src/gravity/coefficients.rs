@@ -8,7 +8,8 @@ use crate::number_text::short;
 /// Highest degree for which the recursion is stable; no published model exceeds it.
 const HIGHEST: usize = 2700;
 
-/// Limits for plausible coefficients: Saturn's `C̄20` is 0.0073; degree 1 is the offset of the centre of mass, `√3 C̄ R`.
+/// Largest plausible coefficients of degree 2 and above and of degree 1. Saturn's `C̄20` is 0.0073; the coefficients of
+/// degree 1 give the offset `√3 C̄ R` of the centre of mass.
 const LARGEST: f64 = 1e-2;
 const LARGEST_FIRST: f64 = 1e-4;
 
@@ -62,7 +63,7 @@ impl Coefficients {
         Self::checked(model.to_owned(), mu, radius, series)
     }
 
-    /// Returns the coefficients of a series after a check of their plausibility.
+    /// Returns the coefficients of a series, or an error if they are implausible.
     pub(super) fn checked(
         model: String,
         mu: f64,
@@ -70,7 +71,7 @@ impl Coefficients {
         mut series: Series,
     ) -> Result<Self, GravityError> {
         check_planet(mu, radius)?;
-        *series.at(0, 0) = [0.0; 2]; // the point mass is separate
+        *series.at(0, 0) = [0.0; 2]; // the point mass is computed separately
         for n in 1..=series.degree() {
             for m in 0..=n {
                 for (name, value) in ["c", "s"].into_iter().zip(series.get(n, m)) {
@@ -145,11 +146,13 @@ fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
         .then(|| format!("that of degree 2, order 0 is {}, but the Earth's is -4.84e-4", short(c20)))
 }
 
-/// Detects coefficients without normalisation by their decay: those of order `n` decay with the factorial of the degree.
+/// Detects coefficients without normalisation by their decay: sectoral coefficients (order equal to degree) decay with
+/// the factorial of the degree.
 ///
-/// `Nnn = √(2 (2n + 1)/(2n)!)` is 1e-7 times as large at n = 10 as at n = 4, and similarly smaller than `Nn0`. Normalised
-/// coefficients of planets decay as about `n⁻²` (Kaula's rule) and are similar within a degree. The threshold is
-/// halfway in the logarithm, from degree 8 on; both over degrees and over orders the decay must exceed it.
+/// `Nnn = √(2 (2n + 1)/(2n)!)` is 1e-7 times as large at n = 10 as at n = 4, and similarly smaller than `Nn0`.
+/// Normalised coefficients of planets decay as about `n⁻²` (Kaula's rule) and are similar within a degree. The
+/// threshold is the mean of both decays in the logarithm. The test requires degree 8 or more, and the decay must exceed
+/// the threshold both over degrees and over orders.
 fn unnormalised_decay(series: &Series) -> Option<String> {
     let high = series.degree().min(series.order()).min(16);
     let size = |n: usize, m: usize| -> f64 {

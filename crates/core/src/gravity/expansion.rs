@@ -43,8 +43,7 @@ impl Expansion {
         is_near(Vec3::of(&self.at), positions)
     }
 
-    /// Returns the expansion in axes `A`, where `rot` converts `A` components to components of this
-    /// expansion.
+    /// Returns the expansion in axes `A`, where `rot` converts `A` components to the axes of this expansion.
     pub(super) fn rotated_back(&self, rot: &Mat3<f64>) -> Self {
         Self {
             at: rot.transpose_mul(self.at),

@@ -35,7 +35,7 @@ enum Kind {
 }
 
 impl GravityField {
-    /// Returns the zonal field `J2` to `Jdegree` of the Earth (EGM2008); `degree` is from 2 to 6.
+    /// Returns the zonal field of the Earth (EGM2008) up to `degree`, which is from 2 to 6.
     ///
     /// # Errors
     /// [`GravityError::ZonalDegree`].
@@ -82,7 +82,7 @@ impl GravityField {
     /// Reads a model from a `.gfc` file; `degree` defaults to that of the file and `order` to `degree`.
     ///
     /// # Errors
-    /// [`GravityError`] for a file that is unreadable, truncated, not normalised or time-dependent, and as
+    /// [`GravityError`] for a file that is unreadable, truncated, not normalised or time-dependent, and the errors of
     /// [`GravityField::new`].
     pub fn from_gfc(path: &Path, degree: Option<usize>, order: Option<usize>) -> Result<Self, GravityError> {
         let file = path.display().to_string();
@@ -163,7 +163,7 @@ impl GravityField {
     /// Returns the acceleration, m/s², and its gradient `∂g/∂r`, symmetric and with zero trace, 1/s².
     ///
     /// # Errors
-    /// Those of [`GravityField::acceleration`].
+    /// The errors of [`GravityField::acceleration`].
     pub fn gradient(&self, r: &Vector3<f64>) -> Result<(Vector3<f64>, Matrix3<f64>), GravityError> {
         self.check(r)?;
         Ok(match &self.kind {
@@ -187,7 +187,7 @@ impl GravityField {
     /// Computes the gradients `(n, 3, 3)`, 1/s², at positions `(n, 3)`, m, axes of `F`.
     ///
     /// # Errors
-    /// Those of [`GravityField::accelerations`].
+    /// The errors of [`GravityField::accelerations`].
     pub fn gradients(&self, positions: &[f64], out: &mut [f64]) -> Result<(), GravityError> {
         self.at_each(positions, out, 9, |r, row| {
             row.copy_from_slice(self.gradient(r)?.1.as_slice());

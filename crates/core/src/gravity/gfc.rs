@@ -43,8 +43,8 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
         if n > degree {
             continue;
         }
-        // S at the end of the file, without error column and line end, may be truncated; a truncated exponent
-        // shows by its size
+        // if the file ends with S, without an error column and a line end, its digits may be truncated; a truncated
+        // exponent is detected by the size of the number
         let may_be_cut = m > 0 && !words[4].contains(['e', 'E', 'd', 'D']);
         if is_cut && line == last && words.len() == 5 && may_be_cut {
             return Err(GravityError::CutRow { file: file.to_owned(), line, got: text.trim().to_owned() });
@@ -172,13 +172,13 @@ mod tests {
     #[test]
     fn broken_files_are_refused_with_the_line() {
         let cut = |count: usize| GOOD.lines().take(count).map(|line| format!("{line}\n")).collect::<String>();
-        // rows are missing, or the last row is truncated
+        // a file in which rows are missing or the last row is truncated
         assert!(matches!(refused(&cut(18), None), GravityError::Truncated { degree: 3, order: 3, .. }));
         assert!(matches!(refused(&cut(11), None), GravityError::Truncated { degree: 2, order: 0, .. }));
         assert!(read("tiny.gfc", &cut(16), Some(2)).is_ok());
         let broken = GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7");
         assert!(matches!(refused(&broken, None), GravityError::Row { line: 19, .. }));
-        // truncated within its last number, which then has a different value; text after it may be missing
+        // a file truncated within its last number, which then has a different value
         for cut in ["7e-7 0.0000014", "7e-7 0.00", "7e-7 1.4"] {
             let cut = refused(&GOOD.replace("7e-7 1.4e-6 0 0\n", cut), None);
             assert!(matches!(cut, GravityError::CutRow { line: 19, .. }), "{cut}");

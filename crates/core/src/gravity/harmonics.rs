@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, Vector3};
 pub(super) struct Harmonics {
     mu: f64,
     radius: f64,
-    /// `fm` of `Vmm`, and the number of degrees of the order.
+    /// For each order `m`, the factor `fm` of `Vmm` and the number of degrees.
     orders: Vec<(f64, usize)>,
     /// Terms sorted by order, then by degree.
     terms: Vec<Term>,
@@ -23,11 +23,11 @@ pub(super) struct Harmonics {
 /// A term of one degree and order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Term {
-    /// `a` and `b` of the next degree.
+    /// Recursion coefficients `a` and `b` of the next degree.
     next: [f64; 2],
     /// Coefficients of `V` in the eight series.
     c: [f64; 8],
-    /// Coefficients of `W`.
+    /// Coefficients of `W` in the eight series.
     s: [f64; 8],
 }
 

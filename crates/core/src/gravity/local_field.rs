@@ -12,7 +12,7 @@ pub(crate) struct FieldPoint {
     pub(crate) time: f64,
     /// Position of the reference from the planet's centre, axes of `I`, m.
     pub(crate) r_ref: Vec3<f64>,
-    /// Centre of mass of the robot from the reference, m.
+    /// Centre of mass of the robot relative to the reference, m.
     pub(crate) com: Vec3<f64>,
     /// Distance travelled through the field in the step being integrated, m.
     pub(crate) travel: f64,
@@ -34,10 +34,11 @@ pub(crate) struct LocalField<'a> {
 }
 
 impl Gravity {
-    /// Returns the gravity without the planet's point mass around a robot; [`sky`](Self::sky) is that of the instant.
+    /// Returns the gravity without the planet's point mass around a robot; `sky` is the result of [`Gravity::sky`] at
+    /// the same instant.
     ///
-    /// `tide_only` permits [`LocalField::difference`]: for a near reference the expansion is then about the
-    /// midpoint, which makes the difference accurate to second order.
+    /// `tide_only` is required for [`LocalField::difference`]. If the reference is near, the field is then expanded
+    /// about the midpoint between robot and reference, which makes the difference accurate to second order.
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`].
@@ -62,7 +63,7 @@ impl Gravity {
 }
 
 impl LocalField<'_> {
-    /// Returns `g(r_ref + ρ)`, m/s²; `offset` is `ρ` from the reference, one body per lane.
+    /// Returns `g(r_ref + ρ)`, m/s²; `offset` is `ρ`, the position relative to the reference, one body per lane.
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`].
@@ -83,7 +84,8 @@ impl LocalField<'_> {
         Ok(field + third)
     }
 
-    /// Returns `g(r_ref + ρ) - g(r_ref)`, m/s²; for near bodies `G ρ`, with the gradient of the expansion or of the midpoint.
+    /// Returns `g(r_ref + ρ) - g(r_ref)`, m/s². For bodies within the expansion this is `G ρ`, with the gradient `G` at
+    /// the centre of the expansion.
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`].
@@ -165,7 +167,7 @@ impl LocalField<'_> {
         Ok(Expansion::of(field, *rot_fi * at)?.rotated_back(rot_fi).gradient)
     }
 
-    /// Returns the gradient of field and third bodies at one position.
+    /// Returns the sum of the gradients of the planet's field and of the third bodies at one position.
     fn gradient_at(&self, at: Vec3<f64>) -> Result<Sym3<f64>, GravityError> {
         let third = self.gravity.third_bodies_about(self.time, at)?.gradient;
         Ok(match self.expansion(at) {

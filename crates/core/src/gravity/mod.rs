@@ -1,7 +1,7 @@
 //! Gravity of a planet and of third bodies.
 //!
-//! [`Gravity`] is the full field of a run: the point mass at the planet's centre and all perturbations. It is
-//! shared by robot and reference orbit.
+//! [`Gravity`] is the full field of a run: the point mass at the planet's centre and all perturbations. The robot and
+//! the reference orbit share it.
 
 mod coefficients;
 mod error;
@@ -36,8 +36,8 @@ use std::sync::Arc;
 /// Full gravity field of a run.
 ///
 /// `g(t, r) = -μ r/|r|³ + rot_if g_F(rot_fi r) + Σ [g_b(r - s_b) - g_b(-s_b)]`: the point mass, the perturbing field
-/// fixed in the rotating planet, and the gravity of every third body at `s_b` minus that at the planet's centre.
-/// `local_field.rs`, `sky.rs` and `same_gravity.rs` hold more of its methods.
+/// fixed in the rotating planet, and the gravity of every third body at `s_b` minus that at the planet's centre. More
+/// methods are in `local_field.rs`, `sky.rs` and `same_gravity.rs`.
 #[derive(Clone, Debug)]
 pub struct Gravity {
     mu: f64,
@@ -102,7 +102,7 @@ impl Gravity {
         self.field.as_ref()
     }
 
-    /// Returns the third bodies.
+    /// Returns the third bodies whose gravity is included.
     pub fn third_bodies(&self) -> &[Arc<dyn ThirdBody>] {
         &self.third_bodies
     }
@@ -145,7 +145,7 @@ impl Gravity {
     /// Returns the gradient `∂g/∂r`, symmetric and with zero trace, axes of `I`, 1/s².
     ///
     /// # Errors
-    /// Those of [`Gravity::acceleration`].
+    /// The errors of [`Gravity::acceleration`].
     pub fn gradient(&self, t: f64, r: &Vector3<f64>) -> Result<Matrix3<f64>, GravityError> {
         let mut tensor = point_mass_gradient(self.mu, r);
         if let Some(field) = &self.field {

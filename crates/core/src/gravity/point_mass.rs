@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Returns the acceleration `g = -μ r / |r|³`, m/s², axes of `r`.
 ///
-/// All code uses this expression, so that the residual of a reference that obeys it is exactly zero.
+/// All code uses this function, so that the residual of a reference that obeys the point mass is exactly zero.
 pub(crate) fn point_mass(mu: f64, r: &Vector3<f64>) -> Vector3<f64> {
     let r2 = r.norm_squared();
     // g = -μ r / |r|³
@@ -46,7 +46,8 @@ pub(crate) fn tide<S: Real>(mu: f64, r_ref: &Vec3<f64>, offset: Vec3<S>) -> (Vec
     ((offset - r_ref_s * f) * (s(-mu) * a * inverse), distance)
 }
 
-/// Returns true for the Earth's `μ`, m³/s², in any version including a rounded 4e14; no other planet's is near it.
+/// Returns true for the Earth's `μ`, m³/s², in any published version including a rounded 4e14; no other planet has a
+/// similar value.
 pub(crate) fn is_earth(mu: f64) -> bool {
     (mu / 3.986_004_418e14 - 1.0).abs() < 1e-2 // as in onorbit_rs/planet.py
 }
@@ -56,9 +57,9 @@ pub(crate) const SURFACE: f64 = 0.996;
 
 /// Returns the cube of the smallest possible radius of a planet with this `μ = G m`, m³.
 ///
-/// For the Earth, recognised by its `μ`, the radius is 6353 km, where fields end too. The surface of other planets is
-/// unknown, but no planet is denser than osmium, `ρ = 22 600 kg/m³`: `R³ = 3 μ/(4π G ρ)`. Below the surface, the field of
-/// a point mass is not that of the planet and grows without bound.
+/// For the Earth, recognised by its `μ`, the radius is 6353 km, which is also the lower limit of gravity fields. The
+/// surface of other planets is unknown, but no planet is denser than osmium, `ρ = 22 600 kg/m³`: `R³ = 3 μ/(4π G ρ)`.
+/// Below the surface, the field of a point mass is not that of the planet and grows without bound.
 pub(crate) fn lowest_ground_cubed(mu: f64) -> f64 {
     const G_RHO: f64 = 6.674e-11 * 22_600.0;
     const EARTH: f64 = SURFACE * 6_378_137.0; // WGS84

@@ -54,7 +54,7 @@ impl Gravity {
             return Ok(*expansion);
         }
         let expansion = self.expansions.about(field, point)?.rotated_back(&sky.rot_fi);
-        let _ = sky.first.set((point, expansion)); // only the first one is stored
+        let _ = sky.first.set((point, expansion)); // only the first expansion is stored
         Ok(expansion)
     }
 
@@ -71,7 +71,7 @@ impl Gravity {
 
     /// Returns the difference of the third-body field between `from + offset` and `from`.
     ///
-    /// The field is relative to the planet's centre, which falls freely: there it is zero.
+    /// The field is relative to the planet's centre, which is in free fall; it is zero there.
     pub(super) fn tide_of_third_bodies(
         &self,
         t: f64,

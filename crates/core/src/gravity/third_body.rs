@@ -3,7 +3,7 @@
 use super::error::GravityError;
 use nalgebra::Vector3;
 
-/// A distant body that attracts planet and robot, such as the Sun or the Moon.
+/// Distant body whose gravity acts on planet and robot, such as the Sun or the Moon.
 pub trait ThirdBody: Send + Sync + std::fmt::Debug {
     /// Returns the name for messages.
     fn name(&self) -> &str;
@@ -13,7 +13,7 @@ pub trait ThirdBody: Send + Sync + std::fmt::Debug {
 
     /// Returns the position at `t` s of simulation from the planet's centre, axes of `I`, m.
     ///
-    /// Must be a pure function of `t`, fast (below 100 ns), and must not allocate.
+    /// Implementations must be pure functions of `t`, take less than 100 ns and not allocate.
     ///
     /// # Errors
     /// [`GravityError`] where the position is not known.

@@ -22,14 +22,14 @@ impl Model {
     /// Returns this robot with `other` fixed to the frame `frame`. The base remains that of this robot.
     ///
     /// Joints are numbered depth first: those of `other` come after all joints of this robot if `frame` is fixed to the
-    /// base, otherwise after the joints beyond the body of `frame`.
+    /// base, otherwise directly after the joints below the body of `frame`.
     ///
     /// # Errors
     /// [`ModelError`] for an unknown frame, a mounting frame that is moved by joints, a name that both robots
     /// have, or too many joints.
     pub fn attach(&self, frame: &str, other: &Self, mount: &Mount) -> Result<Self, ModelError> {
         let carrier = &self.frames[self.frame(frame)?];
-        // on the body's own link, whose other joints come first: joints of the base keep their order
+        // the robot is attached to the link that names the body: its joints follow those already below that link
         let on_link = isometry(self.pose_in_link(carrier));
         let link = &self.body_frame(carrier.body).name;
         let in_root = match &mount.frame {
@@ -41,7 +41,7 @@ impl Model {
         builder.keep_notes(self).keep_notes(other);
         let mut name = format!("{frame}_to_{}", robot.links[0].name);
         while builder.has_joint(&name) {
-            name.push('_'); // the generated name must not collide with one of the robot
+            name.push('_'); // the generated name must differ from the names of all other joints
         }
         let joint = Joint::new(&name, JointKind::Fixed, on_link * mount.pose * in_root.inverse());
         builder.add_robot(link, joint, robot).map_err(|error| error.suggest_prefix(&mount.prefix))?;

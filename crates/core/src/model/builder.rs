@@ -70,7 +70,7 @@ impl ModelBuilder {
     /// Returns a builder with the links and joints of an existing robot.
     ///
     /// # Errors
-    /// Those of [`ModelBuilder::new`] and [`ModelBuilder::add`].
+    /// The errors of [`ModelBuilder::new`] and [`ModelBuilder::add`].
     pub fn from_description(description: Description) -> Result<Self, ModelError> {
         let base = description.links.first().cloned().ok_or(ModelError::NoMass)?;
         let mut builder = Self::new(&description.name, base)?;
@@ -78,10 +78,10 @@ impl ModelBuilder {
         Ok(builder)
     }
 
-    /// Attaches a whole robot to the link `parent`; `joint` carries the robot's root link.
+    /// Attaches a whole robot to the link `parent`; the robot's root link becomes the child link of `joint`.
     ///
     /// # Errors
-    /// Those of [`ModelBuilder::add`].
+    /// The errors of [`ModelBuilder::add`].
     pub fn add_robot(
         &mut self,
         parent: &str,

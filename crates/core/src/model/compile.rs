@@ -64,8 +64,8 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
     Ok(model)
 }
 
-/// Checks the bodies of links with an indefinite inertia, or with an inertia but no mass: such a link is
-/// accepted only if the inertia of its whole body is valid.
+/// Checks the links with an indefinite inertia and those with an inertia but no mass. They are accepted only if the sum
+/// of inertias over their whole body is valid.
 pub(super) fn check_parts(model: &Model) -> Result<(), ModelError> {
     for warning in &model.warnings {
         let (ModelWarning::IndefinitePart { link, .. } | ModelWarning::InertiaWithoutMass { link }) = warning

@@ -81,33 +81,33 @@ pub enum ModelError {
 /// Problems of a model that do not prevent a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelWarning {
-    /// Principal moments that violate the triangle inequality.
+    /// The principal moments of a link violate the triangle inequality.
     TriangleInequality {
         /// Name of the link.
         link: String,
         /// Principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
-    /// A link with a non-physical inertia that is fixed to others, with which it forms a valid body.
+    /// The inertia of a link is not positive definite, but that of the whole body to which the link belongs is.
     IndefinitePart {
         /// Name of the link.
         link: String,
         /// Principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
-    /// Principal moments that are negative by less than the rounding tolerance; they are used as zero.
+    /// Principal moments of a link are negative by less than the rounding tolerance and are set to zero.
     RoundedInertia {
         /// Name of the link.
         link: String,
         /// Given principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
-    /// A link without mass but with a rotational inertia, which is added to that of its body.
+    /// A link has no mass but a rotational inertia, which is added to the inertia of its body.
     InertiaWithoutMass {
         /// Name of the link.
         link: String,
     },
-    /// Other problems found when a file was read.
+    /// Another problem found while reading a file.
     Note(String),
 }
 
@@ -152,7 +152,7 @@ impl ModelError {
         }
     }
 
-    /// Converts a duplicate name to the error for attached robots, which suggests a prefix.
+    /// Converts the error for a duplicate name to the error for attached robots, which suggests a prefix.
     pub(super) fn suggest_prefix(self, prefix: &str) -> Self {
         match self {
             Self::DuplicateName { what, name } if prefix.is_empty() => Self::NameOfBoth { what, name },
@@ -162,7 +162,8 @@ impl ModelError {
     }
 }
 
-/// Returns advice for a singular base; `joints` are those of the chain between the base and the first mass.
+/// Returns advice for a base whose motion nothing resists; `joints` are the joints between the base and the first link
+/// with inertia.
 fn base_advice(joints: &[String]) -> String {
     let names: Vec<String> = joints.iter().map(|joint| format!("'{joint}'")).collect();
     match joints.len() {

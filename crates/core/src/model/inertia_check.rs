@@ -5,15 +5,15 @@ use super::error::ModelError;
 use crate::spatial::Sym3;
 use nalgebra::Matrix3;
 
-/// Tolerance of the triangle inequality and of the symmetry of a matrix, relative to the largest entry: the
-/// error of six printed digits.
+/// Tolerance of the triangle inequality and of the symmetry of a matrix, relative to the largest entry. It allows for
+/// the rounding of numbers printed with six digits.
 const PRINTED_DIGITS: f64 = 1e-6;
 
-/// Squared radius of gyration, m², below which a moment of inertia is treated as rounding error: 10 nm. CAD
-/// programs print moments of small parts as 0 or as ±1e-20.
+/// Squared radius of gyration, m², below which a moment of inertia is treated as rounding error; the radius is 10 nm.
+/// CAD programs print moments of small parts as 0 or as ±1e-20.
 const LEAST_GYRATION: f64 = 1e-16;
 
-/// Largest coordinate of anything in a robot, m: seven astronomical units.
+/// Largest accepted coordinate in the description of a robot, m; about seven astronomical units.
 pub(super) const LONGEST: f64 = 1e12;
 
 /// Classification of an inertia by its principal moments in kg m², ascending.
@@ -24,7 +24,7 @@ pub(super) enum Sense {
     BreaksTriangle([f64; 3]),
     /// Inertia with a negative principal moment within the rounding tolerance.
     Rounded([f64; 3]),
-    /// Indefinite inertia: some rotation would have negative energy.
+    /// Indefinite inertia, for which some rotation has negative kinetic energy.
     Indefinite([f64; 3]),
     /// An inertia without a mass, which is valid as part of a body that has mass.
     Massless,
@@ -67,7 +67,8 @@ fn without_negative_moments(inertia: &Matrix3<f64>) -> Matrix3<f64> {
     (result + result.transpose()) * 0.5
 }
 
-/// Checks that products of the numbers over a robot neither overflow nor underflow.
+/// Checks that mass, centre of mass and inertia are in a range in which their products over a whole robot neither
+/// overflow nor underflow.
 fn check_ranges(name: String, inertial: &Inertial) -> Result<(), ModelError> {
     let Inertial { mass, com, inertia } = inertial;
     let is_mass = *mass <= 0.0 || (1e-20..=1e20).contains(mass);
@@ -88,7 +89,7 @@ pub(super) fn is_definite(about_com: &Sym3<f64>, mass: f64) -> bool {
     !matches!(sense(&about_com.to_nalgebra(), mass), Sense::Indefinite(_))
 }
 
-/// Returns the eigenvalues, ascending.
+/// Returns the principal moments of inertia, ascending.
 pub(super) fn principal_moments(inertia: &Matrix3<f64>) -> [f64; 3] {
     let mut moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
     moments.sort_by(f64::total_cmp);

@@ -20,8 +20,8 @@ pub struct LinkChange {
 }
 
 impl LinkChange {
-    /// Applies the change if `link` is the link it names. A link without inertial is treated as a point mass
-    /// at its origin.
+    /// Applies the change to `link` if their names match. A link without an inertial is treated as a point mass at the
+    /// origin of the link.
     ///
     /// # Errors
     /// [`ModelError::ChangeWithoutMass`] if the link has no inertial and no mass is given.

@@ -12,13 +12,13 @@ pub(super) fn is_heavy_on_light(nodes: &[Node]) -> bool {
     load_ratio(nodes) > LARGEST
 }
 
-/// Returns the largest ratio of the inertia of a body, about the origin of its parent, to the inertia of one
-/// of its ancestors other than the base: computed from traces with the joints at zero.
+/// Returns the largest ratio of the inertia of a body, about the origin of its parent, to the inertia of one of its
+/// ancestors other than the base. The ratio is that of the traces of the inertias, with all joints at zero.
 ///
 /// Single bodies are compared, not subtrees: long arms of similar links lose no digits. Bodies without
 /// inertia are ignored.
 fn load_ratio(nodes: &[Node]) -> f64 {
-    let mut heaviest = vec![0.0_f64; nodes.len()]; // supported by each body
+    let mut heaviest = vec![0.0_f64; nodes.len()]; // largest inertia that each body supports
     let mut largest = 0.0_f64;
     for (k, node) in nodes.iter().enumerate().rev() {
         let carrier = trace_about(node, node.com);

@@ -4,10 +4,10 @@ use super::error::ModelError;
 use super::tree::{Axis, Model, Node};
 use nalgebra::{Matrix3, Matrix6, Rotation3, Vector3};
 
-/// Fraction of its diagonal entry below which a pivot of the mass matrix is rounding error.
+/// A pivot of the mass matrix below this fraction of its diagonal entry is rounding error.
 const PIVOT_SHARE: f64 = 1e-12;
-/// Fraction of the largest inertia that moves with it below which a pivot is rounding error: for a point mass
-/// on the axis, the diagonal entry itself is rounding error.
+/// A pivot below this fraction of the largest inertia that moves with the joint is rounding error. For a point mass on
+/// the joint axis, the diagonal entry itself is rounding error.
 const ROUNDING_SHARE: f64 = 1e-14;
 
 /// Returns an error if the mass matrix is singular in every configuration.
@@ -37,7 +37,7 @@ pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     }
 }
 
-/// Returns the joints between a base without inertia and the first body with some, if they form one chain, such as
+/// Returns the joints between a base without inertia and the first body with inertia, if they form one chain, such as
 /// the dummy joints of a mobile robot on a fixed world.
 fn massless_chain(model: &Model) -> Vec<String> {
     let is_empty = |node: &&Node| node.mass == 0.0 && node.about_com.to_nalgebra().amax() == 0.0;
@@ -81,7 +81,7 @@ fn is_more_than_rounding(pivot: f64, diagonal: f64, scale: f64) -> bool {
     pivot > PIVOT_SHARE * diagonal && pivot > ROUNDING_SHARE * scale
 }
 
-/// Returns the largest entry with the unit of entry `k`: of the masses, or of the moments of inertia.
+/// Returns the largest entry of the linear block (kg) if `k < 3`, otherwise of the angular block (kg m²).
 fn scale(inertia: &Matrix6<f64>, k: usize) -> f64 {
     let start = if k < 3 { 0 } else { 3 };
     inertia.fixed_view::<3, 3>(start, start).amax()
@@ -94,7 +94,7 @@ fn inertia_about_origin(node: &Node) -> Matrix6<f64> {
     blocks(Matrix3::identity() * node.mass, c * -node.mass, c * node.mass, about_origin)
 }
 
-/// Returns the transform of motions in the parent's axes, about its origin, to those of the body: `[[Rᵀ, −Rᵀ
+/// Returns the matrix that transforms a motion from the axes and origin of the parent to those of the body: `[[Rᵀ, −Rᵀ
 /// p×], [0, Rᵀ]]`.
 fn motion_transform(node: &Node, angle: f64) -> Matrix6<f64> {
     let (mut rot, mut pos) = (node.rot_pk.to_nalgebra(), node.pos_pk.to_nalgebra());

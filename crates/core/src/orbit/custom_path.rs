@@ -34,9 +34,9 @@ pub struct PathPoints {
 
 /// C² path that interpolates the given points.
 ///
-/// Positions only: cubic spline, of order 4. With velocities: quintic spline with a continuous third
-/// derivative, order 6. With accelerations: quintic pieces, order 6. Attitudes: [`RotationSpline`], of order
-/// 4.
+/// Positions alone are interpolated by a cubic spline of order 4, positions with velocities by a quintic spline of
+/// order 6 with a continuous third derivative, and positions with velocities and accelerations by quintic pieces of
+/// order 6. Attitudes are interpolated by a [`RotationSpline`] of order 4.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CustomPath {
     mu: Option<f64>,
@@ -45,7 +45,7 @@ pub struct CustomPath {
     attitude: Option<RotationSpline>,
 }
 
-/// Largest rotation between two points, rad.
+/// Largest accepted rotation between the attitudes of successive points, rad.
 const LARGEST_TURN: f64 = 2.0;
 
 impl CustomPath {
@@ -91,12 +91,13 @@ impl CustomPath {
         self.attitude.is_some()
     }
 
-    /// Returns the nearest time of the path, and the signed distance of `t` from it.
+    /// Returns the time covered by the path that is nearest to `t`, s, and the signed difference of `t` from that time,
+    /// s.
     fn clamped(&self, t: f64) -> Result<(f64, f64), OrbitError> {
         super::error::finite("time", t)?;
         let (start, end) = self.span();
         let inside = t.clamp(start, end);
-        let rounding = 8.0 * f64::EPSILON * start.abs().max(end.abs()); // rounding of the times of a run
+        let rounding = 8.0 * f64::EPSILON * start.abs().max(end.abs()); // allows for the rounding of the times of a run
         match self.ends {
             Ends::Error if (t - inside).abs() > rounding => {
                 Err(PathError::TimeOutOfPath { time: t, start, end }.into())
@@ -116,8 +117,8 @@ impl Orbit for CustomPath {
         "derivative of the path's spline"
     }
 
-    /// Returns the times of all points: the jerk jumps there, and the acceleration where the path begins to
-    /// coast.
+    /// Returns the times of all points. The jerk is discontinuous there; where the path begins to coast, so is the
+    /// acceleration.
     fn event_times(&self) -> Vec<f64> {
         self.position.times().to_vec()
     }
@@ -183,12 +184,12 @@ impl PathPoints {
     }
 }
 
-/// Returns the first number of a row that is not finite or too large, else zero.
+/// Returns the first number of a row that is not finite or too large, or zero if all numbers are valid.
 fn worst(row: &[f64]) -> f64 {
     row.iter().copied().find(|x| !x.is_finite() || x.abs() > LARGEST).unwrap_or(0.0)
 }
 
-/// Checks that `column` has `n` rows; `worst` returns an invalid number of a row, else zero.
+/// Checks that `column` has `n` valid rows; `worst` returns an invalid number of a row, or zero if the row is valid.
 fn rows<T>(
     name: &'static str,
     n: usize,

@@ -12,7 +12,7 @@ use super::{OrbitError, OrbitState};
 /// Sine of the angle between position and velocity below which the orbital plane is undefined.
 const SMALLEST_SINE: f64 = 1e-10;
 
-/// Local orbital frame in the Hill (RSW) sense: x outward, y along track, z along `r × v`.
+/// Local orbital frame as defined by Hill (RSW): x outward, y along track, z along `r × v`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lvlh {
     /// Rotation from `L` axes to `I` axes.

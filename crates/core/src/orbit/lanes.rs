@@ -3,7 +3,8 @@
 use super::{Orbit, OrbitError, StateRows};
 use crate::spatial::{Real, Vec3};
 
-/// Fills the rows on the lanes of `S`. Where `kernel` returns `None`, the instants are evaluated one by one.
+/// Fills `rows` with states computed by `kernel` on the SIMD lanes of `S`. Where `kernel` returns `None`, the instants
+/// are evaluated one by one.
 pub(super) fn fill_lanes<S: Real>(
     orbit: &impl Orbit,
     times: &[f64],
@@ -13,7 +14,7 @@ pub(super) fn fill_lanes<S: Real>(
     rows.check(times)?;
     let mut done = 0;
     while done < times.len() {
-        // as many blocks as possible inside the kernel's instruction set
+        // one call of `enter` processes as many blocks as possible
         done = S::enter(
             #[inline(always)]
             || {

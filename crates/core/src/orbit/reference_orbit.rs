@@ -32,7 +32,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns position and velocity, m and m/s, as [`Orbit::state`] does.
     ///
     /// # Errors
-    /// Those of [`Orbit::state`], except errors of the acceleration.
+    /// The errors of [`Orbit::state`], except errors of the acceleration.
     fn position_velocity(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
         self.state(t).map(|state| (state.position, state.velocity))
     }
@@ -51,7 +51,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Computes at most `most_steps` integration steps towards `times`. Returns true if no further step is
     /// required.
     ///
-    /// Has no effect on results; callers prepare in parts so that long integrations can be interrupted.
+    /// Results do not depend on this call. Callers prepare in parts so that long integrations can be interrupted.
     fn prepare(&self, _times: &[f64], _most_steps: usize) -> bool {
         true
     }
@@ -66,7 +66,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         None
     }
 
-    /// Returns a description of the origin of [`OrbitState::velocity`].
+    /// Returns a phrase that describes how [`OrbitState::velocity`] is obtained.
     fn velocity_source(&self) -> &'static str {
         "derivative of the position"
     }
@@ -75,12 +75,13 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// model reports a velocity that is not its derivative (SGP4).
     ///
     /// # Errors
-    /// Those of [`Orbit::state`].
+    /// The errors of [`Orbit::state`].
     fn rate_of_position(&self, _t: f64, state: &OrbitState) -> Result<Vector3<f64>, OrbitError> {
         Ok(state.velocity)
     }
 
-    /// Returns the times at which the acceleration jumps, s of simulation; the integrator stops at each.
+    /// Returns the times at which the acceleration is discontinuous, s of simulation; the integrator ends a step at
+    /// each.
     fn event_times(&self) -> Vec<f64> {
         Vec::new()
     }
@@ -88,7 +89,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns the frame attached to the reference: its given attitude, otherwise its local orbital frame.
     ///
     /// # Errors
-    /// Those of [`Orbit::state`] and [`Orbit::lvlh`].
+    /// The errors of [`Orbit::state`] and [`Orbit::lvlh`].
     fn frame(&self, t: f64) -> Result<PathFrame, OrbitError> {
         self.lvlh(t).map(PathFrame::from)
     }
@@ -96,8 +97,8 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns the local orbital frame (Hill, RSW) at `t` seconds of simulation.
     ///
     /// # Errors
-    /// Those of [`Orbit::state`], and [`OrbitError::UndefinedFrame`] if the reference is at rest or moves
-    /// along its radius.
+    /// The errors of [`Orbit::state`], and [`OrbitError::UndefinedFrame`] if the reference is at rest or moves along its
+    /// position vector.
     fn lvlh(&self, t: f64) -> Result<Lvlh, OrbitError> {
         Lvlh::of(&self.state(t)?)
     }

@@ -9,6 +9,6 @@ pub struct OrbitState {
     pub position: Vector3<f64>,
     /// Velocity, m/s.
     pub velocity: Vector3<f64>,
-    /// True acceleration, m/s², which may differ from the gravity at the position.
+    /// Acceleration, m/s², which may differ from the gravity at the position.
     pub acceleration: Vector3<f64>,
 }

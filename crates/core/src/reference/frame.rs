@@ -13,15 +13,15 @@ pub enum ReferenceFrame {
     /// W: inertial axes, origin on the reference orbit.
     #[default]
     World,
-    /// L, the local orbital frame (Hill) of an orbit; its origin is that of W.
+    /// L, the local orbital frame (Hill) of an orbit, with its origin at the origin of W.
     Lvlh(Arc<dyn Orbit>),
-    /// The robot's base: the tool is tracked relative to it.
+    /// The base of the robot; the path is relative to it.
     Base,
-    /// A second spacecraft.
+    /// The body frame of a second spacecraft.
     Target(Target),
 }
 
-/// A spacecraft without forces: constant velocity and angular velocity.
+/// Force-free spacecraft with constant velocity and angular velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     start: Hold,

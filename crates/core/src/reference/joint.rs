@@ -23,7 +23,7 @@ impl JointSample {
     }
 }
 
-/// Positions, rates and accelerations of joints as functions of time, which starts at zero.
+/// Positions, rates and accelerations of joints as functions of the time since the start of the path.
 pub trait JointPath: Send + Sync + Debug {
     /// Returns the number of joints.
     fn count(&self) -> usize;
@@ -40,7 +40,7 @@ pub trait JointPath: Send + Sync + Debug {
 /// Shared joint path.
 pub type JointReference = Arc<dyn JointPath>;
 
-/// Returns the largest distance, rad or m, of joints at `q` from the start of `path`.
+/// Returns the largest difference, rad or m, between the joint positions `q` and the start of `path`.
 pub fn joint_start_offset(path: &dyn JointPath, q: &[f64]) -> f64 {
     let mut first = JointSample::new(path.count());
     path.sample(0.0, &mut first);

@@ -5,8 +5,8 @@ use super::pose_spline::rest_times;
 use super::{JointPath, JointSample, RateLimit, ReferenceError, Timing};
 use crate::spatial::{Ends, Spline};
 
-/// Quintic splines through joint positions: waypoints, or samples of a motion. All joints reach a point at
-/// the same time.
+/// Quintic splines through joint positions, which are waypoints or samples of a motion. All joints reach a point at the
+/// same time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointSpline {
     spline: Spline,
@@ -16,8 +16,9 @@ impl JointSpline {
     /// Returns the motion from rest to rest through `points` (K, n), rad or m, with or without stops at the
     /// inner points.
     ///
-    /// If limits are given, one per joint, times are the shortest that respect them: for each piece with
-    /// stops, for the whole path without.
+    /// If limits are given, one per joint, they determine the times. With stops, each piece takes the shortest time
+    /// that respects them; without stops, all pieces are scaled by the same factor, so that the whole path respects
+    /// them.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two points, wrong lengths, times that do not increase, or limits
@@ -63,7 +64,7 @@ impl JointSpline {
     /// a position, rad or m, from rest to rest, while the others are held.
     ///
     /// # Errors
-    /// Those of [`JointSpline::waypoints`]; [`ReferenceError::NoJoint`] for a joint that does not exist.
+    /// The errors of [`JointSpline::waypoints`]; [`ReferenceError::NoJoint`] for a joint that does not exist.
     pub fn one_by_one(
         start: &[f64],
         moves: &[(usize, f64)],
@@ -77,8 +78,8 @@ impl JointSpline {
         Self::waypoints(start.len(), &points, timing, true)
     }
 
-    /// Returns the spline through samples of a motion at `times`, s, of `positions` (K, n), with their
-    /// `rates` (K, n) if known. Before and after, the first and last positions are held.
+    /// Returns the spline through samples of a motion at `times`, s, of `positions` (K, n), with their `rates` (K, n)
+    /// if known. Outside `times`, the first or last positions are held.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two samples, wrong lengths, or times that do not increase.

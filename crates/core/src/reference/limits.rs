@@ -2,7 +2,7 @@
 
 use super::{JointPath, JointSample, ReferenceError, TaskPath};
 
-/// Limits of a rate and of its derivative; infinity for no limit.
+/// Limits of a rate and of its derivative; infinity means no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateLimit {
     /// Largest rate, m/s or rad/s.
@@ -11,14 +11,14 @@ pub struct RateLimit {
     pub acceleration: f64,
 }
 
-/// Largest rate of the quintic, at half the time: `15/8 /T`.
+/// Largest rate of the quintic, `15/8` divided by the duration; it occurs at half the duration.
 const PEAK_RATE: f64 = 1.875;
 
-/// Largest acceleration of the quintic, at `u = ½ ± √3/6`: `10/√3 /T²`.
+/// Largest acceleration of the quintic, `10/√3` divided by the squared duration; it occurs at `u = ½ ± √3/6`.
 const PEAK_ACCELERATION: f64 = 5.773_502_691_896_258;
 
-/// Number of instants per piece at which peaks are searched. Peaks between them are higher by less than
-/// [`MARGIN`], which is added.
+/// Number of instants per piece at which peaks are searched. Peaks between these instants exceed the found ones by a
+/// fraction of less than [`MARGIN`], which is added to the result.
 const LOOKS: usize = 400;
 const MARGIN: f64 = 1e-4;
 
@@ -31,7 +31,7 @@ impl RateLimit {
         (PEAK_RATE * distance / self.rate).max((PEAK_ACCELERATION * distance / self.acceleration).sqrt())
     }
 
-    /// Checks that both numbers are positive.
+    /// Checks that both limits are positive.
     ///
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`].
@@ -42,8 +42,8 @@ impl RateLimit {
         }
     }
 
-    /// Returns the factor by which the duration of a motion with these peaks must grow: a factor `k` divides
-    /// rates by `k` and accelerations by `k²`.
+    /// Returns the factor by which the duration of a motion with the peaks `rate` and `acceleration` must grow. A
+    /// factor `k` divides rates by `k` and accelerations by `k²`.
     fn stretch(&self, rate: f64, acceleration: f64) -> f64 {
         (rate / self.rate).max((acceleration / self.acceleration).sqrt())
     }
@@ -59,7 +59,7 @@ pub struct TaskLimits {
 }
 
 impl TaskLimits {
-    /// Checks that all four are positive.
+    /// Checks that all four limits are positive.
     ///
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`].

@@ -18,8 +18,9 @@ pub struct LineParabola {
 }
 
 impl LineParabola {
-    /// Returns the motion from the pose `(rot_fd, pos_f)` by `displacement` (m), with `height` (m), a quarter
-    /// of which is reached half way, in `duration`, s; all in the axes of the reference's frame.
+    /// Returns the motion from the pose `(rot_fd, pos_f)` by `displacement` (m), in `duration`, s. `height` (m) is the
+    /// coefficient of the parabola, a quarter of which is reached halfway. All vectors are in the axes of the frame of
+    /// the reference.
     ///
     /// # Errors
     /// [`ReferenceError`] for an invalid pose, numbers that are not finite, or a duration that is not
@@ -37,7 +38,7 @@ impl LineParabola {
     /// Returns the motion as [`LineParabola::new`] does, from a pose.
     ///
     /// # Errors
-    /// Those of [`LineParabola::new`].
+    /// The errors of [`LineParabola::new`].
     pub fn from_pose(
         start: Hold,
         displacement: Vector3<f64>,

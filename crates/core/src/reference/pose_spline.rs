@@ -3,7 +3,7 @@
 use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, Timing};
 use crate::spatial::{Ends, Motion, Quat, RotationSpline, Spline, Vec3, log_rotation};
 
-/// Quintic C² splines through poses: waypoints, or samples of a motion.
+/// Quintic C² splines through poses, which are waypoints or samples of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseSpline {
     position: Spline,
@@ -13,8 +13,9 @@ pub struct PoseSpline {
 impl PoseSpline {
     /// Returns the motion from rest to rest through `poses`, with or without stops at the inner poses.
     ///
-    /// With stops, each piece is a straight line with the attitude on its geodesic. If limits are given,
-    /// times are the shortest that respect them: for each piece with stops, for the whole path without.
+    /// With stops, each piece is a straight line with the attitude on its geodesic. If limits are given, they determine
+    /// the times. With stops, each piece takes the shortest time that respects them; without stops, all pieces are
+    /// scaled by the same factor, so that the whole path respects them.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two poses, times that do not increase, or limits that do not
@@ -53,8 +54,8 @@ impl PoseSpline {
         }
     }
 
-    /// Returns the spline through samples of a motion at `times`, s, with their `velocities` (K, 6) if known:
-    /// linear, then angular, in the axes of the poses. Before and after, the first and last poses are held.
+    /// Returns the spline through samples of a motion at `times`, s, with their `velocities` (K, 6) if known: linear,
+    /// then angular, in the axes of the poses. Outside `times`, the first or last pose is held.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two samples, wrong lengths, or times that do not increase.

@@ -2,7 +2,7 @@
 
 use crate::spatial::{Mat3, Motion, Real, Vec3, pose_rows};
 
-/// Desired pose, velocity and acceleration of a frame D, at its origin, in the axes of the frame in which the
+/// Desired pose of a frame D, and velocity and acceleration at its origin, in the axes of the frame in which the
 /// reference is given (W by default).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaskSample<S> {

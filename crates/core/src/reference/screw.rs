@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 /// Screw motion `p(t) = c + exp(s θ u)(p₀ − c) + s d u`, with `R(t) = exp(s θ u) R₀` or constant attitude.
 ///
-/// With rotating attitude this is the exponential of a twist on SE(3); without advance it is a circle.
+/// With rotating attitude the motion is the exponential of a twist on SE(3); without advance the path is a circle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Screw {
     start: Hold,
@@ -20,9 +20,9 @@ pub struct Screw {
 }
 
 impl Screw {
-    /// Returns the motion from `start` about the line through `center` (m) along `axis` (any length) by
-    /// `angle` (rad, right-handed, any size), with an advance along the axis by `advance` (m). `turns`:
-    /// whether the attitude rotates.
+    /// Returns the motion from `start` about the line through `center` (m) along `axis` (any length) by `angle` (rad,
+    /// right-handed, any size), with an advance along the axis by `advance` (m). The attitude rotates with the motion
+    /// if `turns` is true, and is constant otherwise.
     ///
     /// # Errors
     /// [`ReferenceError::NotFinite`], [`ReferenceError::NoAxis`].
@@ -50,11 +50,11 @@ impl Screw {
         Ok(Self { start, center: center.into(), axis, angle, advance, turns, law })
     }
 
-    /// Returns the motion as [`Screw::new`] does, in a given duration, s, or in the shortest time that
-    /// respects limits; `ramp` as in [`TimeLaw::ramped`], or `None` for the quintic.
+    /// Returns the motion as [`Screw::new`] does, in a given duration, s, or in the shortest time that respects limits.
+    /// `ramp` is that of [`TimeLaw::ramped`], or `None` for the quintic.
     ///
     /// # Errors
-    /// Those of [`Screw::new`] and of the constructors of [`TimeLaw`].
+    /// The errors of [`Screw::new`] and of the constructors of [`TimeLaw`].
     pub fn timed(
         start: Hold,
         center: Vector3<f64>,

@@ -7,7 +7,7 @@ impl Hold {
     /// Returns poses from row-major `(4, 4)` matrices.
     ///
     /// # Errors
-    /// [`ReferenceError::LastRow`] for a last row other than 0, 0, 0, 1; those of [`Hold::new`].
+    /// [`ReferenceError::LastRow`] for a last row other than 0, 0, 0, 1, and the errors of [`Hold::new`].
     pub fn from_rows(rows: &[[f64; 16]]) -> Result<Vec<Self>, ReferenceError> {
         let pose = |row: &[f64; 16]| {
             let pose = Matrix4::from_row_slice(row);
@@ -21,11 +21,11 @@ impl Hold {
     }
 }
 
-/// Samples a reference at many `times` (T,), s: poses (T, 4, 4), velocities and accelerations (T, 6), in W
-/// axes, or in those of the reference's frame if `in_own_frame`.
+/// Samples a reference at many `times` (T,), s: poses (T, 4, 4), velocities and accelerations (T, 6), in W axes, or in
+/// the axes of the frame of the reference if `in_own_frame` is true.
 ///
 /// # Errors
-/// [`ReferenceError::WrongLength`]; those of [`TaskReference::sample`]. Rows before the error are written.
+/// [`ReferenceError::WrongLength`] and the errors of [`TaskReference::sample`]. Rows before the error are written.
 pub fn task_table(
     reference: &TaskReference,
     in_own_frame: bool,

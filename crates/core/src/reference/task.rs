@@ -8,9 +8,9 @@ use std::sync::Arc;
 /// Reference of a frame: a path and the frame in which it is given.
 #[derive(Clone, Debug)]
 pub struct TaskReference {
-    /// Path.
+    /// Path, in the axes and about the origin of `frame`.
     pub path: Arc<dyn TaskPath>,
-    /// Frame that gives its axes and its origin.
+    /// Frame that gives the axes and the origin of `path`.
     pub frame: ReferenceFrame,
 }
 
@@ -46,7 +46,7 @@ impl TaskReference {
         matches!(self.frame, ReferenceFrame::Lvlh(_))
     }
 
-    /// Returns the time since its start at which the path comes to rest in its frame, s.
+    /// Returns the time after its start, s, at which the path comes to rest in the frame of the reference.
     pub fn duration(&self) -> f64 {
         self.path.duration()
     }
@@ -55,7 +55,7 @@ impl TaskReference {
     /// time `start`.
     ///
     /// # Errors
-    /// Those of [`TaskReference::sample`].
+    /// The errors of [`TaskReference::sample`].
     pub fn start_offset(
         &self,
         rot: &Mat3<f64>,

@@ -3,7 +3,8 @@
 use super::error::{SHORTEST, is_number};
 use super::{ReferenceError, TaskLimits, TaskPath};
 
-/// Time law `s(t)` from 0 to 1, with zero rate and acceleration at both ends; 0 before, 1 after.
+/// Time law `s(t)` from 0 to 1 with zero rate and acceleration at both ends; `s` is 0 before the start and 1 after the
+/// end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeLaw {
     duration: f64,
@@ -30,7 +31,7 @@ impl TimeLaw {
     /// `duration` (s).
     ///
     /// # Errors
-    /// Those of [`TimeLaw::quintic`]; [`ReferenceError::Ramp`] for a fraction that is not in 0..½.
+    /// The errors of [`TimeLaw::quintic`]; [`ReferenceError::Ramp`] for a fraction that is not in 0..½.
     pub fn ramped(duration: f64, ramp: f64) -> Result<Self, ReferenceError> {
         let law = Self::quintic(duration)?;
         if !(ramp > 0.0 && ramp <= 0.5) {
@@ -39,9 +40,8 @@ impl TimeLaw {
         Ok(Self { ramp: Some(ramp), ..law })
     }
 
-    /// Returns the time law for which the path returned by `path_with` has the shortest duration within
-    /// `limits`;
-    /// `ramp` as in [`TimeLaw::ramped`], or `None` for the quintic.
+    /// Returns the time law for which the path returned by `path_with` has the shortest duration within `limits`;
+    /// `ramp` is that of [`TimeLaw::ramped`], or `None` for the quintic.
     ///
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`], [`ReferenceError::Ramp`]; [`ReferenceError::NoLimit`] if the

@@ -8,13 +8,12 @@ use super::sym3::Sym3;
 use super::vec3::Vec3;
 use std::ops::Add;
 
-/// Articulated-body inertia: a symmetric 6 × 6 operator `[[A, H], [Hᵀ, I]]`, linear first: twenty-one
-/// numbers.
+/// Articulated-body inertia: a symmetric 6 × 6 operator `[[A, H], [Hᵀ, I]]`, linear first, with 21 independent entries.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ArticulatedInertia<S> {
     /// Linear block, kg.
     pub linear: Sym3<S>,
-    /// Coupling block, kg m: force from angular acceleration.
+    /// Coupling block, kg m, which maps angular acceleration to force.
     pub coupling: Mat3<S>,
     /// Angular block, kg m².
     pub angular: Sym3<S>,

@@ -1,4 +1,4 @@
-//! Derivative of the bias force of a body by the motion of its parent.
+//! Derivative of the bias force of a body with respect to the motion of its parent.
 
 use super::inertia::SpatialInertia;
 use super::mat3::Mat3;
@@ -9,8 +9,8 @@ use std::ops::AddAssign;
 
 /// Coriolis operator `2B = v×* I − I v× + (I v) ×̄*` of one or several bodies, where `f ×̄* m = m ×* f`.
 ///
-/// This is twice the Coriolis force of all points of the body: with `p = ∫ ṙ dm` and `N = ∫ ṙ rᵀ dm`, `2B m =
-/// (2 ω × p, 2 (tr N ω − N ω))`. It depends only on the angular half `ω` of `m`.
+/// `2B m` is twice the Coriolis force summed over all points of the body: with `p = ∫ ṙ dm` and `N = ∫ ṙ rᵀ dm`, `2B m
+/// = (2 ω × p, 2 (tr N ω − N ω))`. It depends only on the angular half `ω` of `m`.
 ///
 /// Source: Singh, Russell and Wensing, IEEE Robotics and Automation Letters 7(2), 2022.
 #[derive(Clone, Copy, Debug, Default)]

@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
-/// Features of this processor, detected once: asking the standard library for all of them at every call of a kernel
-/// takes as long as a small kernel.
+/// Features of this processor, detected once, because detecting them at every call of a kernel takes as long as a small
+/// kernel.
 static DETECTED: LazyLock<Features> = LazyLock::new(Features::detect);
 
 struct Features {
@@ -21,7 +21,7 @@ impl Features {
 
     #[cfg(not(target_arch = "x86_64"))]
     fn detect() -> Self {
-        Self { fma: cfg!(target_arch = "aarch64"), avx512: false } // fma is part of the baseline there
+        Self { fma: cfg!(target_arch = "aarch64"), avx512: false } // fma is part of the baseline of aarch64
     }
 }
 

@@ -8,8 +8,8 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Scalar `f64` whose [`mul_add`](Real::mul_add) is one instruction.
 ///
-/// Use it inside [`Real::enter`] on a processor for which [`Fused::is_available`] returns true. Elsewhere
-/// results are the same, but slow, and `enter` panics.
+/// Use it inside [`Real::enter`] on a processor for which [`Fused::is_available`] returns true. Outside `enter` the
+/// results are the same but are computed slowly. On other processors `enter` panics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[repr(transparent)]
 pub struct Fused(pub f64);

@@ -16,7 +16,7 @@ pub enum InstructionSet {
     Wide = 2,
 }
 
-/// Highest level allowed; all by default.
+/// Highest allowed level; all levels are allowed by default.
 static ALLOWED: AtomicU8 = AtomicU8::new(u8::MAX);
 
 impl InstructionSet {

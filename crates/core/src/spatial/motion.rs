@@ -4,17 +4,16 @@ use super::scalar::Real;
 use super::vec3::Vec3;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-/// Twist or spatial acceleration: `linear` is that of the body-fixed point at the origin, `angular` that of
-/// the rotation.
+/// Twist of a body, or spatial acceleration, which is the rate of change of a twist.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<S> {
-    /// Velocity of the body-fixed point at the origin, m/s.
+    /// Velocity of the body-fixed point at the origin, m/s; in a spatial acceleration its rate of change, m/s².
     pub linear: Vec3<S>,
-    /// Angular velocity, rad/s.
+    /// Angular velocity, rad/s, or angular acceleration, rad/s².
     pub angular: Vec3<S>,
 }
 
-/// Wrench or spatial momentum: `angular` is the moment about the origin.
+/// Wrench or spatial momentum about the origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Force<S> {
     /// Force, N, or linear momentum, kg m/s.
@@ -26,7 +25,7 @@ pub struct Force<S> {
 macro_rules! pair {
     ($name:ident) => {
         impl<S: Real> $name<S> {
-            /// Returns the pair of these halves.
+            /// Returns the pair of the halves `linear` and `angular`.
             #[inline(always)]
             pub fn new(linear: Vec3<S>, angular: Vec3<S>) -> Self {
                 Self { linear, angular }

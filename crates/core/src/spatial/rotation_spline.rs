@@ -11,7 +11,7 @@ const HALF_TURN_MARGIN: f64 = 1e-6;
 /// Spline `R(t) = Rk exp(φ(t))` between attitudes, where `φ` is the quintic with the given rates and
 /// accelerations at the knots.
 ///
-/// With zero rates at the knots each piece is a geodesic. Outside the knots the end attitudes are held.
+/// With zero rates at the knots each piece is a geodesic. Outside the knots the first or last attitude is held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RotationSpline {
     times: Vec<f64>,
@@ -43,7 +43,7 @@ impl RotationSpline {
     /// their quaternions.
     ///
     /// # Errors
-    /// Those of [`RotationSpline::resting`].
+    /// The errors of [`RotationSpline::resting`].
     pub fn interpolating(times: &[f64], attitudes: &[Quat<f64>], ends: Ends) -> Result<Self, SplineError> {
         let attitudes = continuous(attitudes);
         let mut rows = vec![0.0; 4 * attitudes.len()];
@@ -64,7 +64,7 @@ impl RotationSpline {
     /// accelerations are those of the cubic spline through the rates.
     ///
     /// # Errors
-    /// Those of [`RotationSpline::resting`].
+    /// The errors of [`RotationSpline::resting`].
     pub fn with_rates(
         times: &[f64],
         attitudes: &[Quat<f64>],
@@ -158,8 +158,8 @@ fn inverse_differential(phi: Vec3<f64>, omega: Vec3<f64>) -> Vec3<f64> {
     (inverse * omega.to_nalgebra()).into()
 }
 
-/// Returns `B` and `C` as functions of `x = |φ|²`, and their derivatives in `x`, by the series `Σ
-/// (−x)ᵏ/(2k+2)!` and `Σ (−x)ᵏ/(2k+3)!`: no cancellation at zero, 1e-16 up to a full turn.
+/// Returns `B` and `C` as functions of `x = |φ|²`, and their derivatives in `x`, by the series `Σ (−x)ᵏ/(2k+2)!` and `Σ
+/// (−x)ᵏ/(2k+3)!`: they have no cancellation at zero and an error of 1e-16 up to a full turn.
 fn coefficients(x: f64) -> ([f64; 2], [f64; 2]) {
     let (mut value, mut slope) = ([0.0; 2], [0.0; 2]);
     let mut term = 0.5; // 1/(2k+2)! times (−1)ᵏ

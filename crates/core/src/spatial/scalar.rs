@@ -6,8 +6,8 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 /// Scalar of the kernels: a real number, or one number in each lane of a vector.
 ///
 /// A single state is computed with [`f64`] (any processor) or [`Fused`](super::Fused) (processors with fused
-/// multiply-add), batches with lanes of numbers. Kernels may branch on the structure of the model, not on
-/// values; use [`select`](Real::select) for those.
+/// multiply-add), batches with lanes of numbers. Kernels may branch on the structure of the model but not on values,
+/// for which they use [`select`](Real::select).
 pub trait Real:
     Copy
     + Debug
@@ -73,7 +73,7 @@ pub trait Real:
     /// Returns sine and cosine, rad. The error is below 1e-16 up to 1e5 rad.
     fn sin_cos(self) -> (Self, Self);
 
-    /// Computes [`sin_cos`](Real::sin_cos) of many angles with the same bits, several at once if possible.
+    /// Computes [`sin_cos`](Real::sin_cos) of many angles, several at once if possible, with the same bits.
     #[inline(always)]
     fn sin_cos_each(angles: &[Self], out: &mut [(Self, Self)]) {
         for (angle, out) in angles.iter().zip(out) {

@@ -70,7 +70,8 @@ mod tests {
             for i in -1000..=1000 {
                 let x = scale * f64::from(i) / 1000.0;
                 let (s, c) = sin_cos(x);
-                // 1.2e-16 is half a unit in the last place near 1; twice that for the polynomial
+                // 1.2e-16 is half a unit in the last place near 1; the tolerance is twice that, to allow for the error
+                // of the polynomial
                 assert!((s - x.sin()).abs() < 2.3e-16, "sin {x}: {s} {}", x.sin());
                 assert!((c - x.cos()).abs() < 2.3e-16, "cos {x}: {c} {}", x.cos());
                 if Fused::is_available() {

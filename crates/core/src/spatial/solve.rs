@@ -5,7 +5,7 @@ use super::scalar::Real;
 /// Returns the scalar product of two rows.
 #[inline(always)]
 pub fn dot<S: Real>(a: &[S], b: &[S]) -> S {
-    // a loop instead of a fold, which would not be inlined and lose the instruction set
+    // a loop, because a fold would not be inlined and would be compiled for the baseline
     let mut sum = S::of(0.0);
     for i in 0..a.len().min(b.len()) {
         sum = a[i].mul_add(b[i], sum);

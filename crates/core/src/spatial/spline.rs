@@ -36,7 +36,7 @@ pub enum Ends {
     Free,
 }
 
-/// Spline of quintics between knots with given value, slope and curvature, and hence C².
+/// Spline of quintics between knots with given value, slope and curvature, which makes it C².
 ///
 /// The C² cubic spline is a special case. Outside the knots the end values are held.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,7 +76,7 @@ impl Spline {
     /// Returns the spline that is at rest at every point.
     ///
     /// # Errors
-    /// Those of [`Spline::new`].
+    /// The errors of [`Spline::new`].
     pub fn resting(times: &[f64], width: usize, values: &[f64]) -> Result<Self, SplineError> {
         let zeros = vec![0.0; values.len()];
         Self::new(times, width, values, &zeros, &zeros)
@@ -85,7 +85,7 @@ impl Spline {
     /// Returns the spline through the points with slopes and curvatures of their C² cubic spline.
     ///
     /// # Errors
-    /// Those of [`Spline::new`].
+    /// The errors of [`Spline::new`].
     pub fn interpolating(
         times: &[f64],
         width: usize,
@@ -99,11 +99,10 @@ impl Spline {
         Self::new(times, width, values, &slopes, &curvatures)
     }
 
-    /// Returns the spline through the points with the given `slopes` and a continuous third derivative; order
-    /// 6.
+    /// Returns the spline of order 6 through the points with the given `slopes` and a continuous third derivative.
     ///
     /// # Errors
-    /// Those of [`Spline::new`].
+    /// The errors of [`Spline::new`].
     pub fn with_slopes(
         times: &[f64],
         width: usize,
@@ -161,7 +160,8 @@ impl KnotInterval {
         Self { segment, length, u: ((t - times[segment]) / length).clamp(0.0, 1.0), is_outside }
     }
 
-    /// Evaluates the quintic between two knots, each `[value, slope, curvature]`; at rest outside.
+    /// Returns value, slope and curvature of the quintic between two knots, each `[value, slope, curvature]`. Outside
+    /// the knots the curve is at rest.
     pub(super) fn interpolate(&self, start: [f64; 3], end: [f64; 3]) -> [f64; 3] {
         let (h, u) = (self.length, self.u);
         if self.is_outside {
@@ -176,8 +176,8 @@ impl KnotInterval {
     }
 }
 
-/// Evaluates `p + v s + a s²/2 + c₃s³ + c₄s⁴ + c₅s⁵`, `s = u h`, with the conditions at both ends; those at
-/// `s = 0` are met to the bit.
+/// Evaluates `p + v s + a s²/2 + c₃s³ + c₄s⁴ + c₅s⁵`, `s = u h`, with coefficients that meet the conditions at both
+/// ends. The conditions at `s = 0` are met to the bit.
 fn quintic(h: f64, u: f64, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 3] {
     // differences of position, velocity and acceleration at the far end, over h³, h² and h
     let difference_p = ((p1 - p) / h - v - a * (0.5 * h)) / (h * h);

@@ -133,7 +133,7 @@ impl<S: Real> Sym3<S> {
 }
 
 impl<S: Scalar> Sym3<S> {
-    /// Returns the nalgebra matrix.
+    /// Returns the matrix as a nalgebra type.
     #[inline(always)]
     pub fn to_nalgebra(self) -> Matrix3<f64> {
         let [xx, yy, zz, xy, xz, yz] =

@@ -115,7 +115,7 @@ impl<S: Real> Vec3<S> {
 }
 
 impl<S: Scalar> Vec3<S> {
-    /// Returns the nalgebra vector.
+    /// Returns the vector as a nalgebra type.
     #[inline(always)]
     pub fn to_nalgebra(self) -> Vector3<f64> {
         Vector3::new(self.x.value(), self.y.value(), self.z.value())

@@ -86,7 +86,8 @@ fn subtract_cross<S: Real>(v: Vec3<S>, row: usize, column: usize, nv: usize, out
 /// Number of rows of a product that are computed together, so that their sums stay in registers.
 const TILE: usize = 4;
 
-/// Computes `A b` for a symmetric `A`, `(nv, nv)` with `nv ≥ 6`, and columns `b` given by their nonzero rows.
+/// Computes `A b` for a symmetric `A`, `(nv, nv)` with `nv ≥ 6`, and for columns `b` that are given by their nonzero
+/// rows.
 #[inline(always)]
 fn product<S: Real, const N: usize>(
     a: &[S],

@@ -59,7 +59,7 @@ pub enum AtmosphereError {
     /// The list of layers is empty.
     #[error("the exponential atmosphere has no layers; give at least one")]
     NoLayers,
-    /// A table of space weather has no value that the run requires.
+    /// A table of space weather lacks a value that the run requires.
     #[error(
         "space weather: {name} of {date} is missing from {table}, but the run requires it; give a complete \
          table or constants"
@@ -91,7 +91,7 @@ pub enum AtmosphereError {
     Table {
         /// Line, from 1.
         line: usize,
-        /// Problem.
+        /// Description of the problem.
         problem: String,
     },
     /// The time or the position of the Sun is unknown.

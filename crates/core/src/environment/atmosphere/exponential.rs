@@ -17,8 +17,8 @@ pub struct Layer {
 
 /// Exponential atmosphere, `ρ = ρ₀ exp(-(h - h₀)/H)` in each layer; `h` is the geodetic altitude.
 ///
-/// The first layer extends below its base, the last one to infinity. The density may be discontinuous between layers: by
-/// up to 3 % in Vallado's table.
+/// The first layer extends below its base, the last one to infinity. The density may be discontinuous between layers,
+/// by up to 3 % in Vallado's table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExponentialAtmosphere {
     layers: Vec<Layer>,

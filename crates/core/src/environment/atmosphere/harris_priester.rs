@@ -9,8 +9,9 @@ use std::f64::consts::PI;
 
 /// Harris-Priester atmosphere: density between a night profile `ρm` and a day profile `ρM` for mean solar activity.
 ///
-/// `ρ = ρm + (ρM - ρm) cosⁿ(ψ/2)`, with the angle `ψ` between the position and the bulge, which is `lag` east of
-/// the Sun. Defined from 100 to 1000 km of geodetic altitude; profiles are exponential between the tabulated altitudes.
+/// `ρ = ρm + (ρM - ρm) cosⁿ(ψ/2)`, with the angle `ψ` between the position and the bulge, which is `lag` east of the
+/// Sun. The model is defined from 100 to 1000 km of geodetic altitude; the profiles are exponential between the
+/// tabulated altitudes.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.2 and table 3.8.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +37,8 @@ impl HarrisPriester {
         Ok(Self { exponent, lag })
     }
 
-    /// Returns the direction of the bulge: that of the Sun rotated by the lag about the Earth's axis, axes of `I`.
+    /// Returns the direction of the bulge in axes of `I`: the direction of the Sun, rotated by the lag about the
+    /// Earth's axis.
     fn bulge(&self, earth: &Earth, time: f64) -> Result<Vector3<f64>, AtmosphereError> {
         let sun = earth.sun(time)?.normalize();
         let axis = Unit::try_new(earth.angular_velocity(time), 0.0).unwrap_or_else(Vector3::z_axis);

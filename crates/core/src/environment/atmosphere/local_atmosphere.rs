@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 /// discontinuous, the jump is displaced by at most this distance.
 const VALID_RADIUS: f64 = 160.0;
 
-/// Spacing of the grid of centres, m and s: near robots and successive steps share a centre.
+/// Spacing of the grid of centres, m and s: robots close to each other and successive steps share a centre.
 const GRID: (f64, f64) = (128.0, 0.125);
 
 /// Altitude difference over which the scale height is computed, m.
@@ -55,8 +55,8 @@ impl LocalAtmosphere {
 
     /// Returns the density at positions `r`, axes of `I`, m, kg/m³.
     ///
-    /// If one of them is more than 160 m from the centre, `model` is evaluated there for the lanes that are
-    /// in use.
+    /// At positions more than 160 m from the centre, `model` is evaluated instead, except in lanes for which `counts`
+    /// returns false.
     #[inline(always)]
     pub(in crate::environment) fn densities<S: Real, E>(
         &self,
@@ -94,7 +94,7 @@ impl LocalAtmosphere {
         self.time == time && self.centre == *centre
     }
 
-    /// Returns the nearest point of the grid in space, at most 111 m away, and the last one in time.
+    /// Returns the latest grid time and the nearest grid point in space, which is at most 111 m away.
     pub(in crate::environment) fn grid_point(time: f64, r: &Vector3<f64>) -> (f64, Vector3<f64>) {
         let (spacing, tick) = GRID;
         ((time / tick).floor() * tick, r.map(|x| (x / spacing).round() * spacing))

@@ -10,7 +10,7 @@ pub trait Atmosphere: Send + Sync + std::fmt::Debug {
     /// Returns the short name for messages.
     fn name(&self) -> &'static str;
 
-    /// Returns the density, kg/m³; a pure function of the point, which is outside the Earth.
+    /// Returns the density, kg/m³, at a point outside the Earth. Must be a pure function of the point.
     ///
     /// # Errors
     /// [`AtmosphereError`] where the model is not defined at this point.

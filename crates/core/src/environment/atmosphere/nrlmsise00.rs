@@ -7,10 +7,11 @@ use super::space_indices::{MagneticActivity, SpaceIndices};
 use super::space_weather::SpaceWeather;
 use nrlmsise00::{Input, MagneticActivity as Magnetic, Model};
 
-/// NRLMSISE-00 atmosphere: total density including anomalous oxygen, for the given space weather; needs an epoch.
+/// NRLMSISE-00 atmosphere: total density including anomalous oxygen, for the given space weather. It requires an epoch.
 ///
-/// Defined from the surface upwards and fitted up to 1000 km; the profiles of helium and hydrogen continue above. The
-/// crate `nrlmsise00` computes it in double precision. Indices of a table change at midnight UTC.
+/// The model is defined from the surface upwards and fitted up to 1000 km; above, the profiles of helium and hydrogen
+/// continue. The crate `nrlmsise00` evaluates it in double precision. Daily indices from a table change at midnight
+/// UTC.
 ///
 /// Source: Picone, Hedin, Drob and Aikin, J. Geophysical Research 107(A12), 2002.
 #[derive(Debug)]

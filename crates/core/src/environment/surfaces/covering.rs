@@ -48,10 +48,10 @@ impl Surfaces {
         Ok(Self { layout, is_covered, blocks: surfaces.chunks(WIDTH).map(SurfaceBlock::new).collect() })
     }
 
-    /// Returns the faces of the shapes of every body of one robot; bodies without shape stay uncovered.
+    /// Returns the faces of the shapes of every body of one robot; bodies without shapes have no surface.
     ///
     /// # Errors
-    /// Those of [`Surface::from_shapes`]; [`SurfaceError::NoShape`] where no body has a shape.
+    /// The errors of [`Surface::from_shapes`]; [`SurfaceError::NoShape`] where no body has a shape.
     pub fn from_shapes(model: &Model, drag_coefficient: f64, optics: Optics) -> Result<Self, SurfaceError> {
         let has_shape =
             |body: &usize| model.visuals().iter().any(|(frame, _)| model.frames()[*frame].body == *body);
@@ -67,7 +67,7 @@ impl Surfaces {
         Self::new(coverings, &[count])
     }
 
-    /// Returns the names of the bodies with mass but without surface of the first system, whose model is `model`.
+    /// Returns the names of the bodies of the first system, whose model is `model`, that have mass but no surface.
     pub fn uncovered<'a>(&self, model: &'a Model) -> Vec<&'a str> {
         let is_uncovered =
             |body: &usize| model.nodes()[*body].mass > 0.0 && !self.covers(BodyIndex::from(*body));

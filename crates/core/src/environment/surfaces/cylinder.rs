@@ -6,7 +6,7 @@ use crate::environment::soa::Column8;
 use crate::spatial::{Real, Vec3};
 use std::f64::consts::PI;
 
-/// The curved side of a cylinder; axes of the body, positions from its centre of mass.
+/// Curved side of a cylinder; axes of the body, positions from its centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Cylinder<T> {
     /// Radius, m.
@@ -50,7 +50,8 @@ impl<S: Real> Cylinder<S> {
         let across = u - axis * along;
         // F = -½ ρ C_D a u,  a = ∫ (n·u)₊ dA = 2 r L |u⊥|
         sums.add(across.norm() * area, self.centre);
-        // the centroid of a is π/4 r û⊥ off the axis:  (π/4 r u⊥) × (-2 r L u),  u⊥ × u = -(a·u) a × u
+        // the centroid of the exposed area is offset from the axis by π/4 r û⊥: (π/4 r u⊥) × (-2 r L u), u⊥ × u =
+        // -(a·u) a × u
         sums.torque += axis.cross(u) * (along * S::of(PI / 4.0) * self.radius * area);
     }
 
@@ -72,7 +73,7 @@ impl<S: Real> Cylinder<S> {
             across * (sigma.mul_add(s(-8.0 / 3.0) * specular, s(-PI / 3.0) * diffuse) * area);
         sums.force += against_normal;
         sums.torque += self.centre.cross(against_normal);
-        // the force along the light acts π/4 r ŝ⊥ off the axis
+        // the force along the light acts at the offset π/4 r ŝ⊥ from the axis
         sums.torque += axis.cross(to_sun) * (along * s(PI / 4.0) * self.radius * along_light);
     }
 }

@@ -41,7 +41,7 @@ pub enum SurfaceError {
     from the surfaces"
     )]
     NoPlates,
-    /// A normal has no direction.
+    /// The normal of a plate is zero or not finite.
     #[error("normal of plate {plate} is zero or not finite; expected a direction")]
     Normal {
         /// Index of the plate.
@@ -85,7 +85,7 @@ pub enum SurfaceError {
         /// The body.
         body: BodyIndex,
     },
-    /// A surface belongs to a body that does not exist.
+    /// A surface is assigned to a body that does not exist.
     #[error("a surface is on {body}, but the robot has bodies 0 to {last}", last = count.saturating_sub(1))]
     UnknownBody {
         /// Given body.

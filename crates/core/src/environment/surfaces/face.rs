@@ -5,7 +5,7 @@ use super::sums::{DragSums, PressureSums};
 use crate::environment::soa::Column8;
 use crate::spatial::{Real, Vec3};
 
-/// A flat face, exposed on the side of its normal; axes of the body, positions from its centre of mass.
+/// Flat face, exposed on the side of its normal; axes of the body, positions from its centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Face<T> {
     /// Area, m².

@@ -45,7 +45,7 @@ impl Optics<Column8> {
 }
 
 impl<S: Real> Optics<S> {
-    /// Returns `1 - ρs`, the factor of the force along the light: all of it except for specular reflection.
+    /// Returns `1 - ρs`, the factor of the force along the light, to which specular reflection does not contribute.
     #[inline(always)]
     pub(super) fn along_light(&self) -> S {
         S::of(1.0) - self.specular

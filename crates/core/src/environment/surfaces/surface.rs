@@ -20,7 +20,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Returns a cannonball, a surface with the same area, m², and coefficients in all directions.
+    /// Returns a cannonball: a surface whose area, m², and coefficients are the same in all directions.
     ///
     /// # Errors
     /// [`SurfaceError::Value`] for a negative or non-finite value, and for a reflectivity above 2.

@@ -48,7 +48,7 @@ impl SurfaceBlock {
         self.is_empty
     }
 
-    /// Returns the drag wrenches for a density of 1 on as many bodies as `S` has lanes, body axes.
+    /// Returns the drag wrenches for a density of 1 on consecutive bodies, one per lane of `S`, in body axes.
     ///
     /// `v` is the velocity of the centre of mass and `w` the angular velocity, relative to the atmosphere, body axes.
     #[inline(always)]
@@ -67,7 +67,7 @@ impl SurfaceBlock {
         sums.wrench(v, w) * (S::of(0.5) * self.drag_coefficient.load(offset))
     }
 
-    /// Returns the wrenches of light for a pressure of 1 from the direction `to_sun`, body axes.
+    /// Returns the wrenches of light from the direction `to_sun` for a pressure of 1, in body axes.
     #[inline(always)]
     pub(in crate::environment) fn pressure<S: Real>(&self, offset: usize, to_sun: Vec3<S>) -> WrenchLanes<S> {
         let (mut sums, optics) = (PressureSums::zero(), self.optics.load(offset));
@@ -108,7 +108,7 @@ impl<R> PartTable<R> {
         Self { rows: (0..most).map(|k| row(&|body| part(body, k))).collect(), counts }
     }
 
-    /// Returns the rows that hold a part of one of as many bodies as `S` has lanes, from `offset` on.
+    /// Returns the rows in which any of the bodies in the lanes of `S`, starting with body `offset`, has a part.
     #[inline(always)]
     fn rows<S: Real>(&self, offset: usize) -> std::slice::Iter<'_, R> {
         if S::LANES == WIDTH {

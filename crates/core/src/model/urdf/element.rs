@@ -115,7 +115,7 @@ pub(super) fn has_expression(text: &str) -> bool {
 
 /// Returns the prefix of an element as written in the file, regardless of its namespace.
 pub(super) fn prefix<'a>(node: Node<'a, 'a>) -> Option<&'a str> {
-    node.tag_name().namespace()?; // without one there is no prefix
+    node.tag_name().namespace()?; // an element without a namespace has no prefix
     let tag = node.document().input_text().get(node.range().start + 1..)?;
     let name = &tag[..tag.find(|c: char| c.is_ascii_whitespace() || matches!(c, '/' | '>'))?];
     name.split_once(':').map(|(prefix, _)| prefix)

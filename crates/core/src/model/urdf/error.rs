@@ -7,14 +7,14 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Error of a URDF that cannot be loaded, with file and line if they are known.
+/// Error of a URDF that cannot be loaded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UrdfError {
-    /// File.
+    /// Path of the file; `None` if the URDF was given as text.
     pub file: Option<PathBuf>,
-    /// Line, from 1.
+    /// Line of the problem, from 1; `None` if it is not known.
     pub line: Option<u32>,
-    /// Problem.
+    /// Description of the problem.
     pub problem: Box<UrdfProblem>,
 }
 

@@ -50,7 +50,7 @@ pub(super) fn read_link(
     Ok(result)
 }
 
-/// Returns mass and inertia; `None` without a `<mass>`, as in urdfdom.
+/// Returns mass and inertia, or `None` if there is no `<mass>`, as in urdfdom.
 fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<Option<Inertial>, UrdfError> {
     let owner = element.owner;
     let mut note = |text: String| context.warnings.push(ModelWarning::Note(text));
@@ -77,7 +77,7 @@ fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<
         given.ixy, given.iyy, given.iyz, //
         given.ixz, given.iyz, given.izz,
     );
-    // from the axes of <origin> to those of the link: I = R I' Rᵀ
+    // rotation from the axes of <origin> to the link axes: I = R I' Rᵀ
     let origin = pose(element, &origin)?;
     let rot = origin.rotation.to_rotation_matrix().into_inner();
     let (com, inertia) = (origin.translation.vector, rotated(&rot, &inertia));

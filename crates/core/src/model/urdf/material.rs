@@ -11,8 +11,8 @@ pub(super) struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    /// Collects the definitions: first those of the robot, then those inside visuals, to which other visuals
-    /// refer in some files.
+    /// Collects the materials defined by the robot element, then those defined inside visuals, because in some files
+    /// other visuals refer to them.
     pub(super) fn new(robot: Element<'a>) -> Self {
         let nested = robot
             .children("link")

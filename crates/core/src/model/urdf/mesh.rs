@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 
 /// Finder of mesh files, which records missing files.
 pub(super) struct Meshes<'a> {
-    /// The URDF's folder.
+    /// Folder of the URDF file.
     folder: Option<&'a Path>,
-    /// Folders that contain packages, or are packages.
+    /// Folders that are packages or contain packages.
     packages: &'a [PathBuf],
     /// Results by name, since many links refer to the same file.
     known: HashMap<String, Option<Found>>,
-    /// Existing and missing folders; avoids a system call for each file in a missing one.
+    /// True for each folder that exists. This cache avoids a system call for each file in a missing folder.
     folders: HashMap<PathBuf, bool>,
     near: Near<'a>,
     /// Package for which each file was found.
@@ -147,7 +147,8 @@ impl<'a> Meshes<'a> {
         None
     }
 
-    /// Returns true unless the file was found for another package: two packages may have a `meshes/base.stl`.
+    /// Returns true unless the file was found for another package, since two packages may both contain
+    /// `meshes/base.stl`.
     fn is_free(&mut self, path: &str, name: &MeshName) -> bool {
         let MeshName::InPackage { package, .. } = name else { return true };
         self.taken.entry(path.to_owned()).or_insert_with(|| package.clone()) == package

@@ -6,15 +6,15 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Number of folders above the URDF's in which tails of a name are searched.
+/// Number of parent folders of the URDF in which tails of a path are searched.
 const PARENTS: usize = 3;
 
 /// Finder of files by the tail of their name, which lists each folder only once, since many links have
 /// meshes.
 pub(super) struct Near<'a> {
-    /// The URDF's folder.
+    /// Folder of the URDF file.
     folder: Option<&'a Path>,
-    /// Folders that contain packages, or are packages.
+    /// Folders that are packages or contain packages.
     packages: &'a [PathBuf],
     /// Candidate folders of a file, by the folder in its name.
     places: HashMap<PathBuf, Rc<[Place]>>,
@@ -34,7 +34,8 @@ impl<'a> Near<'a> {
         Self { folder, packages, places: HashMap::new(), listings: HashMap::new() }
     }
 
-    /// Returns files that match a tail of a path, the longest tail first, and whether only the bare name matches.
+    /// Returns the files that match a tail of a path, the longest tail first, each with true if only the bare file name
+    /// matches.
     pub(super) fn candidates(&mut self, path: &Path) -> Vec<(PathBuf, bool)> {
         let (Some(folder), Some(file)) = (path.parent(), path.file_name()) else { return Vec::new() };
         let places = self.places(folder);
@@ -42,8 +43,9 @@ impl<'a> Near<'a> {
         holding.map(|place| (place.folder.join(file), place.is_guess)).collect()
     }
 
-    /// Returns the folders that match a tail of `folder`, below the given ones, the URDF's and some above it; then,
-    /// for bare file names, the URDF's folder and its subfolder `meshes`.
+    /// Returns the folders that match a tail of `folder`, below the given folders, the folder of the URDF and some of
+    /// its parents. The folder of the URDF and its subfolder `meshes`, in which only the bare file name must match,
+    /// follow.
     fn places(&mut self, folder: &Path) -> Rc<[Place]> {
         if let Some(known) = self.places.get(folder) {
             return known.clone();

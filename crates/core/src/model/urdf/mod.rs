@@ -1,9 +1,9 @@
 //! Robots from URDF files.
 //!
-//! roxmltree parses the text and provides line numbers; text that it rejects but tinyxml2 accepts is
-//! rewritten first (`repair`). The types of urdf-rs are filled from that tree by serde (`from_tree`): the
-//! first of each element, with attributes checked by one table (`schema`). `docs/design.md` explains why
-//! urdf-rs does not read the text itself.
+//! roxmltree parses the text and provides line numbers; text that it rejects but tinyxml2 accepts is rewritten first
+//! (`repair`). Serde fills the types of urdf-rs from the parsed tree (`from_tree`), using the first element of each
+//! name and checking attributes against one table (`schema`). `docs/design.md` explains why urdf-rs does not read the
+//! text itself.
 //!
 //! Transmissions, sensors and the elements of other tools are ignored. Elements with a prefix, unknown elements and
 //! xacro tags are ignored with a warning. Prefixes do not have to be declared.
@@ -47,7 +47,7 @@ use std::path::{Path, PathBuf};
 /// Options for reading a URDF.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options<'a> {
-    /// Folders that are ROS packages or contain some; they are searched for `package://` meshes before the
+    /// Folders that are ROS packages or contain ROS packages; they are searched for `package://` meshes before the
     /// parents of the file.
     pub packages: &'a [PathBuf],
     /// Values that replace those of the file before the robot is checked.
@@ -167,7 +167,7 @@ fn check_root(robot: Node<'_, '_>) -> Result<(), UrdfError> {
 }
 
 fn not_xml(error: XmlError) -> UrdfError {
-    // the message of the parser ends with the location, with which the message of this crate begins
+    // the parser's message ends with the location, which this crate states at the start of its message
     let (reason, place) = (error.to_string(), format!(" at {}", error.pos()));
     let reason = reason.strip_suffix(&place).unwrap_or(&reason).to_owned();
     UrdfError::new(Some(error.pos().row), UrdfProblem::NotXml { reason })

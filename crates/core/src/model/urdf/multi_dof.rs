@@ -10,7 +10,7 @@ pub(super) enum MultiDof {
     Planar(Vector3<f64>),
     /// Rotation about any axis.
     Ball,
-    /// Any motion.
+    /// Translation and rotation in all directions.
     Floating,
 }
 

@@ -6,8 +6,9 @@ use crate::model::ModelWarning;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
-/// Returns the pose of the origin of `element`: `xyz` in m and `rpy` in rad about the fixed axes x, y, z in turn,
-/// as read by urdf-rs, or `quat_xyzw` of later versions, which urdf-rs does not store.
+/// Returns the pose given by the `<origin>` of `element`. `read` holds `xyz`, m, and `rpy`, rad, about the fixed axes
+/// x, y, z in turn. URDF versions after 1.0 may give `quat_xyzw` instead of `rpy`; urdf-rs does not store it, so it is
+/// read from `element`.
 pub(super) fn pose(element: Element<'_>, read: &urdf_rs::Pose) -> Result<Isometry3<f64>, UrdfError> {
     let [roll, pitch, yaw] = *read.rpy;
     let rotation = match element.child("origin").map(quaternion).transpose()?.flatten() {
@@ -32,12 +33,12 @@ fn quaternion(origin: Element<'_>) -> Result<Option<UnitQuaternion<f64>>, UrdfEr
     unit.ok_or_else(|| origin.fail(zero)).map(Some)
 }
 
-/// Returns true if the version of the format has quaternions: any above 1.0, the default.
+/// Returns true if the URDF version of the file supports quaternions, which all versions after 1.0 (the default) do.
 fn knows_quaternions(robot: Node<'_, '_>) -> bool {
     robot.attribute("version").is_some_and(|version| !matches!(version.trim(), "1.0" | "1"))
 }
 
-/// Returns a warning if quaternions are ignored.
+/// Returns a warning if the file contains quaternions that are ignored because of its version.
 pub(super) fn quaternion_warning(robot: Node<'_, '_>) -> Option<ModelWarning> {
     if knows_quaternions(robot) || !robot.document().input_text().contains("quat_xyzw") {
         return None;

@@ -6,11 +6,11 @@ use crate::model::ModelWarning;
 use crate::text_file::{TextFileError, read_bytes};
 use std::path::Path;
 
-/// Largest size of a file, bytes. A humanoid with hands has 0.1 MB, a file with embedded sensors and plugins
-/// 1 to 2 MB.
+/// Largest size of a file, bytes. The URDF of a humanoid with hands has 0.1 MB; files with embedded sensors and plugins
+/// have 1 to 2 MB.
 pub(super) const MAX_BYTES: usize = 16 << 20;
-/// Largest depth, that of tinyxml2, which urdfdom uses. A URDF has 6 levels, with plugins of simulators about
-/// twelve.
+/// Largest nesting depth, equal to the limit of tinyxml2, which urdfdom uses. A URDF has 6 levels, or about 12 with
+/// plugins of simulators.
 const MAX_DEPTH: usize = 500;
 /// Largest number of attributes of a tag: XML parsers compare each with every other.
 const MAX_ATTRIBUTES: usize = 1000;

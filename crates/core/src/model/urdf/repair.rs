@@ -1,6 +1,6 @@
 //! Repair of text that is not well-formed XML but is accepted by tinyxml2, which urdfdom uses.
 //!
-//! Line numbers are kept. Well-formed files are not rewritten.
+//! The repair does not change line numbers. Well-formed files are not rewritten.
 
 use super::error::{UrdfError, UrdfProblem};
 use super::precheck::line;

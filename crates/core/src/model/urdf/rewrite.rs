@@ -16,7 +16,7 @@ pub(super) struct Writer<'a> {
     has_entities: bool,
 }
 
-/// Result of a writer; the error is the name of an entity that is not supported.
+/// Result of a method of [`Writer`]; the error is the name of an unsupported entity.
 pub(super) type Written = Result<(), String>;
 
 impl<'a> Writer<'a> {

@@ -6,7 +6,7 @@ use super::error::{UrdfError, UrdfProblem};
 /// Kind of value of an attribute.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
-    /// Name defined by the file; any text.
+    /// Name defined by the file, which may be any text.
     Name,
     /// Text with a meaning, such as a path or a type; xacro expressions are rejected.
     Text,
@@ -23,7 +23,7 @@ use Kind::{Limit, Name, Numbers, Sizes, Text};
 /// urdf-rs applies, or the attribute is required.
 pub(super) type Attribute = (&'static str, Kind, Option<&'static str>);
 
-/// Returns the attributes that are read of an element.
+/// Returns the attributes of an element that are read.
 pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
     match tag {
         "joint" => &[("name", Name, None), ("type", Text, None)],
@@ -56,7 +56,7 @@ pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
     }
 }
 
-/// Returns the child elements that are read of an element; only the first of each name is used.
+/// Returns the names of the child elements that are read; only the first child of each name is used.
 pub(super) fn elements(tag: &str) -> &'static [&'static str] {
     match tag {
         "joint" => &["parent", "child", "origin", "axis", "limit", "dynamics"],
@@ -68,8 +68,8 @@ pub(super) fn elements(tag: &str) -> &'static [&'static str] {
     }
 }
 
-/// Returns an error if a text is not of the kind of its attribute. urdf-rs would read `1,0 0 0 0` as three
-/// zeros.
+/// Returns an error if the text of an attribute does not match the kind in the schema. Without this check, urdf-rs
+/// would read `1,0 0 0 0` as three zeros.
 pub(super) fn check(element: &Element<'_>, attribute: Attribute, text: &str) -> Result<(), UrdfError> {
     let (name, kind, _) = attribute;
     let (count, is_size) = match kind {

@@ -1,7 +1,7 @@
 //! Tokenizer that splits a text into tags, comments and the text between them, without validation.
 //!
-//! One pass without recursion, so that neither a deep document nor an entity bomb reaches code
-//! that could exhaust the stack or the memory.
+//! Reads the text in one pass without recursion, so that neither a deeply nested document nor an entity bomb can
+//! exhaust the stack or the memory.
 
 /// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

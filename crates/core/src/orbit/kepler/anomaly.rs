@@ -1,4 +1,4 @@
-//! Solvers of Kepler's equation for the three conics, from mean to eccentric anomaly.
+//! Solvers of Kepler's equation for the three conics: the eccentric anomaly from the mean anomaly.
 //!
 //! `|1 - e|` is a separate input, and `E - sin E` is computed without cancellation, so that the relative
 //! accuracy holds in the limit `e → 1`, `M → 0`.
@@ -89,8 +89,9 @@ pub(super) fn solve_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnoma
 
 /// Solves Kepler's equation of a nearly circular orbit for `δ = E - M`, at half the cost of [`solve_any_ellipse`].
 ///
-/// Two steps of the reverted series of `f = δ - e sin(M + δ)`. From `δ = 0` to second order it gives `δ = x - x³/2`,
-/// `x = e sin M/(1 - e cos M)`, with an error below 1e-5 rad; from there, to third order, it leaves rounding error.
+/// Takes two steps with the reverted series of `f = δ - e sin(M + δ)`. The first, from `δ = 0` and of second order,
+/// gives `δ = x - x³/2` with `x = e sin M/(1 - e cos M)`; its error is below 1e-5 rad. The second is of third order and
+/// reduces the error to rounding.
 ///
 /// Source of the series: Abramowitz and Stegun, Handbook of Mathematical Functions, 1964, eq. 3.6.25.
 #[inline(always)]
@@ -123,13 +124,14 @@ fn turned<S: Real>((s, c): (S, S), x: S) -> (S, S) {
 
 /// Solves Kepler's equation of any ellipse.
 ///
-/// A cubic start with an error below 1e-3 rad, and one correction of fifth order.
+/// A cubic equation gives a first approximation with an error below 1e-3 rad, which one correction of fifth order
+/// refines.
 ///
 /// Source: Markley, Celestial Mechanics and Dynamical Astronomy 63, 1995, eqs. (5)-(24).
 #[inline(always)]
 fn solve_any_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnomaly<S> {
     let (of, one, m) = (S::of, S::of(1.0), mean.abs());
-    // Eqs. (20), (5), (9), (10), (14), (15): the cubic from a Padé approximant of sin E
+    // Eqs. (20), (5), (9), (10), (14), (15): the cubic equation follows from a Padé approximant of sin E
     let alpha = (of(3.0 * PI * PI) + of(1.6 * PI) * (of(PI) - m) / (one + e)) * of(1.0 / (PI * PI - 6.0));
     let d = of(3.0) * one_minus_e + alpha * e;
     let q = of(2.0) * alpha * d * one_minus_e - m * m;

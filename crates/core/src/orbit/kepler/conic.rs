@@ -10,14 +10,14 @@ use crate::orbit::OrbitError;
 use crate::orbit::error::positive;
 use crate::spatial::Real;
 
-/// Size and shape of a conic, each to full relative accuracy: `1 - e` is not computed from `e`.
+/// Size and shape of a conic. Each field has full relative accuracy: `1 - e` is not computed from `e`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shape {
     /// Eccentricity `e`.
     pub(super) e: f64,
     /// `1 - e`, negative on a hyperbola.
     pub(super) one_minus_e: f64,
-    /// Distance of the periapsis `q`, m.
+    /// Periapsis distance `q`, m.
     pub(super) periapsis: f64,
     /// `1/a`, 1/m; zero on a parabola, negative on a hyperbola.
     pub(super) inverse_axis: Double,
@@ -35,7 +35,7 @@ pub(super) struct PerifocalState<S = f64> {
     pub(super) vy: S,
 }
 
-/// Ellipse with its semi-axes, `√(μ a)` and `√(μ p)`.
+/// Ellipse with its semi-axes and the velocity scales `√(μ a)` and `√(μ p)`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ellipse<S> {
     pub(super) e: S,

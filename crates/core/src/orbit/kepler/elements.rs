@@ -53,7 +53,7 @@ pub struct Elements {
 }
 
 impl Elements {
-    /// Returns elements with all angles and the epoch zero, around the Earth.
+    /// Returns the elements of an orbit around the Earth with all angles and the epoch set to zero.
     pub fn new(size: Size, eccentricity: f64) -> Self {
         Self {
             size,
@@ -201,7 +201,7 @@ fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64)
     }
 }
 
-/// Returns an anomaly on an ellipse, checked to be small enough to have digits left after its turns are
+/// Returns an anomaly on an ellipse, or an error if it is so large that no digits would remain after whole turns are
 /// subtracted.
 fn angle(name: &'static str, value: f64) -> Result<f64, OrbitError> {
     if finite(name, value)?.abs() > LARGEST_ANGLE {

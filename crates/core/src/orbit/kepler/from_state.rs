@@ -8,9 +8,9 @@ use super::{Kepler, anomaly};
 use crate::orbit::OrbitError;
 use crate::orbit::error::{finite, positive};
 
-/// Sine of the angle between position and velocity below which the orbital plane is undefined. Ellipses with
-/// `1 - e` above 1e-16 stay above it, their smallest sine being `√(1 - e²)`; on a hyperbola the limit is
-/// reached at a distance of 1e10 `b`.
+/// Sine of the angle between position and velocity below which the orbital plane is undefined. On ellipses with `1 - e`
+/// above 1e-16 the sine never falls below this limit, because its minimum is `√(1 - e²)`. On a hyperbola it reaches the
+/// limit at a distance of 1e10 `b`.
 const SMALLEST_SINE: f64 = 1e-10;
 
 impl Kepler {
@@ -50,7 +50,7 @@ impl Kepler {
         let shape = Shape { e, one_minus_e, periapsis: p.hi / (1.0 + e), inverse_axis };
         let conic = Conic::new(&shape, mu)?;
 
-        // perifocal axes: the local axes rotated by -ν, which is in the plane for any e
+        // perifocal axes: the local axes rotated by -ν within the orbital plane
         let (cos, sin) = if e > 0.0 { (e_cos / e, e_sin / e) } else { (1.0, 0.0) };
         let x = r / radius.hi;
         let y = accurate_cross(&r, &v).normalize().cross(&x);

@@ -27,8 +27,9 @@ pub use secular::SecularJ2;
 
 /// Unperturbed orbit around a point mass.
 ///
-/// The phase of an ellipse is accurate over 2²⁶ revolutions, that of an open orbit over 1e18 s; further from
-/// its epoch [`Orbit::state`] returns an error, since seconds in `f64` no longer resolve metres.
+/// The phase of an ellipse is accurate over 2²⁶ revolutions, and the phase of an open orbit over 1e18 s.
+/// [`Orbit::state`] returns an error for times farther from the epoch, since seconds in `f64` no longer resolve metres
+/// there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kepler {
     mu: f64,
@@ -154,7 +155,7 @@ impl Kepler {
         Some(PerifocalState { x: s.x.0, y: s.y.0, vx: s.vx.0, vy: s.vy.0 })
     }
 
-    /// Fills the rows on the lanes of `S`; instants with an error are evaluated one by one.
+    /// Fills `rows` with states computed on the SIMD lanes of `S`; instants with an error are evaluated one by one.
     fn fill_in_lanes<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         let (p, q, longest) = (self.p_i.into(), self.q_i.into(), self.conic.longest_time());
         let (p, q) = (Vec3::<S>::of(&p), Vec3::<S>::of(&q));

@@ -8,10 +8,10 @@ use nalgebra::{Rotation3, Unit, Vector3};
 
 /// Kepler ellipse with secular rates of first order in J₂; its elements are mean elements.
 ///
-/// `Ω̇ = -3/2 n J₂ (R/p)² cos i`, `ω̇ = 3/4 n J₂ (R/p)² (4 - 5 sin²i)`,
-/// `Ṁ - n = 3/4 n J₂ (R/p)² √(1 - e²) (2 - 3 sin²i)`. Node and periapsis are those at the epoch, or at the
-/// time of periapsis if that is given. Velocity and acceleration are the derivatives of this position. It
-/// differs from the osculating motion by kilometres, so they are not those of a body in free fall.
+/// `Ω̇ = -3/2 n J₂ (R/p)² cos i`, `ω̇ = 3/4 n J₂ (R/p)² (4 - 5 sin²i)`, `Ṁ - n = 3/4 n J₂ (R/p)² √(1 - e²) (2 - 3
+/// sin²i)`. The given node and periapsis refer to the epoch, or to the time of periapsis if that is given. Velocity and
+/// acceleration are the time derivatives of this mean position, which differs from the osculating position by
+/// kilometres. They are therefore not the velocity and acceleration of a body in free fall.
 ///
 /// Source: Vallado, Fundamentals of Astrodynamics and Applications, 4th ed., eqs. 9-38, 9-40 and 9-41.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,12 +27,12 @@ pub struct SecularJ2 {
 }
 
 impl Kepler {
-    /// Returns this ellipse with the secular rates of a planet with `j2` about z and the reference radius
-    /// `radius` (m).
+    /// Returns this ellipse with the secular rates caused by the `j2` of a planet with axis z and reference radius
+    /// `radius`, m.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `radius`, [`OrbitError::OutOfRange`] for a
-    /// `j2` or radius that no planet has, [`OrbitError::NotClosed`] for an open orbit.
+    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `radius`, [`OrbitError::OutOfRange`] for an
+    /// implausible `j2` or radius, [`OrbitError::NotClosed`] for an open orbit.
     pub fn with_secular_j2(self, j2: f64, radius: f64) -> Result<SecularJ2, OrbitError> {
         if finite("j2", j2)?.abs() > 0.1 {
             return Err(OrbitError::OutOfRange {

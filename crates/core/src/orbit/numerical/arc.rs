@@ -1,4 +1,4 @@
-//! Integration steps of an orbit, stored from the initial state outward.
+//! Integration steps of an orbit, stored in both directions from the initial state.
 
 use super::collocation::NODES;
 use super::step::{Start, Step};
@@ -14,7 +14,7 @@ const SHORTEST: f64 = 1e-9;
 /// Ratio of the next step to the longest permitted step, and largest ratio of successive steps.
 const SAFETY: f64 = 0.9;
 const CHANGE: (f64, f64) = (0.25, 2.0);
-/// Largest number of steps on either side of the initial state: years of a low orbit, 150 MB.
+/// Largest number of steps on either side of the initial state. It covers years of a low orbit and takes 150 MB.
 const MOST_STEPS: usize = 1 << 18;
 
 /// Integration steps of an orbit after and before the initial state.
@@ -73,8 +73,8 @@ impl Arcs {
         }
     }
 
-    /// Computes at most `most_steps` steps in each direction towards `times`. Returns true if no step is
-    /// missing.
+    /// Computes at most `most_steps` steps in each direction towards `times`. Returns true if no further step is
+    /// required.
     pub(super) fn prepare(
         &self,
         times: &[f64],
@@ -126,7 +126,7 @@ impl Arcs {
             }
         };
         loop {
-            // the time is the sum of the lengths as rounded
+            // the length by which the rounded time advances
             length = (time + length) - time;
             if length.abs() <= shortest {
                 return Err(OrbitError::StepTooShort { time, length });

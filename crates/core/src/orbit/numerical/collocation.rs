@@ -38,7 +38,7 @@ impl Legendre {
     #[inline(always)]
     pub(super) fn at(x: f64) -> Self {
         let p = legendre(x);
-        // ∫ Pₖ = (Pₖ₊₁ - Pₖ₋₁)/(2k + 1), and once more
+        // ∫ Pₖ = (Pₖ₊₁ - Pₖ₋₁)/(2k + 1), applied twice for the double integral
         let (mut once, mut twice) = ([x + 1.0; NODES + 1], [0.5 * (x + 1.0) * (x + 1.0); NODES]);
         for k in 1..=NODES {
             once[k] = (p[k + 1] - p[k - 1]) * INVERSE_ODD[k];
@@ -50,7 +50,7 @@ impl Legendre {
     }
 }
 
-/// Factors `1/(2k + 1)`.
+/// Factors `1/(2k + 1)` of the integrals of Legendre polynomials.
 const INVERSE_ODD: [f64; NODES + 1] = {
     let mut inverse = [1.0; NODES + 1];
     let mut k = 1;

@@ -1,4 +1,4 @@
-//! Reference in free fall in the full gravity field, integrated numerically.
+//! Numerically integrated reference orbit, in free fall in the full gravity field.
 
 mod arc;
 mod collocation;
@@ -14,8 +14,8 @@ use std::sync::Arc;
 
 /// Orbit integrated in a gravity field: `r̈ = g(t, r)`.
 ///
-/// Lobatto collocation of order 16 at the ends of steps. The steps depend on the motion only: they are
-/// computed from `t₀` outward on request and stored, so that the state is a function of `t`. Position,
+/// The integrator is Lobatto collocation, of order 16 at the ends of steps. Steps are computed from `t₀` outward on
+/// request and stored. They do not depend on the requested times, so the state is a function of `t` alone. Position,
 /// velocity and acceleration are continuous; within a step the relative error of the position is 1e-14.
 #[derive(Debug)]
 pub struct Numerical {
@@ -29,7 +29,7 @@ impl Numerical {
     /// `I`.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::BeginsBelowSurface`], and those of the field.
+    /// [`OrbitError::NotFinite`], [`OrbitError::BeginsBelowSurface`], and the errors of the field.
     pub fn new(r: Vector3<f64>, v: Vector3<f64>, t0: f64, gravity: Arc<Gravity>) -> Result<Self, OrbitError> {
         for (name, x) in [("position", &r), ("velocity", &v)] {
             x.iter().try_for_each(|&c| finite(name, c).map(drop))?;
@@ -45,7 +45,7 @@ impl Numerical {
         Ok(Self { gravity, axes: Axes::default(), arcs })
     }
 
-    /// Returns the same orbit with `axes` as the axes of state and gravity.
+    /// Returns the same orbit with states and gravity interpreted in `axes`.
     #[must_use]
     pub fn with_axes(self, axes: Axes) -> Self {
         Self { axes, ..self }
@@ -75,7 +75,7 @@ impl Orbit for Numerical {
         self.axes
     }
 
-    /// Returns the epoch of the Earth orientation of its field or of its perturbing bodies.
+    /// Returns the epoch at time zero that the gravity field or its third bodies define, if any.
     fn epoch(&self) -> Option<Epoch> {
         self.gravity.epoch()
     }
@@ -85,8 +85,8 @@ impl Orbit for Numerical {
     }
 
     /// # Errors
-    /// [`OrbitError::BelowSurface`] from the time at which the orbit enters the planet,
-    /// [`OrbitError::TooManySteps`] too far from `t₀`, and those of the field.
+    /// [`OrbitError::BelowSurface`] from the time at which the orbit enters the planet, [`OrbitError::TooManySteps`]
+    /// too far from `t₀`, and the errors of the field.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         self.arcs.state(finite("time", t)?, |time, r| self.field(time, r))
     }

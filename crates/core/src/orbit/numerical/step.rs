@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 /// Largest number of iterations of a step before its length is reduced.
 const MOST_SWEEPS: usize = 16;
-/// Change of the nodes, relative to the distance, at which the iteration has converged.
+/// The iteration has converged when the node positions change by less than this fraction of the distance.
 const SETTLED: f64 = 1e-15;
 
 /// State at the start of a step; each sum is stored with its rounding error (compensated summation).

@@ -1,7 +1,7 @@
 //! Relative orbital elements of a deputy about a chief.
 //!
-//! `δa = (a_d - a)/a`, `δλ = (u_d - u) + (Ω_d - Ω) cos i`, `δe = e_d (cos ω_d, sin ω_d) - e (cos ω, sin ω)`,
-//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`: regular for circular orbits, singular for an
+//! `δa = (a_d - a)/a`, `δλ = (u_d - u) + (Ω_d - Ω) cos i`, `δe = e_d (cos ω_d, sin ω_d) - e (cos ω, sin ω)`, `δi = (i_d
+//! - i, (Ω_d - Ω) sin i)` with `u = M + ω`. These elements are regular for circular orbits and singular for an
 //! equatorial chief.
 //!
 //! Source: D'Amico and Montenbruck, J. Guidance, Control and Dynamics 29(3), 2006; D'Amico, Ph.D. thesis, TU Delft 2010.
@@ -43,11 +43,11 @@ impl Regular {
 }
 
 /// Returns `(δa, δλ, δex, δey, δix, δiy)` of a deputy at `deputy` about a chief at `chief`: positions (m) and
-/// velocities (m/s) in `I` at one instant. The elements are dimensionless or in rad; times `a` they are
-/// lengths.
+/// velocities (m/s) in `I` at one instant. The elements are dimensionless or in rad; multiplied by `a` they are lengths
+/// in m.
 ///
 /// # Errors
-/// [`OrbitError::NotClosed`], [`OrbitError::Equatorial`], and those of [`Kepler::from_state`].
+/// [`OrbitError::NotClosed`], [`OrbitError::Equatorial`], and the errors of [`Kepler::from_state`].
 pub fn relative_elements(
     chief: [&Vector3<f64>; 2],
     deputy: [&Vector3<f64>; 2],
@@ -66,7 +66,7 @@ pub fn relative_elements(
 /// [`relative_elements`].
 ///
 /// # Errors
-/// Those of [`relative_elements`], and of [`Kepler::new`] for elements of no ellipse.
+/// The errors of [`relative_elements`], and of [`Kepler::new`] for elements that do not describe an ellipse.
 pub fn deputy_state(
     chief: [&Vector3<f64>; 2],
     elements: &Vector6<f64>,
@@ -92,10 +92,10 @@ pub fn deputy_state(
     Ok([r, v])
 }
 
-/// Computes [`relative_elements`] for many pairs: states (B, 3) each, `out` (B, 6).
+/// Computes [`relative_elements`] for many pairs: positions and velocities are (B, 3) each, `out` is (B, 6).
 ///
 /// # Errors
-/// Those of [`relative_elements`]; [`OrbitError::WrongLength`].
+/// The errors of [`relative_elements`]; [`OrbitError::WrongLength`].
 pub fn relative_elements_rows(
     chief: [&[f64]; 2],
     deputy: [&[f64]; 2],
@@ -116,10 +116,10 @@ pub fn relative_elements_rows(
     Ok(())
 }
 
-/// Computes [`deputy_state`] for many pairs: chiefs (B, 3) each, `elements` (B, 6), `out` (B, 3) each.
+/// Computes [`deputy_state`] for many pairs: positions and velocities are (B, 3) each, `elements` is (B, 6).
 ///
 /// # Errors
-/// Those of [`deputy_state`]; [`OrbitError::WrongLength`].
+/// The errors of [`deputy_state`]; [`OrbitError::WrongLength`].
 pub fn deputy_states(
     chief: [&[f64]; 2],
     elements: &[f64],

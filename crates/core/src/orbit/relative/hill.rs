@@ -7,9 +7,9 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 /// Returns the transition matrix of relative position and velocity over `t` s, for a circular orbit of mean
 /// motion `n`, rad/s.
 ///
-/// `ẍ = 3n² x + 2n ẏ`, `ÿ = -2n ẋ`, `z̈ = -n² z` in Hill axes `L` (x outward, y along track, z normal);
-/// velocities are relative to the rotating axes; rows and columns `(x, y, z, ẋ, ẏ, ż)`. The error is about
-/// `3/2 ρ²/R` per radian of orbit.
+/// `ẍ = 3n² x + 2n ẏ`, `ÿ = -2n ẋ`, `z̈ = -n² z` in Hill axes `L` (x outward, y along track, z normal); velocities are
+/// relative to the rotating axes; rows and columns `(x, y, z, ẋ, ẏ, ż)`. The error is about `3/2 ρ²/R` per radian of
+/// orbit, with the distance `ρ` from the origin and the orbit radius `R`.
 ///
 /// # Errors
 /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`].
@@ -36,7 +36,7 @@ pub fn hill_transition(n: f64, t: f64) -> Result<Matrix6<f64>, OrbitError> {
 /// Computes the transition matrices for many times: `out` (T, 6, 6), row-major.
 ///
 /// # Errors
-/// Those of [`hill_transition`], and [`OrbitError::WrongLength`].
+/// The errors of [`hill_transition`], and [`OrbitError::WrongLength`].
 pub fn hill_transitions(n: f64, times: &[f64], out: &mut [f64]) -> Result<(), OrbitError> {
     super::check(&[("transitions", 36 * times.len(), out.len())])?;
     for (&t, to) in times.iter().zip(out.chunks_exact_mut(36)) {
@@ -45,7 +45,7 @@ pub fn hill_transitions(n: f64, times: &[f64], out: &mut [f64]) -> Result<(), Or
     Ok(())
 }
 
-/// Smallest determinant of `n Φ_rv`: below it no impulse reaches the origin at that time.
+/// Determinant of `n Φ_rv` below which no impulse reaches the origin at that time.
 const SINGULAR: f64 = 1e-9;
 
 /// Returns the velocity at `r` (m, `L`) that reaches the origin in `t` s, m/s: the first impulse of a
@@ -54,7 +54,7 @@ const SINGULAR: f64 = 1e-9;
 /// `v = -Φ_rv⁻¹ Φ_rr r`; the second impulse cancels the final velocity, which [`hill_transition`] gives.
 ///
 /// # Errors
-/// Those of [`hill_transition`]; [`OrbitError::NoIntercept`] at times when x or z return to their initial
+/// The errors of [`hill_transition`]; [`OrbitError::NoIntercept`] at times when x or z return to their initial
 /// values for any velocity, such as half a period.
 pub fn intercept_velocity(n: f64, r: &Vector3<f64>, t: f64) -> Result<Vector3<f64>, OrbitError> {
     r.iter().try_for_each(|&x| finite("position", x).map(drop))?;

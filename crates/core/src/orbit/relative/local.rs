@@ -27,8 +27,7 @@ impl LocalFrame {
     }
 }
 
-/// Returns position and velocity relative to `reference`, as seen in its rotating frame: m and m/s, local
-/// axes.
+/// Returns position and velocity relative to `reference`, in its rotating frame: m and m/s, local axes.
 ///
 /// `ρ = R_liᵀ (r - R)`, `ρ̇ = R_liᵀ (v - V) - ω × ρ`; `r` and `v` in `I`.
 ///
@@ -69,7 +68,7 @@ type Convert =
 /// each.
 ///
 /// # Errors
-/// Those of [`to_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
+/// The errors of [`to_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
 pub fn to_local_rows(
     orbit: &dyn Orbit,
     frame: LocalFrame,
@@ -83,7 +82,7 @@ pub fn to_local_rows(
 /// Computes [`from_local`] at each of `times`; shapes as in [`to_local_rows`].
 ///
 /// # Errors
-/// Those of [`from_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
+/// The errors of [`from_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
 pub fn from_local_rows(
     orbit: &dyn Orbit,
     frame: LocalFrame,

@@ -83,7 +83,7 @@ pub(super) struct Mean<S = f64> {
     pub(super) anomaly: S,
 }
 
-/// Returns `angle % 2π` with the sign of the angle, which Lyddane's variables require. Up to 2²⁶ turns.
+/// Returns `angle % 2π` with the sign of the angle, which Lyddane's variables require. Valid up to 2²⁶ turns.
 #[inline(always)]
 pub(super) fn wrap_angle<S: Real>(angle: S) -> S {
     const ROUND: f64 = 6_755_399_441_055_744.0; // adding 1.5 × 2⁵² rounds to an integer

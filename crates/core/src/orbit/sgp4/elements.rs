@@ -28,7 +28,7 @@ pub struct MeanElements {
     pub argument_of_perigee: f64,
     /// Mean anomaly, rad.
     pub mean_anomaly: f64,
-    /// Mean motion as Kozai defines it, rad/min.
+    /// Mean motion as defined by Kozai, rad/min.
     pub mean_motion: f64,
 }
 
@@ -80,7 +80,7 @@ impl MeanElements {
         .checked()
     }
 
-    /// Returns the elements if they are within the range of orbits.
+    /// Returns the elements if each is within its accepted range.
     ///
     /// # Errors
     /// [`ElementSetError::Range`], with values in the units of published element sets.

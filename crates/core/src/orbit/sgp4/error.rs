@@ -40,7 +40,7 @@ pub enum ElementSetError {
         /// Checksum of the line.
         expected: u8,
     },
-    /// The lines are of two satellites.
+    /// The two lines belong to different satellites.
     #[error(
         "line 1 of the TLE is of satellite {first:?}, but line 2 is of {second:?}; give two lines of one \
          satellite"
@@ -67,7 +67,7 @@ pub enum ElementSetError {
         /// Description of the expected text.
         expected: &'static str,
     },
-    /// A number is out of the range of orbits.
+    /// An element is outside its accepted range.
     #[error("{name} is {got}; it must lie within {} to {}", short(*range.start()), short(*range.end()), got = unlike(*got, &[*range.start(), *range.end()]))]
     Range {
         /// Name of the element.
@@ -79,14 +79,14 @@ pub enum ElementSetError {
     },
 }
 
-/// Errors of SGP4, with the numbers of the reference code.
+/// Errors of SGP4, with the error numbers of the reference implementation.
 ///
 /// As in current versions of the reference implementation, error 5 (epoch elements below the surface) does
 /// not occur: such orbits are propagated and decay.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Sgp4Error {
-    /// Error 1: mean eccentricity, including drag and secular effects.
+    /// Error 1: the mean eccentricity with drag and secular perturbations is out of range.
     #[error(
         "SGP4 error 1 at t = {time} s: the mean eccentricity is {eccentricity}; it must lie in [-0.001, 1); \
          give elements with an epoch nearer to this time",
@@ -98,7 +98,7 @@ pub enum Sgp4Error {
         /// Computed value.
         eccentricity: f64,
     },
-    /// Error 2: mean motion.
+    /// Error 2: the mean motion is not positive.
     #[error(
         "SGP4 error 2 at t = {time} s: the mean motion is {mean_motion} rev/day; it must be positive",
         time = short(*time), mean_motion = short(*mean_motion)
@@ -109,7 +109,7 @@ pub enum Sgp4Error {
         /// Computed value.
         mean_motion: f64,
     },
-    /// Error 3: eccentricity with perturbations by Sun and Moon.
+    /// Error 3: the eccentricity with the perturbations by Sun and Moon is out of range.
     #[error(
         "SGP4 error 3 at t = {time} s: the eccentricity perturbed by Sun and Moon is {eccentricity}; it \
          must lie in [0, 1]; give elements with an epoch nearer to this time",
@@ -121,7 +121,7 @@ pub enum Sgp4Error {
         /// Computed value.
         eccentricity: f64,
     },
-    /// Error 4: semi-latus rectum.
+    /// Error 4: the semi-latus rectum is negative.
     #[error(
         "SGP4 error 4 at t = {time} s: the semi-latus rectum is {semi_latus_rectum} m; it must not be \
          negative; give elements with an epoch nearer to this time",
@@ -133,7 +133,7 @@ pub enum Sgp4Error {
         /// Computed value, m.
         semi_latus_rectum: f64,
     },
-    /// Error 6: position below the surface.
+    /// Error 6: the position is below the surface.
     #[error(
         "SGP4 error 6 at t = {time} s: the satellite has decayed: it is {distance} m from the Earth's \
          centre; expected at least {radius} m; end the run earlier",
@@ -147,7 +147,7 @@ pub enum Sgp4Error {
         /// Equatorial radius of the Earth model, m.
         radius: f64,
     },
-    /// An error of the reference code.
+    /// An error reported by the reference implementation.
     #[error("SGP4 error {code} of the reference implementation at t = {time} s: {}", reason(*.code), time = short(*time))]
     External {
         /// Time since the epoch, s.
@@ -157,7 +157,7 @@ pub enum Sgp4Error {
     },
 }
 
-/// Returns the meaning of an error code of the reference code.
+/// Returns the meaning of an error code of the reference implementation.
 fn reason(code: u8) -> &'static str {
     match code {
         1 => "the mean eccentricity is out of range",
@@ -169,7 +169,7 @@ fn reason(code: u8) -> &'static str {
 }
 
 impl Sgp4Error {
-    /// Returns the number of the error in the reference code.
+    /// Returns the error number that the reference implementation uses.
     pub fn code(&self) -> u8 {
         match self {
             Self::MeanEccentricity { .. } => 1,
@@ -193,7 +193,7 @@ impl Sgp4Error {
         }
     }
 
-    /// Returns the offending value, in the unit of its message; NaN for errors of the reference code.
+    /// Returns the offending value, in the unit of the message; NaN for [`Sgp4Error::External`].
     pub fn value(&self) -> f64 {
         match *self {
             Self::MeanEccentricity { eccentricity, .. }

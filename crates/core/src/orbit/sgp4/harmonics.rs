@@ -22,7 +22,7 @@ impl Harmonic {
     }
 }
 
-/// Returns the terms for one revolution per day: harmonics (2,2), (3,1) and (3,3).
+/// Returns the terms for orbits with one revolution per day: harmonics (2,2), (3,1) and (3,3).
 pub(super) fn day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     let ((sin, cos), e2) = (i.sin_cos(), e * e);
     let (g200, g310) = (1.0 + e2 * (-2.5 + 0.8125 * e2), 1.0 + 2.0 * e2);
@@ -40,7 +40,7 @@ pub(super) fn day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     ]
 }
 
-/// Returns the terms for two revolutions per day: harmonics of order 2 and 4, degrees 2 to 5.
+/// Returns the terms for orbits with two revolutions per day: harmonics of order 2 and 4, degrees 2 to 5.
 pub(super) fn half_day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     let (sin, cos) = i.sin_cos();
     let (e2, s2, c2) = (e * e, sin * sin, cos * cos);

@@ -38,7 +38,7 @@ struct Ellipse {
 const COS_OBLIQUITY: f64 = 0.917_448_67;
 const SIN_OBLIQUITY: f64 = 0.397_854_16;
 
-/// Returns Sun and Moon at `day` days since 1900-01-00 12:00, acting on `mean`.
+/// Returns the perturbations of the orbit `mean` by Sun and Moon, with its epoch `day` in days since 1900-01-00 12:00.
 pub(super) fn sun_and_moon(day: f64, mean: &Mean) -> [ThirdBody; 2] {
     let sun = Ellipse {
         g: (0.194_590_5, -0.980_884_58),
@@ -56,7 +56,7 @@ pub(super) fn sun_and_moon(day: f64, mean: &Mean) -> [ThirdBody; 2] {
     let sin_i = (1.0 - cos_i * cos_i).sqrt();
     let sin_h = 0.089_683_511 * sin_node / sin_i;
     let cos_h = (1.0 - sin_h * sin_h).sqrt();
-    let longitude = 5.835_151_4 + 0.001_944_368_0 * day; // of the perigee
+    let longitude = 5.835_151_4 + 0.001_944_368_0 * day; // longitude of the perigee
     let along = (SIN_OBLIQUITY * sin_node / sin_i).atan2(cos_h * cos_node + COS_OBLIQUITY * sin_h * sin_node);
     let (sin_g, cos_g) = (longitude + along - node).sin_cos();
     let moon = Ellipse {

@@ -92,7 +92,7 @@ impl Sgp4 {
         60.0 * TAU / self.elements.mean_motion
     }
 
-    /// Returns position (m) and velocity (m/s) at `t`, or an error below the surface.
+    /// Returns position (m) and velocity (m/s) at `t`, or an error if the position is below the surface.
     fn above_surface(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
         if finite("time", t)?.abs() > LONGEST_TIME {
             return Err(OrbitError::TimeOutOfRange { time: t, epoch: 0.0, limit: LONGEST_TIME });
@@ -105,7 +105,7 @@ impl Sgp4 {
         Ok((at.position * 1e3, at.velocity * 1e3))
     }
 
-    /// Fills the rows on the lanes of `S`; instants with an error are evaluated one by one.
+    /// Fills `rows` with states computed on the SIMD lanes of `S`; instants with an error are evaluated one by one.
     fn fill_in_lanes<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         fill_lanes::<S>(
             self,

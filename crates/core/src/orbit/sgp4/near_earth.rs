@@ -44,11 +44,11 @@ struct Fine {
 /// Mean elements with secular perturbations at one time, and the drag terms that are applied later.
 pub(super) struct SecularElements<S = f64> {
     pub(super) mean: Mean<S>,
-    /// Factor of `√a`.
+    /// Factor by which drag multiplies `√a`.
     pub(super) axis_factor: S,
-    /// Loss of eccentricity.
+    /// Decrease of the eccentricity.
     pub(super) eccentricity_loss: S,
-    /// Increase of the mean longitude over `n″₀`, min.
+    /// Increase of the mean longitude divided by `n″₀`, min.
     pub(super) longitude_gain: S,
 }
 

@@ -50,7 +50,7 @@ pub(super) fn osculating_state<S: Real>(
     let el2 = ax * ax + ay * ay;
     let p = a * (one - el2);
     let r = a * (one - e_cos);
-    let (r_dot, rf_dot) = (a.sqrt() * e_sin / r, p.sqrt() / r); // over kₑ
+    let (r_dot, rf_dot) = (a.sqrt() * e_sin / r, p.sqrt() / r); // both divided by kₑ
     let beta = (one - el2).sqrt();
     let q = e_sin / (one + beta);
     let (sin_u, cos_u) = (a / r * (sin_eo - ay - ax * q), a / r * (cos_eo - ax + ay * q));

@@ -1,4 +1,4 @@
-//! SGP4 and SDP4: secular, then periodic perturbations. No state is kept between calls.
+//! SGP4 and SDP4: applies the secular, then the periodic perturbations. No state is kept between calls.
 
 use super::constants::{Earth, EarthModel, Mean, wrap_angle};
 use super::deep_space::DeepSpace;
@@ -19,7 +19,7 @@ const ECCENTRICITIES: std::ops::Range<f64> = -0.001..1.0;
 pub(super) struct Propagator {
     pub(super) earth: Earth,
     near: NearEarth,
-    /// Semi-major axis at the epoch, Earth radii; sine and cosine of the inclination there.
+    /// Semi-major axis at the epoch, Earth radii, and sine and cosine of the inclination at the epoch.
     a: f64,
     inclination_sin_cos: (f64, f64),
     deep: Option<DeepSpace>,
@@ -41,7 +41,7 @@ impl Propagator {
         }
     }
 
-    /// Returns the state `time` seconds from the epoch, also below the surface.
+    /// Returns the state `time` seconds from the epoch, even if it is below the surface.
     pub(super) fn at(&self, time: f64) -> Result<OsculatingState<f64>, Sgp4Error> {
         let t = time / 60.0;
         let SecularElements { mut mean, axis_factor, eccentricity_loss, longitude_gain } = self.near.at(t);
@@ -74,7 +74,7 @@ impl Propagator {
         Ok(state)
     }
 
-    /// Returns true if [`Propagator::at_lanes`] applies: no perturbations by Sun and Moon.
+    /// Returns true if [`Propagator::at_lanes`] applies, that is, without perturbations by Sun and Moon.
     pub(super) fn has_lanes(&self) -> bool {
         self.deep.is_none()
     }

@@ -1,4 +1,4 @@
-//! Resonances with the rotation of the Earth: its longitude harmonics add up over months.
+//! Resonances with the rotation of the Earth, in which the effect of its longitude harmonics accumulates over months.
 //!
 //! Source: Spacetrack Report #3, section 7; AIAA 2006-6753, appendix B.
 
@@ -18,7 +18,7 @@ const STEP: f64 = 720.0;
 pub(super) struct Resonance {
     kind: Kind,
     harmonics: Vec<Harmonic>,
-    /// `λ` at the epoch, and the part of its rate besides `n`.
+    /// `λ` at the epoch, rad, and `λ̇₀`, rad/min.
     longitude: f64,
     drift: f64,
     n: f64,
@@ -35,7 +35,7 @@ enum Kind {
     HalfDay,
 }
 
-/// Secular rates of the angles, rad/min: by the Earth, and by Sun and Moon.
+/// Secular rates of the angles, rad/min, caused by the Earth and by Sun and Moon.
 pub(super) struct Rates {
     pub(super) anomaly: [f64; 2],
     pub(super) perigee: [f64; 2],

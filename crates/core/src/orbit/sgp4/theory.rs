@@ -1,4 +1,4 @@
-//! Choice of the implementation of SGP4: that of this crate, or the reference implementation as a
+//! Choice between the SGP4 implementation of this crate and the reference implementation, which serves as a
 //! cross-check.
 
 use super::error::Sgp4Error;
@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 /// Interface of the reference implementation, initialised with an element set by the caller.
 pub trait ExternalSgp4: Send + Sync + std::fmt::Debug {
-    /// Returns position (km) and velocity (km/s), TEME, `minutes` after the epoch, also below the surface.
+    /// Returns position (km) and velocity (km/s), TEME, `minutes` after the epoch, even if they are below the surface.
     ///
     /// # Errors
-    /// The error code of the reference code, except 6 (decayed), for which the state is returned.
+    /// The error code of the reference implementation, except for code 6 (decayed), for which the state is returned.
     fn at(&self, minutes: f64) -> Result<[[f64; 3]; 2], u8>;
 }
 
@@ -21,7 +21,7 @@ pub(super) enum Theory {
     External(Arc<dyn ExternalSgp4>),
 }
 
-/// State of the satellite, TEME, also below the surface.
+/// State of the satellite, TEME; it may be below the surface.
 pub(super) struct State {
     /// Position, km.
     pub(super) position: Vector3<f64>,

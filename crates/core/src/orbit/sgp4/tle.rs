@@ -4,7 +4,7 @@ use super::elements::{MeanElements, REV_DAY};
 use super::epoch::Epoch;
 use super::error::ElementSetError;
 
-/// Columns (from 1) between the fields, which must be blank.
+/// Columns between the fields, counted from 1, which must be blank.
 const GAPS: [&[usize]; 2] = [&[2, 9, 18, 33, 44, 53, 62, 64], &[2, 8, 17, 26, 34, 43, 52]];
 
 /// Line of a TLE, with 69 ASCII characters.
@@ -46,7 +46,7 @@ impl<'a> Line<'a> {
         Ok(line)
     }
 
-    /// Returns the columns `first..=last`, from 1.
+    /// Returns the columns `first..=last`, counted from 1.
     fn columns(&self, first: usize, last: usize) -> &'a str {
         &self.text[first - 1..last]
     }

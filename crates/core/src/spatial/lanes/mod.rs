@@ -1,6 +1,6 @@
 //! Scalars of batches, with several states in the lanes of a vector register.
 //!
-//! They are private to the crate, since their arithmetic uses instructions that not every processor has.
+//! The lane types are private to the crate, since their arithmetic uses instructions that not every processor has.
 
 #[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
 #[cfg_attr(not(target_arch = "x86_64"), path = "array.rs")]

@@ -1,8 +1,8 @@
 //! Vector registers of x86-64.
 //!
-//! Intrinsic register types stay in registers when values are passed between bodies; LLVM copies arrays
+//! Values of intrinsic register types stay in registers when they are passed between bodies, whereas LLVM copies arrays
 //! through memory.
-#![allow(unsafe_code)] // each intrinsic needs its instruction set
+#![allow(unsafe_code)] // each intrinsic requires its instruction set
 
 use std::arch::x86_64 as x86;
 
