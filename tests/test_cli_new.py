@@ -143,10 +143,10 @@ def test_joints_hold_if_no_motion_can_be_simulated_in_time(
     monkeypatch.setattr(trial, "_FIRST_ESTIMATE_S", 0.1)
     stiff = dynamics(arm(SEVEN[:4]), 'damping="1e6" friction="5"')
     text, summary = drafted(stiff, tmp_path)
-    assert "trial runs of arm motions failed: not simulated in time (2 runs), the damper" in text
+    assert "trial runs of arm motions failed: too slow to simulate (2 runs), the damper" in text
     assert "  - name: hold                  # all joints keep" in text
     assert summary["simulated_s"] == 1.0
-    with pytest.raises(ScenarioError, match=r"not simulated in time \(3 runs\), the damper of j"):
+    with pytest.raises(ScenarioError, match=r"too slow to simulate \(3 runs\), the damper of j"):
         drafted(stiff.replace(' friction="5"', ""), tmp_path)
 
 

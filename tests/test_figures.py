@@ -161,7 +161,7 @@ def unexplained(trace: Any) -> list[float]:
 
 def test_the_base_reaction_is_the_angle_of_rotation(reach: oo.Run) -> None:
     turned, rate = figures.base_reaction(reach.trace).axes
-    assert turned.get_ylabel() == "turned by [deg]"
+    assert turned.get_ylabel() == "rotation [deg]"
     angle = turned.lines[0].get_ydata()
     assert np.radians(angle.max()) == pytest.approx(reach.summary["base_rotation_max_rad"], rel=1e-12)
     drawn = np.column_stack([line.get_ydata() for line in rate.lines])

@@ -62,7 +62,9 @@ def test_force_removes_no_picture_from_a_folder_without_a_run(tmp_path: Path) ->
 @pytest.mark.parametrize("name", RESULTS)
 def test_force_replaces_only_files_written_by_a_run(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_text(PRECIOUS)
-    with pytest.raises(OutputNotEmptyError, match=f"{name}: it is there, and manifest.json does not list it"):
+    with pytest.raises(
+        OutputNotEmptyError, match=f"{name}: it already exists, and manifest.json does not list it"
+    ):
         OutputFolder.claim(tmp_path, force=True)
     assert [file.name for file in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == PRECIOUS
 
@@ -76,7 +78,7 @@ def test_force_follows_no_symbolic_link_to_a_folder(copy: Path, tmp_path: Path, 
     shutil.rmtree(copy / name, ignore_errors=True)
     (copy / name).symlink_to(elsewhere)
     said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
-    assert f"{name}: it is a symbolic link, which no run makes" in said
+    assert f"{name}: it is a symbolic link, which no run creates" in said
     assert {file.read_text() for file in elsewhere.iterdir()} == {PRECIOUS}
     assert (copy / "summary.json").is_file(), "nothing may be removed after a rejection"
 
@@ -90,7 +92,7 @@ def test_force_neither_follows_nor_removes_a_link_in_place_of_a_file(
     (copy / name).unlink(missing_ok=True)
     (copy / name).symlink_to(precious)
     said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
-    assert f"{name}: it is a symbolic link, which no run makes" in said
+    assert f"{name}: it is a symbolic link, which no run creates" in said
     assert precious.read_text() == PRECIOUS and (copy / name).is_symlink()
 
 
@@ -127,7 +129,7 @@ def test_a_report_replaces_only_files_written_by_a_run(copy: Path, monkeypatch: 
     monkeypatch.setattr(figures, "drawings", lambda subject: [drawing])
     for name in ("report.html", "figures/ledger.pdf"):
         (copy / name).write_text(PRECIOUS)
-        with pytest.raises(OutputNotEmptyError, match=f"{name}: it is there"):
+        with pytest.raises(OutputNotEmptyError, match=f"{name}: it already exists"):
             write_report(copy, pdf=True)
         assert (copy / name).read_text() == PRECIOUS and not list(copy.glob(".*"))
         (copy / name).unlink()
@@ -168,7 +170,7 @@ def test_a_pipe_in_place_of_a_file_does_not_hang(tmp_path: Path) -> None:
         with pytest.raises(ReadError, match="it is a pipe or a device, but must be a regular file"):
             read_summary(out)
     with pytest.raises(
-        OutputNotEmptyError, match=r"summary\.json: it is a pipe or a device, which no run makes"
+        OutputNotEmptyError, match=r"summary\.json: it is a pipe or a device, which no run creates"
     ):
         OutputFolder.claim(tmp_path / "summary.json", force=True)
 
@@ -186,7 +188,7 @@ def test_an_unknown_file_in_the_checkpoint_is_named(copy: Path) -> None:
     (copy / "checkpoint").mkdir()
     (copy / "checkpoint" / "mine.txt").write_text(PRECIOUS)
     with pytest.raises(
-        OutputNotEmptyError, match=r"checkpoint.mine\.txt: it is there, and manifest.json does not"
+        OutputNotEmptyError, match=r"checkpoint.mine\.txt: it already exists, and manifest.json does not"
     ):
         OutputFolder.claim(copy, force=True)
 

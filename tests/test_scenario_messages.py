@@ -27,7 +27,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "target, other word": (
         TARGET + "      angular_velocity: [0, 0, 0.1]\n",
         "10: reference.frame.target.angular_velocity",
-        ("did you mean 'spin'?", "known are: position, attitude, velocity, spin, size"),
+        ("did you mean 'spin'?", "known keys: position, attitude, velocity, spin, size"),
     ),
     "target, misspelt": (
         TARGET + "      atitude: 1\n",
@@ -73,7 +73,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "a key that already exists": (
         LAW + "initial: {joint_rates: [1], joint_rate: [1]}\n",
         "5: initial.joint_rate",
-        ("did you mean 'joints'?", "known are: frame"),
+        ("did you mean 'joints'?", "known keys: frame"),
     ),
     "time step, other word": (
         ROBOT + "simulation: {duration: 1, dt: 0.1}\n",

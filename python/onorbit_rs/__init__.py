@@ -8,9 +8,9 @@
 All quantities are in SI and radians. ``q = [p(3), quat_xyzw(4), joints]`` and
 ``v = [v_body(3), w_body(3), joint rates]``, linear before angular; ``docs/`` defines the frames.
 
-Data flow: ``scenario`` reads YAML and builds a :class:`Simulation`, ``simulation`` runs it and gets a
+Data flow: ``scenario`` reads YAML and builds a :class:`Simulation`, ``simulation`` runs it and returns a
 :class:`Trace`, ``output`` writes trace, summary and manifest, and ``viewer``, ``figures`` and ``report`` show
-them. The page on design in ``docs`` has a diagram.
+them. The design page in ``docs`` has a diagram.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ _LAZY = {
     "Comparison": "tools.comparison", "compare": "tools.comparison", "Scenario": "scenario",
     "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
 }  # fmt: skip
-"""Modules of the names that are imported on first access, since numpy and pydantic load in half a second."""
+"""Module of each name that is imported on first access, since importing numpy and pydantic takes 0.5 s."""
 _LAZY_MODULES = ("engines", "layouts", "scenario")
 
 

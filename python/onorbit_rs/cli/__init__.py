@@ -1,4 +1,4 @@
-"""The command ``onorbit``: one file per command, which loads what it needs when it is called."""
+"""The ``onorbit`` command line. Each command has one file and imports other modules when it is called."""
 
 from onorbit_rs.cli.app import main
 

@@ -40,7 +40,7 @@ def check(
     elif not quiet:
         print_checked(built)
         for source in not_run:
-            print_line(f"not executed: {source} (onorbit run executes it; --trust does so now)")
+            print_line(f"not executed: {source} (onorbit run executes it; add --trust to execute it now)")
         print_line(f"next: onorbit run {shell_word(scenario)} --out DIR")
 
 

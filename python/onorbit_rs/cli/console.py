@@ -1,4 +1,4 @@
-"""Tables, JSON and untrusted text on the terminal."""
+"""Prints tables, JSON and untrusted text on the terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Exit codes and last messages of commands."""
+"""Exit codes and final messages of the commands."""
 
 from __future__ import annotations
 

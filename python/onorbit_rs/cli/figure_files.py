@@ -1,4 +1,4 @@
-"""Files in which commands save figures."""
+"""Checks and saves the figures of commands."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ def check_figure_file(option: str, file: Path | None, *, force: bool) -> None:
     Raises
     ------
     InputError
-        If the name ends in none of :data:`KINDS`.
+        If the file name does not end in one of :data:`KINDS`.
     OutputNotEmptyError, OutputFolderError
-        As :func:`onorbit_rs.cli.output_files.claim`.
+        As raised by :func:`onorbit_rs.cli.output_files.check_output_file`.
     """
     if file is not None and file.suffix.lower() not in KINDS:
         raise InputError(

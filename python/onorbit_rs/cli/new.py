@@ -104,4 +104,8 @@ def _motion(result: Draft) -> str:
     """Describe the motion of a draft."""
     if result.joints:
         return f"{result.tool}, moved by {count(len(result.joints), 'joint', 'joints')}"
-    return "a body without joints" if result.tool is None else "all joints hold: no motion of the arm passed"
+    return (
+        "a body without joints"
+        if result.tool is None
+        else "all joints are held: no motion of the arm passed its trial"
+    )

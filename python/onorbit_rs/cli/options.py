@@ -1,4 +1,4 @@
-"""Arguments and options that several commands share."""
+"""Arguments and options that several commands accept."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def reading_options(
     Raises
     ------
     InputError
-        If an option would have no effect: for a bundled robot, a missing folder, a file that is not xacro.
+        If an option has no effect: the robot is bundled, a folder is missing, or the file is not xacro.
         If there is a ``bus``, the message explains where to put the arguments of its xacro file.
     """
     from onorbit_rs import robots

@@ -1,4 +1,4 @@
-"""Output files named by the user."""
+"""Checks output files that are given on the command line."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def check_output_file(file: Path | None, *, force: bool) -> None:
             raise OutputFolderError(f"cannot write {file}: it is a folder; give a file", path=str(file))
         if is_link(file) or (file.exists() and not file.is_file()):
             raise OutputFolderError(
-                f"cannot write {file}: it is {file_kind(file)}, name a regular file", path=str(file)
+                f"cannot write {file}: it is {file_kind(file)}; give a regular file", path=str(file)
             )
         if exists(file) and not force:
             raise OutputNotEmptyError(f"{file} already exists; replace it with --force", path=str(file))

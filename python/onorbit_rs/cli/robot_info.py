@@ -1,4 +1,4 @@
-"""Description of a robot on the terminal."""
+"""Prints the description of a robot on the terminal."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def _bound(value: float | None) -> str:
 
 
 def _axis(axis: list[float]) -> str:
-    """Return ``-z`` or the like for a coordinate axis, otherwise the components of the axis."""
+    """Return an axis as text: ``-z`` for a coordinate axis, otherwise its components."""
     for index, name in enumerate("xyz"):
         if abs(abs(axis[index]) - 1.0) < 1e-12:
             return f"{'-' if axis[index] < 0 else ''}{name}"

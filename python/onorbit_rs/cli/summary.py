@@ -1,4 +1,4 @@
-"""Summary of a run on the terminal: numbers, certificate, files and next commands."""
+"""Prints the summary of a run: numbers, certificate, files and next commands."""
 
 from __future__ import annotations
 

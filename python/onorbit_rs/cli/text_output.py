@@ -1,4 +1,4 @@
-"""Text on stdout and stderr, for any content and any encoding of the terminal."""
+"""Prints text on stdout and stderr, for any content and any encoding of the terminal."""
 
 from __future__ import annotations
 

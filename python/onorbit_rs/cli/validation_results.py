@@ -1,4 +1,4 @@
-"""Results of the validation cases on the terminal."""
+"""Prints the results of the validation cases on the terminal."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from onorbit_rs.cli.console import new_console, new_table, text
 from onorbit_rs.tools.validation import Case, Gate, Verdict
 
 Row = tuple[str, str, str, str, bool | None]
-"""Case, quantity, error, gate, and whether it passes."""
+"""Case, quantity, error, gate, and whether the error is within the gate."""
 
 _WORDS = {True: "[green]pass[/green]", False: "[red]FAIL[/red]", None: "[yellow]skipped[/yellow]"}
 _GAPS = 2 + 6 * 2

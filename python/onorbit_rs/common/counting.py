@@ -1,4 +1,4 @@
-"""Numbers with a noun, for messages."""
+"""Numbers followed by a noun in singular or plural, for messages."""
 
 
 def count(number: int, one: str, many: str) -> str:

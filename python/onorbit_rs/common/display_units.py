@@ -1,4 +1,4 @@
-"""Numbers and units for display: rounded, with SI prefixes; units of joints by their kind."""
+"""Rounded numbers and units with SI prefixes for display, and the units of joints by their kind."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PREFIXES = ((1e-12, "p"), (1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1
 ROUNDING = 1e-12
 """Magnitude, in SI units or relative to the operands, below which a number is rounding error."""
 ROUNDING_DEG = 1e-9
-"""The same for angles in degrees, whose rounding errors accumulate over a run."""
+"""Angle, degrees, below which a value is rounding error; these errors accumulate over a run."""
 OR = " or "
 """Separator of two units in one label; such labels have no prefix."""
 
@@ -33,7 +33,7 @@ def degrees_with_prefix(peak: float, unit: str = "deg") -> tuple[float, str]:
 
 
 def digits(value: float) -> str:
-    """Return a number with four significant digits; an integer between ten thousand and ten million."""
+    """Return a number as text with four significant digits, or as an integer from 1e4 to 1e7."""
     return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
 
 

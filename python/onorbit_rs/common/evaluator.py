@@ -57,7 +57,7 @@ class Evaluator(ast.NodeVisitor, ABC):
 
     @abstractmethod
     def refused(self, node: ast.AST) -> Exception:
-        """Return the error of a node that is not allowed in an expression."""
+        """Return the error for a node that is not allowed in an expression."""
 
     def _rule(self, rules: Mapping[type[Any], Callable[..., Any]], sign: ast.AST) -> Callable[..., Any]:
         if type(sign) not in rules:

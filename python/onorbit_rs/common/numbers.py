@@ -1,4 +1,4 @@
-"""Conversion of numbers given by callers: of Python, numpy or :mod:`fractions`."""
+"""Converts numbers given by callers, such as those of numpy or :mod:`fractions`, to floats."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ _IN_ASCII = str.maketrans(
         "×": "x", "Δ": "d", "Σ": "sum ", "…": "...", "→": "->", "’": "'",
     }
 )  # fmt: skip
-"""ASCII replacements of the other characters in messages of this package."""
+"""ASCII replacements of the non-ASCII characters in messages of this package."""
 
 
 def printable(text: object) -> str:
@@ -70,7 +70,7 @@ def _in_quotes(char: str) -> str:
 
 
 def _replaced(error: UnicodeError) -> tuple[str, int]:
-    """Return an ASCII replacement of the characters that an encoding lacks, and where to continue."""
+    """Return an ASCII replacement of the characters that an encoding lacks, and the position after them."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     lacking = error.object[error.start : error.end].translate(_IN_ASCII)
@@ -78,5 +78,5 @@ def _replaced(error: UnicodeError) -> tuple[str, int]:
 
 
 LACKING = "onorbit_lacking"
-"""Name of this error handler, for ``errors=`` of a stream."""
+"""Name under which this function is registered as an error handler, for ``errors=`` of a stream."""
 codecs.register_error(LACKING, _replaced)

@@ -22,4 +22,4 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     suggestion = nearest(name, known)
     if suggestion is not None:
         return f", did you mean {suggestion!r}?"
-    return f", known are: {', '.join(known)}" if 0 < len(known) <= 12 else ""
+    return f"; known names: {', '.join(known)}" if 0 < len(known) <= 12 else ""

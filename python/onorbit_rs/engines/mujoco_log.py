@@ -19,7 +19,7 @@ _saved: list[Any] = []
 
 @contextmanager
 def without_log(mujoco: Any) -> Iterator[None]:
-    """Disable the log from the first entry to the last exit, in any order of exits."""
+    """Disable the log while any block is active; concurrent blocks may end in any order."""
     with _lock:
         saved = _saved[0] if _saved else mujoco.MjLogConfig.get()
         if not _saved:

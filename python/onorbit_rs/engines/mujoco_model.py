@@ -39,7 +39,7 @@ def import_mujoco() -> ModuleType:
 
 
 def missing() -> EngineError:
-    """Return the error for a missing MuJoCo."""
+    """Return the error to raise if MuJoCo is not installed."""
     message = "the engine 'mujoco' needs MuJoCo, which is not installed: pip install 'onorbit-rs[mujoco]'"
     return EngineError(message, name="engine", got="mujoco")
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 BODIES = {"sun": 10, "moon": 301, "earth": 399}
 _NUMBERS = (2, 6)
-"""Numbers of reals and integers in the summary of a segment of positions."""
+"""Number of doubles and number of integers in the summary of a segment of positions."""
 
 SOLAR_SYSTEM = 0
 """Number of the solar system's barycentre, at which the chains of segments end."""
@@ -57,7 +57,7 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
 
 
 def _check_records(path: str | Path) -> None:
-    """Raise ValueError for summaries of another size or cyclic records, which jplephem reads forever."""
+    """Raise ValueError for summaries of another size and for cyclic records, which jplephem reads forever."""
     from jplephem.daf import DAF
 
     with Path(path).open("rb") as stream:
@@ -81,7 +81,7 @@ def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
         body = centres[body]
     if not chain:
         known = ", ".join(str(target) for target in sorted(centres))
-        message = f"{path} does not contain the {name.title()} ({BODIES[name]}), only {known or 'nothing'}"
+        message = f"{path} does not contain the {name.title()} ({BODIES[name]}); it has {known or 'none'}"
         raise EarthError(message, name="ephemeris", got=str(path), expected=name)
     return chain
 

@@ -37,25 +37,26 @@ if TYPE_CHECKING:
 _PARTS = COLUMNS["wrenches"].parts
 
 MOST_BODIES = len(COLORS)
-"""Bodies with a colour; the others are grey."""
+"""Largest number of bodies drawn in colour; the others are grey."""
 LEAST = 1e-16
-"""Smallest value that is drawn, N or N m; less is rounding of an effect that is removed."""
+"""Smallest value that is drawn, N or N m; smaller values are the rounding error of a removed acceleration."""
 DECADES = 1e5
-"""Range below the largest value of all bodies that is drawn."""
+"""Ratio of the largest value of all bodies to the lower end of the axis."""
 
 
 def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
     """Draw force and torque of every effect on every body; torques are about the body's centre of mass.
 
-    Rounding is not drawn: magnitudes below :data:`~onorbit_rs.common.display_units.ROUNDING` times the
-    largest force or torque of all effects, or of the effect with a lever of 1 m.
+    Rounding errors are not drawn. These are magnitudes below
+    :data:`~onorbit_rs.common.display_units.ROUNDING` times the largest force or torque of all effects, or of
+    the effect with a lever of 1 m.
 
     Parameters
     ----------
     trace : Trace
-        Of a run with ``record_wrenches``.
+        Trace of a run with ``record_wrenches``.
     bodies : sequence of str
-        ``model.body_names``.
+        Names of the bodies, ``model.body_names``.
     """
     time, label = clock(trace)
     wrenches = {name: np.asarray(rows) for name, rows in trace.wrenches.items()}

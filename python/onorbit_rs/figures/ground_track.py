@@ -57,7 +57,7 @@ def ground_track(trace: Trace, earth: Earth) -> Figure:
         world.plot(lon, lat, label=f"a dot every {_span(apart)}", **style)
     else:
         world.plot(*_broken_at_the_date_line(lon, lat), **style)
-    # a ring, in which the end is visible at the same place
+    # a ring, so that the end of the run is visible even at the same point
     world.plot(lon[0], lat[0], "o", color="none", markeredgecolor=INK, markersize=7, label="start")
     world.plot(lon[-1], lat[-1], "s", color=OBTAINED, markersize=3, label="end")
     tidy(world, "longitude, east [deg]", "geodetic latitude [deg]")

@@ -66,10 +66,10 @@ def base_reaction(trace: Trace) -> Figure:
     factor, unit = degrees_with_prefix(float(turned.max()))
     plot_lines(panels[0], time, factor * turned, ("turned",), (INK,))
     hide_rounding(panels[0], ROUNDING_DEG * factor)
-    tidy(panels[0], "", f"turned by [{unit}]")
+    tidy(panels[0], "", f"rotation [{unit}]")
     factor, unit = degrees_with_prefix(float(np.abs(rate).max()), "deg/s")
     plot_lines(panels[1], time, factor * rate, ("x", "y", "z"), XYZ_COLORS)
     hide_rounding(panels[1], ROUNDING_DEG * factor)
-    tidy(panels[1], label, f"turn rate [{unit}]")
+    tidy(panels[1], label, f"angular rate [{unit}]")
     legend_above(panels[1])
     return figure

@@ -39,7 +39,7 @@ def portrait(model: Model, q: Floats, frames: Sequence[str] = ()) -> Figure:
     Returns
     -------
     Figure
-        In W; lengths in m.
+        Figure in W; lengths in m.
     """
     ((faces, colors),) = robot_polygons(model, np.asarray(q)[None])
     names = list(dict.fromkeys([model.body_names[0], *frames]))

@@ -36,11 +36,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 WORTH_A_PATH = 3.0
-"""Smallest path of the base, in sizes of the robot, that is drawn."""
+"""Length of the base's path, in sizes of the robot, above which the figure is drawn."""
 _SIDES = 1.35
-"""Width of a panel over its height."""
+"""Ratio of the width of a panel to its height."""
 _NEAR = 10.0
-"""Greatest distance of the paths, in their extents, at which the reference is shown."""
+"""Distance of the paths from the reference, divided by their extent, below which the reference is shown."""
 _MOST_ROWS = 3_000
 
 

@@ -54,9 +54,9 @@ def control_errors(trace: Trace, name: str, joints: list[str], model: Model | No
     name : str
         Name of the control.
     joints : list of str
-        Its joints; empty for a controller of a tool, whose errors are drawn as in Fig. 6.
+        Joints of the control; empty for a control of a tool, whose errors are drawn as in Fig. 6.
     model : Model, optional
-        The robot, from which the kinds of the joints follow: errors of prismatic joints, m, have a panel.
+        Robot, needed for the kinds of the joints: errors of prismatic joints, m, have a separate panel.
     """
     time, label = clock(trace)
     errors = np.asarray(trace.tracking[name])

@@ -46,7 +46,7 @@ class CheckpointWriter:
     """Writes the checkpoints that :meth:`onorbit_rs.Simulation.run` passes to its ``checkpoint`` callback."""
 
     def __init__(self, folder: OutputFolder, digest: str, *, after: SavedCheckpoint | None = None) -> None:
-        """Write checkpoints of the scenario with this digest; a resumed run starts ``after`` a checkpoint."""
+        """Prepare to write checkpoints of the scenario with this digest; ``after`` is the resumed one."""
         self._folder, self._path = folder, folder.path / CHECKPOINT
         self._digest, self._rows = digest, after.rows if after else 0
         self._digests = dict(after.digests) if after else {}
@@ -120,8 +120,8 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
     Raises
     ------
     CheckpointError
-        If there is none, if they were changed or damaged, or if it belongs to another scenario, robot or
-        controller.
+        If there is no checkpoint, its files were changed or damaged, or it belongs to another scenario,
+        robot or controller.
     """
     path = folder / CHECKPOINT
     if not has_checkpoint(folder):

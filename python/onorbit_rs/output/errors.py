@@ -20,10 +20,10 @@ def not_empty(folder: Path) -> OutputNotEmptyError:
 def foreign(file: Path) -> OutputNotEmptyError:
     """Return the error for a path that no run wrote, or that is a link, a pipe or a folder."""
     is_file = is_regular(file)
-    what = "there" if is_file else file_kind(file)
-    why = f"and {MANIFEST} does not list it as a file that a run wrote" if is_file else "which no run makes"
+    what = "already exists" if is_file else f"is {file_kind(file)}"
+    why = f"and {MANIFEST} does not list it as a file that a run wrote" if is_file else "which no run creates"
     return OutputNotEmptyError(
-        f"cannot write {file}: it is {what}, {why}; move it away or choose another folder", path=str(file)
+        f"cannot write {file}: it {what}, {why}; move it away or choose another folder", path=str(file)
     )
 
 

@@ -41,7 +41,7 @@ def joint_loads(trace: Trace, built: Built) -> Summary:
 
 
 def efforts_at_limit(trace: Trace, built: Built) -> Summary:
-    """Return the joints under a PID whose effort reached the limit of the controller or else the robot."""
+    """Return the joints under PID control whose effort reached the controller's or the robot's limit."""
     names, tau = list(built.model.joint_names), np.abs(np.asarray(trace.tau)).max(axis=0)
     pids = [law for law in built.scenario.laws if isinstance(law, JointPidController)]
     reached = set()
@@ -76,7 +76,7 @@ def effort_fractions(trace: Trace, model: Model) -> Floats:
 
 
 def loads_exceeded(trace: Trace, model: Model) -> Summary:
-    """Return the names of the joints whose rate or effort exceeds the limit of the robot's file in a row.
+    """Return the names of the joints whose rate or effort exceeds a limit of the robot's file in any row.
 
     Effort limits of controllers are not considered.
     """

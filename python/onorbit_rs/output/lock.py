@@ -36,7 +36,7 @@ class Owner(NamedTuple):
     command: str
     since: str
     token: str
-    """Part of the names of its temporary files."""
+    """Text that the names of the temporary files of this process contain."""
 
     def __str__(self) -> str:
         """Return the text ``process 12 on host (onorbit run …) since 2026-01-01 12:00:00``."""
@@ -113,7 +113,7 @@ class FolderLock:
                 os.close(descriptor)
                 raise
             os.close(descriptor)
-            time.sleep(0.01 if attempt else 0.0)  # a process that reads the owner holds it for an instant
+            time.sleep(0.01 if attempt else 0.0)  # readers of the owner hold the lock for an instant
         raise _in_use(folder)
 
 

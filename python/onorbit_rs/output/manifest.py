@@ -37,7 +37,7 @@ class Entry(NamedTuple):
 
     @classmethod
     def of(cls, file: Path) -> Entry:
-        """Return the entry of a file as it is now."""
+        """Return the current size and digest of a file."""
         with open_to_read(file) as stream:
             digest = sha256_of(stream)
             return cls(stream.tell(), digest)

@@ -147,7 +147,7 @@ class SavedRun:
         """Return the scenario of the run; raises as :meth:`scenario_text`, and :class:`ScenarioError`."""
         self.scenario_text()
         scenario = load(self.folder / SCENARIO)
-        self.check(SCENARIO)  # it was not replaced in the meantime
+        self.check(SCENARIO)  # raises if the file was replaced in the meantime
         return scenario
 
     def _warn(self) -> None:

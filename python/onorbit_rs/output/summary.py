@@ -51,7 +51,8 @@ def summarize(
     Returns
     -------
     dict
-        Content of ``summary.json``; None for non-finite numbers. ``wall_s`` is that of the simulation loop.
+        Content of ``summary.json``; None for non-finite numbers. ``wall_s`` is the wall-clock time
+        of the simulation loop.
     """
     scenario = built.scenario
     simulated_s = float(trace.time[-1] - trace.time[0])

@@ -16,7 +16,7 @@ _UNITS = (
     ("_rel", "relative"), ("_m", "m"), ("_s", "s"), ("_j", "J"), ("_n", "N"),
 )  # fmt: skip
 _LEAST_SCALED = 1e-9
-"""Smallest value that gets a unit prefix; less is rounding and has an exponent."""
+"""Smallest value shown with a unit prefix; smaller ones are rounding errors, shown with an exponent."""
 _SCALED = ("m", "rad", "N m", "N", "J", "m/s²", "rad/s", "m/s")
 _NAMES = {
     "wall_s": "wall clock of the loop",
@@ -85,7 +85,7 @@ def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
 
 
 def row(key: str, value: Any) -> Row:
-    """Return one entry with its unit, with which its key ends."""
+    """Return one entry of a summary with its unit, which is the ending of its key."""
     ending, unit = next(((ending, unit) for ending, unit in _UNITS if key.endswith(ending)), ("", ""))
     words = _NAMES.get(key) or _words(key, key.removesuffix(ending))
     shown = value.replace("_", " ") if goal_of(key) and isinstance(value, str) else value

@@ -110,7 +110,7 @@ def _table(title: str, rows: Sequence[Row]) -> str:
 
 
 def _data(row: Row) -> str:
-    """Return the formatted value, with that of ``summary.json`` as an attribute."""
+    """Return the formatted value, with the value of ``summary.json`` as an attribute."""
     return f'<data id="{escape(row.key)}" value="{escape(str(row.value))}">{escape(row.shown)}</data>'
 
 

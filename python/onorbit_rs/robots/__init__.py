@@ -1,4 +1,4 @@
-"""Loads bundled robots, one URDF each, and robots from files."""
+"""Loads bundled robots, each of which is one URDF file, and robots from other files."""
 
 from __future__ import annotations
 

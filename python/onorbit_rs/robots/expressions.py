@@ -62,7 +62,7 @@ def evaluate(text: str, names: Callable[[str], Any], functions: Mapping[str, Any
         If the expression is too long, cannot be parsed, contains an element that is not allowed, or its
         value is too large.
     NameError, TypeError, ArithmeticError, LookupError
-        As in Python.
+        As Python raises them for the same operations.
     """
     text = text.strip()
     try:

@@ -29,8 +29,8 @@ def rebuild_robot(
     if has_changed(model, fingerprint):
         path = keywords.get("path")
         raise ModelError(
-            f"{path or 'the description'} is no longer that of the pickled robot: it, or a file it includes, "
-            "was changed since; restore it, or load the robot again and pickle that",
+            f"{path or 'the description'} no longer describes the pickled robot, because it or a file that "
+            "it includes was changed; restore the file, or load the robot again and pickle the new one",
             path=path and str(path),
         )
     return model

@@ -27,7 +27,7 @@ _current: ContextVar[Wording] = ContextVar("wording", default=PYTHON)
 
 
 def wording() -> Wording:
-    """Return the wording for the present caller; that of Python by default."""
+    """Return the wording for the current caller; the default is the wording for Python."""
     return _current.get()
 
 

@@ -41,7 +41,7 @@ class InitialState(Part):
     angular_velocity: AngularRate3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     """Angular velocity of the base, body axes."""
     joints: JointPositions = Field(default_factory=list)
-    """In the order of the model's joints, or by name."""
+    """Joint positions in the order of the model's joints, or by name."""
     joint_rates: JointRates = Field(default_factory=list)
 
     def build(self, model: Model, orbit: Orbit | None) -> tuple[Floats, Floats]:

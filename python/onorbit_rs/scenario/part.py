@@ -48,7 +48,7 @@ class Part(BaseModel):
             return hint
         if not known:
             return "; there are no keys"
-        return f"{hint}{' ' if hint else ', '}known are: {', '.join(known)}"
+        return f"{hint}{' ' if hint else '; '}known keys: {', '.join(known)}"
 
 
 def of_kind(union: Any) -> BeforeValidator:

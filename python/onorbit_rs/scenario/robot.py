@@ -47,7 +47,7 @@ class RigidBody(Part):
 
     mass: Annotated[Mass, Positive]
     inertia: InertiaMatrix
-    """(3, 3), kg m², about the centre of mass, body axes; three numbers are a diagonal."""
+    """Inertia (3, 3), kg m², about the centre of mass, body axes; three numbers are a diagonal."""
 
 
 def _argument(value: Any) -> Any:
@@ -66,7 +66,7 @@ class LinkValues(Part):
     com: Length3 | None = None
     """Centre of mass in link axes."""
     inertia: InertiaMatrix | None = None
-    """(3, 3), kg m², about the centre of mass in link axes; three numbers are a diagonal."""
+    """Inertia (3, 3), kg m², about the centre of mass in link axes; three numbers are a diagonal."""
 
     @property
     def given(self) -> dict[str, Any]:
@@ -165,7 +165,7 @@ class Arm(PlainRobot):
     at: Name
     """Link or frame of the bus to attach to."""
     frame: Name | None = None
-    """Mounting frame of the arm, fixed to its base. Defaults to its root link."""
+    """Mounting frame of the arm, fixed to its base. Default: its root link."""
     pose: Pose | None = None
     """Pose of the mounting frame in ``at``."""
     prefix: Name = ""

@@ -50,13 +50,13 @@ class Scenario(Part):
     environment: list[Effect] = Field(default_factory=list)
     """Effects besides the gravity of a point mass."""
     controller: Controller | None = None
-    """Default: no joint torques."""
+    """Single controller. Default: no joint torques."""
     controllers: Annotated[list[AnyControl], Field(min_length=1)] | None = None
     """Several controllers, each with a joint group and a reference, instead of ``controller``."""
     reference: Reference | None = None
     """Reference of ``controller``. Default: the tool or the joints are held."""
     initial: InitialState = Field(default_factory=InitialState)
-    """Default: at rest in the neutral configuration."""
+    """Initial state. Default: at rest in the neutral configuration."""
     simulation: SimulationSettings
 
     _file: Path | None = PrivateAttr(default=None)

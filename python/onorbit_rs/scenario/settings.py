@@ -33,7 +33,7 @@ class SimulationSettings(Part):
     integrator: Literal["rk4", "semi_implicit_euler", "dormand_prince"] = "rk4"
     """``dormand_prince`` adapts its steps; ``time_step`` is then the interval of the time grid."""
     tolerance: Number = Field(default=1e-9, ge=1e-13, le=0.1)
-    """Error of a step of ``dormand_prince``, relative to one radian, the robot's size, and rates."""
+    """Largest error of a step of ``dormand_prince``, relative to one radian, the robot's size, and rates."""
     enforce_limits: bool = False
     """Whether rigid stops keep the joints within their position limits."""
     restitution: Number = Field(default=0.0, ge=0.0, le=1.0)

@@ -49,6 +49,6 @@ def targets(scenario: Scenario) -> tuple[Target, ...]:
 
 
 def task_references(scenario: Scenario) -> Iterator[Any]:
-    """Return the references of tools, the only ones with a frame."""
+    """Yield the references of tools, which, unlike those of joints, have a frame."""
     parts = [scenario.reference, *(control.reference for control in scenario.controllers or [])]
     return (part for part in parts if hasattr(part, "frame"))

@@ -49,7 +49,7 @@ _FORMS: dict[str | int, str] = {
     "robot": ": a bundled name (humanoid_torso), a URDF, or {rigid_body: {mass: ..., inertia: ...}}",
     "simulation": ": at least {duration: 10 s}",
 }
-"""What to write if a section is missing."""
+"""Suggested content of a missing section."""
 
 _MUST_BE = {
     "int": "a whole number",

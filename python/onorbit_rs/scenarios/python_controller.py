@@ -8,7 +8,7 @@ import onorbit_rs as oo
 class Posture(oo.Controller):
     """Moves the joints to a posture with springs and nearly critical dampers."""
 
-    inertia = np.array([0.5, 0.4, 0.12, 0.12, 0.003, 0.001, 0.0004])  # moving with each joint, kg m²
+    inertia = np.array([0.5, 0.4, 0.12, 0.12, 0.003, 0.001, 0.0004])  # moved by each joint, kg m²
 
     def __init__(self, posture, frequency):
         """Store the posture, rad, and the natural frequency of the springs, rad/s."""

@@ -35,7 +35,7 @@ WORTH_SHOWING = 1e-3
 """Smallest momentum that is drawn, as a fraction of that of a rigid body with the same kinetic energy."""
 
 ROUNDING = 1e-9
-"""Net forces below this fraction of the largest force on a body are rounding."""
+"""Net forces below this fraction of the largest force on a body are rounding errors."""
 
 LEAST_LENGTH = 0.2
 """Least length outside the robot of the longest arrow of a kind, in sizes of the robot."""

@@ -16,7 +16,7 @@ FLUSH_TIMEOUT_S = 300.0
 """Timeout of rerun's encoder, s; it usually takes seconds."""
 
 _MAGIC, _FOOTER_BYTES = b"RRF2", 12
-"""End of a complete file."""
+"""First bytes and size, bytes, of the footer of a complete file."""
 
 
 class Encoded:

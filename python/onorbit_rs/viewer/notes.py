@@ -33,7 +33,7 @@ def about_meshes(model: Model) -> str:
     more = "" if len(missing) <= _MOST_MESHES else f" and {len(missing) - _MOST_MESHES} more"
     named = ", ".join(escaped(name) for name in missing[:_MOST_MESHES])
     lost = "meshes that were not found or cannot be read"
-    return f"\n\nCollision shapes and sticks replace {lost}: {named}{more}.\n"
+    return f"\n\nCollision shapes and rods replace {lost}: {named}{more}.\n"
 
 
 def escaped(text: str) -> str:

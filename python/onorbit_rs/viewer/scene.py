@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 MOST_TRAIL_PIECES = 1000
 MOVES = 1e-3
-"""Length of the path in sizes of the robot below which the tool holds its pose."""
+"""Length of the path, in sizes of the robot, below which the tool is considered to hold its pose."""
 
 NEAR = 0.25
 """Length of the axes in the close-up view, in lengths of the path."""

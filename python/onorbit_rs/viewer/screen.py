@@ -133,7 +133,7 @@ def _not_started(why: str) -> ViewerError:
 
 
 def _ask(url: str, answered: threading.Event) -> None:
-    """Ask for the state of the viewer, which only a viewer with a window returns."""
+    """Request the state of the viewer, which only a viewer with a window returns."""
     try:
         ViewerClient.connect(url).get_state()
     except OSError:  # not yet

@@ -2,7 +2,7 @@
 
 ``onorbit show out --picture picture.png --at 1``
 
-Needs a Vulkan driver; Debian's ``mesa-vulkan-drivers`` and ``libegl1`` draw in software.
+A Vulkan driver is required; Debian's ``mesa-vulkan-drivers`` and ``libegl1`` render in software.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ LEAST_PEAK, LARGEST_PEAK = 0.1, 1e4
 """Range of peaks that are plotted in SI units (and degrees) without a prefix."""
 
 ROUNDING = 1e-12
-"""Values below it, in SI units, are rounding."""
+"""Magnitude, in SI units, below which a value is rounding error."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,8 @@ class Series:
 def series_of(rows: TraceRows, setting: Setting, *, is_live: bool = False) -> Iterator[Series]:
     """Yield every plot for which these rows contain the columns.
 
-    Plots of a completed run have units that fit their peaks; rounding is zero, and zero effects are omitted.
+    Plots of a completed run have units that fit their peaks. Rounding errors are shown as zero, and effects
+    that are zero are omitted.
     """
     parts = (
         _of_tools(rows, setting),

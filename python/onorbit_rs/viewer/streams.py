@@ -15,7 +15,7 @@ APPLICATION = "onorbit"
 
 
 def send_blueprint(recording: rr.RecordingStream, views: rrb.Blueprint) -> None:
-    """Send the layout as ``recording.send_blueprint`` does, and disconnect the stream that carried it."""
+    """Send the layout as ``recording.send_blueprint`` does, and disconnect the stream used for it."""
     carrier = rr.RecordingStream._from_native(
         rerun_bindings.new_blueprint(
             application_id=APPLICATION,

@@ -19,9 +19,9 @@ class ComplianceController(TaskLaw):
 
     kind: Literal["compliance"] = "compliance"
     stiffness: SpringGain
-    """N/m, then N m/rad: one number, six, or 6 x 6."""
+    """Stiffness, N/m (linear) and N m/rad (angular): one number, six, or 6 x 6; linear first."""
     damping: DamperGain
-    """N s/m, then N m s/rad."""
+    """Damping, N s/m (linear) and N m s/rad (angular): one number, six, or 6 x 6; linear first."""
     null_space_damping: Annotated[Number, NotNegative] = 0.0
     """Damping of joint motion that does not move the tool, N m s/rad."""
 

@@ -18,9 +18,9 @@ class TaskGoal(Part):
     """Largest distance and angle of the tool from its reference."""
 
     tolerance: TaskTolerance
-    """At the end of the reference."""
+    """Tolerance at the end of the reference."""
     path_tolerance: TaskTolerance | None = None
-    """Before the end; if it is exceeded, the control stops and holds the tool."""
+    """Tolerance before the end; if it is exceeded, the control stops and holds the tool."""
     time: Annotated[Time, NotNegative] | None = None
     """Time allowed after the end of the reference. Default: unlimited."""
 
@@ -29,9 +29,9 @@ class JointGoal(Part):
     """Largest errors of the joints: one number, or one per joint."""
 
     tolerance: JointTolerance
-    """At the end of the reference."""
+    """Tolerance at the end of the reference."""
     path_tolerance: JointTolerance | None = None
-    """Before the end; if it is exceeded, the control stops and holds the joints."""
+    """Tolerance before the end; if it is exceeded, the control stops and holds the joints."""
     time: Annotated[Time, NotNegative] | None = None
     """Time allowed after the end of the reference. Default: unlimited."""
 
@@ -48,13 +48,13 @@ class Control(Part):
     joints: Annotated[list[str], Field(min_length=1), BeforeValidator(_as_list)] | None = None
     """Names of joints, or patterns such as ``right_*``. Default: all joints."""
     reference: Reference | None = None
-    """Default: the tool or the joints are held."""
+    """Reference of the control. Default: the tool or the joints are held."""
     start: Annotated[Time, NotNegative] = 0.0
     """Time at which the control starts."""
     end: Annotated[Time, Positive] | None = None
     """Time at which the control ends. Default: the end of the run."""
     after: str | None = None
-    """Name of another control; this control starts when the goal of that one is decided, or at its end."""
+    """Name of another control; this one starts when the other ends or its goal is decided."""
     starts_at_present: bool = False
     """Whether the reference is moved to start at the present pose of the tool or position of the joints."""
 
@@ -74,11 +74,11 @@ class TaskControl(Control):
     tool: str | None = None
     """Frame that is controlled. Default: that of the scenario."""
     goal: TaskGoal | None = None
-    """Goal whose result is part of the summary."""
+    """Goal, the result of which is part of the summary."""
 
 
 class JointControl(Control):
     """Control of joints."""
 
     goal: JointGoal | None = None
-    """Goal whose result is part of the summary."""
+    """Goal, the result of which is part of the summary."""

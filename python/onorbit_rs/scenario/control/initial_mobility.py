@@ -1,4 +1,4 @@
-"""Acceleration per effort of a robot at the start of a run."""
+"""Computes the acceleration per effort of a robot at the start of a run."""
 
 from __future__ import annotations
 

@@ -30,9 +30,9 @@ class JointPidController(JointLaw):
     p: JointNumber = 0.0
     """Proportional gain, N m per rad (per rad/s with ``velocity``)."""
     i: JointNumber = 0.0
-    """Integral gain."""
+    """Integral gain, in the unit of ``p`` per second."""
     d: JointNumber = 0.0
-    """Derivative gain."""
+    """Derivative gain, in the unit of ``p`` times one second."""
     i_limit: JointEffort | None = None
     """Largest contribution of the integral, N m or N."""
     effort_limit: JointEffort | None = None
@@ -40,11 +40,11 @@ class JointPidController(JointLaw):
 
     @model_validator(mode="after")
     def _has_gains(self) -> Self:
-        """Raise an error for a PID without gains, which would leave the joints passive."""
+        """Raise an error if all gains are missing, which would leave the joints passive."""
         if self.interface != "effort" and not self.model_fields_set & {"p", "i", "d"}:
             raise invalid(
-                f"a PID of interface {self.interface} has no gains; give 'p', 'i' or 'd', or no"
-                " controller if the joints are to be passive"
+                f"a PID of interface {self.interface} has no gains; give 'p', 'i' or 'd', or"
+                " omit the controller to leave the joints passive"
             )
         return self
 

@@ -15,7 +15,9 @@ def tool_of(law: Any, tool: str | None) -> str | None:
 
 
 def joint_group(wanted: list[str], joints: list[str]) -> list[str]:
-    """Return the joints selected by names and patterns, in that order; those of a pattern as in the robot.
+    """Return the joints selected by names and patterns, in this order.
+
+    Joints that match the same pattern are in the order of the robot.
 
     Raises
     ------

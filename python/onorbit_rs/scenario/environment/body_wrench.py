@@ -25,7 +25,7 @@ class BodyWrenchEffect(Part):
     torque: Torque3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     start: Time = 0.0
     end: Time | None = None
-    """Default: the end of the run."""
+    """Time at which the wrench ends. Default: the end of the run."""
 
     @model_validator(mode="after")
     def _ends_after_start(self) -> BodyWrenchEffect:

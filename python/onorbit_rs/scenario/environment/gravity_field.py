@@ -17,11 +17,11 @@ class GravityFieldEffect(Part):
 
     kind: Literal["gravity_field"] = "gravity_field"
     model: str = "egm2008"
-    """``egm2008``, ``jgm3``, ``zonal``, or the path of a ``.gfc`` file relative to the scenario."""
+    """Model: ``egm2008``, ``jgm3``, ``zonal``, or the path of a ``.gfc`` file relative to the scenario."""
     degree: Annotated[Whole, Field(ge=2)] | None = None
-    """Default: 36 for a bundled model, 6 for ``zonal``, that of the file for a file."""
+    """Highest degree. Default: 36 for a bundled model, 6 for ``zonal``, that of the file for a file."""
     order: Annotated[Whole, Field(ge=0)] | None = None
-    """Default: the degree."""
+    """Highest order. Default: the degree."""
 
     @field_serializer("model", when_used="json")
     def _file(self, model: str, info: SerializationInfo) -> str:

@@ -22,7 +22,7 @@ class SurfaceEffect(Part):
     """Effect on surfaces: ``surfaces`` for all links, or ``bodies``, a mapping from link to surface."""
 
     surfaces: AnySurface | None = None
-    """Default, if ``bodies`` is not given either: the faces of all links."""
+    """Surface of all links. Default, if ``bodies`` is not given either: their visual geometry."""
     bodies: Annotated[dict[str, AnySurface], Field(min_length=1)] | None = None
 
     @model_validator(mode="after")
@@ -56,7 +56,7 @@ class RadiationPressureEffect(SurfaceEffect):
 
     kind: Literal["radiation_pressure"] = "radiation_pressure"
     flux: Annotated[Flux, NotNegative] = 1361.0
-    """W/m² at 1 au."""
+    """Solar flux at 1 au, W/m²."""
     shadow: bool = True
     earth_radius: Annotated[Length, Positive] | None = None
 

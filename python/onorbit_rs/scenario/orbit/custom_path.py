@@ -45,7 +45,7 @@ class CustomPathOrbit(Part):
     attitudes: list[Number4] | None = None
     """Quaternions xyzw that rotate path axes to inertial axes."""
     file: FilePath | None = None
-    """Columns ``t,x,y,z[,vx,vy,vz[,ax,ay,az]][,qx,qy,qz,qw]`` under a header, SI."""
+    """CSV file with a header and the columns ``t,x,y,z[,vx,vy,vz[,ax,ay,az]][,qx,qy,qz,qw]``, SI."""
     mu: Annotated[GravitationalParameter, Positive] | None = None
     """Gravitational parameter, m³/s²; default: no planet and no gravity."""
     ends: Literal["error", "coast"] = "error"

@@ -20,7 +20,7 @@ class LineParabolaReference(TaskReference):
 
     kind: Literal["line_parabola"] = "line_parabola"
     displacement: Length3
-    """From the first position of the tool to its last."""
+    """Displacement of the tool from its first to its last position."""
     height: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     """Factor of s(1 - s); the vertex of the parabola is at a quarter of it."""
     duration: Annotated[Time, Positive]

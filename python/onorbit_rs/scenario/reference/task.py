@@ -39,13 +39,13 @@ class Goal(Part):
     """Pose to reach, relative to the start or in the frame of the reference."""
 
     displacement: Length3 | None = None
-    """From the position of the start."""
+    """Displacement from the position of the start."""
     turn: Attitude | None = None
     """Rotation from the attitude of the start, about the axes of the frame."""
     position: Length3 | None = None
-    """In the frame."""
+    """Position of the goal in the frame."""
     attitude: Attitude | None = None
-    """In the frame."""
+    """Attitude of the goal in the frame."""
 
     @model_validator(mode="after")
     def _is_given_once(self) -> Goal:

@@ -87,7 +87,7 @@ def _equal_instants(time_a: Floats, time_b: Floats) -> tuple[NDArray[np.intp], N
 
 
 def _interpolated(rows: Rows, at: Floats) -> Rows:
-    """Interpolate rows: quaternions by slerp, orbits by cubic Hermite, constant torques, others linearly."""
+    """Interpolate quaternions by slerp, orbits by cubics, others linearly; torques are held constant."""
     time = rows["time"]
     if len(time) == 1:
         return {name: np.repeat(values, len(at), axis=0) for name, values in rows.items()}

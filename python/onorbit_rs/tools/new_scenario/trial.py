@@ -59,7 +59,7 @@ class Trials:
         self._is_late = False
 
     def gentlest(self, plans: Iterable[Plan], seconds: float) -> Plan | None:
-        """Return the first passing plan that rotates the base by at most ``GENTLE``, else by the least.
+        """Return the first passing plan that rotates the base by at most ``GENTLE``, else the gentlest.
 
         Returns None if no plan passes within ``seconds`` of wall clock.
         """
@@ -115,7 +115,7 @@ class Trials:
             trace = _trace(plan, ends)
         except _OverTimeError:
             self._is_late = True  # later plans of this kind would also take too long
-            self._failures["not simulated in time"] += 1
+            self._failures["too slow to simulate"] += 1
             return None
         except OnOrbitError as error:
             # the message contains a time, which differs from run to run

@@ -40,7 +40,8 @@ class Gate:
 class Check:
     """One error and its gate.
 
-    ``passed`` and ``error`` have the value None if the case was skipped, and ``error`` if it raised.
+    If the case was skipped, ``passed`` and ``error`` have the value None; if it raised an error, only
+    ``error`` has.
     """
 
     quantity: str

@@ -93,7 +93,7 @@ def _as_one(parts: list[Part]) -> Part:
 
 @dataclass
 class Budget:
-    """Number of triangles that a file may still have."""
+    """Number of further triangles that a file may contain."""
 
     left: int = MOST_TRIANGLES
 

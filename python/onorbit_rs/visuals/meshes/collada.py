@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from onorbit_rs.visuals.meshes.textures import Companions
 
 MOST_NODES = 100_000
-"""Largest number of nodes of a scene: n nodes that refer to others twice make 2ⁿ."""
+"""Largest number of nodes of a scene; n nodes that each refer to the next one twice expand to 2ⁿ."""
 
 _CHUNK = 65_536
 
