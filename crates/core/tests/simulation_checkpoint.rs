@@ -290,8 +290,11 @@ fn the_state_of_step_doubling_is_checked_on_resuming() {
             |value| value["progress"]["systems"][0]["errors"]["jumps"]["fastest"] = vec![0.0; 1].into(),
             "has 1 joints with jumps",
         ),
-        (|value| value["progress"]["steps"] = 1.into(), "no run counts 1 steps"),
-        (|value| value["progress"]["steps"] = u64::MAX.into(), "no run counts 18446744073709551615 steps"),
+        (|value| value["progress"]["steps"] = 1.into(), "a run cannot have 1 steps"),
+        (
+            |value| value["progress"]["steps"] = u64::MAX.into(),
+            "a run cannot have 18446744073709551615 steps",
+        ),
         (|value| value["progress"]["idle_steps"] = u64::MAX.into(), "18446744073709551615 idle steps"),
     ];
     for (change, said) in changes {

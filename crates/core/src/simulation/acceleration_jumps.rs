@@ -1,29 +1,31 @@
-//! Jumps of the joints' accelerations between the end of one step and the start of the next, which the steps do not
-//! resolve.
+//! Jumps of the joint accelerations between the last stage of one step and the first stage of the next: a measure of
+//! motion that the steps do not resolve.
 
 use super::integrator::StepEnds;
 use crate::model::BASE_NV;
 use crate::spatial::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// Jumps below this fraction of a joint's largest rate are left to step doubling.
+/// Velocity changes `h |Δq̈|/6` below this fraction of the largest rate of a joint are ignored; step doubling
+/// measures such errors.
 const SMALL: f64 = 1e-6;
 
-/// Sums over all steps, for each joint; step doubling measures only some of the steps.
+/// Sums of the acceleration jumps of each joint over all steps; step doubling measures only some of the steps.
 ///
-/// The last stage of a Runge-Kutta step is evaluated at a prediction of the end of the step, the first stage of the next
-/// step at the end itself. `h |Δq̈|/6` is the difference to a solution of third order, `z⁴/72` of an oscillation with `z = ω h`,
-/// whose error of a step is `z⁵/120 = 1.75 (z⁴/72)^(5/4)`.
+/// The last stage of a Runge-Kutta step is evaluated at a prediction of the end of the step, the first stage of the
+/// next step at the end itself. `h |Δq̈|/6` is the difference from a third-order solution. For an oscillation with `z
+/// = ω h` it is `z⁴/72`, and the error of a step is `z⁵/120 = 1.75 (z⁴/72)^(5/4)`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct AccelerationJumps {
-    /// Accelerations in the last stage of the step before, and the torques held during it.
+    /// Joint accelerations in the last stage of the previous step, rad/s² (m/s²).
     ended: Vec<f64>,
+    /// Joint torques held during the previous step, `(n,)`, N m (N).
     command: Vec<f64>,
-    /// Length of that step, s; zero where the motion is not smooth in between.
+    /// Length of the previous step, s.
     h: f64,
-    /// `Σ (h |Δq̈|/6)^(5/4)`
+    /// Sum of each joint, `Σ (h |Δq̈|/6)^(5/4)`.
     pub(super) jumps: Vec<f64>,
-    /// Largest rates, rad/s (m/s).
+    /// Largest magnitude of the rate of each joint, rad/s (m/s).
     pub(super) fastest: Vec<f64>,
 }
 
@@ -33,12 +35,13 @@ impl AccelerationJumps {
         Self { ended: zeros.clone(), command: zeros.clone(), h: 0.0, jumps: zeros.clone(), fastest: zeros }
     }
 
-    /// Lengths of the sums, one entry per joint each unless a checkpoint was damaged.
+    /// Returns the lengths of the vectors, each of which equals the number of joints unless a checkpoint is damaged.
     pub(super) fn joints(&self) -> [usize; 4] {
         [&self.ended, &self.command, &self.jumps, &self.fastest].map(Vec::len)
     }
 
-    /// Adds a step of length `h`; `is_smooth`: neither an event nor an impact is at its start.
+    /// Adds a step of length `h`; `is_smooth` is true if neither an event nor an impact occurs at the start of the
+    /// step.
     #[inline]
     pub(super) fn add_step<S: Scalar>(
         &mut self,

@@ -1,4 +1,4 @@
-//! Measures the accuracy of the steps during a run, for its certificate.
+//! Measures the accuracy of the steps during a run, for the certificate of the run.
 
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
@@ -16,13 +16,13 @@ use crate::spatial::Scalar;
 
 type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
 
-/// Estimates of the error of fixed native steps. An adaptive integrator estimates its own, and nothing is known of
-/// the steps of an external engine.
+/// Error estimates for the native fixed-step integrators. An adaptive integrator estimates its errors itself, and the
+/// errors of an external engine are not estimated.
 pub(super) struct Accuracy<S> {
     doubling: Option<StepDoubling<S>>,
-    /// Checks of every step for each system; empty where every step is a row.
+    /// Checks of every step, one entry per system; empty if every step is a row.
     every_step: Vec<EveryStep>,
-    /// Whether the base rows of the present step are checked.
+    /// True if the base rows of inverse dynamics are checked for the current step.
     is_recorded: bool,
 }
 
@@ -31,13 +31,13 @@ impl<S: Scalar> Accuracy<S> {
         Self { doubling, every_step, is_recorded: false }
     }
 
-    /// Returns the sums so far of a system.
+    /// Returns the errors and checks of a system accumulated so far.
     pub(super) fn save(&self, number: usize) -> (Option<Errors>, Option<SavedChecks>) {
         let errors = self.doubling.as_ref().map(|doubling| doubling.errors[number].clone());
         (errors, self.every_step.get(number).map(EveryStep::save))
     }
 
-    /// Continues from [`Accuracy::save`].
+    /// Restores what [`Accuracy::save`] returned for a system.
     pub(super) fn restore(&mut self, number: usize, (errors, checks): (Option<Errors>, Option<SavedChecks>)) {
         if let (Some(doubling), Some(errors)) = (&mut self.doubling, errors) {
             doubling.errors[number] = errors;
@@ -47,7 +47,8 @@ impl<S: Scalar> Accuracy<S> {
         }
     }
 
-    /// Ends the last step at a state on its momentum whose kinematics are in `equations`.
+    /// Completes the checks of the last step, which ended at time `t`, s. Expects a state with projected base twists,
+    /// whose kinematics are in `equations`.
     pub(super) fn end_step(&mut self, t: f64, state: &State<S>, equations: &Equations<'_, S>) {
         for (every_step, (state, system)) in self.every_step.iter_mut().zip(pairs(state, &equations.systems))
         {
@@ -55,14 +56,14 @@ impl<S: Scalar> Accuracy<S> {
         }
     }
 
-    /// Leaves out the last step of a system.
+    /// Excludes the last step of a system from the checks.
     pub(super) fn skip_step(&mut self, number: usize) {
         if let Some(every_step) = self.every_step.get_mut(number) {
             every_step.skip();
         }
     }
 
-    /// Starts step number `step` over `interval`, before it is taken.
+    /// Starts the measurements of step number `step` over `interval`, s, before the step is taken.
     pub(super) fn start_step(
         &mut self,
         step: usize,
@@ -81,13 +82,14 @@ impl<S: Scalar> Accuracy<S> {
             every_step.start(interval.0, state, system);
         }
         if let (Some(doubling), Some(integration)) = (&mut self.doubling, mover.integration()) {
-            // if the probe fails, so does the step, which reports it
+            // if step doubling fails, the step itself fails too and reports the error
             let _ = doubling.probe(step, interval, state, equations, integration);
         }
         Ok(())
     }
 
-    /// Measures the step taken over `interval` to `state`; `is_smooth`: neither an event nor an impact is at its start.
+    /// Measures the step taken over `interval` to `state`; `is_smooth` is true if neither an event nor an impact
+    /// occurs at the start of the step.
     pub(super) fn measure_step(
         &mut self,
         interval: (f64, f64),
@@ -117,8 +119,8 @@ impl<S: Scalar> Accuracy<S> {
         Ok(())
     }
 
-    /// Records the end of a step whose base rows are checked. `buffers` receive the state at the end on its momentum,
-    /// and its acceleration.
+    /// Records the end of a step whose base rows are checked. Writes the state at the end, with projected base
+    /// twists, and its accelerations to the buffers `(end, stages)`.
     fn record_end(
         &mut self,
         interval: (f64, f64),
@@ -138,7 +140,7 @@ impl<S: Scalar> Accuracy<S> {
         Ok(())
     }
 
-    /// Completes the last row of the checks of each system with the acceleration in the first stage.
+    /// Completes the last row of the checks of each system with the acceleration of the first stage.
     fn complete_rows(
         &mut self,
         equations: &Equations<'_, S>,
@@ -151,8 +153,8 @@ impl<S: Scalar> Accuracy<S> {
         }
     }
 
-    /// Writes the estimates for a system after `steps` steps to its trace; `rotation_error` is that of an adaptive
-    /// integrator, rad.
+    /// Writes the error estimates of a system after `steps` steps to its trace. `rotation_error` is the accumulated
+    /// attitude error of an adaptive integrator, rad; `None` for a fixed-step integrator.
     pub(super) fn conclude(
         &self,
         number: usize,
@@ -170,7 +172,7 @@ impl<S: Scalar> Accuracy<S> {
     }
 }
 
-/// Returns the state of each system with the system.
+/// Returns pairs of the state of each system and the system.
 fn pairs<'a, 's, S>(
     state: &'a State<S>,
     systems: &'a [System<'s, S>],

@@ -1,4 +1,4 @@
-//! Checkpoints: the state of a run between two steps, from which it resumes with the same bits.
+//! Checkpoints: the state of a run between two steps, from which the run can resume with bit-identical results.
 
 use super::checkpoint_error::CheckpointError;
 use super::every_step::SavedChecks;
@@ -18,15 +18,15 @@ use serde::{Deserialize, Serialize};
 /// Largest number of steps of a run; twice as many can be counted without overflow.
 const MOST_STEPS: usize = usize::MAX / 2;
 
-/// State of a run that its trace does not contain. With the rows so far, a run that resumes from it has the bits of
-/// one that was not interrupted.
+/// State of a run that its trace does not contain. A run that resumes from a checkpoint and the rows recorded before
+/// it gives results that are bit-identical to those of an uninterrupted run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
-    /// Version of this library; another one may round differently.
+    /// Version of this library; another version may round differently.
     version: String,
-    /// Instruction set of the run; another one rounds differently.
+    /// Instruction set of the run; another instruction set rounds differently.
     instruction_set: String,
-    /// Present time, s.
+    /// Time of the checkpoint, s.
     time: f64,
     schedule: Schedule,
     progress: Progress,
@@ -34,7 +34,7 @@ pub struct Checkpoint {
     controllers: SavedControllers,
 }
 
-/// Everything that a step changes, except the controllers.
+/// State of everything that a step changes, except the controllers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Progress {
     /// Steps taken so far.
@@ -42,13 +42,13 @@ pub(super) struct Progress {
     pub(super) cursor: Cursor,
     pub(super) state: State<f64>,
     pub(super) step_control: Option<StepControl>,
-    /// Idle steps in a row.
+    /// Number of consecutive idle steps.
     pub(super) idle_steps: usize,
     /// One entry per system.
     pub(super) systems: Vec<SystemProgress>,
 }
 
-/// Everything of one system that a step changes, except its state and its controllers.
+/// Quantities of one system that a step changes, except its state and its controllers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SystemProgress {
     /// Rows recorded so far.
@@ -60,28 +60,28 @@ pub(super) struct SystemProgress {
     pub(super) work_done: f64,
 }
 
-/// Controllers and torques of a run.
+/// State of the controllers and torques of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedControllers {
-    /// Whether the controllers were updated at the present cut.
+    /// True if the controllers have been updated at the current cut.
     pub(super) controllers_updated: bool,
     /// One entry per system.
     pub(super) systems: Vec<SystemControllers>,
 }
 
-/// Controllers and torques of one system.
+/// State of the controllers and torques of one system.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SystemControllers {
-    /// Torques held, `(n,)`, N m (N).
+    /// Joint torques that are held during the current step, `(n,)`, N m (N).
     pub(super) command: Vec<f64>,
-    /// Torques commanded from outside, `(n,)`, N m (N).
+    /// Torques commanded by the caller of the stepper, `(n,)`, N m (N).
     pub(super) commanded: Vec<Option<f64>>,
-    /// Accelerations requested of joints whose friction is compensated, `(n,)`, rad/s² (m/s²).
+    /// Accelerations requested for joints whose friction is compensated, `(n,)`, rad/s² (m/s²).
     pub(super) requested: Vec<Option<f64>>,
     pub(super) controls: Vec<ControlMemory>,
 }
 
-/// Returns the instruction set with which one state is computed: there are no lanes to widen.
+/// Returns the name of the instruction set that a single run uses; it never uses the widest SIMD lanes.
 fn own_instruction_set() -> &'static str {
     InstructionSet::current().min(InstructionSet::Fused).name()
 }
@@ -99,30 +99,30 @@ impl Checkpoint {
         Self { version, instruction_set, time, schedule, progress, local_reference, controllers }
     }
 
-    /// Returns the present time, s.
+    /// Returns the time of the checkpoint, s.
     pub fn time(&self) -> f64 {
         self.time
     }
 
-    /// Returns the planned end of the run, s.
+    /// Returns the planned end of the run, s; `None` for an open-ended run.
     pub fn duration(&self) -> Option<f64> {
         self.schedule.duration()
     }
 
-    /// Returns the number of rows of the trace that belong to it.
+    /// Returns the number of rows that were recorded before the checkpoint.
     pub fn rows(&self) -> usize {
         self.progress.systems.first().map_or(0, |system| system.rows)
     }
 
-    /// Returns it as JSON, from which every number is read back to the same bits.
+    /// Returns the checkpoint as JSON; reading it back gives bit-identical numbers.
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).expect("numbers, strings and lists can be written")
     }
 
-    /// Reads the output of [`Checkpoint::to_json`].
+    /// Reads a checkpoint from the output of [`Checkpoint::to_json`].
     ///
-    /// # Errors
-    /// [`CheckpointError::Unreadable`], and [`CheckpointError::OtherVersion`].
+    /// # Errors [`CheckpointError::Unreadable`] if `text` is damaged, and [`CheckpointError::OtherVersion`] if
+    /// another version wrote it.
     pub fn from_json(text: &str) -> Result<Self, CheckpointError> {
         let own = env!("CARGO_PKG_VERSION");
         let unreadable = |error: serde_json::Error| CheckpointError::Unreadable { reason: error.to_string() };
@@ -135,12 +135,13 @@ impl Checkpoint {
         }
     }
 
-    /// Returns its parts, for a run that resumes.
+    /// Returns the time, s, the progress, the local reference orbit and the controllers, for a run that resumes.
     pub(super) fn into_parts(self) -> (f64, Progress, Option<LocalReference>, SavedControllers) {
         (self.time, self.progress, self.local_reference, self.controllers)
     }
 
-    /// Checks that a run of these systems on this machine can resume from here; `schedule` and `rows` are its own.
+    /// Checks that a run with this layout, this schedule and this number of recorded rows can resume from the
+    /// checkpoint on this machine.
     pub(super) fn check(
         &self,
         layout: &Layout,
@@ -167,12 +168,12 @@ impl Checkpoint {
         if there.is_consistent(self.time) {
             Ok(())
         } else {
-            let reason = format!("its time, {} s, does not belong to its place in the schedule", self.time);
+            let reason = format!("its time, {} s, does not match its position in the schedule", self.time);
             Err(CheckpointError::Unreadable { reason })
         }
     }
 
-    /// Checks that the numbers from which the run continues can occur in a run.
+    /// Checks that the state is finite, the attitudes are unit quaternions, and the step control is valid.
     fn check_state(&self) -> Result<(), CheckpointError> {
         let Progress { state, step_control, .. } = &self.progress;
         let has_unit_attitude = |state: &SystemState<f64>| (attitude_norm(&state.q) - 1.0).abs() <= UNIT_NORM;
@@ -183,7 +184,8 @@ impl Checkpoint {
         if state.is_finite() && state.systems.iter().all(has_unit_attitude) && has_step {
             return Ok(());
         }
-        let reason = "its state is not finite, or its attitude not a unit quaternion".to_owned();
+        let reason =
+            "its state or step size is not finite, or its attitude is not a unit quaternion".to_owned();
         Err(CheckpointError::Unreadable { reason })
     }
 
@@ -195,7 +197,7 @@ impl Checkpoint {
             ("systems", progress.state.systems.len(), count),
             ("systems with modes", progress.systems.len(), count),
             ("systems with controllers", controllers.systems.len(), count),
-            ("systems with scales of errors", scales.unwrap_or(count), count),
+            ("systems with error scales", scales.unwrap_or(count), count),
         ])?;
         let systems = progress.systems.iter().zip(&controllers.systems);
         for ((place, state), (progress, controllers)) in
@@ -217,7 +219,7 @@ impl Checkpoint {
         let probed = errors.map(|errors| errors.step).max().unwrap_or(0);
         if probed > *steps || *steps.max(idle_steps) > MOST_STEPS {
             let reason = format!(
-                "no run counts {steps} steps, {idle_steps} idle steps and a last probe at step {probed}"
+                "a run cannot have {steps} steps, {idle_steps} idle steps and the last step doubling at step {probed}"
             );
             return Err(CheckpointError::Unreadable { reason });
         }
@@ -250,7 +252,7 @@ impl SystemControllers {
     }
 }
 
-/// Returns an error for the first of these names whose number differs from the one expected.
+/// Returns an error for the first entry `(name, got, expected)` whose two numbers differ.
 fn check_each(sizes: impl IntoIterator<Item = (&'static str, usize, usize)>) -> Result<(), CheckpointError> {
     match sizes.into_iter().find(|(_, got, expected)| got != expected) {
         Some((name, got, expected)) => Err(CheckpointError::OtherSize { name, got, expected }),

@@ -13,7 +13,7 @@ pub enum Length {
     Rows,
     /// One entry per event, `K`.
     Events,
-    /// The same for every robot.
+    /// A constant length, the same for every robot.
     Fixed(usize),
     /// Number of coordinates of the robot, `nq`.
     Nq,
@@ -56,24 +56,24 @@ impl fmt::Display for Length {
     }
 }
 
-/// What a run must have so that a column is recorded.
+/// Condition under which a column is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
     /// Every run has the column.
     Always,
-    /// A controller that compensates Coulomb friction, with the native equations of motion.
+    /// A controller compensates Coulomb friction, and the native equations of motion are used.
     FrictionCompensation,
-    /// A tool.
+    /// The run has a tool.
     Tool,
-    /// A tool with a reference.
+    /// The run has a tool with a reference.
     Reference,
-    /// An orbit.
+    /// The run has an orbit.
     Orbit,
-    /// `gravity_mode: carried` around a planet.
+    /// The gravity mode is `carried` and the orbit is around a planet.
     Carried,
-    /// A list of controls.
+    /// The run has a list of controls.
     Controls,
-    /// `record_wrenches`.
+    /// The option `record_wrenches` is set.
     Wrenches,
 }
 
@@ -96,11 +96,11 @@ impl Condition {
 /// A range of the last axis of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// Its name.
+    /// Name of the part.
     pub name: &'static str,
-    /// Index of its first number.
+    /// Index of the first value.
     pub start: usize,
-    /// Index after its last number; `None` where it extends to the end of the axis.
+    /// Index after the last value; `None` if the part extends to the end of the axis.
     pub end: Option<usize>,
 }
 
@@ -113,25 +113,26 @@ pub struct Column {
     pub path: &'static str,
     /// Length of each axis.
     pub shape: &'static [Length],
-    /// Unit; of each part in order, separated by semicolons, where there are parts. `1` for none.
+    /// Unit of the values; if there are parts, the units of the parts in order, separated by semicolons. `1` for
+    /// dimensionless values.
     pub unit: &'static str,
-    /// Frame in whose axes the numbers are expressed; empty where they have none.
+    /// Frame in which the values are expressed; empty if they do not depend on a frame.
     pub frame: &'static str,
-    /// The quantity.
+    /// Description of the quantity.
     pub meaning: &'static str,
-    /// When it is recorded.
+    /// Condition under which the quantity is recorded.
     pub condition: Condition,
-    /// Parts of the last axis; empty where the column is one quantity.
+    /// Parts of the last axis; empty if the column holds a single quantity.
     pub parts: &'static [Part],
 }
 
 impl Column {
-    /// Returns the shape of one row for a robot.
+    /// Returns the shape of one row for the robot `model`.
     pub fn row_shape(&self, model: &Model) -> Vec<usize> {
         self.shape[1..].iter().map(|length| length.of(model)).collect()
     }
 
-    /// Returns how many numbers one row has for a robot.
+    /// Returns the number of values in one row for the robot `model`.
     pub fn row_width(&self, model: &Model) -> usize {
         self.shape[1..].iter().map(|length| length.of(model)).product()
     }
@@ -159,7 +160,7 @@ const VELOCITY: &[Part] =
 const LINEAR_ANGULAR: &[Part] = &[part("linear", 0, Some(3)), part("angular", 3, Some(6))];
 const FORCE_TORQUE: &[Part] = &[part("force", 0, Some(3)), part("torque", 3, Some(6))];
 
-/// One axis of a shape, as the table writes it.
+/// Converts one axis of a shape in the table to a [`Length`].
 macro_rules! length {
     (T) => {
         Length::Rows
@@ -187,18 +188,18 @@ macro_rules! length {
     };
 }
 
-/// Declares the static table.
+/// Declares the static table [`COLUMNS`].
 macro_rules! table {
     ($($name:ident ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident, $parts:ident,
         $meaning:literal;)+) => {
-        /// Columns that are fields of a trace, in its order.
+        /// Columns that are fields of a trace, in the order of the fields.
         pub static COLUMNS: &[Column] = &[
             $(column!($name, stringify!($name), ($($axis),+), $unit, $frame, $condition, $parts, $meaning)),+
         ];
     };
 }
 
-/// One row of the table as a [`Column`].
+/// Converts one row of the table to a [`Column`].
 macro_rules! column {
     (
         $name:ident, $path:expr, ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident,
@@ -220,7 +221,7 @@ macro_rules! column {
 /// Passes the rows of the table to a macro, which declares a field, a getter or a description for each:
 /// name, shape, unit, frame, condition, parts, meaning.
 ///
-/// Paths are those of a single system: the name itself.
+/// The path of each of these columns is its name.
 #[macro_export]
 macro_rules! trace_columns {
     ($then:ident) => {

@@ -71,7 +71,7 @@ pub(super) struct ExternalEngine<'a> {
     v: Vec<f64>,
     tau: Vec<f64>,
     output: StepOutput,
-    /// Whether the engine completed its last step.
+    /// True if the engine completed its last step.
     has_output: bool,
 }
 

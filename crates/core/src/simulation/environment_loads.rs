@@ -31,7 +31,7 @@ pub(super) struct EnvironmentLoads {
     /// States of the orbit about which the robot is integrated: `reference` or the local one.
     cache: ReferenceCache,
     gravity: Option<Arc<Gravity>>,
-    /// Whether that orbit obeys exactly the gravity of the run.
+    /// True if that orbit obeys exactly the gravity of the run.
     in_free_fall: bool,
     earth: Option<Arc<Earth>>,
     gravity_mode: GravityMode,

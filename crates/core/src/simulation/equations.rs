@@ -1,4 +1,5 @@
-//! Equations of motion of all systems of a run: from a state and joint torques to rates of change.
+//! Equations of motion of all systems of a run: computes the time derivatives of the state from state, loads and
+//! joint torques.
 
 use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
@@ -8,7 +9,7 @@ use crate::dynamics::Data;
 use crate::model::Model;
 use crate::spatial::Real;
 
-/// Equations of motion of all systems under external loads and held joint torques.
+/// Equations of motion of all systems under external loads and constant joint torques.
 ///
 /// Every evaluation first computes the kinematics of all systems, then the loads once for all of them, then the rates
 /// of each.
@@ -19,7 +20,8 @@ pub(crate) struct EquationsOfMotion<'a, S, W> {
 }
 
 impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
-    /// `restitution` of the stops at the joints' position limits; without it there are no stops.
+    /// Returns the equations of motion of `models`. `restitution` is that of the stops at the position limits of
+    /// joints; `None` means no stops.
     pub(crate) fn new(models: &[&'a Model], loads: W, restitution: Option<f64>) -> Self {
         Self { systems: models.iter().map(|model| System::new(model, restitution)).collect(), loads }
     }
@@ -45,7 +47,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         }
     }
 
-    /// Computes the external wrenches on all systems at the state whose kinematics they have.
+    /// Computes the external wrenches on all systems at time `t`, s, in a step over `interval`, s. Expects the
+    /// kinematics of `state` in the systems.
     pub(crate) fn apply_loads(
         &mut self,
         t: f64,
@@ -55,7 +58,7 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.loads.apply(&mut self.systems, state, t, interval)
     }
 
-    /// Computes the rates at a state whose kinematics and loads the systems have.
+    /// Computes the rates at `state`. Expects its kinematics and loads in the systems.
     pub(crate) fn rates(&mut self, state: &State<S>, rate: &mut Rate<S>) {
         let is_loaded = self.loads.is_active();
         for ((system, state), rate) in self.systems.iter_mut().zip(&state.systems).zip(&mut rate.systems) {
@@ -63,7 +66,7 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         }
     }
 
-    /// Computes kinematics, loads and rates of a later stage.
+    /// Computes the kinematics, loads and rates of a stage after the first.
     pub(crate) fn evaluate(
         &mut self,
         t: f64,
@@ -89,7 +92,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.systems.iter().any(|system| system.modes.locked().is_some())
     }
 
-    /// Determines the modes of all joints for the step that starts here. Needs kinematics and loads.
+    /// Determines the modes of all joints for the step that starts at `state`. Expects its kinematics and loads in
+    /// the systems.
     pub(crate) fn solve_modes(&mut self, state: &State<S>) {
         for (system, state) in self.systems.iter_mut().zip(&state.systems) {
             system.solve_modes(&state.q, &state.v);

@@ -1,4 +1,4 @@
-//! Evaluates the certificate's checks of one system at every step of a run whose rows are sparse.
+//! Evaluates the checks of the certificate for one system at every step of a run that does not record every step.
 
 use super::certificate::{BaseMotion, MassMotion, PairChecks, Stream, Sums};
 use super::environment_loads::EnvironmentLoads;
@@ -19,12 +19,13 @@ struct End {
     whole: MassMotion,
 }
 
-/// Certificate of one system of a run in progress.
+/// Checks of one system during a run.
 pub(super) struct EveryStep {
     stream: Stream,
-    /// Start of the present step; after the step, with the accelerations and forces at both of its ends.
+    /// Motion at the start of the current step; after the step it also contains the accelerations and forces at both
+    /// ends of the step.
     start: Option<End>,
-    /// The two rows of a step whose base rows are checked.
+    /// Rows at the start and at the end of a step whose base rows are checked.
     rows: Recorder,
 }
 
@@ -41,7 +42,7 @@ impl EveryStep {
         Ok(Self { stream: Stream::new(model), start: None, rows })
     }
 
-    /// Returns the results so far.
+    /// Returns the results of all steps so far.
     pub(super) fn checks(&self) -> PairChecks {
         self.stream.checks()
     }
@@ -55,12 +56,13 @@ impl EveryStep {
         self.start = saved.start;
     }
 
-    /// Leaves out the present step.
+    /// Excludes the current step from the checks.
     pub(super) fn skip(&mut self) {
         self.start = None;
     }
 
-    /// Adds the step that ends at `state`, which is on its momentum and whose kinematics are in `system`.
+    /// Adds the step that ends at `state`, whose base twist is projected onto the momentum and whose kinematics are
+    /// in `system`.
     pub(super) fn end<S: Scalar>(&mut self, t: f64, state: &SystemState<S>, system: &System<'_, S>) {
         if let Some(start) = self.start.take().filter(|start| start.base.time < t) {
             let mut now = End::of(t, state, system);
@@ -77,7 +79,7 @@ impl EveryStep {
         self.start = Some(End::of(t, state, system));
     }
 
-    /// Adds accelerations and forces at both ends of the step, from its first and its last stage.
+    /// Adds the accelerations and forces at both ends of the step, taken from its first and last stages.
     pub(super) fn add_stages(&mut self, step: &StepEnds<'_, impl Scalar>) {
         let Some(End { base, whole }) = &mut self.start else { return };
         let first = &step.first.acceleration;
@@ -101,7 +103,8 @@ impl EveryStep {
         self.record_end(t, state, system, loads)
     }
 
-    /// Records the end of that step. Expects a state on its momentum, with kinematics and loads in `system`.
+    /// Records the end of the same step. Expects a state with a projected base twist, and its kinematics and loads in
+    /// `system`.
     pub(super) fn record_end<S: Scalar>(
         &mut self,
         t: f64,
@@ -113,12 +116,13 @@ impl EveryStep {
         self.rows.record_wrenches(system.model, loads, t)
     }
 
-    /// Completes the row at the start of that step with the acceleration there.
+    /// Completes the row at the start of the step with the acceleration of the first stage.
     pub(super) fn complete_start<S: Scalar>(&mut self, model: &Model, first: &FirstStage<S>) {
         self.rows.record_acceleration(model, &first.acceleration);
     }
 
-    /// Completes the row at the end of that step with the acceleration there, and checks the base rows.
+    /// Completes the row at the end of the step with the acceleration of the first stage there, and checks the base
+    /// rows.
     pub(super) fn complete_end<S: Scalar>(&mut self, model: &Model, first: &FirstStage<S>) {
         self.rows.record_acceleration(model, &first.acceleration);
         self.stream.add_rows(model, &self.rows.trace);
@@ -126,7 +130,8 @@ impl EveryStep {
 }
 
 impl End {
-    /// Returns the motion of a state on its momentum, without accelerations and forces.
+    /// Returns the motion at `state`, whose base twist is projected onto the momentum, without accelerations and
+    /// forces.
     fn of<S: Scalar>(time: f64, state: &SystemState<S>, system: &System<'_, S>) -> Self {
         let attitude = Quat { v: value(Vec3::from_slice(&state.q[3..])), w: state.q[6].value() };
         let rate = value(Vec3::from_slice(&state.v[3..]));

@@ -1,26 +1,26 @@
-//! Places of systems and joints, by name, in lists with the coordinates of all systems.
+//! Index ranges of systems and joints, found by name, in vectors with the coordinates of all systems.
 
 use crate::model::Model;
 use std::ops::Range;
 
-/// Maps the names of systems and of their joints to places.
+/// Maps the names of systems and of their joints to indices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     systems: Vec<SystemPlace>,
 }
 
-/// Place of one system in lists with the coordinates of all systems, one system after the other.
+/// Index ranges of one system in vectors that hold the coordinates of all systems, one system after the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SystemPlace {
     /// Name of the system.
     pub name: String,
-    /// Range of its configuration.
+    /// Range of the configuration of the system.
     pub q: Range<usize>,
-    /// Range of its velocity.
+    /// Range of the velocity of the system.
     pub v: Range<usize>,
-    /// Range of its joint torques.
+    /// Range of the joint torques of the system.
     pub tau: Range<usize>,
-    /// Names of its joints, in the order of their torques.
+    /// Names of the joints of the system, in the order of their torques.
     pub joints: Vec<String>,
 }
 
@@ -38,25 +38,25 @@ impl Layout {
         Self { systems: systems.into_iter().map(place).collect() }
     }
 
-    /// Returns the places of all systems.
+    /// Returns the index ranges of all systems.
     pub fn systems(&self) -> &[SystemPlace] {
         &self.systems
     }
 
-    /// Returns the number of the system with this name.
+    /// Returns the number of the system with this name; `None` if there is none.
     pub fn system(&self, name: &str) -> Option<usize> {
         self.systems.iter().position(|system| system.name == name)
     }
 }
 
 impl SystemPlace {
-    /// Returns the place of a joint in the torques of its system.
+    /// Returns the index of the joint with this name among the joints of the system; `None` if there is none.
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint == name)
     }
 }
 
-/// Returns the next `length` places after `end`, and moves `end` behind them.
+/// Returns the range of the next `length` indices, which starts at `end`, and moves `end` to the end of this range.
 fn next(end: &mut usize, length: usize) -> Range<usize> {
     let start = *end;
     *end += length;

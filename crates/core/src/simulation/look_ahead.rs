@@ -1,5 +1,5 @@
-//! Advances a run to any time, and evaluates it there. A step that ends later is tried and taken back, so that the steps
-//! do not depend on the times at which the run was evaluated.
+//! Advances a run to any time and evaluates it there. A step that ends later is tried and then undone, so that the
+//! steps do not depend on the times at which the run is evaluated.
 
 use super::checkpoint::Progress;
 use super::error::SimulationError;
@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 const MONITOR_EVERY: usize = 64;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Takes all steps that end at `t` or before it. Stops at a cut if the monitor breaks.
+    /// Takes all steps that end at or before `t`. Stops at the end of a step if the monitor returns `Break`.
     pub(super) fn advance_to(
         &mut self,
         t: f64,
@@ -45,8 +45,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Returns true if the step in an interval that ends after `t` ends at `t` or before it: at a change of a joint's
-    /// mode, or where the tolerance requires it. Tries the step without rows.
+    /// Returns true if the step in `interval`, which ends after `t`, itself ends at or before `t`, because the mode
+    /// of a joint changes or because the tolerance requires a shorter step. Takes a trial step without recording
+    /// rows.
     fn step_ends_by(&mut self, t: f64, interval: &Interval, after: Cursor) -> Result<bool, SimulationError> {
         if !self.mover.may_end_early(&self.equations) {
             return Ok(false);
@@ -76,8 +77,8 @@ impl<S: Scalar> RunState<'_, S> {
         result
     }
 
-    /// Ends the step that contains the present time at that time, which becomes a cut.
-    pub(super) fn cut_at_present(&mut self) -> Result<(), SimulationError> {
+    /// Ends the step that contains the current time at that time, which becomes the current cut.
+    pub(super) fn cut_at_current_time(&mut self) -> Result<(), SimulationError> {
         while self.schedule.is_later(self.time, self.schedule.now()) {
             let Some((interval, after)) = self.schedule.following() else { break };
             self.schedule.set_cursor(after);
@@ -86,11 +87,11 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Writes configuration and velocity at the present time, in W.
+    /// Writes the configuration and the velocity at the current time, relative to W, to `q` and `v`.
     pub(super) fn read_state(&mut self, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError> {
         if self.schedule.is_later(self.time, self.schedule.now()) {
             self.peek(f64::NEG_INFINITY, |run| {
-                run.cross_to_present().map(|is_dense| run.copy_state(is_dense))
+                run.step_to_current_time().map(|is_dense| run.copy_state(is_dense))
             })?;
         } else {
             self.copy_state(false);
@@ -108,7 +109,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Copies the state to the buffer for rows: the present one, or dense output of the last step.
+    /// Copies the state to the row buffer: the dense output of the last step at the current time if `is_dense`,
+    /// otherwise the state at the current cut.
     fn copy_state(&mut self, is_dense: bool) {
         let Self { state, mover, row_buffers: (copy, _), time, .. } = self;
         match mover.integration().filter(|_| is_dense) {
@@ -117,33 +119,33 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Steps from the present cut to the present time. An adaptive integrator takes its whole step; returns true if the
-    /// present is then within it.
-    fn cross_to_present(&mut self) -> Result<bool, SimulationError> {
+    /// Steps from the current cut to the current time. An adaptive integrator takes its whole step, within which the
+    /// current time then lies; returns true in this case.
+    fn step_to_current_time(&mut self) -> Result<bool, SimulationError> {
         match self.schedule.following() {
             Some((interval, after)) if self.mover.is_adaptive() => {
                 self.schedule.set_cursor(after);
                 self.step(&interval).map(|()| true)
             }
-            _ => self.cut_at_present().map(|()| false),
+            _ => self.cut_at_current_time().map(|()| false),
         }
     }
 
-    /// Adds the rows up to the present time, and one at that time.
-    pub(super) fn record_present(&mut self) -> Result<(), SimulationError> {
+    /// Adds the rows before the current time, and one at the current time.
+    pub(super) fn record_current_time(&mut self) -> Result<(), SimulationError> {
         if !self.schedule.is_later(self.time, self.schedule.now()) {
             return self.record_end();
         }
-        self.records_before = self.time; // an adaptive step passes it
-        let crossed = self.cross_to_present();
+        self.records_before = self.time; // an adaptive step goes past the current time
+        let crossed = self.step_to_current_time();
         self.records_before = f64::INFINITY;
         if crossed? { self.record_within(self.time) } else { self.record_end() }
     }
 
-    /// Returns the rows so far and one at the present time, as if the run ended there.
+    /// Returns the trace with the rows recorded so far and one at the current time, as if the run ended there.
     pub(super) fn trace(&mut self) -> Result<Trace, SimulationError> {
         self.peek(f64::INFINITY, |run| {
-            run.record_present()?;
+            run.record_current_time()?;
             run.conclude();
             Ok(only(&run.systems).recorder.trace.clone())
         })

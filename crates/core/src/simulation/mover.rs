@@ -1,4 +1,4 @@
-//! What moves the systems over a step: the native equations of motion or an external engine.
+//! Moves the systems over a step with the native equations of motion or with an external engine.
 
 use super::engine::ExternalEngine;
 use super::environment_loads::EnvironmentLoads;
@@ -23,8 +23,8 @@ pub(super) enum Mover<'a, S> {
 }
 
 impl<S: Scalar> Mover<'_, S> {
-    /// Computes the kinematics of `state`. The native base twist follows from the momentum; that of an external
-    /// engine is left as it is.
+    /// Computes the kinematics of `state`. A native base twist is projected onto the momentum; that of an external
+    /// engine is not changed.
     pub(super) fn kinematics(&self, equations: &mut Equations<'_, S>, state: &mut State<S>) {
         match self {
             Self::Native(_) => equations.project_momentum(state),
@@ -57,7 +57,7 @@ impl<S: Scalar> Mover<'_, S> {
         matches!(self, Self::Native(method) if method.integration.is_adaptive())
     }
 
-    /// Returns true if a step may take long.
+    /// Returns true if a single step may take a long time to compute.
     pub(super) fn has_long_steps(&self) -> bool {
         self.is_external() || self.is_adaptive()
     }
@@ -86,8 +86,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Completes a system's row at the start of the step taken last with the acceleration there; removes the row if an
-    /// external engine did not return one.
+    /// Adds the acceleration at the start of the last step to the row of a system; removes the row if an external
+    /// engine returned no acceleration.
     pub(super) fn complete_row(&self, number: usize, recorder: &mut Recorder, model: &Model) {
         match self {
             Self::Native(method) => {
@@ -100,7 +100,7 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Work done on a system in the step taken last, J; `state` is its state at the end.
+    /// Returns the work done on a system in the last step, J; `state` is its state at the end of the step.
     pub(super) fn work_of_step(&self, number: usize, state: &SystemState<S>) -> f64 {
         match self {
             Self::Native(method) => {
@@ -145,13 +145,13 @@ impl<S: Scalar> Mover<'_, S> {
         })
     }
 
-    /// Returns configuration and velocity of a system at its last finite state: `state`, or that at the start of its
-    /// step.
+    /// Returns the configuration and the velocity of a system in its last finite state: `state` or, if that is not
+    /// finite, the state at the start of the step.
     pub(super) fn last_finite(&self, number: usize, state: &State<S>) -> [Vec<f64>; 2] {
-        let present = &state.systems[number];
+        let current = &state.systems[number];
         match self {
-            Self::Native(method) if !present.is_finite() => method.integration.stages.start_state(number),
-            _ => [&present.q, &present.v].map(|x| x.iter().map(|x| x.value()).collect()),
+            Self::Native(method) if !current.is_finite() => method.integration.stages.start_state(number),
+            _ => [&current.q, &current.v].map(|x| x.iter().map(|x| x.value()).collect()),
         }
     }
 }

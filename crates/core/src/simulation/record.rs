@@ -12,20 +12,20 @@ use super::state::State;
 use crate::spatial::Scalar;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns true if the start of `interval` is a row. Where every step is recorded, this includes the starts of steps
-    /// after an event, so that jumps lie at rows.
+    /// Returns true if a row is due at the start of `interval`. If every step is recorded, this includes the steps
+    /// that start at an event, so that discontinuities coincide with rows.
     pub(super) fn is_row_due(&self, interval: &Interval) -> bool {
         let is_due = |step: usize| step.is_multiple_of(self.record_every);
         interval.start < self.records_before
             && (self.has_every_step || interval.grid_step.is_some_and(is_due))
     }
 
-    /// Adds a row of every system for the present state, whose kinematics are in the equations of motion.
+    /// Adds a row of every system for the current state, whose kinematics are in the equations of motion.
     pub(super) fn record(&mut self, t: f64) -> Result<(), SimulationError> {
         add_rows(&mut self.systems, &mut self.equations, t, &self.state)
     }
 
-    /// Adds the rows that lie within the last step, before the present cut.
+    /// Adds the rows whose times lie within the last step, before the current cut.
     pub(super) fn record_within_step(&mut self) -> Result<(), SimulationError> {
         while let Some((step, t)) = self.schedule.next_grid_step_passed() {
             if t >= self.records_before {
@@ -51,8 +51,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Applies the impacts of joints that run into their stops. Where every step is recorded, the instant has
-    /// one row before the impacts and one after them.
+    /// Applies the impacts of joints that reach their stops. If every step is recorded, there is one row before the
+    /// impacts and one after them, at the same time.
     pub(super) fn impacts(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         let mut pairs = self.equations.systems.iter().zip(&self.state.systems);
         if !pairs.any(|(system, state)| system.modes.is_active() && system.first_impact(state).is_some()) {
@@ -69,7 +69,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Adds the last row: the state at the present cut, with the torque that would be held from then on.
+    /// Adds the last row: the state at the current cut, with the torques that would be held in a further step.
     pub(super) fn record_end(&mut self) -> Result<(), SimulationError> {
         let t = self.schedule.now();
         let following = self.schedule.following().map(|(interval, _)| interval.end);
@@ -94,7 +94,7 @@ impl<S: Scalar> RunState<'_, S> {
     }
 }
 
-/// Completes the rows at the start of the step taken last.
+/// Adds the accelerations to the rows at the start of the last step.
 pub(super) fn complete_rows<S: Scalar>(
     systems: &mut [RunSystem<'_, S>],
     mover: &Mover<'_, S>,

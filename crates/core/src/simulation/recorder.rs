@@ -22,20 +22,21 @@ use std::borrow::Cow;
 pub(super) struct RecordOptions {
     /// Index of the tool's frame.
     pub(super) tool: Option<usize>,
-    /// Whether the tool has a reference.
+    /// True if the tool has a reference.
     pub(super) has_reference: bool,
     /// Names of the effects whose wrenches are recorded.
     pub(super) effects: Vec<String>,
-    /// Whether the run has an orbit.
+    /// True if the run has an orbit.
     pub(super) has_orbit: bool,
-    /// Whether a controller compensates Coulomb friction.
+    /// True if a controller compensates Coulomb friction.
     pub(super) compensates_friction: bool,
-    /// Whether gravity that the reference orbit does not follow is left out.
+    /// True if the run records the part of gravity that the reference orbit does not follow, which is omitted in
+    /// `Carried` mode.
     pub(super) records_residual: bool,
 }
 
 impl RecordOptions {
-    /// Returns how many numbers per row the run records of a column; 0 where it does not apply.
+    /// Returns the number of values per row that the run records in `column`; 0 if the column does not apply.
     fn width(&self, column: &Column, model: &Model) -> usize {
         let is_recorded = match column.condition {
             Condition::Always => true,
@@ -56,9 +57,9 @@ pub(super) struct Recorder {
     /// Number of the system in the run.
     number: usize,
     options: RecordOptions,
-    /// Transformation of the last row to W, where it was integrated about a local reference.
+    /// Transformation of the last row to W; `None` unless the row was integrated about a local reference orbit.
     shift: Option<Shift>,
-    /// How many numbers each column has per row.
+    /// Number of values per row of each column.
     widths: Vec<usize>,
 }
 
@@ -86,7 +87,7 @@ impl Recorder {
         Ok(Self { trace, number, options, shift: None, widths })
     }
 
-    /// Puts the rows of an earlier part of the run before those to come.
+    /// Adds the rows recorded before a checkpoint to the trace, which is still empty.
     pub(super) fn resume(&mut self, mut rows: Trace) -> Result<(), CheckpointError> {
         let count = rows.rows();
         if count == 0 && rows.columns().all(|(_, column)| column.is_empty()) {
@@ -156,7 +157,7 @@ impl Recorder {
         if let Some(shift) = &self.shift {
             shift.transform_row(trace, model);
         }
-        let gravity = trace.wrenches.len().wrapping_sub(1); // the effect in the last place
+        let gravity = trace.wrenches.len().wrapping_sub(1); // gravity is the last effect
         for (effect, column) in trace.wrenches.iter_mut().enumerate() {
             let shift = self.shift.as_ref().filter(|_| effect == gravity);
             for (wrench, node) in loads.wrenches_of(effect, t)?.of_system(self.number).zip(model.nodes()) {
@@ -218,19 +219,19 @@ impl Recorder {
         }
     }
 
-    /// Removes the last row, which is not complete.
+    /// Removes the last row, which is incomplete.
     pub(super) fn drop_last_row(&mut self) {
         self.truncate(self.trace.rows().saturating_sub(1));
     }
 
-    /// Removes the rows after the first `rows`.
+    /// Removes all rows except the first `rows`.
     pub(super) fn truncate(&mut self, rows: usize) {
         for ((_, column), width) in self.trace.columns_mut().zip(&self.widths) {
             column.truncate(rows * width);
         }
     }
 
-    /// Completes the last row.
+    /// Completes the last row with the acceleration `a`, `(nv,)`.
     pub(super) fn record_acceleration<S: Scalar>(&mut self, model: &Model, a: &[S]) {
         push(&mut self.trace.acceleration, a);
         if let Some(shift) = &self.shift {
@@ -239,7 +240,7 @@ impl Recorder {
     }
 }
 
-/// Returns the pose in W of a sample that is relative to the base.
+/// Returns the pose in W of a sample that is given relative to the base.
 #[inline(always)]
 fn relative_to_base<S: Scalar>(q: &[S], relative: &TaskSample<S>) -> TaskSample<S> {
     let rot_wb = base_rotation(q);

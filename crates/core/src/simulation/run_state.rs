@@ -1,4 +1,4 @@
-//! State of a run between two steps, from which it continues with the same bits.
+//! State of a run between two steps. A run restored to this state continues with bit-identical results.
 
 use super::accuracy::Accuracy;
 use super::checkpoint::{Checkpoint, Progress, SavedControllers, SystemProgress};
@@ -24,28 +24,28 @@ use std::sync::Arc;
 pub(super) struct RunState<'a, S> {
     /// Names of the systems and of their joints; all lists with one entry per system have this order.
     pub(super) layout: Layout,
-    /// State at the present cut.
+    /// State at the current cut, the instant at which the current step begins.
     pub(super) state: State<S>,
     pub(super) equations: EquationsOfMotion<'a, S, EnvironmentLoads>,
-    /// Controllers and recorders.
+    /// Controllers and recorder of each system.
     pub(super) systems: Vec<RunSystem<'a, S>>,
     pub(super) mover: Mover<'a, S>,
     pub(super) schedule: Schedule,
     pub(super) record_every: usize,
-    /// Whether every step is a row.
+    /// True if every step is recorded as a row of the trace.
     pub(super) has_every_step: bool,
     pub(super) accuracy: Accuracy<S>,
     /// Steps taken so far.
     pub(super) steps: usize,
-    /// Present time, s: the present cut, or a time within the step that begins there.
+    /// Current time, s: the current cut, or a time within the step that begins at the cut.
     pub(super) time: f64,
-    /// Whether the controllers were updated at the present cut.
+    /// True if the controllers have been updated at the current cut.
     pub(super) controllers_updated: bool,
-    /// Rows at this time or later are not recorded, s: infinity except in a step that is tried.
+    /// Only rows before this time are recorded, s; infinity except while [`RunState::peek`] takes trial steps.
     pub(super) records_before: f64,
-    /// State and stages for rows that are not at the start of a step.
+    /// Buffers for the state and the stages of rows that are not at the start of a step.
     pub(super) row_buffers: (State<S>, Stages<S>),
-    /// Distance of the base from the origin of W beyond which a system gets a local reference, m.
+    /// Distance of the base from the origin of W beyond which a system changes to a local reference orbit, m.
     pub(super) rereference_beyond: f64,
     pub(super) earth: Option<Arc<Earth>>,
 }
@@ -71,7 +71,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns to what [`RunState::progress`] returned; rows recorded since are removed.
+    /// Restores the state that [`RunState::progress`] returned and removes the rows recorded since then.
     pub(super) fn restore(&mut self, progress: Progress) {
         self.state = progress.state.map(|x| S::of(*x));
         self.schedule.set_cursor(progress.cursor);
@@ -86,7 +86,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns a checkpoint; the rows so far are not part of it.
+    /// Returns a checkpoint of the current state. The rows recorded so far are not part of it.
     pub(super) fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
         let systems = self.systems.iter().zip(&self.equations.systems);
         let systems = systems.map(|(run, system)| run.save_controllers(system)).collect::<Result<_, _>>()?;
@@ -95,7 +95,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(Checkpoint::new(self.time, self.schedule.clone(), self.progress(), local_reference, controllers))
     }
 
-    /// Continues from a checkpoint, with the rows recorded until then.
+    /// Restores the state of a checkpoint; `trace` holds the rows recorded before it.
     pub(super) fn resume(&mut self, from: Checkpoint, trace: Trace) -> Result<(), SimulationError> {
         from.check(&self.layout, &self.schedule, trace.rows())?;
         let (time, progress, local_reference, saved) = from.into_parts();
@@ -114,20 +114,20 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Checks that a checkpoint has the estimates of the error that this run makes.
+    /// Checks that the checkpoint contains error estimates if, and only if, this run computes them.
     fn check_estimates(&self, progress: &Progress) -> Result<(), CheckpointError> {
         for (number, saved) in progress.systems.iter().enumerate() {
             let (errors, checks) = self.accuracy.save(number);
             if errors.is_some() != saved.errors.is_some() || checks.is_some() != saved.checks.is_some() {
-                let (name, expected) = ("estimates of the error", usize::from(errors.is_some()));
+                let (name, expected) = ("sets of error estimates", usize::from(errors.is_some()));
                 return Err(CheckpointError::OtherSize { name, got: 1 - expected, expected });
             }
         }
         Ok(())
     }
 
-    /// Writes to the traces what is known only during the run: estimates of its error, changes of reference, and
-    /// outcomes of goals.
+    /// Adds to the traces the results that do not follow from the rows: error estimates, changes of the reference
+    /// orbit and outcomes of goals.
     pub(super) fn conclude(&mut self) {
         let control = self.mover.save().0;
         let local = self.equations.loads.local_reference();

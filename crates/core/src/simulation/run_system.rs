@@ -1,4 +1,4 @@
-//! What a run has for each system besides its state and its equations of motion.
+//! Controllers and recorder of each system of a run.
 
 use super::checkpoint::SystemControllers;
 use super::controllers::Controllers;
@@ -19,8 +19,8 @@ pub(super) struct RunSystem<'a, S> {
 }
 
 impl<S: Scalar> RunSystem<'_, S> {
-    /// Adds a row without its acceleration for a state whose kinematics are in `system`. `orbit` is the state of the
-    /// reference orbit.
+    /// Adds a row, except for its acceleration, for a state whose kinematics are in `system`. `orbit` is the state of
+    /// the reference orbit.
     pub(super) fn add_row(
         &mut self,
         t: f64,
@@ -35,7 +35,7 @@ impl<S: Scalar> RunSystem<'_, S> {
         recorder.record_wrenches(system.model, loads, t)
     }
 
-    /// Returns the controllers of `system` and its torques.
+    /// Returns the state of the controllers and the torques of `system`.
     pub(super) fn save_controllers(
         &self,
         system: &System<'_, S>,
@@ -48,7 +48,7 @@ impl<S: Scalar> RunSystem<'_, S> {
         })
     }
 
-    /// Restores what [`RunSystem::save_controllers`] returned.
+    /// Restores the state that [`RunSystem::save_controllers`] returned.
     pub(super) fn load_controllers(
         &mut self,
         saved: SystemControllers,
@@ -61,7 +61,7 @@ impl<S: Scalar> RunSystem<'_, S> {
         Ok(self.controllers.set.load(&controls)?)
     }
 
-    /// Returns the outcomes of the goals so far.
+    /// Returns the current outcomes of the goals.
     pub(super) fn goal_results(&self, model: &Model) -> Vec<GoalResult> {
         let set = &self.controllers.set;
         let with_goal = set.controls().iter().enumerate().filter(|(_, control)| control.goal.is_some());

@@ -1,28 +1,30 @@
-//! Where steps end: the regular grid, control ticks, and instants at which something jumps.
+//! Schedule of a run: its cuts, which are the instants at which steps begin and end. Cuts lie on a regular grid, at
+//! control ticks, and at events, where loads or torques may be discontinuous.
 
 use serde::{Deserialize, Serialize};
 
-/// Two instants closer than this fraction of a step are the same instant.
+/// Two instants that differ by less than this fraction of a step count as the same instant.
 pub(super) const SAME_INSTANT: f64 = 1e-9;
-/// Longest interval of an adaptive run without a planned end, in regular steps.
+/// Longest interval of an adaptive run without a planned end, as a multiple of the regular step.
 pub(super) const LONGEST_INTERVAL: f64 = 1e6;
 
-/// An interval that the integrator crosses in one step, or in several if it adapts them.
+/// Interval between two cuts. A fixed-step integrator crosses it in one step, an adaptive one possibly in several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Interval {
-    /// Its start, s.
+    /// Start of the interval, s.
     pub(super) start: f64,
-    /// Its end, s.
+    /// End of the interval, s.
     pub(super) end: f64,
-    /// Whether the controllers are updated at its start.
+    /// True if the controllers are updated at the start of the interval.
     pub(super) is_control_tick: bool,
-    /// Number of the grid step that begins at its start, if one does.
+    /// Number of the grid step that begins at the start of the interval; `None` if the start is not a grid point.
     pub(super) grid_step: Option<usize>,
-    /// Whether an event is at its start: wrenches or torques may jump there.
+    /// True if an event occurs at the start of the interval: wrenches or torques may be discontinuous there.
     pub(super) is_event: bool,
 }
 
-/// Cuts of a run: every multiple of the step and of the control period, every event, and the end.
+/// Schedule of a run. Its cuts are the multiples of the time step and of the control period, the events, and the end
+/// of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Schedule {
     time_step: f64,
@@ -30,14 +32,15 @@ pub(super) struct Schedule {
     duration: Option<f64>,
     control_period: f64,
     events: Vec<f64>,
-    /// Whether steps end at the grid.
+    /// True if steps end at the grid points.
     cuts_at_grid: bool,
-    /// Instants at which the controllers are updated besides the regular ticks.
+    /// Instants at which the controllers are updated in addition to the regular ticks, s.
     switches: Vec<f64>,
     at: Cursor,
 }
 
-/// Present place in a schedule.
+/// Current position in a schedule: the current cut, s, and the numbers of the next grid point, control tick and
+/// event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Cursor {
     now: f64,
@@ -66,12 +69,13 @@ impl Schedule {
         }
     }
 
-    /// Lets steps pass over the grid, which then only places the rows.
+    /// Returns the schedule without cuts at the grid points, which then only determine the times of rows.
     pub(super) fn without_grid_steps(self) -> Self {
         Self { cuts_at_grid: false, ..self }
     }
 
-    /// Adds instants at which controls start or stop: steps end there, and the controllers are updated.
+    /// Returns the schedule with additional instants, s, at which controls start or stop. They are cuts at which the
+    /// controllers are updated.
     pub(super) fn with_switches(mut self, switches: Vec<f64>) -> Self {
         self.events.extend(&switches);
         self.events.sort_by(f64::total_cmp);
@@ -79,7 +83,7 @@ impl Schedule {
         self
     }
 
-    /// Instant reached, s: the present cut.
+    /// Returns the current cut, the instant at which the current step begins, s.
     pub(super) fn now(&self) -> f64 {
         self.at.now
     }
@@ -100,17 +104,17 @@ impl Schedule {
         self.time_step
     }
 
-    /// Returns true if another schedule has the same cuts; the present places may differ.
+    /// Returns true if another schedule has the same cuts; the current positions may differ.
     pub(super) fn has_cuts_of(&self, other: &Self) -> bool {
         *self == Self { at: self.at, ..other.clone() }
     }
 
-    /// Number of grid steps of a run with a planned end; the last may be shorter.
+    /// Returns the number of grid steps of a run with a planned end; the last step may be shorter.
     pub(super) fn grid_steps(&self) -> Option<usize> {
         self.duration.map(|duration| (duration / self.time_step - SAME_INSTANT).ceil().max(1.0) as usize)
     }
 
-    /// Upper bound of the number of intervals of a run with a planned end.
+    /// Returns an upper bound of the number of intervals of a run with a planned end.
     pub(super) fn intervals(&self) -> Option<usize> {
         let ticks = |duration: f64| {
             if self.control_period == self.time_step { 0.0 } else { duration / self.control_period }
@@ -119,12 +123,13 @@ impl Schedule {
         Some(self.grid_steps()?.saturating_add(ticks).saturating_add(self.events.len()))
     }
 
-    /// A fraction of the step, and late in a run the rounding of the instants themselves.
+    /// Returns the tolerance for comparing instants, s: a fraction of the step or, late in a run, the rounding error
+    /// of the instants.
     fn tolerance(&self) -> f64 {
         (SAME_INSTANT * self.time_step).max(4.0 * f64::EPSILON * self.at.now)
     }
 
-    /// Returns true if `t` is the present cut.
+    /// Returns true if `t` is the current cut.
     pub(super) fn is_now(&self, t: f64) -> bool {
         (t - self.at.now).abs() <= self.tolerance()
     }
@@ -134,7 +139,7 @@ impl Schedule {
         t > other + self.tolerance()
     }
 
-    /// Returns true if a control tick is due at the present cut.
+    /// Returns true if a control tick is due at the current cut.
     pub(super) fn is_control_tick(&self) -> bool {
         self.is_regular_tick() || self.switches.iter().any(|&t| self.is_now(t))
     }
@@ -143,7 +148,7 @@ impl Schedule {
         self.is_now(self.at.next_tick as f64 * self.control_period)
     }
 
-    /// Returns true if the counters belong to the present cut, and `t` to the interval that begins there.
+    /// Returns true if the counters match the current cut and `t` lies in the interval that begins there.
     pub(super) fn is_consistent(&self, t: f64) -> bool {
         let Cursor { now, next_grid, next_tick, next_event } = self.at;
         let is_next = |count: usize, period: f64| {
@@ -162,13 +167,13 @@ impl Schedule {
             && t <= last + self.tolerance()
     }
 
-    /// Returns the interval that begins at the present cut, and the place after it; `None` at the planned end.
+    /// Returns the interval that begins at the current cut and the position at its end; `None` at the planned end.
     pub(super) fn following(&self) -> Option<(Interval, Cursor)> {
         let Cursor { now, mut next_grid, mut next_tick, mut next_event } = self.at;
         if self.duration.is_some_and(|duration| now >= duration - self.tolerance()) {
             return None;
         }
-        let grid = next_grid as f64 * self.time_step; // a product, so that errors do not add up
+        let grid = next_grid as f64 * self.time_step; // a product, so that rounding errors do not accumulate
         let grid_step = self.is_now(grid).then_some(next_grid);
         next_grid += usize::from(grid_step.is_some());
         let is_control_tick = self.is_control_tick();
@@ -194,12 +199,13 @@ impl Schedule {
         Some((interval, Cursor { now: end, next_grid, next_tick, next_event }))
     }
 
-    /// Makes `t`, in the interval entered last, the present cut.
+    /// Ends the current interval at `t`, which becomes the current cut.
     pub(super) fn cut_at(&mut self, t: f64) {
         self.at.now = t;
     }
 
-    /// Returns number and instant of the next grid step that begins before the present cut, once each.
+    /// Returns the number and the instant, s, of the next grid step that begins before the current cut, and advances
+    /// past it; `None` if there is none.
     pub(super) fn next_grid_step_passed(&mut self) -> Option<(usize, f64)> {
         let step = self.at.next_grid;
         let instant = step as f64 * self.time_step;

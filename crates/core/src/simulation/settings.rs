@@ -23,11 +23,12 @@ pub struct Simulation {
     pub v: Vec<f64>,
     /// Reference orbit, on which the origin of W moves.
     pub orbit: Option<Arc<dyn Orbit>>,
-    /// Gravity field for robot and reference; default: that of the orbit, else a point mass.
+    /// Gravity field of the run; by default that of the orbit or, if the orbit has none, that of a point mass.
     pub gravity: Option<Arc<Gravity>>,
-    /// Orientation of the Earth; effects that depend on it require it.
+    /// Orientation of the Earth; required by the effects that depend on it.
     pub earth: Option<Arc<Earth>>,
-    /// Whether the robot moves away from a reference that is not in free fall, or along with it.
+    /// Determines whether the robot drifts away from a reference orbit that is not in free fall (`True`) or is
+    /// carried along with it (`Carried`).
     pub gravity_mode: GravityMode,
     /// Effects in addition to gravity.
     pub effects: Vec<Arc<dyn Effect>>,
@@ -35,13 +36,13 @@ pub struct Simulation {
     pub controls: Vec<Control>,
     /// Index of the frame that is recorded and compared with the reference.
     pub tool: Option<usize>,
-    /// Reference of the tool that is recorded if no control tracks the tool.
+    /// Reference pose of the tool, recorded for comparison if no control tracks the tool.
     pub reference: Option<TaskReference>,
     /// Largest distance and angle between the tool and the start of its reference, m and rad.
     pub reference_start_tolerance: [f64; 2],
     /// Length of fixed steps and spacing of the grid, s.
     pub time_step: f64,
-    /// Time between two updates of the controllers, s; default: every step.
+    /// Time between two updates of the controllers, s; by default the controllers are updated at every step.
     pub control_period: Option<f64>,
     /// External engine in place of the native equations of motion. It has its own integrator, friction and stops, and
     /// no local reference.
@@ -53,10 +54,11 @@ pub struct Simulation {
     pub tolerance: f64,
     /// Coefficient of restitution of rigid stops at the position limits of joints; `None` for no stops.
     pub stops: Option<f64>,
-    /// Distance of the base from the reference orbit, m, beyond which integration continues about a local reference in
-    /// free fall; not in `Carried` mode, without gravity, or if a control depends on the position in W.
+    /// Distance of the base from the reference orbit, m, beyond which integration continues about a local reference
+    /// orbit in free fall. The reference orbit is kept in `Carried` mode, without gravity, with an external engine,
+    /// and if a control or `reference` depends on the position in W.
     pub rereference_beyond: f64,
-    /// Whether the wrench of every effect on every body is recorded.
+    /// If true, the wrench of every effect on every body is recorded.
     pub record_wrenches: bool,
     /// Number of steps per recorded row.
     pub record_every: usize,

@@ -1,4 +1,4 @@
-//! From a simulation to a run in progress.
+//! Starts a run: creates its state from the settings of a simulation.
 
 use super::accuracy::Accuracy;
 use super::checkpoint::Checkpoint;
@@ -27,14 +27,14 @@ use crate::gravity::Gravity;
 use crate::spatial::{Fused, InstructionSet, Scalar};
 use std::sync::Arc;
 
-/// Rows for which memory is reserved in a run without a planned end.
+/// Number of rows for which a run without a planned end reserves memory.
 const ROWS_OF_OPEN_RUN: usize = 1024;
 
 impl Simulation {
-    /// Runs from the initial state for `duration` seconds; every call returns the same bits.
+    /// Runs from the initial state for `duration` seconds; repeated calls give bit-identical results.
     ///
-    /// # Errors
-    /// Those of [`Simulation::start`] and [`Stepper::advance_to`]; the failure contains the rows up to it.
+    /// # Errors The errors of [`Simulation::start`] and [`Stepper::advance_to`]. The failure contains the rows
+    /// recorded before it.
     pub fn run(&mut self, duration: f64) -> Result<Trace, RunFailure> {
         let mut stepper = self.start(Some(duration)).map_err(RunFailure::at_start)?;
         let advanced = stepper.advance_to(duration);
@@ -45,20 +45,21 @@ impl Simulation {
         }
     }
 
-    /// Starts a run that is advanced step by step. `duration`, s, is its planned end, if it has one: the last cut, and
-    /// the time over which the adaptive integrator and the certificate measure errors.
+    /// Starts a run that the caller advances. `duration` is the planned end of the run, s, or `None` for an
+    /// open-ended run. The last step ends there, and the adaptive integrator and the error estimates are set up for
+    /// this duration.
     ///
-    /// # Errors
-    /// Those of [`Simulation::check`], a duration that is not positive, and an Earth that does not cover the run.
+    /// # Errors The errors of [`Simulation::check`], [`SimulationError::NotPositive`] for a duration that is not
+    /// positive, and [`SimulationError::Earth`] if the orientation data of the Earth do not cover the run.
     pub fn start(&mut self, duration: Option<f64>) -> Result<Stepper<'_>, SimulationError> {
         self.start_from(duration, None)
     }
 
-    /// Starts a run from a checkpoint of a run of the same simulation and the rows recorded until then; it continues
-    /// with the same bits. `duration` is that of the checkpoint, unless given.
+    /// Resumes a run of the same simulation from a checkpoint and the rows recorded before it. The results are
+    /// bit-identical to those of an uninterrupted run. `duration`, s, is by default that of the checkpoint.
     ///
-    /// # Errors
-    /// Those of [`Simulation::start`], and a checkpoint of another robot, schedule or instruction set.
+    /// # Errors The errors of [`Simulation::start`], and [`SimulationError::Checkpoint`] for a checkpoint of another
+    /// robot, schedule or instruction set.
     pub fn resume(
         &mut self,
         duration: Option<f64>,
@@ -150,12 +151,12 @@ impl Simulation {
         })
     }
 
-    /// Returns the names and places of the systems of the run: of the one robot, under the name of its model.
+    /// Returns the layout of the run, whose only system is the robot, named after its model.
     pub(super) fn layout(&self) -> Layout {
         Layout::new([(self.model.name(), &*self.model)])
     }
 
-    /// Returns the quantities that the run records besides its state.
+    /// Returns the options for the quantities that the run records in addition to its state.
     fn record_options(&self) -> RecordOptions {
         let compensates_friction = self.controls.iter().any(|control| control.law.compensates_friction());
         let effects = if self.record_wrenches { column_names(&self.all_effects()) } else { Vec::new() };
@@ -169,8 +170,8 @@ impl Simulation {
         }
     }
 
-    /// Returns the distance from the origin of W beyond which the robot gets a local reference, m; infinity if it must
-    /// stay with the reference orbit of the run.
+    /// Returns the distance from the origin of W beyond which the robot changes to a local reference orbit, m;
+    /// infinity if the robot must keep the reference orbit of the run.
     fn local_reference_distance(&self) -> f64 {
         let is_allowed = self.gravity_mode == GravityMode::True
             && self.gravity().is_some()
@@ -191,7 +192,8 @@ impl Simulation {
         frames.any(|(frame, _)| Some(frame) == self.tool)
     }
 
-    /// Returns the given gravity field, else that of the orbit, else a point mass; `None` without a planet.
+    /// Returns the gravity field of the simulation: the given one, by default that of the orbit or, if the orbit has
+    /// none, that of a point mass. `None` without a planet.
     fn gravity(&self) -> Option<Arc<Gravity>> {
         let orbit = self.orbit.as_ref()?;
         let mu = orbit.mu()?;
@@ -203,9 +205,10 @@ impl Simulation {
         self.integrator == Integrator::DormandPrince
     }
 
-    /// Returns the cuts of the run. An adaptive integrator steps over the grid and, without controls, over their ticks.
+    /// Returns the schedule of the run. Steps of an adaptive integrator do not end at grid points nor, without
+    /// controls, at control ticks.
     fn schedule(&self, duration: Option<f64>) -> Schedule {
-        // in `Carried` mode the acceleration of the reference, and its jumps, do not act on the robot
+        // in `Carried` mode the acceleration of the reference orbit, and with it its jumps, does not act on the robot
         let orbit = self.orbit.iter().filter(|_| self.gravity_mode == GravityMode::True);
         let jumps = orbit.flat_map(|orbit| orbit.event_times());
         let effects = self.all_effects();
@@ -217,7 +220,7 @@ impl Simulation {
         if self.is_adaptive() { schedule.without_grid_steps() } else { schedule }
     }
 
-    /// Returns the number of rows for which memory is reserved.
+    /// Returns the number of rows for which the recorder reserves memory.
     fn row_count(&self, schedule: &Schedule) -> usize {
         let steps = match self.record_every {
             1 => schedule.intervals(),
@@ -226,7 +229,7 @@ impl Simulation {
         steps.map_or(ROWS_OF_OPEN_RUN, |steps| steps.saturating_add(2))
     }
 
-    /// Returns everything that acts on the bodies.
+    /// Returns the loads of the environment on the bodies.
     pub(super) fn environment_loads(&self) -> EnvironmentLoads {
         let (orbit, earth) = (self.orbit.clone(), self.earth.clone());
         EnvironmentLoads::new(

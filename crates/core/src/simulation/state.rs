@@ -18,7 +18,7 @@ pub(crate) struct Rate<S> {
 }
 
 impl<S: Real> State<S> {
-    /// Returns the state of `systems` with these configurations and velocities, one pair each; see
+    /// Returns the state of `systems` with the given configurations and velocities, one pair per system; see
     /// [`SystemState::at`].
     pub(crate) fn at(
         systems: &mut [System<'_, S>],
@@ -35,12 +35,12 @@ impl<S: Real> State<S> {
         self.systems.iter().all(SystemState::is_finite)
     }
 
-    /// Converts every number.
+    /// Returns the state with `f` applied to every number.
     pub(crate) fn map<T>(&self, f: impl Fn(&S) -> T) -> State<T> {
         State { systems: self.systems.iter().map(|system| system.map(&f)).collect() }
     }
 
-    /// Copies without allocating.
+    /// Copies `from` without allocating.
     pub(crate) fn copy_from(&mut self, from: &Self) {
         for (to, from) in self.systems.iter_mut().zip(&from.systems) {
             to.copy_from(from);
@@ -57,7 +57,7 @@ impl<S: Real> State<S> {
 }
 
 impl<S: Real> Rate<S> {
-    /// Returns zero rates of a state of these lengths.
+    /// Returns zero rates with the dimensions of `state`.
     pub(crate) fn of(state: &State<S>) -> Self {
         Self { systems: state.systems.iter().map(|state| SystemRate::new(state.v.len())).collect() }
     }
@@ -70,14 +70,14 @@ impl<S: Real> Rate<S> {
         }
     }
 
-    /// Copies without allocating.
+    /// Copies `from` without allocating.
     pub(crate) fn copy_from(&mut self, from: &Self) {
         for (to, from) in self.systems.iter_mut().zip(&from.systems) {
             to.copy_from(from);
         }
     }
 
-    /// Sets everything to zero, for a sum.
+    /// Sets the rates that `accumulate` sums to zero.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         self.systems.iter_mut().for_each(SystemRate::clear);

@@ -1,4 +1,4 @@
-//! One step of a run: the order of execution at a cut, numbered as on the design page.
+//! One step of a run. The operations are numbered as in the order of execution in `docs/design.md`.
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
@@ -10,8 +10,8 @@ use crate::control::ControlError;
 use crate::spatial::{Scalar, Vec3};
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Takes a step in `interval`, which begins at the present cut: from there to `end`, to the first change of a
-    /// joint's mode, or as far as the tolerance allows.
+    /// Takes a step that starts at the current cut, which is the start of `interval`. The step ends at `end`, or
+    /// earlier at the first change of a joint's mode or where the tolerance requires it.
     pub(super) fn step_to(&mut self, end: f64, interval: &Interval) -> Result<(), SimulationError> {
         let start = interval.start;
         self.order_of_execution(end, interval).map_err(|error| self.name_divergence(error, start))?;
@@ -37,8 +37,8 @@ impl<S: Scalar> RunState<'_, S> {
         self.record_within_step()
     }
 
-    /// Kinematics, impacts, loads, controllers and modes at the start of a step in `interval` to `end`, or of the last
-    /// row, which has no step.
+    /// Computes kinematics, impacts, loads, controllers and modes at the start of a step in `interval` that is to end
+    /// at `end`; also used for the last row, which no step follows.
     pub(super) fn begin(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
         // 1 kinematics, and the base twist projected onto the momentum
@@ -56,8 +56,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Controllers that compensate the environment are updated after the loads, which they need; others before them.
-    /// They see the loads of the whole interval, wherever the step ends.
+    /// Computes the loads and updates the controllers that are due. Controllers that compensate the environment are
+    /// updated after the loads have been computed, all others before. The loads they compensate are those of the
+    /// whole interval, even if the step ends earlier.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
         let is_due = interval.is_control_tick && !self.controllers_updated;
@@ -77,7 +78,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Updates the controllers of the systems that compensate the environment, or of the others.
+    /// Updates the controllers of those systems whose value of `compensates_environment` equals the argument.
     fn update_controllers(&mut self, t: f64, compensates_environment: bool) -> Result<(), SimulationError> {
         let parts = self.systems.iter_mut().zip(&mut self.equations.systems).zip(&self.state.systems);
         for ((RunSystem { controllers, .. }, system), state) in parts {
@@ -91,7 +92,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Integrates over the interval and returns the time reached; the accuracy of the step is measured beside it.
+    /// Integrates from the start of `interval` towards `end`, measures the accuracy of the step, and returns the time
+    /// reached, s.
     fn integrate(&mut self, interval: &Interval, end: f64, is_row: bool) -> Result<f64, SimulationError> {
         let span = (interval.start, end);
         let Self { state, equations, mover, accuracy, systems, .. } = self;
@@ -116,7 +118,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(reached)
     }
 
-    /// Continues about a new local reference if a system has drifted far from its reference orbit.
+    /// Changes to a new local reference orbit if a system has drifted far from its current reference orbit.
     pub(super) fn rereference_if_far(&mut self, t: f64) -> Result<(), SimulationError> {
         let EquationsOfMotion { systems, loads } = &mut self.equations;
         for (number, (system, state)) in systems.iter_mut().zip(&mut self.state.systems).enumerate() {
@@ -135,9 +137,9 @@ impl<S: Scalar> RunState<'_, S> {
         if is_overflow || self.mover.first_diverged(&self.state).is_some() { self.diverged(t) } else { error }
     }
 
-    /// Returns the error that carries the last finite state.
+    /// Returns [`SimulationError::Diverged`] with the last finite state.
     fn diverged(&self, time: f64) -> SimulationError {
-        let number = self.mover.first_diverged(&self.state).unwrap_or(0); // else a controller overflowed
+        let number = self.mover.first_diverged(&self.state).unwrap_or(0); // if all are finite, a torque overflowed
         let [q, v] = self.mover.last_finite(number, &self.state);
         SimulationError::Diverged { time, q, v }
     }

@@ -1,4 +1,5 @@
-//! Differences between steps and halved steps: an estimate of the errors of the attitude and of each joint.
+//! Step doubling: estimates the errors of the attitude, the base's origin and the joints from the differences between
+//! steps and halved steps.
 
 use super::acceleration_jumps::AccelerationJumps;
 use super::equations::EquationsOfMotion;
@@ -14,20 +15,21 @@ use crate::model::{BASE_NQ, BASE_NV, QUATERNION};
 use crate::spatial::{Quat, Scalar, Vec3, log_so3};
 use serde::{Deserialize, Serialize};
 
-/// Most steps between two probes; three steps each, so about a hundredth of a run.
+/// Largest number of steps between two probes. A probe takes three steps, so probes add about one percent to the cost
+/// of a run.
 const EVERY: usize = 256;
-/// Least number of probes of a run that has as many steps.
+/// Smallest number of probes of a run, unless the run has fewer steps.
 const LEAST: usize = 5;
-/// Further steps that a run of many steps probes early, where transients are.
+/// Additional steps that are probed early in a long run, where transients occur.
 const EARLY: [usize; 3] = [4, 16, 64];
-/// Differences below this many ε of what they are taken from are rounding.
+/// Differences smaller than this many ε of the subtracted values count as rounding.
 const ROUNDING: f64 = 16.0;
 
-/// Repeats a step at intervals as two of half its size, and sums the differences of their ends.
+/// Repeats a step at intervals as two half steps, and sums the differences between the resulting states.
 ///
-/// A local error of order `p + 1` is smaller by `2^p` in two half steps, so the difference is the
-/// local error itself but for a sixteenth (Runge-Kutta). The sum bounds the error of a run that does
-/// not amplify it; a chaotic one does.
+/// A local error of order `p + 1` is smaller by a factor of `2^p` in two half steps, so for fourth-order Runge-Kutta
+/// the difference equals the local error within a sixteenth. The sum bounds the error of a run unless the motion
+/// amplifies errors, as chaotic motion does.
 pub(super) struct StepDoubling<S> {
     whole: State<S>,
     halved: State<S>,
@@ -41,27 +43,27 @@ pub(super) struct StepDoubling<S> {
     pub(super) errors: Vec<Errors>,
 }
 
-/// Errors of one system that the probes found.
+/// Errors of one system, measured by the probes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Errors {
-    /// Step of the last probe.
+    /// Number of the step of the last probe.
     pub(super) step: usize,
-    /// Difference of the attitude at the last probe, rad, and the sum over the steps before it.
+    /// Attitude difference at the last probe and its sum over the steps before the probe, rad.
     turn: [f64; 2],
-    /// Of the base's origin, then of every joint.
+    /// Differences of the base's origin, then of every joint.
     pub(super) drifts: Vec<Drift>,
     /// Jumps of the joints' accelerations, from every step.
     pub(super) jumps: AccelerationJumps,
 }
 
-/// Differences of a coordinate between steps and halved steps: of its position and of its rate.
+/// Differences of a coordinate between steps and halved steps; each pair is the position and the rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Drift {
     /// Differences at the last probe.
     last: [f64; 2],
-    /// Sums over the steps before it.
+    /// Sums of the differences over the steps before the last probe.
     sum: [f64; 2],
-    /// Largest rate that a probe saw.
+    /// Largest magnitude of the rate at any probe.
     fastest: f64,
 }
 
@@ -72,13 +74,13 @@ impl Drift {
 }
 
 impl Errors {
-    /// Sum of the differences of attitude over `steps` steps so far, rad.
+    /// Returns the sum of the attitude differences over the first `steps` steps, rad.
     pub(super) fn turn(&self, steps: usize) -> f64 {
         self.turn[1] + self.turn[0] * (steps - self.step) as f64
     }
 
-    /// The same of a coordinate's position and rate, and its largest rate; index 0 is the base's origin, then come
-    /// the joints.
+    /// Returns the summed differences of a coordinate over the first `steps` steps. Coordinate 0 is the base's
+    /// origin; the joints follow.
     pub(super) fn drift(&self, coordinate: usize, steps: usize) -> CoordinateDrift {
         let drift = &self.drifts[coordinate];
         let [position, rate] = drift.until((steps - self.step) as f64);
@@ -88,7 +90,7 @@ impl Errors {
         CoordinateDrift { position, rate, fastest, jumps: of_joint(&self.jumps.jumps) }
     }
 
-    /// Returns the errors of a system with this number of joints before the first probe.
+    /// Returns the errors of a system with `joints` joints before the first probe, all zero.
     fn new(joints: usize) -> Self {
         let drifts = vec![Drift::default(); joints + 1];
         Self { drifts, jumps: AccelerationJumps::new(joints), ..Self::default() }
@@ -105,7 +107,8 @@ impl Errors {
 }
 
 impl<S: Scalar> StepDoubling<S> {
-    /// `steps` is the planned number of steps, if the run has a planned end.
+    /// Returns the probes of a run before its first step. `steps` is the planned number of steps; `None` for an
+    /// open-ended run.
     pub(super) fn new(systems: &[System<'_, S>], state: &State<S>, steps: Option<usize>) -> Self {
         let every = steps.map_or(EVERY, |steps| (steps / LEAST).clamp(1, EVERY));
         Self {
@@ -123,8 +126,8 @@ impl<S: Scalar> StepDoubling<S> {
         step.is_multiple_of(self.every) || self.every == EVERY && EARLY.contains(&step)
     }
 
-    /// Probes the step number `step` over `interval`, if it is due. The state and the kinematics and loads in
-    /// `equations` stay as they are, to the bit.
+    /// Probes step number `step` over `interval`, s, if a probe is due. Restores the kinematics and loads in
+    /// `equations` bit by bit.
     pub(super) fn probe(
         &mut self,
         step: usize,
@@ -147,7 +150,8 @@ impl<S: Scalar> StepDoubling<S> {
         Ok(())
     }
 
-    /// Takes one step and two halved ones from `state`, and stores the magnitudes of the accelerations at its start.
+    /// Takes one whole step and two half steps from `state`, and stores the sums of the magnitudes of the
+    /// accelerations at the start.
     fn repeat(
         &mut self,
         interval: (f64, f64),
@@ -170,7 +174,7 @@ impl<S: Scalar> StepDoubling<S> {
         Ok(())
     }
 
-    /// Stores the differences of the two ends of a step of length `h` from `state`.
+    /// Stores the differences between the two results of a step of length `h`, s, from `state`.
     fn compare<W>(&mut self, state: &State<S>, h: f64, equations: &EquationsOfMotion<'_, S, W>) {
         for (number, (errors, system)) in self.errors.iter_mut().zip(&equations.systems).enumerate() {
             let [start, whole, halved] =
@@ -181,8 +185,8 @@ impl<S: Scalar> StepDoubling<S> {
 }
 
 impl Errors {
-    /// Stores the differences of the ends of one step of length `h` from `start` and of two halved ones; `changes` is
-    /// the sum of the magnitudes of all accelerations.
+    /// Stores the differences between the states after one step of length `h`, s, from `start` and after two half
+    /// steps. `changes` is the sum of the magnitudes of all accelerations.
     fn compare<S: Scalar>(
         &mut self,
         start: &SystemState<S>,

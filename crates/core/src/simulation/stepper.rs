@@ -1,4 +1,4 @@
-//! Advances a run step by step from outside.
+//! Stepper: a run that the caller advances.
 
 use super::checkpoint::Checkpoint;
 use super::error::{RunFailure, SimulationError};
@@ -8,12 +8,14 @@ use super::trace::Trace;
 use crate::spatial::Scalar;
 use std::ops::ControlFlow;
 
-/// Called at intervals with the time reached, s; `Break` stops the advance at a cut.
+/// Callback that receives the time reached, s, at intervals during an advance. Returning `Break` stops the advance at
+/// the end of the current step.
 pub type Monitor<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
-/// A run that is advanced from outside: [`Simulation::start`](super::Simulation::start).
+/// A run that the caller advances; see [`Simulation::start`](super::Simulation::start).
 ///
-/// Its steps are those of [`Simulation::run`](super::Simulation::run), whatever the times to which it is advanced.
+/// The steps are those of [`Simulation::run`](super::Simulation::run), regardless of the times to which the run is
+/// advanced.
 pub struct Stepper<'a> {
     run: Box<dyn Steps + 'a>,
     status: Status,
@@ -26,7 +28,7 @@ enum Status {
     Finished,
 }
 
-/// A run with any scalar.
+/// Interface of a run, independent of its scalar type.
 pub(super) trait Steps: Send {
     fn time(&self) -> f64;
     fn duration(&self) -> Option<f64>;
@@ -38,9 +40,9 @@ pub(super) trait Steps: Send {
     fn checkpoint(&self) -> Result<Checkpoint, SimulationError>;
     fn rows(&self) -> &Trace;
     fn trace(&mut self) -> Result<Trace, SimulationError>;
-    /// Adds a row at the present time.
-    fn record_present(&mut self) -> Result<(), SimulationError>;
-    /// Takes the rows so far, with what is known only during the run.
+    /// Adds a row at the current time.
+    fn record_current_time(&mut self) -> Result<(), SimulationError>;
+    /// Removes and returns the rows recorded so far, with the error estimates and the outcomes of goals.
     fn take_rows(&mut self) -> Trace;
 }
 
@@ -49,25 +51,24 @@ impl<'a> Stepper<'a> {
         Self { run: Box::new(run), status: Status::Running }
     }
 
-    /// Returns the present time, s.
+    /// Returns the current time, s.
     pub fn time(&self) -> f64 {
         self.run.time()
     }
 
-    /// Returns the planned end of the run, s.
+    /// Returns the planned end of the run, s; `None` for an open-ended run.
     pub fn duration(&self) -> Option<f64> {
         self.run.duration()
     }
 
-    /// Advances by `dt`, s.
+    /// Advances the run by `dt`, s.
     ///
-    /// # Errors
-    /// [`SimulationError::NotPositive`], and those of [`Stepper::advance_to`].
+    /// # Errors [`SimulationError::NotPositive`], and the errors of [`Stepper::advance_to`].
     pub fn advance(&mut self, dt: f64) -> Result<(), SimulationError> {
         self.advance_to(self.time_after(dt)?)
     }
 
-    /// Returns the time after a further `dt`, s.
+    /// Returns the current time plus `dt`, s.
     ///
     /// # Errors
     /// [`SimulationError::NotPositive`].
@@ -76,20 +77,19 @@ impl<'a> Stepper<'a> {
         Ok(self.time() + dt)
     }
 
-    /// Advances to the time `t`, s. If it lies within a step, the state there comes from dense output or from a shorter
-    /// step, and the step is taken later.
+    /// Advances the run to the time `t`, s. If `t` lies within a step, the state at `t` comes from dense output or
+    /// from a shorter trial step, and the step itself is taken by a later advance.
     ///
-    /// # Errors
-    /// [`SimulationError::NotPositive`], [`SimulationError::PastTime`], [`SimulationError::AfterEnd`] and an Earth that
-    /// does not cover `t`: the run stays as it was. Every other error, such as [`SimulationError::Diverged`], ends it.
+    /// # Errors [`SimulationError::NotPositive`], [`SimulationError::PastTime`], [`SimulationError::AfterEnd`], and
+    /// [`SimulationError::Earth`] if the orientation data of the Earth do not cover `t`, leave the run unchanged.
+    /// Every other error, such as [`SimulationError::Diverged`], ends the run.
     pub fn advance_to(&mut self, t: f64) -> Result<(), SimulationError> {
         self.advance_until(t, &mut |_| ControlFlow::Continue(())).map(|_| ())
     }
 
-    /// As [`Stepper::advance_to`]; stops earlier, at a cut, if the monitor breaks.
+    /// Advances the run like [`Stepper::advance_to`], but stops at the end of a step if the monitor returns `Break`.
     ///
-    /// # Errors
-    /// Those of [`Stepper::advance_to`].
+    /// # Errors The errors of [`Stepper::advance_to`].
     pub fn advance_until(
         &mut self,
         t: f64,
@@ -101,21 +101,21 @@ impl<'a> Stepper<'a> {
         self.ended_by(result)
     }
 
-    /// Writes configuration `(nq,)` and velocity `(nv,)` at the present time.
+    /// Writes the configuration `(nq,)` and the velocity `(nv,)` at the current time to `q` and `v`.
     ///
     /// # Errors
-    /// Those of a step, and [`SimulationError::Ended`] after one of them.
+    /// The errors of a step, which end the run; [`SimulationError::Ended`] if the run has ended.
     pub fn read_state(&mut self, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError> {
         self.check()?;
         let result = self.run.read_state(q, v);
         self.ended_by(result)
     }
 
-    /// Holds these torques, `(n,)`, N m (N), from now on; `None` leaves a joint as it is. The present time becomes a cut.
+    /// Sets the joint torques `tau`, `(n,)`, N m (N), which are held from the current time on; `None` leaves the
+    /// torque of a joint unchanged. The current step ends at the current time.
     ///
-    /// # Errors
-    /// [`SimulationError::WrongLength`], [`SimulationError::NotFinite`] and, for a joint of an active control,
-    /// [`SimulationError::CommandedJoint`]: the run stays as it was. Errors of a step end it.
+    /// # Errors [`SimulationError::WrongLength`], [`SimulationError::NotFinite`] and, for a joint of an active
+    /// control, [`SimulationError::CommandedJoint`] leave the run unchanged. The errors of a step end the run.
     pub fn command(&mut self, tau: &[Option<f64>]) -> Result<(), SimulationError> {
         self.check()?;
         self.run.check_command(tau)?;
@@ -123,38 +123,37 @@ impl<'a> Stepper<'a> {
         self.ended_by(result)
     }
 
-    /// Returns the state of the run, from which another one can resume together with the rows of
-    /// [`Stepper::rows`].
+    /// Returns a checkpoint, from which the run can be resumed together with the rows of [`Stepper::rows`].
     ///
-    /// # Errors
-    /// Those of a user's controller that cannot be saved; the run stays as it was.
+    /// # Errors The error of a user-defined controller whose state cannot be saved; it leaves the run unchanged.
     pub fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
         self.check()?;
         self.run.checkpoint()
     }
 
-    /// Returns the rows recorded so far; the present time is not among them.
+    /// Returns the rows recorded so far, which do not include a row at the current time.
     pub fn rows(&self) -> &Trace {
         self.run.rows()
     }
 
-    /// Returns the trace as if the run ended at the present time, at which it has its last row.
+    /// Returns the trace that the run would have if it ended now, with the last row at the current time.
     ///
     /// # Errors
-    /// Those of a step, and [`SimulationError::Ended`] after one of them.
+    /// The errors of a step, which end the run; [`SimulationError::Ended`] if the run has ended.
     pub fn trace(&mut self) -> Result<Trace, SimulationError> {
         self.check()?;
         let result = self.run.trace();
         self.ended_by(result)
     }
 
-    /// Ends the run at the present time and returns its trace; after an error, the rows up to it.
+    /// Ends the run at the current time and returns its trace; after an error, the trace has the rows recorded before
+    /// it.
     ///
-    /// # Errors
-    /// Those of the last row, with the rows before it, and [`SimulationError::Ended`] at the second call.
+    /// # Errors An error in computing the last row, with the rows before it; [`SimulationError::Ended`] if called a
+    /// second time.
     pub fn finish(&mut self) -> Result<Trace, RunFailure> {
         let last_row = match self.status {
-            Status::Running => self.run.record_present(),
+            Status::Running => self.run.record_current_time(),
             Status::Failed => Ok(()),
             Status::Finished => Err(SimulationError::Ended),
         };
@@ -171,7 +170,8 @@ impl<'a> Stepper<'a> {
         self.status != Status::Running
     }
 
-    /// Returns true if an error has ended the run; [`Stepper::finish`] then returns the rows up to it.
+    /// Returns true if an error has ended the run; [`Stepper::finish`] then returns the rows recorded before the
+    /// error.
     pub fn has_failed(&self) -> bool {
         self.status == Status::Failed
     }
@@ -242,7 +242,7 @@ impl<S: Scalar> Steps for RunState<'_, S> {
     }
 
     fn command(&mut self, tau: &[Option<f64>]) -> Result<(), SimulationError> {
-        self.cut_at_present()?;
+        self.cut_at_current_time()?;
         let (set, system) =
             (&mut only_mut(&mut self.systems).controllers.set, only_mut(&mut self.equations.systems));
         set.command(tau);
@@ -267,8 +267,8 @@ impl<S: Scalar> Steps for RunState<'_, S> {
         RunState::trace(self)
     }
 
-    fn record_present(&mut self) -> Result<(), SimulationError> {
-        RunState::record_present(self)
+    fn record_current_time(&mut self) -> Result<(), SimulationError> {
+        RunState::record_current_time(self)
     }
 
     fn take_rows(&mut self) -> Trace {

@@ -1,4 +1,4 @@
-//! Equations of motion of one system: from its state, loads and joint torques to rates of change.
+//! Equations of motion of one system: computes the time derivatives of its state from state, loads and joint torques.
 
 use super::body_states::LoadedSystem;
 use super::modes::JointModes;
@@ -10,28 +10,29 @@ use crate::dynamics::{
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Force, Motion, Real, Vec3};
 
-/// Equations of motion of one system under held joint torques and the external wrenches in `data`.
+/// Equations of motion of one system under constant joint torques and the external wrenches in `data`.
 pub(crate) struct System<'a, S> {
     pub(crate) model: &'a Model,
     pub(crate) data: Data<S>,
-    /// Commanded joint torques, `(n,)`, N m (N); without the compensation of Coulomb friction.
+    /// Commanded joint torques, `(n,)`, N m (N), without the compensation of Coulomb friction.
     pub(crate) command: Vec<S>,
     /// Generalized forces of a stage, `(nv,)`: command, damping and friction.
     pub(super) forces: Vec<S>,
     /// Buffer for accelerations or changes of velocity, `(nv,)`.
     pub(super) scratch: Vec<S>,
-    /// Velocity, W axes, of the frame in which `data` holds velocities: zero outside a step, that of the base's
-    /// origin at the start of the step within it.
+    /// Velocity of the frame relative to which `data` holds velocities, W axes, m/s: during a step that of the base's
+    /// origin at the start of the step, otherwise zero.
     frame_velocity: Vec3<S>,
     mass: S,
     /// Which joints stick or rest at a stop.
     pub(crate) modes: JointModes,
-    /// Whether any joint has damping or friction.
+    /// True if any joint has damping or friction.
     is_lossy: bool,
 }
 
 impl<'a, S: Real> System<'a, S> {
-    /// `restitution` of the stops at the joints' position limits; without it there are no stops.
+    /// Returns the equations of motion of `model`. `restitution` is that of the stops at the position limits of
+    /// joints; `None` means no stops.
     pub(crate) fn new(model: &'a Model, restitution: Option<f64>) -> Self {
         let (n, zero) = (model.joint_count(), S::of(0.0));
         Self {
@@ -50,10 +51,10 @@ impl<'a, S: Real> System<'a, S> {
     /// Computes the kinematics of `state` and projects its base twist onto its momentum:
     /// `v_b = Mbb⁻¹ (h − Mbm q̇)`.
     ///
-    /// The momentum `h` is integrated from the external wrenches alone, so it is conserved to rounding without
-    /// them; the integrated base twist has a truncation error. Called once per step.
+    /// The momentum `h` is integrated from the external wrenches alone, so without them it is conserved to rounding,
+    /// whereas the integrated base twist has a truncation error. Called once per step.
     pub(crate) fn project_momentum(&mut self, state: &mut SystemState<S>) {
-        // in the frame of the base's origin: a robot that passes W's origin at km/s keeps all its digits
+        // relative to the velocity of the base's origin, so that a speed of km/s in W costs no precision
         let frame_velocity = Motion::new(Vec3::from_slice(&state.v), Vec3::zero());
         Vec3::zero().write(&mut state.v);
         self.update_kinematics(state);
@@ -88,11 +89,11 @@ impl<'a, S: Real> System<'a, S> {
         self.frame_velocity = Vec3::zero();
     }
 
-    /// Changes to the frame of the step, which moves with the base's origin as it does now: `v` and the velocities in
-    /// `data` become relative to it.
+    /// Changes to the frame of the step, which moves at the current velocity of the base's origin: makes `v` and the
+    /// velocities in `data` relative to this frame.
     ///
-    /// The equations of motion are the same there, and everything integrated stays robot-sized: in base axes even a
-    /// straight flight is a velocity that turns, at the cost of digits and of order.
+    /// The equations of motion are the same in this frame, and the integrated velocities stay small. In base axes,
+    /// even a constant velocity in W rotates, which would cost precision and order of convergence.
     pub(crate) fn enter_step_frame(&mut self, q: &[S], v: &mut [S]) {
         let frame_velocity_b = Vec3::from_slice(v);
         let Self { data, frame_velocity, .. } = self;
@@ -108,17 +109,19 @@ impl<'a, S: Real> System<'a, S> {
         );
     }
 
-    /// Velocity of the frame of the step, W axes, m/s.
+    /// Returns the velocity of the frame of the step, W axes, m/s; zero outside a step.
     pub(crate) fn frame_velocity(&self) -> Vec3<S> {
         self.frame_velocity
     }
 
-    /// Returns what loads need of the system, with the configuration whose kinematics are in `data`.
+    /// Returns the parts of the system that loads read and write; `q` is the configuration whose kinematics are in
+    /// `data`.
     pub(super) fn loaded<'s>(&'s mut self, q: &'s [S]) -> LoadedSystem<'s, S> {
         LoadedSystem { q, frame_velocity: self.frame_velocity, data: &mut self.data }
     }
 
-    /// Computes the rates at a state whose kinematics and loads are in `data`; `is_loaded`: there are loads.
+    /// Computes the rates at a state whose kinematics and loads are in `data`; `is_loaded` is true if there are
+    /// external loads.
     pub(crate) fn rates(&mut self, state: &SystemState<S>, is_loaded: bool, rate: &mut SystemRate<S>) {
         let (q, v) = (&state.q[..], &state.v[..]);
         self.update_joint_forces(v);
@@ -147,8 +150,8 @@ impl<'a, S: Real> System<'a, S> {
         joints.map(|(command, torque)| torque.map_or(*command, |torque| *command + S::of(torque)))
     }
 
-    /// Computes the generalized forces at the joints, `τ − b q̇ − f s`, with `s` the direction of slip; `f s` is left
-    /// out where the motor compensates it.
+    /// Computes the generalized forces at the joints, `τ − b q̇ − f s`, with `s` the direction of slip; `f s` is
+    /// omitted for joints whose motor compensates it.
     pub(super) fn update_joint_forces(&mut self, v: &[S]) {
         let Self { model, modes, command, forces, is_lossy, .. } = self;
         forces[BASE_NV..].copy_from_slice(command);

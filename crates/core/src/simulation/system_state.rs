@@ -5,7 +5,7 @@ use crate::model::{BASE_NQ, BASE_NV, Model};
 use crate::spatial::{Quat, Real, Vec3, exp_so3};
 use serde::{Deserialize, Serialize};
 
-/// Everything of a system that is integrated: configuration, velocity, momentum and energies.
+/// Integrated quantities of one system: configuration, velocity, momentum and energies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SystemState<S> {
     /// Configuration, `(nq,)`.
@@ -14,9 +14,9 @@ pub(crate) struct SystemState<S> {
     pub(crate) v: Vec<S>,
     /// Momentum at the start of the run, W axes; changed only when the system is re-referenced.
     pub(crate) initial_momentum: Momentum<S>,
-    /// Integral of the external wrenches: forces, and moments about the centre of mass.
+    /// Time integral of the external forces and of their moments about the centre of mass, W axes, N s and N m s.
     pub(crate) impulse: Momentum<S>,
-    /// Work done on the robot so far, J.
+    /// Work done on the system so far, J.
     pub(crate) work: S,
     /// Energy dissipated by damping, friction and stops of the joints so far, J.
     pub(crate) dissipated: S,
@@ -31,11 +31,12 @@ pub(crate) struct SystemRate<S> {
     pub(crate) base_acceleration: Vec3<S>,
     /// Rate of the rotation vector since the start of the step, base axes, rad/s.
     pub(crate) rotation_rate: Vec3<S>,
-    /// Joint rates in `[BASE_NV..]`: the stage's velocity.
+    /// Velocity at the stage, `(nv,)`, of which only the joint rates, `[BASE_NV..]`, are integrated.
     pub(crate) v: Vec<S>,
     /// Acceleration, `(nv,)`.
     pub(crate) a: Vec<S>,
-    /// Rate of momentum: all external forces and their moments about the centre of mass.
+    /// Time derivative of the momentum: the sum of the external forces and that of their moments about the centre of
+    /// mass, W axes, N and N m.
     pub(crate) wrench: Momentum<S>,
     /// Power of joint torques and external wrenches, W.
     pub(crate) power: S,
@@ -74,7 +75,7 @@ impl<S: Real> SystemRate<S> {
         }
     }
 
-    /// Copies without allocating.
+    /// Copies `from` without allocating.
     pub(crate) fn copy_from(&mut self, from: &Self) {
         let Self { base_velocity, base_acceleration, rotation_rate, wrench, power, loss, .. } = *from;
         (self.base_velocity, self.base_acceleration, self.rotation_rate) =
@@ -84,7 +85,7 @@ impl<S: Real> SystemRate<S> {
         self.a.copy_from_slice(&from.a);
     }
 
-    /// Sets everything to zero, for a sum.
+    /// Sets the rates that `accumulate` sums to zero.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         (self.base_velocity, self.rotation_rate, self.wrench) =
@@ -96,8 +97,8 @@ impl<S: Real> SystemRate<S> {
 }
 
 impl<S: Real> SystemState<S> {
-    /// State at `q`, its quaternion normalised, and `v`, with the momentum that belongs to them. Writes the kinematics to
-    /// `data`.
+    /// Returns the state with configuration `q`, whose quaternion is normalised, velocity `v` and the corresponding
+    /// momentum. Writes the kinematics to `data`.
     pub(crate) fn at(model: &Model, data: &mut Data<S>, mut q: Vec<S>, v: Vec<S>) -> Self {
         Quat::from_xyzw(&q[3..]).normalized().write_xyzw(&mut q[3..]);
         kinematics(model, data, &q, &v);
@@ -117,13 +118,13 @@ impl<S: Real> SystemState<S> {
         self.q.iter().chain(&self.v).all(|x| (0..S::LANES).all(|lane| x.lane(lane).is_finite()))
     }
 
-    /// Momentum of the state: the initial one and the integral of the external wrenches.
+    /// Returns the momentum: the initial momentum plus the integral of the external wrenches.
     pub(crate) fn momentum(&self) -> Momentum<S> {
         let (a, b) = (&self.initial_momentum, &self.impulse);
         Momentum { linear: a.linear + b.linear, angular: a.angular + b.angular }
     }
 
-    /// Converts every number.
+    /// Returns the state with `f` applied to every number.
     pub(crate) fn map<T>(&self, f: impl Fn(&S) -> T) -> SystemState<T> {
         let momentum = |h: &Momentum<S>| Momentum { linear: h.linear.map(&f), angular: h.angular.map(&f) };
         SystemState {
@@ -136,7 +137,7 @@ impl<S: Real> SystemState<S> {
         }
     }
 
-    /// Copies without allocating.
+    /// Copies `from` without allocating.
     pub(crate) fn copy_from(&mut self, from: &Self) {
         self.q.copy_from_slice(&from.q);
         self.v.copy_from_slice(&from.v);
@@ -144,7 +145,8 @@ impl<S: Real> SystemState<S> {
         (self.work, self.dissipated) = (from.work, from.dissipated);
     }
 
-    /// Writes `from ⊕ h rate`: positions and velocities add, the attitude is multiplied by `exp(h θ̇)`.
+    /// Writes `from ⊕ h rate`: increments are added to positions and velocities, and the attitude is multiplied by
+    /// `exp(h θ̇)`.
     #[inline(always)]
     pub(crate) fn move_from(&mut self, from: &Self, rate: &SystemRate<S>, h: S) {
         rate.base_velocity.scale_add(h, Vec3::from_slice(&from.q)).write(&mut self.q);

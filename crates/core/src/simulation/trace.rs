@@ -10,41 +10,43 @@ use std::borrow::Cow;
 macro_rules! define_trace {
     ($($name:ident ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident, $parts:ident,
         $meaning:literal;)+) => {
-        /// Result of a run: one row per recorded step, row major; the first row is the initial state, the
-        /// last the end. Columns that do not apply to the run are empty.
+        /// Result of a run, with one row per recorded step: the first row is the initial state, the last one the
+        /// final state. Columns are in row-major order; those that do not apply to the run are empty.
         #[derive(Clone, Debug, Default)]
         pub struct Trace {
             $(
                 #[doc = concat!($meaning, " Shape ", stringify!(($($axis),+)), ", unit ", $unit, ".")]
                 pub $name: Vec<f64>,
             )+
-            /// Tracking errors of several controls, one column each; see [`TRACKING`].
+            /// Tracking errors of the controls, one column per control; see [`TRACKING`].
             pub tracking: Vec<NamedColumn>,
-            /// Wrenches of the effects on every body, one column each; see [`WRENCHES`].
+            /// Wrenches of the effects on every body, one column per effect; see [`WRENCHES`].
             pub wrenches: Vec<NamedColumn>,
-            /// Outcomes of the goals of several controls.
+            /// Outcomes of the goals of the controls.
             pub results: Vec<GoalResult>,
-            /// See [`REREFERENCED`](super::columns::REREFERENCED).
+            /// Times at which the run changed to another reference orbit, s; see
+            /// [`REREFERENCED`](super::columns::REREFERENCED).
             pub rereferenced: Vec<f64>,
-            /// Sum over all steps of the magnitude of the work of each, J. Sparse rows would miss work that
-            /// changes sign.
+            /// Sum of the magnitudes of the work done in each step, J. It is computed during the run, because sparse
+            /// rows would miss work that changes sign.
             pub work_done: f64,
-            /// Accumulated attitude difference between steps and halved steps, rad (of an embedded pair:
-            /// between its two solutions): an estimate of the error at the end, apart from amplification by
-            /// the motion.
+            /// Estimated attitude error at the end of the run, rad: the accumulated difference between steps and
+            /// halved steps or, for an embedded pair, between its two solutions. It does not include the
+            /// amplification of errors by the motion.
             pub attitude_step_doubling: Option<f64>,
-            /// Accumulated differences between steps and halved steps, of the base's origin, then of each
-            /// joint; empty for an integrator that adapts its steps and for an external engine.
+            /// Accumulated differences between steps and halved steps: one entry for the base's origin, then one per
+            /// joint. Empty for an adaptive integrator and for an external engine.
             pub step_doubling: Vec<CoordinateDrift>,
-            /// Checks that need every step, evaluated during the run where rows are sparse.
+            /// Results of the checks that need every step, evaluated during a fixed-step run in which not every step
+            /// is a row; `None` otherwise.
             pub pair_checks: Option<PairChecks>,
-            /// Whether every step of the run is a row.
+            /// True if every step of the run is a row.
             pub has_every_step: bool,
         }
 
         impl Trace {
-            /// Returns every column with its path, including empty ones, then those of every control and
-            /// every effect.
+            /// Returns all columns with their paths, including empty ones: first the fields, then the columns of the
+            /// controls and of the effects.
             pub fn columns(&self) -> impl Iterator<Item = (Cow<'static, str>, &Vec<f64>)> {
                 let tracking = self.tracking.iter().map(|column| (column.path(&TRACKING), &column.values));
                 let wrenches = self.wrenches.iter().map(|column| (column.path(&WRENCHES), &column.values));
@@ -54,7 +56,7 @@ macro_rules! define_trace {
                     .chain(wrenches)
             }
 
-            /// Returns the same as [`Trace::columns`], mutable.
+            /// Returns the columns of [`Trace::columns`] as mutable references.
             pub fn columns_mut(&mut self) -> impl Iterator<Item = (Cow<'static, str>, &mut Vec<f64>)> {
                 let tracking =
                     self.tracking.iter_mut().map(|column| (column.path(&TRACKING), &mut column.values));
@@ -71,33 +73,32 @@ macro_rules! define_trace {
 
 crate::trace_columns!(define_trace);
 
-/// Column of one control or of one effect.
+/// Column of one control or one effect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NamedColumn {
     /// Name of the control or of the effect.
     pub name: String,
-    /// Numbers per row.
+    /// Number of values per row.
     pub width: usize,
-    /// The rows, `(T, width)`.
+    /// Values of all rows, `(T, width)`.
     pub values: Vec<f64>,
 }
 
 impl NamedColumn {
-    /// Returns its path among all columns.
+    /// Returns the path of the column, which contains the name of the control or effect.
     fn path(&self, column: &Column) -> Cow<'static, str> {
         Cow::Owned(column.path_of(&self.name))
     }
 }
 
-/// Difference between steps and halved steps of a coordinate, summed over a run; m, or rad of a revolute
-/// joint.
+/// Difference of one coordinate between steps and halved steps, summed over a run; m, or rad for a revolute joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CoordinateDrift {
-    /// Of its position.
+    /// Difference of the position, m or rad.
     pub position: f64,
-    /// Of its rate (of the base's origin: of the centre of mass).
+    /// Difference of the rate, m/s or rad/s; for the base's origin, that of the velocity of the centre of mass.
     pub rate: f64,
-    /// Largest magnitude of its rate.
+    /// Largest magnitude of the rate, m/s or rad/s.
     pub fastest: f64,
     /// `Σ (h |Δq̈|/6)^(5/4)`, with the jump `Δq̈` of a joint's acceleration from the end of a step of length
     /// `h` to the start of the next.
@@ -107,11 +108,12 @@ pub struct CoordinateDrift {
 /// Outcome of a goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoalResult {
-    /// The control's name.
+    /// Name of the control.
     pub name: String,
-    /// The outcome.
+    /// Outcome of the goal.
     pub outcome: Outcome,
-    /// The component whose error was too large: a joint, `position` or `attitude`.
+    /// Component whose error was too large: the name of a joint, `position` or `attitude`; `None` if no error was too
+    /// large.
     pub component: Option<String>,
 }
 
@@ -121,8 +123,7 @@ impl Trace {
         self.time.len()
     }
 
-    /// Returns the names of the joints that are beyond their position limits by more than rounding in some
-    /// row.
+    /// Returns the names of the joints whose positions exceed their limits by more than rounding in any row.
     pub fn limits_exceeded<'m>(&self, model: &'m Model) -> Vec<&'m str> {
         const ROUNDING: f64 = 1e-9;
         let is_past = |j: usize, (lower, upper): (f64, f64)| {
@@ -136,7 +137,7 @@ impl Trace {
             .collect()
     }
 
-    /// Returns row `k` of a column with `width` numbers per row.
+    /// Returns row `k` of a column with `width` values per row.
     pub(super) fn row(column: &[f64], k: usize, width: usize) -> &[f64] {
         &column[k * width..(k + 1) * width]
     }

@@ -23,7 +23,7 @@ pub(in crate::simulation) struct BaseMotion {
     pub(in crate::simulation) rates: f64,
     /// Sum of the magnitudes of their derivatives.
     pub(in crate::simulation) changes: f64,
-    /// Whether a joint starts or stops at this instant, so that `change_before` is unknown.
+    /// True if a joint starts or stops at this instant, so that `change_before` is unknown.
     pub(in crate::simulation) is_cut: bool,
 }
 

@@ -11,7 +11,7 @@ pub(super) struct ModesOfStep<'a, 's, S> {
     pub(super) system: &'a System<'s, S>,
     pub(super) start: &'a SystemState<S>,
     pub(super) end: &'a SystemState<S>,
-    /// Whether the directions of slip may change within the step without ending it.
+    /// True if the directions of slip may change within the step without ending it.
     pub(super) ignores_slip: bool,
 }
 

@@ -23,7 +23,7 @@ pub(crate) struct StepMethod<S> {
     pub(crate) integration: Integration<S>,
     start: State<S>,
     settled: State<S>,
-    /// Whether directions of slip may change within a step without ending it.
+    /// True if directions of slip may change within a step without ending it.
     ignores_slip: bool,
     /// Idle steps in a row.
     pub(crate) idle_steps: usize,
