@@ -186,7 +186,7 @@ def test_links_are_changed_before_a_file_is_checked(files: Path) -> None:
             'links\\["hull"\\] has the unknown key mas; the keys are mass, com and inertia',
         ),
         ({"hull": 3}, "expected a dict with mass, com or inertia"),
-        ({"hull": {"com": [0, 0, 1]}}, "link 'hull' has no mass; give it one"),
+        ({"hull": {"com": [0, 0, 1]}}, "link 'hull' has no mass; give it a mass together"),
         ({"hull": {"mass": "3 kg"}}, 'the mass in links\\["hull"\\] is not a number'),
     ]:
         with pytest.raises(oo.OnOrbitError, match=message):
@@ -272,9 +272,9 @@ def test_warnings_are_issued_once(files: Path) -> None:
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate"}] * 2},
          "robot.arms[1]: both robots have a link or frame 'base'; give the attached one a prefix"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "prefix": "a_"}] * 2},
-         "robot.arms[1]: with the prefix 'a_' the attached robot has a link or frame 'a_base'"),
+         "robot.arms[1]: with the prefix 'a_', both robots have a link or frame 'a_base'"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "frame": "tool"}]},
-         "robot.arms[0]: the frame 'tool' moves with joints; attach a robot by a frame that is fixed to its "
+         "robot.arms[0]: the frame 'tool' is moved by joints; attach a robot by a frame that is fixed to its "
          "base: base"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "amr.urdf", "at": "plate"}]},
          "amr.urdf: there is no such file"),

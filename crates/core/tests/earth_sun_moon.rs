@@ -68,7 +68,7 @@ fn interpolated_sun_and_moon_are_continuous() {
 #[test]
 fn sun_and_moon_need_an_epoch() {
     let earth = Earth::about_z(0.0, 7.3e-5);
-    assert!(matches!(earth.sun(0.0), Err(EarthError::NeedsEpoch { what: "the Sun" })));
+    assert!(matches!(earth.sun(0.0), Err(EarthError::NeedsEpoch { what: "the position of the Sun" })));
     assert!(matches!(earth.utc(0.0), Err(EarthError::NeedsEpoch { .. })));
     let gravity = Gravity::point_mass(3.986e14).with(Luminary::Moon, &Arc::new(earth.clone()));
     assert!(matches!(gravity, Err(GravityError::Earth(EarthError::NeedsEpoch { .. }))));

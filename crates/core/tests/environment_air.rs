@@ -159,14 +159,16 @@ fn errors_of_tables_name_the_line() {
     assert!(one("9223372036854775807-03-01,4,150,150").contains("is not a date such as 2024-03-01"));
     // a truncated download, and CelesTrak's mark of a gap
     assert!(
-        one("2023-02-28,4,150,150\n2023-03-01,4,1").contains("line 3: has 3 fields, but the header has 4")
+        one("2023-02-28,4,150,150\n2023-03-01,4,1")
+            .contains("line 3: the row has 3 fields, but the header has 4")
     );
     assert!(one("2023-02-28,4,999.9,150").contains("F10.7_OBS is '999.9'"));
     assert!(one("2023-02-28,401,150,150").contains("Ap, not Kp"));
     assert!(one("2023-02-28,four,150,150").contains("AP_AVG is 'four'"));
     assert!(one("2023-02-28,4,-150,150").contains("F10.7_OBS is '-150'"));
     assert!(
-        one("2023-02-28,4,150,150\n2023-03-02,4,150,150").contains("2023-03-02 does not follow 2023-02-28")
+        one("2023-02-28,4,150,150\n2023-03-02,4,150,150")
+            .contains("2023-03-02 is not the day after 2023-02-28")
     );
 }
 

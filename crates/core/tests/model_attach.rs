@@ -108,7 +108,7 @@ fn a_frame_on_the_base_of_the_other_is_put_on_the_mount() {
     let refused = bus.attach("tip", &arm, &mount("l0", pose)).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "the frame 'l0' moves with joints; attach a robot by a frame that is fixed to its base: base, flange"
+        "the frame 'l0' is moved by joints; attach a robot by a frame that is fixed to its base: base, flange"
     );
     let refused = bus.attach("tip", &arm, &mount("flnge", pose)).unwrap_err();
     assert!(refused.to_string().ends_with("did you mean 'flange'?"), "{refused}");
@@ -126,8 +126,7 @@ fn duplicate_names_are_reported_with_a_suggested_prefix() {
     let refused = left.attach("tip", &arm, &with("left_")).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "with the prefix 'left_' the attached robot has a link or frame 'left_base', and so has the other; choose \
-         a different prefix"
+        "with the prefix 'left_', both robots have a link or frame 'left_base'; choose a different prefix"
     );
     let both = left.attach("tip", &arm, &with("right_")).unwrap();
     assert!(both.frame("left_tip").is_ok() && both.frame("right_tip").is_ok());

@@ -17,7 +17,7 @@ pub enum InputError {
     WrongBatch { name: &'static str, expected: usize, got: usize },
     #[error("{name} has {got}; expected a multiple of {width}, the length of a row", got = count(*got, "number"))]
     Ragged { name: &'static str, width: usize, got: usize },
-    #[error("the number of {what} is {got}; this kernel requires {expected}")]
+    #[error("the number of {what} is {got}; this function requires {expected}")]
     WrongCount { what: &'static str, expected: usize, got: usize },
     #[error("output {output} has a capacity of {got}; it must be {expected}", got = count(*got, "number"))]
     WrongOutput { output: usize, expected: usize, got: usize },

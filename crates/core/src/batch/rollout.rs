@@ -236,7 +236,10 @@ impl<'a, S: Real> Lanes<'a, S> {
             RolloutControl::ComputedTorque(law, reference) => {
                 let Some(work) = work else { return };
                 let t = step as f64 * settings.time_step;
-                let desired = reference.sample(t, 0.0).expect("no frame of an orbit: checked").lift();
+                let desired = reference
+                    .sample(t, 0.0)
+                    .expect("references in an orbital frame are rejected before the rollout")
+                    .lift();
                 let (data, command) = (&mut system.data, &mut system.command);
                 let is_relative = reference.is_relative_to_base();
                 let (q, v) = (&state.q, &state.v);

@@ -28,7 +28,7 @@ pub enum EarthError {
         what: &'static str,
     },
     /// An instant is outside the span in which a quantity is known.
-    #[error("{what}: {time} s after the epoch {epoch} is outside {from} to {to}", time = short(*time))]
+    #[error("{what} is available only from {from} to {to}, but is requested {time} s after the epoch {epoch}", time = short(*time))]
     OutsideSpan {
         /// Name of the quantity.
         what: &'static str,

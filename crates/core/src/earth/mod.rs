@@ -87,7 +87,7 @@ impl Earth {
     /// # Errors
     /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] if the kernel does not cover eight days from the epoch.
     pub fn with_kernel(self, kernel: SpiceKernel) -> Result<Self, EarthError> {
-        let what = "a kernel of Sun and Moon";
+        let what = "the SPICE kernel of Sun and Moon";
         let epoch = self.epoch().ok_or(EarthError::NeedsEpoch { what })?;
         let sun_moon = SunMoon::new(epoch, Some(Arc::new(kernel)));
         check_span(what, 0.0, epoch, sun_moon.span)?;
@@ -132,8 +132,8 @@ impl Earth {
             Rotation::AboutZ { .. } => None,
             Rotation::Iau2006(orientation) => orientation.parameters().span(),
         };
-        check_span("the years of the series", t, epoch, epoch.series_span())?;
-        table.map_or(Ok(()), |span| check_span("the Earth-orientation table", t, epoch, span))
+        check_span("the rotation of the Earth", t, epoch, epoch.series_span())?;
+        table.map_or(Ok(()), |span| check_span("the table of Earth-orientation parameters", t, epoch, span))
     }
 
     /// Checks that an orbit in `axes` with time zero at `epoch` fits this Earth.
@@ -178,7 +178,7 @@ impl Earth {
     /// # Errors
     /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] outside 1900 to 2100.
     pub fn sun(&self, t: f64) -> Result<Vector3<f64>, EarthError> {
-        let sun_moon = self.sun_moon_at("the Sun", t)?;
+        let sun_moon = self.sun_moon_at("the position of the Sun", t)?;
         Ok(sun_moon.sun(t, |t| self.rot_ig(t)))
     }
 
@@ -189,7 +189,7 @@ impl Earth {
     /// # Errors
     /// The errors of [`Earth::sun`].
     pub fn moon(&self, t: f64) -> Result<Vector3<f64>, EarthError> {
-        let sun_moon = self.sun_moon_at("the Moon", t)?;
+        let sun_moon = self.sun_moon_at("the position of the Moon", t)?;
         Ok(sun_moon.moon(t, |t| self.rot_ig(t)))
     }
 

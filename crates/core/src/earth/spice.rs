@@ -45,7 +45,7 @@ impl SpiceKernel {
             }
             let numbers = [segment.sign, segment.start, segment.length];
             if let Some(&value) = numbers.iter().chain(&segment.coefficients).find(|x| !x.is_finite()) {
-                return Err(EarthError::NotFinite { name: "a segment of the kernel", value });
+                return Err(EarthError::NotFinite { name: "a number in a segment of the kernel", value });
             }
             segment.check()?;
         }

@@ -23,7 +23,7 @@ pub enum EnvironmentError {
         effect: &'static str,
     },
     /// An effect that requires the rotation of the Earth is used without an Earth.
-    #[error("{effect} requires the rotation of the Earth; pass `earth` to the run (in YAML an epoch)")]
+    #[error("{effect} requires the rotation of the Earth; pass `earth` to the run (in YAML, give an epoch)")]
     NoEarth {
         /// Name of the effect.
         effect: &'static str,
@@ -54,7 +54,7 @@ pub enum EnvironmentError {
     },
     /// The interval of a wrench is empty.
     #[error(
-        "wrench is active from {start} s to {end} s; the start must be before the end",
+        "the wrench is active from {start} s to {end} s; the start must be before the end",
         start = unlike(*start, &[*end]), end = short(*end)
     )]
     EmptyInterval {
@@ -64,7 +64,7 @@ pub enum EnvironmentError {
         end: f64,
     },
     /// A wrench acts on a body that does not exist.
-    #[error("wrench acts on {body}, but the robot has bodies 0 to {last}", last = count.saturating_sub(1))]
+    #[error("the wrench acts on {body}, but the robot has bodies 0 to {last}", last = count.saturating_sub(1))]
     UnknownBody {
         /// Given body.
         body: BodyIndex,
@@ -72,7 +72,7 @@ pub enum EnvironmentError {
         count: usize,
     },
     /// A wrench acts on a frame that does not exist.
-    #[error("wrench acts on frame {frame}, but the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    #[error("the wrench acts on frame {frame}, but the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame {
         /// Given index.
         frame: usize,

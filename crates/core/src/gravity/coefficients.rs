@@ -142,8 +142,12 @@ pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
 /// Detects the Earth's `C20` without normalisation: -1.08e-3, √5 times the normalised value.
 fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
     let [c20, _] = series.get(2, 0);
-    (is_earth(mu) && (0.9e-3..1.3e-3).contains(&c20.abs()))
-        .then(|| format!("that of degree 2, order 0 is {}, but the Earth's is -4.84e-4", short(c20)))
+    (is_earth(mu) && (0.9e-3..1.3e-3).contains(&c20.abs())).then(|| {
+        format!(
+            "the coefficient of degree 2, order 0 is {}, but should be -4.84e-4 for the Earth",
+            short(c20)
+        )
+    })
 }
 
 /// Detects coefficients without normalisation by their decay: sectoral coefficients (order equal to degree) decay with
@@ -168,6 +172,7 @@ fn unnormalised_decay(series: &Series) -> Option<String> {
     let is_unnormalised =
         (sectoral / low).ln() < 0.5 * over_degrees && (sectoral / zonal).ln() < 0.5 * over_orders;
     let [low, sectoral] = [short(low), short(sectoral)];
-    is_unnormalised
-        .then(|| format!("those of order n fall from {low} at degree 4 to {sectoral} at degree {high}"))
+    is_unnormalised.then(|| {
+        format!("the sectoral coefficients fall from {low} at degree 4 to {sectoral} at degree {high}")
+    })
 }

@@ -13,8 +13,8 @@ pub enum GravityError {
     #[error("{name} is {value}; it must be positive and finite", value = short(*value))]
     NotPositive { name: &'static str, value: f64 },
     #[error(
-        "zonal harmonics in closed form exist for degrees 2 to 6, not {degree}; use a model with higher \
-         harmonics"
+        "zonal harmonics in closed form are available for degrees 2 to 6, not {degree}; use a gravity model with \
+         higher harmonics"
     )]
     ZonalDegree { degree: usize },
     #[error("order is {order}; it must be at most the degree, {degree}")]
@@ -99,7 +99,7 @@ pub enum GravityError {
          the run's environment, which then uses that of the orbit"
     )]
     OtherGravity { what: &'static str },
-    #[error("the {name} is given twice as a third body; remove one")]
+    #[error("the {name} is given twice as a third body; give it once")]
     BodyTwice { name: &'static str },
     #[error(transparent)]
     Earth(#[from] EarthError),

@@ -16,11 +16,11 @@ pub enum ModelError {
     )]
     IndefiniteInertia { link: String, moments: [f64; 3] },
     #[error(
-        "the inertia of link '{link}' is not symmetric: entries differ by {difference} kg m2; make them equal",
+        "the inertia of link '{link}' is not symmetric: mirrored entries differ by {difference} kg m2; make them equal",
         difference = short(*difference)
     )]
     AsymmetricInertia { link: String, difference: f64 },
-    #[error("{what} of '{name}' is not finite")]
+    #[error("{what} of '{name}' is infinite or NaN; give finite numbers")]
     NotFinite { what: &'static str, name: String },
     #[error("{what} of '{name}' is {value}; expected {expected} (check the units)", value = short(*value))]
     OutOfRange { what: &'static str, name: String, value: f64, expected: &'static str },
@@ -45,19 +45,16 @@ pub enum ModelError {
     DuplicateName { what: &'static str, name: String },
     #[error("both robots have a {what} '{name}'; give the attached one a prefix, such as 'left_'")]
     NameOfBoth { what: &'static str, name: String },
-    #[error(
-        "with the prefix '{prefix}' the attached robot has a {what} '{name}', and so has the other; choose \
-         a different prefix"
-    )]
+    #[error("with the prefix '{prefix}', both robots have a {what} '{name}'; choose a different prefix")]
     PrefixTaken { what: &'static str, name: String, prefix: String },
     #[error(
-        "the frame '{name}' moves with joints; attach a robot by a frame that is fixed to its base: {}",
+        "the frame '{name}' is moved by joints; attach a robot by a frame that is fixed to its base: {}",
         .candidates.join(", ")
     )]
     FrameMoves { name: String, candidates: Vec<String> },
-    #[error("link '{link}' has no mass; give it one with its centre of mass or inertia")]
+    #[error("link '{link}' has no mass; give it a mass together with its centre of mass or inertia")]
     ChangeWithoutMass { link: String },
-    #[error("a {what} has an empty name; give it one")]
+    #[error("a {what} has an empty name; give it a name")]
     EmptyName { what: &'static str },
     #[error("there is no {what} '{name}'{}", nearest(.candidates, .name))]
     UnknownName { what: &'static str, name: String, candidates: Vec<String> },
@@ -125,13 +122,13 @@ impl fmt::Display for ModelWarning {
             Self::IndefinitePart { link, moments } => write!(
                 f,
                 "the inertia of link '{link}' is not positive definite: principal moments {} kg m2 (it is \
-                 used unchanged, since the sum with the links it is fixed to is positive definite)",
+                 used unchanged, since the inertia of the whole body, with the links fixed to it, is positive definite)",
                 list(moments)
             ),
             Self::RoundedInertia { link, moments } => write!(
                 f,
                 "the inertia of link '{link}' has negative principal moments, within rounding: {} kg m2 \
-                 (they are read as zero)",
+                 (the negative ones are set to zero)",
                 list(moments)
             ),
             Self::InertiaWithoutMass { link } => write!(
@@ -181,7 +178,9 @@ fn base_advice(joints: &[String]) -> String {
 pub(super) fn nearest(candidates: &[String], name: &str) -> String {
     match closest(candidates, name) {
         Some(meant) => format!("; did you mean '{meant}'?"),
-        None if (1..=12).contains(&candidates.len()) => format!("; there are: {}", candidates.join(", ")),
+        None if (1..=12).contains(&candidates.len()) => {
+            format!("; the known names are: {}", candidates.join(", "))
+        }
         None => String::new(),
     }
 }

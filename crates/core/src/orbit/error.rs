@@ -142,8 +142,8 @@ pub enum OrbitError {
     },
     /// Position and velocity are parallel, or one of them is zero.
     #[error(
-        "rectilinear orbit: position ({radius} m) and velocity ({speed} m/s) enclose an \
-         angle of sine {sine}; it must exceed {limit}",
+        "the orbit is rectilinear: the sine of the angle between position ({radius} m) and velocity ({speed} m/s) \
+         is {sine}; it must exceed {limit}",
         radius = short(*radius), speed = short(*speed), sine = unlike(*sine, &[*limit]), limit = short(*limit)
     )]
     Rectilinear {
@@ -158,8 +158,8 @@ pub enum OrbitError {
     },
     /// The local orbital frame is undefined.
     #[error(
-        "the local orbital frame is undefined at {radius} m and {speed} m/s (sine {sine} \
-         between them): its velocity must be neither zero nor along the radius",
+        "the local orbital frame is undefined: the sine of the angle between position ({radius} m) and velocity \
+         ({speed} m/s) is {sine}; the velocity must be neither zero nor parallel to the position",
         radius = short(*radius), speed = short(*speed), sine = short(*sine)
     )]
     UndefinedFrame {

@@ -39,7 +39,7 @@ pub enum PathError {
     TurnTooFar { index: usize, angle: f64 },
     #[error(
         "the path covers {start} s to {end} s, but the run requires t = {time} s; give times that cover the \
-         run, or continue the path beyond them in free fall with ends=\"coast\"",
+         run, or continue the path on a straight line beyond them with ends=\"coast\"",
         time = unlike(*time, &[*start, *end]), start = short(*start), end = short(*end)
     )]
     TimeOutOfPath { time: f64, start: f64, end: f64 },

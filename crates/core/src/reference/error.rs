@@ -27,7 +27,7 @@ pub enum ReferenceError {
     )]
     Ramp { value: f64 },
     #[error(
-        "a limit of the reference is {value}; it must be positive; omit it for no limit",
+        "a limit of the reference is {value}; it must be positive, or be omitted for no limit",
         value = short(*value)
     )]
     LimitNotPositive { value: f64 },
@@ -39,7 +39,7 @@ pub enum ReferenceError {
         next = point + 1
     )]
     SamePoint { point: usize },
-    #[error("the axis of the reference has length {length}; expected a direction", length = short(*length))]
+    #[error("the axis of the reference has length {length}; give it a direction", length = short(*length))]
     NoAxis { length: f64 },
     #[error("the reference moves joint {joint}, but the robot has joints 0 to {last}", last = count.saturating_sub(1))]
     NoJoint { joint: usize, count: usize },

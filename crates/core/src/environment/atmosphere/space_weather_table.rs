@@ -57,7 +57,7 @@ impl SpaceWeatherTable {
                 return Err(wrong(
                     line,
                     format!(
-                        "has {has} fields, but the header has {needed}: the file is truncated; download it \
+                        "the row has {has} fields, but the header has {needed}: the file is truncated; download it \
                          again"
                     ),
                 ));
@@ -69,7 +69,10 @@ impl SpaceWeatherTable {
                 first = day;
             } else if day != first + days.len() as i64 {
                 let before = date_of(first + days.len() as i64 - 1);
-                return Err(wrong(line, format!("{} does not follow {before}", date_of(day))));
+                return Err(wrong(
+                    line,
+                    format!("{} is not the day after {before}; give one row for every day", date_of(day)),
+                ));
             }
             let mut numbers: Day = [None; COLUMNS.len()];
             for (k, &column) in columns.iter().enumerate() {

@@ -19,8 +19,8 @@ pub enum SurfaceError {
     },
     /// A surface reflects more light than it receives.
     #[error(
-        "specular {specular} and diffuse {diffuse} add up to more than 1; their sum is the reflected \
-         fraction and must be at most 1",
+        "specular {specular} and diffuse {diffuse} add up to more than 1; their sum, the reflected \
+         fraction, must be at most 1",
         specular = short(*specular), diffuse = short(*diffuse)
     )]
     Reflection {
@@ -42,7 +42,7 @@ pub enum SurfaceError {
     )]
     NoPlates,
     /// The normal of a plate is zero or not finite.
-    #[error("normal of plate {plate} is zero or not finite; expected a direction")]
+    #[error("the normal of plate {plate} is zero or not finite; give it a direction")]
     Normal {
         /// Index of the plate.
         plate: usize,
@@ -70,7 +70,7 @@ pub enum SurfaceError {
     },
     /// The visual geometry is a mesh.
     #[error(
-        "the visual geometry of link '{link}' is the mesh '{filename}', whose faces are not read; give the \
+        "the visual geometry of link '{link}' is the mesh '{filename}', from which no faces are derived; give the \
          link plates or a cannonball"
     )]
     Mesh {

@@ -76,7 +76,9 @@ pub enum UrdfProblem {
     NotUtf8 { at: usize },
     #[error("not XML: {reason}")]
     NotXml { reason: String },
-    #[error("entity '&{name};' is not supported; replace it by its text in the document type (<!DOCTYPE>)")]
+    #[error(
+        "entity '&{name};' is not supported; replace it by the text that the document type (<!DOCTYPE>) defines for it"
+    )]
     Entity { name: String },
     #[error("the outermost element is <{found}>; expected <robot>{}", other_format(.found))]
     NotRobot { found: String },
@@ -86,7 +88,7 @@ pub enum UrdfProblem {
     )]
     Xacro { found: String },
     #[error(
-        "<{element}> is not URDF and is ignored, which leaves the robot incomplete; write it without the prefix"
+        "<{element}> is not URDF and is ignored, which leaves the robot incomplete; remove the prefix of the element"
     )]
     ForeignElement { element: String },
     #[error("the robot has no links; add at least one")]
@@ -106,7 +108,7 @@ pub enum UrdfProblem {
     NotPositive { owner: String, element: String, attribute: &'static str, value: f64 },
     #[error("{owner}: <origin> has both rpy and quat_xyzw; keep one")]
     TwoOrientations { owner: String },
-    #[error("{owner}: the quaternion '{text}' has norm zero")]
+    #[error("{owner}: the quaternion '{text}' has norm zero; give a unit quaternion")]
     ZeroQuaternion { owner: String, text: String },
     #[error(
         "joint '{joint}' is of type '{kind}'; the types are revolute, continuous, prismatic, fixed, planar, \
@@ -122,10 +124,10 @@ pub enum UrdfProblem {
         .joints[0], .joints[1]
     )]
     TwoParents { link: String, joints: [String; 2] },
-    #[error("the links {} form a closed loop; one of them must be the root", list(.links))]
+    #[error("the links {} form a closed loop; all links must descend from one root, which is the child of no joint", list(.links))]
     Loop { links: Vec<String> },
     #[error(
-        "{} links are not the child of a joint: {}; connect all but one, the root, by joints",
+        "{} links are not the child of a joint: {}; connect all of them except the root by joints",
         .roots.len(), list(.roots)
     )]
     ManyRoots { roots: Vec<String> },
@@ -146,7 +148,7 @@ fn other_format(found: &str) -> &'static str {
 fn amount_of_numbers(expected: &usize) -> String {
     match expected {
         1 => "a finite number".to_owned(),
-        n => format!("{n} finite numbers between spaces"),
+        n => format!("{n} finite numbers separated by spaces"),
     }
 }
 

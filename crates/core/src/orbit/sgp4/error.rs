@@ -42,7 +42,7 @@ pub enum ElementSetError {
     },
     /// The two lines belong to different satellites.
     #[error(
-        "line 1 of the TLE is of satellite {first:?}, but line 2 is of {second:?}; give two lines of one \
+        "line 1 of the TLE belongs to satellite {first:?}, but line 2 to {second:?}; give two lines of one \
          satellite"
     )]
     TwoSatellites {
@@ -52,7 +52,7 @@ pub enum ElementSetError {
         second: String,
     },
     /// An entry of a message is missing.
-    #[error("the OMM has no {key}, which SGP4 requires")]
+    #[error("the OMM has no entry {key}, which SGP4 requires; add it")]
     Missing {
         /// Keyword of CCSDS 502.0-B.
         key: &'static str,
@@ -68,7 +68,7 @@ pub enum ElementSetError {
         expected: &'static str,
     },
     /// An element is outside its accepted range.
-    #[error("{name} is {got}; it must lie within {} to {}", short(*range.start()), short(*range.end()), got = unlike(*got, &[*range.start(), *range.end()]))]
+    #[error("{name} is {got}; it must be from {} to {}", short(*range.start()), short(*range.end()), got = unlike(*got, &[*range.start(), *range.end()]))]
     Range {
         /// Name of the element.
         name: &'static str,
@@ -100,7 +100,7 @@ pub enum Sgp4Error {
     },
     /// Error 2: the mean motion is not positive.
     #[error(
-        "SGP4 error 2 at t = {time} s: the mean motion is {mean_motion} rev/day; it must be positive",
+        "SGP4 error 2 at t = {time} s: the mean motion is {mean_motion} rev/day; it must be positive; give elements with an epoch nearer to this time",
         time = short(*time), mean_motion = short(*mean_motion)
     )]
     MeanMotion {
