@@ -62,7 +62,7 @@ def test_run_writes_the_folder_and_show_reads_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("right", "wrong", "says"),
     [
-        ("semi_major_axis", "semi_major_axix", ":12: orbit.semi_major_axix: unknown key, did you mean"),
+        ("semi_major_axis", "semi_major_axix", ":12: orbit.semi_major_axix: unknown key; did you mean"),
         ("tool: tool ", "tool: toll ", "tool"),
         ("robot: humanoid_torso", "robot: humanoid_torsoo", ":6: robot: no bundled robot"),
         ("robot: humanoid_torso", "robot: missing.urdf", ":6: robot: "),

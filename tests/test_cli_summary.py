@@ -110,7 +110,7 @@ def test_a_diverged_run_names_the_fastest_joint_and_keeps_the_state_in_the_error
     done = onorbit("run", "blow.yaml", cwd=tmp_path)
     assert done.returncode == 2
     warned, said = done.stderr.splitlines()[0], done.stderr.splitlines()[-1]
-    assert "controller.p corrects errors at 1.67e+04 1/s" in warned
+    assert "controller.p corrects errors at a rate of 1.67e+04 1/s" in warned
     assert f"diverged at t = {error.time:.6g} s, in step {round(error.time / 0.01) + 1}:" in said
     assert f"joint '{joint}', {np.abs(error.v).max():.3g} rad/s" in said.replace("-", "")
     assert "try a time_step shorter than 0.01 s, or lower gains" in said

@@ -79,11 +79,11 @@ def test_local_coordinates_of_empty_input(convert: Any) -> None:
 
 def test_arguments_that_must_be_lists_are_named() -> None:
     robot = oo.Model.rigid_body(1.0, np.eye(3).tolist())
-    with pytest.raises(DtypeError, match="orbits is Kepler; expected a list of orbits"):
+    with pytest.raises(DtypeError, match="orbits is of type Kepler; expected a list of orbits"):
         oo.propagate(ORBIT, [0.0])  # type: ignore[arg-type]
-    with pytest.raises(DtypeError, match="orbits holds str"):
+    with pytest.raises(DtypeError, match="orbits contains an entry of type str"):
         oo.propagate([ORBIT, "j2"], [0.0])  # type: ignore[list-item]
-    with pytest.raises(DtypeError, match="environment is str; expected a list of effects"):
+    with pytest.raises(DtypeError, match="environment is of type str; expected a list of effects"):
         oo.Simulation(robot, robot.neutral(), np.zeros(6), environment="j2", time_step=1.0)  # type: ignore[arg-type]
     with pytest.raises(DtypeError, match="environment is GravityGradient"):
         oo.Numerical([7e6, 0, 0], [0, 7.5e3, 0], environment=oo.GravityGradient())  # type: ignore[arg-type]

@@ -133,7 +133,7 @@ def test_extensions_of_simulators_are_omitted_with_a_warning(tmp_path: Path) -> 
 
 @needs_xacro
 def test_an_unused_argument_is_reported(robot: Path) -> None:
-    with pytest.warns(UserWarning, match="does not use the argument 'sides', did you mean 'side'"):
+    with pytest.warns(UserWarning, match="does not use the argument 'sides'; did you mean 'side'"):
         oo.Model.from_urdf(robot, package_paths=[packages(robot)], xacro_arguments={"sides": "right"})
 
 

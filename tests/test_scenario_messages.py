@@ -123,7 +123,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "gain by its other name": (
         JOINTS + "controller: {kind: joint_pid, kp: 5}\n",
         "3: controller.kp",
-        ("unknown key of kind 'joint_pid', did you mean 'p'?",),
+        ("unknown key of kind 'joint_pid'; did you mean 'p'?",),
     ),
     "gain of one of several by its other name": (
         JOINTS + "controllers: [{name: a, kind: joint_pid, p: 1, kd: 5}]\n",

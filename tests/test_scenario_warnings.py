@@ -124,8 +124,8 @@ def pushed(law: dict[str, Any], period: float, steps: int = 300) -> dict[str, An
 def test_the_longest_control_period_is_the_stability_limit_of_runs(law: dict[str, Any], key: str) -> None:
     """Rates decay at 0.95 times this period and grow at 1.05 times; only the latter is warned about."""
     (warning,) = (said for said in warnings_of(pushed(law, 1.0, steps=1)) if f".{key} " in said)
-    assert warning.startswith(f"controller.{key} corrects errors at ")
-    rate = float(warning.split(" corrects errors at ")[1].split()[0])
+    assert warning.startswith(f"controller.{key} corrects errors at a rate of ")
+    rate = float(warning.split(" corrects errors at a rate of ")[1].split()[0])
     longest = 2.0 / rate
     for period, grows in ((0.95 * longest, False), (1.05 * longest, True)):
         data = pushed(law, period)
@@ -153,8 +153,8 @@ def test_check_and_run_print_the_warning_in_one_line(tmp_path: Any) -> None:
     assert done.returncode == 0
     (line,) = [line for line in done.stderr.splitlines() if "kd" in line]
     assert line.endswith(
-        "controller.kd corrects errors at 2 1/s, but the control period is 5 s; their product is 10, "
-        "and above 2 errors grow. Use a control_period below 1 s, or a smaller gain"
+        "controller.kd corrects errors at a rate of 2 1/s, which times the control period of 5 s is 10; "
+        "errors grow if this product exceeds 2. Use a control_period below 1 s, or a smaller gain"
     )
 
 

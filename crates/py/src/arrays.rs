@@ -86,17 +86,17 @@ pub(crate) fn list_of<'py, T: PyClass>(
     let py = value.py();
     let refuse = |says: &str, got: &Bound<'py, PyAny>| {
         let got = type_name(got);
-        let message = format!("{name} {says} {got}; expected a list of {what}");
+        let message = format!("{name} {says} type {got}; expected a list of {what}");
         raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
     };
     if value.is_instance_of::<PyString>() {
-        return Err(refuse("is", value));
+        return Err(refuse("is of", value));
     }
-    let entries = value.try_iter().map_err(|_| refuse("is", value))?;
+    let entries = value.try_iter().map_err(|_| refuse("is of", value))?;
     entries
         .map(|entry| {
             let entry = entry?;
-            entry.cast_into::<T>().map_err(|error| refuse("holds", &error.into_inner()))
+            entry.cast_into::<T>().map_err(|error| refuse("contains an entry of", &error.into_inner()))
         })
         .collect()
 }

@@ -18,7 +18,7 @@ pub(crate) const LONG_BATCH: usize = 1 << 16;
 /// Steps of an integrated orbit between two checks for signals.
 const STEPS: usize = 16;
 
-/// Runs a batch without the GIL; it can be interrupted if it `is_long`.
+/// Runs a batch without the GIL; Ctrl-C interrupts it if `is_long` is true.
 pub(crate) fn batch<R: Send>(
     py: Python<'_>,
     count: Option<usize>,

@@ -281,7 +281,7 @@ pub(crate) fn period(py: Python<'_>, name: &str, seconds: f64) -> PyResult<Durat
     })
 }
 
-/// Sets the effects on the robot and the gravity field; expects orbit and Earth.
+/// Sets the effects on the robot and the gravity field; orbit and Earth must have been set before.
 fn set_environment(
     py: Python<'_>,
     simulation: &mut Simulation,
@@ -321,13 +321,13 @@ pub(crate) fn integrator_named(py: Python<'_>, name: &str) -> PyResult<Integrato
         "semi_implicit_euler" => Ok(Integrator::SemiImplicitEuler),
         "dormand_prince" => Ok(Integrator::DormandPrince),
         other => {
-            let way_out = if other.eq_ignore_ascii_case("euler") {
+            let hint = if other.eq_ignore_ascii_case("euler") {
                 "; did you mean 'semi_implicit_euler'?"
             } else {
                 ""
             };
             let message = format!(
-                "integrator is '{other}'; it must be 'rk4', 'semi_implicit_euler' or 'dormand_prince'{way_out}"
+                "integrator is '{other}'; it must be 'rk4', 'semi_implicit_euler' or 'dormand_prince'{hint}"
             );
             Err(raise(py, "InputError", &message, &fields!(py, "name": "integrator", "got": other)))
         }

@@ -354,7 +354,10 @@ impl PyStepper {
         for (name, value) in by_name {
             let name = name.str()?.to_string();
             let Some(joint) = place.joint(&name) else {
-                let message = format!("tau names joint '{name}'; the robot has {}", place.joints.join(", "));
+                let message = format!(
+                    "tau contains the unknown joint '{name}'; the joints are {}",
+                    place.joints.join(", ")
+                );
                 return Err(raise(py, "InputError", &message, &fields!(py, "name": "tau", "got": name)));
             };
             let input = Input::new(&value, &format!("tau['{name}']"))?;

@@ -17,9 +17,9 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return ``", did you mean 'tool'?"``; without a similar name, the list of up to 12 known names."""
+    """Return ``"; did you mean 'tool'?"``; without a similar name, the list of up to 12 known names."""
     known = list(known)
     suggestion = nearest(name, known)
     if suggestion is not None:
-        return f", did you mean {suggestion!r}?"
+        return f"; did you mean {suggestion!r}?"
     return f"; known names: {', '.join(known)}" if 0 < len(known) <= 12 else ""

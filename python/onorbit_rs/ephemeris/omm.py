@@ -32,7 +32,7 @@ def entries(text: str, satellite: str | None = None) -> dict[str, Any]:
     if len(messages) != 1:
         found = count(len(messages), "message", "messages")
         raise ElementSetError(
-            f"the text contains {found}; give one, or select one in a scenario with 'satellite'"
+            f"the text contains {found}; give a single message, or select one in a scenario with 'satellite'"
         )
     return messages[0]
 

@@ -43,7 +43,7 @@ class Part(BaseModel):
         """Return the end of the message about an unknown key; suggests keys that are not given yet."""
         near = cls.synonyms.get(key.lower()) or nearest(key, free)
         known = [name for name in cls.yaml_keys() if name != "kind"]
-        hint = f", did you mean {near!r}?" if near else ""
+        hint = f"; did you mean {near!r}?" if near else ""
         if hint and len(known) > FEW:
             return hint
         if not known:
@@ -73,7 +73,7 @@ def of_kind(union: Any) -> BeforeValidator:
             others = [kind for kind, names in keys.items() if key in names]
             if key not in own and others:  # implies that the kind is known
                 meant = parts[str(value["kind"])].synonyms.get(str(key))
-                hint = f", did you mean {meant!r}?" if meant else f"; it belongs to {', '.join(others)}"
+                hint = f"; did you mean {meant!r}?" if meant else f"; it belongs to {', '.join(others)}"
                 raise unknown_key(key, f" of kind '{value['kind']}'{hint}")
         return value
 

@@ -151,7 +151,7 @@ def _parse_unit(unit: str, text: str, allowed: tuple[Dimension, ...]) -> tuple[f
                 known for known, (_, own) in _UNITS.items() if any(own == one.powers for one in allowed)
             ]
             near = nearest(name, fitting or _UNITS)
-            hint = f", did you mean {near!r}" if near else ""
+            hint = f" (did you mean {near!r}?)" if near else ""
             raise _refused(text, f"has the unknown unit {name!r}{hint}", allowed)
         if abs(power) > 9:
             raise _refused(text, f"has a power above 9 in its unit {unit!r}", allowed)

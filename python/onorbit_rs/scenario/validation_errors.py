@@ -88,9 +88,9 @@ def _message(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> st
 
 
 def _near(given: object, context: Mapping[str, Any]) -> str:
-    """Return ``, did you mean ...?`` if one of the expected words is similar."""
+    """Return ``; did you mean ...?`` if one of the expected words is similar."""
     near = nearest(str(given), re.findall(r"'([^']*)'", context["expected"]))
-    return f", did you mean {near!r}?" if near else ""
+    return f"; did you mean {near!r}?" if near else ""
 
 
 def _yaml_location(loc: Location, data: Any, *, is_missing: bool) -> Location:

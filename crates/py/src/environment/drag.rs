@@ -18,8 +18,8 @@ use std::sync::Arc;
 /// atmosphere : Atmosphere
 ///     Model of the density.
 /// surfaces : Surface or dict of str to Surface, optional
-///     Surfaces of the links: by default ``Faces()`` of the robot's visual geometry with C_D 2.2; one surface
-///     for a robot with one body; or a dict by link, in which links that are not listed have no drag.
+///     Surfaces of the links: one surface for a robot with a single body, or a dict by link; links that are
+///     not listed have no drag. Default: ``Faces()``, the robot's visual geometry with C_D = 2.2.
 #[pyclass(name = "Drag", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyDrag;
 

@@ -75,7 +75,7 @@ pub(crate) enum Kind {
 pub(crate) fn effects<'py>(environment: Option<Any<'_, 'py>>) -> PyResult<Vec<Bound<'py, PyEffect>>> {
     environment.map_or_else(
         || Ok(Vec::new()),
-        |value| list_of(value, "environment", "effects, such as [oo.GravityGradient()],"),
+        |value| list_of(value, "environment", "effects, such as [oo.GravityGradient()]"),
     )
 }
 

@@ -19,7 +19,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// base : str
 ///     Name of the base link.
 /// mass : float, optional
-///     Mass of the base, kg; a link without mass is massless.
+///     Mass of the base, kg. Default: the link is massless.
 /// com : (3,) array, optional
 ///     Centre of mass in link axes, m.
 /// inertia : (3, 3) array, optional

@@ -10,7 +10,7 @@ type Matrix4 = [[f64; 4]; 4];
 /// Moving joint of a model; positions in rad, or m for a prismatic joint.
 #[pyclass(name = "Joint", frozen, get_all, module = "onorbit_rs")]
 pub(super) struct PyJoint {
-    /// Name.
+    /// Name of the joint.
     name: String,
     /// ``revolute`` or ``prismatic``; a continuous joint is revolute without ``lower`` and ``upper``.
     kind: &'static str,
@@ -43,7 +43,7 @@ pub(super) struct PyJoint {
 /// Body of a model: a link together with all links that are fixed to it.
 #[pyclass(name = "Body", frozen, get_all, module = "onorbit_rs")]
 pub(super) struct PyBody {
-    /// Name of its first link.
+    /// Name of the body, which is the name of its first link.
     name: String,
     /// Mass, kg.
     mass: f64,
@@ -56,7 +56,7 @@ pub(super) struct PyBody {
 /// Named frame that is fixed to a body.
 #[pyclass(name = "Frame", frozen, get_all, module = "onorbit_rs")]
 pub(super) struct PyFrame {
-    /// Name.
+    /// Name of the frame.
     name: String,
     /// Name of the body to which it is fixed.
     body: String,

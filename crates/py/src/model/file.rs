@@ -10,7 +10,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 
-/// Reads a URDF or xacro file; also returns the keyword arguments that read it again from another folder.
+/// Reads a URDF or xacro file. Also returns the keyword arguments with which the file can be read again from
+/// another working folder.
 pub(super) fn read_file<'py>(
     py: Python<'py>,
     path: &Path,

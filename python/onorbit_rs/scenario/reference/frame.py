@@ -52,7 +52,7 @@ def _frame(value: Any) -> Any:
         return value
     near = nearest(value, FRAMES) if isinstance(value, str) else None
     raise invalid(
-        f"{shortened(value)} is not a frame{f', did you mean {near!r}?' if near else ''}; give one of "
+        f"{shortened(value)} is not a frame{f' (did you mean {near!r}?)' if near else ''}; give one of "
         f"{', '.join(FRAMES)}, or {{target: {{position: ..., velocity: ..., spin: ...}}}}"
     )
 

@@ -51,7 +51,7 @@ def aligned_rows(a: Recorded, b: Recorded) -> tuple[Rows, Rows, Floats, list[str
     within = (time_a >= start) & (time_a <= end)
     if 2 * len(at_a) >= min(int(within.sum()), len(time_b)):
         return _take(rows_a, at_a), _take(rows_b, at_b), time_a[at_a], remarks
-    remarks.append(f"rows of {b.name} are interpolated at those of {a.name}: most instants differ")
+    remarks.append(f"rows of {b.name} are interpolated at the times of {a.name}, because most times differ")
     rows_a = _take(rows_a, np.flatnonzero(within))
     return rows_a, _interpolated(rows_b, rows_a["time"]), rows_a["time"], remarks
 
