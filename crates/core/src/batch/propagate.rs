@@ -8,9 +8,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Times of the states, s of simulation.
 #[derive(Clone, Copy, Debug)]
 pub enum Times<'a> {
-    /// The same for all orbits, (T,).
+    /// Times that are the same for all orbits, (T,).
     Common(&'a [f64]),
-    /// Different for each orbit, (N, T), row after row.
+    /// Times that differ between orbits, (N, T), row after row.
     Each(&'a [f64]),
 }
 

@@ -40,7 +40,7 @@ pub struct Rollout<'a> {
     pub record_every: Option<usize>,
     /// Number of threads; all cores if `None`.
     pub threads: Option<usize>,
-    /// Flag that another thread sets to stop early. The contents of the outputs are then undefined.
+    /// Flag that another thread sets to stop the rollout early. The contents of the outputs are then undefined.
     pub stop: &'a AtomicBool,
 }
 

@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct Threads<'a> {
     /// Number of threads, or `None` for all cores.
     pub count: Option<usize>,
-    /// Flag that another thread sets to stop early. The contents of the outputs are then undefined.
+    /// Flag that another thread sets to stop the batch early. The contents of the outputs are then undefined.
     pub stop: Option<&'a AtomicBool>,
 }
 

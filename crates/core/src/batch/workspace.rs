@@ -115,8 +115,8 @@ fn is_finite<S: Real>(numbers: &[S]) -> bool {
     is_finite_times(S::of(1.0), numbers)
 }
 
-/// Returns true if all numbers are finite. Clears `cannot_overflow` if one of them is not below 1e58, up to which no
-/// product in a kernel overflows.
+/// Returns true if all numbers are finite, and clears `cannot_overflow` if one of them is not below 1e58, up to which
+/// no product in a kernel overflows.
 #[inline(always)]
 fn all_finite<S: Real>(numbers: &[S], cannot_overflow: &mut bool) -> bool {
     let is_small = is_finite_times(S::of(1e250), numbers);

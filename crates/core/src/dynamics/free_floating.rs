@@ -15,7 +15,7 @@ use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, 
 
 /// Reduced equations `M* q̈ + c* = τ + Q*` and task acceleration `ẍ = Jg q̈ + d` of one frame.
 ///
-/// Exact for any momentum and any external wrench.
+/// The equations are exact for any momentum and any external wrench.
 ///
 /// Symbols: `M = [[Mbb, Mbm], [Mbmᵀ, Mmm]]`, bias `[c_b; c_m]`, frame Jacobian `[Jb Jm]` and generalized
 /// external forces `Q = [Qb; Qm]`; matrices row major, frame rows in W axes, linear first.

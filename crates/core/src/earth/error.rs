@@ -2,7 +2,7 @@
 
 use crate::number_text::{count, short, unlike};
 
-/// Errors of the `earth` module; each carries the offending values.
+/// Errors of the `earth` module; each holds the offending values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EarthError {

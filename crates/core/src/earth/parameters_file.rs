@@ -70,7 +70,7 @@ fn csv_row(line: &str) -> ParsedRow {
     }
 }
 
-/// Parses `finals2000A`: columns 8-15 MJD, 19-27 and 38-46 polar motion, 59-68 UT1 - UTC.
+/// Parses `finals2000A`, with MJD in columns 8-15, polar motion in 19-27 and 38-46, and UT1 - UTC in 59-68.
 fn finals_row(line: &str) -> ParsedRow {
     let part = |from: usize, to: usize| line.get(from - 1..to.min(line.len())).unwrap_or("");
     let (x, y, ut1) = (part(19, 27), part(38, 46), part(59, 68));
@@ -80,7 +80,7 @@ fn finals_row(line: &str) -> ParsedRow {
     row(part(8, 15), x, y, ut1)
 }
 
-/// Parses `eopc04`: year, month, day, in newer files hour, MJD, polar motion, UT1 - UTC, other columns.
+/// Parses `eopc04`, whose columns are year, month, day, hour (in newer files), MJD, polar motion, UT1 - UTC and others.
 fn c04_row(line: &str) -> ParsedRow {
     let parts: Vec<_> = line.split_whitespace().collect();
     let has_hour = parts.get(3).and_then(|hour| hour.parse::<f64>().ok()).is_some_and(|hour| hour < 24.0);

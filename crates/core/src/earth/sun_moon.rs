@@ -38,7 +38,7 @@ impl SunMoon {
         if let Some(kernel) = &kernel {
             let since = epoch.seconds_tt(0.0);
             let (from, to) = kernel.span();
-            // whole intervals, because an interval must not extend beyond the kernel
+            // the span is a whole number of intervals, because none may extend beyond the kernel
             let (from, to) = ((from - since).max(span.0), (to - since).min(span.1));
             span = (from, from + ((to - from) / INTERVAL).floor().max(0.0) * INTERVAL);
         }

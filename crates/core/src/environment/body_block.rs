@@ -75,7 +75,7 @@ impl BodyBlock {
 pub(super) struct LaneGroup<'a> {
     /// Body in the first lane.
     pub(super) first: BodyIndex,
-    /// Row of this body.
+    /// Row of the first body.
     pub(super) row: usize,
     /// Number of bodies in use.
     pub(super) count: usize,

@@ -7,7 +7,7 @@ use crate::earth::EarthError;
 use crate::gravity::GravityError;
 use crate::number_text::{short, unlike};
 
-/// Errors of the `environment` module; each carries the offending numbers.
+/// Errors of the `environment` module; each holds the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnvironmentError {
@@ -74,7 +74,7 @@ pub enum EnvironmentError {
     /// A wrench acts on a frame that does not exist.
     #[error("the wrench acts on frame {frame}, but the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame {
-        /// Given index.
+        /// Given index of the frame.
         frame: usize,
         /// Number of frames.
         count: usize,

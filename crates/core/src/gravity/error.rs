@@ -3,7 +3,7 @@
 use crate::earth::EarthError;
 use crate::number_text::{count, short, unlike};
 
-/// Errors of the `gravity` module; each carries the offending numbers.
+/// Errors of the `gravity` module; each holds the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs)] // the fields are what the messages say

@@ -66,13 +66,13 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
     Coefficients::checked(header.model, header.mu * central, header.radius, series.divided_by(central))
 }
 
-/// Contents of the header.
+/// Contents of the header of a `.gfc` file.
 struct Header {
     model: String,
     mu: f64,
     radius: f64,
     degree: usize,
-    /// Words in a row of coefficients with error columns.
+    /// Number of words in a row of coefficients, including error columns.
     words: usize,
     /// Number of lines before the coefficients.
     lines: usize,

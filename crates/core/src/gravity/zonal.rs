@@ -16,7 +16,8 @@ pub(super) const EARTH: [f64; 5] = [
     5.406_665_762_838_132e-7,
 ];
 
-/// Part of a planet's field that is symmetric about its z axis: `U = -(μ/r) Σ Jn (R/r)ⁿ Pn(u)`, `u = z/r`.
+/// Part of a planet's field that is symmetric about the z axis of the planet: `U = -(μ/r) Σ Jn (R/r)ⁿ Pn(u)`, `u =
+/// z/r`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Zonal {
     pub(super) mu: f64,

@@ -7,7 +7,7 @@ use crate::spatial::Vec3;
 /// reach 1e4.
 const LARGEST: f64 = 1e5;
 
-/// Returns true if a light body supports a heavy one, by the ratio of their inertias.
+/// Returns true if the ratio of inertias shows that a light body supports a heavy one.
 pub(super) fn is_heavy_on_light(nodes: &[Node]) -> bool {
     load_ratio(nodes) > LARGEST
 }

@@ -28,8 +28,8 @@ impl Model {
         find("body", name, self.body_names())
     }
 
-    /// Returns true if another robot has the same frames and joints, by name and order, so that objects
-    /// created for one are valid for the other.
+    /// Returns true if `other` has the same frames and joints, by name and order, so that objects created for one robot
+    /// are valid for the other.
     pub fn is_like(&self, other: &Self) -> bool {
         self.frame_names().eq(other.frame_names()) && self.joint_names().eq(other.joint_names())
     }

@@ -22,7 +22,7 @@ pub enum Axis {
 pub struct Node {
     /// Index of the parent body; always smaller than the index of the body.
     pub parent: usize,
-    /// True if the body has children other than the next body.
+    /// True if the body has children other than the body with the next index.
     pub is_fork: bool,
     /// Index after the last body of the subtree; bodies are numbered depth first.
     pub end: usize,
@@ -67,7 +67,7 @@ pub struct JointProperties {
     pub friction: f64,
     /// Largest torque (force) that friction holds at rest, N m (N); at least `friction`.
     pub static_friction: f64,
-    /// Position, velocity and effort limits; stored, enforced only on request.
+    /// Position, velocity and effort limits, which are enforced only on request.
     pub limits: Limits,
     /// Unit axis in the link's axes, for display.
     pub axis: Vec3<f64>,

@@ -151,7 +151,7 @@ pub enum OrbitError {
         radius: f64,
         /// Length of the velocity, m/s.
         speed: f64,
-        /// Sine of the angle between them.
+        /// Sine of the angle between position and velocity.
         sine: f64,
         /// Smallest accepted sine.
         limit: f64,
@@ -167,7 +167,7 @@ pub enum OrbitError {
         radius: f64,
         /// Length of the velocity, m/s.
         speed: f64,
-        /// Sine of the angle between them.
+        /// Sine of the angle between position and velocity.
         sine: f64,
     },
     /// The time is so far from the epoch that the phase is undetermined.

@@ -60,8 +60,8 @@ impl JointSpline {
         }
     }
 
-    /// Returns the motion from `start` (n,) of one joint after the other: each of `moves` moves one joint to
-    /// a position, rad or m, from rest to rest, while the others are held.
+    /// Returns a motion that starts at `start` (n,) and moves one joint after the other. Each of `moves` moves one
+    /// joint to a position, rad or m, from rest to rest, while the other joints are held.
     ///
     /// # Errors
     /// The errors of [`JointSpline::waypoints`]; [`ReferenceError::NoJoint`] for a joint that does not exist.

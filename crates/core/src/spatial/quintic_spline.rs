@@ -41,7 +41,7 @@ fn spline_curvatures(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
     let last = t.len() - 1;
     let gap = |i: usize| t[i + 1] - t[i];
     let chord = |i: usize| (x[i + 1] - x[i]) / gap(i);
-    // jumps of the third and fourth derivative at a knot for zero curvatures
+    // jumps of the third and fourth derivative at a knot if all curvatures are zero
     let jerk_jump = |i: usize| {
         let (k, l) = (1.0 / gap(i - 1), 1.0 / gap(i));
         (chord(i) * 60.0 - v[i + 1] * 24.0 - v[i] * 36.0) * (l * l)

@@ -3,7 +3,7 @@
 use crate::earth::EarthError;
 use crate::number_text::{short, unlike};
 
-/// Errors of atmosphere models; each carries the offending numbers.
+/// Errors of atmosphere models; each holds the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AtmosphereError {

@@ -1,4 +1,4 @@
-//! Exponential density around a robot, from two evaluations of the model.
+//! Exponential density around a robot, obtained from two evaluations of the model.
 
 use super::error::AtmosphereError;
 use super::model::Atmosphere;

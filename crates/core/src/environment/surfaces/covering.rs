@@ -11,9 +11,9 @@ use crate::model::Model;
 /// Assignment of a surface to a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Covering {
-    /// The body.
+    /// Body to which the surface belongs.
     pub body: BodyIndex,
-    /// Its surface.
+    /// Surface of the body.
     pub surface: Surface,
 }
 

@@ -3,7 +3,7 @@
 use crate::environment::body_index::BodyIndex;
 use crate::number_text::short;
 
-/// Errors of surfaces; each carries the offending value.
+/// Errors of surfaces; each holds the offending value.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceError {

@@ -6,7 +6,7 @@
 use crate::spatial::Real;
 use std::f64::consts::PI;
 
-/// Sine and cosine (hyperbolic ones for a hyperbola) of half the eccentric anomaly.
+/// Sine and cosine of half the eccentric anomaly; for a hyperbola, hyperbolic sine and cosine.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfAnomaly<S = f64> {
     pub(super) sin: S,

@@ -8,10 +8,10 @@ use std::sync::{PoisonError, RwLock};
 
 /// Tolerance of the position within a step, relative to the distance.
 const TOLERANCE: f64 = 1e-14;
-/// First and smallest step, in units of `√(r³/μ)`.
+/// Lengths of the first and the smallest step, in units of `√(r³/μ)`.
 const FIRST: f64 = 0.1;
 const SHORTEST: f64 = 1e-9;
-/// Ratio of the next step to the longest permitted step, and largest ratio of successive steps.
+/// Ratio of the next step to the longest permitted step, and smallest and largest ratio of successive steps.
 const SAFETY: f64 = 0.9;
 const CHANGE: (f64, f64) = (0.25, 2.0);
 /// Largest number of steps on either side of the initial state. It covers years of a low orbit and takes 150 MB.

@@ -18,7 +18,7 @@ const LYDDANE: f64 = 0.2;
 #[derive(Clone, Debug)]
 pub(super) struct DeepSpace {
     bodies: [ThirdBody; 2],
-    /// Rates of `e`, `i`, `M`, `ω`, `Ω` by both bodies, per minute.
+    /// Rates of `e`, `i`, `M`, `ω`, `Ω` caused by Sun and Moon, per minute.
     rates: Five,
     resonance: Option<Resonance>,
     /// Sidereal time at the epoch, rad.

@@ -59,7 +59,7 @@ impl Epoch {
         })
     }
 
-    /// Returns the Julian date as one number, good to 20 µs, as the reference code does: for orbits of two
+    /// Returns the Julian date as one number, accurate to 20 µs, as in the reference implementation; for orbits of two
     /// weeks the effect on the Moon's perturbation is 4 mm.
     pub(super) fn julian_day(&self) -> f64 {
         let (midnight, part) = self.julian_date();

@@ -52,7 +52,7 @@ pub(super) struct SecularElements<S = f64> {
     pub(super) longitude_gain: S,
 }
 
-/// Returns Brouwer's mean elements from the published ones.
+/// Converts the published mean elements to Brouwer's mean elements.
 ///
 /// `n″₀ = n₀/(1 + δ₀)`, `δ₀ = d/a₀²`, `a₀ = a₁ (1 - δ₁² - δ₁ (1/3 + 134 δ₁²/81))`, `δ₁ = d/a₁²`,
 /// `a₁ = (kₑ/n₀)^{2/3}`, `d = ¾ J₂ (3 cos²i - 1)/(1 - e²)^{3/2}`.

@@ -7,7 +7,7 @@ use crate::spatial::{Real, Vec3};
 
 /// Smallest `1 + cos i`, since a quotient of the report is singular at `i = π`.
 const MIN_ONE_PLUS_COS: f64 = 1.5e-12;
-/// Solution of Kepler's equation: tolerance, rad, number of iterations, and largest step, rad.
+/// Settings for the solution of Kepler's equation: tolerance, rad, largest number of iterations, and largest step, rad.
 const KEPLER: (f64, usize, f64) = (1e-12, 10, 0.95);
 
 /// Position and velocity of the satellite.
