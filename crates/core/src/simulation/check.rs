@@ -8,17 +8,16 @@ use super::state_range::{UNIT_NORM, attitude_norm, check_range};
 use crate::control::check_controls;
 use crate::model::{BASE_NQ, Model};
 
-/// Accepted time steps, s; outside of them, an error of the unit is likely.
+/// Range of accepted time steps, s; a value outside this range is probably given in a wrong unit.
 const STEPS: std::ops::RangeInclusive<f64> = 1e-12..=1e9;
 
 impl Simulation {
-    /// Checks everything that is known before a run.
+    /// Checks all settings that can be checked before a run.
     ///
-    /// # Errors
-    /// Wrong lengths, numbers that are not finite, a quaternion off unit norm, steps that are not
-    /// positive, an effect without its orbit, a controller without its reference, a frame that the
-    /// robot does not have, a reference that starts away from its tool, an Earth of another epoch or in
-    /// other axes than the orbit's.
+    /// # Errors Vectors of wrong length, values that are not finite, a quaternion that does not have unit norm, time
+    /// steps that are not positive, an effect that lacks the orbit it requires, a frame that the robot does not have,
+    /// a reference that starts too far from its frame, and an Earth orientation with another epoch or other axes than
+    /// the orbit.
     pub fn check(&self) -> Result<(), SimulationError> {
         check_state(&self.model, &self.q, &self.v)?;
         let periods = [("time_step", Some(self.time_step)), ("control_period", self.control_period)];
@@ -61,7 +60,7 @@ impl Simulation {
         }
     }
 
-    /// Checks the controls, the frames they track and the starts of their references.
+    /// Checks the controls, the frames that they track and the initial values of their references.
     fn check_controls(&self) -> Result<(), SimulationError> {
         let count = self.model.frames().len();
         let tracked = || self.controls.iter().filter_map(|control| Some((control, control.law.task()?.0)));
@@ -80,7 +79,8 @@ impl Simulation {
         check_control_references(&self.model, &self.q, &self.controls, self.reference_start_tolerance)
     }
 
-    /// Rejects two effects that would count twice on a body; gravity is always present around a planet.
+    /// Rejects two effects that would count twice on a body, including the gravity that an orbit around a planet
+    /// adds.
     fn check_duplicate_effects(&self) -> Result<(), SimulationError> {
         let effects = self.all_effects();
         for (k, effect) in effects.iter().enumerate() {
@@ -98,7 +98,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Checks the restitution, and that the joints start within their limits.
+    /// Checks the restitution, and checks that the joints start within their limits.
     fn check_stops(&self) -> Result<(), SimulationError> {
         let Some(restitution) = self.stops else { return Ok(()) };
         if !(0.0..=1.0).contains(&restitution) {

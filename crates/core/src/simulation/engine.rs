@@ -7,10 +7,12 @@ use super::system_state::SystemState;
 use crate::model::Model;
 use crate::spatial::{Scalar, Vec3};
 
-/// Physics engine that moves the robot; controllers, schedule, trace and certificate are those of every run.
+/// External physics engine that moves the robot. Controllers, schedule, trace and certificate are the same as in a
+/// run with the native equations of motion.
 pub trait Engine: Send {
-    /// Moves the robot over a step: writes the state at its end, the acceleration at its start, and impulse and work
-    /// in between. The output must depend on the input alone, so that a run can resume from a checkpoint.
+    /// Moves the robot over one step and writes to `output` the state at the end of the step, the acceleration at its
+    /// start, and the impulse and work during the step. The output must depend on the input alone, so that a run can
+    /// resume from a checkpoint.
     ///
     /// A step of zero length requests the acceleration only.
     ///
@@ -19,20 +21,20 @@ pub trait Engine: Send {
     fn step(&mut self, input: &StepInput<'_>, output: &mut StepOutput) -> Result<(), SimulationError>;
 }
 
-/// A step to take.
+/// Input of a step: its interval, the initial state and the torques.
 #[derive(Clone, Copy, Debug)]
 pub struct StepInput<'a> {
-    /// Its start and end, s.
+    /// Start and end of the step, s.
     pub interval: (f64, f64),
-    /// Configuration at its start, `(nq,)`.
+    /// Configuration at the start, `(nq,)`.
     pub q: &'a [f64],
-    /// Velocity, `(nv,)`.
+    /// Velocity at the start, `(nv,)`.
     pub v: &'a [f64],
-    /// Torques held at the joints, `(n,)`, N m (N).
+    /// Joint torques, constant during the step, `(n,)`, N m (N).
     pub tau: &'a [f64],
 }
 
-/// Largest deviation from one of the norm of the quaternion that an engine returns.
+/// Largest deviation from 1 of the norm of the quaternion that an engine returns.
 const UNIT: f64 = 1e-9;
 
 /// Result of a step.
@@ -44,11 +46,12 @@ pub struct StepOutput {
     pub v: Vec<f64>,
     /// Acceleration at the start, `(nv,)`.
     pub acceleration: Vec<f64>,
-    /// Integral of the external forces and of their moments about the centre of mass, W axes, N s and N m s.
+    /// Time integral over the step of the external forces and of their moments about the centre of mass, W axes, N s
+    /// and N m s.
     pub impulse: [f64; 6],
-    /// Work of motors and external wrenches less what the joints lost, J.
+    /// Work done by motors and external wrenches during the step minus the energy that the joints dissipate, J.
     pub work: f64,
-    /// Energy that the joints lost, J.
+    /// Energy that the joints dissipate during the step, J.
     pub dissipated: f64,
 }
 
@@ -64,7 +67,7 @@ impl StepOutput {
     }
 }
 
-/// External engine of a run, with its input and output.
+/// External engine of a run, with buffers for its input and output.
 pub(super) struct ExternalEngine<'a> {
     engine: &'a mut dyn Engine,
     q: Vec<f64>,
@@ -81,12 +84,12 @@ impl<'a> ExternalEngine<'a> {
         Self { engine, q: output.q.clone(), v: output.v.clone(), tau, output, has_output: false }
     }
 
-    /// Acceleration at the start of the last step, `(nv,)`; `None` if the engine failed.
+    /// Returns the acceleration at the start of the last step, `(nv,)`; `None` if the engine failed.
     pub(super) fn first_acceleration(&self) -> Option<&[f64]> {
         self.has_output.then_some(&self.output.acceleration[..])
     }
 
-    /// Work done on the robot in the last step, J.
+    /// Returns the work done on the robot in the last step, J.
     pub(super) fn work_of_step(&self) -> f64 {
         self.output.work
     }
@@ -111,7 +114,7 @@ impl<'a> ExternalEngine<'a> {
         Ok(())
     }
 
-    /// Checks the output of a step from `t`.
+    /// Checks the output of a step that started at `t`, s.
     fn check_output(&self, t: f64) -> Result<(), SimulationError> {
         if !self.output.is_finite() {
             let (q, v) = (self.q.clone(), self.v.clone());

@@ -11,7 +11,7 @@ use crate::orbit::OrbitError;
 use crate::reference::ReferenceError;
 use thiserror::Error;
 
-/// Error of a simulation that cannot start, or that ended early.
+/// Error that prevents the start of a run or ends it early.
 #[derive(Debug, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum SimulationError {
@@ -73,7 +73,7 @@ pub enum SimulationError {
     OtherTool { controller: String, tool: String },
     #[error("a reference is given without a tool; set tool to the frame that tracks it")]
     NeedsTool,
-    #[error("frame {frame} does not exist, but the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    #[error("frame {frame} does not exist; the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame { frame: usize, count: usize },
     #[error(
         "the reference starts {position} m and {angle} rad from the tool; it must start within \
@@ -151,10 +151,10 @@ impl From<ControlError> for SimulationError {
 #[derive(Error)]
 #[error("{error}")]
 pub struct RunFailure {
-    /// Its cause.
+    /// Error that ended the run.
     #[source]
     pub error: SimulationError,
-    /// Rows up to the last finite state.
+    /// Rows recorded before the error.
     pub trace: Box<Trace>,
 }
 
@@ -169,20 +169,20 @@ impl SimulationError {
 }
 
 impl RunFailure {
-    /// Failure of a run that did not start.
+    /// Returns the failure of a run that could not start and thus has no rows.
     pub(super) fn at_start(error: SimulationError) -> Self {
         Self { error, trace: Box::default() }
     }
 }
 
 impl std::fmt::Debug for RunFailure {
-    /// Writes the error and the number of rows, of which there can be millions.
+    /// Writes the error and the number of rows instead of the rows, of which there can be millions.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("RunFailure").field("error", &self.error).field("rows", &self.trace.rows()).finish()
     }
 }
 
-/// Rounds to a nanometre (nanoradian), which is far below any tolerance.
+/// Rounds to 1e-9 m (rad), which is far below any useful tolerance.
 fn without_noise(offset: f64) -> f64 {
     (offset * 1e9).round() / 1e9
 }

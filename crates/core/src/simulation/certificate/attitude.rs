@@ -5,14 +5,14 @@ use super::trace_row::BaseMotion;
 use crate::spatial::{Quat, Vec3, log_so3};
 use serde::{Deserialize, Serialize};
 
-/// Bound of the rounding of the attitude in one step of the integrator, a product of two unit quaternions and
-/// its normalisation, in units of ε.
+/// Bound of the rounding of the attitude in one step of the integrator, in units of ε: a product of two unit
+/// quaternions and its normalisation.
 const QUATERNION: f64 = 8.0;
-/// Rounding of a rotation, in units of ε: in the exponential of the step, in the rates at its ends, and in
-/// this check.
+/// Bound of the relative rounding of a rotation, in units of ε: in the exponential of the step, in the rates at both
+/// ends of the step, and in this check.
 const TURN: f64 = 16.0;
 
-/// Sum of small rotation vectors in W, and the square of the largest magnitude of the partial sums.
+/// Sum of small rotation vectors in W, rad, and the square of the largest magnitude of its partial sums, rad².
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Drift {
     sum: Vec3<f64>,
@@ -30,7 +30,7 @@ impl Drift {
     }
 }
 
-/// Running sums over the intervals.
+/// Sums over the intervals so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct Attitude {
     residual: Drift,
@@ -40,25 +40,26 @@ pub(in crate::simulation) struct Attitude {
     rounding: f64,
     /// Bound of the parabola's error over intervals that end with a jump, rad.
     unresolved: f64,
-    /// Difference of cubic and parabola over `h⁴`, rad/s⁴, in the last interval without a jump.
+    /// Difference between the cubic and the parabola divided by `h⁴`, rad/s⁴, in the last interval without a jump.
     snap: f64,
-    /// `Σ h⁴` of the intervals since then, s⁴.
+    /// Sum of `h⁴` over the intervals since the last interval without a jump, s⁴.
     since: f64,
 }
 
-/// Factor on the snap of the neighbouring intervals for an interval that ends with a jump.
+/// Safety factor on the snap of the neighbouring intervals for an interval that ends with a jump.
 const JUMP: f64 = 4.0;
 
 impl Attitude {
-    /// With `Ṙ = R [ω×]`, `log(R₀ᵀ R₁) = ∫ω dt + ½ ∫∫ ω(s) × ω(t) ds dt + …` (`s < t`, Magnus):
+    /// Adds an interval. With `Ṙ = R [ω×]`, `log(R₀ᵀ R₁) = ∫ω dt + ½ ∫∫ ω(s) × ω(t) ds dt + …` (`s < t`, Magnus)
+    /// becomes
     ///
     /// `h (ω₀ + ω₁)/2 + h²/12 (ω̇₀⁺ − ω̇₁⁻) + h²/12 ω₀ × ω₁ + O(h⁵)`.
     ///
-    /// The first two terms are the integral of the cubic through the data. The last one is the commutator;
-    /// composing `exp(∫ω dt)` misses it, whatever the order of the rates. Where a wrench jumps at the second
-    /// row, `ω̇₁⁻` may be unknown; it then follows from the parabola through the other data: `ω̇₁⁻ = 2 (ω₁ −
-    /// ω₀)/h − ω̇₀⁺`. The value with the smaller residual is used. With the third derivative `d` of the rates
-    /// the error of the parabola is `d h⁴/72`, estimated from the neighbouring intervals.
+    /// The first two terms are the integral of the cubic through the data. The third one is the commutator, which a
+    /// composition of `exp(∫ω dt)` lacks however accurate the rates are. Where a wrench jumps at the second row,
+    /// `ω̇₁⁻` may be unknown; it then follows from the parabola through the other data: `ω̇₁⁻ = 2 (ω₁ − ω₀)/h −
+    /// ω̇₀⁺`. The value with the smaller residual is used. The error of the parabola is `d h⁴/72` with the third
+    /// derivative `d` of the rates; it is estimated from the neighbouring intervals.
     #[inline]
     pub(super) fn add(&mut self, before: &BaseMotion, now: &BaseMotion) {
         let h = now.time - before.time;
@@ -76,7 +77,7 @@ impl Attitude {
         self.residual.add(rot_wb * if is_smooth { smooth } else { jumping });
         self.commutator.add(rot_wb * commutator);
         if is_smooth {
-            // difference between cubic and parabola: a bound of the error of the interpolation
+            // the difference between cubic and parabola bounds the interpolation error
             self.resolution.add(rot_wb * (smooth - jumping));
             let snap = (smooth - jumping).norm() / h.powi(4);
             self.unresolved += JUMP * self.since * self.snap.max(snap);
@@ -88,9 +89,9 @@ impl Attitude {
         self.rounding += f64::EPSILON * (TURN * moved + QUATERNION);
     }
 
-    /// Returns the residual over the sum of the commutator and the resolution of the rates.
+    /// Returns the residual divided by the sum of the commutator and the interpolation error of the rates.
     ///
-    /// Rounding and jumps within their bounds pass `gate` even where both vanish, and larger residuals do
+    /// If both vanish, residuals within the bounds of rounding and of jumps still pass `gate`, and larger ones do
     /// not.
     pub(super) fn consistency(&self, gate: f64) -> f64 {
         let bounds = self.rounding + self.unresolved + JUMP * self.since * self.snap;
@@ -99,10 +100,10 @@ impl Attitude {
     }
 }
 
-/// Returns the rotation vector from one attitude to the other, to a few ε of its length.
+/// Returns the rotation vector from attitude `q0` to `q1`, rad, accurate to a few ε of its length.
 ///
 /// `q₀* q₁ = q₀* (q₁ − q₀) + |q₀|²`: the vector part follows from the difference, which is exact for
-/// neighbouring attitudes, without cancellation. The lengths of the quaternions cancel in the angle.
+/// neighbouring attitudes, without cancellation. The norms of the quaternions cancel in the angle.
 fn turn_between(q0: Quat<f64>, q1: Quat<f64>) -> Vec3<f64> {
     let w = q0.v.dot(q1.v) + q0.w * q1.w;
     let q1 = if w < 0.0 { Quat { v: -q1.v, w: -q1.w } } else { q1 };

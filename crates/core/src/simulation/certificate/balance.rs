@@ -1,11 +1,11 @@
-//! Check of momentum against impulse and of energy against work.
+//! Checks the change of momentum against the impulse and the change of energy against the work.
 
 use super::error_measures::{relative, worst};
 use super::trace_row::TraceRow;
 use crate::dynamics::Momentum;
 use crate::spatial::Vec3;
 
-/// Running balances since the first row.
+/// Largest errors of the balances since the first row, and the scales to which they are relative.
 #[derive(Default)]
 pub(super) struct Balance {
     first: Option<First>,
@@ -22,7 +22,7 @@ pub(super) struct Balance {
     energy_about_com: f64,
     energy_w: f64,
     mass: f64,
-    /// Since the first row, s.
+    /// Time since the first row, s.
     duration: f64,
 }
 
@@ -32,7 +32,7 @@ struct First {
     time: f64,
     momentum: Momentum<f64>,
     impulse: Momentum<f64>,
-    /// Energy less work, J.
+    /// Energy minus work, J.
     energy: f64,
 }
 
@@ -70,24 +70,25 @@ impl Balance {
         self.size
     }
 
-    /// Returns the drift of linear momentum. Scale: momentum of the bodies relative to each other, or the
-    /// spin of a single body; at least the total momentum, which determines the rounding.
+    /// Returns the relative drift of linear momentum. The scale is the momentum of the bodies relative to the centre
+    /// of mass or, for a single body, that of its spin, and at least the total momentum, which determines the
+    /// rounding.
     pub(super) fn linear(&self) -> f64 {
         let relative_momentum = if self.relative_momentum > 0.0 { self.relative_momentum } else { self.spin };
         relative(self.linear, relative_momentum.max(self.momentum))
     }
 
-    /// Returns the drift of angular momentum. Scale: `Σ |Lₖ|`, and at least the rounding of the moments of
-    /// the linear momenta.
+    /// Returns the relative drift of angular momentum. The scale is `Σ |Lₖ|`, and at least the rounding of the
+    /// moments of the linear momenta.
     pub(super) fn angular(&self) -> f64 {
         const ROUNDING: f64 = 1e-4;
         let moments = ROUNDING * self.size * self.momentum.max(self.relative_momentum);
         relative(self.angular, self.angular_scale.max(moments))
     }
 
-    /// Returns the error of the energy balance. Scale: the magnitude of all work done, plus the energy
-    /// relative to the centre of mass, plus a fraction of the energy in W for its rounding; at least the
-    /// energy of a motion by a millionth of the robot's size in the whole run.
+    /// Returns the relative error of the energy balance. The scale is the sum of the magnitudes of the work done, the
+    /// energy relative to the centre of mass, and a fraction of the energy in W that covers its rounding. It is at
+    /// least the energy of a motion by a millionth of the robot's size during the run.
     pub(super) fn energy(&self, work_done: f64) -> f64 {
         const ROUNDING: f64 = 1e-3;
         const REST: f64 = 1e-6;

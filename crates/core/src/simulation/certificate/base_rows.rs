@@ -1,5 +1,5 @@
-//! Check of the base rows of inverse dynamics, with accelerations differenced from the trace, against the
-//! wrenches.
+//! Checks the base rows of inverse dynamics, with accelerations from differences of the recorded velocities, against
+//! the external wrenches.
 
 use super::error_measures::{relative, worst};
 use super::trace_row::TraceRow;
@@ -8,11 +8,12 @@ use crate::model::{BASE_NV, Model, difference, integrate};
 use crate::spatial::{Force, Motion, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Bound of the rounding of a momentum, in units of ε: of each row, in the sums over the bodies, in the
+/// Bound of the relative rounding of the momentum of a row, in units of ε: in the sums over the bodies, in the
 /// rotation to W and in the twist.
 const ROUNDING: f64 = 40.0;
 
-/// Largest residuals beyond rounding so far; each pair is linear, angular.
+/// Largest residuals beyond rounding so far, and their scales; the entries of each pair are linear (N) and angular (N
+/// m).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct Residuals {
     residual: [f64; 2],
@@ -20,7 +21,7 @@ pub(in crate::simulation) struct Residuals {
     truncation: f64,
 }
 
-/// Residuals of the base rows, with the workspace that computes them.
+/// Residuals of the base rows, and the workspace to compute them.
 pub(super) struct BaseRows {
     data: Data<f64>,
     step: Vec<f64>,
@@ -41,8 +42,8 @@ impl BaseRows {
         }
     }
 
-    /// Adds an interval: `f = ID(q_m, (v₀ + v₁)/2, (v₁ − v₀)/h)` at its middle; the base rows of `f`, in W
-    /// axes and about the centre of mass, equal the mean wrench `ΔJ/h` up to `O(h²)`.
+    /// Adds an interval: `f = ID(q_m, (v₀ + v₁)/2, (v₁ − v₀)/h)` at the middle of the interval; the base rows of `f`,
+    /// in W axes and about the centre of mass, equal the mean wrench `ΔJ/h` up to `O(h²)`.
     pub(super) fn add(&mut self, model: &Model, before: &TraceRow<'_>, now: &TraceRow<'_>) {
         let h = now.time - before.time;
         let [q, v, a] = &mut self.middle;
@@ -74,7 +75,7 @@ impl BaseRows {
         largest.truncation = largest.truncation.max(truncation(h, before.v, before.a));
     }
 
-    /// Returns `Σ |I a| + |v ×* I v|` over the bodies, linear and angular.
+    /// Returns `Σ |I a| + |v ×* I v|` over the bodies: the linear part, N, and the angular part, N m.
     fn inertial(&self) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for body in &self.data.bodies {
@@ -89,9 +90,9 @@ impl BaseRows {
         sum
     }
 
-    /// Returns bounds of the rounding in the two residuals of one step: momenta and impulses, each rounded
-    /// relative to its magnitude and differenced over `h`, and moments `v × m v`, which are zero but for
-    /// rounding.
+    /// Returns bounds of the rounding in the two residuals of one step. They contain the rounding of momenta and
+    /// impulses, relative to their magnitudes and divided by `h`, and that of the moments `v × m v`, which are zero
+    /// apart from rounding.
     fn rounding(&self, model: &Model, h: f64, rows: [&TraceRow<'_>; 2]) -> [f64; 2] {
         let (mut linear, mut angular, mut moments) = (0.0, 0.0, 0.0);
         for body in &self.data.bodies {
@@ -111,17 +112,18 @@ impl BaseRows {
 }
 
 impl Residuals {
-    /// Returns the residual beyond the rounding of its step, over the inertial forces.
+    /// Returns the largest residual beyond rounding, relative to the inertial forces.
     ///
-    /// Moments below a billionth of the forces at a lever of `size`, m, that of the robot, count as rounding.
+    /// Moments below a billionth of the moment of the forces about a lever arm of `size`, the radius of gyration of
+    /// the robot, m, count as rounding.
     pub(super) fn residual(&self, size: f64) -> f64 {
         let [linear, angular] = self.scale;
         let angular = angular.max(1e-9 * size * linear);
         worst(relative(self.residual[0], linear), relative(self.residual[1], angular))
     }
 
-    /// Returns the largest residual that passes: the truncation error of the differences at the largest rates
-    /// of the run, limited so that a missing wrench as large as the inertial forces does not pass.
+    /// Returns the largest residual that passes: the truncation error of the differences at the largest rates of the
+    /// run, limited so that the check fails if a wrench as large as the inertial forces is missing.
     pub(super) fn gate(&self) -> f64 {
         (1e-6 + self.truncation).min(0.1)
     }
@@ -133,8 +135,7 @@ fn about_base(body: &BodyData<f64>) -> (Motion<f64>, Force<f64>) {
     (body.velocity.referred_to(-body.pos_b), momentum)
 }
 
-/// Returns `h² (w² + ẇ)`, where `w`, the sum of the magnitudes of all rates, bounds the angular velocity of
-/// any body.
+/// Returns `h² (w² + ẇ)`. The sum `w` of the magnitudes of all rates bounds the angular velocity of every body.
 fn truncation(h: f64, v: &[f64], a: &[f64]) -> f64 {
     let fastest =
         |x: &[f64]| Vec3::from_slice(&x[3..]).norm() + x[BASE_NV..].iter().map(|x| x.abs()).sum::<f64>();

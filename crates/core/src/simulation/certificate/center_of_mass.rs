@@ -1,11 +1,11 @@
-//! Check of the centre of mass against the integral of the momentum.
+//! Checks the path of the centre of mass against the integral of the momentum.
 
 use super::error_measures::{relative, worst};
 use super::trace_row::MassMotion;
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Rounding of one step of the position, in units of ε.
+/// Bound of the relative rounding of the position in one step, in units of ε.
 const ROUNDING: f64 = 4.0;
 
 /// Difference between the recorded centre of mass and the integral of its momentum.
@@ -22,8 +22,8 @@ pub(in crate::simulation) struct CenterOfMass {
 impl CenterOfMass {
     /// Adds an interval: `Δc = h (P₀ + P₁)/2m + h²/12m (F₀⁺ − F₁⁻)`, of fourth order.
     ///
-    /// `F₁⁻` is the force at the second row or, where a wrench jumps there, follows from the impulse `J` and
-    /// the first force: `F₁⁻ = 2J/h − F₀`. The value with the smaller gap is used.
+    /// `F₁⁻` is the force at the second row. Where a wrench jumps there, it follows from the impulse `J` and the
+    /// first force: `F₁⁻ = 2J/h − F₀`. The value with the smaller gap is used.
     #[inline]
     pub(super) fn add(&mut self, before: &MassMotion, now: &MassMotion) {
         let h = now.time - before.time;
@@ -47,8 +47,8 @@ impl CenterOfMass {
         self.path
     }
 
-    /// Returns the largest gap over the path plus the `size` of the robot; rounding within its bound passes
-    /// `gate`.
+    /// Returns the largest gap divided by the sum of the path and the `size` of the robot, m. A gap within the bound
+    /// of rounding passes `gate`.
     pub(super) fn error(&self, size: f64, gate: f64) -> f64 {
         relative(self.largest.sqrt(), self.path + size + self.rounding / gate)
     }

@@ -10,8 +10,7 @@ use super::trace_row::{RowReader, TraceRow};
 use crate::model::Model;
 use crate::simulation::trace::Trace;
 
-/// Computes the certificate of a run of `model` from its trace alone; all errors are zero where the trace has
-/// no rows.
+/// Computes the certificate of a run of `model` from its trace alone; all errors are zero if the trace has no rows.
 pub fn certify(model: &Model, trace: &Trace) -> Certificate {
     let mut reader = RowReader::new(model, trace);
     let mut balance = Balance::default();
@@ -22,7 +21,7 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
     for k in 0..reader.rows() {
         let now = reader.row(k);
         balance.add(&now);
-        // an impact has two rows at one instant, without a step between them
+        // an impact has two rows at the same time, without a step between them
         if let Some(before) = last.as_ref().filter(|before: &&TraceRow<'_>| before.time < now.time) {
             center.add(&before.mass_motion(), &now.mass_motion());
             if trace.has_every_step {

@@ -1,73 +1,77 @@
 //! The certificate, its checks and their gates.
 
-/// Largest drift of momentum: rounding, summed over millions of steps.
+/// Largest relative drift of momentum that passes: the rounding of millions of steps.
 pub(super) const MOMENTUM: f64 = 1e-11;
-/// Largest error of the energy balance: that of a fourth-order integrator that resolves the motion.
+/// Largest relative error of the energy balance that passes: that of a fourth-order integrator that resolves the
+/// motion.
 pub(super) const ENERGY: f64 = 1e-6;
-/// Largest distance of the centre of mass from the path that its momentum gives.
+/// Largest relative distance that passes between the centre of mass and the integral of its momentum.
 pub(super) const CENTER: f64 = 1e-7;
-/// Largest attitude error, rad, estimated by step doubling.
+/// Largest attitude error estimated by step doubling that passes, rad.
 pub(super) const STEP_DOUBLING: f64 = 1e-6;
-/// Largest joint error estimated by step doubling: of an angle in rad, of a displacement over the robot's
-/// size, of a rate over the joint's largest rate.
+/// Largest joint error estimated by step doubling that passes. Errors of angles are in rad, those of displacements
+/// relative to the robot's size, and those of rates relative to the largest rate of the joint.
 ///
-/// The target is 1e-3 of a joint's travel. A motion that is not chaotic may amplify the errors of its steps
-/// tenfold by the end, and the probes may have missed half of them.
+/// The target is an error of 1e-3 of a joint's travel. Even a motion that is not chaotic may amplify the errors of
+/// its steps tenfold by the end, and the probes may miss half of them.
 pub(super) const JOINT_STEP_DOUBLING: f64 = 5e-5;
-/// Largest error of the base's origin estimated by step doubling, over the path of the centre of mass plus
-/// the robot's size.
+/// Largest position error of the base's origin estimated by step doubling that passes, relative to the path of the
+/// centre of mass plus the robot's size.
 pub(super) const ORIGIN_STEP_DOUBLING: f64 = 1e-4;
 /// Largest fraction of the commutator that may be missing from the attitude; without integration on the group
 /// it is 1.
 pub(super) const ATTITUDE: f64 = 0.1;
 
-/// Errors of a trace with respect to the laws of mechanics, each relative to a scale that does not vanish.
+/// Errors of a trace with respect to the laws of mechanics, each relative to a nonzero scale unless a unit is given.
 ///
-/// An integrator that integrates momentum keeps the two momenta by construction; the other numbers are
-/// independent checks. Checks that compare neighbouring steps are evaluated during the run where not every
-/// step is a row. They are `None` with an adaptive integrator, whose rows are interpolated, and with sparse
-/// rows of an external engine.
+/// An integrator that integrates momentum conserves both momenta by construction; the other values are independent
+/// checks. Checks that compare neighbouring steps are evaluated during the run if not every step is a row. They are
+/// `None` for an adaptive integrator, whose rows are interpolated, and for sparse rows of an external engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
-    /// `max |P − P₀ − ∫F dt|` over the peak of `Σ mₖ |vₖ − v_com|` (or of `|P|`, or of the spin
-    /// where a single body moves).
+    /// Drift of linear momentum: `max |P − P₀ − ∫F dt|` relative to the peak of `Σ mₖ |vₖ − v_com|` (of the spin for
+    /// a single body) or, if larger, of `|P|`.
     pub linear_momentum_drift_rel: f64,
-    /// `max |L − L₀ − ∫T dt|` over the peak of `Σ |Lₖ|`, all about the system's centre of mass.
+    /// Drift of angular momentum: `max |L − L₀ − ∫T dt|` relative to the peak of `Σ |Lₖ|`, all about the system's
+    /// centre of mass.
     pub angular_momentum_drift_rel: f64,
-    /// `max |E − E₀ − W|` over `Σ |ΔW|` and the peak of the energy in the centre-of-mass frame. The scale is
-    /// at least the energy of a motion by a millionth of the robot's size in the whole run.
+    /// Error of the energy balance: `max |E − E₀ − W|` relative to the sum of `Σ |ΔW|` and the peak of the energy in
+    /// the centre-of-mass frame. The scale is at least the energy of a motion by a millionth of the robot's size
+    /// during the run.
     pub energy_balance_error_rel: f64,
-    /// Distance of the centre of mass from the integral of `P/m`, over its path and the robot's size.
+    /// Largest distance of the centre of mass from the integral of `P/m`, relative to the length of its path plus the
+    /// robot's size.
     pub center_of_mass_error_rel: Option<f64>,
-    /// Base rows of inverse dynamics on differenced velocities minus the mean wrench, over the inertial
-    /// forces of the bodies.
+    /// Difference between the base rows of inverse dynamics, computed from differences of the recorded velocities,
+    /// and the mean external wrench, relative to the inertial forces of the bodies.
     pub base_rows_residual_rel: Option<f64>,
     /// Largest `base_rows_residual_rel` that passes: the truncation error of a central difference, `O(dt²)`.
     pub base_rows_gate: f64,
-    /// Recorded rotations minus those that the recorded angular velocities imply, over the accumulated
-    /// commutator: 1 for attitudes composed without the commutator, far below for integration on the group.
+    /// Difference between the recorded rotations and those computed from the recorded angular velocities, relative to
+    /// the accumulated commutator: 1 for attitudes composed without the commutator, far smaller for integration on
+    /// the rotation group.
     pub attitude_consistency: Option<f64>,
-    /// Difference between the attitudes of steps and of halved steps, summed over the run, rad.
+    /// Difference between the attitudes after steps and after halved steps, summed over the run, rad.
     pub attitude_step_doubling_rad: Option<f64>,
-    /// Difference between the positions and rates of a joint in steps and in halved steps, summed over the
-    /// run, of the worst joint: positions in rad (of prismatic joints over the robot's size), rates over the
-    /// joint's largest rate.
+    /// Difference between the positions and rates after steps and after halved steps, summed over the run, of the
+    /// joint with the largest value. Angles are in rad, displacements relative to the robot's size, and rates
+    /// relative to the joint's largest rate.
     pub joint_step_doubling_rel: Option<f64>,
-    /// Step-doubling error of the base origin's position, over the path of the centre of mass plus the
+    /// Step-doubling error of the position of the base's origin, relative to the path of the centre of mass plus the
     /// robot's size.
     pub position_step_doubling_rel: Option<f64>,
 }
 
-/// Checks that compare neighbouring steps, evaluated during the run: see [`Certificate`].
+/// Results of the checks that compare neighbouring steps, evaluated during the run; see [`Certificate`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairChecks {
-    /// As [`Certificate::center_of_mass_error_rel`].
+    /// Value of [`Certificate::center_of_mass_error_rel`].
     pub center_of_mass_error_rel: f64,
-    /// As [`Certificate::base_rows_residual_rel`].
+    /// Value of [`Certificate::base_rows_residual_rel`].
     pub base_rows_residual_rel: f64,
-    /// As [`Certificate::base_rows_gate`].
+    /// Value of [`Certificate::base_rows_gate`].
     pub base_rows_gate: f64,
-    /// As [`Certificate::attitude_consistency`].
+    /// Value of [`Certificate::attitude_consistency`].
     pub attitude_consistency: f64,
 }
 

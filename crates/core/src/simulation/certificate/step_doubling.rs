@@ -4,7 +4,7 @@ use super::error_measures::{relative, worst};
 use crate::model::{Axis, Model};
 use crate::simulation::trace::Trace;
 
-/// Displacement over the whole run below which a joint counts as at rest, rad or fractions of the robot's
+/// Displacement during the whole run below which a joint counts as at rest, in rad or as a fraction of the robot's
 /// size.
 const REST: f64 = 1e-6;
 
@@ -14,22 +14,23 @@ pub(super) struct StepDoubling<'a> {
     pub(super) trace: &'a Trace,
     /// Radius of gyration of the robot, m.
     pub(super) size: f64,
-    /// Largest error of a joint that passes.
+    /// Largest joint error that passes.
     pub(super) gate: f64,
 }
 
 impl StepDoubling<'_> {
-    /// Returns the largest error of any joint: of its position, and of its rate over its largest rate, from
-    /// the halved steps and from the jumps of its acceleration after every step.
+    /// Returns the largest error of any joint: the error of its position or, relative to its largest rate, that of
+    /// its rate, estimated from the halved steps and from the jumps of its acceleration. `None` without step doubling
+    /// or joints.
     ///
-    /// Errors of light links do not show in balances of the whole robot; here each error is relative
-    /// to the motion of its joint.
+    /// The balances of the whole robot do not reveal errors of light links. Here each error is relative to the motion
+    /// of its joint.
     pub(super) fn joints(&self) -> Option<f64> {
         let joints = self.trace.step_doubling.get(1..).filter(|joints| !joints.is_empty())?;
         let duration = self.duration();
         let off = joints.iter().zip(&self.model.nodes()[1..]).map(|(drift, node)| {
             let unit = if node.axis == Axis::Prismatic { self.size } else { 1.0 };
-            // an error of the rate that passes the gate at rest moves the joint by less than REST
+            // a rate error that passes the gate at rest moves the joint by less than REST
             let creep = REST * unit / (self.gate * duration.max(f64::MIN_POSITIVE));
             let fastest = drift.fastest + creep;
             // the error of a step from the jump after it, see `acceleration_jumps.rs`
@@ -39,8 +40,8 @@ impl StepDoubling<'_> {
         Some(off.fold(0.0, worst))
     }
 
-    /// Returns the error of the base's origin over the `path` of the centre of mass, m, plus the robot's
-    /// size; an error of its velocity is multiplied by the duration of the run.
+    /// Returns the position error of the base's origin relative to the `path` of the centre of mass, m, plus the
+    /// robot's size. The velocity error contributes after multiplication by the duration of the run.
     pub(super) fn origin(&self, path: f64) -> Option<f64> {
         let origin = self.trace.step_doubling.first()?;
         Some(relative(origin.position + origin.rate * self.duration(), path + self.size))

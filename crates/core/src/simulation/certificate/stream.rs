@@ -1,4 +1,4 @@
-//! Checks on neighbouring steps, accumulated during the run.
+//! Checks that compare neighbouring steps, accumulated during the run.
 
 use super::attitude::Attitude;
 use super::base_rows::{BaseRows, Residuals};
@@ -9,10 +9,10 @@ use crate::model::Model;
 use crate::simulation::trace::Trace;
 use serde::{Deserialize, Serialize};
 
-/// Checks on neighbouring steps of a run whose rows are sparse.
+/// Checks that compare neighbouring steps of a run that does not record every step.
 ///
-/// The two that are sums over the run use every step. The base rows, a maximum, use the steps for which
-/// [`Stream::add_rows`] is called.
+/// The checks of the attitude and the centre of mass, which are sums over the run, use every step. The check of the
+/// base rows, which is a maximum, uses the steps for which [`Stream::add_rows`] is called.
 pub(in crate::simulation) struct Stream {
     attitude: Attitude,
     center: CenterOfMass,
@@ -21,7 +21,7 @@ pub(in crate::simulation) struct Stream {
     size: f64,
 }
 
-/// The sums and maxima of a [`Stream`], for checkpoints.
+/// Sums and maxima of a [`Stream`], for checkpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct Sums {
     attitude: Attitude,
@@ -36,7 +36,7 @@ impl Stream {
         Self { attitude, center, base_rows: BaseRows::new(model), size: 0.0 }
     }
 
-    /// Adds a step.
+    /// Adds a step from `before` to `now`.
     #[inline]
     pub(in crate::simulation) fn add(
         &mut self,
@@ -47,7 +47,7 @@ impl Stream {
         self.center.add(before.1, now.1);
     }
 
-    /// Adds a step whose two ends are the rows of `trace`.
+    /// Adds a step whose start and end are the two rows of `trace`.
     pub(in crate::simulation) fn add_rows(&mut self, model: &Model, trace: &Trace) {
         let mut reader = RowReader::new(model, trace);
         if reader.rows() < 2 || trace.time[1] <= trace.time[0] {
@@ -58,7 +58,7 @@ impl Stream {
         self.base_rows.add(model, &before, &now);
     }
 
-    /// Returns the results so far.
+    /// Returns the results of all steps so far.
     pub(in crate::simulation) fn checks(&self) -> PairChecks {
         PairChecks {
             center_of_mass_error_rel: self.center.error(self.size, CENTER),
@@ -78,7 +78,7 @@ impl Stream {
         }
     }
 
-    /// Continues from [`Stream::sums`].
+    /// Restores the sums that [`Stream::sums`] returned.
     pub(in crate::simulation) fn set_sums(&mut self, sums: Sums) {
         let Sums { attitude, center, residuals, size } = sums;
         (self.attitude, self.center, self.base_rows.largest, self.size) = (attitude, center, residuals, size);

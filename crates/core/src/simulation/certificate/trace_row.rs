@@ -17,11 +17,11 @@ pub(in crate::simulation) struct BaseMotion {
     pub(in crate::simulation) rate: Vec3<f64>,
     /// Angular acceleration just before this instant.
     pub(in crate::simulation) change_before: Vec3<f64>,
-    /// Angular acceleration just after it.
+    /// Angular acceleration just after this instant.
     pub(in crate::simulation) change_after: Vec3<f64>,
-    /// Sum of the magnitudes of all rates of base and joints: the scale of their rounding.
+    /// Sum of the magnitudes of the rates of base and joints: the scale of their rounding.
     pub(in crate::simulation) rates: f64,
-    /// Sum of the magnitudes of their derivatives.
+    /// Sum of the magnitudes of the time derivatives of these rates, plus the square of `rates`.
     pub(in crate::simulation) changes: f64,
     /// True if a joint starts or stops at this instant, so that `change_before` is unknown.
     pub(in crate::simulation) is_cut: bool,
@@ -52,19 +52,19 @@ impl BaseMotion {
 pub(in crate::simulation) struct MassMotion {
     pub(in crate::simulation) time: f64,
     pub(in crate::simulation) mass: f64,
-    /// Centre of mass, m.
+    /// Position of the centre of mass, m.
     pub(in crate::simulation) center: Vec3<f64>,
     /// Linear momentum, kg m/s.
     pub(in crate::simulation) momentum: Vec3<f64>,
-    /// Integral of the external forces so far, N s.
+    /// Time integral of the external forces so far, N s.
     pub(in crate::simulation) impulse: Vec3<f64>,
-    /// External force just before this instant where it is known, else the force just after it, N.
+    /// External force just before this instant if it is known, otherwise the force just after this instant, N.
     pub(in crate::simulation) force_before: Vec3<f64>,
-    /// External force just after it, N.
+    /// External force just after this instant, N.
     pub(in crate::simulation) force_after: Vec3<f64>,
 }
 
-/// One row of a trace; W axes unless stated.
+/// One row of a trace; vectors are in W axes unless stated otherwise.
 pub(super) struct TraceRow<'a> {
     pub(super) time: f64,
     pub(super) base: BaseMotion,
@@ -79,11 +79,11 @@ pub(super) struct TraceRow<'a> {
     /// External force just after this row, from the base rows of inverse dynamics.
     pub(super) force: Vec3<f64>,
     pub(super) mass: f64,
-    /// `Σ mₖ |vₖ − v_com|`, kg m/s.
+    /// Momentum of the bodies relative to the centre of mass, `Σ mₖ |vₖ − v_com|`, kg m/s.
     pub(super) relative_momentum: f64,
-    /// `Σ mₖ ρₖ |ωₖ|` with each body's radius of gyration, kg m/s.
+    /// Momentum scale of the rotations, `Σ mₖ ρₖ |ωₖ|` with the radius of gyration `ρₖ` of each body, kg m/s.
     pub(super) spin: f64,
-    /// `Σ |Lₖ|` about the system's centre of mass, kg m²/s.
+    /// Sum of the angular momenta, `Σ |Lₖ|`, about the system's centre of mass, kg m²/s.
     pub(super) angular: f64,
     /// Radius of gyration of the whole robot, m.
     pub(super) size: f64,
@@ -165,8 +165,9 @@ impl<'a> RowReader<'a> {
         now
     }
 
-    /// Returns `ω̇⁻ − ω̇⁺`: the base part of `M⁻¹ (τ⁻ − τ⁺)` for efforts that jump at the row, with the
-    /// joints locked that friction or a stop holds at rest before and after it.
+    /// Returns the jump of the angular acceleration of the base, `ω̇⁻ − ω̇⁺`: the base part of `M⁻¹ (τ⁻ − τ⁺)` for
+    /// efforts that jump at row `k`. Joints that friction or a stop holds at rest before and after the row are
+    /// locked.
     fn angular_jump(&mut self, k: usize, q: &[f64]) -> Vec3<f64> {
         let n = self.model.joint_count();
         if k == 0 || n == 0 {
@@ -189,7 +190,7 @@ impl<'a> RowReader<'a> {
         Vec3::from_slice(&jump[3..])
     }
 
-    /// Returns the effort of motor and Coulomb friction on a joint just after a row, N m (N).
+    /// Returns the effort of the motor and of Coulomb friction on joint `j` just after a row, N m (N).
     fn effort(&self, row: usize, j: usize) -> f64 {
         let tau = Trace::row(&self.trace.tau, row, self.model.joint_count())[j];
         tau - self.model.joints()[j].friction * self.direction(row, j)
@@ -219,7 +220,7 @@ impl<'a> RowReader<'a> {
         can_be_held && rate == 0.0 && self.direction(row - 1, j) == 0.0 && self.direction(row, j) == 0.0
     }
 
-    /// Computes the scales of momentum and of length from the kinematics in `data`.
+    /// Computes the mass and the scales of momentum and length from the kinematics in `data`.
     fn add_scales(&self, now: &mut TraceRow<'_>) {
         let (inertia, h) = composite_momentum(&self.data);
         let (c, v_com) = (inertia.com(), h.linear * (1.0 / inertia.mass));
