@@ -103,7 +103,8 @@ fn kernel<S: Real>(
             };
             // u = τ − Sᵀ pA
             body.joint_bias = tau[k + 5] - joint_effort(node, body.axis(), force);
-            // Ia = IA − U Uᵀ/D,  pa = pA + U u/D, about the parent's origin; shifting IA overlaps with the division by D
+            // Ia = IA − U Uᵀ/D,  pa = pA + U u/D, about the parent's origin
+            // IA is shifted before the subtraction, so that the shift overlaps with the division by D
             body.u_force = u_force.from_point(body.offset);
             let minus_u_force_over_d = body.u_force * -body.d_inverse;
             (

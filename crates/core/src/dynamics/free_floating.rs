@@ -37,7 +37,8 @@ pub struct FreeFloating<S> {
     pub pose: FramePose<S>,
     /// Twist of the frame in W axes at its origin.
     pub velocity: Motion<S>,
-    /// Centre of mass `r_c` of the robot relative to the base origin, m. About `r_c`, `Mbb` is block diagonal: `m 1`, `I_c`.
+    /// Centre of mass `r_c` of the robot relative to the base origin, m. About `r_c`, `Mbb` is block diagonal with the
+    /// blocks `m 1` and `I_c`.
     com_b: Vec3<S>,
     /// `Mbb⁻¹ (c_b − Qb)`, about `r_c`.
     base_bias: Motion<S>,
@@ -206,7 +207,8 @@ fn kernel<S: Real>(
     reduce_task(model, data, q, frame, out);
 }
 
-/// Computes `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `Mbm` and the base response `−Mbb⁻¹ Mbm` from the forces `f_S = I^c S` of all joints.
+/// Computes `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `Mbm` and the base response `−Mbb⁻¹ Mbm` from the forces `f_S = I^c S` of all
+/// joints.
 ///
 /// The entries of `Mmm` are `S_jᵀ f_S` with `f_S` of joint `k`, shifted to the origin of each ancestor `j` of `k`.
 #[inline(always)]

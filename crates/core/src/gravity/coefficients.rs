@@ -25,7 +25,8 @@ pub struct Coefficients {
 }
 
 impl Coefficients {
-    /// Returns the coefficients of square arrays `c` and `s`, `c[n (degree + 1) + m]`; `mu` in m³/s², `radius` `R` in m.
+    /// Returns the coefficients of the square arrays `c` and `s` with the elements `c[n (degree + 1) + m]`; `mu` is in
+    /// m³/s², and `radius`, `R`, in m.
     ///
     /// `c[0]` is treated as 1 regardless of its value; entries with `m > n` and `s` of order 0 must be zero.
     ///

@@ -65,7 +65,8 @@ impl GravityField {
         Ok(Self { name: "zonal".to_owned(), mu, radius, degree, order: 0, kind })
     }
 
-    /// Returns a bundled model: `egm2008` (tide-free) or `jgm3` (`C̄20` with the permanent tide), to degree and order 70.
+    /// Returns a bundled model, `egm2008` (tide-free) or `jgm3` (`C̄20` with the permanent tide); both extend to degree
+    /// and order 70.
     ///
     /// # Errors
     /// [`GravityError::UnknownModel`], [`GravityError::BeyondModel`], [`GravityError::OrderAboveDegree`].
@@ -175,8 +176,8 @@ impl GravityField {
     /// Computes the accelerations `(n, 3)`, m/s², at positions `(n, 3)`, m, axes of `F`.
     ///
     /// # Errors
-    /// [`GravityError::WrongLength`]; otherwise the first error of [`GravityField::acceleration`], after the rows before it
-    /// were written.
+    /// [`GravityError::WrongLength`]; otherwise the first error of [`GravityField::acceleration`], after the rows
+    /// before it were written.
     pub fn accelerations(&self, positions: &[f64], out: &mut [f64]) -> Result<(), GravityError> {
         self.at_each(positions, out, 3, |r, row| {
             row.copy_from_slice(self.acceleration(r)?.as_slice());

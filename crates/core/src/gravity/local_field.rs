@@ -20,9 +20,9 @@ pub(crate) struct FieldPoint {
 
 /// Gravity without the point mass around the bodies of a robot at one instant, axes of `I`.
 ///
-/// Zonal fields in closed form are expanded about the robot; other fields about the nearest point of a grid fixed in the
-/// planet or, for steps longer than the grid spacing, also about the robot. The result depends on the instant
-/// and the step alone, so a run continued from a checkpoint has the same bits.
+/// Zonal fields in closed form are expanded about the robot; other fields about the nearest point of a grid fixed in
+/// the planet or, for steps longer than the grid spacing, also about the robot. The result depends on the instant and
+/// the step alone, so a run continued from a checkpoint has the same bits.
 #[derive(Clone, Debug)]
 pub(crate) struct LocalField<'a> {
     gravity: &'a Gravity,

@@ -112,7 +112,8 @@ impl Gravity {
         self.earth.as_ref().and_then(|earth| earth.epoch())
     }
 
-    /// Checks that an orbit with this `mu`, m³/s², is around this planet; published values of a planet differ by some 1e-6.
+    /// Checks that an orbit with this `mu`, m³/s², is around this planet. Published values for the same planet differ
+    /// by about 1e-6.
     ///
     /// # Errors
     /// [`GravityError::OtherPlanet`] where they differ by more than 1e-5.

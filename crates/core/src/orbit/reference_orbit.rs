@@ -97,8 +97,8 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns the local orbital frame (Hill, RSW) at `t` seconds of simulation.
     ///
     /// # Errors
-    /// The errors of [`Orbit::state`], and [`OrbitError::UndefinedFrame`] if the reference is at rest or moves along its
-    /// position vector.
+    /// The errors of [`Orbit::state`], and [`OrbitError::UndefinedFrame`] if the reference is at rest or moves along
+    /// its position vector.
     fn lvlh(&self, t: f64) -> Result<Lvlh, OrbitError> {
         Lvlh::of(&self.state(t)?)
     }

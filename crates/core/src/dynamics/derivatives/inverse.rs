@@ -9,7 +9,8 @@ use crate::dynamics::rnea::inverse_dynamics_recursion;
 use crate::model::Model;
 use crate::spatial::{Motion, Real};
 
-/// Computes the derivatives of [`inverse_dynamics`](crate::dynamics::inverse_dynamics) with respect to `q`, `v` and `a`.
+/// Computes the derivatives of [`inverse_dynamics`](crate::dynamics::inverse_dynamics) with respect to
+/// `q`, `v` and `a`.
 ///
 /// Each is row major `(nv, nv)`, with the derivatives of `τ_i` in row `i`; the last is the mass matrix. The tangent of
 /// `q` and the quantities held constant are defined in [`derivatives`](super).

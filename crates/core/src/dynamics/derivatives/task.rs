@@ -10,8 +10,8 @@ use crate::dynamics::subspace::subspace;
 use crate::model::{Frame, Model};
 use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, Vec3};
 
-/// Computes the derivatives, with respect to `q` and `v`, of the joint torques `τ = M* q̈ + c* − Q*`, of the acceleration
-/// `ẍ = Jg q̈ + d` of a frame and of its twist `ẋ`, at given joint accelerations.
+/// Computes the derivatives, with respect to `q` and `v`, of the joint torques `τ = M* q̈ + c* − Q*`, of the
+/// acceleration `ẍ = Jg q̈ + d` of a frame and of its twist `ẋ`, at given joint accelerations.
 ///
 /// `acceleration`: `q̈`, `(n,)`; `frame`: an index. Out, row major: `∂τ/∂q`, `∂τ/∂v` `(n, nv)`, `∂ẍ/∂q`, `∂ẍ/∂v`,
 /// `∂ẋ/∂q` `(6, nv)`, rows in W axes, linear first. The other derivatives have names: `∂τ/∂q̈ = M*`, `∂ẍ/∂q̈ = Jg`,

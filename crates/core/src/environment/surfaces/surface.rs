@@ -56,7 +56,8 @@ impl Surface {
         Ok(Self { parts, drag_coefficient, optics })
     }
 
-    /// Returns flat plates with these areas, m², outward normals of any length, and centroids, m; axes and origin of `frame`.
+    /// Returns flat plates with these areas, m², outward normals of any length, and centroids, m. Normals and centroids
+    /// are given in `frame`.
     ///
     /// # Errors
     /// [`SurfaceError::UnknownBody`], [`SurfaceError::WrongLength`], [`SurfaceError::NoPlates`],

@@ -4,7 +4,7 @@
 //! - i, (Ω_d - Ω) sin i)` with `u = M + ω`. These elements are regular for circular orbits and singular for an
 //! equatorial chief.
 //!
-//! Source: D'Amico and Montenbruck, J. Guidance, Control and Dynamics 29(3), 2006; D'Amico, Ph.D. thesis, TU Delft 2010.
+//! Source: D'Amico and Montenbruck, J. Guidance, Control and Dynamics 29(3), 2006; D'Amico, thesis, TU Delft 2010.
 
 use crate::orbit::kepler::{Elements, Kepler, Phase, Size};
 use crate::orbit::{Orbit, OrbitError};
