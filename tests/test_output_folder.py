@@ -96,6 +96,6 @@ def test_a_name_too_long_and_a_file_named_figures_are_rejected(tmp_path: Path) -
     (tmp_path / "summary.json").write_text("{}")
     listed(tmp_path)
     (tmp_path / "figures").write_text("precious")
-    with pytest.raises(OutputNotEmptyError, match="figures: it is there"):
+    with pytest.raises(OutputNotEmptyError, match="figures: it already exists"):
         OutputFolder.claim(tmp_path, force=True)
     assert (tmp_path / "summary.json").exists()
