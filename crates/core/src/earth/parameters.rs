@@ -83,7 +83,7 @@ impl Parameters {
                 let mut last = f64::NEG_INFINITY;
                 let row = |(index, row): (usize, &EarthParameterRow)| {
                     if !(row.mjd > last && (MJD_1972..MJD_2100).contains(&row.mjd)) {
-                        let expected = "rows in the order of time, from 41317 (1972) to 88069 (2100)";
+                        let expected = "increasing dates from 41317 (1972) to 88069 (2100)";
                         return Err(EarthError::Parameter {
                             name: "MJD",
                             value: row.mjd,

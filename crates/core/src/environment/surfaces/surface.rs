@@ -29,7 +29,7 @@ impl Surface {
         let drag_coefficient = not_negative("drag_coefficient", drag_coefficient)?;
         let value = not_negative("reflectivity", reflectivity)?;
         if value > 2.0 {
-            let expected = "a number from 0 to 2 (a flat mirror that faces the Sun)";
+            let expected = "a number from 0 to 2, the value of a flat mirror that faces the Sun";
             return Err(SurfaceError::Value { name: "reflectivity", value, expected });
         }
         let spheres = vec![Sphere { area, centre: Vec3::zero(), reflectivity }];

@@ -149,7 +149,7 @@ fn shape(elements: &Elements) -> Result<Shape, OrbitError> {
         return Err(OrbitError::NegativeEccentricity { value: e });
     }
     if e > LARGEST_ECCENTRICITY {
-        let expected = "at most 1e20 (then the path is straight to rounding)";
+        let expected = "at most 1e20 (beyond, the path is a straight line to rounding)";
         return Err(OrbitError::OutOfRange { name: "eccentricity", value: e, expected });
     }
     let (one, one_minus_e) = (Double::from(1.0), Double::from(1.0) - Double::from(e));
@@ -205,7 +205,8 @@ fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64)
 /// subtracted.
 fn angle(name: &'static str, value: f64) -> Result<f64, OrbitError> {
     if finite(name, value)?.abs() > LARGEST_ANGLE {
-        let expected = "at most 1e15 rad (beyond, f64 numbers are more than 1/8 rad apart)";
+        let expected =
+            "at most 1e15 rad (beyond, neighbouring numbers of double precision are more than 1/8 rad apart)";
         return Err(OrbitError::OutOfRange { name, value, expected });
     }
     Ok(value)
